@@ -1,0 +1,104 @@
+// A small image of transmittance a box, per axis: how the things inside clump, which
+// multiplying mean opacities forgets. Maps are made from triangles, composited upwards.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+inline constexpr int kMapSize = 16;
+inline constexpr int kMapCells = kMapSize * kMapSize;
+
+/// The two axes a map along `axis` spans: columns, then rows.
+inline constexpr int column_axis(int axis) { return (axis + 1) % 3; }
+inline constexpr int row_axis(int axis) { return (axis + 2) % 3; }
+
+/// Area of the box seen along `axis`, square metres.
+inline float face_area(const Box3f& box, int axis) {
+  return (box.max[column_axis(axis)] - box.min[column_axis(axis)]) *
+         (box.max[row_axis(axis)] - box.min[row_axis(axis)]);
+}
+
+/// transmittance[axis][row * kMapSize + column], in [0,1].
+struct CoverageMap {
+  alignas(64) std::array<std::array<float, kMapCells>, 3> transmittance;
+
+  CoverageMap() {
+    for (auto& map : transmittance) map.fill(1.0f);
+  }
+  /// Mean opacity of the box along `axis`, [0,1].
+  [[nodiscard]] float mean_opacity(int axis) const;
+};
+
+/// A triangle to be drawn. `opacity_at(u, v, share)` is its mean opacity around the
+/// barycentrics over `share` of its area; used only when `opacity` is negative.
+struct CoveringTriangle {
+  V3f vertex, edge1, edge2;
+  float opacity;
+};
+
+/// Multiplies a triangle inside `box` into the map, keeping its projected area exactly.
+template <class OpacityAt>
+void cover(CoverageMap& map, const Box3f& box, const CoveringTriangle& triangle,
+           const OpacityAt& opacity_at);
+
+/// Multiplies the map of a child box into that of its parent, resampled by area.
+void composite(CoverageMap& parent, const Box3f& parent_box, const CoverageMap& child,
+               const Box3f& child_box);
+
+/// The same for a child of one opacity an axis all over.
+void composite_uniform(CoverageMap& parent, const Box3f& parent_box, const V3f& opacity,
+                       const Box3f& child_box);
+
+// Implementation of cover().
+
+/// A projected triangle in units of map cells, and the cells it may touch.
+struct CellTriangle {
+  V2f a, edge1, edge2;               ///< edges as the triangle has them, either orientation
+  float area;                        ///< in cells
+  int column0, column1, row0, row1;  ///< inclusive
+};
+
+/// False when the box has no area along `axis` or the triangle none in it.
+bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out);
+
+/// Fraction of each touched cell that is covered, row after row of the touched range; the
+/// sum is the triangle's area exactly, up to cells that would be more than full.
+void rasterize(const CellTriangle& triangle, std::array<float, kMapCells>& coverage);
+
+template <class OpacityAt>
+void cover(CoverageMap& map, const Box3f& box, const CoveringTriangle& triangle,
+           const OpacityAt& opacity_at) {
+  std::array<float, kMapCells> coverage;
+  for (int axis = 0; axis < 3; ++axis) {
+    CellTriangle cells;
+    if (!project(triangle, box, axis, cells)) continue;
+    rasterize(cells, coverage);
+    const int columns = cells.column1 - cells.column0 + 1;
+    const float share = cells.area > 1.0f ? 1.0f / cells.area : 1.0f;
+    for (int row = cells.row0; row <= cells.row1; ++row) {
+      float* out = &map.transmittance[axis][row * kMapSize + cells.column0];
+      const float* in = &coverage[(row - cells.row0) * columns];
+      if (triangle.opacity >= 0.0f) {
+        for (int i = 0; i < columns; ++i) out[i] *= 1.0f - triangle.opacity * in[i];
+        continue;
+      }
+      const float inverse = 1.0f / (cells.edge1.x * cells.edge2.y - cells.edge1.y * cells.edge2.x);
+      for (int i = 0; i < columns; ++i) {
+        if (in[i] <= 0.0f) continue;
+        const V2f p =
+            V2f(static_cast<float>(cells.column0 + i) + 0.5f, static_cast<float>(row) + 0.5f) -
+            cells.a;
+        float u = std::clamp((p.x * cells.edge2.y - p.y * cells.edge2.x) * inverse, 0.0f, 1.0f);
+        float v = std::clamp((cells.edge1.x * p.y - cells.edge1.y * p.x) * inverse, 0.0f, 1.0f);
+        const float excess = std::max(u + v, 1.0f);
+        out[i] *= 1.0f - opacity_at(u / excess, v / excess, share) * in[i];
+      }
+    }
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,43 @@
+// One mesh's finished BVH, and the steps that make it: build, pack, prefilter.
+#pragma once
+
+#include <vector>
+
+#include "bvh/coverage_map.hpp"
+#include "bvh/triangle_opacity.hpp"
+#include "bvh/wide_tree.hpp"
+#include "dapple/shared/geometry.h"
+
+namespace dapple {
+
+/// Indices inside (child_base, prim_base, textured codes) count from this object's own
+/// first node, block and textured triangle.
+struct ObjectBvh {
+  std::vector<BvhNode> nodes;
+  std::vector<TriangleBlock> blocks;
+  std::vector<TexturedTriangle> textured;
+  Box3f box;
+  std::vector<Box3f> parts;  ///< boxes of the root's children
+  V3f opacity{0, 0, 0};      ///< of `box` along each axis
+  std::uint32_t stack = 0;   ///< traversal stack entries needed
+  double sah_cost = 0;       ///< expected node visits of a ray through `box`
+  std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
+  double build_seconds = 0, prefilter_seconds = 0;
+};
+
+/// Builds, packs and prefilters the triangles of `mesh` that are not fully transparent.
+/// Empty (no nodes) when there are none.
+ObjectBvh build_object(const Scene& scene, const Mesh& mesh);
+
+/// Fills nodes[*].opacity and `opacity` of a packed object, bottom-up, in parallel and in
+/// time linear in the triangles.
+void prefilter(ObjectBvh& object, const WideTree& tree, const TextureIntegrals& integrals);
+
+/// Packs a wide tree's boxes and layout into nodes; opacities stay 0, `prim_base` is set
+/// by the caller.
+std::vector<BvhNode> pack_nodes(const WideTree& tree);
+
+/// Stores the opacity of child `slot`, whose exact box had `opacity`, as that of its grown box.
+void set_child_opacity(BvhNode& node, unsigned slot, const V3f& opacity, const Box3f& exact);
+
+}  // namespace dapple

@@ -1,0 +1,22 @@
+// Child boxes to 8 bits a bound and back. Quantization may grow a box, never shrink it.
+#pragma once
+
+#include "dapple/scene.hpp"
+#include "dapple/shared/bvh_node.h"
+
+namespace dapple {
+
+/// Sets the node's origin and exponents to a grid of 255 steps an axis around `box`
+/// (finite, not empty), and marks every slot empty.
+void set_grid(BvhNode& node, const Box3f& box);
+
+/// Stores `box`, which lies inside the grid's box, as child `slot`, grown to grid steps
+/// plus at least kGridMargin of a step, which pays for the kernel's rounding.
+void set_child_box(BvhNode& node, unsigned slot, const Box3f& box);
+
+/// The grown box of child `slot`, as the kernels see it.
+Box3f child_box(const BvhNode& node, unsigned slot);
+
+inline constexpr double kGridMargin = 1.0 / 1024.0;
+
+}  // namespace dapple

@@ -1,0 +1,245 @@
+// All objects' BVHs put together, and the top-level BVH over their instances.
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+
+#include "bvh/object_bvh.hpp"
+#include "dapple/bvh.hpp"
+#include "dapple/error.hpp"
+#include "dapple/shared/opacity.h"
+
+namespace dapple {
+namespace {
+
+double matrix_scale(const M44f& m) {
+  const V3f x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
+      z(m[2][0], m[2][1], m[2][2]);
+  return std::fabs(static_cast<double>(x.dot(y.cross(z))));
+}
+
+/// Rows of a 3x4 matrix for column vectors from Imath's 4x4 for row vectors.
+void store_rows(const M44f& m, float (&rows)[12]) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) rows[4 * row + column] = m[column][row];
+  }
+}
+
+/// World box around the boxes of the root's children: tighter than around the root's own.
+Box3f world_box(const std::vector<Box3f>& parts, const M44f& to_world) {
+  Box3f world;
+  for (const Box3f& box : parts) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const V3f p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                  corner & 4 ? box.max.z : box.min.z);
+      world.extendBy(p * to_world);
+    }
+  }
+  return world;
+}
+
+/// The object's root opacity seen along the world axes, for its world box: along an axis
+/// e the object is crossed in direction M^-1 e, and areas grow by |det M| |M^-1 e|.
+V3f instance_opacity(const ObjectBvh& object, const M44f& to_world, const Box3f& world) {
+  const M44f to_object = to_world.inverse();
+  const double scale = matrix_scale(to_world);
+  V3f opacity(0.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    V3f world_axis(0.0f), direction;
+    world_axis[axis] = 1.0f;
+    to_object.multDirMatrix(world_axis, direction);
+    double squares = 0, linear = 0, facing = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double face = static_cast<double>(face_area(object.box, k)) * std::fabs(direction[k]);
+      const double area = object.opacity[k] * face;
+      squares += area * area;
+      linear += area;
+      facing += face;
+    }
+    const double mean = facing > 0 ? linear / facing : 0.0;
+    const double filled = std::clamp(
+        (mean - DAPPLE_SPARSE_OPACITY) / (DAPPLE_FILLED_OPACITY - DAPPLE_SPARSE_OPACITY), 0.0, 1.0);
+    const double occluding = std::sqrt(squares) + filled * (linear - std::sqrt(squares));
+    const double area = face_area(world, axis);
+    opacity[axis] = area > 0 ? static_cast<float>(std::min(1.0, occluding * scale / area)) : 0.0f;
+  }
+  return opacity;
+}
+
+std::vector<ObjectBvh> build_objects(const Scene& scene) {
+  std::vector<ObjectBvh> objects(scene.meshes.size());
+  tbb::parallel_for(std::size_t{0}, objects.size(),
+                    [&](std::size_t m) { objects[m] = build_object(scene, scene.meshes[m]); });
+  return objects;
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>& from) {
+  if (to.empty()) {
+    to = std::move(from);
+  } else {
+    to.insert(to.end(), from.begin(), from.end());
+  }
+  from = {};
+}
+
+/// Moves an object's arrays behind those of the others, its indices made absolute.
+/// Returns its root.
+std::uint32_t append_object(SceneBvh& bvh, ObjectBvh& object, const std::string& source) {
+  const std::size_t nodes = bvh.nodes.size(), blocks = bvh.blocks.size(),
+                    textured = bvh.textured.size();
+  // The stack's top bit marks instances; a textured triangle's index must fit a float.
+  if (nodes + object.nodes.size() > 0x7fffffffu || blocks + object.blocks.size() > 0xffffffffu ||
+      textured + object.textured.size() >= 1u << 24) {
+    throw Error(ErrorKind::failed,
+                fmt::format("{}: too many triangles for the BVH's indices", source));
+  }
+  for (BvhNode& node : object.nodes) {
+    node.child_base += static_cast<std::uint32_t>(nodes);
+    node.prim_base += static_cast<std::uint32_t>(blocks);
+  }
+  for (TriangleBlock& block : object.blocks) {
+    for (float& opacity : block.opacity) {
+      if (opacity < 0.0f) opacity -= static_cast<float>(textured);
+    }
+  }
+  append(bvh.nodes, object.nodes);
+  append(bvh.blocks, object.blocks);
+  append(bvh.textured, object.textured);
+  return static_cast<std::uint32_t>(nodes);
+}
+
+void add_statistics(BvhStatistics& s, const std::vector<ObjectBvh>& objects) {
+  std::size_t largest = 0;
+  for (const ObjectBvh& object : objects) {
+    s.triangles += object.triangles;
+    s.opaque += object.opaque;
+    s.cut_out += object.cut_out;
+    s.translucent += object.translucent;
+    s.build_seconds += object.build_seconds;
+    s.prefilter_seconds += object.prefilter_seconds;
+    if (object.triangles > largest) {
+      largest = object.triangles;
+      s.sah_cost = object.sah_cost;
+    }
+  }
+}
+
+/// An instance that can be hit, as the top level sees it.
+struct Placement {
+  Box3f box;
+  V3f opacity;
+  InstanceRecord record;
+};
+
+Placement place(const Instance& instance, const ObjectBvh& object, std::uint32_t root) {
+  Placement placement;
+  placement.box = world_box(object.parts, instance.to_world);
+  placement.opacity = instance_opacity(object, instance.to_world, placement.box);
+  InstanceRecord& record = placement.record;
+  store_rows(instance.to_world, record.to_world);
+  store_rows(instance.to_world.inverse(), record.to_object);
+  record.inverse_area_scale = static_cast<float>(1.0 / matrix_scale(instance.to_world));
+  record.root = root;
+  record.light = static_cast<std::uint32_t>(instance.light + 1);
+  record.spare = 0;
+  return placement;
+}
+
+/// Coverage map of a top-level node; sets the opacities below it. Instances count as
+/// evenly filled boxes: how an object clumps is not known along turned axes.
+CoverageMap prefilter_top(const WideTree& tree, const std::vector<PrimitiveBox>& order,
+                          const std::vector<Placement>& placed, std::vector<BvhNode>& nodes,
+                          std::uint32_t index) {
+  const WideNode& wide = tree.nodes[index];
+  CoverageMap map;
+  for (unsigned slot = 0; slot < wide.child_count; ++slot) {
+    const WideChild& child = wide.children[slot];
+    V3f opacity;
+    if (child.count) {
+      opacity = placed[order[child.first].primitive].opacity;
+      composite_uniform(map, wide.box, opacity, child.box);
+    } else {
+      const CoverageMap below = prefilter_top(tree, order, placed, nodes, child.first);
+      for (int axis = 0; axis < 3; ++axis) opacity[axis] = below.mean_opacity(axis);
+      composite(map, wide.box, below, child.box);
+    }
+    set_child_opacity(nodes[index], slot, opacity, child.box);
+  }
+  return map;
+}
+
+/// The BVH over instances, one a leaf; returns the stack entries it needs.
+std::uint32_t build_top(SceneBvh& bvh, const std::vector<Placement>& placed) {
+  std::vector<PrimitiveBox> boxes;
+  for (std::uint32_t i = 0; i < placed.size(); ++i)
+    boxes.push_back({placed[i].box.min, i, placed[i].box.max, 0});
+  const BinaryTree binary = build_binary_tree(std::move(boxes), 1);
+  const WideTree wide = collapse(binary);
+  std::vector<BvhNode> nodes = pack_nodes(wide);
+  const CoverageMap map = prefilter_top(wide, binary.order, placed, nodes, 0);
+  for (int axis = 0; axis < 3; ++axis) bvh.statistics.root_opacity[axis] = map.mean_opacity(axis);
+  bvh.root = static_cast<std::uint32_t>(bvh.nodes.size());
+  bvh.has_top = true;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    nodes[n].prim_base = static_cast<std::uint32_t>(bvh.instances.size());
+    nodes[n].child_base += bvh.root;
+    for (std::uint32_t c = 0; c < wide.nodes[n].child_count; ++c) {
+      const WideChild& child = wide.nodes[n].children[c];
+      if (child.count) bvh.instances.push_back(placed[binary.order[child.first].primitive].record);
+    }
+  }
+  bvh.nodes.insert(bvh.nodes.end(), nodes.begin(), nodes.end());
+  return stack_needed(wide);
+}
+
+void check_stack(std::uint32_t needed, const std::string& source) {
+  if (needed <= DAPPLE_STACK_SIZE) return;
+  throw Error(ErrorKind::failed,
+              fmt::format("{}: the BVH needs {} traversal stack entries, the kernels have {}; the "
+                          "geometry spans too many scales",
+                          source, needed, DAPPLE_STACK_SIZE));
+}
+
+}  // namespace
+
+SceneBvh build_bvh(const Scene& scene) {
+  SceneBvh bvh;
+  std::vector<ObjectBvh> objects = build_objects(scene);
+  add_statistics(bvh.statistics, objects);
+  std::vector<std::uint32_t> roots;
+  for (ObjectBvh& object : objects) roots.push_back(append_object(bvh, object, scene.source));
+  std::vector<Placement> placed;
+  std::uint32_t object_stack = 0;
+  for (const Instance& instance : scene.instances) {
+    const ObjectBvh& object = objects[instance.mesh];
+    if (object.box.isEmpty()) continue;
+    placed.push_back(place(instance, object, roots[instance.mesh]));
+    bvh.bounds.extendBy(placed.back().box);
+    bvh.statistics.instanced_triangles += object.triangles;
+    object_stack = std::max(object_stack, object.stack);
+  }
+  if (placed.empty()) {
+    throw Error(
+        ErrorKind::input,
+        fmt::format("{}: nothing to hit: every triangle is fully transparent", scene.source));
+  }
+  bvh.statistics.instances = placed.size();
+  bvh.statistics.lane_use = static_cast<double>(bvh.statistics.triangles) /
+                            (8.0 * static_cast<double>(bvh.blocks.size()));
+  const Instance& first = scene.instances.front();
+  if (scene.instances.size() == 1 && first.to_world == M44f() && first.light < 0) {
+    bvh.root = roots[first.mesh];
+    bvh.instances.push_back(placed[0].record);
+    for (int axis = 0; axis < 3; ++axis)
+      bvh.statistics.root_opacity[axis] = objects[first.mesh].opacity[axis];
+    check_stack(object_stack, scene.source);
+  } else {
+    const std::uint32_t top_stack = build_top(bvh, placed);
+    check_stack(top_stack + object_stack, scene.source);
+  }
+  return bvh;
+}
+
+}  // namespace dapple

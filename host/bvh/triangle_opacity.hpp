@@ -1,0 +1,68 @@
+// What opacity a triangle has: one number, or a texture and factors to be looked up at
+// each hit (kernels/opacity_lookup.clh) and averaged over areas when prefiltering.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "dapple/scene.hpp"
+#include "dapple/shared/geometry.h"
+
+namespace dapple {
+
+/// The triangle's opacity in [0,1] if it is the same all over, else nothing.
+std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
+
+/// The record the kernels look a varying triangle up by.
+TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
+
+/// A texture's opacities averaged over squares of 1, 2, 4... texels. Of a cut-out the
+/// texels are thresholded first and averaged only then.
+class OpacityPyramid {
+ public:
+  /// `factor` multiplies alpha before the threshold; `cutoff` < 0: blended.
+  OpacityPyramid(const Texture& texture, float factor, float cutoff);
+
+  /// Mean opacity around uv over a square `width_uv` wide (in units of the whole texture,
+  /// the larger of both axes' in texels counts).
+  [[nodiscard]] float mean(V2f uv, float width_texels) const;
+
+  [[nodiscard]] V2f size() const { return size_; }
+
+ private:
+  struct Level {
+    int width, height;
+    std::vector<float> opacity;
+  };
+  [[nodiscard]] float bilinear(const Level& level, V2f uv) const;
+
+  std::vector<Level> levels_;
+  V2f size_;
+  Wrap wrap_s_, wrap_t_;
+};
+
+/// Answers "how opaque is this part of the triangle on average" for textured triangles.
+class TextureIntegrals {
+ public:
+  /// Makes the pyramids that `textured` need, each once.
+  TextureIntegrals(const Scene& scene, const std::vector<TexturedTriangle>& textured);
+
+  /// Mean opacity of the triangle around barycentrics (u, v) over an area that is `share`
+  /// of the triangle's, [0,1].
+  [[nodiscard]] float mean(const TexturedTriangle& triangle, float u, float v, float share) const;
+
+ private:
+  struct Key {
+    std::uint32_t texture;
+    float factor, cutoff;
+    auto operator<=>(const Key&) const = default;
+  };
+  static Key key_of(const TexturedTriangle& triangle);
+  [[nodiscard]] const OpacityPyramid* find(const Key& key) const;
+
+  std::vector<std::pair<Key, OpacityPyramid>> pyramids_;  ///< sorted by key
+};
+
+}  // namespace dapple

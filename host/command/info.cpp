@@ -1,0 +1,119 @@
+// dapple info: what a scene holds, what its BVH costs and how opaque it is.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command/command.hpp"
+#include "command/option_text.hpp"
+#include "command/statistics_text.hpp"
+#include "dapple/bvh.hpp"
+
+namespace dapple {
+namespace {
+
+struct InfoArguments {
+  std::string scene;
+  std::vector<std::string> opacity;
+  bool json = false;
+};
+
+nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
+  const BvhStatistics& s = bvh.statistics;
+  const auto per_triangle = [&](std::size_t bytes) {
+    return static_cast<double>(bytes) / static_cast<double>(std::max<std::size_t>(1, s.triangles));
+  };
+  std::size_t texels = 0;
+  for (const Texture& texture : scene.textures) texels += texture.alpha.size();
+  const std::size_t nodes = bvh.nodes.size() * sizeof(BvhNode);
+  const std::size_t triangles =
+      bvh.blocks.size() * sizeof(TriangleBlock) + bvh.textured.size() * sizeof(TexturedTriangle);
+  const std::size_t instances = bvh.instances.size() * sizeof(InstanceRecord);
+  nlohmann::ordered_json json;
+  json["scene"] = scene.source;
+  json["triangles"] = {{"total", s.triangles},
+                       {"opaque", s.opaque},
+                       {"cut_out", s.cut_out},
+                       {"translucent", s.translucent},
+                       {"instanced", s.instanced_triangles}};
+  json["instances"] = s.instances;
+  json["materials"] = nlohmann::ordered_json::array();
+  for (const Material& material : scene.materials) json["materials"].push_back(material.name);
+  json["lights"] = scene.lights.size();
+  json["cameras"] = scene.cameras.size();
+  json["bounds"] = {{"min", {bvh.bounds.min.x, bvh.bounds.min.y, bvh.bounds.min.z}},
+                    {"max", {bvh.bounds.max.x, bvh.bounds.max.y, bvh.bounds.max.z}}};
+  json["nodes"] = bvh.nodes.size();
+  json["bytes"] = {
+      {"nodes", nodes}, {"triangles", triangles}, {"textures", texels}, {"instances", instances}};
+  json["bytes_per_triangle"] = {{"nodes", per_triangle(nodes)},
+                                {"triangles", per_triangle(triangles)},
+                                {"all", per_triangle(nodes + triangles + texels + instances)}};
+  json["seconds"] = {{"build", s.build_seconds}, {"prefilter", s.prefilter_seconds}};
+  json["sah_node_visits"] = s.sah_cost;
+  json["lane_use"] = s.lane_use;
+  json["opacity"] = {s.root_opacity[0], s.root_opacity[1], s.root_opacity[2]};
+  json["warnings"] = scene.warnings;
+  return json;
+}
+
+std::string report_text(const nlohmann::ordered_json& r) {
+  const auto number = [&](const char* a, const char* b) { return r[a][b].get<double>(); };
+  std::string text = fmt::format("{}\n", r["scene"].get<std::string>());
+  text += fmt::format(
+      "  triangles   {:.0f} ({:.0f} opaque, {:.0f} cut-out, {:.0f} translucent), {:.0f} with "
+      "instances\n",
+      number("triangles", "total"), number("triangles", "opaque"), number("triangles", "cut_out"),
+      number("triangles", "translucent"), number("triangles", "instanced"));
+  std::string materials;
+  for (const auto& name : r["materials"])
+    materials += (materials.empty() ? "" : ", ") + name.get<std::string>();
+  text += fmt::format("  instances   {}, lights {}, cameras {}\n", r["instances"].dump(),
+                      r["lights"].dump(), r["cameras"].dump());
+  text += fmt::format("  materials   {}\n", materials);
+  text += fmt::format("  bounds      {} to {} m\n", r["bounds"]["min"].dump(),
+                      r["bounds"]["max"].dump());
+  text += fmt::format(
+      "  nodes       {}, SAH {:.1f} node visits a ray, {:.0f} % of triangle lanes used\n",
+      r["nodes"].dump(), r["sah_node_visits"].get<double>(), 100 * r["lane_use"].get<double>());
+  text += fmt::format(
+      "  memory      nodes {}, triangles {}, textures {}, instances {}\n",
+      bytes_text(number("bytes", "nodes")), bytes_text(number("bytes", "triangles")),
+      bytes_text(number("bytes", "textures")), bytes_text(number("bytes", "instances")));
+  text +=
+      fmt::format("  a triangle  {:.1f} bytes of nodes, {:.1f} of triangles, {:.1f} all in\n",
+                  number("bytes_per_triangle", "nodes"), number("bytes_per_triangle", "triangles"),
+                  number("bytes_per_triangle", "all"));
+  text += fmt::format("  seconds     build {:.3f}, prefilter {:.3f}\n", number("seconds", "build"),
+                      number("seconds", "prefilter"));
+  text += fmt::format("  opacity     {:.3f}, {:.3f}, {:.3f} of the scene's box along x, y, z\n",
+                      r["opacity"][0].get<double>(), r["opacity"][1].get<double>(),
+                      r["opacity"][2].get<double>());
+  for (const auto& warning : r["warnings"])
+    text += fmt::format("  note        {}\n", warning.get<std::string>());
+  return text;
+}
+
+void run_info(const InfoArguments& a) {
+  Scene scene = load_scene(a.scene);
+  for (const std::string& text : a.opacity) {
+    const auto [material, value] = parse_opacity(text);
+    override_opacity(scene, material, value);
+  }
+  merge_single_instances(scene);
+  const auto json = report(scene, build_bvh(scene));
+  fmt::print("{}", a.json ? json.dump(2) + "\n" : report_text(json));
+}
+
+}  // namespace
+
+Run add_info_command(CLI::App& app) {
+  auto a = std::make_shared<InfoArguments>();
+  app.add_option("SCENE", a->scene, "glTF file or procedural scene")->required();
+  app.add_option("--opacity", a->opacity, "MATERIAL=VALUE, as for render");
+  app.add_flag("--json", a->json, "Print JSON");
+  app.footer("Example:\n  dapple info tree.glb --opacity leaf=0.85");
+  return [a] { run_info(*a); };
+}
+
+}  // namespace dapple

@@ -1,0 +1,87 @@
+#include "command/option_text.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <vector>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts{""};
+  for (const char c : text) {
+    if (c == at) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+/// The whole of `text` as a number, or an error.
+template <class Number>
+Number parse_number(const std::string& flag, const std::string& text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size() && !text.empty()) return value;
+  throw Error(ErrorKind::usage, fmt::format("{}: '{}' is not a number", flag, text));
+}
+
+template <class Number>
+std::vector<Number> parse_numbers(const std::string& flag, const std::string& text,
+                                  std::size_t count, const char* shape) {
+  const auto parts = split(text, ',');
+  if (parts.size() != count)
+    throw Error(ErrorKind::usage, fmt::format("{} {}: expected {}", flag, text, shape));
+  std::vector<Number> numbers;
+  for (const std::string& part : parts) numbers.push_back(parse_number<Number>(flag, part));
+  return numbers;
+}
+
+}  // namespace
+
+V3f parse_vector(const std::string& flag, const std::string& text) {
+  const auto v = parse_numbers<float>(flag, text, 3, "X,Y,Z");
+  return {v[0], v[1], v[2]};
+}
+
+PixelRect parse_crop(const std::string& text) {
+  const auto v = parse_numbers<int>("--crop", text, 4, "X0,Y0,X1,Y1");
+  return {v[0], v[1], v[2], v[3]};
+}
+
+std::pair<std::string, float> parse_opacity(const std::string& text) {
+  const auto at = text.rfind('=');
+  if (at == std::string::npos || at == 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--opacity {}: expected MATERIAL=VALUE, as in leaf=0.85", text));
+  }
+  return {text.substr(0, at),
+          parse_number<float>("--opacity " + text.substr(0, at), text.substr(at + 1))};
+}
+
+Estimator parse_estimator(const std::string& text) {
+  if (text == "exact") return Estimator::exact;
+  if (text == "prefiltered") return Estimator::prefiltered;
+  throw Error(ErrorKind::usage,
+              fmt::format("--estimator {}: there are exact and prefiltered", text));
+}
+
+void parse_passes(const std::string& text, RenderOptions& options) {
+  options.ao = options.light = false;
+  for (const std::string& pass : split(text, ',')) {
+    if (pass == "ao") {
+      options.ao = true;
+    } else if (pass == "light") {
+      options.light = true;
+    } else {
+      throw Error(ErrorKind::usage, fmt::format("--passes {}: there are ao and light", text));
+    }
+  }
+}
+
+}  // namespace dapple

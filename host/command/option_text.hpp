@@ -1,0 +1,22 @@
+// Option values as typed, to what they mean. All throw Error usage naming the flag.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "dapple/options.hpp"
+
+namespace dapple {
+
+/// "1,2.5,-3"
+V3f parse_vector(const std::string& flag, const std::string& text);
+/// "X0,Y0,X1,Y1", whole numbers
+PixelRect parse_crop(const std::string& text);
+/// "leaf=0.85"; the name may contain '='
+std::pair<std::string, float> parse_opacity(const std::string& text);
+/// "exact" or "prefiltered"
+Estimator parse_estimator(const std::string& text);
+/// "ao", "light", "ao,light"
+void parse_passes(const std::string& text, RenderOptions& options);
+
+}  // namespace dapple

@@ -1,0 +1,165 @@
+// dapple render: the pipeline from a scene to files, top to bottom.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "command/command.hpp"
+#include "command/option_text.hpp"
+#include "command/progress.hpp"
+#include "command/statistics_text.hpp"
+#include "dapple/error.hpp"
+#include "dapple/wavefront.hpp"
+#include "film/output_file.hpp"
+
+namespace dapple {
+namespace {
+
+/// What was typed, before it becomes options.
+struct RenderArguments {
+  std::string scene, output, png, stats_json, lights;
+  std::string estimator = "prefiltered", passes = "ao,light";
+  std::string look_from, look_at, up, crop;
+  std::vector<std::string> opacity;
+  SceneOptions scene_options;
+  RenderOptions options;
+  bool quiet = false;
+};
+
+void add_picture_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  app.add_option("--width", o.width, "Picture width, pixels")->capture_default_str();
+  app.add_option("--height", o.height, "Picture height, pixels")->capture_default_str();
+  app.add_option(
+      "--crop", a.crop,
+      "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
+  app.add_option("--spp", o.spp, "Camera samples a pixel")->capture_default_str();
+  app.add_option("--ao-rays", o.ao_rays, "AO rays a camera sample")->capture_default_str();
+  app.add_option("--light-rays", o.light_rays, "Rays a light and camera sample")
+      ->capture_default_str();
+  app.add_option(
+         "--estimator", a.estimator,
+         "exact: every surface counts; prefiltered: stop at BVH nodes the ray's footprint covers")
+      ->capture_default_str();
+  app.add_option(
+         "--footprint", o.footprint,
+         "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
+      ->capture_default_str();
+  app.add_option("--passes", a.passes, "Which passes to make: ao, light or both")
+      ->capture_default_str();
+  app.add_option("--ao-distance", o.ao_distance,
+                 "Surfaces farther than this, in metres, don't occlude; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--ao-falloff", o.ao_falloff,
+                 "Power p: a surface at t counts (1 - t / distance)^p; 0: a hard limit")
+      ->capture_default_str();
+  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
+}
+
+void add_scene_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  app.add_option("--camera", o.camera,
+                 "Camera by name; default: the scene's first, or one that frames it");
+  app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
+  app.add_option("--look-at", a.look_at, "Where it looks: X,Y,Z");
+  app.add_option("--up", a.up, "Its up direction: X,Y,Z; default 0,1,0");
+  app.add_option("--fov", o.fov_degrees,
+                 "Vertical field of view, degrees; default: the camera's own, or 40");
+  app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
+  app.add_option("--light-radius", a.scene_options.light_radius,
+                 "Radius that glTF point lights get, metres")
+      ->capture_default_str();
+  app.add_option("--opacity", a.opacity,
+                 "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
+  app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
+}
+
+RenderOptions to_options(const RenderArguments& a) {
+  RenderOptions o = a.options;
+  o.estimator = parse_estimator(a.estimator);
+  parse_passes(a.passes, o);
+  if (!a.crop.empty()) o.crop = parse_crop(a.crop);
+  if (!a.look_from.empty() || !a.look_at.empty()) {
+    if (a.look_from.empty() || a.look_at.empty()) {
+      throw Error(ErrorKind::usage, "--look-from and --look-at go together");
+    }
+    o.look = LookAt{parse_vector("--look-from", a.look_from), parse_vector("--look-at", a.look_at),
+                    a.up.empty() ? V3f(0, 1, 0) : parse_vector("--up", a.up)};
+  }
+  for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
+  validate(o);
+  return o;
+}
+
+void use_lights(Scene& scene, const std::string& path) {
+  for (Instance& instance : scene.instances) instance.light = -1;
+  scene.lights = load_lights(path);
+}
+
+void write_statistics(const RenderStatistics& statistics, const std::string& path) {
+  write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
+}
+
+void check_outputs(const RenderArguments& a) {
+  for (const std::string& path : {a.output, a.png, a.stats_json}) {
+    if (!path.empty()) check_output_path(path);
+  }
+}
+
+void run_render(const RenderArguments& a) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const auto start = Clock::now();
+  const RenderOptions options = to_options(a);
+  check_outputs(a);
+
+  Scene scene = load_scene(a.scene, a.scene_options);
+  if (!a.lights.empty()) use_lights(scene, a.lights);
+  const double load_seconds = since(start);
+
+  ProgressBar progress(a.quiet);
+  RenderResult result = render(std::move(scene), options, progress.callback());
+  progress.clear();
+
+  const auto writing = Clock::now();
+  write_exr(result.film, a.output);
+  if (!a.png.empty()) write_png(result.film, a.png);
+  RenderStatistics& statistics = result.statistics;
+  statistics.seconds.load = load_seconds;
+  statistics.seconds.write = since(writing);
+  statistics.seconds.total = since(start);
+  if (!a.stats_json.empty()) write_statistics(statistics, a.stats_json);
+  if (a.quiet) return;
+  for (const std::string& note : statistics.notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print("{}wrote {}{}\n", statistics_text(statistics), a.output,
+             a.png.empty() ? "" : " and " + a.png);
+}
+
+}  // namespace
+
+Run add_render_command(CLI::App& app) {
+  auto a = std::make_shared<RenderArguments>();
+  app.add_option("SCENE", a->scene,
+                 "glTF file (.gltf, .glb) or a procedural scene, \"scene:tree?leaves=50000\"")
+      ->required();
+  app.add_option("-o,--output", a->output, "OpenEXR file to write")->required();
+  app.add_option("--png", a->png, "Also write an 8-bit preview");
+  add_picture_options(app, *a);
+  add_scene_options(app, *a);
+  app.add_option("--device", a->options.device,
+                 "OpenCL device, by part of its name (see dapple devices)");
+  app.add_option("--kernel-dir", a->options.kernel_dir,
+                 "Read OpenCL kernels from this folder (for developers)");
+  app.add_option("--stats-json", a->stats_json, "Write the statistics as JSON");
+  app.add_flag("-q,--quiet", a->quiet, "Print nothing but errors");
+  app.footer(
+      "Example:\n  dapple render tree.glb --opacity leaf=0.85 --spp 64 -o tree.exr --png "
+      "tree.png\n\n"
+      "Layers: R,G,B,A; ao; bent; light.NAME; N; P; Z; samples. Where rays miss, ao is 1.");
+  return [a] { run_render(*a); };
+}
+
+}  // namespace dapple

@@ -1,0 +1,17 @@
+// Render statistics as people and as programs read them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "dapple/wavefront.hpp"
+
+namespace dapple {
+
+nlohmann::ordered_json statistics_json(const RenderStatistics& statistics);
+std::string statistics_text(const RenderStatistics& statistics);
+
+/// "1.7 GB", "512 kB", "12 bytes".
+std::string bytes_text(double bytes);
+
+}  // namespace dapple

@@ -1,0 +1,182 @@
+#include "device/context.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "device/kernel_source.hpp"
+#include "device/opencl.hpp"
+#include "device/platforms.hpp"
+
+namespace dapple {
+namespace {
+
+/// Events are collected every so many launches, so that long renders hold few of them.
+constexpr std::size_t kEventsHeld = 256;
+
+std::string first_lines(const std::string& text, int count) {
+  std::size_t end = 0;
+  for (int i = 0; i < count && end != std::string::npos; ++i) end = text.find('\n', end + 1);
+  return text.substr(0, end);
+}
+
+}  // namespace
+
+struct Buffer::Memory {
+  cl::Buffer buffer;
+};
+
+struct DeviceContext::State {
+  DeviceInfo info;
+  std::string kernel_dir;
+  cl::Device device;
+  cl::Context context;
+  cl::CommandQueue queue;
+  std::map<std::pair<std::string, Variant>, cl::Program> programs;
+  std::map<std::tuple<std::string, std::string, Variant>, cl::Kernel> kernels;
+  std::vector<std::pair<std::string, cl::Event>> events;
+  std::map<std::string, double> pass_seconds;
+  double build_seconds = 0;
+
+  cl::Program& program(const std::string& file, const Variant& variant);
+  cl::Kernel& kernel(const KernelName& name);
+  void collect_events();
+};
+
+std::string Variant::options() const {
+  return fmt::format("-cl-std=CL1.2 -DDAPPLE_PREFILTERED={}", prefiltered ? 1 : 0);
+}
+
+cl::Program& DeviceContext::State::program(const std::string& file, const Variant& variant) {
+  const auto key = std::pair(file, variant);
+  if (const auto found = programs.find(key); found != programs.end()) return found->second;
+  const auto start = std::chrono::steady_clock::now();
+  cl::Program built(context, expand_kernel(file, kernel_dir));
+  try {
+    built.build({device}, variant.options().c_str());
+  } catch (const cl::Error& error) {
+    const auto log = built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    throw Error(ErrorKind::device,
+                fmt::format("{}: the OpenCL compiler of {} refused it ({}):\n{}", file, info.name,
+                            opencl_error_name(error.err()), first_lines(log, 12)));
+  }
+  build_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return programs.emplace(key, built).first->second;
+}
+
+cl::Kernel& DeviceContext::State::kernel(const KernelName& name) {
+  const std::string file = (name.file.empty() ? name.name : name.file) + ".cl";
+  const auto key = std::tuple(file, name.name, name.variant);
+  if (const auto found = kernels.find(key); found != kernels.end()) return found->second;
+  return kernels.emplace(key, cl::Kernel(program(file, name.variant), name.name.c_str()))
+      .first->second;
+}
+
+void DeviceContext::State::collect_events() {
+  for (auto& [label, event] : events) {
+    const auto begin = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+    const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+    pass_seconds[label] += static_cast<double>(end - begin) * 1e-9;
+  }
+  events.clear();
+}
+
+DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir)
+    : state_(std::make_unique<State>()) {
+  State& s = *state_;
+  s.kernel_dir = std::move(kernel_dir);
+  s.device = choose_device(name);
+  s.info = describe(s.device);
+  in_opencl("opening " + s.info.name, [&] {
+    s.context = cl::Context(s.device);
+    s.queue = cl::CommandQueue(s.context, s.device, CL_QUEUE_PROFILING_ENABLE);
+  });
+}
+
+DeviceContext::~DeviceContext() = default;
+
+const DeviceInfo& DeviceContext::info() const { return state_->info; }
+
+Buffer DeviceContext::allocate(std::size_t bytes) {
+  return in_opencl(fmt::format("allocating {} bytes on {}", bytes, state_->info.name), [&] {
+    auto memory = std::make_shared<Buffer::Memory>();
+    memory->buffer =
+        cl::Buffer(state_->context, CL_MEM_READ_WRITE, std::max<std::size_t>(bytes, 1));
+    return Buffer(std::move(memory), bytes);
+  });
+}
+
+Buffer DeviceContext::share(const void* data, std::size_t bytes) {
+  if (bytes == 0) return allocate(0);
+  return in_opencl(fmt::format("uploading {} bytes to {}", bytes, state_->info.name), [&] {
+    const bool shared = state_->device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
+    const cl_mem_flags placing = shared ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    auto memory = std::make_shared<Buffer::Memory>();
+    // OpenCL wants a mutable pointer but only reads through it: CL_MEM_READ_ONLY.
+    memory->buffer =
+        cl::Buffer(state_->context, CL_MEM_READ_ONLY | placing, bytes, const_cast<void*>(data));
+    return Buffer(std::move(memory), bytes);
+  });
+}
+
+void DeviceContext::fill_zero(const Buffer& buffer) {
+  if (buffer.bytes() == 0) return;
+  in_opencl("clearing a buffer", [&] {
+    state_->queue.enqueueFillBuffer(buffer.memory()->buffer, cl_uchar{0}, 0, buffer.bytes());
+  });
+}
+
+void DeviceContext::write(const Buffer& buffer, const void* data, std::size_t bytes) {
+  if (bytes == 0) return;
+  in_opencl("writing to the device", [&] {
+    state_->queue.enqueueWriteBuffer(buffer.memory()->buffer, CL_TRUE, 0, bytes, data);
+  });
+}
+
+void DeviceContext::read(const Buffer& buffer, void* data, std::size_t bytes) {
+  if (bytes == 0) return;
+  in_opencl("reading from the device", [&] {
+    state_->queue.enqueueReadBuffer(buffer.memory()->buffer, CL_TRUE, 0, bytes, data);
+  });
+}
+
+void DeviceContext::prepare(const KernelName& kernel) {
+  in_opencl("compiling kernel " + kernel.name, [&] { state_->kernel(kernel); });
+}
+
+void DeviceContext::launch(const KernelName& name, const std::string& label, std::size_t items,
+                           std::initializer_list<KernelArgument> arguments, std::size_t group) {
+  if (items == 0) return;
+  in_opencl("running pass " + label, [&] {
+    cl::Kernel& kernel = state_->kernel(name);
+    cl_uint index = 0;
+    for (const KernelArgument& argument : arguments) {
+      if (argument.buffer) {
+        kernel.setArg(index++, argument.buffer->memory()->buffer);
+      } else {
+        kernel.setArg(index++, argument.size, argument.value);
+      }
+    }
+    cl::Event event;
+    state_->queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+                                       cl::NDRange((items + group - 1) / group * group),
+                                       cl::NDRange(group), nullptr, &event);
+    state_->events.emplace_back(label, event);
+  });
+  if (state_->events.size() >= kEventsHeld) finish();
+}
+
+void DeviceContext::finish() {
+  in_opencl("waiting for " + state_->info.name, [&] {
+    state_->queue.finish();
+    state_->collect_events();
+  });
+}
+
+const std::map<std::string, double>& DeviceContext::pass_seconds() const {
+  return state_->pass_seconds;
+}
+
+double DeviceContext::kernel_build_seconds() const { return state_->build_seconds; }
+
+}  // namespace dapple

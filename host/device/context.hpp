@@ -1,0 +1,94 @@
+// One device, one in-order queue: buffers, kernels by file and name, timed launches. What
+// host/wavefront sees of OpenCL; the OpenCL types stay in context.cpp.
+#pragma once
+
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "dapple/device.hpp"
+
+namespace dapple {
+
+/// Device memory; freed with the last copy.
+class Buffer {
+ public:
+  struct Memory;
+  Buffer() = default;
+  Buffer(std::shared_ptr<Memory> memory, std::size_t bytes)
+      : memory_(std::move(memory)), bytes_(bytes) {}
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  [[nodiscard]] Memory* memory() const { return memory_.get(); }
+
+ private:
+  std::shared_ptr<Memory> memory_;
+  std::size_t bytes_ = 0;
+};
+
+/// A kernel argument: a buffer, or a struct or number by value.
+struct KernelArgument {
+  KernelArgument(const Buffer& b) : buffer(&b) {}  // NOLINT: implicit, so that calls read as lists
+  template <class T>
+  requires std::is_trivially_copyable_v<T> KernelArgument(const T& v)
+      : value(&v), size(sizeof v) {}  // NOLINT
+  const Buffer* buffer = nullptr;
+  const void* value = nullptr;
+  std::size_t size = 0;
+};
+
+/// What a program is compiled for. Few of these, integers only.
+struct Variant {
+  bool prefiltered = false;
+  [[nodiscard]] std::string options() const;
+  auto operator<=>(const Variant&) const = default;
+};
+
+/// Kernel `name` of kernels/`name`.cl unless `file` says otherwise.
+struct KernelName {
+  std::string name;
+  std::string file;
+  Variant variant;
+};
+
+class DeviceContext {
+ public:
+  DeviceContext(const std::string& name, std::string kernel_dir);
+  ~DeviceContext();
+  DeviceContext(const DeviceContext&) = delete;
+  DeviceContext& operator=(const DeviceContext&) = delete;
+
+  [[nodiscard]] const DeviceInfo& info() const;
+
+  /// Uninitialized memory; at least one byte is allocated. Throws Error device.
+  Buffer allocate(std::size_t bytes);
+  /// Read-only copy of host data; on devices that share memory with the host no copy is
+  /// made and the data must stay where it is.
+  Buffer share(const void* data, std::size_t bytes);
+  void fill_zero(const Buffer& buffer);
+  void write(const Buffer& buffer, const void* data, std::size_t bytes);
+  /// Waits for all launches before it.
+  void read(const Buffer& buffer, void* data, std::size_t bytes);
+
+  /// Compiles a kernel ahead of its first launch.
+  void prepare(const KernelName& kernel);
+  /// Enqueues `items` work-items, rounded up to whole groups of `group`: kernels check
+  /// bounds. `label` names the pass in pass_seconds().
+  void launch(const KernelName& kernel, const std::string& label, std::size_t items,
+              std::initializer_list<KernelArgument> arguments, std::size_t group = 64);
+  void finish();
+
+  /// Device seconds of all finished launches, by label.
+  [[nodiscard]] const std::map<std::string, double>& pass_seconds() const;
+  /// Wall seconds spent compiling so far.
+  [[nodiscard]] double kernel_build_seconds() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,19 @@
+#include "dapple/device.hpp"
+
+#include "device/context.hpp"
+#include "device/platforms.hpp"
+
+namespace dapple {
+
+std::vector<DeviceInfo> list_devices() {
+  std::vector<DeviceInfo> infos;
+  for (const cl::Device& device : usable_devices()) infos.push_back(describe(device));
+  return infos;
+}
+
+Device::Device(const std::string& name, const std::string& kernel_dir)
+    : context_(std::make_shared<DeviceContext>(name, kernel_dir)) {}
+
+const DeviceInfo& Device::info() const { return context_->info(); }
+
+}  // namespace dapple

@@ -1,0 +1,23 @@
+// A scene in device memory, in the order that every tracing kernel takes it.
+#pragma once
+
+#include "dapple/shared/light_record.h"
+#include "dapple/shared/pass_params.h"
+#include "device/context.hpp"
+
+namespace dapple {
+
+struct DeviceBuffers {
+  explicit DeviceBuffers(const Device& d) : device(d) {}
+  Device device;
+  Buffer nodes, blocks, textured, textures, texels, instances;
+  Buffer lights, emitters;
+  SceneParams params{};
+  // What `share` may point into where memory is shared.
+  std::vector<TextureRecord> texture_records;
+  std::vector<uchar> texel_data;
+  std::vector<LightRecord> light_records;
+  std::vector<EmitterTriangle> emitter_triangles;
+};
+
+}  // namespace dapple

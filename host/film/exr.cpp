@@ -1,0 +1,303 @@
+// Films as OpenEXR files; no other file knows OpenEXR. In: a Film, or any single-part
+// scanline or tiled EXR. Out: a verified file, or a Film. One thread throughout: the
+// library's pool would be a setting of the whole process, which is not ours to change.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfIntAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <ImfTileDescriptionAttribute.h>
+#include <ImfVersion.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <new>
+#include <string_view>
+
+#include "dapple/error.hpp"
+#include "dapple/film.hpp"
+#include "film/film_defect.hpp"
+#include "film/output_file.hpp"
+
+namespace dapple {
+namespace {
+
+using Imath::Box2i;
+using Imath::V2i;
+
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
+constexpr int kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
+constexpr std::size_t kLongestAttributeName = 255;
+constexpr std::string_view kPrefix = "dapple:";
+
+std::int64_t area(const Box2i& window) {
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  return width * (std::int64_t{window.max.y} - window.min.y + 1);
+}
+
+Box2i window_of(const PixelRect& rect) { return {V2i(rect.x0, rect.y0), V2i(rect.x1, rect.y1)}; }
+
+using Rows = std::vector<std::vector<float>>;  // one vector a channel
+
+Rows read_rows(Imf::InputFile& file, const std::vector<std::string>& channels, const Box2i& strip) {
+  Rows rows(channels.size(), std::vector<float>(static_cast<std::size_t>(area(strip))));
+  Imf::FrameBuffer buffer;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    buffer.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, rows[i].data(), strip));
+  }
+  file.setFrameBuffer(buffer);
+  file.readPixels(strip.min.y, strip.max.y);
+  return rows;
+}
+
+// Calls `visit(first_pixel, rows)` from the top strip to the bottom one.
+template <typename Visit>
+void for_each_strip(Imf::InputFile& file, const std::vector<std::string>& channels, Visit visit) {
+  const Box2i window = file.header().dataWindow();
+  std::size_t first_pixel = 0;
+  for (std::int64_t y = window.min.y; y <= window.max.y; y += kStripRows) {
+    const int last = static_cast<int>(std::min<std::int64_t>(y + kStripRows - 1, window.max.y));
+    const Box2i strip(V2i(window.min.x, static_cast<int>(y)), V2i(window.max.x, last));
+    visit(first_pixel, read_rows(file, channels, strip));
+    first_pixel += static_cast<std::size_t>(area(strip));
+  }
+}
+
+std::string attribute_name(const std::string& name) {
+  return (std::string(kPrefix) + name).substr(0, kLongestAttributeName);
+}
+
+void insert_text(Imf::Header& header, const std::string& name, const std::string& value) {
+  header.insert(attribute_name(name), Imf::StringAttribute(value));
+}
+
+// Settings of these names (what was asked for) yield to what was used.
+bool is_reserved(const std::string& setting) {
+  constexpr std::array<std::string_view, 5> kReserved = {"scene", "device", "version", "seed",
+                                                         "samples"};
+  return std::find(kReserved.begin(), kReserved.end(), setting) != kReserved.end();
+}
+
+void insert_metadata(Imf::Header& header, const FilmMetadata& metadata) {
+  Imf::addWorldToCamera(header, metadata.world_to_camera);
+  Imf::addWorldToNDC(header, metadata.world_to_ndc);
+  for (const auto& [name, value] : metadata.settings) {
+    if (!is_reserved(name)) insert_text(header, name, value);
+  }
+  insert_text(header, "scene", metadata.scene);
+  insert_text(header, "device", metadata.device);
+  insert_text(header, "version", metadata.version);
+  insert_text(header, "seed", std::to_string(metadata.seed));  // EXR's integers are signed
+  header.insert(attribute_name("samples"), Imf::IntAttribute(metadata.samples));
+}
+
+Imf::Header header_of(const Film& film) {
+  Imf::Header header(Box2i(V2i(0, 0), V2i(film.width - 1, film.height - 1)),
+                     window_of(film.data_window), 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y,
+                     Imf::ZIP_COMPRESSION);
+  for (const Plane& plane : film.planes) {
+    header.channels().insert(plane.channel, Imf::Channel(Imf::FLOAT));
+  }
+  insert_metadata(header, film.metadata);
+  return header;
+}
+
+class PendingStream final : public Imf::OStream {
+ public:
+  explicit PendingStream(PendingFile& file)
+      : Imf::OStream(file.temporary_path().c_str()), file_(file) {}
+  void write(const char bytes[], int count) override {
+    file_.write(bytes, static_cast<std::size_t>(count));
+  }
+  uint64_t tellp() override { return file_.position(); }
+  void seekp(uint64_t position) override { file_.seek(position); }
+
+ private:
+  PendingFile& file_;
+};
+
+void encode(const Film& film, PendingFile& file) {
+  PendingStream stream(file);
+  Imf::OutputFile out(stream, header_of(film), 0);
+  Imf::FrameBuffer buffer;
+  const Box2i window = window_of(film.data_window);
+  for (const Plane& plane : film.planes) {
+    buffer.insert(plane.channel, Imf::Slice::Make(Imf::FLOAT, plane.pixels.data(), window));
+  }
+  out.setFrameBuffer(buffer);
+  out.writePixels(film.data_window.height());
+}
+
+// Bits are compared, not values: NaNs are equal to themselves here.
+void verify(const Film& film, PendingFile& file) {
+  Imf::InputFile in(file.temporary_path().c_str(), 0);
+  if (in.header().dataWindow() != window_of(film.data_window)) {
+    file.fail("the data window that was read back differs from the film's");
+  }
+  std::vector<std::string> channels;
+  for (const Plane& plane : film.planes) channels.push_back(plane.channel);
+  for_each_strip(in, channels, [&](std::size_t first_pixel, const Rows& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const float* meant = film.planes[i].pixels.data() + first_pixel;
+      if (std::memcmp(rows[i].data(), meant, rows[i].size() * sizeof(float)) != 0) {
+        file.fail("channel " + channels[i] + " differs after reading it back");
+      }
+    }
+  });
+}
+
+// The header alone, before OpenEXR allocates anything of the size that it claims.
+Imf::Header peek_header(const std::string& path) {
+  Imf::StdIFStream stream(path.c_str());
+  std::array<char, 8> opening{};
+  stream.read(opening.data(), static_cast<int>(opening.size()));
+  if (!Imf::isImfMagic(opening.data())) throw std::runtime_error("it is not an EXR file");
+  int version = 0;
+  for (std::size_t i = 4; i < 8; ++i) {
+    version |= static_cast<unsigned char>(opening[i]) << (8 * (i - 4));
+  }
+  Imf::Header header;
+  header.readFrom(stream, version);
+  return header;
+}
+
+void check_size(const Imf::Header& header) {
+  const Box2i& window = header.dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  if (width < 1 || height < 1) throw std::runtime_error("its data window is empty");
+  const auto too_large = [](std::int64_t w, std::int64_t h) {
+    return w > kMaxPixels || h > kMaxPixels || w * h > kMaxPixels;
+  };
+  if (too_large(width, height)) {
+    throw std::runtime_error("its data window of " + std::to_string(width) + " x " +
+                             std::to_string(height) + " pixels is over the limit of " +
+                             std::to_string(kMaxPixels));
+  }
+  if (!header.hasTileDescription()) return;
+  // OpenEXR keeps one row of tiles for scanline access.
+  const Imf::TileDescription& tile = header.tileDescription();
+  if (too_large(tile.xSize, tile.ySize) || too_large(width, tile.ySize)) {
+    throw std::runtime_error("its tiles of " + std::to_string(tile.xSize) + " x " +
+                             std::to_string(tile.ySize) + " pixels are too large");
+  }
+}
+
+std::vector<std::string> channel_names(const Imf::Header& header) {
+  std::vector<std::string> names;
+  const Imf::ChannelList& channels = header.channels();
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    if (it.channel().xSampling != 1 || it.channel().ySampling != 1) {
+      throw std::runtime_error(std::string("channel ") + it.name() + " is subsampled");
+    }
+    names.emplace_back(it.name());
+  }
+  if (names.empty()) throw std::runtime_error("it has no channels");
+  return names;
+}
+
+std::string take(std::vector<std::pair<std::string, std::string>>& texts, const std::string& name) {
+  const auto found = std::find_if(texts.begin(), texts.end(),
+                                  [&](const auto& entry) { return entry.first == name; });
+  if (found == texts.end()) return {};
+  std::string value = std::move(found->second);
+  texts.erase(found);
+  return value;
+}
+
+FilmMetadata read_metadata(const Imf::Header& header) {
+  FilmMetadata metadata;
+  if (Imf::hasWorldToCamera(header)) metadata.world_to_camera = Imf::worldToCamera(header);
+  if (Imf::hasWorldToNDC(header)) metadata.world_to_ndc = Imf::worldToNDC(header);
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const std::string name = it.name();
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+    if (text != nullptr && name.starts_with(kPrefix)) {
+      metadata.settings.emplace_back(name.substr(kPrefix.size()), text->value());
+    }
+  }
+  metadata.scene = take(metadata.settings, "scene");
+  metadata.device = take(metadata.settings, "device");
+  metadata.version = take(metadata.settings, "version");
+  const std::string seed = take(metadata.settings, "seed");
+  std::from_chars(seed.data(), seed.data() + seed.size(), metadata.seed);
+  const auto* samples = header.findTypedAttribute<Imf::IntAttribute>(attribute_name("samples"));
+  if (samples != nullptr) metadata.samples = samples->value();
+  return metadata;
+}
+
+Film film_without_pixels(const Imf::Header& header) {
+  const Box2i& display = header.displayWindow();
+  const Box2i& data = header.dataWindow();
+  Film film;
+  film.width = display.max.x - display.min.x + 1;
+  film.height = display.max.y - display.min.y + 1;
+  film.data_window = {data.min.x - display.min.x, data.min.y - display.min.y,
+                      data.max.x - display.min.x, data.max.y - display.min.y};
+  film.metadata = read_metadata(header);
+  return film;
+}
+
+Film decode(const std::string& path) {
+  check_size(peek_header(path));
+  Imf::InputFile file(path.c_str(), 0);
+  Film film = film_without_pixels(file.header());
+  const std::vector<std::string> channels = channel_names(file.header());
+  for (const std::string& channel : channels) film.planes.push_back({channel, {}});
+  // Reserved memory costs nothing until it is filled: a short file that claims a large
+  // picture fails before it has used any.
+  for (Plane& plane : film.planes) {
+    plane.pixels.reserve(static_cast<std::size_t>(area(file.header().dataWindow())));
+  }
+  for_each_strip(file, channels, [&](std::size_t, const Rows& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      film.planes[i].pixels.insert(film.planes[i].pixels.end(), rows[i].begin(), rows[i].end());
+    }
+  });
+  return film;
+}
+
+}  // namespace
+
+void write_exr(const Film& film, const std::string& path) {
+  PendingFile file(path);
+  const std::string reason = film_defect(film);
+  if (!reason.empty()) file.fail(reason);
+  try {
+    encode(film, file);
+    file.close();
+    verify(film, file);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& problem) {
+    file.fail(problem.what());
+  }
+  file.commit();
+}
+
+Film read_exr(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw Error(ErrorKind::input,
+                path + (std::filesystem::exists(path, ignored) ? ": it is not a regular file"
+                                                               : ": there is no such file"));
+  }
+  try {
+    return decode(path);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::input, path + ": there is not enough memory for its picture");
+  } catch (const std::exception& problem) {
+    throw Error(ErrorKind::input, path + ": " + problem.what());
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,58 @@
+// Files that appear whole or not at all. A PendingFile is written beside its target, read
+// back by whoever knows what it should hold, and only then renamed over the target; without
+// commit() it vanishes and the target stays as it was. For every writer: EXR, PNG, GLB.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace dapple {
+
+/// Refuses, before any work is done, a path that could not be written: not a regular file,
+/// read-only, or in a folder that is missing or not writable. Throws Error usage.
+void check_output_path(const std::string& path);
+
+/// Every member but the destructor throws Error failed, "cannot write PATH: REASON".
+class PendingFile {
+ public:
+  explicit PendingFile(const std::string& target);
+  ~PendingFile();
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  void write(const char* bytes, std::size_t count);
+  void seek(std::uint64_t position);
+  [[nodiscard]] std::uint64_t position() const { return flushed_ + buffer_.size(); }
+
+  /// Forces everything onto the disk. A write that failed earlier fails here again, so an
+  /// encoder that swallows exceptions (OpenEXR's destructor does) cannot hide it.
+  void close();
+
+  /// The unfinished file, to be verified between close() and commit().
+  [[nodiscard]] const std::string& temporary_path() const { return temporary_; }
+
+  /// Renames over the target; close() comes first.
+  void commit();
+
+  /// Throws Error failed in the name of the target.
+  [[noreturn]] void fail(const std::string& reason);
+
+ private:
+  [[noreturn]] void fail_with_errno();
+  void flush();
+
+  std::string name_;       // as the caller gave it, for messages
+  std::string target_;     // with symbolic links followed: a rename must not replace a link
+  std::string temporary_;  // empty once committed
+  std::string first_failure_;
+  std::string buffer_;         // written after the first `flushed_` bytes
+  std::uint64_t flushed_ = 0;  // file position at which `buffer_` begins
+  int descriptor_ = -1;
+};
+
+/// All of `bytes` as the file `path`, read back before it takes the name. Throws Error failed.
+void write_whole_file(const std::string& path, std::string_view bytes);
+
+}  // namespace dapple

@@ -1,0 +1,138 @@
+// 8-bit previews: one layer of a film as a PNG of the data window's size. Colours get the
+// sRGB curve; normals and distances are data and stay linear. In: a Film. Out: a file.
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#include <stb_image_write.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "dapple/error.hpp"
+#include "dapple/film.hpp"
+#include "film/film_defect.hpp"
+#include "film/output_file.hpp"
+
+namespace dapple {
+namespace {
+
+// shown = (value - offset) * scale, then clamped and, for colours, encoded as sRGB.
+struct Tone {
+  float offset = 0.0f;
+  float scale = 1.0f;
+  bool srgb = true;
+};
+
+using Planes = std::vector<const Plane*>;  // three of a colour or vector, or one
+
+Planes find_triple(const Film& film, const std::string& prefix, const char* letters) {
+  Planes planes;
+  for (int i = 0; i < 3; ++i) {
+    const Plane* plane = film.find(prefix + letters[i]);
+    if (plane == nullptr) return {};
+    planes.push_back(plane);
+  }
+  return planes;
+}
+
+[[noreturn]] void refuse_layer(const Film& film, const std::string& layer) {
+  std::string channels;
+  for (const Plane& plane : film.planes) channels += " " + plane.channel;
+  throw Error(ErrorKind::usage, "there is no layer " + (layer.empty() ? "RGBA" : layer) +
+                                    " for the PNG; the film's channels are:" + channels);
+}
+
+Planes planes_of(const Film& film, const std::string& layer) {
+  const std::string prefix = layer.empty() ? "" : layer + ".";
+  for (const char* letters : {"RGB", "XYZ"}) {
+    Planes planes = find_triple(film, prefix, letters);
+    if (!planes.empty()) return planes;
+  }
+  const Plane* single = film.find(layer);
+  if (single == nullptr) refuse_layer(film, layer);
+  return {single};
+}
+
+struct Range {
+  float low = std::numeric_limits<float>::infinity();
+  float high = -std::numeric_limits<float>::infinity();
+};
+
+Range finite_range(const Planes& planes) {
+  Range range;
+  for (const Plane* plane : planes) {
+    for (const float value : plane->pixels) {
+      if (!std::isfinite(value)) continue;
+      range.low = std::min(range.low, value);
+      range.high = std::max(range.high, value);
+    }
+  }
+  return range;
+}
+
+Tone tone_of(const std::string& layer, const Planes& planes) {
+  if (layer == "N") return {-1.0f, 0.5f, false};
+  const Range range = finite_range(planes);
+  if (layer == "Z" || layer == "P") {
+    const float span = range.high - range.low;
+    return {range.low, span > 0 ? 1 / span : 1.0f, false};
+  }
+  if (layer.starts_with("light.")) return {0.0f, range.high > 0 ? 1 / range.high : 1.0f, true};
+  return {};
+}
+
+// IEC 61966-2-1, the encoding of linear light in [0,1].
+float encode_srgb(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+std::uint8_t shown(float value, const Tone& tone) {
+  const float toned = (value - tone.offset) * tone.scale;
+  const float clamped = toned > 0 ? std::min(toned, 1.0f) : 0.0f;  // NaN becomes 0
+  const float encoded = tone.srgb ? encode_srgb(clamped) : clamped;
+  return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
+}
+
+void append(void* bytes, void* data, int count) {
+  static_cast<std::string*>(bytes)->append(static_cast<const char*>(data),
+                                           static_cast<std::size_t>(count));
+}
+
+// `path` is for the message alone.
+std::string encode_png(const std::vector<std::uint8_t>& image, int width, int height, int channels,
+                       const std::string& path) {
+  constexpr std::size_t kLargestImage = std::size_t{1} << 30;  // stb counts bytes in ints
+  std::string bytes;
+  if (image.size() > kLargestImage ||
+      stbi_write_png_to_func(append, &bytes, width, height, channels, image.data(),
+                             width * channels) == 0) {
+    throw Error(ErrorKind::failed, "cannot write " + path + ": " + std::to_string(width) + " x " +
+                                       std::to_string(height) + " pixels are too many for a PNG");
+  }
+  return bytes;
+}
+
+}  // namespace
+
+void write_png(const Film& film, const std::string& path, const std::string& layer) {
+  const std::string defect = film_defect(film);
+  if (!defect.empty()) throw Error(ErrorKind::failed, "cannot write " + path + ": " + defect);
+  const Planes planes = planes_of(film, layer);
+  const Tone tone = tone_of(layer, planes);
+  const std::size_t channels = planes.size();
+  const std::size_t pixels = planes.front()->pixels.size();
+  std::vector<std::uint8_t> image(pixels * channels);
+  for (std::size_t c = 0; c < channels; ++c) {
+    for (std::size_t i = 0; i < pixels; ++i) {
+      image[i * channels + c] = shown(planes[c]->pixels[i], tone);
+    }
+  }
+  const int width = film.data_window.width();
+  const int height = film.data_window.height();
+  write_whole_file(path, encode_png(image, width, height, static_cast<int>(channels), path));
+}
+
+}  // namespace dapple

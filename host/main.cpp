@@ -1,0 +1,64 @@
+// Chooses a command, and turns what goes wrong into one line and an exit code.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "command/command.hpp"
+#include "dapple/error.hpp"
+
+namespace {
+
+constexpr int kUsage = static_cast<int>(dapple::ErrorKind::usage);
+constexpr int kFailed = static_cast<int>(dapple::ErrorKind::failed);
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "Ambient occlusion and soft shadows through foliage, hair and forests.\n\n"
+      "Example:\n  dapple render scene:demo -o demo.exr --png demo.png"};
+  app.set_version_flag("--version", "dapple " DAPPLE_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device.\n"
+      "dapple COMMAND --help tells more of each.");
+  CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
+  CLI::App& info = *app.add_subcommand("info", "Tell what is in a scene and what its BVH costs");
+  CLI::App& scene = *app.add_subcommand("scene", "Write a procedural scene as a GLB file");
+  CLI::App& devices = *app.add_subcommand("devices", "List the OpenCL devices");
+  const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
+      {&render, dapple::add_render_command(render)},
+      {&info, dapple::add_info_command(info)},
+      {&scene, dapple::add_scene_command(scene)},
+      {&devices, dapple::add_devices_command(devices)},
+  };
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : kUsage;
+  }
+  for (const auto& [command, work] : commands) {
+    if (command->parsed()) work();
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const dapple::Error& error) {
+    fmt::print(stderr, "dapple: {}\n", error.what());
+    return static_cast<int>(error.kind());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr,
+               "dapple: out of memory; try a smaller picture, fewer rays or a smaller scene\n");
+    return kFailed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "dapple: {}\n", error.what());
+    return kFailed;
+  }
+}

@@ -1,0 +1,222 @@
+// Describes a scene in glTF 2.0's words (Khronos, glTF 2.0 Specification, sections 3 and 5):
+// buffer views, accessors, one primitive a mesh and material, nodes, cameras.
+#include "scene/glb_layout.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+using Json = nlohmann::json;
+
+// OpenGL's numbers, which glTF uses.
+constexpr int kFloat = 5126;
+constexpr int kUnsignedInt = 5125;
+constexpr int kArrayBuffer = 34962;
+constexpr int kElementArrayBuffer = 34963;
+constexpr double kNear = 0.01;
+constexpr double kOrthographicFar = 1e4;
+
+Json vector_json(V3f v) { return {v.x, v.y, v.z}; }
+
+Json matrix_json(const M44f& m) {
+  // Rows of a matrix that row vectors multiply are the columns of glTF's.
+  Json elements = Json::array();
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) elements.push_back(m[i][k]);
+  }
+  return elements;
+}
+
+Json material_json(const Material& material) {
+  Json json = {{"name", material.name},
+               {"doubleSided", material.double_sided},
+               {"pbrMetallicRoughness",
+                {{"baseColorFactor", {1, 1, 1, material.alpha}}, {"metallicFactor", 0}}}};
+  if (material.alpha_mode == AlphaMode::blend) json["alphaMode"] = "BLEND";
+  if (material.alpha_mode == AlphaMode::mask) {
+    json["alphaMode"] = "MASK";
+    json["alphaCutoff"] = material.alpha_cutoff;
+  }
+  const float brightest = std::max({material.emission.x, material.emission.y, material.emission.z});
+  if (brightest > 0)
+    json["emissiveFactor"] = vector_json(material.emission / std::max(brightest, 1.0f));
+  if (brightest > 1) {
+    json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = brightest;
+  }
+  return json;
+}
+
+Json camera_json(const Camera& camera) {
+  if (camera.kind == Camera::Kind::perspective) {
+    return {{"name", camera.name},
+            {"type", "perspective"},
+            {"perspective", {{"yfov", camera.fov_y}, {"znear", kNear}}}};
+  }
+  return {{"name", camera.name},
+          {"type", "orthographic"},
+          {"orthographic",
+           {{"xmag", camera.half_height},
+            {"ymag", camera.half_height},
+            {"znear", kNear},
+            {"zfar", kOrthographicFar}}}};
+}
+
+Box3f finite_bounds(const Mesh& mesh) {
+  Box3f bounds;
+  for (const V3f& p : mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      throw Error(ErrorKind::failed,
+                  fmt::format("mesh \"{}\" has a vertex that is not finite", mesh.name));
+    }
+    bounds.extendBy(p);
+  }
+  return bounds;
+}
+
+// The triangles of each material, as indices; empty where a material has none.
+std::vector<std::vector<std::uint32_t>> split_by_material(const Mesh& mesh,
+                                                          std::size_t material_count) {
+  std::vector<std::vector<std::uint32_t>> indices(material_count);
+  for (std::size_t triangle = 0; triangle < mesh.triangle_count(); ++triangle) {
+    const auto first = mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
+    auto& own = indices[mesh.materials[triangle]];
+    own.insert(own.end(), first, first + 3);
+  }
+  return indices;
+}
+
+std::vector<float> white_with_alpha(const std::vector<float>& alpha) {
+  std::vector<float> rgba;
+  rgba.reserve(4 * alpha.size());
+  for (const float a : alpha) rgba.insert(rgba.end(), {1, 1, 1, a});
+  return rgba;
+}
+
+class Describer {
+ public:
+  explicit Describer(const Scene& scene) : scene_(scene) {}
+
+  GlbLayout describe() {
+    json_["asset"] = {{"version", "2.0"}, {"generator", "dapple"}};
+    for (const Material& material : scene_.materials) {
+      json_["materials"].push_back(material_json(material));
+    }
+    for (const Mesh& mesh : scene_.meshes) add_mesh(mesh);
+    for (const Instance& instance : scene_.instances) add_instance(instance);
+    for (const Camera& camera : scene_.cameras) add_camera(camera);
+    finish();
+    return std::move(layout_);
+  }
+
+ private:
+  // Returns the accessor's number. All elements are of 4 bytes, so that views stay aligned.
+  std::size_t add_accessor(std::span<const std::byte> bytes, const Json& accessor, int target) {
+    json_["bufferViews"].push_back({{"buffer", 0},
+                                    {"byteOffset", layout_.byte_count},
+                                    {"byteLength", bytes.size()},
+                                    {"target", target}});
+    layout_.pieces.push_back(bytes);
+    layout_.byte_count += bytes.size();
+    Json entry = accessor;
+    entry["bufferView"] = json_["bufferViews"].size() - 1;
+    json_["accessors"].push_back(entry);
+    return json_["accessors"].size() - 1;
+  }
+
+  std::size_t add_positions(const Mesh& mesh) {
+    const Box3f bounds = finite_bounds(mesh);
+    return add_accessor(std::as_bytes(std::span(mesh.positions)),
+                        {{"componentType", kFloat},
+                         {"type", "VEC3"},
+                         {"count", mesh.positions.size()},
+                         {"min", vector_json(bounds.min)},
+                         {"max", vector_json(bounds.max)}},
+                        kArrayBuffer);
+  }
+
+  std::size_t add_indices(std::vector<std::uint32_t> indices) {
+    layout_.made_indices.push_back(std::move(indices));
+    const auto& kept = layout_.made_indices.back();
+    return add_accessor(
+        std::as_bytes(std::span(kept)),
+        {{"componentType", kUnsignedInt}, {"type", "SCALAR"}, {"count", kept.size()}},
+        kElementArrayBuffer);
+  }
+
+  std::size_t add_colours(const std::vector<float>& alpha) {
+    layout_.made_colours.push_back(white_with_alpha(alpha));
+    const auto& kept = layout_.made_colours.back();
+    return add_accessor(std::as_bytes(std::span(kept)),
+                        {{"componentType", kFloat}, {"type", "VEC4"}, {"count", alpha.size()}},
+                        kArrayBuffer);
+  }
+
+  // glTF has no empty meshes: numbers shift past them.
+  void add_mesh(const Mesh& mesh) {
+    mesh_numbers_.push_back(-1);
+    if (mesh.triangle_count() == 0) return;
+    Json attributes = {{"POSITION", add_positions(mesh)}};
+    Json with_alpha = attributes;
+    if (!mesh.vertex_alpha.empty()) with_alpha["COLOR_0"] = add_colours(mesh.vertex_alpha);
+    Json primitives = Json::array();
+    auto indices = split_by_material(mesh, scene_.materials.size());
+    for (std::size_t m = 0; m < indices.size(); ++m) {
+      if (indices[m].empty()) continue;
+      const bool uses_alpha = scene_.materials[m].uses_vertex_alpha;
+      primitives.push_back({{"attributes", uses_alpha ? with_alpha : attributes},
+                            {"indices", add_indices(std::move(indices[m]))},
+                            {"material", m}});
+    }
+    mesh_numbers_.back() = static_cast<int>(json_["meshes"].size());
+    json_["meshes"].push_back({{"name", mesh.name}, {"primitives", primitives}});
+  }
+
+  void add_instance(const Instance& instance) {
+    const int mesh = mesh_numbers_[instance.mesh];
+    if (mesh < 0) return;
+    add_node({{"name", scene_.meshes[instance.mesh].name}, {"mesh", mesh}}, instance.to_world);
+  }
+
+  void add_camera(const Camera& camera) {
+    json_["cameras"].push_back(camera_json(camera));
+    add_node({{"name", camera.name}, {"camera", json_["cameras"].size() - 1}}, camera.to_world);
+  }
+
+  void add_node(Json node, const M44f& to_world) {
+    if (to_world != M44f{}) node["matrix"] = matrix_json(to_world);
+    root_nodes_.push_back(json_["nodes"].size());
+    json_["nodes"].push_back(std::move(node));
+  }
+
+  void finish() {
+    json_["scene"] = 0;
+    json_["scenes"] = {{{"name", scene_.source}}};
+    if (!root_nodes_.empty()) json_["scenes"][0]["nodes"] = root_nodes_;
+    if (layout_.byte_count > 0) json_["buffers"] = {{{"byteLength", layout_.byte_count}}};
+    for (const Material& material : scene_.materials) {
+      if (std::max({material.emission.x, material.emission.y, material.emission.z}) <= 1) continue;
+      json_["extensionsUsed"] = {"KHR_materials_emissive_strength"};
+    }
+    // Names may hold bytes that are not UTF-8; they are replaced, not thrown at.
+    layout_.json = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+
+  const Scene& scene_;
+  Json json_;
+  GlbLayout layout_;
+  std::vector<int> mesh_numbers_;
+  std::vector<std::size_t> root_nodes_;
+};
+
+}  // namespace
+
+GlbLayout lay_out_glb(const Scene& scene) { return Describer(scene).describe(); }
+
+}  // namespace dapple

@@ -1,0 +1,80 @@
+// Typed reading of accessors: interleaved, sparse, normalized, of any component type. In
+// comes a validated document, out come numbers.
+#pragma once
+
+#include <Imath/ImathVec.h>
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "scene/gltf/document.hpp"
+
+namespace dapple::gltf {
+
+/// glTF's componentType codes.
+enum class Component : int {
+  int8 = 5120,
+  uint8 = 5121,
+  int16 = 5122,
+  uint16 = 5123,
+  uint32 = 5125,
+  float32 = 5126,
+};
+
+/// Bytes of one component; 0 for a code that glTF does not have.
+std::uint64_t component_bytes(int component_type);
+
+/// Components of tinygltf's type code: 1 for SCALAR to 16 for MAT4.
+std::uint64_t component_count(int type);
+
+/// "VEC3 of uint16", for messages.
+std::string type_name(const tinygltf::Accessor& accessor);
+
+/// Throws Error input, beginning with `who`, unless the accessor is one of these TINYGLTF
+/// types and components.
+void require_type(const Document& document, int accessor, const std::string& who,
+                  std::initializer_list<int> types, std::initializer_list<Component> components);
+
+class AccessorReader {
+ public:
+  /// Throws Error input when sparse indices do not increase or exceed the count.
+  AccessorReader(const Document& document, int accessor);
+
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] std::uint64_t components() const { return components_; }
+
+  /// A component as a float. Integers become [0,1] or [-1,1] when the accessor is
+  /// normalized, and keep their value when it is not.
+  [[nodiscard]] float number(std::uint64_t i, std::uint64_t component) const {
+    return number_of(element(i), component, normalized_);
+  }
+  /// As `number`, but integers are normalized whatever the accessor says.
+  [[nodiscard]] float normalized(std::uint64_t i, std::uint64_t component) const {
+    return number_of(element(i), component, true);
+  }
+  [[nodiscard]] Imath::V2f vec2(std::uint64_t i) const;
+  [[nodiscard]] Imath::V3f vec3(std::uint64_t i) const;
+  /// An unsigned integer, for accessors of indices.
+  [[nodiscard]] std::uint32_t index(std::uint64_t i) const;
+
+ private:
+  /// Null for an element of zeros (an accessor without a bufferView).
+  [[nodiscard]] const std::uint8_t* element(std::uint64_t i) const;
+  [[nodiscard]] float number_of(const std::uint8_t* element, std::uint64_t component,
+                                bool normalize) const;
+  void read_sparse(const Document& document, const tinygltf::Accessor& accessor, int index);
+
+  const std::uint8_t* base_ = nullptr;
+  std::uint64_t stride_ = 0;
+  std::uint64_t count_ = 0;
+  std::uint64_t components_ = 0;
+  std::uint64_t component_bytes_ = 0;
+  Component type_ = Component::float32;
+  bool normalized_ = false;
+  std::vector<std::uint32_t> sparse_indices_;  ///< increasing
+  const std::uint8_t* sparse_values_ = nullptr;
+};
+
+}  // namespace dapple::gltf

@@ -1,0 +1,54 @@
+// Which glTF extensions a file may require.
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "scene/gltf/document.hpp"
+#include "scene/gltf/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+/// Read, as far as they matter to occlusion and light.
+constexpr std::array<std::string_view, 6> kRead = {
+    "EXT_mesh_gpu_instancing",         "KHR_lights_punctual",
+    "KHR_materials_emissive_strength", "KHR_materials_pbrSpecularGlossiness",
+    "KHR_mesh_quantization",           "KHR_texture_transform",
+};
+
+/// Ignored: these change colour, gloss or metadata, and not opacity. Transmission and
+/// volume are among them: glass still occludes as its alpha says, because light that a
+/// surface refracts does not go on along the shadow ray.
+constexpr std::array<std::string_view, 15> kIgnored = {
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "KHR_animation_pointer",
+};
+
+bool is_supported(std::string_view name) {
+  return std::find(kRead.begin(), kRead.end(), name) != kRead.end() ||
+         std::find(kIgnored.begin(), kIgnored.end(), name) != kIgnored.end();
+}
+
+}  // namespace
+
+void check_extensions(const std::vector<std::string>& required, const std::string& file) {
+  for (const std::string& name : required) {
+    if (is_supported(name)) continue;
+    fail(file, "requires the extension {}, which dapple cannot read; export without it", name);
+  }
+}
+
+}  // namespace dapple::gltf

@@ -1,0 +1,171 @@
+// Placing meshes: see instance.hpp.
+#include "scene/gltf/instance.hpp"
+
+#include <map>
+#include <optional>
+
+#include "scene/gltf/accessor.hpp"
+#include "scene/gltf/mesh.hpp"
+#include "scene/gltf/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+using Imath::M44d;
+using Imath::V3d;
+using Imath::V4d;
+
+/// Nodes may share accessors of instances: this bounds what a small file can ask for.
+constexpr std::uint64_t kMaxInstances = std::uint64_t{1} << 25;
+
+/// EXT_mesh_gpu_instancing's accessors, each of which may be absent.
+struct Placements {
+  std::optional<AccessorReader> translation;
+  std::optional<AccessorReader> rotation;
+  std::optional<AccessorReader> scale;
+  std::uint64_t count = 0;
+};
+
+std::optional<AccessorReader> placement_attribute(const Document& document,
+                                                  const tinygltf::Value& attributes,
+                                                  const char* name, const std::string& who,
+                                                  int type,
+                                                  std::initializer_list<Component> components) {
+  if (!attributes.Has(name)) return {};
+  const int accessor = attributes.Get(name).GetNumberAsInt();
+  require_type(document, accessor, fmt::format("{} instance {}", who, name), {type}, components);
+  return AccessorReader(document, accessor);
+}
+
+Placements read_placements(const Document& document, const tinygltf::Value& attributes,
+                           const std::string& who) {
+  Placements result;
+  result.translation = placement_attribute(document, attributes, "TRANSLATION", who,
+                                           TINYGLTF_TYPE_VEC3, {Component::float32});
+  result.rotation = placement_attribute(document, attributes, "ROTATION", who, TINYGLTF_TYPE_VEC4,
+                                        {Component::float32, Component::int8, Component::int16});
+  result.scale = placement_attribute(document, attributes, "SCALE", who, TINYGLTF_TYPE_VEC3,
+                                     {Component::float32});
+  bool first = true;
+  for (const std::string& name : attributes.Keys()) {
+    const int accessor = attributes.Get(name).GetNumberAsInt();
+    const std::uint64_t count = document.model.accessors[static_cast<std::size_t>(accessor)].count;
+    if (!first && count != result.count) {
+      fail(document.file, "{}: instance attributes differ in length ({} and {} of {})", who,
+           grouped(result.count), grouped(count), name);
+    }
+    result.count = count;
+    first = false;
+  }
+  return result;
+}
+
+V4d unit_rotation(const AccessorReader& rotations, std::uint64_t i) {
+  V4d rotation;
+  for (int c = 0; c < 4; ++c) {
+    rotation[c] = double{rotations.normalized(i, static_cast<std::uint64_t>(c))};
+  }
+  const double length = rotation.length();
+  return length > 0 ? rotation / length : V4d(0, 0, 0, 1);
+}
+
+M44d placement_matrix(const Placements& placements, std::uint64_t i) {
+  const V3d translation = placements.translation ? V3d(placements.translation->vec3(i)) : V3d(0.0);
+  const V4d rotation =
+      placements.rotation ? unit_rotation(*placements.rotation, i) : V4d(0, 0, 0, 1);
+  const V3d scale = placements.scale ? V3d(placements.scale->vec3(i)) : V3d(1.0);
+  return compose(translation, rotation, scale);
+}
+
+/// The world matrices of all placements that one node makes of its mesh.
+std::vector<M44d> node_placements(const Document& document, const PlacedNode& placed,
+                                  std::uint64_t so_far) {
+  const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
+  const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
+  if (instancing == node.extensions.end() || !instancing->second.Has("attributes")) {
+    return {placed.to_world};
+  }
+  const std::string who = element("node", static_cast<std::size_t>(placed.node), node.name);
+  const Placements placements =
+      read_placements(document, instancing->second.Get("attributes"), who);
+  if (so_far + placements.count > kMaxInstances) {
+    fail(document.file, "{} brings the instances to {} (at most {})", who,
+         grouped(so_far + placements.count), grouped(kMaxInstances));
+  }
+  std::vector<M44d> matrices;
+  matrices.reserve(placements.count);
+  for (std::uint64_t i = 0; i < placements.count; ++i) {
+    matrices.push_back(placement_matrix(placements, i) * placed.to_world);
+  }
+  return matrices;
+}
+
+int add_mesh_light(const Material& material, const std::string& node_name, Scene& scene) {
+  Light light;
+  light.name = node_name.empty() ? material.name : one_line(node_name);
+  light.kind = LightKind::mesh;
+  light.radiance = material.emission;
+  light.double_sided = material.double_sided;
+  scene.lights.push_back(std::move(light));
+  return static_cast<int>(scene.lights.size()) - 1;
+}
+
+void add_placement(const std::vector<MeshPart>& parts, const M44d& to_world,
+                   const std::string& node_name, Scene& scene) {
+  for (const MeshPart& part : parts) {
+    Instance instance;
+    instance.mesh = part.mesh;
+    instance.to_world = M44f(to_world);
+    if (part.emitter >= 0) {
+      instance.light =
+          add_mesh_light(scene.materials[static_cast<std::size_t>(part.emitter)], node_name, scene);
+    }
+    scene.instances.push_back(instance);
+  }
+}
+
+/// One warning a feature, with how often it was met.
+void warn(const std::string& file, std::uint64_t count, const char* what, Scene& scene) {
+  if (count == 0) return;
+  scene.warnings.push_back(
+      one_line(fmt::format("{}: {} ({} of them)", file, what, grouped(count))));
+}
+
+void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint64_t skinned,
+                    Scene& scene) {
+  warn(file, totals.lines_and_points, "line and point primitives are left out", scene);
+  warn(file, totals.without_position, "primitives without POSITION are left out", scene);
+  warn(file, totals.without_texcoord,
+       "primitives lack the TEXCOORD of their alpha texture and use its corner", scene);
+  warn(file, totals.morphed, "morph targets are ignored: primitives keep their base shape", scene);
+  warn(file, skinned, "skins are ignored: skinned meshes keep their unskinned shape", scene);
+}
+
+}  // namespace
+
+void add_instances(const Document& document, const std::vector<PlacedNode>& placed,
+                   const MaterialSet& materials, Scene& scene) {
+  std::map<int, std::vector<MeshPart>> parts_of_mesh;
+  MeshTotals totals;
+  std::uint64_t skinned = 0;
+  for (const PlacedNode& at : placed) {
+    const auto& node = document.model.nodes[static_cast<std::size_t>(at.node)];
+    if (node.mesh < 0) continue;
+    // A skinned mesh is placed by its joints, and glTF has its node's matrix ignored. We
+    // do not move vertices by joints, so the matrix stays: files whose unskinned shape
+    // makes sense at all mean it to stand where its node does.
+    if (node.skin >= 0) ++skinned;
+    auto known = parts_of_mesh.find(node.mesh);
+    if (known == parts_of_mesh.end()) {
+      auto parts = read_mesh(document, node.mesh, materials, scene, totals);
+      known = parts_of_mesh.emplace(node.mesh, std::move(parts)).first;
+    }
+    if (known->second.empty()) continue;
+    for (const M44d& to_world : node_placements(document, at, scene.instances.size())) {
+      add_placement(known->second, to_world, node.name, scene);
+    }
+  }
+  warn_of_totals(document.file, totals, skinned, scene);
+}
+
+}  // namespace dapple::gltf

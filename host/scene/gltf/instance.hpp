@@ -1,0 +1,19 @@
+// Placements: nodes with meshes become instances, once or, with EXT_mesh_gpu_instancing,
+// many times; each placement of an emitting part becomes a mesh light.
+#pragma once
+
+#include <vector>
+
+#include "dapple/scene.hpp"
+#include "scene/gltf/document.hpp"
+#include "scene/gltf/hierarchy.hpp"
+#include "scene/gltf/material.hpp"
+
+namespace dapple::gltf {
+
+/// Fills Scene::meshes (only those that a placed node shows), instances and mesh lights,
+/// and warns of features left out. Throws Error input.
+void add_instances(const Document& document, const std::vector<PlacedNode>& placed,
+                   const MaterialSet& materials, Scene& scene);
+
+}  // namespace dapple::gltf

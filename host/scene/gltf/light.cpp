@@ -1,0 +1,99 @@
+// Reading punctual lights: see light.hpp.
+#include "scene/gltf/light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/gltf/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+/// intensity * color. Intensities are photometric in glTF (candela, lux); dapple takes
+/// them as radiometric, without a factor.
+V3f intensity_of(const tinygltf::Light& light, const std::string& who, const std::string& file) {
+  V3f result;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double color =
+        light.color.size() == 3 ? light.color[static_cast<std::size_t>(channel)] : 1.0;
+    const double value = light.intensity * color;
+    if (value < 0) fail(file, "{} has a negative intensity", who);
+    result[channel] = static_cast<float>(std::min(value, 1e30));
+  }
+  return result;
+}
+
+void make_sun(Light& light, V3f irradiance) {
+  light.kind = LightKind::sun;
+  // A disk of angular radius a and radiance L, seen face on, gives L * pi * sin^2 a.
+  const float sine = std::sin(light.angular_radius);
+  light.radiance = irradiance / (std::numbers::pi_v<float> * sine * sine);
+}
+
+void make_sphere(Light& light, V3f intensity, float radius) {
+  light.kind = LightKind::sphere;
+  light.radius = radius;
+  light.radiance = intensity / (std::numbers::pi_v<float> * radius * radius);
+}
+
+void make_cone(Light& light, const tinygltf::SpotLight& spot, const std::string& who,
+               const std::string& file) {
+  const bool sound = spot.innerConeAngle >= 0 && spot.innerConeAngle <= spot.outerConeAngle &&
+                     spot.outerConeAngle > 0 && spot.outerConeAngle <= std::numbers::pi / 2 + 1e-4;
+  if (!sound) {
+    fail(file, "{} has cone angles {} and {}; inner must not exceed outer, nor outer pi/2", who,
+         spot.innerConeAngle, spot.outerConeAngle);
+  }
+  light.cos_inner = static_cast<float>(std::cos(spot.innerConeAngle));
+  light.cos_outer = static_cast<float>(std::max(std::cos(spot.outerConeAngle), 0.0));
+}
+
+/// Position and direction from the node; its scale changes neither radius nor intensity.
+bool place(Light& light, const Imath::M44d& to_world) {
+  const Imath::V3d minus_z(-to_world[2][0], -to_world[2][1], -to_world[2][2]);
+  if (minus_z.length() == 0) return false;
+  light.position = V3f(Imath::V3d(to_world[3][0], to_world[3][1], to_world[3][2]));
+  light.direction = V3f(minus_z.normalized());
+  return true;
+}
+
+void add_light(const Document& document, const PlacedNode& placed, int index,
+               const SceneOptions& options, Scene& scene) {
+  const auto& given = document.model.lights[static_cast<std::size_t>(index)];
+  const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
+  const std::string who = element("light", static_cast<std::size_t>(index), given.name);
+  const V3f intensity = intensity_of(given, who, document.file);
+  Light light;
+  light.name = one_line(!given.name.empty()  ? given.name
+                        : !node.name.empty() ? node.name
+                                             : fmt::format("light_{}", index));
+  if (!place(light, placed.to_world)) {
+    scene.warnings.push_back(one_line(
+        fmt::format("{}: {} is left out: its node is scaled to nothing", document.file, who)));
+    return;
+  }
+  if (given.type == "directional") {
+    make_sun(light, intensity);
+  } else if (given.type == "point" || given.type == "spot") {
+    make_sphere(light, intensity, options.light_radius);
+    if (given.type == "spot") make_cone(light, given.spot, who, document.file);
+  } else {
+    fail(document.file, "{} has the unknown type \"{}\"", who, given.type);
+  }
+  scene.lights.push_back(std::move(light));
+}
+
+}  // namespace
+
+void add_punctual_lights(const Document& document, const std::vector<PlacedNode>& placed,
+                         const SceneOptions& options, Scene& scene) {
+  for (const PlacedNode& at : placed) {
+    const auto& node = document.model.nodes[static_cast<std::size_t>(at.node)];
+    const auto light = node.extensions.find("KHR_lights_punctual");
+    if (light == node.extensions.end()) continue;
+    add_light(document, at, light->second.Get("light").GetNumberAsInt(), options, scene);
+  }
+}
+
+}  // namespace dapple::gltf

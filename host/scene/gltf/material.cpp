@@ -1,0 +1,184 @@
+// Reading materials: see material.hpp.
+#include "scene/gltf/material.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/gltf/message.hpp"
+#include "scene/gltf/texture.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+using tinygltf::Value;
+
+/// A baseColorTexture or what takes its place, from the two shapes that tinygltf has for it.
+struct TextureUse {
+  int texture = -1;
+  int texcoord = 0;
+  const Value* transform = nullptr;  ///< KHR_texture_transform's object
+};
+
+struct BaseColor {
+  double alpha = 1.0;
+  TextureUse texture;
+};
+
+const Value* find(const tinygltf::ExtensionMap& extensions, const char* name) {
+  const auto found = extensions.find(name);
+  return found == extensions.end() ? nullptr : &found->second;
+}
+
+const Value* find(const Value* object, const char* key) {
+  return object != nullptr && object->Has(key) ? &object->Get(key) : nullptr;
+}
+
+double number_or(const Value* value, double otherwise) {
+  return value != nullptr ? value->GetNumberAsDouble() : otherwise;
+}
+
+V2f vec2_or(const Value* value, V2f otherwise) {
+  if (value == nullptr || value->ArrayLen() != 2) return otherwise;
+  return {static_cast<float>(value->Get(0).GetNumberAsDouble()),
+          static_cast<float>(value->Get(1).GetNumberAsDouble())};
+}
+
+TextureUse metallic_roughness_texture(const tinygltf::TextureInfo& info) {
+  return {info.index, info.texCoord, find(info.extensions, "KHR_texture_transform")};
+}
+
+TextureUse diffuse_texture(const Value* info) {
+  if (info == nullptr) return {};
+  const Value* texcoord = find(info, "texCoord");
+  return {info->Get("index").GetNumberAsInt(), texcoord != nullptr ? texcoord->GetNumberAsInt() : 0,
+          find(find(info, "extensions"), "KHR_texture_transform")};
+}
+
+/// KHR_materials_pbrSpecularGlossiness, where it is, replaces pbrMetallicRoughness whole.
+BaseColor base_color(const tinygltf::Material& material) {
+  BaseColor base;
+  const Value* gloss = find(material.extensions, "KHR_materials_pbrSpecularGlossiness");
+  if (gloss == nullptr) {
+    const auto& pbr = material.pbrMetallicRoughness;
+    base.alpha = pbr.baseColorFactor[3];
+    base.texture = metallic_roughness_texture(pbr.baseColorTexture);
+    return base;
+  }
+  if (const Value* factor = find(gloss, "diffuseFactor"); factor != nullptr) {
+    base.alpha = factor->Get(3).GetNumberAsDouble();
+  }
+  base.texture = diffuse_texture(find(gloss, "diffuseTexture"));
+  return base;
+}
+
+/// KHR_texture_transform: offset after rotation after scale. The rotation's sign is that
+/// of its text ("counter-clockwise", in a space whose v points down), of its own example
+/// and of every implementation; the GLSL it lists turns the other way
+/// (KhronosGroup/glTF issue 1563).
+AlphaLookup alpha_lookup(const TextureUse& use) {
+  AlphaLookup lookup;
+  lookup.texcoord = use.texcoord;
+  if (use.transform == nullptr) return lookup;
+  if (const Value* texcoord = find(use.transform, "texCoord"); texcoord != nullptr) {
+    lookup.texcoord = texcoord->GetNumberAsInt();
+  }
+  const V2f scale = vec2_or(find(use.transform, "scale"), V2f(1, 1));
+  const double angle = number_or(find(use.transform, "rotation"), 0.0);
+  const auto cosine = static_cast<float>(std::cos(angle));
+  const auto sine = static_cast<float>(std::sin(angle));
+  lookup.du = V2f(cosine, -sine) * scale.x;
+  lookup.dv = V2f(sine, cosine) * scale.y;
+  lookup.offset = vec2_or(find(use.transform, "offset"), V2f(0, 0));
+  return lookup;
+}
+
+AlphaMode alpha_mode(const tinygltf::Material& material, const std::string& file,
+                     const std::string& who) {
+  if (material.alphaMode == "OPAQUE") return AlphaMode::opaque;
+  if (material.alphaMode == "MASK") return AlphaMode::mask;
+  if (material.alphaMode == "BLEND") return AlphaMode::blend;
+  fail(file, "{} has the unknown alphaMode \"{}\"", who, material.alphaMode);
+}
+
+V3f emission_factor(const tinygltf::Material& material) {
+  const double strength = number_or(
+      find(find(material.extensions, "KHR_materials_emissive_strength"), "emissiveStrength"), 1.0);
+  V3f emission;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double value = material.emissiveFactor[static_cast<std::size_t>(channel)] * strength;
+    emission[channel] = static_cast<float>(std::clamp(value, 0.0, 1e30));
+  }
+  return emission;
+}
+
+/// A mesh light has one radiance, so that an emissive texture counts by its mean. Without
+/// its image the light still shines, in the factor's colour.
+void apply_emissive_texture(TextureReader& textures, int texture, const std::string& who,
+                            Material& material, Scene& scene) {
+  if (texture < 0 || !emits(material)) return;
+  try {
+    material.emission *= textures.mean_color(texture, who);
+  } catch (const Error& error) {
+    scene.warnings.push_back(std::string(error.what()) + "; its emission goes untextured");
+  }
+}
+
+/// True at i for glTF material i, and at the end for "none", where a placed triangle
+/// primitive has it.
+std::vector<bool> shown_materials(const Document& document, const std::vector<PlacedNode>& placed) {
+  const auto& model = document.model;
+  std::vector<bool> shown(model.materials.size() + 1, false);
+  for (const PlacedNode& at : placed) {
+    const int mesh = model.nodes[static_cast<std::size_t>(at.node)].mesh;
+    if (mesh < 0) continue;
+    for (const auto& primitive : model.meshes[static_cast<std::size_t>(mesh)].primitives) {
+      if (primitive.mode < TINYGLTF_MODE_TRIANGLES) continue;
+      const bool named = primitive.material >= 0;
+      shown[named ? static_cast<std::size_t>(primitive.material) : model.materials.size()] = true;
+    }
+  }
+  return shown;
+}
+
+}  // namespace
+
+bool emits(const Material& material) {
+  return material.emission.x > 0 || material.emission.y > 0 || material.emission.z > 0;
+}
+
+MaterialSet read_materials(const Document& document, const std::vector<PlacedNode>& placed,
+                           Scene& scene) {
+  const auto& given = document.model.materials;
+  const std::vector<bool> shown = shown_materials(document, placed);
+  TextureReader textures(document, scene);
+  MaterialSet set;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const std::string who = element("material", i, given[i].name);
+    const BaseColor base = base_color(given[i]);
+    Material material;
+    material.name = given[i].name.empty() ? fmt::format("material_{}", i) : one_line(given[i].name);
+    material.alpha_mode = alpha_mode(given[i], document.file, who);
+    material.alpha = static_cast<float>(std::clamp(base.alpha, 0.0, 1.0));
+    material.alpha_cutoff = static_cast<float>(given[i].alphaCutoff);
+    material.double_sided = given[i].doubleSided;
+    material.emission = emission_factor(given[i]);
+    if (shown[i]) {
+      apply_emissive_texture(textures, given[i].emissiveTexture.index, who, material, scene);
+      if (material.alpha_mode != AlphaMode::opaque && base.texture.texture >= 0) {
+        material.alpha_texture = textures.alpha_texture(base.texture.texture, who);
+      }
+    }
+    scene.materials.push_back(std::move(material));
+    set.lookups.push_back(alpha_lookup(base.texture));
+  }
+  set.default_material = static_cast<std::uint32_t>(given.size());
+  if (shown.back()) {
+    Material none;
+    none.name = "default";
+    scene.materials.push_back(std::move(none));
+    set.lookups.emplace_back();
+  }
+  return set;
+}
+
+}  // namespace dapple::gltf

@@ -1,0 +1,31 @@
+// How the glTF reader reports what is wrong: one line, `file: element: figures`. In come
+// a file name and a fmt format string; out goes a dapple::Error of kind input.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "dapple/error.hpp"
+
+namespace dapple::gltf {
+
+/// `text` with control characters replaced: names in a file may hold line breaks.
+std::string one_line(std::string_view text);
+
+/// 4800 as "4,800".
+std::string grouped(std::uint64_t value);
+
+/// `mesh 2 ("leaves")`, or `mesh 2` for an element without a name.
+std::string element(std::string_view kind, std::size_t index, std::string_view name);
+
+template <typename... Args>
+[[noreturn]] void fail(const std::string& file, fmt::format_string<Args...> format,
+                       Args&&... args) {
+  const std::string message = fmt::format(format, std::forward<Args>(args)...);
+  throw Error(ErrorKind::input, one_line(file + ": " + message));
+}
+
+}  // namespace dapple::gltf

@@ -1,0 +1,110 @@
+// Finding, reading and sharing images: see texture.hpp.
+#include "scene/gltf/texture.hpp"
+
+#include <utility>
+
+#include "scene/gltf/message.hpp"
+#include "scene/gltf/uri.hpp"
+#include "scene/image.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+/// Image formats beyond PNG and JPEG, as the extensions that bring them in.
+constexpr const char* kOtherFormats[] = {"KHR_texture_basisu", "EXT_texture_webp",
+                                         "EXT_texture_avif", "MSFT_texture_dds"};
+
+struct ImageBytes {
+  Bytes owned;  ///< empty when the bytes are in a buffer
+  std::span<const std::uint8_t> bytes;
+};
+
+std::string image_name(const Document& document, int image) {
+  const ImageSource& source = document.images[static_cast<std::size_t>(image)];
+  if (!source.uri.empty() && !is_data_uri(source.uri)) return source.uri;
+  if (!source.name.empty()) return source.name;
+  return fmt::format("image_{}", image);
+}
+
+int image_of(const Document& document, int texture, const std::string& user) {
+  const auto& given = document.model.textures[static_cast<std::size_t>(texture)];
+  if (given.source >= 0) return given.source;
+  for (const char* extension : kOtherFormats) {
+    if (!given.extensions.contains(extension)) continue;
+    fail(document.file,
+         "texture {} of {} exists only as {}, which dapple cannot read; export it as PNG", texture,
+         user, extension);
+  }
+  fail(document.file, "texture {} of {} has no image", texture, user);
+}
+
+std::string describe(const Document& document, int image, const std::string& user) {
+  return one_line(fmt::format("{}: image {} ({}) of {}", document.file, image,
+                              image_name(document, image), user));
+}
+
+ImageBytes read_image(const Document& document, int image, const std::string& what) {
+  const ImageSource& source = document.images[static_cast<std::size_t>(image)];
+  ImageBytes result;
+  if (source.buffer_view >= 0) {
+    result.bytes = view_bytes(document, source.buffer_view);
+    return result;
+  }
+  result.owned = is_data_uri(source.uri)
+                     ? decode_data_uri(source.uri, what)
+                     : read_file(resolve_uri(document.folder, source.uri, what), what);
+  result.bytes = result.owned;
+  return result;
+}
+
+Wrap wrap_mode(int code, const std::string& file, int sampler) {
+  switch (code) {
+    case TINYGLTF_TEXTURE_WRAP_REPEAT:
+      return Wrap::repeat;
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return Wrap::clamp;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return Wrap::mirror;
+    default:
+      fail(file, "sampler {} has the unknown wrap mode {}", sampler, code);
+  }
+}
+
+/// A texture without pixels, with the sampler's modes.
+Texture sampled(const Document& document, int texture) {
+  Texture result;
+  const int index = document.model.textures[static_cast<std::size_t>(texture)].sampler;
+  if (index < 0) return result;
+  const auto& sampler = document.model.samplers[static_cast<std::size_t>(index)];
+  result.wrap_s = wrap_mode(sampler.wrapS, document.file, index);
+  result.wrap_t = wrap_mode(sampler.wrapT, document.file, index);
+  result.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  return result;
+}
+
+}  // namespace
+
+int TextureReader::alpha_texture(int texture, const std::string& user) {
+  const int image = image_of(document_, texture, user);
+  Texture result = sampled(document_, texture);
+  const Key key{image, result.wrap_s, result.wrap_t, result.nearest};
+  if (const auto known = loaded_.find(key); known != loaded_.end()) return known->second;
+  const std::string what = describe(document_, image, user);
+  AlphaImage decoded = decode_alpha(read_image(document_, image, what).bytes, what);
+  result.name = one_line(image_name(document_, image));
+  result.width = decoded.width;
+  result.height = decoded.height;
+  result.alpha = std::move(decoded.alpha);
+  const int index = static_cast<int>(scene_.textures.size());
+  scene_.textures.push_back(std::move(result));
+  loaded_.emplace(key, index);
+  return index;
+}
+
+V3f TextureReader::mean_color(int texture, const std::string& user) const {
+  const int image = image_of(document_, texture, user);
+  const std::string what = describe(document_, image, user);
+  return mean_linear_color(read_image(document_, image, what).bytes, what);
+}
+
+}  // namespace dapple::gltf

@@ -1,0 +1,117 @@
+// Decoding and confining URIs: see uri.hpp.
+#include "scene/gltf/uri.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <system_error>
+
+#include "scene/gltf/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+namespace fs = std::filesystem;
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// Value of every character in base64, -1 for those outside of it. The URL-safe
+/// alphabet is taken as well.
+constexpr std::array<std::int8_t, 256> kBase64 = [] {
+  std::array<std::int8_t, 256> table{};
+  table.fill(-1);
+  for (int i = 0; i < 26; ++i) table[std::size_t('A' + i)] = static_cast<std::int8_t>(i);
+  for (int i = 0; i < 26; ++i) table[std::size_t('a' + i)] = static_cast<std::int8_t>(26 + i);
+  for (int i = 0; i < 10; ++i) table[std::size_t('0' + i)] = static_cast<std::int8_t>(52 + i);
+  table['+'] = table['-'] = 62;
+  table['/'] = table['_'] = 63;
+  return table;
+}();
+
+Bytes decode_base64(std::string_view text, const std::string& what) {
+  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  Bytes bytes;
+  bytes.reserve(text.size() / 4 * 3 + 3);
+  std::uint32_t bits = 0;
+  int bit_count = 0;
+  for (const char c : text) {
+    const int value = kBase64[static_cast<unsigned char>(c)];
+    if (value < 0) fail(what, "its data: URI holds a character that is not base64");
+    bits = (bits << 6) | static_cast<std::uint32_t>(value);
+    bit_count += 6;
+    if (bit_count < 8) continue;
+    bit_count -= 8;
+    bytes.push_back(static_cast<std::uint8_t>((bits >> bit_count) & 0xffu));
+  }
+  if (bit_count == 6) fail(what, "its data: URI is cut off (a lone base64 digit at the end)");
+  return bytes;
+}
+
+/// RFC 3986: a letter, then letters, digits, '+', '-', '.', before the first ':'.
+bool has_scheme(std::string_view uri) {
+  const std::size_t colon = uri.find(':');
+  if (colon == std::string_view::npos || colon == 0) return false;
+  if (!std::isalpha(static_cast<unsigned char>(uri[0]))) return false;
+  return std::all_of(uri.begin(), uri.begin() + static_cast<std::ptrdiff_t>(colon), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '+' || c == '-' || c == '.';
+  });
+}
+
+bool leads_out(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
+  if (error) return true;
+  const fs::path inside = fs::weakly_canonical(file, error).lexically_relative(root);
+  return error || inside.empty() || *inside.begin() == "..";
+}
+
+}  // namespace
+
+bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
+
+std::string percent_decode(std::string_view text) {
+  std::string decoded;
+  decoded.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool escape = text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 &&
+                        hex_digit(text[i + 2]) >= 0;
+    if (!escape) {
+      decoded.push_back(text[i]);
+      continue;
+    }
+    decoded.push_back(static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2])));
+    i += 2;
+  }
+  return decoded;
+}
+
+Bytes decode_data_uri(std::string_view uri, const std::string& what) {
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos) fail(what, "its data: URI has no comma");
+  const std::string_view payload = uri.substr(comma + 1);
+  if (uri.substr(0, comma).ends_with(";base64")) return decode_base64(payload, what);
+  const std::string text = percent_decode(payload);
+  return Bytes(text.begin(), text.end());
+}
+
+fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::string& what) {
+  if (uri.empty()) fail(what, "has an empty uri");
+  if (has_scheme(uri)) {
+    fail(what, "its uri \"{}\" is not a relative path; dapple reads only local files",
+         uri.substr(0, 80));
+  }
+  const std::string decoded = percent_decode(uri);
+  if (decoded.find('\0') != std::string::npos) fail(what, "its uri holds a NUL character");
+  const fs::path file(decoded);
+  if (file.is_absolute() || leads_out(folder, folder / file)) {
+    fail(what, "its uri \"{}\" leads out of the scene's folder", uri.substr(0, 200));
+  }
+  return folder / file;
+}
+
+}  // namespace dapple::gltf

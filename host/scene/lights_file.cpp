@@ -1,0 +1,258 @@
+// Reads a JSON file of lights. In: {"lights": [{"type": "rect", ...}, ...]}; out: Lights.
+// Everything unknown is an error: a misspelt key would otherwise be a default in silence.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string_view>
+
+#include "dapple/error.hpp"
+#include "dapple/scene.hpp"
+#include "scene/rect_axes.hpp"
+
+namespace dapple {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uintmax_t kMaxFileBytes = 16u << 20;
+constexpr int kMaxDepth = 16;  // the format needs 4
+constexpr double kSunDegrees = 0.533;
+constexpr std::size_t kMaxMessage = 300;  // a parse error quotes what it last read
+
+[[noreturn]] void fail(std::string_view where, std::string_view what) {
+  std::string message = fmt::format("{}: {}", where, what);
+  // Names and keys come from the file and may hold line breaks; a message is one line.
+  std::replace_if(
+      message.begin(), message.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+  throw Error(ErrorKind::input, message);
+}
+
+std::string read_text(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) fail(path, "there is no such lights file");
+  // A pipe or a device might never end.
+  if (!std::filesystem::is_regular_file(status)) fail(path, "is not a regular file");
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) fail(path, error.message());
+  if (size > kMaxFileBytes) {
+    fail(path, fmt::format("has {} bytes; a lights file may have {}", size, kMaxFileBytes));
+  }
+  std::string text(size, '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(text.data(), static_cast<std::streamsize>(size))) fail(path, "cannot be read");
+  return text;
+}
+
+Json parse_json(const std::string& path, const std::string& text) {
+  const auto limit_depth = [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kMaxDepth) fail(path, fmt::format("nests deeper than {} levels", kMaxDepth));
+    return true;
+  };
+  try {
+    return Json::parse(text, limit_depth);
+  } catch (const Json::exception& error) {
+    // What follows "[json.exception.parse_error.101] " is for people.
+    std::string_view message = error.what();
+    message.remove_prefix(std::min(message.size(), message.find("] ") + 2));
+    fail(path, message.substr(0, kMaxMessage));
+  }
+}
+
+// The keys of one light, with messages that say which light of which file.
+class LightFields {
+ public:
+  LightFields(const std::string& path, std::size_t number, const Json& fields)
+      : where_(fmt::format("{}: light {}", path, number)), fields_(fields) {
+    if (!fields_.is_object()) fail(where_, "is not an object");
+    if (const auto name = fields_.find("name"); name != fields_.end() && name->is_string()) {
+      where_ += fmt::format(" (\"{}\")", name->get<std::string>());
+    }
+  }
+
+  [[nodiscard]] bool has(const char* key) const { return fields_.contains(key); }
+
+  [[noreturn]] void fail_at(std::string_view key, std::string_view what) const {
+    fail(where_, fmt::format("{} {}", key, what));
+  }
+
+  void allow_only(std::initializer_list<std::string_view> keys) const {
+    for (const auto& [key, value] : fields_.items()) {
+      if (key == "name" || key == "type") continue;
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+      std::string known = "name, type";
+      for (const std::string_view other : keys) known.append(", ").append(other);
+      fail_at(fmt::format("\"{}\"", key), "is not known here; known: " + known);
+    }
+  }
+
+  [[nodiscard]] std::string text(const char* key) const {
+    const Json& value = get(key);
+    if (!value.is_string()) fail_at(key, "must be a string");
+    return value.get<std::string>();
+  }
+
+  [[nodiscard]] float number(const char* key) const { return to_number(get(key), key); }
+
+  [[nodiscard]] float positive(const char* key) const { return require_positive(number(key), key); }
+
+  [[nodiscard]] V3f point(const char* key) const {
+    const Json& value = array(key, 3);
+    V3f result;
+    for (int k = 0; k < 3; ++k) result[k] = to_number(value[k], element(key, k));
+    return result;
+  }
+
+  [[nodiscard]] V3f direction(const char* key) const {
+    const Imath::V3d value(point(key));  // squares of floats neither vanish nor overflow
+    if (value.length2() == 0) fail_at(key, "has no direction: it is 0, 0, 0");
+    return V3f(value.normalized());
+  }
+
+  [[nodiscard]] V2f size(const char* key) const {
+    const Json& value = array(key, 2);
+    V2f result;
+    for (int k = 0; k < 2; ++k) {
+      result[k] = require_positive(to_number(value[k], element(key, k)), element(key, k));
+    }
+    return result;
+  }
+
+  // A number is grey. Not negative, in W/(sr m^2) or W/m^2.
+  [[nodiscard]] V3f colour(const char* key) const {
+    const V3f value = get(key).is_number() ? V3f(number(key)) : point(key);
+    for (int k = 0; k < 3; ++k) {
+      if (value[k] < 0) fail_at(key, fmt::format("must not be negative, and is {}", value[k]));
+    }
+    return value;
+  }
+
+ private:
+  [[nodiscard]] const Json& get(const char* key) const {
+    const auto found = fields_.find(key);
+    if (found == fields_.end()) fail_at(key, "is missing");
+    return *found;
+  }
+
+  [[nodiscard]] const Json& array(const char* key, std::size_t count) const {
+    const Json& value = get(key);
+    if (!value.is_array() || value.size() != count) {
+      fail_at(key, fmt::format("must be an array of {} numbers", count));
+    }
+    return value;
+  }
+
+  static std::string element(const char* key, int index) {
+    return fmt::format("{}[{}]", key, index);
+  }
+
+  [[nodiscard]] float to_number(const Json& value, std::string_view key) const {
+    if (!value.is_number()) fail_at(key, "must be a number");
+    const auto number = static_cast<float>(value.get<double>());
+    if (!std::isfinite(number)) fail_at(key, "is too large");
+    return number;
+  }
+
+  [[nodiscard]] float require_positive(float value, std::string_view key) const {
+    if (!(value > 0)) fail_at(key, fmt::format("must be positive, and is {}", value));
+    return value;
+  }
+
+  std::string where_;
+  const Json& fields_;
+};
+
+Light read_rect(const LightFields& fields) {
+  fields.allow_only({"position", "normal", "size", "radiance"});
+  Light light;
+  light.kind = LightKind::rect;
+  light.position = fields.point("position");
+  light.direction = fields.direction("normal");
+  const V2f size = fields.size("size");
+  const RectAxes axes = rect_axes(light.direction);
+  light.edge_u = axes.u * size.x;
+  light.edge_v = axes.v * size.y;
+  light.radiance = fields.colour("radiance");
+  return light;
+}
+
+Light read_sphere(const LightFields& fields) {
+  fields.allow_only({"position", "radius", "radiance"});
+  Light light;
+  light.kind = LightKind::sphere;
+  light.position = fields.point("position");
+  light.radius = fields.positive("radius");
+  light.radiance = fields.colour("radiance");
+  return light;
+}
+
+Light read_sun(const LightFields& fields) {
+  fields.allow_only({"direction", "angle_degrees", "radiance", "irradiance"});
+  Light light;
+  light.kind = LightKind::sun;
+  light.direction = fields.direction("direction");
+  const double degrees =
+      fields.has("angle_degrees") ? fields.positive("angle_degrees") : kSunDegrees;
+  if (degrees >= 180)
+    fields.fail_at("angle_degrees", fmt::format("must be below 180, and is {}", degrees));
+  const double angular_radius = degrees * std::numbers::pi / 360;
+  light.angular_radius = static_cast<float>(angular_radius);
+  if (fields.has("radiance") == fields.has("irradiance")) {
+    fields.fail_at("radiance", "or irradiance must be given, and not both");
+  }
+  if (fields.has("radiance")) {
+    light.radiance = fields.colour("radiance");
+    return light;
+  }
+  // A disk of constant radiance facing a surface: the integral of the cosine over it is
+  // pi sin^2 of its angular radius.
+  const double sine = std::sin(angular_radius);
+  light.radiance =
+      fields.colour("irradiance") * static_cast<float>(1 / (std::numbers::pi * sine * sine));
+  if (!std::isfinite(light.radiance.length2())) {
+    fields.fail_at("irradiance", "is too large for so small an angle_degrees");
+  }
+  return light;
+}
+
+Light read_light(const LightFields& fields, std::size_t number) {
+  const std::string type = fields.text("type");
+  Light light;
+  if (type == "rect") {
+    light = read_rect(fields);
+  } else if (type == "sphere") {
+    light = read_sphere(fields);
+  } else if (type == "sun") {
+    light = read_sun(fields);
+  } else {
+    fields.fail_at("type", fmt::format("\"{}\" is not rect, sphere or sun", type));
+  }
+  light.name = fields.has("name") ? fields.text("name") : fmt::format("{}_{}", type, number);
+  return light;
+}
+
+}  // namespace
+
+std::vector<Light> load_lights(const std::string& path) {
+  const Json file = parse_json(path, read_text(path));
+  if (!file.is_object() || !file.contains("lights") || !file["lights"].is_array()) {
+    fail(path, "must be an object with an array \"lights\"");
+  }
+  for (const auto& [key, value] : file.items()) {
+    if (key != "lights") fail(path, fmt::format("\"{}\" is not known here; known: lights", key));
+  }
+  std::vector<Light> lights;
+  for (const Json& fields : file["lights"]) {
+    const std::size_t number = lights.size() + 1;
+    lights.push_back(read_light(LightFields(path, number, fields), number));
+  }
+  return lights;
+}
+
+}  // namespace dapple

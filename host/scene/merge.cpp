@@ -1,0 +1,183 @@
+// Puts everything that is placed once into one world-space mesh and drops what no ray could
+// hit. In: a scene as it was read; out: the same triangles, fewer meshes, warnings.
+#include <spdlog/fmt/fmt.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dapple/error.hpp"
+#include "dapple/scene.hpp"
+#include "scene/triangle_cleanup.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr std::size_t kTinyTriangles = 256;
+constexpr std::size_t kMaxTinyPlaced = 4'000'000;  // triangles, all copies of tiny meshes
+constexpr std::size_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
+
+bool is_finite(const M44f& matrix) {
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 4; ++k) {
+      if (!std::isfinite(matrix[i][k])) return false;
+    }
+  }
+  return true;
+}
+
+// Asks Imath, whose inverse the rays will be turned by: it answers identity where there is none.
+bool is_invertible(const M44f& matrix) {
+  if (!is_finite(matrix)) return false;
+  const M44f inverse = matrix.inverse();
+  return is_finite(inverse) && (inverse != M44f{} || matrix == M44f{});
+}
+
+void drop_singular_instances(Scene& scene) {
+  const std::size_t dropped = std::erase_if(
+      scene.instances, [](const Instance& instance) { return !is_invertible(instance.to_world); });
+  if (dropped > 0) {
+    scene.warnings.push_back(fmt::format("dropped {} instance{} whose matrix cannot be inverted",
+                                         dropped, dropped == 1 ? "" : "s"));
+  }
+}
+
+struct Uses {
+  std::size_t as_geometry = 0;
+  std::size_t as_light = 0;
+};
+
+std::vector<Uses> count_uses(const Scene& scene) {
+  std::vector<Uses> uses(scene.meshes.size());
+  for (const Instance& instance : scene.instances) {
+    Uses& of_mesh = uses[instance.mesh];
+    ++(instance.light < 0 ? of_mesh.as_geometry : of_mesh.as_light);
+  }
+  return uses;
+}
+
+// Which meshes' geometry goes into the merged mesh, all of its placements together.
+std::vector<bool> choose_merged(const Scene& scene, const std::vector<Uses>& uses) {
+  std::vector<bool> merged(scene.meshes.size(), false);
+  std::size_t tiny_placed = 0;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const std::size_t triangles = scene.meshes[m].triangle_count();
+    const std::size_t placed = triangles * uses[m].as_geometry;
+    merged[m] = uses[m].as_geometry == 1;
+    if (merged[m] || triangles > kTinyTriangles || tiny_placed + placed > kMaxTinyPlaced) continue;
+    merged[m] = uses[m].as_geometry > 1;
+    tiny_placed += placed;
+  }
+  return merged;
+}
+
+std::vector<Instance> take_merged_instances(Scene& scene, const std::vector<bool>& merged) {
+  const auto stays = [&](const Instance& instance) {
+    return instance.light >= 0 || !merged[instance.mesh];
+  };
+  const auto first = std::stable_partition(scene.instances.begin(), scene.instances.end(), stays);
+  std::vector<Instance> taken(first, scene.instances.end());
+  scene.instances.erase(first, scene.instances.end());
+  return taken;
+}
+
+struct Totals {
+  std::size_t vertices = 0, triangles = 0;
+  bool uvs = false, vertex_alpha = false;
+};
+
+Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
+  Totals totals;
+  for (const Instance& instance : instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    totals.vertices += mesh.positions.size();
+    totals.triangles += mesh.triangle_count();
+    totals.uvs |= !mesh.uvs.empty();
+    totals.vertex_alpha |= !mesh.vertex_alpha.empty();
+  }
+  if (totals.vertices > kMaxVertices || totals.triangles > kMaxVertices / 3) {
+    throw Error(ErrorKind::input,
+                fmt::format("{}: {} vertices and {} triangles are more than one mesh can hold",
+                            scene.source, totals.vertices, totals.triangles));
+  }
+  return totals;
+}
+
+void transform_positions(std::vector<V3f>& positions, std::size_t first, const M44f& to_world) {
+  if (to_world == M44f{}) return;
+  tbb::parallel_for(first, positions.size(),
+                    [&](std::size_t i) { positions[i] = positions[i] * to_world; });
+}
+
+// A mirroring matrix turns windings over. They are left so: every surface occludes from both
+// sides, and normals are turned to the viewer.
+void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const Totals& totals) {
+  const std::size_t first = merged.positions.size();
+  merged.positions.insert(merged.positions.end(), mesh.positions.begin(), mesh.positions.end());
+  transform_positions(merged.positions, first, to_world);
+  const auto offset = static_cast<std::uint32_t>(first);
+  for (const std::uint32_t index : mesh.indices) merged.indices.push_back(index + offset);
+  merged.materials.insert(merged.materials.end(), mesh.materials.begin(), mesh.materials.end());
+  if (totals.uvs) {
+    merged.uvs.insert(merged.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+    merged.uvs.resize(merged.positions.size(), V2f(0, 0));
+  }
+  if (totals.vertex_alpha) {
+    merged.vertex_alpha.insert(merged.vertex_alpha.end(), mesh.vertex_alpha.begin(),
+                               mesh.vertex_alpha.end());
+    merged.vertex_alpha.resize(merged.positions.size(), 1.0f);
+  }
+}
+
+// Empties each mesh after its last use: a scene that fills the memory once must not do so twice.
+Mesh build_merged(Scene& scene, const std::vector<Instance>& instances,
+                  const std::vector<Uses>& uses) {
+  const Totals totals = measure(scene, instances);
+  std::vector<std::size_t> left(uses.size());
+  for (std::size_t m = 0; m < uses.size(); ++m) left[m] = uses[m].as_geometry + uses[m].as_light;
+  Mesh merged;
+  if (instances.size() > 1) {
+    merged.positions.reserve(totals.vertices);
+    merged.indices.reserve(3 * totals.triangles);
+    merged.materials.reserve(totals.triangles);
+  }
+  for (const Instance& instance : instances) {
+    Mesh& mesh = scene.meshes[instance.mesh];
+    const bool last_use = --left[instance.mesh] == 0;
+    if (last_use && instances.size() == 1) {
+      merged = std::move(mesh);
+      transform_positions(merged.positions, 0, instance.to_world);
+      return merged;
+    }
+    append_placed(merged, mesh, instance.to_world, totals);
+    if (last_use) mesh = Mesh{};
+  }
+  merged.name = "merged";
+  return merged;
+}
+
+void merge_chosen(Scene& scene) {
+  const std::vector<Uses> uses = count_uses(scene);
+  const std::vector<Instance> taken = take_merged_instances(scene, choose_merged(scene, uses));
+  if (taken.empty()) return;
+  Instance instance;
+  instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+  scene.meshes.push_back(build_merged(scene, taken, uses));
+  scene.instances.insert(scene.instances.begin(), instance);
+}
+
+}  // namespace
+
+void merge_single_instances(Scene& scene) {
+  drop_singular_instances(scene);
+  merge_chosen(scene);
+  drop_unhittable_triangles(scene);
+  drop_unused(scene);
+  if (scene.instances.empty()) {
+    throw Error(ErrorKind::input,
+                fmt::format("{}: there is nothing to render: no triangle is left", scene.source));
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,52 @@
+// The shapes that procedural scenes are put together from: quads, squares, leaf blades and
+// tapered tubes, appended to a Mesh. Units are metres; every triangle has an area.
+#pragma once
+
+#include <span>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// Some unit vector across `direction` (of any length but zero).
+V3f perpendicular(V3f direction);
+
+/// Appends two triangles a-b-c, a-c-d.
+void append_quad(Mesh& mesh, V3f a, V3f b, V3f c, V3f d, std::uint32_t material);
+
+/// Appends a horizontal square facing up, centred at (0, y, 0).
+void append_square(Mesh& mesh, float side, float y, std::uint32_t material);
+
+/// Appends an open tube through `points` (two or more), whose radius at points[i] is radii[i],
+/// and which ends in a point at the last.
+void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float> radii, int sides,
+                 std::uint32_t material);
+
+/// One leaf: a rhombus from `base` to `base + axis * length`, kBladeWidth times as wide as
+/// long and a little folded along its midrib, the edge that its two triangles share.
+struct Blade {
+  V3f base;
+  V3f axis;    ///< unit
+  V3f normal;  ///< unit, at right angles to `axis`
+  float length = 0;
+};
+
+inline constexpr float kBladeWidth = 0.55f;
+/// Area of a blade over the square of its length, the fold left out.
+inline constexpr float kBladeArea = kBladeWidth / 2;
+
+/// Places for `count` blades at the end of a mesh, to be filled in any order.
+class BladeRange {
+ public:
+  BladeRange(Mesh& mesh, std::size_t count, std::uint32_t material);
+  /// Safe to call from several threads for different `i`.
+  void set(std::size_t i, const Blade& blade);
+
+ private:
+  Mesh& mesh_;
+  std::size_t first_vertex_;
+  std::size_t first_triangle_;
+  std::uint32_t material_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,52 @@
+// World-space bounds of a scene. In: meshes and instances; out: a box. Only vertices that a
+// triangle uses count.
+#include <Imath/ImathBoxAlgo.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+namespace {
+
+// Minima and maxima come out the same in any order, so threads may share the work.
+Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
+  using Range = tbb::blocked_range<std::size_t>;
+  return tbb::parallel_reduce(
+      Range(0, mesh.indices.size(), 16384), Box3f{},
+      [&](const Range& range, Box3f box) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          box.extendBy(mesh.positions[mesh.indices[i]] * transform);
+        }
+        return box;
+      },
+      [](Box3f a, const Box3f& b) {
+        a.extendBy(b);
+        return a;
+      });
+}
+
+}  // namespace
+
+Box3f scene_bounds(const Scene& scene) {
+  std::vector<std::uint32_t> placements(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) ++placements[instance.mesh];
+
+  std::vector<Box3f> object_bounds(scene.meshes.size());
+  Box3f bounds;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (placements[instance.mesh] == 1) {
+      bounds.extendBy(mesh_bounds(mesh, instance.to_world));
+      continue;
+    }
+    // A forest's triangles are too many to visit: the box around the turned object-space box
+    // is a little larger and costs nothing.
+    Box3f& box = object_bounds[instance.mesh];
+    if (box.isEmpty()) box = mesh_bounds(mesh, M44f{});
+    if (!box.isEmpty()) bounds.extendBy(Imath::transform(box, instance.to_world));
+  }
+  return bounds;
+}
+
+}  // namespace dapple

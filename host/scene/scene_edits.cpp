@@ -1,0 +1,68 @@
+// What the command line changes in a scene that was read: the opacity of a material, and a
+// ground to stand on.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "dapple/error.hpp"
+#include "dapple/scene.hpp"
+#include "scene/mesh_shapes.hpp"
+
+namespace dapple {
+namespace {
+
+std::string list_materials(const Scene& scene) {
+  std::string names;
+  for (const Material& material : scene.materials) {
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", material.name);
+  }
+  return names.empty() ? "none" : names;
+}
+
+}  // namespace
+
+void override_opacity(Scene& scene, const std::string& name, float value) {
+  if (!(value >= 0 && value <= 1)) {
+    throw Error(ErrorKind::usage,
+                fmt::format("opacity of material \"{}\" is {}, outside [0, 1]", name, value));
+  }
+  bool found = false;
+  for (Material& material : scene.materials) {
+    if (material.name != name) continue;
+    found = true;
+    material.alpha_mode = AlphaMode::blend;
+    material.alpha = value;
+    material.alpha_texture = -1;
+    material.uses_vertex_alpha = false;
+  }
+  if (!found) {
+    throw Error(ErrorKind::usage, fmt::format("{}: there is no material \"{}\"; there are: {}",
+                                              scene.source, name, list_materials(scene)));
+  }
+}
+
+void add_ground(Scene& scene) {
+  const Box3f bounds = scene_bounds(scene);
+  if (bounds.isEmpty()) {
+    throw Error(ErrorKind::input,
+                fmt::format("{}: there is nothing to put a ground under", scene.source));
+  }
+  const V3f size = bounds.size();
+  float width = std::max(size.x, size.z);
+  if (width <= 0) width = std::max(size.y, 1.0f);
+
+  Mesh ground;
+  ground.name = "ground";
+  append_square(ground, 20 * width, 0, static_cast<std::uint32_t>(scene.materials.size()));
+  Instance instance;
+  instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+  instance.to_world.setTranslation(V3f(bounds.center().x, bounds.min.y, bounds.center().z));
+
+  Material material;
+  material.name = "ground";
+  scene.materials.push_back(material);
+  scene.meshes.push_back(std::move(ground));
+  scene.instances.push_back(instance);
+}
+
+}  // namespace dapple

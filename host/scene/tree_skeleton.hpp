@@ -1,0 +1,28 @@
+// The wood of a broad-leaved tree as a graph: where branches go and how thick they are.
+// In: a seed and a height; out: nodes with parents and radii, in metres.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// Node 0 is the trunk's foot, at the origin, and its own parent; every other node comes
+/// after its parent.
+struct TreeSkeleton {
+  std::vector<V3f> positions;
+  std::vector<std::uint32_t> parents;
+  std::vector<float> radii;
+  std::vector<std::uint32_t> twigs;  ///< the nodes that bear leaves, never empty
+
+  [[nodiscard]] std::size_t size() const { return positions.size(); }
+};
+
+/// Greatest radius of the crown, over the tree's height.
+inline constexpr float kCrownRadius = 0.33f;
+
+TreeSkeleton grow_skeleton(std::uint32_t seed, float height_m);
+
+}  // namespace dapple

@@ -1,0 +1,168 @@
+// Filters triangles and renumbers what refers to them. Numbers change only where something
+// was dropped.
+#include "scene/triangle_cleanup.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dapple {
+namespace {
+
+constexpr std::uint32_t kUnused = 0xffffffffu;
+// Twice an area, in square metres. Below it a normal's squared length leaves float's range;
+// a triangle of a nanometre's sides is larger.
+constexpr double kLeastDoubleArea = 1e-19;
+
+enum class Fault : std::uint8_t { none, not_finite, no_area };
+
+Fault fault_of(const Mesh& mesh, std::size_t triangle) {
+  Imath::V3d corner[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    corner[k] = Imath::V3d(mesh.positions[mesh.indices[3 * triangle + k]]);
+  }
+  // In double, sums and products of floats cannot overflow.
+  const Imath::V3d sum = corner[0] + corner[1] + corner[2];
+  if (!std::isfinite(sum.x + sum.y + sum.z)) return Fault::not_finite;
+  const Imath::V3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+  return normal.length() > kLeastDoubleArea ? Fault::none : Fault::no_area;
+}
+
+struct Faults {
+  std::size_t not_finite = 0;
+  std::size_t no_area = 0;
+
+  Faults& operator+=(const Faults& other) {
+    not_finite += other.not_finite;
+    no_area += other.no_area;
+    return *this;
+  }
+  [[nodiscard]] bool any() const { return not_finite + no_area > 0; }
+};
+
+Faults count_faults(const Mesh& mesh) {
+  using Range = tbb::blocked_range<std::size_t>;
+  return tbb::parallel_reduce(
+      Range(0, mesh.triangle_count(), 8192), Faults{},
+      [&](const Range& range, Faults faults) {
+        for (std::size_t t = range.begin(); t < range.end(); ++t) {
+          const Fault fault = fault_of(mesh, t);
+          faults.not_finite += fault == Fault::not_finite;
+          faults.no_area += fault == Fault::no_area;
+        }
+        return faults;
+      },
+      [](Faults a, const Faults& b) { return a += b; });
+}
+
+void keep_sound_triangles(Mesh& mesh) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (fault_of(mesh, t) != Fault::none) continue;
+    for (std::size_t k = 0; k < 3; ++k) mesh.indices[3 * kept + k] = mesh.indices[3 * t + k];
+    mesh.materials[kept++] = mesh.materials[t];
+  }
+  mesh.indices.resize(3 * kept);
+  mesh.materials.resize(kept);
+}
+
+template <typename Value>
+void keep_at(std::vector<Value>& values, const std::vector<std::uint32_t>& new_numbers,
+             std::size_t kept) {
+  if (values.empty()) return;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (new_numbers[i] != kUnused) values[new_numbers[i]] = values[i];
+  }
+  values.resize(kept);
+}
+
+// Vertices keep their order, so a value only ever moves forward.
+void keep_used_vertices(Mesh& mesh) {
+  std::vector<std::uint32_t> new_numbers(mesh.positions.size(), kUnused);
+  for (const std::uint32_t index : mesh.indices) new_numbers[index] = 0;
+  std::uint32_t kept = 0;
+  for (std::uint32_t& number : new_numbers) {
+    if (number != kUnused) number = kept++;
+  }
+  for (std::uint32_t& index : mesh.indices) index = new_numbers[index];
+  keep_at(mesh.positions, new_numbers, kept);
+  keep_at(mesh.uvs, new_numbers, kept);
+  keep_at(mesh.vertex_alpha, new_numbers, kept);
+}
+
+void warn_dropped(Scene& scene, std::size_t count, const char* what) {
+  if (count == 0) return;
+  scene.warnings.push_back(
+      fmt::format("dropped {} triangle{} {}", count, count == 1 ? "" : "s", what));
+}
+
+std::vector<bool> find_placed(const Scene& scene) {
+  std::vector<bool> placed(scene.meshes.size(), false);
+  for (const Instance& instance : scene.instances) placed[instance.mesh] = true;
+  return placed;
+}
+
+// Erases the items that are not wanted and returns each old number's new one.
+template <typename Item>
+std::vector<std::uint32_t> keep_wanted(std::vector<Item>& items, const std::vector<bool>& wanted) {
+  std::vector<std::uint32_t> new_numbers(items.size(), kUnused);
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (!wanted[i]) continue;
+    if (kept != i) items[kept] = std::move(items[i]);
+    new_numbers[i] = kept++;
+  }
+  items.resize(kept);
+  return new_numbers;
+}
+
+void drop_dark_mesh_lights(Scene& scene) {
+  std::vector<bool> wanted(scene.lights.size(), false);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    wanted[i] = scene.lights[i].kind != LightKind::mesh;
+  }
+  for (const Instance& instance : scene.instances) {
+    if (instance.light >= 0) wanted[static_cast<std::size_t>(instance.light)] = true;
+  }
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    if (wanted[i]) continue;
+    scene.warnings.push_back(
+        fmt::format("dropped light \"{}\", which has no triangle", scene.lights[i].name));
+  }
+  const std::vector<std::uint32_t> new_numbers = keep_wanted(scene.lights, wanted);
+  for (Instance& instance : scene.instances) {
+    if (instance.light < 0) continue;
+    instance.light = static_cast<int>(new_numbers[static_cast<std::size_t>(instance.light)]);
+  }
+}
+
+}  // namespace
+
+void drop_unhittable_triangles(Scene& scene) {
+  const std::vector<bool> placed = find_placed(scene);
+  Faults total;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (!placed[m]) continue;
+    const Faults faults = count_faults(scene.meshes[m]);
+    if (!faults.any()) continue;
+    keep_sound_triangles(scene.meshes[m]);
+    keep_used_vertices(scene.meshes[m]);
+    total += faults;
+  }
+  warn_dropped(scene, total.not_finite, "with non-finite vertices");
+  warn_dropped(scene, total.no_area, "without an area");
+}
+
+void drop_unused(Scene& scene) {
+  std::erase_if(scene.instances, [&](const Instance& instance) {
+    return scene.meshes[instance.mesh].triangle_count() == 0;
+  });
+  const std::vector<std::uint32_t> new_numbers = keep_wanted(scene.meshes, find_placed(scene));
+  for (Instance& instance : scene.instances) instance.mesh = new_numbers[instance.mesh];
+  drop_dark_mesh_lights(scene);
+}
+
+}  // namespace dapple

@@ -1,0 +1,43 @@
+// The running sums of a picture on the device: 64-bit fixed point planes, and how they
+// become a Film. The planes' order is that of kernels/film.cl.
+#pragma once
+
+#include <vector>
+
+#include "dapple/film.hpp"
+#include "dapple/wavefront.hpp"
+#include "device/context.hpp"
+#include "wavefront/view.hpp"
+
+namespace dapple {
+
+inline constexpr std::uint32_t kSurfacePlanes = 10;
+inline constexpr std::uint32_t kAoPlanes = 6;
+inline constexpr std::uint32_t kLightPlanes = 4;
+
+/// First plane of each pass, and the powers of two by which values are scaled. A sum of
+/// 2^24 samples of the largest value still fits 63 bits.
+struct FilmLayout {
+  std::uint32_t pixels = 0;
+  std::uint32_t plane_count = 0;
+  std::uint32_t ao = 0;               ///< first AO plane
+  std::vector<std::uint32_t> lights;  ///< first plane of each light
+  float unit_scale = 0;               ///< of values up to 1
+  float light_scale = 0;              ///< of irradiance at radiance 1, up to 1024 pi
+  float position_scale = 0;
+  float depth_scale = 0;
+
+  FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
+             std::size_t light_count);
+  [[nodiscard]] std::size_t bytes() const {
+    return std::size_t{pixels} * plane_count * sizeof(std::int64_t);
+  }
+};
+
+/// Means of the sums as the planes an EXR gets (channel names as the README lists them);
+/// also the visit counts, into `statistics`.
+std::vector<Plane> develop(const std::vector<std::int64_t>& sums, const FilmLayout& layout,
+                           const RenderOptions& options, const std::vector<Light>& lights,
+                           RenderStatistics& statistics);
+
+}  // namespace dapple

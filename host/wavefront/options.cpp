@@ -1,0 +1,68 @@
+#include "dapple/options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+void check_range(const char* flag, double value, double low, double high) {
+  if (value >= low && value <= high) return;  // false for NaN
+  throw Error(ErrorKind::usage,
+              fmt::format("{} is {:g}; it must be from {:g} to {:g}", flag, value, low, high));
+}
+
+void check_finite(const char* flag, const V3f& v) {
+  if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) return;
+  throw Error(ErrorKind::usage, fmt::format("{} has a coordinate that is not finite", flag));
+}
+
+void check_crop(const RenderOptions& options) {
+  if (!options.crop) return;
+  const PixelRect& c = *options.crop;
+  if (c.x0 >= 0 && c.y0 >= 0 && c.x0 <= c.x1 && c.y0 <= c.y1 && c.x1 < options.width &&
+      c.y1 < options.height)
+    return;
+  throw Error(
+      ErrorKind::usage,
+      fmt::format(
+          "--crop {},{},{},{} is not inside the {}x{} picture (X0,Y0,X1,Y1, both ends included)",
+          c.x0, c.y0, c.x1, c.y1, options.width, options.height));
+}
+
+/// Sums are kept in 64-bit fixed point with 24 bits to spare for samples.
+void check_sample_product(const char* flag, int spp, int rays) {
+  if (static_cast<double>(spp) * rays <= (1 << 24)) return;
+  throw Error(ErrorKind::usage, fmt::format("--spp {} times {} {} is more than {} rays a pixel",
+                                            spp, flag, rays, 1 << 24));
+}
+
+}  // namespace
+
+void validate(const RenderOptions& options) {
+  check_range("--width", options.width, 1, 65535);
+  check_range("--height", options.height, 1, 65535);
+  check_range("--spp", options.spp, 1, 1 << 20);
+  check_range("--ao-rays", options.ao_rays, 1, 4096);
+  check_range("--light-rays", options.light_rays, 1, 4096);
+  check_range("--footprint", options.footprint, 0, 1e6);
+  check_range("--ao-distance", options.ao_distance, 0, 1e30);
+  check_range("--ao-falloff", options.ao_falloff, 0, 100);
+  if (options.ao_falloff > 0 && options.ao_distance <= 0) {
+    throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
+  }
+  if (options.fov_degrees != 0) check_range("--fov", options.fov_degrees, 0.01, 179);
+  if (options.look) {
+    check_finite("--look-from", options.look->from);
+    check_finite("--look-at", options.look->at);
+    check_finite("--up", options.look->up);
+  }
+  check_crop(options);
+  check_sample_product("--ao-rays", options.spp, options.ao_rays);
+  check_sample_product("--light-rays", options.spp, options.light_rays);
+}
+
+}  // namespace dapple

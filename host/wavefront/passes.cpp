@@ -1,0 +1,117 @@
+#include "wavefront/passes.hpp"
+
+#include "dapple/shared/ray.h"
+
+namespace dapple {
+namespace {
+
+/// Work-items of the one group that compacts; DAPPLE_SCAN_ITEMS in kernels/compact.cl.
+constexpr std::size_t kScanItems = 256;
+
+KernelName occlusion_kernel(Estimator estimator) {
+  return {"occlusion", "occlusion", Variant{estimator == Estimator::prefiltered}};
+}
+
+const KernelName kCameraRays{"camera_rays", "camera", {}};
+const KernelName kClosestHit{"closest_hit", "closest_hit", {}};
+const KernelName kCompactHits{"compact_hits", "compact", {}};
+const KernelName kAoRays{"ao_rays", "ao", {}};
+const KernelName kLightRays{"light_rays", "light", {}};
+const KernelName kResolveSurface{"resolve_surface", "film", {}};
+const KernelName kResolveAo{"resolve_ao", "film", {}};
+const KernelName kResolveLight{"resolve_light", "film", {}};
+
+}  // namespace
+
+std::size_t Queues::bytes() const {
+  return rays.bytes() + points.bytes() + slots.bytes() + active.bytes() + active_count.bytes() +
+         occlusions.bytes();
+}
+
+Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample) {
+  Queues queues;
+  queues.rays = context.allocate(samples * rays_per_sample * sizeof(Ray));
+  queues.points = context.allocate(samples * sizeof(SurfacePoint));
+  queues.slots = context.allocate(samples * sizeof(uint));
+  queues.active = context.allocate(samples * sizeof(uint));
+  queues.active_count = context.allocate(sizeof(uint));
+  queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
+  return queues;
+}
+
+void camera_pass(DeviceContext& context, const Queues& queues, const CameraParams& params) {
+  const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
+  context.launch(kCameraRays, "camera rays", samples, {queues.rays, queues.points, params});
+}
+
+void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                      std::size_t rays) {
+  OcclusionParams params{};
+  params.scene = scene.params;
+  params.ray_count = static_cast<uint>(rays);
+  context.launch(kClosestHit, "closest hit", rays,
+                 {scene.nodes, scene.blocks, scene.textured, scene.textures, scene.texels,
+                  scene.instances, queues.rays, queues.points, params});
+}
+
+std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples) {
+  context.launch(
+      kCompactHits, "compact", kScanItems,
+      {queues.points, queues.slots, queues.active, queues.active_count, static_cast<uint>(samples)},
+      kScanItems);
+  std::uint32_t count = 0;
+  context.read(queues.active_count, &count, sizeof count);
+  return count;
+}
+
+void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
+  context.launch(kAoRays, "ao rays", std::size_t{params.point_count} * params.rays,
+                 {queues.points, queues.active, queues.rays, params});
+}
+
+void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                    const LightParams& params) {
+  context.launch(kLightRays, "light rays", std::size_t{params.point_count} * params.rays,
+                 {queues.points, queues.active, scene.lights, scene.emitters, queues.rays, params});
+}
+
+void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                    const std::string& label, Estimator estimator, const OcclusionParams& params) {
+  context.launch(occlusion_kernel(estimator), label, params.ray_count,
+                 {scene.nodes, scene.blocks, scene.textured, scene.textures, scene.texels,
+                  scene.instances, queues.rays, queues.occlusions, params});
+}
+
+void resolve_surface_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+                          const ResolveParams& params) {
+  context.launch(kResolveSurface, "resolve", params.slice.pixel_count,
+                 {queues.points, sums, params});
+}
+
+void resolve_ao_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+                     const ResolveParams& params) {
+  context.launch(kResolveAo, "resolve", params.slice.pixel_count,
+                 {queues.points, queues.slots, queues.rays, queues.occlusions, sums, params});
+}
+
+void resolve_light_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+                        const ResolveParams& params) {
+  context.launch(kResolveLight, "resolve", params.slice.pixel_count,
+                 {queues.points, queues.slots, queues.rays, queues.occlusions, sums, params});
+}
+
+void prepare_kernels(DeviceContext& context, const RenderOptions& options) {
+  for (const KernelName& kernel : {kCameraRays, kClosestHit, kCompactHits, kResolveSurface})
+    context.prepare(kernel);
+  if (options.ao || options.light) context.prepare(occlusion_kernel(options.estimator));
+  if (options.ao) {
+    context.prepare(kAoRays);
+    context.prepare(kResolveAo);
+  }
+  if (options.light) {
+    context.prepare(kLightRays);
+    context.prepare(kResolveLight);
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,53 @@
+// The wavefront: kernels between queues, one function a pass, in the order they run.
+#pragma once
+
+#include "dapple/options.hpp"
+#include "device/context.hpp"
+#include "device/scene_upload.hpp"
+#include "wavefront/film_sums.hpp"
+
+namespace dapple {
+
+/// Queues for one slice; sized once, reused by every slice.
+struct Queues {
+  Buffer rays;          ///< Ray
+  Buffer points;        ///< SurfacePoint, one a camera sample
+  Buffer slots;         ///< uint a sample: its place among those that hit
+  Buffer active;        ///< uint: samples that hit, in order
+  Buffer active_count;  ///< uint
+  Buffer occlusions;    ///< Occlusion, one a ray
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample);
+
+/// Camera rays of the slice into `rays` and `points`.
+void camera_pass(DeviceContext& context, const Queues& queues, const CameraParams& params);
+
+/// First surface of each ray in `rays` into `points`.
+void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                      std::size_t rays);
+
+/// Fills `slots` and `active`; returns how many samples hit. Waits for the device.
+std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples);
+
+void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params);
+
+void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                    const LightParams& params);
+
+/// Transmittance of each ray in `rays` into `occlusions`.
+void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                    const std::string& label, Estimator estimator, const OcclusionParams& params);
+
+void resolve_surface_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+                          const ResolveParams& params);
+void resolve_ao_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+                     const ResolveParams& params);
+void resolve_light_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+                        const ResolveParams& params);
+
+/// Compiles every kernel that `options` will need.
+void prepare_kernels(DeviceContext& context, const RenderOptions& options);
+
+}  // namespace dapple

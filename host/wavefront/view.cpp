@@ -1,0 +1,109 @@
+#include "wavefront/view.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+float radians(float degrees) { return degrees * std::numbers::pi_v<float> / 180.0f; }
+
+Camera named_camera(const Scene& scene, const std::string& name) {
+  std::string list;
+  for (const Camera& camera : scene.cameras) {
+    if (camera.name == name) return camera;
+    list += (list.empty() ? "" : ", ") + camera.name;
+  }
+  throw Error(ErrorKind::usage,
+              fmt::format("--camera {}: {} has {}", name, scene.source,
+                          list.empty() ? "no cameras" : "only these cameras: " + list));
+}
+
+Camera choose_camera(const Scene& scene, const RenderOptions& options,
+                     std::vector<std::string>& notes) {
+  if (options.look) {
+    const float fov = options.fov_degrees > 0 ? options.fov_degrees : 40.0f;
+    return look_at(options.look->from, options.look->at, options.look->up, radians(fov));
+  }
+  if (!options.camera.empty()) return named_camera(scene, options.camera);
+  if (!scene.cameras.empty()) {
+    if (scene.cameras.size() > 1) {
+      notes.push_back(
+          fmt::format("camera: {}, the first of {}", scene.cameras[0].name, scene.cameras.size()));
+    }
+    return scene.cameras[0];
+  }
+  notes.emplace_back("no camera in the scene: framed it; --look-from and --look-at choose another");
+  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+  return options.fov_degrees > 0 ? frame_scene(scene, aspect, radians(options.fov_degrees))
+                                 : frame_scene(scene, aspect);
+}
+
+/// Half width and half height of the image plane: at distance 1, or in metres.
+V2f half_extent(const View& view) {
+  const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
+  const bool orthographic = view.camera.kind == Camera::Kind::orthographic;
+  const float half = orthographic ? view.camera.half_height : std::tan(0.5f * view.camera.fov_y);
+  return {half * aspect, half};
+}
+
+}  // namespace
+
+View choose_view(const Scene& scene, const RenderOptions& options,
+                 std::vector<std::string>& notes) {
+  View view{choose_camera(scene, options, notes), options.width, options.height,
+            options.crop.value_or(PixelRect{0, 0, options.width - 1, options.height - 1})};
+  if (options.fov_degrees > 0 && view.camera.kind == Camera::Kind::perspective) {
+    view.camera.fov_y = radians(options.fov_degrees);
+  }
+  return view;
+}
+
+CameraParams camera_params(const View& view, const RenderOptions& options) {
+  CameraParams params{};
+  const M44f& m = view.camera.to_world;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) params.to_world[4 * row + column] = m[column][row];
+  }
+  const V2f half = half_extent(view);
+  params.half_width = half.x;
+  params.half_height = half.y;
+  params.orthographic = view.camera.kind == Camera::Kind::orthographic ? 1u : 0u;
+  params.width = static_cast<uint>(view.width);
+  params.height = static_cast<uint>(view.height);
+  params.crop_x = static_cast<uint>(view.crop.x0);
+  params.crop_y = static_cast<uint>(view.crop.y0);
+  params.crop_width = static_cast<uint>(view.crop.width());
+  params.seed = options.seed;
+  params.inverse_spp = 1.0f / static_cast<float>(options.spp);
+  return params;
+}
+
+M44f world_to_exr_camera(const Camera& camera) {
+  M44f flip;
+  flip[2][2] = -1.0f;
+  return camera.to_world.inverse() * flip;
+}
+
+M44f world_to_ndc(const View& view) {
+  const V2f half = half_extent(view);
+  // Image plane to [0,1], y down; homogeneous, so the halves ride on w.
+  M44f projection;
+  projection[0][0] = 0.5f / half.x;
+  projection[1][1] = -0.5f / half.y;
+  const bool perspective = view.camera.kind == Camera::Kind::perspective;
+  const int from = perspective ? 2 : 3;  // w is z, or 1
+  projection[from][0] += 0.5f;
+  projection[from][1] += 0.5f;
+  if (perspective) {
+    projection[2][3] = 1.0f;
+    projection[3][3] = 0.0f;
+  }
+  return world_to_exr_camera(view.camera) * projection;
+}
+
+}  // namespace dapple

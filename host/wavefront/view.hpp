@@ -1,0 +1,36 @@
+// From which camera, and through which pixels.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dapple/film.hpp"
+#include "dapple/options.hpp"
+#include "dapple/shared/pass_params.h"
+
+namespace dapple {
+
+struct View {
+  Camera camera;
+  int width = 0, height = 0;
+  PixelRect crop;
+  [[nodiscard]] std::uint32_t pixel_count() const {
+    return static_cast<std::uint32_t>(crop.width()) * static_cast<std::uint32_t>(crop.height());
+  }
+};
+
+/// The camera that `options` ask for; adds to `notes` when one had to be made up. Throws
+/// Error usage when a named camera is not in the scene, listing those that are.
+View choose_view(const Scene& scene, const RenderOptions& options, std::vector<std::string>& notes);
+
+/// What the camera kernel needs, but for the slice.
+CameraParams camera_params(const View& view, const RenderOptions& options);
+
+/// World to EXR's camera space: left-handed, x right, y up, +Z forward; row vectors.
+M44f world_to_exr_camera(const Camera& camera);
+
+/// World to EXR's NDC: x right, y down, (0,0) to (1,1) over the display window, after
+/// division by w.
+M44f world_to_ndc(const View& view);
+
+}  // namespace dapple

@@ -1,0 +1,10 @@
+// All of dapple's public interface.
+#pragma once
+
+#include "dapple/bvh.hpp"
+#include "dapple/device.hpp"
+#include "dapple/error.hpp"
+#include "dapple/film.hpp"
+#include "dapple/options.hpp"
+#include "dapple/scene.hpp"
+#include "dapple/wavefront.hpp"

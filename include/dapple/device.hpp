@@ -1,0 +1,50 @@
+// OpenCL devices without OpenCL types: list, choose, upload a scene.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dapple/bvh.hpp"
+
+namespace dapple {
+
+struct DeviceInfo {
+  std::string name, platform, driver;
+  std::string kind;  ///< "CPU", "GPU" or "accelerator"
+  unsigned compute_units = 0;
+  std::size_t memory_bytes = 0;
+};
+
+/// Every OpenCL device, best first. Throws Error device when there is no platform.
+std::vector<DeviceInfo> list_devices();
+
+class DeviceContext;  // host/device/context.hpp
+
+/// An opened device with its command queue and compiled kernels; cheap to copy.
+class Device {
+ public:
+  /// Opens the best device whose name or platform contains `name` (any case), the best
+  /// of all when `name` is empty. Throws Error device, listing what there is.
+  explicit Device(const std::string& name = "", const std::string& kernel_dir = "");
+
+  [[nodiscard]] const DeviceInfo& info() const;
+  [[nodiscard]] DeviceContext& context() const { return *context_; }
+
+ private:
+  std::shared_ptr<DeviceContext> context_;
+};
+
+struct DeviceBuffers;  // host/device/scene_upload.hpp
+
+/// A scene in device memory. Keeps the device alive.
+struct DeviceScene {
+  std::shared_ptr<DeviceBuffers> buffers;
+  std::size_t bytes = 0;
+};
+
+/// Copies what the kernels need. On devices that share the host's memory nothing is
+/// copied and `bvh` must outlive the DeviceScene. Throws Error device when it cannot fit.
+DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh);
+
+}  // namespace dapple

@@ -1,0 +1,60 @@
+// The finished picture: named planes of 32-bit floats, with what an EXR file should
+// say about them. Values in, files out; nothing here knows how the planes were made.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dapple/options.hpp"
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// One EXR channel, e.g. "ao.R". Row-major over the film's data window, top row first.
+struct Plane {
+  std::string channel;
+  std::vector<float> pixels;
+};
+
+/// What the picture was made with; every field becomes EXR metadata.
+struct FilmMetadata {
+  M44f world_to_camera;  ///< EXR's convention: left-handed camera, +Z forward; row vectors
+  M44f world_to_ndc;     ///< to x, y in [0,1] over the display window, y down, after division by w
+  int samples = 0;
+  std::uint32_t seed = 0;
+  std::string scene, device, version;
+  std::vector<std::pair<std::string, std::string>> settings;  ///< option name, value
+};
+
+struct Film {
+  int width = 0;  ///< of the display window
+  int height = 0;
+  PixelRect data_window;
+  std::vector<Plane> planes;
+  FilmMetadata metadata;
+
+  /// The plane of that channel, or nullptr.
+  [[nodiscard]] const Plane* find(const std::string& channel) const;
+};
+
+/// `text` reduced to letters, digits and underscores, for layer names; never empty, at most
+/// 200 characters.
+std::string layer_name(const std::string& text);
+
+/// Writes a scanline EXR, ZIP, all channels FLOAT. Written beside, closed, reopened and
+/// verified, then renamed over `path`. Throws Error failed; `path` is then as it was.
+void write_exr(const Film& film, const std::string& path);
+
+/// Reads what `write_exr` wrote, or any single-part EXR, scanline or tiled, without subsampling
+/// and of at most 2^28 pixels; HALF and UINT become float. Planes and settings come in
+/// alphabetical order. Throws Error input.
+Film read_exr(const std::string& path);
+
+/// Writes an 8-bit sRGB preview of RGBA over black, or of `layer` when given ("ao", "N",
+/// "light.key", ...), of the data window's size; values are clamped to [0,1]. N (from [-1,1])
+/// and Z, P (from their finite range) are written linearly, lights divided by their largest
+/// value. Throws Error usage when there is no such layer, otherwise failed.
+void write_png(const Film& film, const std::string& path, const std::string& layer = "");
+
+}  // namespace dapple

@@ -1,0 +1,61 @@
+// Everything that decides a picture, filled by the command line and by callers of the
+// library alike. Defaults are those of the command line.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// How an occlusion ray is estimated.
+enum class Estimator : std::uint8_t {
+  exact,        ///< every surface on the ray is composited
+  prefiltered,  ///< stops at BVH nodes that the ray's footprint covers
+};
+
+/// A pixel rectangle, inclusive at both ends as in EXR windows; (0,0) is top left.
+struct PixelRect {
+  int x0 = 0, y0 = 0, x1 = -1, y1 = -1;
+  [[nodiscard]] int width() const { return x1 - x0 + 1; }
+  [[nodiscard]] int height() const { return y1 - y0 + 1; }
+  bool operator==(const PixelRect&) const = default;
+};
+
+struct LookAt {
+  V3f from{0, 0, 0};
+  V3f at{0, 0, -1};
+  V3f up{0, 1, 0};
+};
+
+struct RenderOptions {
+  int width = 960;   ///< pixels, [1, 65535]
+  int height = 540;  ///< pixels, [1, 65535]
+  int spp = 16;      ///< primary samples a pixel, [1, 2^20]
+  int ao_rays = 1;   ///< AO rays a primary sample, [1, 4096]
+  int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
+  Estimator estimator = Estimator::prefiltered;
+  float footprint = 1.0f;    ///< footprint scale, >= 0; 0 is exact
+  bool ao = true;            ///< make the AO pass
+  bool light = true;         ///< make the light passes
+  float ao_distance = 0.0f;  ///< metres; 0 is no limit
+  float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
+  std::string camera;        ///< by name; empty: the first, or one that frames the scene
+  std::optional<LookAt> look;
+  float fov_degrees = 0.0f;  ///< vertical; 0: the camera's own, or 40 with `look`
+  std::optional<PixelRect> crop;
+  std::uint32_t seed = 0;
+  std::string device;      ///< part of an OpenCL device's name; empty: the best one
+  std::string kernel_dir;  ///< read kernels from this folder instead of the built-in ones
+  bool ground = false;     ///< put an opaque plane under the scene
+  std::vector<std::pair<std::string, float>> opacity;  ///< material name, opacity in [0,1]
+};
+
+/// Throws Error usage, naming the command line's flag, when a value is out of range.
+void validate(const RenderOptions& options);
+
+}  // namespace dapple

@@ -1,0 +1,159 @@
+// A scene as plain values: meshes, instances, materials, opacity textures, lights,
+// cameras. Filled by the readers in host/scene, consumed by the BVH builder and the
+// uploader. World space is right-handed, +Y up, metres, as in glTF.
+#pragma once
+
+#include <Imath/ImathBox.h>
+#include <Imath/ImathMatrix.h>
+#include <Imath/ImathVec.h>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dapple {
+
+using Imath::Box3f;
+using Imath::M44f;
+using Imath::V2f;
+using Imath::V3d;
+using Imath::V3f;
+
+/// glTF's `alphaMode`: how a looked-up alpha becomes an opacity.
+enum class AlphaMode : std::uint8_t {
+  opaque,  ///< alpha is ignored, opacity is 1
+  mask,    ///< opacity is 1 where alpha >= cutoff, else 0
+  blend,   ///< opacity is alpha
+};
+
+enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+
+/// An 8-bit alpha image, row 0 at v = 0, looked up bilinearly (texel centres at
+/// half-integers). Value / 255 is alpha in [0,1].
+struct Texture {
+  std::string name;  ///< for messages: file or image name
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> alpha;  ///< width * height
+  Wrap wrap_s = Wrap::repeat;
+  Wrap wrap_t = Wrap::repeat;
+  bool nearest = false;  ///< glTF magFilter NEAREST
+};
+
+struct Material {
+  std::string name;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha = 1.0f;         ///< baseColorFactor.a, [0,1]
+  float alpha_cutoff = 0.5f;  ///< mask only
+  int alpha_texture = -1;     ///< index into Scene::textures, -1 for none
+  bool uses_vertex_alpha = true;
+  V3f emission{0, 0, 0};  ///< emitted radiance, W/(sr m^2), linear RGB
+  bool double_sided = false;  ///< matters to emission only: every surface occludes from both sides
+};
+
+/// An indexed triangle mesh in object space; may mix materials.
+struct Mesh {
+  std::string name;
+  std::vector<V3f> positions;
+  std::vector<std::uint32_t> indices;    ///< three per triangle
+  std::vector<std::uint32_t> materials;  ///< one per triangle, index into Scene::materials
+  std::vector<V2f> uvs;                  ///< per vertex, for the alpha texture, transforms applied; or empty
+  std::vector<float> vertex_alpha;       ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
+
+  [[nodiscard]] std::size_t triangle_count() const { return materials.size(); }
+};
+
+/// One placement of a mesh. Imath's convention: p_world = p_object * to_world.
+struct Instance {
+  std::uint32_t mesh = 0;
+  M44f to_world;  ///< affine and invertible
+  int light = -1; ///< the mesh light this placement emits for, else -1
+};
+
+enum class LightKind : std::uint8_t { rect, sphere, sun, mesh };
+
+/// A light. Irradiance at a point is the integral of radiance * cosine * transmittance.
+struct Light {
+  std::string name;
+  LightKind kind = LightKind::rect;
+  V3f radiance{1, 1, 1};      ///< W/(sr m^2), linear RGB
+  V3f position{0, 0, 0};      ///< rect and sphere: centre
+  V3f direction{0, -1, 0};    ///< rect: the side that emits; sun, spot: the way light travels; unit length
+  V3f edge_u{1, 0, 0};        ///< rect: full first edge
+  V3f edge_v{0, 0, 1};        ///< rect: full second edge
+  float radius = 0.1f;        ///< sphere, metres
+  float angular_radius = 0.00465f;  ///< sun, radians (the real sun: 0.2665 degrees)
+  float cos_inner = -1.0f;    ///< spot cone as in KHR_lights_punctual; -1, -1 for none
+  float cos_outer = -1.0f;
+  bool double_sided = false;  ///< mesh: emits from both sides
+};
+
+struct Camera {
+  enum class Kind : std::uint8_t { perspective, orthographic };
+  std::string name;
+  Kind kind = Kind::perspective;
+  M44f to_world;           ///< camera looks along its -Z, +Y up, +X right
+  float fov_y = 0.7f;      ///< perspective: full vertical angle, radians
+  float half_height = 1;   ///< orthographic: ymag, metres
+};
+
+struct Scene {
+  std::string source;  ///< file or scene: name, for messages and metadata
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;
+  std::vector<std::string> warnings;  ///< what the reader skipped, one line each
+};
+
+struct SceneOptions {
+  float light_radius = 0.1f;  ///< metres: KHR point and spot lights become spheres of this radius
+};
+
+/// Reads a scene: a glTF 2.0 file (.gltf or .glb), or a procedural one by name,
+/// "scene:tree?leaves=50000&opacity=0.85&seed=1". Throws Error: input.
+Scene load_scene(const std::string& spec, const SceneOptions& options = {});
+
+/// Reads only glTF; `load_scene` calls it. Throws Error: input.
+Scene load_gltf(const std::string& path, const SceneOptions& options = {});
+
+/// Makes only procedural scenes; `name` as "scene:NAME?key=value&...". Throws Error: usage.
+Scene make_procedural(const std::string& name);
+
+/// Reads a JSON file of lights (README, "Lights"). Throws Error: input.
+std::vector<Light> load_lights(const std::string& path);
+
+/// Writes meshes, instances, materials (no textures), cameras as one GLB file. Throws Error.
+void write_glb(const Scene& scene, const std::string& path);
+
+/// World-space bounds of every instance; empty box for an empty scene.
+Box3f scene_bounds(const Scene& scene);
+
+/// Gives material `name` the opacity `value` in place of texture, factor and mode.
+/// Throws Error usage when there is no such material or value is outside [0,1].
+void override_opacity(Scene& scene, const std::string& name, float value);
+
+/// Adds an opaque square under the scene's lowest point, 20 times as wide as the scene.
+void add_ground(Scene& scene);
+
+/// A perspective camera that frames the scene's bounds from the front, a little above.
+/// `aspect` is width / height; `fov_y` in radians.
+Camera frame_scene(const Scene& scene, float aspect, float fov_y = 0.7f);
+
+/// A camera at `from` looking at `at`. Throws Error usage when the three are degenerate.
+Camera look_at(V3f from, V3f at, V3f up, float fov_y);
+
+/// The rect light that a scene without lights gets: up, left and in front of `camera`.
+Light key_light(const Scene& scene, const Camera& camera);
+
+/// Merges every mesh that is placed once, and tiny ones placed often, into one mesh in
+/// world space, so that overlapping meshes share one BVH. Mesh lights stay on their own.
+/// Drops instances whose matrix cannot be inverted and triangles that are not finite,
+/// with a warning.
+void merge_single_instances(Scene& scene);
+
+}  // namespace dapple

@@ -1,0 +1,48 @@
+/* The 8-wide BVH node, two cache lines, and how its quantized boxes are decoded. Object
+   BVHs (leaves: triangles) and the top-level BVH (leaves: instances) use the same node. */
+#ifndef DAPPLE_SHARED_BVH_NODE_H
+#define DAPPLE_SHARED_BVH_NODE_H
+
+#include "language.h"
+
+#ifndef __OPENCL_VERSION__
+namespace dapple {
+#endif
+
+#define DAPPLE_BVH_WIDTH 8
+
+/* Entries of the traversal stack; the builder refuses trees that could need more. */
+#define DAPPLE_STACK_SIZE 192
+
+/* Child c spans origin + lower[axis][c] * 2^e .. origin + upper[axis][c] * 2^e per axis.
+   An empty slot has lower 255 and upper 0. Inner children lie one after the other from
+   child_base, in slot order. Leaf children own primitives: slot c those from
+   leaf_end[c - 1] (0 for c = 0) up to leaf_end[c], counted from prim_base; inner and
+   empty slots own none. */
+typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
+  float origin[3];
+  uchar exponent[3];     /* biased by 127, as in a float: scale = 2^(exponent - 127) */
+  uchar inner_mask;      /* bit c: child c is a node */
+  uint child_base;       /* index of the first inner child's node */
+  uint prim_base;        /* first triangle block (objects) or first instance (top level) */
+  uchar lower[3][8];
+  uchar upper[3][8];
+  uchar opacity[3][8];   /* of child c's quantized box, seen along each axis; see opacity.h */
+  uchar leaf_end[8];
+  uchar spare[24];
+} BvhNode;
+
+DAPPLE_FUNCTION float bvh_scale(uchar exponent) {
+  return dapple_bits_to_float((uint)exponent << 23);
+}
+
+DAPPLE_FUNCTION uint bvh_leaf_begin(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
+  return slot == 0u ? 0u : (uint)leaf_end[slot - 1u];
+}
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(BvhNode) == 128);
+}  // namespace dapple
+#endif
+
+#endif

@@ -1,0 +1,64 @@
+/* What the leaves and the top level point to: triangle blocks, textured triangles,
+   opacity textures, instances. */
+#ifndef DAPPLE_SHARED_GEOMETRY_H
+#define DAPPLE_SHARED_GEOMETRY_H
+
+#include "language.h"
+
+#ifndef __OPENCL_VERSION__
+namespace dapple {
+#endif
+
+/* Eight triangles side by side, one vector lane each: a vertex and the two edges that
+   leave it. opacity in [0,1], or -(1 + index) of a TexturedTriangle. Unused lanes have
+   zero edges and opacity 0: they are never hit. */
+typedef struct DAPPLE_CACHE_ALIGNED TriangleBlock {
+  float vertex[3][8];
+  float edge1[3][8];
+  float edge2[3][8];
+  float opacity[8];
+} TriangleBlock;
+
+/* A triangle whose opacity varies: opacity = vertex alpha (interpolated) * texture alpha,
+   then 1 where >= cutoff and 0 below if cutoff >= 0. */
+typedef struct TexturedTriangle {
+  float uv[3][2];
+  float alpha[3];  /* per vertex: COLOR_0.a * baseColorFactor.a */
+  float cutoff;    /* < 0: blended */
+  uint texture;    /* index of a TextureRecord; 0xffffffff for none */
+  uint spare;
+} TexturedTriangle;
+
+#define DAPPLE_WRAP_REPEAT 0u
+#define DAPPLE_WRAP_CLAMP 1u
+#define DAPPLE_WRAP_MIRROR 2u
+#define DAPPLE_NO_TEXTURE 0xffffffffu
+
+/* An 8-bit alpha image inside the texel buffer. */
+typedef struct TextureRecord {
+  uint offset;  /* of its first texel, in 16-byte units, so that 64 GB can be addressed */
+  uint width;
+  uint height;
+  uint flags;   /* wrap_s | wrap_t << 2 | nearest << 4 */
+} TextureRecord;
+
+/* A placed object. p_object = to_object * (p_world, 1), rows of a 3x4 matrix; rays keep
+   their parameter t: directions are transformed without normalizing. */
+typedef struct InstanceRecord {
+  float to_object[12];
+  float to_world[12];
+  float inverse_area_scale; /* 1 / |det of object to world|; see footprint in traverse.clh */
+  uint root;                /* the object's root node */
+  uint light;               /* 1 + the mesh light it emits for; 0: none */
+  uint spare;
+} InstanceRecord;
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(TriangleBlock) == 320);
+static_assert(sizeof(TexturedTriangle) == 48);
+static_assert(sizeof(TextureRecord) == 16);
+static_assert(sizeof(InstanceRecord) == 112);
+}  // namespace dapple
+#endif
+
+#endif

@@ -1,0 +1,26 @@
+/* The little that OpenCL C and C++ spell differently, so that the headers beside this one
+   compile as both. Layout rule: scalars and fixed arrays only, no padding the compiler
+   could choose (tests/layout_test.cpp compares sizeof and offsets on the device). */
+#ifndef DAPPLE_SHARED_LANGUAGE_H
+#define DAPPLE_SHARED_LANGUAGE_H
+
+#ifdef __OPENCL_VERSION__
+#define DAPPLE_GLOBAL __global
+#define DAPPLE_FUNCTION inline
+#define DAPPLE_CACHE_ALIGNED __attribute__((aligned(64)))
+#define dapple_bits_to_float(bits) as_float(bits)
+#else
+#include <bit>
+#include <cmath>
+#include <cstdint>
+namespace dapple {
+using uchar = std::uint8_t;
+using uint = std::uint32_t;
+}  // namespace dapple
+#define DAPPLE_GLOBAL
+#define DAPPLE_FUNCTION inline
+#define DAPPLE_CACHE_ALIGNED alignas(64)
+#define dapple_bits_to_float(bits) std::bit_cast<float>(bits)
+#endif
+
+#endif

@@ -1,0 +1,52 @@
+/* A light as the kernels sample it. Radiance stays on the host: kernels make the
+   irradiance of a light of radiance 1, which is then multiplied by its colour. */
+#ifndef DAPPLE_SHARED_LIGHT_RECORD_H
+#define DAPPLE_SHARED_LIGHT_RECORD_H
+
+#include "language.h"
+
+#ifndef __OPENCL_VERSION__
+namespace dapple {
+#endif
+
+#define DAPPLE_LIGHT_RECT 0u
+#define DAPPLE_LIGHT_SPHERE 1u
+#define DAPPLE_LIGHT_SUN 2u
+#define DAPPLE_LIGHT_MESH 3u
+
+typedef struct LightRecord {
+  float position[3];
+  float radius;        /* sphere, metres */
+  float direction[3];  /* rect: emitting side; sun, spot: the way light travels */
+  float one_minus_cos; /* sun: 1 - cosine of its angular radius */
+  float edge_u[3];
+  float area;          /* rect, mesh: square metres */
+  float edge_v[3];
+  float cos_inner;     /* spot cone; cos_outer = -1: none */
+  float cos_outer;
+  uint kind;
+  uint first_triangle; /* mesh: in the emitter triangle buffer */
+  uint triangle_count;
+  uint two_sided;
+  uint id;             /* mesh: 1 + index of the light; else 0 */
+  uint spare[2];
+} LightRecord;
+
+/* A triangle of a mesh light in world space; cumulative is the share of the light's area
+   up to and including it, ascending to 1. */
+typedef struct EmitterTriangle {
+  float vertex[3];
+  float cumulative;
+  float edge1[3];
+  float spare1;
+  float edge2[3];
+  float spare2;
+} EmitterTriangle;
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(LightRecord) == 96);
+static_assert(sizeof(EmitterTriangle) == 48);
+}  // namespace dapple
+#endif
+
+#endif

@@ -1,0 +1,82 @@
+/* One parameter struct a kernel, passed by value. */
+#ifndef DAPPLE_SHARED_PASS_PARAMS_H
+#define DAPPLE_SHARED_PASS_PARAMS_H
+
+#include "language.h"
+
+#ifndef __OPENCL_VERSION__
+namespace dapple {
+#endif
+
+/* What every traversal needs to know of the scene. */
+typedef struct SceneParams {
+  uint root;         /* node to start from */
+  uint has_top;      /* 1: root is top-level; 0: it is the only object's, in world space */
+} SceneParams;
+
+typedef struct OcclusionParams {
+  SceneParams scene;
+  uint ray_count;
+  float footprint;            /* scale, >= 0 */
+  float inverse_distance;     /* AO: 1 / D for the falloff; 0: none */
+  float falloff;              /* AO: the power p; 0: none */
+} OcclusionParams;
+
+/* A slice: `pixel_count` pixels of the crop from `first_pixel`, row-major, and of each
+   the samples from first_sample; item = pixel * sample_count + sample. */
+typedef struct SliceParams {
+  uint first_pixel;
+  uint pixel_count;
+  uint first_sample;
+  uint sample_count;
+} SliceParams;
+
+typedef struct CameraParams {
+  SliceParams slice;
+  float to_world[12];   /* rows of a 3x4 matrix, column vectors */
+  float half_width;     /* of the image plane: at distance 1, or in metres if orthographic */
+  float half_height;
+  uint orthographic;
+  uint width, height;   /* the whole picture, pixels */
+  uint crop_x, crop_y;
+  uint crop_width;
+  uint seed;
+  float inverse_spp;    /* 1 / samples a pixel that were asked for */
+} CameraParams;
+
+/* Rays a point for AO; also for points that no camera made. */
+typedef struct AoParams {
+  uint point_count;     /* points to shoot from: entries of the active list */
+  uint rays;            /* a point */
+  float inverse_count;  /* 1 / (rays asked for to estimate this pixel or point) */
+  float t_max;
+  uint seed;
+} AoParams;
+
+typedef struct LightParams {
+  uint point_count;
+  uint rays;
+  float inverse_count;
+  uint light;           /* index of the LightRecord */
+  uint seed;
+} LightParams;
+
+/* Sums over the samples of each pixel into 64-bit fixed point planes. scale values are
+   powers of two. */
+typedef struct ResolveParams {
+  SliceParams slice;
+  uint film_pixels;     /* pixels of a plane */
+  uint plane;           /* first plane to add to */
+  uint rays;            /* rays a sample */
+  float scale;          /* of unit-range values */
+  float position_scale;
+  float depth_scale;
+  float axis[3];        /* viewing axis, unit */
+  float eye[3];
+} ResolveParams;
+
+#ifndef __OPENCL_VERSION__
+}  // namespace dapple
+#endif
+
+#endif

@@ -1,0 +1,49 @@
+/* The queues between passes: rays, what they found, and the points they start from. */
+#ifndef DAPPLE_SHARED_RAY_H
+#define DAPPLE_SHARED_RAY_H
+
+#include "language.h"
+
+#ifndef __OPENCL_VERSION__
+namespace dapple {
+#endif
+
+/* direction is a unit vector in world space. The footprint at distance t covers
+   first_area + solid_angle * t^2. */
+typedef struct Ray {
+  float origin[3];
+  float t_max;
+  float direction[3];
+  float solid_angle;  /* steradians, [0, 2 pi] */
+  float first_area;   /* square metres */
+  uint light;         /* 1 + the mesh light this ray is aimed at; 0: none */
+  float weight;       /* what the ray's transmittance is multiplied by in its pass */
+  uint key;           /* random bits of its own, for stochastic opacity */
+} Ray;
+
+/* Result of an occlusion ray. */
+typedef struct Occlusion {
+  float transmittance;  /* [0,1] */
+  uint visits;          /* nodes visited | triangles tested << 16, each clamped to 65535 */
+} Occlusion;
+
+/* Where a camera ray met a surface; t < 0: it met none. */
+typedef struct SurfacePoint {
+  float position[3];
+  float t;
+  float normal[3];   /* geometric, unit, turned to the viewer */
+  float offset;      /* how far rays must start along the normal to clear rounding */
+  float area;        /* square metres across the ray that the pixel's share covers */
+  uint pixel;        /* index in the crop, row-major */
+  uint sample;       /* number of the sample in its pixel */
+  uint visits;       /* as in Occlusion, of the camera ray */
+} SurfacePoint;
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(Ray) == 48);
+static_assert(sizeof(Occlusion) == 8);
+static_assert(sizeof(SurfacePoint) == 48);
+}  // namespace dapple
+#endif
+
+#endif

@@ -1,0 +1,76 @@
+// The two things dapple does: render a scene to a film, and shoot AO from points for
+// baking. Also the raw occlusion query under both, for tests and benches.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dapple/device.hpp"
+#include "dapple/film.hpp"
+#include "dapple/options.hpp"
+#include "dapple/shared/ray.h"
+
+namespace dapple {
+
+struct RenderStatistics {
+  struct {
+    double load = 0, build = 0, prefilter = 0, upload = 0, kernel_build = 0, trace = 0,
+           write = 0, total = 0;
+  } seconds;  ///< wall time; trace is all passes, camera rays included
+  std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
+  struct {
+    std::uint64_t camera = 0, ao = 0, light = 0;
+  } rays;
+  struct {
+    double visits = 0, tests = 0;  ///< node visits and triangle tests a ray
+  } camera, ao, light;
+  std::size_t triangles = 0, nodes = 0;
+  struct {
+    std::size_t nodes = 0, triangles = 0, textures = 0, instances = 0, film = 0, queues = 0;
+  } bytes;  ///< device memory by part
+  std::string device;
+  std::string estimator;
+  std::vector<std::string> notes;  ///< choices made for the user: "no camera: framed the scene"
+};
+
+struct RenderResult {
+  Film film;
+  RenderStatistics statistics;
+};
+
+/// Called now and then with the fraction done, [0,1].
+using Progress = std::function<void(double)>;
+
+/// Renders `scene` as `options` say: applies overrides, ground, lights and camera, builds,
+/// uploads, traces. Throws Error usage, input, device or failed.
+RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress = {});
+
+struct OcclusionOptions {
+  int rays = 64;  ///< a point, [1, 2^20]
+  Estimator estimator = Estimator::prefiltered;
+  float footprint = 1.0f;
+  float distance = 0.0f;  ///< metres; 0: no limit
+  float falloff = 0.0f;
+  std::uint32_t seed = 0;
+};
+
+/// Ambient occlusion at points, for baking: 1 = unoccluded. `normals` are unit vectors;
+/// origins are offset along them by the rounding error of the coordinates.
+/// Throws Error usage when the sizes differ.
+std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
+                             std::span<const V3f> points, std::span<const V3f> normals,
+                             const OcclusionOptions& options = {});
+
+/// Transmittance along each ray. `footprint` 0 with the prefiltered estimator equals exact.
+std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
+                             std::span<const Ray> rays, Estimator estimator, float footprint = 1.0f);
+
+/// First surface met by each ray; a surface of opacity a is met with probability a,
+/// chosen by hashing Ray::key with primitive and instance. Where t < 0 none was met.
+std::vector<SurfacePoint> closest_hits(const Device& device, const DeviceScene& scene,
+                                       std::span<const Ray> rays);
+
+}  // namespace dapple

@@ -1,0 +1,99 @@
+/* Resolving: one item a pixel adds up the pixel's samples of the slice, in order, into
+   64-bit fixed point planes, so that the sum does not depend on slices or threads. */
+#include "pass_params.h"
+#include "scene.clh"
+
+/* plane p of the film, from the pass's first plane. */
+inline void add_to_plane(__global long* film, ResolveParams params, uint p, uint pixel, long value) {
+  film[(ulong)(params.plane + p) * params.film_pixels + pixel] += value;
+}
+
+inline long fixed_point(float value, float scale) { return convert_long_sat_rte(value * scale); }
+
+/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. */
+__kernel void resolve_surface(__global const SurfacePoint* points, __global long* film,
+                              ResolveParams params) {
+  const uint local_pixel = get_global_id(0);
+  if (local_pixel >= params.slice.pixel_count) return;
+  long hits = 0, visits = 0, tests = 0, depth = 0;
+  long normal[3] = {0, 0, 0}, position[3] = {0, 0, 0};
+  for (uint s = 0; s < params.slice.sample_count; ++s) {
+    const SurfacePoint point = points[local_pixel * params.slice.sample_count + s];
+    visits += point.visits & 65535u;
+    tests += point.visits >> 16;
+    if (point.t < 0.0f) continue;
+    ++hits;
+    float along = 0.0f;
+    for (uint axis = 0; axis < 3; ++axis) {
+      normal[axis] += fixed_point(point.normal[axis], params.scale);
+      position[axis] += fixed_point(point.position[axis], params.position_scale);
+      along += (point.position[axis] - params.eye[axis]) * params.axis[axis];
+    }
+    depth += fixed_point(along, params.depth_scale);
+  }
+  const uint pixel = params.slice.first_pixel + local_pixel;
+  add_to_plane(film, params, 0, pixel, hits);
+  for (uint axis = 0; axis < 3; ++axis) {
+    add_to_plane(film, params, 1 + axis, pixel, normal[axis]);
+    add_to_plane(film, params, 4 + axis, pixel, position[axis]);
+  }
+  add_to_plane(film, params, 7, pixel, depth);
+  add_to_plane(film, params, 8, pixel, visits);
+  add_to_plane(film, params, 9, pixel, tests);
+}
+
+/* Planes: transmittance over hits, bent normal (3), visits, tests. */
+__kernel void resolve_ao(__global const SurfacePoint* points, __global const uint* slot,
+                         __global const Ray* rays, __global const Occlusion* occlusions,
+                         __global long* film, ResolveParams params) {
+  const uint local_pixel = get_global_id(0);
+  if (local_pixel >= params.slice.pixel_count) return;
+  long sum = 0, visits = 0, tests = 0;
+  long bent[3] = {0, 0, 0};
+  for (uint s = 0; s < params.slice.sample_count; ++s) {
+    const uint sample = local_pixel * params.slice.sample_count + s;
+    if (points[sample].t < 0.0f) continue;
+    for (uint r = 0; r < params.rays; ++r) {
+      const uint item = slot[sample] * params.rays + r;
+      const Occlusion found = occlusions[item];
+      sum += fixed_point(found.transmittance, params.scale);
+      for (uint axis = 0; axis < 3; ++axis) {
+        bent[axis] += fixed_point(found.transmittance * rays[item].direction[axis], params.scale);
+      }
+      visits += found.visits & 65535u;
+      tests += found.visits >> 16;
+    }
+  }
+  const uint pixel = params.slice.first_pixel + local_pixel;
+  add_to_plane(film, params, 0, pixel, sum);
+  for (uint axis = 0; axis < 3; ++axis) add_to_plane(film, params, 1 + axis, pixel, bent[axis]);
+  add_to_plane(film, params, 4, pixel, visits);
+  add_to_plane(film, params, 5, pixel, tests);
+}
+
+/* Planes: irradiance at radiance 1, the same unoccluded, visits, tests. */
+__kernel void resolve_light(__global const SurfacePoint* points, __global const uint* slot,
+                            __global const Ray* rays, __global const Occlusion* occlusions,
+                            __global long* film, ResolveParams params) {
+  const uint local_pixel = get_global_id(0);
+  if (local_pixel >= params.slice.pixel_count) return;
+  long shadowed = 0, unoccluded = 0, visits = 0, tests = 0;
+  for (uint s = 0; s < params.slice.sample_count; ++s) {
+    const uint sample = local_pixel * params.slice.sample_count + s;
+    if (points[sample].t < 0.0f) continue;
+    for (uint r = 0; r < params.rays; ++r) {
+      const uint item = slot[sample] * params.rays + r;
+      const Occlusion found = occlusions[item];
+      const float weight = rays[item].weight;
+      shadowed += fixed_point(weight * found.transmittance, params.scale);
+      unoccluded += fixed_point(weight, params.scale);
+      visits += found.visits & 65535u;
+      tests += found.visits >> 16;
+    }
+  }
+  const uint pixel = params.slice.first_pixel + local_pixel;
+  add_to_plane(film, params, 0, pixel, shadowed);
+  add_to_plane(film, params, 1, pixel, unoccluded);
+  add_to_plane(film, params, 2, pixel, visits);
+  add_to_plane(film, params, 3, pixel, tests);
+}

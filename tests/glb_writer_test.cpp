@@ -1,0 +1,260 @@
+// The GLB writer: chunks and JSON as the glTF 2.0 specification wants them, the scene's
+// triangles in them, the same bytes every time, and no half files.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "dapple/error.hpp"
+#include "dapple/scene.hpp"
+
+namespace dapple {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+// A folder that is gone when the test is over.
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("dapple_glb_" + std::to_string(getpid()))) {
+    fs::remove_all(path_);
+    fs::create_directory(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+  [[nodiscard]] std::ptrdiff_t count() const {
+    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
+  }
+
+ private:
+  fs::path path_;
+};
+
+std::string read_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::uint32_t word_at(const std::string& bytes, std::size_t offset) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + offset, 4);
+  return word;
+}
+
+struct Glb {
+  Json json;
+  std::string binary;
+};
+
+// Takes a GLB apart, checking every length on the way.
+Glb take_apart(const std::string& bytes) {
+  EXPECT_EQ(bytes.substr(0, 4), "glTF");
+  EXPECT_EQ(word_at(bytes, 4), 2u);
+  EXPECT_EQ(word_at(bytes, 8), bytes.size());
+  const std::size_t json_length = word_at(bytes, 12);
+  EXPECT_EQ(json_length % 4, 0u);
+  EXPECT_EQ(bytes.substr(16, 4), "JSON");
+  const std::size_t after_json = 20 + json_length;
+  Glb glb{Json::parse(bytes.substr(20, json_length)), ""};
+  if (after_json == bytes.size()) return glb;
+  EXPECT_EQ(word_at(bytes, after_json) % 4, 0u);
+  EXPECT_EQ(bytes.substr(after_json + 4, 4), std::string("BIN\0", 4));
+  glb.binary = bytes.substr(after_json + 8);
+  EXPECT_EQ(glb.binary.size(), word_at(bytes, after_json));
+  EXPECT_EQ(glb.json["buffers"][0]["byteLength"], glb.binary.size());
+  return glb;
+}
+
+Glb write_and_take_apart(const Scene& scene) {
+  const Folder folder;
+  write_glb(scene, folder.file("scene.glb"));
+  return take_apart(read_bytes(folder.file("scene.glb")));
+}
+
+template <typename T>
+std::vector<T> accessor_values(const Glb& glb, std::size_t accessor) {
+  const Json& description = glb.json["accessors"][accessor];
+  const Json& view = glb.json["bufferViews"][description["bufferView"].get<std::size_t>()];
+  std::vector<T> values(description["count"].get<std::size_t>());
+  EXPECT_EQ(view["byteLength"], values.size() * sizeof(T));
+  std::memcpy(static_cast<void*>(values.data()),
+              glb.binary.data() + view["byteOffset"].get<std::size_t>(), values.size() * sizeof(T));
+  return values;
+}
+
+Material material(const std::string& name, AlphaMode mode, float alpha) {
+  Material result;
+  result.name = name;
+  result.alpha_mode = mode;
+  result.alpha = alpha;
+  return result;
+}
+
+// Two triangles of two materials, placed twice, and a camera.
+Scene small_scene() {
+  Scene scene;
+  scene.source = "small";
+  scene.materials = {material("leaf", AlphaMode::blend, 0.25f),
+                     material("bark", AlphaMode::opaque, 1), material("net", AlphaMode::mask, 1)};
+  scene.materials[2].alpha_cutoff = 0.75f;
+  Mesh mesh;
+  mesh.name = "pair";
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, -3}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  mesh.materials = {1, 0};
+  scene.meshes = {mesh};
+  Instance moved;
+  moved.to_world = M44f(0, 0, -2, 0, 0, 2, 0, 0, 2, 0, 0, 0, 5, 6, 7, 1);
+  scene.instances = {Instance{}, moved};
+  scene.cameras = {look_at({0, 1, 5}, {0, 1, 0}, {0, 1, 0}, 0.5f)};
+  scene.cameras[0].name = "front";
+  return scene;
+}
+
+TEST(GlbWriter, ChunksAreAlignedAndAsLongAsTheySay) {
+  const Glb glb = write_and_take_apart(small_scene());
+  EXPECT_EQ(glb.json["asset"]["version"], "2.0");
+  EXPECT_EQ(glb.json["scene"], 0);
+  EXPECT_EQ(glb.json["scenes"][0]["nodes"], Json({0, 1, 2}));
+}
+
+TEST(GlbWriter, EachMaterialOfAMeshIsOnePrimitiveOverTheSamePositions) {
+  const Scene scene = small_scene();
+  const Glb glb = write_and_take_apart(scene);
+  const Json& primitives = glb.json["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 2u);
+  EXPECT_EQ(primitives[0]["material"], 0);
+  EXPECT_EQ(primitives[1]["material"], 1);
+  EXPECT_EQ(accessor_values<std::uint32_t>(glb, primitives[0]["indices"]),
+            (std::vector<std::uint32_t>{0, 2, 3}));
+  EXPECT_EQ(accessor_values<std::uint32_t>(glb, primitives[1]["indices"]),
+            (std::vector<std::uint32_t>{0, 1, 2}));
+  const std::size_t positions = primitives[0]["attributes"]["POSITION"];
+  EXPECT_EQ(primitives[1]["attributes"]["POSITION"], positions);
+  EXPECT_EQ(accessor_values<V3f>(glb, positions), scene.meshes[0].positions);
+  EXPECT_EQ(glb.json["accessors"][positions]["min"], Json({0.0, 0.0, -3.0}));
+  EXPECT_EQ(glb.json["accessors"][positions]["max"], Json({1.0, 2.0, 0.0}));
+}
+
+TEST(GlbWriter, MaterialsCarryTheirAlpha) {
+  const Json materials = write_and_take_apart(small_scene()).json["materials"];
+  EXPECT_EQ(materials[0]["alphaMode"], "BLEND");
+  EXPECT_EQ(materials[0]["pbrMetallicRoughness"]["baseColorFactor"][3], 0.25);
+  EXPECT_FALSE(materials[1].contains("alphaMode"));  // OPAQUE is glTF's default
+  EXPECT_EQ(materials[2]["alphaMode"], "MASK");
+  EXPECT_EQ(materials[2]["alphaCutoff"], 0.75);
+}
+
+TEST(GlbWriter, InstancesAndCamerasAreNodesWithMatrices) {
+  const Json json = write_and_take_apart(small_scene()).json;
+  EXPECT_FALSE(json["nodes"][0].contains("matrix"));
+  // Column-major for column vectors: the translation comes last, as with our row vectors.
+  EXPECT_EQ(json["nodes"][1]["matrix"], Json({0.0, 0.0, -2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 2.0, 0.0,
+                                              0.0, 0.0, 5.0, 6.0, 7.0, 1.0}));
+  EXPECT_EQ(json["nodes"][2]["camera"], 0);
+  EXPECT_EQ(json["cameras"][0]["name"], "front");
+  EXPECT_EQ(json["cameras"][0]["perspective"]["yfov"], 0.5);
+}
+
+TEST(GlbWriter, VertexAlphaBecomesColoursOnlyWhereTheMaterialUsesIt) {
+  Scene scene = small_scene();
+  scene.meshes[0].vertex_alpha = {1, 0.5f, 0.25f, 0};
+  scene.materials[1].uses_vertex_alpha = false;
+  const Glb glb = write_and_take_apart(scene);
+  const Json& primitives = glb.json["meshes"][0]["primitives"];
+  EXPECT_FALSE(primitives[1]["attributes"].contains("COLOR_0"));
+  const auto colours =
+      accessor_values<Imath::V4f>(glb, primitives[0]["attributes"]["COLOR_0"].get<std::size_t>());
+  EXPECT_EQ(colours.at(2), Imath::V4f(1, 1, 1, 0.25f));
+}
+
+TEST(GlbWriter, EmissionAboveOneNeedsTheStrengthExtension) {
+  Scene scene = small_scene();
+  scene.materials[0].emission = {2, 8, 4};
+  const Json json = write_and_take_apart(scene).json;
+  EXPECT_EQ(json["materials"][0]["emissiveFactor"], Json({0.25, 1.0, 0.5}));
+  EXPECT_EQ(
+      json["materials"][0]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"],
+      8.0);
+  EXPECT_EQ(json["extensionsUsed"], Json({"KHR_materials_emissive_strength"}));
+}
+
+TEST(GlbWriter, AMeshWithoutTrianglesIsLeftOutAndTheOthersKeepTheirPlacements) {
+  Scene scene = small_scene();
+  scene.meshes.insert(scene.meshes.begin(), Mesh{});
+  for (Instance& instance : scene.instances) instance.mesh = 1;
+  scene.instances.push_back({});
+  const Json json = write_and_take_apart(scene).json;
+  EXPECT_EQ(json["meshes"].size(), 1u);
+  EXPECT_EQ(json["nodes"].size(), 3u);
+  EXPECT_EQ(json["nodes"][1]["mesh"], 0);
+}
+
+TEST(GlbWriter, AnEmptySceneIsStillAGlbFile) {
+  const Glb glb = write_and_take_apart(Scene{});
+  EXPECT_EQ(glb.json["scenes"].size(), 1u);
+  EXPECT_TRUE(glb.binary.empty());
+}
+
+TEST(GlbWriter, TheSameSceneGivesTheSameBytes) {
+  const Folder folder;
+  const std::string name = "scene:forest?trees=4&leaves=50";
+  write_glb(make_procedural(name), folder.file("a.glb"));
+  write_glb(make_procedural(name), folder.file("b.glb"));
+  EXPECT_EQ(read_bytes(folder.file("a.glb")), read_bytes(folder.file("b.glb")));
+}
+
+TEST(GlbWriter, WhatWasWrittenIsReadBack) {
+  const Folder folder;
+  const Scene scene = make_procedural("scene:demo");
+  write_glb(scene, folder.file("demo.glb"));
+  const Scene read = load_scene(folder.file("demo.glb"));
+  std::size_t triangles = 0, read_triangles = 0;
+  for (const Instance& i : scene.instances) triangles += scene.meshes[i.mesh].triangle_count();
+  for (const Instance& i : read.instances) read_triangles += read.meshes[i.mesh].triangle_count();
+  EXPECT_EQ(read_triangles, triangles);
+  EXPECT_EQ(scene_bounds(read).min, scene_bounds(scene).min);
+  EXPECT_EQ(scene_bounds(read).max, scene_bounds(scene).max);
+  ASSERT_EQ(read.cameras.size(), 1u);
+  EXPECT_EQ(read.cameras[0].name, "demo");
+  EXPECT_EQ(read.cameras[0].fov_y, scene.cameras[0].fov_y);
+  EXPECT_TRUE(read.cameras[0].to_world.equalWithAbsError(scene.cameras[0].to_world, 1e-6f));
+  ASSERT_GE(read.materials.size(), 1u);
+  EXPECT_EQ(read.materials[0].name, "leaf");
+  EXPECT_EQ(read.materials[0].alpha, 0.85f);
+}
+
+TEST(GlbWriter, AFileThatCannotBeWrittenLeavesNothingBehind) {
+  const Folder folder;
+  Scene scene = small_scene();
+  EXPECT_THROW(write_glb(scene, folder.file("no/such/folder.glb")), Error);
+  scene.meshes[0].positions[1].x = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(write_glb(scene, folder.file("scene.glb")), Error);
+  EXPECT_EQ(folder.count(), 0);
+}
+
+TEST(GlbWriter, AFolderInTheWayIsNotReplaced) {
+  const Folder folder;
+  fs::create_directory(folder.file("scene.glb"));
+  try {
+    write_glb(small_scene(), folder.file("scene.glb"));
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::failed);
+    EXPECT_EQ(error.what(),
+              folder.file("scene.glb") + ": is there already and is not a regular file");
+  }
+  EXPECT_EQ(folder.count(), 1);
+}
+
+}  // namespace
+}  // namespace dapple

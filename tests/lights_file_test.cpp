@@ -1,0 +1,233 @@
+// Lights files: every kind of light as the README describes it, and messages that name file,
+// light and key.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+
+#include "dapple/error.hpp"
+#include "dapple/scene.hpp"
+
+namespace dapple {
+namespace {
+
+// A file that is gone when the test is over.
+class LightsFile {
+ public:
+  explicit LightsFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("dapple_lights_" + std::to_string(getpid()) + "_" + std::to_string(next_++) +
+               ".json")) {
+    std::ofstream(path_) << text;
+  }
+  ~LightsFile() { std::filesystem::remove(path_); }
+  LightsFile(const LightsFile&) = delete;
+  LightsFile& operator=(const LightsFile&) = delete;
+  [[nodiscard]] std::string path() const { return path_.string(); }
+
+ private:
+  static inline int next_ = 0;
+  std::filesystem::path path_;
+};
+
+std::vector<Light> load(const std::string& text) { return load_lights(LightsFile(text).path()); }
+
+std::vector<Light> load_one(const std::string& fields) {
+  return load("{\"lights\": [{" + fields + "}]}");
+}
+
+// The message without the file's name, which must lead it.
+std::string complaint_about_path(const std::string& path) {
+  try {
+    load_lights(path);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    const std::string message = error.what();
+    EXPECT_EQ(message.find(path + ": "), 0u) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    return message.substr(path.size() + 2);
+  }
+  return "no error";
+}
+
+std::string complaint(const std::string& text) {
+  const LightsFile file(text);
+  return complaint_about_path(file.path());
+}
+
+std::string complaint_about(const std::string& fields) {
+  return complaint("{\"lights\": [{" + fields + "}]}");
+}
+
+constexpr const char* kSphere = R"("type": "sphere", "position": [1, 2, 3], "radiance": 2)";
+
+TEST(LightsFile, ARectsAxesFollowFromItsNormal) {
+  const Light light = load_one(R"("name": "key", "type": "rect", "position": [1, 2, 3],
+      "normal": [0, 0, -2], "size": [4, 6], "radiance": [1, 2, 3])")
+                          .at(0);
+  EXPECT_EQ(light.kind, LightKind::rect);
+  EXPECT_EQ(light.name, "key");
+  EXPECT_EQ(light.position, V3f(1, 2, 3));
+  EXPECT_EQ(light.direction, V3f(0, 0, -1));
+  // cross((0,0,-1), +Y) = (1,0,0); cross((0,0,-1), (1,0,0)) = (0,-1,0).
+  EXPECT_EQ(light.edge_u, V3f(4, 0, 0));
+  EXPECT_EQ(light.edge_v, V3f(0, -6, 0));
+  EXPECT_EQ(light.radiance, V3f(1, 2, 3));
+}
+
+TEST(LightsFile, ARectThatFacesStraightDownOrUpHasXForItsFirstAxis) {
+  for (const int y : {-1, 1}) {
+    const Light light = load_one("\"type\": \"rect\", \"position\": [0, 5, 0], \"normal\": [0, " +
+                                 std::to_string(y) + ", 0], \"size\": [2, 3], \"radiance\": 1")
+                            .at(0);
+    EXPECT_EQ(light.edge_u, V3f(2, 0, 0));
+    EXPECT_EQ(light.edge_v, V3f(0, 0, static_cast<float>(-3 * y)));  // cross((0,y,0), +X)
+  }
+}
+
+TEST(LightsFile, ASlantedRectsEdgesAreAcrossItsNormalAndAsLongAsItsSize) {
+  const Light light = load_one(R"("type": "rect", "position": [0, 0, 0], "normal": [1, -2, 0.5],
+      "size": [0.3, 7], "radiance": 1)")
+                          .at(0);
+  EXPECT_NEAR(light.direction.length(), 1, 1e-6);
+  EXPECT_NEAR(light.edge_u.length(), 0.3, 1e-6);
+  EXPECT_NEAR(light.edge_v.length(), 7, 1e-5);
+  EXPECT_NEAR(light.edge_u.dot(light.direction), 0, 1e-6);
+  EXPECT_NEAR(light.edge_v.dot(light.direction), 0, 1e-5);
+  EXPECT_NEAR(light.edge_u.y, 0, 1e-7);  // the first axis is level
+}
+
+TEST(LightsFile, ASphereHasItsRadiusAndAGreyNumberForRadiance) {
+  const Light light = load_one(std::string(kSphere) + ", \"radius\": 0.5").at(0);
+  EXPECT_EQ(light.kind, LightKind::sphere);
+  EXPECT_EQ(light.position, V3f(1, 2, 3));
+  EXPECT_EQ(light.radius, 0.5f);
+  EXPECT_EQ(light.radiance, V3f(2, 2, 2));
+}
+
+TEST(LightsFile, ASunsIrradianceIsThatOfItsDisk) {
+  const Light light = load_one(R"("type": "sun", "direction": [0, -3, 0], "angle_degrees": 60,
+      "irradiance": [1, 2, 0])")
+                          .at(0);
+  EXPECT_EQ(light.kind, LightKind::sun);
+  EXPECT_EQ(light.direction, V3f(0, -1, 0));
+  EXPECT_NEAR(light.angular_radius, std::numbers::pi / 6, 1e-6);  // half of the full angle
+  // E = pi sin^2(30 degrees) L = pi / 4 L.
+  EXPECT_NEAR(light.radiance.x, 4 / std::numbers::pi, 1e-5);
+  EXPECT_NEAR(light.radiance.y, 8 / std::numbers::pi, 1e-5);
+  EXPECT_EQ(light.radiance.z, 0);
+}
+
+TEST(LightsFile, ASunWithoutAnAngleIsAsLargeAsOurs) {
+  const Light light = load_one(R"("type": "sun", "direction": [0, -1, 0], "radiance": 7)").at(0);
+  EXPECT_NEAR(light.angular_radius, 0.2665 * std::numbers::pi / 180, 1e-7);
+  EXPECT_EQ(light.radiance, V3f(7, 7, 7));
+}
+
+TEST(LightsFile, ALightWithoutANameIsCalledByItsTypeAndNumber) {
+  const std::string sphere = std::string("{").append(kSphere).append(", \"radius\": 1}");
+  const auto lights = load("{\"lights\": [" + sphere + "," + sphere + R"(,
+      {"type": "sun", "direction": [0, -1, 0], "radiance": 1}]})");
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_EQ(lights[0].name, "sphere_1");
+  EXPECT_EQ(lights[1].name, "sphere_2");
+  EXPECT_EQ(lights[2].name, "sun_3");
+}
+
+TEST(LightsFile, AnEmptyListIsNoLights) { EXPECT_TRUE(load("{\"lights\": []}").empty()); }
+
+TEST(LightsFile, AnUnknownKeyIsRefusedWithTheKnownOnes) {
+  EXPECT_EQ(complaint_about(std::string(kSphere) + ", \"name\": \"a\", \"raduis\": 1"),
+            "light 1 (\"a\"): \"raduis\" is not known here; known: name, type, position, radius, "
+            "radiance");
+  EXPECT_EQ(complaint("{\"lights\": [], \"light\": 1}"),
+            "\"light\" is not known here; known: lights");
+}
+
+TEST(LightsFile, AMissingOrMistypedKeyIsNamed) {
+  EXPECT_EQ(complaint_about(kSphere), "light 1: radius is missing");
+  EXPECT_EQ(complaint_about("\"name\": \"a\""), "light 1 (\"a\"): type is missing");
+  EXPECT_EQ(complaint_about(R"("type": "spot")"),
+            "light 1: type \"spot\" is not rect, sphere or sun");
+  EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1], "radiance": 1)"),
+            "light 1: direction must be an array of 3 numbers");
+  EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1, "x"], "radiance": 1)"),
+            "light 1: direction[2] must be a number");
+  EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 0, 0], "radiance": 1)"),
+            "light 1: direction has no direction: it is 0, 0, 0");
+  EXPECT_EQ(complaint_about(R"("type": "sun", "name": 3, "direction": [0, 1, 0], "radiance": 1)"),
+            "light 1: name must be a string");
+  EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1, 0], "radiance": true)"),
+            "light 1: radiance must be an array of 3 numbers");
+  EXPECT_EQ(complaint("{\"lights\": [3]}"), "light 1: is not an object");
+}
+
+TEST(LightsFile, ASizeThatIsNotPositiveOrRadianceBelowZeroIsRefused) {
+  const std::string rect = R"("type": "rect", "position": [0, 0, 0], "normal": [0, -1, 0], )";
+  EXPECT_EQ(complaint_about(rect + R"("size": [1, -2], "radiance": 1)"),
+            "light 1: size[1] must be positive, and is -2");
+  EXPECT_EQ(complaint_about(std::string(kSphere) + ", \"radius\": 0"),
+            "light 1: radius must be positive, and is 0");
+  EXPECT_EQ(complaint_about(rect + R"("size": [1, 2], "radiance": [1, -1, 0])"),
+            "light 1: radiance must not be negative, and is -1");
+  EXPECT_EQ(complaint_about(std::string(kSphere) + ", \"radius\": 1e300"),
+            "light 1: radius is too large");
+  EXPECT_EQ(complaint_about(
+                R"("type": "sun", "direction": [0, 1, 0], "radiance": 1, "angle_degrees": 180)"),
+            "light 1: angle_degrees must be below 180, and is 180");
+}
+
+TEST(LightsFile, ASunHasEitherRadianceOrIrradiance) {
+  const std::string message = "light 1: radiance or irradiance must be given, and not both";
+  EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1, 0])"), message);
+  EXPECT_EQ(
+      complaint_about(R"("type": "sun", "direction": [0, 1, 0], "radiance": 1, "irradiance": 1)"),
+      message);
+}
+
+TEST(LightsFile, AParseErrorSaysItsLineAndColumn) {
+  const std::string message = complaint("{\n  \"lights\": [,]\n}");
+  EXPECT_EQ(message.find("parse error at line 2, column 14: "), 0u) << message;
+  EXPECT_EQ(complaint("").find("parse error at line 1, column 1: "), 0u);
+}
+
+TEST(LightsFile, AFileThatIsNoLightsFileIsRefused) {
+  EXPECT_EQ(complaint("[]"), "must be an object with an array \"lights\"");
+  EXPECT_EQ(complaint("{\"lights\": {}}"), "must be an object with an array \"lights\"");
+  EXPECT_EQ(complaint_about_path("/nonexistent/lights.json"), "there is no such lights file");
+  EXPECT_EQ(complaint_about_path(std::filesystem::temp_directory_path().string()),
+            "is not a regular file");
+}
+
+TEST(LightsFile, APipeIsRefusedWithoutWaitingForIt) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("dapple_fifo_" + std::to_string(getpid())))
+          .string();
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(complaint_about_path(path), "is not a regular file");
+  std::filesystem::remove(path);
+}
+
+TEST(LightsFile, DeepNestingAndHugeFilesAreRefused) {
+  EXPECT_EQ(complaint(std::string(1'000'000, '[')), "nests deeper than 16 levels");
+  const LightsFile file("{");
+  std::filesystem::resize_file(file.path(), (16u << 20) + 1);  // sparse
+  EXPECT_EQ(complaint_about_path(file.path()),
+            "has 16777217 bytes; a lights file may have 16777216");
+}
+
+TEST(LightsFile, TheExampleInScenesLoads) {
+  const std::filesystem::path here(__FILE__);
+  const auto lights =
+      load_lights((here.parent_path().parent_path() / "scenes" / "studio_lights.json").string());
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_EQ(lights[0].name, "key");
+}
+
+}  // namespace
+}  // namespace dapple

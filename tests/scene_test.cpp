@@ -1,0 +1,396 @@
+// What is done to a scene between reading and rendering: bounds, opacity, ground, framing, the
+// key light, and merging into world space.
+#include "dapple/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Mesh triangle_mesh(const std::string& name, V3f a, V3f b, V3f c) {
+  Mesh mesh;
+  mesh.name = name;
+  mesh.positions = {a, b, c};
+  mesh.indices = {0, 1, 2};
+  mesh.materials = {0};
+  return mesh;
+}
+
+Mesh unit_triangle(const std::string& name = "triangle") {
+  return triangle_mesh(name, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+}
+
+// More than the 256 triangles up to which a mesh that is placed often is merged.
+Mesh large_mesh() {
+  Mesh mesh = unit_triangle("large");
+  for (std::uint32_t i = 1; i < 300; ++i) {
+    mesh.positions.emplace_back(0.0f, 1.0f, static_cast<float>(i));
+    mesh.indices.insert(mesh.indices.end(), {0, 1, i + 2});
+    mesh.materials.push_back(0);
+  }
+  return mesh;
+}
+
+M44f translation(V3f by) {
+  M44f matrix;
+  matrix.setTranslation(by);
+  return matrix;
+}
+
+M44f scaling(V3f by) {
+  M44f matrix;
+  matrix.setScale(by);
+  return matrix;
+}
+
+Instance placed(std::uint32_t mesh, const M44f& to_world = M44f{}, int light = -1) {
+  Instance instance;
+  instance.mesh = mesh;
+  instance.to_world = to_world;
+  instance.light = light;
+  return instance;
+}
+
+Scene scene_of(std::vector<Mesh> meshes, std::vector<Instance> instances) {
+  Scene scene;
+  scene.source = "test.glb";
+  scene.materials.resize(2);
+  scene.materials[0].name = "leaf";
+  scene.materials[1].name = "bark";
+  scene.meshes = std::move(meshes);
+  scene.instances = std::move(instances);
+  return scene;
+}
+
+using WorldTriangle = std::array<float, 10>;  // nine coordinates and a material
+
+std::vector<WorldTriangle> world_triangles(const Scene& scene) {
+  std::vector<WorldTriangle> triangles;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      WorldTriangle triangle{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V3f p = mesh.positions[mesh.indices[3 * t + k]] * instance.to_world;
+        for (int axis = 0; axis < 3; ++axis)
+          triangle[3 * k + static_cast<std::size_t>(axis)] = p[axis];
+      }
+      triangle[9] = static_cast<float>(mesh.materials[t]);
+      triangles.push_back(triangle);
+    }
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+template <typename Action>
+std::string complaint(ErrorKind kind, Action action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SceneBounds, HoldEveryPlacementInWorldSpace) {
+  const Scene scene = scene_of({unit_triangle(), unit_triangle()},
+                               {placed(0, translation({5, 0, 0})), placed(0, scaling({1, -2, 1})),
+                                placed(1, translation({0, 0, 7}))});
+  EXPECT_EQ(scene_bounds(scene).min, V3f(0, -2, 0));
+  EXPECT_EQ(scene_bounds(scene).max, V3f(6, 1, 7));
+}
+
+TEST(SceneBounds, IgnoreVerticesThatNoTriangleUses) {
+  Mesh mesh = unit_triangle();
+  mesh.positions.emplace_back(kInfinity, 0.0f, 100.0f);
+  EXPECT_EQ(scene_bounds(scene_of({mesh}, {placed(0)})).max, V3f(1, 1, 0));
+}
+
+TEST(SceneBounds, OfAnEmptySceneAreEmpty) {
+  EXPECT_TRUE(scene_bounds(Scene{}).isEmpty());
+  EXPECT_TRUE(scene_bounds(scene_of({unit_triangle()}, {})).isEmpty());
+}
+
+TEST(OverrideOpacity, TakesThePlaceOfTextureFactorModeAndVertexAlpha) {
+  Scene scene = scene_of({}, {});
+  scene.materials[0] = {"leaf", AlphaMode::mask, 0.5f, 0.5f, 3, true, {0, 0, 0}, false};
+  override_opacity(scene, "leaf", 0.85f);
+  const Material& leaf = scene.materials[0];
+  EXPECT_EQ(leaf.alpha_mode, AlphaMode::blend);
+  EXPECT_EQ(leaf.alpha, 0.85f);
+  EXPECT_EQ(leaf.alpha_texture, -1);
+  EXPECT_FALSE(leaf.uses_vertex_alpha);
+  EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::opaque);
+}
+
+TEST(OverrideOpacity, AnUnknownMaterialIsRefusedWithTheKnownOnes) {
+  Scene scene = scene_of({}, {});
+  EXPECT_EQ(complaint(ErrorKind::usage, [&] { override_opacity(scene, "leef", 1); }),
+            "test.glb: there is no material \"leef\"; there are: \"leaf\", \"bark\"");
+  EXPECT_EQ(complaint(ErrorKind::usage, [&] { override_opacity(scene, "leaf", 1.5f); }),
+            "opacity of material \"leaf\" is 1.5, outside [0, 1]");
+  EXPECT_EQ(complaint(ErrorKind::usage, [&] { override_opacity(scene, "leaf", std::nanf("")); }),
+            "opacity of material \"leaf\" is nan, outside [0, 1]");
+}
+
+TEST(AddGround, IsOpaqueTwentyTimesAsWideAndAtTheLowestPoint) {
+  Scene scene = scene_of({triangle_mesh("a", {1, 2, 3}, {3, 5, 3}, {1, 4, 4})}, {placed(0)});
+  add_ground(scene);
+  const Box3f bounds = scene_bounds(scene);
+  EXPECT_EQ(bounds.min.y, 2);
+  EXPECT_EQ(bounds.max.y, 5);
+  EXPECT_FLOAT_EQ(bounds.size().x, 40);
+  EXPECT_FLOAT_EQ(bounds.size().z, 40);
+  EXPECT_FLOAT_EQ(bounds.center().x, 2);
+  EXPECT_FLOAT_EQ(bounds.center().z, 3.5f);
+  EXPECT_EQ(scene.materials.back().name, "ground");
+  EXPECT_EQ(scene.materials.back().alpha_mode, AlphaMode::opaque);
+}
+
+// How far outside the frame a point is: at most 1 when it is inside.
+float frame_excess(const Camera& camera, float aspect, V3f point) {
+  const V3f p = point * camera.to_world.inverse();
+  const float tan_y = std::tan(camera.fov_y / 2);
+  if (p.z >= 0) return kInfinity;
+  return std::max(std::abs(p.x / p.z) / (tan_y * aspect), std::abs(p.y / p.z) / tan_y);
+}
+
+TEST(FrameScene, EveryCornerOfTheBoundsIsInTheFrameAndOneIsNearItsEdge) {
+  for (const V3f& size : {V3f(1, 1, 1), V3f(30, 1, 2), V3f(1, 50, 1), V3f(1, 2, 80)}) {
+    for (const float aspect : {0.5f, 1.0f, 16.0f / 9}) {
+      const Scene scene = scene_of(
+          {triangle_mesh("a", {7, 8, 9}, V3f(7, 8, 9) + size, {7, 8, 9 + size.z})}, {placed(0)});
+      const Box3f box = scene_bounds(scene);
+      const Camera camera = frame_scene(scene, aspect, 0.6f);
+      float widest = 0;
+      for (const float x : {box.min.x, box.max.x}) {
+        for (const float y : {box.min.y, box.max.y}) {
+          for (const float z : {box.min.z, box.max.z}) {
+            widest = std::max(widest, frame_excess(camera, aspect, {x, y, z}));
+          }
+        }
+      }
+      EXPECT_LE(widest, 1);
+      EXPECT_GT(widest, 0.9f);
+      EXPECT_GT(camera.to_world[3][1], box.center().y);  // a little above
+    }
+  }
+}
+
+TEST(FrameScene, ASceneWithoutExtentStillGetsACamera) {
+  const Camera camera = frame_scene(scene_of({unit_triangle()}, {}), 1.5f);
+  EXPECT_TRUE(std::isfinite(camera.to_world[3][2]));
+  EXPECT_NE(camera.to_world.determinant(), 0);
+}
+
+TEST(LookAt, LooksAlongMinusZWithARightHandedOrthonormalFrame) {
+  const Camera camera = look_at({1, 2, 3}, {4, 0, -5}, {0, 1, 0}, 0.5f);
+  EXPECT_NEAR(camera.to_world.determinant(), 1, 1e-5);
+  const V3f ahead = V3f(0, 0, -1) * camera.to_world - V3f(1, 2, 3);
+  EXPECT_TRUE(ahead.equalWithAbsError(V3f(3, -2, -8).normalized(), 1e-6f));
+  EXPECT_EQ(camera.to_world[0][1], 0);  // +X is level
+  EXPECT_GT(camera.to_world[1][1], 0);
+  EXPECT_EQ(camera.fov_y, 0.5f);
+}
+
+TEST(LookAt, DegenerateViewsAreRefused) {
+  const V3f up(0, 1, 0);
+  const auto refused = [](V3f from, V3f at, V3f up_, float fov_y) {
+    return complaint(ErrorKind::usage, [&] { look_at(from, at, up_, fov_y); });
+  };
+  EXPECT_EQ(refused({1, 2, 3}, {1, 2, 3}, up, 1), "camera: from and at are the same point");
+  EXPECT_EQ(refused({0, 5, 0}, {0, 0, 0}, up, 1), "camera: up is zero or points along the view");
+  EXPECT_EQ(refused({0, 0, 5}, {0, 0, 0}, {0, 0, 0}, 1),
+            "camera: up is zero or points along the view");
+  EXPECT_EQ(refused({kInfinity, 0, 0}, {0, 0, 0}, up, 1), "camera: from, at and up must be finite");
+  EXPECT_NE(refused({0, 0, 5}, {0, 0, 0}, up, 0).find("field of view"), std::string::npos);
+}
+
+TEST(KeyLight, HangsUpLeftInFrontAndFacesTheCentre) {
+  const Scene scene = make_procedural("scene:cube");
+  for (const V3f& from : {V3f(0, 1, 6), V3f(6, 1, 0), V3f(-3, 4, -3), V3f(0, -5, 5)}) {
+    const V3f centre(0, 0.5f, 0);
+    const Camera camera = look_at(from, centre, {0, 1, 0}, 0.7f);
+    const Light key = key_light(scene, camera);
+    EXPECT_EQ(key.name, "key");
+    EXPECT_EQ(key.kind, LightKind::rect);
+    const V3f from_centre = key.position - centre;
+    const M44f& axes = camera.to_world;
+    EXPECT_GT(from_centre.y, 0);
+    EXPECT_LT(from_centre.dot(V3f(axes[0][0], axes[0][1], axes[0][2])), 0);
+    EXPECT_GT(from_centre.dot(V3f(axes[2][0], 0, axes[2][2])), 0);  // whatever its tilt
+    EXPECT_TRUE((-from_centre).normalized().equalWithAbsError(key.direction, 1e-5f));
+    const float radius = std::sqrt(3.0f) / 2;
+    EXPECT_NEAR(from_centre.length(), 3 * radius, 1e-4);
+    EXPECT_NEAR(key.edge_u.length(), radius, 1e-5);
+    EXPECT_NEAR(key.edge_v.length(), radius, 1e-5);
+    EXPECT_NEAR(key.edge_u.dot(key.direction), 0, 1e-5);
+    EXPECT_NEAR(key.edge_u.y, 0, 1e-6);
+  }
+}
+
+TEST(KeyLight, GivesASurfaceAtTheCentreThatFacesItAnIrradianceOfAboutOne) {
+  const Scene scene = make_procedural("scene:cube");
+  const Light key = key_light(scene, frame_scene(scene, 1.5f));
+  const V3f centre(0, 0.5f, 0);
+  constexpr int kCells = 64;
+  double irradiance = 0;
+  for (int j = 0; j < kCells; ++j) {
+    for (int i = 0; i < kCells; ++i) {
+      const float u = (static_cast<float>(i) + 0.5f) / kCells - 0.5f;
+      const float v = (static_cast<float>(j) + 0.5f) / kCells - 0.5f;
+      const V3f to_light = key.position + key.edge_u * u + key.edge_v * v - centre;
+      const float cosine = -key.direction.dot(to_light.normalized());
+      irradiance += key.radiance.x * cosine * cosine / to_light.length2();
+    }
+  }
+  irradiance *= key.edge_u.length() * key.edge_v.length() / (kCells * kCells);
+  // The square's extent takes off 2 * (1/6)^2 * 2/3 of the first-order value 1.
+  EXPECT_NEAR(irradiance, 1 - 0.037, 0.005);
+}
+
+TEST(Merge, KeepsEveryWorldSpaceTriangleAndMakesOneMesh) {
+  Scene scene = scene_of(
+      {unit_triangle("a"), triangle_mesh("b", {1, 1, 1}, {2, 3, 4}, {0, 5, 1}), unit_triangle("c")},
+      {placed(0, translation({3, 0, 0})), placed(1, scaling({-1, 1, 2})),
+       placed(2, translation({0, 8, 0})), placed(2, scaling({2, 2, 2}))});
+  scene.meshes[1].materials = {1};
+  const auto before = world_triangles(scene);
+  merge_single_instances(scene);
+  EXPECT_EQ(world_triangles(scene), before);
+  EXPECT_EQ(scene.meshes.size(), 1u);
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.instances[0].to_world, M44f{});
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(Merge, ALargeMeshThatIsPlacedOftenStaysAnInstance) {
+  Scene scene = scene_of({large_mesh(), unit_triangle(), large_mesh()},
+                         {placed(0), placed(0, translation({9, 0, 0})), placed(1), placed(2)});
+  const auto before = world_triangles(scene);
+  merge_single_instances(scene);
+  EXPECT_EQ(world_triangles(scene), before);
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  EXPECT_EQ(scene.instances.size(), 3u);
+  const auto large =
+      std::count_if(scene.instances.begin(), scene.instances.end(),
+                    [&](const auto& i) { return scene.meshes[i.mesh].name == "large"; });
+  EXPECT_EQ(large, 2);
+}
+
+TEST(Merge, AMeshPlacedOnceWhereItIsIsMovedAndNotCopied) {
+  Scene scene = scene_of({large_mesh()}, {placed(0)});
+  const V3f* const positions = scene.meshes[0].positions.data();
+  const std::uint32_t* const indices = scene.meshes[0].indices.data();
+  merge_single_instances(scene);
+  EXPECT_EQ(scene.meshes.at(0).positions.data(), positions);
+  EXPECT_EQ(scene.meshes[0].indices.data(), indices);
+  EXPECT_EQ(scene.meshes[0].name, "large");
+}
+
+TEST(Merge, VertexAttributesThatOnlySomeMeshesHaveAreFilledWithDefaults) {
+  Scene scene = scene_of({unit_triangle(), unit_triangle(), unit_triangle()},
+                         {placed(0), placed(1), placed(2)});
+  scene.meshes[1].uvs = {{1, 2}, {3, 4}, {5, 6}};
+  scene.meshes[2].vertex_alpha = {0.1f, 0.2f, 0.3f};
+  merge_single_instances(scene);
+  const Mesh& mesh = scene.meshes.at(0);
+  const V2f none(0, 0);
+  EXPECT_EQ(mesh.uvs,
+            (std::vector<V2f>{none, none, none, {1, 2}, {3, 4}, {5, 6}, none, none, none}));
+  EXPECT_EQ(mesh.vertex_alpha, (std::vector<float>{1, 1, 1, 1, 1, 1, 0.1f, 0.2f, 0.3f}));
+}
+
+TEST(Merge, AMeshLightStaysOnItsOwnAndItsMeshMayBeUsedElsewhere) {
+  Scene scene = scene_of({unit_triangle(), unit_triangle()},
+                         {placed(0, translation({0, 9, 0}), 0), placed(0), placed(1)});
+  scene.lights.resize(1);
+  scene.lights[0].kind = LightKind::mesh;
+  const auto before = world_triangles(scene);
+  merge_single_instances(scene);
+  EXPECT_EQ(world_triangles(scene), before);
+  ASSERT_EQ(scene.instances.size(), 2u);
+  const auto light = std::find_if(scene.instances.begin(), scene.instances.end(),
+                                  [](const Instance& i) { return i.light == 0; });
+  ASSERT_NE(light, scene.instances.end());
+  EXPECT_EQ(light->to_world, translation({0, 9, 0}));
+  EXPECT_EQ(scene.meshes[light->mesh].triangle_count(), 1u);
+}
+
+TEST(Merge, BrokenTrianglesAreDroppedAndCountedByKind) {
+  Mesh mesh = unit_triangle();
+  mesh.positions.insert(mesh.positions.end(),
+                        {{kInfinity, 0, 0}, {0, std::nanf(""), 0}, {2, 0, 0}});
+  mesh.indices = {0, 1, 3, 0, 1, 2, 4, 1, 2, 3, 4, 0, 0, 1, 5, 2, 2, 1};
+  mesh.materials = {0, 1, 0, 0, 0, 0};
+  mesh.vertex_alpha = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f};
+  Scene scene = scene_of({mesh}, {placed(0, translation({1, 0, 0}))});
+  merge_single_instances(scene);
+  const Mesh& merged = scene.meshes.at(0);
+  EXPECT_EQ(merged.positions, (std::vector<V3f>{{1, 0, 0}, {2, 0, 0}, {1, 1, 0}}));
+  EXPECT_EQ(merged.indices, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(merged.materials, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(merged.vertex_alpha, (std::vector<float>{0.1f, 0.2f, 0.3f}));
+  EXPECT_EQ(scene.warnings,
+            (std::vector<std::string>{"dropped 3 triangles with non-finite vertices",
+                                      "dropped 2 triangles without an area"}));
+}
+
+TEST(Merge, MeshesThatNobodyPlacesAndSingularInstancesGo) {
+  Scene scene =
+      scene_of({unit_triangle("unplaced"), large_mesh(), unit_triangle()},
+               {placed(1), placed(1, translation({2, 0, 0})), placed(2, scaling({1, 0, 1})),
+                placed(1, translation({kInfinity, 0, 0}))});
+  merge_single_instances(scene);
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.meshes[0].name, "large");
+  EXPECT_EQ(scene.instances.size(), 2u);
+  for (const Instance& instance : scene.instances) EXPECT_EQ(instance.mesh, 0u);
+  EXPECT_EQ(scene.warnings,
+            std::vector<std::string>{"dropped 2 instances whose matrix cannot be inverted"});
+}
+
+TEST(Merge, AMeshLightWithoutATriangleIsDroppedAndTheOthersKeepTheirInstances) {
+  Scene scene = scene_of({unit_triangle(), unit_triangle()},
+                         {placed(0, scaling({0, 0, 0}), 1), placed(1, M44f{}, 2)});
+  scene.lights.resize(3);
+  scene.lights[1].kind = scene.lights[2].kind = LightKind::mesh;
+  scene.lights[1].name = "dark";
+  scene.lights[2].name = "lamp";
+  merge_single_instances(scene);
+  ASSERT_EQ(scene.lights.size(), 2u);
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.lights.at(static_cast<std::size_t>(scene.instances[0].light)).name, "lamp");
+  EXPECT_EQ(scene.warnings.back(), "dropped light \"dark\", which has no triangle");
+}
+
+TEST(Merge, ASceneOfWhichNothingIsLeftIsRefused) {
+  Scene scene = scene_of({triangle_mesh("line", {0, 0, 0}, {1, 1, 1}, {2, 2, 2})}, {placed(0)});
+  EXPECT_EQ(complaint(ErrorKind::input, [&] { merge_single_instances(scene); }),
+            "test.glb: there is nothing to render: no triangle is left");
+  Scene empty;
+  EXPECT_THROW(merge_single_instances(empty), Error);
+}
+
+TEST(Merge, AProceduralForestKeepsItsTriangles) {
+  Scene scene = make_procedural("scene:forest?trees=60&leaves=30");
+  const auto before = world_triangles(scene);
+  merge_single_instances(scene);
+  EXPECT_EQ(world_triangles(scene), before);
+  EXPECT_EQ(scene.instances.size(), 61u);
+}
+
+}  // namespace
+}  // namespace dapple
