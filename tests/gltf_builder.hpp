@@ -178,6 +178,25 @@ std::string input_error(Load load) {
   return {};
 }
 
+inline std::string error_of(const GltfBuilder& builder) {
+  return input_error([&] { return builder.load(); });
+}
+
+inline std::string error_of_file(const std::string& path) {
+  return input_error([&] { return load_gltf(path); });
+}
+
+inline void expect_says(const std::string& message, const std::string& part) {
+  EXPECT_NE(message.find(part), std::string::npos)
+      << "\"" << message << "\" lacks \"" << part << "\"";
+}
+
+inline GltfBuilder one_triangle() {
+  GltfBuilder builder;
+  builder.add_triangle();
+  return builder;
+}
+
 namespace png {
 
 inline std::uint32_t crc32(const Bytes& bytes) {

@@ -2,7 +2,7 @@
 // buffer views, accessors, one primitive a mesh and material, nodes, cameras.
 #include "scene/glb_layout.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Writes a scene as one GLB file (glTF 2.0 Specification, section 4), beside its path and
 // then renamed over it, so that nobody meets half a file. The same scene gives the same bytes.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>

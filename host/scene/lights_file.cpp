@@ -1,6 +1,6 @@
 // Reads a JSON file of lights. In: {"lights": [{"type": "rect", ...}, ...]}; out: Lights.
 // Everything unknown is an error: a misspelt key would otherwise be a default in silence.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

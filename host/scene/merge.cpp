@@ -1,6 +1,6 @@
 // Puts everything that is placed once into one world-space mesh and drops what no ray could
 // hit. In: a scene as it was read; out: the same triangles, fewer meshes, warnings.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

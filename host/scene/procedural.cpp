@@ -1,7 +1,7 @@
 // The table of procedural scenes, and the way from "scene:NAME?key=value" to one of them.
 #include "scene/procedural.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <string_view>
 

@@ -1,7 +1,7 @@
 // Reads and checks "key=value&key=value". Every complaint names the scene and the key.
 #include "scene/procedural_parameters.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <cassert>
 #include <charconv>

@@ -1,6 +1,6 @@
 // What the command line changes in a scene that was read: the opacity of a material, and a
 // ground to stand on.
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // was dropped.
 #include "scene/triangle_cleanup.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 

@@ -69,11 +69,8 @@ class Validator {
   void check_accessor(std::size_t i) const {
     const Accessor& accessor = model_.accessors[i];
     const std::string who = fmt::format("accessor {}", i);
-    const std::uint64_t bytes = component_bytes(accessor.componentType);
-    if (bytes == 0) {
-      fail(file_, "{} has the unknown componentType {}", who, accessor.componentType);
-    }
-    const std::uint64_t element_bytes = bytes * component_count(accessor.type);
+    const std::uint64_t element_bytes =
+        component_bytes(accessor.componentType) * component_count(accessor.type);
     check_index(who, "bufferView", accessor.bufferView, model_.bufferViews.size());
     if (accessor.bufferView >= 0) {
       check_elements(who, accessor, element_bytes);

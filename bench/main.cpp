@@ -1,0 +1,125 @@
+// dapple-bench: kernel and builder micro-benchmarks. Takes its own options first, Google
+// Benchmark's after them; shows medians and their spread.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "benchmarks.hpp"
+#include "dapple/error.hpp"
+
+namespace dapple::bench {
+namespace {
+
+constexpr const char* kHelp =
+    "dapple-bench [--scene=SCENE [--opacity=MATERIAL=VALUE]...]... [--device=NAME]\n"
+    "             [--kernel-dir=FOLDER] [Google Benchmark's flags, below]\n"
+    "  --scene        measure this scene too: a glTF file or \"scene:NAME?key=value\"\n"
+    "  --opacity      give a material of the last --scene this opacity\n"
+    "  --device       part of an OpenCL device's name\n"
+    "  --kernel-dir   read kernels from this folder instead of the built-in ones\n\n";
+
+struct Arguments {
+  std::vector<SceneRecipe> scenes = named_scenes();
+  std::string device, kernel_dir;
+  std::vector<char*> rest;  ///< for Google Benchmark, the program's name first
+  bool given_scene = false;
+  bool chose_format = false;
+};
+
+void add_scene(Arguments& a, const std::string& spec) {
+  const bool procedural = spec.starts_with("scene:");
+  a.scenes.push_back(
+      {procedural ? spec.substr(6) : std::filesystem::path(spec).stem().string(), spec, {}});
+  a.given_scene = true;
+}
+
+void add_opacity(Arguments& a, const std::string& text) {
+  if (!a.given_scene) throw Error(ErrorKind::usage, "--opacity comes after the --scene it is for");
+  const std::size_t at = text.rfind('=');
+  const char* number = text.c_str() + (at == std::string::npos ? text.size() : at + 1);
+  char* end = nullptr;
+  const float value = std::strtof(number, &end);
+  if (end == number || *end || at == 0) {
+    throw Error(ErrorKind::usage, "--opacity=" + text + ": expected MATERIAL=VALUE");
+  }
+  a.scenes.back().opacity.emplace_back(text.substr(0, at), value);
+}
+
+/// The value of `argument` when it is NAME=value, else nullptr.
+const char* value_of(const char* argument, const char* name) {
+  const std::size_t length = std::strlen(name);
+  return std::strncmp(argument, name, length) == 0 && argument[length] == '='
+             ? argument + length + 1
+             : nullptr;
+}
+
+Arguments parse(int argc, char** argv) {
+  Arguments a;
+  a.rest.push_back(argv[0]);
+  for (int i = 1; i < argc; ++i) {
+    if (const char* spec = value_of(argv[i], "--scene")) {
+      add_scene(a, spec);
+    } else if (const char* opacity = value_of(argv[i], "--opacity")) {
+      add_opacity(a, opacity);
+    } else if (const char* device = value_of(argv[i], "--device")) {
+      a.device = device;
+    } else if (const char* folder = value_of(argv[i], "--kernel-dir")) {
+      a.kernel_dir = folder;
+    } else {
+      if (std::strcmp(argv[i], "--help") == 0) std::cout << kHelp;
+      a.chose_format |= value_of(argv[i], "--benchmark_format") != nullptr;
+      a.rest.push_back(argv[i]);
+    }
+  }
+  return a;
+}
+
+/// Of every benchmark's repetitions, the median and the coefficient of variation.
+class MedianReporter : public benchmark::ConsoleReporter {
+ public:
+  MedianReporter() : ConsoleReporter(OO_Tabular) {}
+  void ReportRuns(const std::vector<Run>& runs) override {
+    std::vector<Run> kept;
+    std::copy_if(runs.begin(), runs.end(), std::back_inserter(kept), [](const Run& run) {
+      return run.run_type != Run::RT_Aggregate || run.aggregate_name == "median" ||
+             run.aggregate_name == "cv";
+    });
+    ConsoleReporter::ReportRuns(kept);
+  }
+};
+
+int run(int argc, char** argv) {
+  Arguments arguments = parse(argc, argv);
+  BenchDevice device(arguments.device, arguments.kernel_dir);
+  std::vector<std::unique_ptr<BenchScene>> scenes;
+  for (SceneRecipe& recipe : arguments.scenes) {
+    scenes.push_back(std::make_unique<BenchScene>(std::move(recipe), device));
+    register_occlusion(*scenes.back());
+    register_closest_hit(*scenes.back());
+    register_build(*scenes.back());
+  }
+  int rest = static_cast<int>(arguments.rest.size());
+  benchmark::Initialize(&rest, arguments.rest.data());
+  if (benchmark::ReportUnrecognizedArguments(rest, arguments.rest.data())) return 2;
+  MedianReporter medians;
+  // An own reporter would silence --benchmark_format.
+  benchmark::RunSpecifiedBenchmarks(arguments.chose_format ? nullptr : &medians);
+  return 0;
+}
+
+}  // namespace
+}  // namespace dapple::bench
+
+int main(int argc, char** argv) {
+  try {
+    return dapple::bench::run(argc, argv);
+  } catch (const dapple::Error& error) {
+    std::cerr << "dapple-bench: " << error.what() << '\n';
+    return static_cast<int>(error.kind());
+  }
+}
