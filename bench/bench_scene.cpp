@@ -3,17 +3,15 @@
 #include <limits>
 
 #include "dapple/error.hpp"
-#include "device/context.hpp"
-#include "wavefront/passes.hpp"
 #include "wavefront/view.hpp"
 
 namespace dapple::bench {
 namespace {
 
-/// Small enough for a launch of a few tenths of a second, large enough that launching costs
-/// nothing: about 20,000 points and 300,000 AO rays.
-constexpr int kWidth = 256;
-constexpr int kHeight = 160;
+/// Small enough for a launch of some tenths of a second, large enough that launching costs
+/// nothing: about 10,000 points, so 150,000 AO rays.
+constexpr int kWidth = 384;
+constexpr int kHeight = 240;
 constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
 
 RenderOptions picture_options() {
@@ -25,27 +23,24 @@ RenderOptions picture_options() {
   return options;
 }
 
-std::vector<Ray> read_rays(DeviceContext& context, const Queues& queues, std::size_t count) {
-  std::vector<Ray> rays(count);
-  context.read(queues.rays, rays.data(), count * sizeof(Ray));
-  return rays;
-}
-
-/// Runs the renderer's own passes up to the occlusion pass, and keeps their rays.
-SceneRays make_rays(const Device& device, const DeviceBuffers& scene, CameraParams camera) {
-  DeviceContext& context = device.context();
-  const Queues queues = make_queues(context, kPixels, kRaysPerPoint);
+/// Runs the renderer's own passes up to the occlusion pass. Camera and AO rays go to queues
+/// of their own, so that either pass can be run again.
+SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, CameraParams camera) {
   SceneRays rays;
+  rays.camera = make_queues(context, kPixels, 1);
+  rays.camera_count = kPixels;
   camera.slice = {0, static_cast<uint>(kPixels), 0, 1};
-  camera_pass(context, queues, camera);
-  rays.camera = read_rays(context, queues, kPixels);
-  closest_hit_pass(context, scene, queues, kPixels);
-  const std::uint32_t hits = compact_pass(context, queues, kPixels);
+  camera_pass(context, rays.camera, camera);
+  closest_hit_pass(context, scene, rays.camera, kPixels);
+  const std::uint32_t hits = compact_pass(context, rays.camera, kPixels);
   if (hits == 0) throw Error(ErrorKind::failed, "the camera sees nothing of the scene");
+  rays.ao_count = std::size_t{hits} * kRaysPerPoint;
+  rays.ao = rays.camera;
+  rays.ao.rays = context.allocate(rays.ao_count * sizeof(Ray));
+  rays.ao.occlusions = context.allocate(rays.ao_count * sizeof(Occlusion));
   ao_ray_pass(
-      context, queues,
+      context, rays.ao,
       {hits, kRaysPerPoint, 1.0f / kRaysPerPoint, std::numeric_limits<float>::infinity(), 0u});
-  rays.ao = read_rays(context, queues, std::size_t{hits} * kRaysPerPoint);
   context.finish();
   return rays;
 }
@@ -82,7 +77,7 @@ const DeviceScene& BenchScene::on_device() {
 }
 
 const SceneRays& BenchScene::rays() {
-  if (!rays_) rays_ = make_rays(device(), *on_device().buffers, *camera_);
+  if (!rays_) rays_ = make_rays(device().context(), *on_device().buffers, *camera_);
   return *rays_;
 }
 

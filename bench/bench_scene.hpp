@@ -10,7 +10,7 @@
 #include "dapple/bvh.hpp"
 #include "dapple/device.hpp"
 #include "dapple/shared/pass_params.h"
-#include "dapple/shared/ray.h"
+#include "wavefront/passes.hpp"
 
 namespace dapple::bench {
 
@@ -27,10 +27,13 @@ struct SceneRecipe {
 /// tree, tree-thin, cloud and forest, in the order of the README's table.
 std::vector<SceneRecipe> named_scenes();
 
-/// The rays the renderer itself would shoot at one sample a pixel, in its order.
+/// The rays the renderer itself would shoot at one sample a pixel, in its order, resident
+/// on the device.
 struct SceneRays {
-  std::vector<Ray> camera;
-  std::vector<Ray> ao;  ///< kRaysPerPoint from every point that a camera ray met
+  Queues camera;
+  std::size_t camera_count = 0;
+  Queues ao;  ///< kRaysPerPoint from every point that a camera ray met
+  std::size_t ao_count = 0;
 };
 
 /// The one device of a run, opened by the first benchmark that needs it.

@@ -6,11 +6,10 @@
 
 namespace dapple::bench {
 
-/// Occlusion/exact and Occlusion/prefiltered: the occlusion kernel on AO rays.
-void register_occlusion(BenchScene& scene);
-/// ClosestHit: the camera pass's traversal.
-void register_closest_hit(BenchScene& scene);
+/// Occlusion/exact and Occlusion/prefiltered: the occlusion kernel on AO rays. ClosestHit:
+/// the camera pass's traversal.
+void register_tracing(BenchScene& scene);
 /// Build: all of build_bvh(). Prefilter: the part of it that makes opacities.
-void register_build(BenchScene& scene);
+void register_building(BenchScene& scene);
 
 }  // namespace dapple::bench

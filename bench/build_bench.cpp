@@ -15,20 +15,17 @@ double bytes(const std::vector<T>& data) {
   return static_cast<double>(data.size() * sizeof(T));
 }
 
-/// Bytes a distinct triangle: of nodes, and of everything a ray may touch but textures.
-void count_bytes(benchmark::State& state, const SceneBvh& bvh) {
+/// Triangles a second, and bytes a distinct triangle: of nodes, and of everything that a ray
+/// may touch but texels.
+void count_triangles(benchmark::State& state, const SceneBvh& bvh) {
   const auto triangles = static_cast<double>(bvh.statistics.triangles);
   const double all =
       bytes(bvh.nodes) + bytes(bvh.blocks) + bytes(bvh.textured) + bytes(bvh.instances);
+  state.counters["tri"] = benchmark::Counter(triangles * static_cast<double>(state.iterations()),
+                                             benchmark::Counter::kIsRate);
   state.counters["triangles"] = triangles;
   state.counters["nodeB/tri"] = bytes(bvh.nodes) / triangles;
   state.counters["allB/tri"] = all / triangles;
-}
-
-void count_triangle_rate(benchmark::State& state, const SceneBvh& bvh) {
-  const auto done = bvh.statistics.triangles * static_cast<std::size_t>(state.iterations());
-  state.counters["tri"] =
-      benchmark::Counter(static_cast<double>(done), benchmark::Counter::kIsRate);
 }
 
 void measure_build(benchmark::State& state, const Scene& scene) {
@@ -39,8 +36,7 @@ void measure_build(benchmark::State& state, const Scene& scene) {
     state.SetIterationTime(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
-  count_triangle_rate(state, bvh);
-  count_bytes(state, bvh);
+  count_triangles(state, bvh);
 }
 
 /// The opacities need a tree to go up, so each iteration builds one that is not counted.
@@ -50,15 +46,16 @@ void measure_prefilter(benchmark::State& state, const Scene& scene) {
     bvh = build_bvh(scene);
     state.SetIterationTime(bvh.statistics.prefilter_seconds);
   }
-  count_triangle_rate(state, bvh);
+  count_triangles(state, bvh);
 }
 
 template <class Measure>
-void register_building(const std::string& kind, BenchScene& scene, const Measure& run) {
+void add(const std::string& kind, BenchScene& scene, const Measure& measure) {
   const std::string name = kind + "/" + scene.name();
   benchmark::RegisterBenchmark(
-      name.c_str(), [&scene, run](benchmark::State& state) { run(state, scene.scene()); })
+      name.c_str(), [&scene, measure](benchmark::State& state) { measure(state, scene.scene()); })
       ->UseManualTime()
+      ->MeasureProcessCPUTime()
       ->Unit(benchmark::kMillisecond)
       ->Iterations(1)
       ->Repetitions(kRepetitions)
@@ -67,9 +64,9 @@ void register_building(const std::string& kind, BenchScene& scene, const Measure
 
 }  // namespace
 
-void register_build(BenchScene& scene) {
-  register_building("Build", scene, measure_build);
-  register_building("Prefilter", scene, measure_prefilter);
+void register_building(BenchScene& scene) {
+  add("Build", scene, measure_build);
+  add("Prefilter", scene, measure_prefilter);
 }
 
 }  // namespace dapple::bench

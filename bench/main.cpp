@@ -79,18 +79,29 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-/// Of every benchmark's repetitions, the median and the coefficient of variation.
+/// Of every benchmark's repetitions, the median and the coefficient of variation, under the
+/// name that it was registered by.
 class MedianReporter : public benchmark::ConsoleReporter {
  public:
   MedianReporter() : ConsoleReporter(OO_Tabular) {}
+  bool ReportContext(const Context& context) override {
+    const bool goes_on = ConsoleReporter::ReportContext(context);
+    name_field_width_ = std::min<std::size_t>(name_field_width_, kNameWidth);
+    return goes_on;
+  }
   void ReportRuns(const std::vector<Run>& runs) override {
     std::vector<Run> kept;
-    std::copy_if(runs.begin(), runs.end(), std::back_inserter(kept), [](const Run& run) {
-      return run.run_type != Run::RT_Aggregate || run.aggregate_name == "median" ||
-             run.aggregate_name == "cv";
-    });
+    for (const Run& run : runs) {
+      if (run.aggregate_name != "median" && run.aggregate_name != "cv") continue;
+      kept.push_back(run);
+      benchmark::BenchmarkName& name = kept.back().run_name;
+      name.iterations = name.repetitions = name.time_type = "";
+    }
     ConsoleReporter::ReportRuns(kept);
   }
+
+ private:
+  static constexpr std::size_t kNameWidth = 40;
 };
 
 int run(int argc, char** argv) {
@@ -99,10 +110,9 @@ int run(int argc, char** argv) {
   std::vector<std::unique_ptr<BenchScene>> scenes;
   for (SceneRecipe& recipe : arguments.scenes) {
     scenes.push_back(std::make_unique<BenchScene>(std::move(recipe), device));
-    register_occlusion(*scenes.back());
-    register_closest_hit(*scenes.back());
-    register_build(*scenes.back());
   }
+  for (const auto& scene : scenes) register_tracing(*scene);
+  for (const auto& scene : scenes) register_building(*scene);
   int rest = static_cast<int>(arguments.rest.size());
   benchmark::Initialize(&rest, arguments.rest.data());
   if (benchmark::ReportUnrecognizedArguments(rest, arguments.rest.data())) return 2;

@@ -1,85 +1,97 @@
-// The two traversal kernels, timed by the device's own clock: uploading rays and reading
-// results back is not counted.
+// The two traversal kernels on rays that lie ready on the device, timed by its own clock.
 #include <benchmark/benchmark.h>
 
-#include <map>
-
 #include "benchmarks.hpp"
-#include "dapple/wavefront.hpp"
 #include "device/context.hpp"
 
 namespace dapple::bench {
 namespace {
 
-constexpr int kIterations = 3;
-constexpr int kRepetitions = 7;
+constexpr const char* kLabel = "bench";
+constexpr int kRepetitions = 9;
 
-/// Device seconds that passes called `label` took so far.
-double seconds_of(const Device& device, const std::string& label) {
-  const std::map<std::string, double>& passes = device.context().pass_seconds();
-  const auto found = passes.find(label);
-  return found == passes.end() ? 0.0 : found->second;
+/// Device seconds of all launches so far.
+double device_seconds(DeviceContext& context) {
+  context.finish();
+  double seconds = 0;
+  for (const auto& [label, pass_seconds] : context.pass_seconds()) seconds += pass_seconds;
+  return seconds;
 }
 
-/// Mean node visits and triangle tests a ray, from results' packed `visits`.
+/// Node visits and triangle tests a ray, from results' packed `visits`.
 template <class Result>
-void count_work(benchmark::State& state, const std::vector<Result>& results) {
+void count_work(benchmark::State& state, DeviceContext& context, const Buffer& buffer,
+                std::size_t rays) {
+  std::vector<Result> results(rays);
+  context.read(buffer, results.data(), rays * sizeof(Result));
   double visits = 0, tests = 0;
   for (const Result& result : results) {
     visits += result.visits & 0xffffu;
     tests += result.visits >> 16;
   }
-  const auto rays = static_cast<double>(results.size());
-  state.counters["visits/ray"] = visits / rays;
-  state.counters["tests/ray"] = tests / rays;
-  state.counters["rays"] = benchmark::Counter(rays * static_cast<double>(state.iterations()),
+  const auto count = static_cast<double>(rays);
+  state.counters["visits/ray"] = visits / count;
+  state.counters["tests/ray"] = tests / count;
+  state.counters["rays"] = benchmark::Counter(count * static_cast<double>(state.iterations()),
                                               benchmark::Counter::kIsRate);
 }
 
-/// Times `trace_all`, which launches passes called `label` and returns one result a ray.
-template <class TraceAll>
-void measure(benchmark::State& state, const Device& device, const std::string& label,
-             const TraceAll& trace_all) {
-  auto results = trace_all();  // compiles the kernel and warms the caches
+/// Times `launch`, once unmeasured to compile its kernel and warm the caches.
+template <class Launch>
+void time_launches(benchmark::State& state, DeviceContext& context, const Launch& launch) {
+  launch();
+  double before = device_seconds(context);
   for (auto _ : state) {
-    const double before = seconds_of(device, label);
-    results = trace_all();
-    state.SetIterationTime(seconds_of(device, label) - before);
+    launch();
+    const double after = device_seconds(context);
+    state.SetIterationTime(after - before);
+    before = after;
   }
-  count_work(state, results);
+}
+
+void measure_occlusion(benchmark::State& state, BenchScene& scene, Estimator estimator) {
+  const SceneRays& rays = scene.rays();
+  const DeviceBuffers& buffers = *scene.on_device().buffers;
+  DeviceContext& context = scene.device().context();
+  OcclusionParams params{};
+  params.scene = buffers.params;
+  params.ray_count = static_cast<uint>(rays.ao_count);
+  params.footprint = 1.0f;
+  time_launches(state, context,
+                [&] { occlusion_pass(context, rays.ao, buffers, kLabel, estimator, params); });
+  count_work<Occlusion>(state, context, rays.ao.occlusions, rays.ao_count);
+}
+
+void measure_closest_hit(benchmark::State& state, BenchScene& scene) {
+  const SceneRays& rays = scene.rays();
+  const DeviceBuffers& buffers = *scene.on_device().buffers;
+  DeviceContext& context = scene.device().context();
+  time_launches(state, context,
+                [&] { closest_hit_pass(context, buffers, rays.camera, rays.camera_count); });
+  count_work<SurfacePoint>(state, context, rays.camera.points, rays.camera_count);
 }
 
 template <class Measure>
-void register_tracing(const std::string& name, const Measure& run) {
-  benchmark::RegisterBenchmark(name.c_str(), run)
+void add(const std::string& name, const Measure& measure) {
+  benchmark::RegisterBenchmark(name.c_str(), measure)
       ->UseManualTime()
+      ->MeasureProcessCPUTime()
       ->Unit(benchmark::kMillisecond)
-      ->Iterations(kIterations)
+      ->Iterations(1)
       ->Repetitions(kRepetitions)
       ->DisplayAggregatesOnly();
 }
 
-void register_estimator(BenchScene& scene, const std::string& kind, Estimator estimator) {
-  register_tracing(kind + "/" + scene.name(), [&scene, estimator](benchmark::State& state) {
-    const SceneRays& rays = scene.rays();
-    measure(state, scene.device(), "occlusion",
-            [&] { return trace(scene.device(), scene.on_device(), rays.ao, estimator); });
-  });
-}
-
 }  // namespace
 
-void register_occlusion(BenchScene& scene) {
-  register_estimator(scene, "Occlusion/exact", Estimator::exact);
-  register_estimator(scene, "Occlusion/prefiltered", Estimator::prefiltered);
-}
-
-void register_closest_hit(BenchScene& scene) {
-  register_tracing("ClosestHit/" + scene.name(), [&scene](benchmark::State& state) {
-    const SceneRays& rays = scene.rays();
-    measure(state, scene.device(), "closest hit",
-            [&] { return closest_hits(scene.device(), scene.on_device(), rays.camera); });
+void register_tracing(BenchScene& scene) {
+  add("Occlusion/exact/" + scene.name(),
+      [&scene](benchmark::State& state) { measure_occlusion(state, scene, Estimator::exact); });
+  add("Occlusion/prefiltered/" + scene.name(), [&scene](benchmark::State& state) {
+    measure_occlusion(state, scene, Estimator::prefiltered);
   });
+  add("ClosestHit/" + scene.name(),
+      [&scene](benchmark::State& state) { measure_closest_hit(state, scene); });
 }
 
 }  // namespace dapple::bench

@@ -36,7 +36,7 @@ std::string catalogue() {
   for (const ProceduralHelp& scene : procedural_help()) {
     text += fmt::format("  {}: {}\n", scene.name, scene.help);
     for (const ProceduralParameter& p : scene.parameters) {
-      text += fmt::format("      {:<10} {} (default {:g}, {:g} to {:g})\n", p.name, p.help,
+      text += fmt::format("      {:<10} {} (default {:.10g}, {:.10g} to {:.10g})\n", p.name, p.help,
                           p.default_value, p.minimum, p.maximum);
     }
   }

@@ -1,0 +1,17 @@
+/* The vectorized opacity model of footprint.clh: optical depths of a node's children along
+   a direction, the ray crossing `chords` mean chords of each box. */
+#include "footprint.clh"
+
+__kernel void depths(__global const BvhNode* nodes, __global const float* directions,
+                     __global float* results, float chords, uint count) {
+  const uint item = get_global_id(0);
+  if (item >= count) return;
+  const float3 direction = vload3(item, directions);
+  const ChildSizes sizes = child_sizes(nodes + item);
+  const Facing facing = facing_areas(sizes, direction);
+  BoxHits hits;
+  hits.hit = (int8)(-1);
+  hits.enter = (float8)(0.0f);
+  hits.leave = chords * sizes.x * sizes.y * sizes.z / facing.sum;
+  vstore8(child_depths(nodes + item, hits, sizes, facing), item, results);
+}

@@ -1,0 +1,23 @@
+/* Reports the layout of every shared struct as the device's compiler sees it, in the order
+   of layout_members.h: sizes of structs; offset and size of members. */
+#include "bvh_node.h"
+#include "geometry.h"
+#include "layout_members.h"
+#include "light_record.h"
+#include "pass_params.h"
+#include "ray.h"
+
+#define DAPPLE_REPORT_STRUCT(Type) \
+  report[next++] = (uint)sizeof(Type);
+#define DAPPLE_REPORT_MEMBER(Type, member)                          \
+  {                                                                 \
+    Type value;                                                     \
+    report[next++] = (uint)((uchar*)&value.member - (uchar*)&value); \
+    report[next++] = (uint)sizeof(value.member);                    \
+  }
+
+__kernel void layout(__global uint* report) {
+  if (get_global_id(0) != 0) return;
+  uint next = 0;
+  DAPPLE_LAYOUT(DAPPLE_REPORT_STRUCT, DAPPLE_REPORT_MEMBER)
+}

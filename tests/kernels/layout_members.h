@@ -1,0 +1,74 @@
+/* Every struct that crosses to the device and every member of it, for both languages.
+   tests/layout_test.cpp notices a member that is missing here: sizes would not add up. */
+#ifndef DAPPLE_LAYOUT_MEMBERS_H
+#define DAPPLE_LAYOUT_MEMBERS_H
+
+#define DAPPLE_LAYOUT(STRUCT, MEMBER)                                                        \
+  STRUCT(BvhNode)                                                                            \
+  MEMBER(BvhNode, origin) MEMBER(BvhNode, exponent) MEMBER(BvhNode, inner_mask)              \
+  MEMBER(BvhNode, child_base) MEMBER(BvhNode, prim_base) MEMBER(BvhNode, lower)              \
+  MEMBER(BvhNode, upper) MEMBER(BvhNode, opacity) MEMBER(BvhNode, leaf_end)                  \
+  MEMBER(BvhNode, spare)                                                                     \
+  STRUCT(TriangleBlock)                                                                      \
+  MEMBER(TriangleBlock, vertex) MEMBER(TriangleBlock, edge1) MEMBER(TriangleBlock, edge2)    \
+  MEMBER(TriangleBlock, opacity)                                                             \
+  STRUCT(TexturedTriangle)                                                                   \
+  MEMBER(TexturedTriangle, uv) MEMBER(TexturedTriangle, alpha)                               \
+  MEMBER(TexturedTriangle, cutoff) MEMBER(TexturedTriangle, texture)                         \
+  MEMBER(TexturedTriangle, spare)                                                            \
+  STRUCT(TextureRecord)                                                                      \
+  MEMBER(TextureRecord, offset) MEMBER(TextureRecord, width) MEMBER(TextureRecord, height)   \
+  MEMBER(TextureRecord, flags)                                                               \
+  STRUCT(InstanceRecord)                                                                     \
+  MEMBER(InstanceRecord, to_object) MEMBER(InstanceRecord, to_world)                         \
+  MEMBER(InstanceRecord, inverse_area_scale) MEMBER(InstanceRecord, root)                    \
+  MEMBER(InstanceRecord, light) MEMBER(InstanceRecord, spare)                                \
+  STRUCT(Ray)                                                                                \
+  MEMBER(Ray, origin) MEMBER(Ray, t_max) MEMBER(Ray, direction) MEMBER(Ray, solid_angle)     \
+  MEMBER(Ray, first_area) MEMBER(Ray, light) MEMBER(Ray, weight) MEMBER(Ray, key)            \
+  STRUCT(Occlusion)                                                                          \
+  MEMBER(Occlusion, transmittance) MEMBER(Occlusion, visits)                                 \
+  STRUCT(SurfacePoint)                                                                       \
+  MEMBER(SurfacePoint, position) MEMBER(SurfacePoint, t) MEMBER(SurfacePoint, normal)        \
+  MEMBER(SurfacePoint, offset) MEMBER(SurfacePoint, area) MEMBER(SurfacePoint, pixel)        \
+  MEMBER(SurfacePoint, sample) MEMBER(SurfacePoint, visits)                                  \
+  STRUCT(LightRecord)                                                                        \
+  MEMBER(LightRecord, position) MEMBER(LightRecord, radius) MEMBER(LightRecord, direction)   \
+  MEMBER(LightRecord, one_minus_cos) MEMBER(LightRecord, edge_u) MEMBER(LightRecord, area)   \
+  MEMBER(LightRecord, edge_v) MEMBER(LightRecord, cos_inner) MEMBER(LightRecord, cos_outer)  \
+  MEMBER(LightRecord, kind) MEMBER(LightRecord, first_triangle)                              \
+  MEMBER(LightRecord, triangle_count) MEMBER(LightRecord, two_sided)                         \
+  MEMBER(LightRecord, id) MEMBER(LightRecord, spare)                                         \
+  STRUCT(EmitterTriangle)                                                                    \
+  MEMBER(EmitterTriangle, vertex) MEMBER(EmitterTriangle, cumulative)                        \
+  MEMBER(EmitterTriangle, edge1) MEMBER(EmitterTriangle, spare1)                             \
+  MEMBER(EmitterTriangle, edge2) MEMBER(EmitterTriangle, spare2)                             \
+  STRUCT(SceneParams)                                                                        \
+  MEMBER(SceneParams, root) MEMBER(SceneParams, has_top)                                     \
+  STRUCT(OcclusionParams)                                                                    \
+  MEMBER(OcclusionParams, scene) MEMBER(OcclusionParams, ray_count)                          \
+  MEMBER(OcclusionParams, footprint) MEMBER(OcclusionParams, inverse_distance)               \
+  MEMBER(OcclusionParams, falloff)                                                           \
+  STRUCT(SliceParams)                                                                        \
+  MEMBER(SliceParams, first_pixel) MEMBER(SliceParams, pixel_count)                          \
+  MEMBER(SliceParams, first_sample) MEMBER(SliceParams, sample_count)                        \
+  STRUCT(CameraParams)                                                                       \
+  MEMBER(CameraParams, slice) MEMBER(CameraParams, to_world)                                 \
+  MEMBER(CameraParams, half_width) MEMBER(CameraParams, half_height)                         \
+  MEMBER(CameraParams, orthographic) MEMBER(CameraParams, width)                             \
+  MEMBER(CameraParams, height) MEMBER(CameraParams, crop_x) MEMBER(CameraParams, crop_y)     \
+  MEMBER(CameraParams, crop_width) MEMBER(CameraParams, seed)                                \
+  MEMBER(CameraParams, inverse_spp)                                                          \
+  STRUCT(AoParams)                                                                           \
+  MEMBER(AoParams, point_count) MEMBER(AoParams, rays) MEMBER(AoParams, inverse_count)       \
+  MEMBER(AoParams, t_max) MEMBER(AoParams, seed)                                             \
+  STRUCT(LightParams)                                                                        \
+  MEMBER(LightParams, point_count) MEMBER(LightParams, rays)                                 \
+  MEMBER(LightParams, inverse_count) MEMBER(LightParams, light) MEMBER(LightParams, seed)    \
+  STRUCT(ResolveParams)                                                                      \
+  MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
+  MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, scale)      \
+  MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
+  MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)
+
+#endif

@@ -1,0 +1,201 @@
+// Directional opacity: its 8-bit code, the model that gives it along any direction, and the
+// same model eight boxes at a time in footprint.clh.
+#include "dapple/shared/opacity.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "bvh/object_bvh.hpp"
+#include "bvh/quantize.hpp"
+#include "test_kernel.hpp"
+
+namespace dapple {
+namespace {
+
+BvhNode unit_node() {
+  BvhNode node{};
+  set_grid(node, Box3f(V3f(0, 0, 0), V3f(1, 1, 1)));
+  set_child_box(node, 0, Box3f(V3f(0, 0, 0), V3f(1, 1, 1)));
+  return node;
+}
+
+TEST(OpacityCode, DecodingIsWithinHalfACodeAndKeepsSmallOpacities) {
+  BvhNode node = unit_node();
+  const Box3f grown = child_box(node, 0);
+  for (int i = 0; i <= 10000; ++i) {
+    const float opacity = static_cast<float>(i) / 10000.0f;
+    set_child_opacity(node, 0, V3f(opacity, 0, 1), grown);
+    // Half a code of the square root r = sqrt(opacity): (r + h)^2 - r^2 = 2 r h + h^2.
+    const float half = 0.5f / 255.0f;
+    const float bound = 2 * std::sqrt(opacity) * half + half * half + 1e-6f;
+    ASSERT_NEAR(opacity_decode(node.opacity[0][0]), opacity, bound);
+    if (opacity >= half * half) ASSERT_GT(node.opacity[0][0], 0) << opacity;
+  }
+  EXPECT_EQ(opacity_decode(node.opacity[1][0]), 0.0f);
+  EXPECT_EQ(opacity_decode(node.opacity[2][0]), 1.0f);
+}
+
+TEST(OpacityCode, TheStoredOpacityIsThatOfTheGrownBox) {
+  BvhNode node{};
+  set_grid(node, Box3f(V3f(0, 0, 0), V3f(100, 50, 20)));
+  // A few grid steps wide, so that growing doubles some areas.
+  const Box3f exact(V3f(10.1f, 10.1f, 10.1f), V3f(10.9f, 10.5f, 10.3f));
+  set_child_box(node, 0, exact);
+  set_child_opacity(node, 0, V3f(0.9f, 0.5f, 0.7f), exact);
+  const V3f opacity(0.9f, 0.5f, 0.7f);
+  const Box3f grown = child_box(node, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float expected = opacity[axis] * face_area(exact, axis) / face_area(grown, axis);
+    EXPECT_LT(expected, 0.9f * opacity[axis]) << "the case does not test much";
+    EXPECT_NEAR(opacity_decode(node.opacity[axis][0]), expected, std::sqrt(expected) / 255 + 1e-5f);
+  }
+}
+
+V3f random_direction(std::mt19937& random) {
+  std::normal_distribution<float> normal;
+  V3f d;
+  do {
+    for (int a = 0; a < 3; ++a) d[a] = normal(random);
+  } while (d.length() < 1e-3f);
+  return d.normalized();
+}
+
+/// Optical depth of a box of `size` along unit `d`.
+float depth_along(const V3f& opacity, const V3f& size, const V3f& d) {
+  return opacity_depth(opacity.x, opacity.y, opacity.z, size.y * size.z * std::fabs(d.x),
+                       size.z * size.x * std::fabs(d.y), size.x * size.y * std::fabs(d.z));
+}
+
+TEST(OpacityModel, ASolidBoxIsOpaqueInEveryDirection) {
+  std::mt19937 random(1);
+  for (const V3f& size : {V3f(1, 1, 1), V3f(1, 3, 0.2f), V3f(1, 0.01f, 1)}) {
+    for (int i = 0; i < 1000; ++i) {
+      const float depth = depth_along(V3f(1, 1, 1), size, random_direction(random));
+      // The least transmittance, 1e-4, to the power 1 / sqrt(3) at worst: 0.0049.
+      EXPECT_LT(std::exp(-depth), 0.005f);
+    }
+  }
+}
+
+TEST(OpacityModel, ASheetShowsItsOwnOpacityFaceOn) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float opacity : {0.01f, 0.3f, 0.7f, 0.93f, 0.99f}) {
+      V3f opacities(0.0f), size(2, 3, 4), direction(0.0f);
+      opacities[axis] = opacity;
+      size[axis] = 0;
+      direction[axis] = -1;
+      EXPECT_NEAR(1 - std::exp(-depth_along(opacities, size, direction)), opacity, 1e-5f);
+      // Edge on it has no area to be met.
+      V3f edge_on(0.0f);
+      edge_on[(axis + 1) % 3] = 1;
+      EXPECT_NEAR(depth_along(opacities, size, edge_on), 0, 1e-6f);
+    }
+  }
+}
+
+TEST(OpacityModel, SmallOpacitiesAddUpLinearly) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const V3f d = random_direction(random), size(1, 2, 0.5f), opacity(1e-3f, 4e-4f, 2e-3f);
+    const float once = depth_along(opacity, size, d), twice = depth_along(opacity * 2.0f, size, d);
+    // -log(1 - x) = x + x^2 / 2: off by x / 2 in ratio, x up to 4e-3; 1e-7 / x by rounding.
+    EXPECT_NEAR(twice / once, 2, 3e-3f);
+  }
+}
+
+TEST(OpacityModel, MoreOpacityAlongAnyAxisIsNeverLessDepth) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (int i = 0; i < 3000; ++i) {
+    const V3f d = random_direction(random), size(1, 1 + unit(random), unit(random) + 0.1f);
+    V3f opacity(unit(random), unit(random), unit(random));
+    const int axis = i % 3;
+    float before = 0;
+    for (int step = 0; step <= 20; ++step) {
+      opacity[axis] = static_cast<float>(step) / 20;
+      const float depth = depth_along(opacity, size, d);
+      ASSERT_GE(depth, before - 1e-5f)
+          << "opacity " << opacity << " along " << d << " of a box of " << size;
+      before = depth;
+    }
+  }
+}
+
+/// Nodes with eight random boxes of random opacities each.
+std::vector<BvhNode> random_nodes(std::size_t count, float greatest) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> unit(0, 1);
+  std::vector<BvhNode> nodes(count);
+  for (BvhNode& node : nodes) {
+    set_grid(node, Box3f(V3f(-1, 0, 2), V3f(3, 1, 4)));
+    for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
+      Box3f box(V3f(-1 + 4 * unit(random), unit(random), 2 + 2 * unit(random)));
+      box.extendBy(V3f(-1 + 4 * unit(random), unit(random), 2 + 2 * unit(random)));
+      set_child_box(node, slot, box);
+      V3f opacity;
+      for (int a = 0; a < 3; ++a) opacity[a] = std::min(1.0f, greatest * unit(random));
+      set_child_opacity(node, slot, opacity, child_box(node, slot));
+    }
+  }
+  return nodes;
+}
+
+std::vector<float> device_depths(const std::vector<BvhNode>& nodes,
+                                 const std::vector<V3f>& directions, float chords) {
+  using namespace kernel_test;
+  const Buffer results = device().allocate(nodes.size() * 8 * sizeof(float));
+  kernel_test::run(
+      "footprint_depth", "depths", nodes.size(),
+      {upload(nodes), upload(directions), results, chords, static_cast<uint>(nodes.size())});
+  return download<float>(results, nodes.size() * 8);
+}
+
+std::vector<V3f> random_directions(std::size_t count) {
+  std::mt19937 random(5);
+  std::vector<V3f> directions;
+  for (std::size_t i = 0; i < count; ++i) directions.push_back(random_direction(random));
+  return directions;
+}
+
+TEST(OpacityModel, TheVectorizedModelEqualsTheScalarOneOverAMeanChord) {
+  const auto directions = random_directions(500);
+  // Up to 1.3, cut at 1, so that full boxes and the blend towards them are met.
+  for (const float greatest : {0.5f, 1.3f}) {
+    const auto nodes = random_nodes(500, greatest);
+    const auto depths = device_depths(nodes, directions, 1);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
+        const Box3f box = child_box(nodes[n], slot);
+        V3f opacity;
+        for (int a = 0; a < 3; ++a) opacity[a] = opacity_decode(nodes[n].opacity[a][slot]);
+        const float expected = depth_along(opacity, box.max - box.min, directions[n]);
+        // Transmittances: a rounding of 1e-7 in 1 - opacity is 1e-7 in them, however thick.
+        // Ten roundings on either side.
+        ASSERT_NEAR(std::exp(-depths[8 * n + slot]), std::exp(-expected), 2e-6f)
+            << "opacity " << opacity << " along " << directions[n];
+      }
+    }
+  }
+}
+
+TEST(OpacityModel, ASparseBoxDeepensWithTheChordUpToALimitAndAFullOneDoesNot) {
+  const auto directions = random_directions(200);
+  const auto sparse = random_nodes(200, 0.5f);
+  const auto one = device_depths(sparse, directions, 1), two = device_depths(sparse, directions, 2),
+             nine = device_depths(sparse, directions, 9);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_NEAR(two[i], 2 * one[i], 1e-5f + 1e-4f * one[i]);
+    EXPECT_NEAR(nine[i], DAPPLE_LONGEST_CHORD * one[i], 1e-5f + 1e-4f * one[i]);
+  }
+  const auto full = random_nodes(200, 1e6f);
+  const auto short_way = device_depths(full, directions, 0.5f),
+             long_way = device_depths(full, directions, 2);
+  for (std::size_t i = 0; i < short_way.size(); ++i) EXPECT_NEAR(short_way[i], long_way[i], 1e-5f);
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,38 @@
+// What the oracle tests share: scenes, and scenes on a device.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "dapple/dapple.hpp"
+
+namespace dapple::oracle {
+
+inline std::string shared_scene(const std::string& name) {
+  return std::string(DAPPLE_SHARED_SCENES) + "/" + name;
+}
+
+#define DAPPLE_SKIP_WITHOUT(path)                                                   \
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here: left out"
+
+/// A birch of 95,084 triangles; its leaves are given the opacity of a real leaf.
+inline Scene load_sapling() {
+  Scene scene = load_scene(shared_scene("sapling_100k.glb"));
+  override_opacity(scene, "leaf", 0.85f);
+  return scene;
+}
+
+/// A game pine of needle cards, textured and blended.
+inline Scene load_pine() { return load_scene(shared_scene("smallpine/scene.gltf")); }
+
+/// A scene that rays can be sent through.
+struct OnDevice {
+  explicit OnDevice(const Scene& scene) : bvh(build_bvh(scene)), uploaded(upload(device, scene, bvh)) {}
+  Device device;
+  SceneBvh bvh;  ///< must outlive `uploaded`
+  DeviceScene uploaded;
+};
+
+}  // namespace dapple::oracle

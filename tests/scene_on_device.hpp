@@ -1,0 +1,147 @@
+// What the tests of traced scenes share: a scene built and uploaded once, rays by origin and
+// direction, points spread over a ball, squares of any subdivision.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "dapple/wavefront.hpp"
+
+namespace dapple::scene_test {
+
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+inline constexpr double kPi = std::numbers::pi;
+
+/// Opened once a process: compiling kernels takes longer than most tests.
+inline const Device& device() {
+  static const Device device;
+  return device;
+}
+
+/// A scene with everything that tracing it needs. Not merged: instances stay as they are.
+class SceneOnDevice {
+ public:
+  explicit SceneOnDevice(Scene scene_to_build)
+      : scene(std::move(scene_to_build)),
+        bvh(build_bvh(scene)),
+        uploaded(upload(device(), scene, bvh)) {}
+  SceneOnDevice(const SceneOnDevice&) = delete;
+  SceneOnDevice& operator=(const SceneOnDevice&) = delete;
+
+  [[nodiscard]] std::vector<Occlusion> trace(const std::vector<Ray>& rays, Estimator estimator,
+                                             float footprint = 1.0f) const {
+    return dapple::trace(device(), uploaded, rays, estimator, footprint);
+  }
+  [[nodiscard]] float occlusion_at(const V3f& point, const V3f& normal,
+                                   const OcclusionOptions& options) const {
+    return occlusion(device(), uploaded, std::vector{point}, std::vector{normal}, options)[0];
+  }
+
+  const Scene scene;
+  const SceneBvh bvh;
+  const DeviceScene uploaded;
+};
+
+inline Ray make_ray(const V3f& origin, const V3f& direction, float solid_angle = 0,
+                    float t_max = kInfinity) {
+  const V3f unit = direction.normalized();
+  Ray ray{};
+  for (int axis = 0; axis < 3; ++axis) {
+    ray.origin[axis] = origin[axis];
+    ray.direction[axis] = unit[axis];
+  }
+  ray.t_max = t_max;
+  ray.solid_angle = solid_angle;
+  return ray;
+}
+
+inline double mean_transmittance(const std::vector<Occlusion>& found) {
+  double sum = 0;
+  for (const Occlusion& one : found) sum += one.transmittance;
+  return sum / static_cast<double>(found.size());
+}
+
+/// The same points whatever the standard library: only the engine's bits are used.
+class Points {
+ public:
+  explicit Points(std::uint32_t seed) : bits_(seed) {}
+  float unit() { return static_cast<float>(bits_() >> 8) * (1.0f / 16777216.0f); }
+  V3f in_cube(float half) {
+    const float x = unit(), y = unit(), z = unit();
+    return V3f(2 * x - 1, 2 * y - 1, 2 * z - 1) * half;
+  }
+  V3f on_sphere() {
+    const float z = 2 * unit() - 1;
+    const float angle = 2 * static_cast<float>(kPi) * unit();
+    const float r = std::sqrt(std::max(0.0f, 1 - z * z));
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+
+ private:
+  std::mt19937 bits_;
+};
+
+/// `count` rays from a sphere of `radius` around the scene's middle to places in its box.
+inline std::vector<Ray> rays_through(const Box3f& box, std::size_t count, float radius,
+                                     float solid_angle, std::uint32_t seed) {
+  Points points(seed);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const V3f at(box.min.x + points.unit() * (box.max.x - box.min.x),
+                 box.min.y + points.unit() * (box.max.y - box.min.y),
+                 box.min.z + points.unit() * (box.max.z - box.min.z));
+    const V3f from = box.center() + points.on_sphere() * radius;
+    rays.push_back(make_ray(from, at - from, solid_angle));
+  }
+  return rays;
+}
+
+inline Material material_of(float opacity) {
+  Material material;
+  material.name = "material_" + std::to_string(opacity);
+  material.alpha_mode = AlphaMode::blend;
+  material.alpha = opacity;
+  return material;
+}
+
+/// Appends a parallelogram corner + [0,1] u + [0,1] v of `divisions` x `divisions` quads.
+inline void append_grid(Mesh& mesh, const V3f& corner, const V3f& u, const V3f& v, int divisions,
+                        std::uint32_t material) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  const auto row = static_cast<std::uint32_t>(divisions + 1);
+  const float step = 1.0f / static_cast<float>(divisions);
+  for (int j = 0; j <= divisions; ++j) {
+    for (int i = 0; i <= divisions; ++i) {
+      mesh.positions.push_back(corner + u * (step * static_cast<float>(i)) +
+                               v * (step * static_cast<float>(j)));
+    }
+  }
+  for (std::uint32_t j = 0; j + 1 < row; ++j) {
+    for (std::uint32_t i = 0; i + 1 < row; ++i) {
+      const std::uint32_t a = first + j * row + i;
+      mesh.indices.insert(mesh.indices.end(), {a, a + 1, a + row + 1, a, a + row + 1, a + row});
+      mesh.materials.insert(mesh.materials.end(), {material, material});
+    }
+  }
+}
+
+/// Adds `mesh` and an instance of it; returns the instance's index.
+inline std::size_t place(Scene& scene, Mesh mesh, const M44f& to_world = {}, int light = -1) {
+  scene.instances.push_back({static_cast<std::uint32_t>(scene.meshes.size()), to_world, light});
+  scene.meshes.push_back(std::move(mesh));
+  return scene.instances.size() - 1;
+}
+
+/// A horizontal square of `side` at `height`, facing up.
+inline Mesh square_mesh(float side, float height, int divisions, std::uint32_t material) {
+  Mesh mesh;
+  append_grid(mesh, {-side / 2, height, side / 2}, {side, 0, 0}, {0, 0, -side}, divisions,
+              material);
+  return mesh;
+}
+
+}  // namespace dapple::scene_test

@@ -1,0 +1,42 @@
+// Running the tests' own kernels (tests/kernels), which include the product's device
+// functions: values in, values out.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "device/context.hpp"
+
+namespace dapple::kernel_test {
+
+/// The best device, with kernels from tests/kernels first. One a process: opening is slow.
+inline DeviceContext& device() {
+  static DeviceContext context("", DAPPLE_TEST_KERNELS);
+  return context;
+}
+
+/// A copy of `values` in device memory.
+template <class T>
+Buffer upload(const std::vector<T>& values) {
+  Buffer buffer = device().allocate(values.size() * sizeof(T));
+  device().write(buffer, values.data(), values.size() * sizeof(T));
+  return buffer;
+}
+
+template <class T>
+std::vector<T> download(const Buffer& buffer, std::size_t count) {
+  std::vector<T> values(count);
+  device().read(buffer, values.data(), count * sizeof(T));
+  return values;
+}
+
+inline void run(const std::string& file, const std::string& kernel, std::size_t items,
+                std::initializer_list<KernelArgument> arguments) {
+  device().launch({kernel, file, {}}, kernel, items, arguments);
+  device().finish();
+}
+
+}  // namespace dapple::kernel_test
