@@ -21,17 +21,19 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "dapple " DAPPLE_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device.\n"
+      "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 pictures differ.\n"
       "dapple COMMAND --help tells more of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
   CLI::App& info = *app.add_subcommand("info", "Tell what is in a scene and what its BVH costs");
   CLI::App& scene = *app.add_subcommand("scene", "Write a procedural scene as a GLB file");
   CLI::App& devices = *app.add_subcommand("devices", "List the OpenCL devices");
+  CLI::App& compare = *app.add_subcommand("compare", "Tell how far two OpenEXR files are apart");
   const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
       {&render, dapple::add_render_command(render)},
       {&info, dapple::add_info_command(info)},
       {&scene, dapple::add_scene_command(scene)},
       {&devices, dapple::add_devices_command(devices)},
+      {&compare, dapple::add_compare_command(compare)},
   };
   try {
     app.parse(argc, argv);

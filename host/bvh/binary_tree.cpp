@@ -10,10 +10,16 @@
 #include <algorithm>
 #include <array>
 
+#include "bvh/float4.hpp"
+
 namespace dapple {
 namespace {
 
 constexpr int kBins = 16;
+
+/// Few primitives don't need many bins, whose setting up would cost more than they.
+int bins_for(std::uint32_t count) { return count >= 32 ? kBins : count >= 6 ? 8 : 4; }
+
 constexpr std::uint32_t kParallelBinning = 1u << 16;
 constexpr std::uint32_t kParallelSubtree = 1u << 12;
 /// Below this depth ranges are halved, which bounds the depth of hostile input.
@@ -21,33 +27,49 @@ constexpr int kDeepest = 48;
 /// Cost of a triangle test over that of a box test; leaves of 8 lanes are cheap.
 constexpr float kPrimitiveCost = 0.6f;
 
-V3f centre(const PrimitiveBox& box) { return (box.lower + box.upper) * 0.5f; }
-
-struct Extent {
-  Box3f box, centres;
-  void add(const PrimitiveBox& prim) {
-    box.extendBy(prim.lower);
-    box.extendBy(prim.upper);
-    centres.extendBy(centre(prim));
-  }
-  void add(const Extent& other) {
-    box.extendBy(other.box);
-    centres.extendBy(other.centres);
+struct Loaded {
+  Float4 lower, upper;
+  /// Twice the centre; the fourth lanes hold integers and are cleared.
+  [[nodiscard]] Float4 centre2() const {
+    const Float4 sum = lower + upper;
+    return Float4{sum[0], sum[1], sum[2], 0.0f};
   }
 };
 
-struct Bin {
-  Box3f box;
-  std::uint32_t count = 0;
+Loaded load(const PrimitiveBox& prim) {
+  static_assert(sizeof(PrimitiveBox) == 2 * sizeof(Float4));
+  Loaded loaded;
+  std::memcpy(&loaded, &prim, sizeof loaded);
+  loaded.lower[3] = 0.0f;
+  loaded.upper[3] = 0.0f;
+  return loaded;
+}
+
+struct Extent {
+  Box4 box = empty_box4(), centres2 = empty_box4();
+  void add(const Loaded& prim) {
+    box.add(prim.lower, prim.upper);
+    const Float4 centre2 = prim.centre2();
+    centres2.add(centre2, centre2);
+  }
+  void add(const Extent& other) {
+    box.add(other.box);
+    centres2.add(other.centres2);
+  }
 };
 
 struct Bins {
-  std::array<std::array<Bin, kBins>, 3> axis;
+  std::array<std::array<Box4, 3>, kBins> box;  // by bin, then axis: few bins are few cache lines
+  std::array<std::array<std::uint32_t, 3>, kBins> count;
+  explicit Bins(int used) {
+    std::fill_n(box.begin(), used, std::array<Box4, 3>{empty_box4(), empty_box4(), empty_box4()});
+    std::fill_n(count.begin(), used, std::array<std::uint32_t, 3>{});
+  }
   void add(const Bins& other) {
     for (int a = 0; a < 3; ++a) {
       for (int b = 0; b < kBins; ++b) {
-        axis[a][b].box.extendBy(other.axis[a][b].box);
-        axis[a][b].count += other.axis[a][b].count;
+        box[b][a].add(other.box[b][a]);
+        count[b][a] += other.count[b][a];
       }
     }
   }
@@ -55,16 +77,18 @@ struct Bins {
 
 /// Maps centres to bins; an axis along which all centres agree has scale 0.
 struct Binning {
-  V3f start, scale;
-  explicit Binning(const Box3f& centres) : start(centres.min), scale(0.0f) {
-    const V3f size = centres.max - centres.min;
+  Float4 start, scale = splat4(0.0f);
+  int bins_used;
+  Binning(const Box4& centres2, std::uint32_t count) : start(centres2.lower), bins_used(bins_for(count)) {
+    const Float4 size = centres2.upper - centres2.lower;
     for (int a = 0; a < 3; ++a) {
-      if (size[a] > 0.0f && kBins / size[a] < 1e30f) scale[a] = kBins * 0.99999f / size[a];
+      const float bins = static_cast<float>(bins_used);
+      if (size[a] > 0.0f && bins / size[a] < 1e30f) scale[a] = bins * 0.99999f / size[a];
     }
   }
-  int bin(const PrimitiveBox& prim, int a) const {
-    const float at = ((prim.lower[a] + prim.upper[a]) * 0.5f - start[a]) * scale[a];
-    return std::clamp(static_cast<int>(at), 0, kBins - 1);
+  [[nodiscard]] Int4 bins(const Loaded& prim) const {
+    const Float4 at = (prim.centre2() - start) * scale;
+    return __builtin_convertvector(min4(max4(at, splat4(0.0f)), splat4(static_cast<float>(bins_used - 1))), Int4);
   }
 };
 
@@ -82,11 +106,11 @@ class Builder {
   void build(std::uint32_t index, std::uint32_t first, std::uint32_t count, int depth) {
     const Extent extent = measure(first, count);
     BinaryNode& node = nodes_[index];
-    node = {extent.box, first, count, 0, 0};
+    node = {extent.box.box(), first, count, 0, 0};
     if (count == 1) return;
-    const Binning binning(extent.centres);
-    const Split split = depth < kDeepest ? best_split(fill(binning, first, count)) : Split{};
-    const float area = half_area(extent.box);
+    const Binning binning(extent.centres2, count);
+    const Split split = depth < kDeepest ? best_split(fill(binning, first, count), binning.bins_used) : Split{};
+    const float area = extent.box.half_area();
     const bool as_leaf_is_cheaper =
         split.axis < 0 ||
         area + kPrimitiveCost * split.cost >= kPrimitiveCost * area * static_cast<float>(count);
@@ -110,7 +134,7 @@ class Builder {
   template <class Sum, class Add>
   Sum reduce(std::uint32_t first, std::uint32_t count, const Sum& empty, const Add& add) const {
     const auto range_sum = [&](std::uint32_t begin, std::uint32_t end, Sum sum) {
-      for (std::uint32_t i = begin; i < end; ++i) add(sum, order_[i]);
+      for (std::uint32_t i = begin; i < end; ++i) add(sum, load(order_[i]));
       return sum;
     };
     if (count < kParallelBinning) return range_sum(first, first + count, empty);
@@ -126,39 +150,37 @@ class Builder {
   }
 
   Extent measure(std::uint32_t first, std::uint32_t count) const {
-    return reduce(first, count, Extent{}, [](Extent& e, const PrimitiveBox& prim) { e.add(prim); });
+    return reduce(first, count, Extent{}, [](Extent& e, const Loaded& prim) { e.add(prim); });
   }
 
   Bins fill(const Binning& binning, std::uint32_t first, std::uint32_t count) const {
-    return reduce(first, count, Bins{}, [&](Bins& bins, const PrimitiveBox& prim) {
+    return reduce(first, count, Bins(count >= kParallelBinning ? kBins : binning.bins_used), [&](Bins& bins, const Loaded& prim) {
+      const Int4 at = binning.bins(prim);
       for (int a = 0; a < 3; ++a) {
-        Bin& bin = bins.axis[a][binning.bin(prim, a)];
-        bin.box.extendBy(prim.lower);
-        bin.box.extendBy(prim.upper);
-        ++bin.count;
+        bins.box[at[a]][a].add(prim.lower, prim.upper);
+        ++bins.count[at[a]][a];
       }
     });
   }
 
-  static Split best_split(const Bins& bins) {
+  static Split best_split(const Bins& bins, int used) {
     Split best;
     for (int a = 0; a < 3; ++a) {
-      const auto& axis = bins.axis[a];
       std::array<float, kBins> right_cost{};
-      Box3f box;
+      Box4 box = empty_box4();
       std::uint32_t count = 0;
-      for (int b = kBins - 1; b > 0; --b) {
-        box.extendBy(axis[b].box);
-        count += axis[b].count;
-        right_cost[b] = count ? half_area(box) * static_cast<float>(count) : -1.0f;
+      for (int b = used - 1; b > 0; --b) {
+        box.add(bins.box[b][a]);
+        count += bins.count[b][a];
+        right_cost[b] = count ? box.half_area() * static_cast<float>(count) : -1.0f;
       }
-      box = Box3f();
+      box = empty_box4();
       count = 0;
-      for (int b = 0; b + 1 < kBins; ++b) {
-        box.extendBy(axis[b].box);
-        count += axis[b].count;
+      for (int b = 0; b + 1 < used; ++b) {
+        box.add(bins.box[b][a]);
+        count += bins.count[b][a];
         if (count == 0 || right_cost[b + 1] < 0.0f) continue;
-        const float cost = half_area(box) * static_cast<float>(count) + right_cost[b + 1];
+        const float cost = box.half_area() * static_cast<float>(count) + right_cost[b + 1];
         if (cost < best.cost) best = {cost, a, b};
       }
     }
@@ -171,7 +193,7 @@ class Builder {
     if (split.axis < 0) return count / 2;
     const auto begin = order_.begin() + first;
     const auto middle = std::partition(begin, begin + count, [&](const PrimitiveBox& prim) {
-      return binning.bin(prim, split.axis) <= split.last_left;
+      return binning.bins(load(prim))[split.axis] <= split.last_left;
     });
     return static_cast<std::uint32_t>(middle - begin);
   }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "bvh/multiversion.hpp"
+
 namespace dapple {
 namespace {
 
@@ -37,11 +39,28 @@ AxisResampling resampling(const Box3f& parent, const Box3f& child, int axis) {
           child.max[axis] - child.min[axis]};
 }
 
+/// A triangle that slipped between the cells: its area shared by the cells it touches.
+void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
+  const int columns = triangle.column1 - triangle.column0 + 1, rows = triangle.row1 - triangle.row0 + 1;
+  const float share = std::min(1.0f, triangle.area / static_cast<float>(columns * rows));
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    for (int column = 0; column < kMapSize; ++column) {
+      const bool touched = column >= triangle.column0 && column <= triangle.column1;
+      coverage.share[row * kMapSize + column] = touched ? share : 0.0f;
+    }
+  }
+}
+
 }  // namespace
 
+DAPPLE_MULTIVERSION
 float CoverageMap::mean_opacity(int axis) const {
   const auto& map = transmittance[axis];
-  return 1.0f - std::accumulate(map.begin(), map.end(), 0.0f) / kMapCells;
+  std::array<float, kMapSize> columns{};
+  for (int row = 0; row < kMapSize; ++row) {
+    for (int i = 0; i < kMapSize; ++i) columns[i] += map[row * kMapSize + i];
+  }
+  return 1.0f - std::accumulate(columns.begin(), columns.end(), 0.0f) / kMapCells;
 }
 
 bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out) {
@@ -64,13 +83,13 @@ bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellT
   return true;
 }
 
-void rasterize(const CellTriangle& triangle, std::array<float, kMapCells>& coverage) {
+DAPPLE_MULTIVERSION
+void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
   // Each edge cuts a share 1 - c from a cell; where the shares don't overlap, as in a thin
   // sliver or along an edge, what is left is c0 + c1 + c2 - 2. The rest is put right by
-  // scaling to the known area.
+  // scaling to the known area. Rows are done whole: one or two vectors, no remainders.
   V2f corner[3] = {triangle.a, triangle.a + triangle.edge1, triangle.a + triangle.edge2};
-  if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x)
-    std::swap(corner[1], corner[2]);
+  if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x) std::swap(corner[1], corner[2]);
   float nx[3], ny[3], offset[3];
   for (int e = 0; e < 3; ++e) {
     const V2f from = corner[e], along = corner[(e + 1) % 3] - from;
@@ -80,31 +99,40 @@ void rasterize(const CellTriangle& triangle, std::array<float, kMapCells>& cover
     ny[e] = along.x * inverse;
     offset[e] = reach > 0.0f ? 0.5f - nx[e] * from.x - ny[e] * from.y : 1.0f;
   }
-  const int columns = triangle.column1 - triangle.column0 + 1;
-  const int rows = triangle.row1 - triangle.row0 + 1;
-  float sum = 0.0f;
-  for (int j = 0; j < rows; ++j) {
-    const float y = static_cast<float>(triangle.row0 + j) + 0.5f;
-    float* out = &coverage[j * columns];
-    const float start[3] = {offset[0] + ny[0] * y, offset[1] + ny[1] * y, offset[2] + ny[2] * y};
-    for (int i = 0; i < columns; ++i) {
-      const float x = static_cast<float>(triangle.column0 + i) + 0.5f;
-      const float c0 = std::clamp(start[0] + nx[0] * x, 0.0f, 1.0f);
-      const float c1 = std::clamp(start[1] + nx[1] * x, 0.0f, 1.0f);
-      const float c2 = std::clamp(start[2] + nx[2] * x, 0.0f, 1.0f);
+  std::array<float, kMapSize> columns{};
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    const float y = static_cast<float>(row) + 0.5f;
+    float* out = &coverage.share[row * kMapSize];
+    const float start0 = offset[0] + ny[0] * y, start1 = offset[1] + ny[1] * y, start2 = offset[2] + ny[2] * y;
+    for (int i = 0; i < kMapSize; ++i) {
+      const float x = static_cast<float>(i) + 0.5f;
+      const float c0 = std::min(std::max(start0 + nx[0] * x, 0.0f), 1.0f);
+      const float c1 = std::min(std::max(start1 + nx[1] * x, 0.0f), 1.0f);
+      const float c2 = std::min(std::max(start2 + nx[2] * x, 0.0f), 1.0f);
       out[i] = std::max(0.0f, c0 + c1 + c2 - 2.0f);
+      columns[i] += out[i];
     }
-    for (int i = 0; i < columns; ++i) sum += out[i];
   }
-  const int cells = rows * columns;
-  if (sum <= 0.0f) {
-    std::fill_n(coverage.begin(), cells, std::min(1.0f, triangle.area / static_cast<float>(cells)));
-    return;
-  }
+  const float sum = std::accumulate(columns.begin(), columns.end(), 0.0f);
+  if (sum <= 0.0f) return spread_evenly(triangle, coverage);
   const float scale = triangle.area / sum;
-  for (int i = 0; i < cells; ++i) coverage[i] = std::min(1.0f, coverage[i] * scale);
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    float* out = &coverage.share[row * kMapSize];
+    for (int i = 0; i < kMapSize; ++i) out[i] = std::min(1.0f, out[i] * scale);
+  }
 }
 
+DAPPLE_MULTIVERSION
+void multiply_uniform(std::array<float, kMapCells>& map, const CellTriangle& triangle,
+                      const CellCoverage& coverage, float opacity) {
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    float* out = &map[row * kMapSize];
+    const float* in = &coverage.share[row * kMapSize];
+    for (int i = 0; i < kMapSize; ++i) out[i] *= 1.0f - opacity * in[i];
+  }
+}
+
+DAPPLE_MULTIVERSION
 void composite(CoverageMap& parent, const Box3f& parent_box, const CoverageMap& child,
                const Box3f& child_box) {
   for (int axis = 0; axis < 3; ++axis) {

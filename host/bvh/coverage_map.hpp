@@ -65,37 +65,43 @@ struct CellTriangle {
 /// False when the box has no area along `axis` or the triangle none in it.
 bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out);
 
-/// Fraction of each touched cell that is covered, row after row of the touched range; the
-/// sum is the triangle's area exactly, up to cells that would be more than full.
-void rasterize(const CellTriangle& triangle, std::array<float, kMapCells>& coverage);
+/// Cells of a map, row after row; only the rows a triangle touches are valid.
+struct CellCoverage {
+  alignas(64) std::array<float, kMapCells> share;
+};
+
+/// Fraction of each cell in the touched rows that is covered; the sum is the triangle's
+/// area exactly, up to cells that would be more than full.
+void rasterize(const CellTriangle& triangle, CellCoverage& coverage);
+
+/// map *= 1 - opacity * coverage over the touched rows of one axis' map.
+void multiply_uniform(std::array<float, kMapCells>& map, const CellTriangle& triangle,
+                      const CellCoverage& coverage, float opacity);
 
 template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, const CoveringTriangle& triangle,
            const OpacityAt& opacity_at) {
-  std::array<float, kMapCells> coverage;
+  CellCoverage coverage;
   for (int axis = 0; axis < 3; ++axis) {
     CellTriangle cells;
     if (!project(triangle, box, axis, cells)) continue;
     rasterize(cells, coverage);
-    const int columns = cells.column1 - cells.column0 + 1;
+    auto& out = map.transmittance[axis];
+    if (triangle.opacity >= 0.0f) {
+      multiply_uniform(out, cells, coverage, triangle.opacity);
+      continue;
+    }
     const float share = cells.area > 1.0f ? 1.0f / cells.area : 1.0f;
+    const float inverse = 1.0f / (cells.edge1.x * cells.edge2.y - cells.edge1.y * cells.edge2.x);
     for (int row = cells.row0; row <= cells.row1; ++row) {
-      float* out = &map.transmittance[axis][row * kMapSize + cells.column0];
-      const float* in = &coverage[(row - cells.row0) * columns];
-      if (triangle.opacity >= 0.0f) {
-        for (int i = 0; i < columns; ++i) out[i] *= 1.0f - triangle.opacity * in[i];
-        continue;
-      }
-      const float inverse = 1.0f / (cells.edge1.x * cells.edge2.y - cells.edge1.y * cells.edge2.x);
-      for (int i = 0; i < columns; ++i) {
-        if (in[i] <= 0.0f) continue;
-        const V2f p =
-            V2f(static_cast<float>(cells.column0 + i) + 0.5f, static_cast<float>(row) + 0.5f) -
-            cells.a;
-        float u = std::clamp((p.x * cells.edge2.y - p.y * cells.edge2.x) * inverse, 0.0f, 1.0f);
-        float v = std::clamp((cells.edge1.x * p.y - cells.edge1.y * p.x) * inverse, 0.0f, 1.0f);
+      for (int column = cells.column0; column <= cells.column1; ++column) {
+        const int cell = row * kMapSize + column;
+        if (coverage.share[cell] <= 0.0f) continue;
+        const V2f p = V2f(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f) - cells.a;
+        const float u = std::clamp((p.x * cells.edge2.y - p.y * cells.edge2.x) * inverse, 0.0f, 1.0f);
+        const float v = std::clamp((cells.edge1.x * p.y - cells.edge1.y * p.x) * inverse, 0.0f, 1.0f);
         const float excess = std::max(u + v, 1.0f);
-        out[i] *= 1.0f - opacity_at(u / excess, v / excess, share) * in[i];
+        out[cell] *= 1.0f - opacity_at(u / excess, v / excess, share) * coverage.share[cell];
       }
     }
   }

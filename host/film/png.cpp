@@ -15,16 +15,10 @@
 #include "dapple/film.hpp"
 #include "film/film_defect.hpp"
 #include "film/output_file.hpp"
+#include "film/png.hpp"
 
 namespace dapple {
 namespace {
-
-// shown = (value - offset) * scale, then clamped and, for colours, encoded as sRGB.
-struct Tone {
-  float offset = 0.0f;
-  float scale = 1.0f;
-  bool srgb = true;
-};
 
 using Planes = std::vector<const Plane*>;  // three of a colour or vector, or one
 
@@ -101,38 +95,44 @@ void append(void* bytes, void* data, int count) {
                                            static_cast<std::size_t>(count));
 }
 
-// `path` is for the message alone.
-std::string encode_png(const std::vector<std::uint8_t>& image, int width, int height, int channels,
-                       const std::string& path) {
+}  // namespace
+
+Tone layer_tone(const Film& film, const std::string& layer) {
+  return tone_of(layer, planes_of(film, layer));
+}
+
+ByteImage layer_image(const Film& film, const std::string& layer, const Tone& tone) {
+  const Planes planes = planes_of(film, layer);
+  const std::size_t channels = planes.size();
+  const std::size_t pixels = planes.front()->pixels.size();
+  ByteImage image{film.data_window.width(), film.data_window.height(), static_cast<int>(channels),
+                  std::vector<std::uint8_t>(pixels * channels)};
+  for (std::size_t c = 0; c < channels; ++c) {
+    for (std::size_t i = 0; i < pixels; ++i) {
+      image.bytes[i * channels + c] = shown(planes[c]->pixels[i], tone);
+    }
+  }
+  return image;
+}
+
+std::string encode_png(const ByteImage& image, const std::string& name) {
   constexpr std::size_t kLargestImage = std::size_t{1} << 30;  // stb counts bytes in ints
   std::string bytes;
-  if (image.size() > kLargestImage ||
-      stbi_write_png_to_func(append, &bytes, width, height, channels, image.data(),
-                             width * channels) == 0) {
-    throw Error(ErrorKind::failed, "cannot write " + path + ": " + std::to_string(width) + " x " +
-                                       std::to_string(height) + " pixels are too many for a PNG");
+  if (image.bytes.size() > kLargestImage ||
+      stbi_write_png_to_func(append, &bytes, image.width, image.height, image.channels,
+                             image.bytes.data(), image.width * image.channels) == 0) {
+    throw Error(ErrorKind::failed, "cannot write " + name + ": " + std::to_string(image.width) +
+                                       " x " + std::to_string(image.height) +
+                                       " pixels are too many for a PNG");
   }
   return bytes;
 }
 
-}  // namespace
-
 void write_png(const Film& film, const std::string& path, const std::string& layer) {
   const std::string defect = film_defect(film);
   if (!defect.empty()) throw Error(ErrorKind::failed, "cannot write " + path + ": " + defect);
-  const Planes planes = planes_of(film, layer);
-  const Tone tone = tone_of(layer, planes);
-  const std::size_t channels = planes.size();
-  const std::size_t pixels = planes.front()->pixels.size();
-  std::vector<std::uint8_t> image(pixels * channels);
-  for (std::size_t c = 0; c < channels; ++c) {
-    for (std::size_t i = 0; i < pixels; ++i) {
-      image[i * channels + c] = shown(planes[c]->pixels[i], tone);
-    }
-  }
-  const int width = film.data_window.width();
-  const int height = film.data_window.height();
-  write_whole_file(path, encode_png(image, width, height, static_cast<int>(channels), path));
+  const ByteImage image = layer_image(film, layer, layer_tone(film, layer));
+  write_whole_file(path, encode_png(image, path));
 }
 
 }  // namespace dapple
