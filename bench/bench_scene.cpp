@@ -1,3 +1,5 @@
+// How a measured scene is made: as render() would, up to the rays of its occlusion pass,
+// which stay in the queues for the benchmarks to trace again and again.
 #include "bench_scene.hpp"
 
 #include <limits>

@@ -25,7 +25,7 @@ inline void closest_in_block(Scene scene, Span span, uint block_index, uint lane
                              uint instance, Nearest* nearest) {
   __global const TriangleBlock* block = scene.blocks + block_index;
   const BlockHits hits = intersect_block(block, span, lanes);
-  if (!any(hits.hit)) return;
+  if (!any_lane(hits.hit)) return;
   Lanes t, u, v, opacity;
   t.v = hits.t;
   u.v = hits.u;

@@ -3,7 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "bvh/quantize.hpp"
@@ -13,10 +12,6 @@ namespace {
 
 /// Primitives a leaf may hold: at most 8, so that a node's fit 64 bits (leaf_bits()).
 constexpr std::uint32_t kLeafSize = 4;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Opacity of each triangle: [0,1], or -(1 + index) of a textured one.
 std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
@@ -125,26 +120,22 @@ std::vector<BvhNode> pack_nodes(const WideTree& tree) {
   return nodes;
 }
 
-ObjectBvh build_object(const Scene& scene, const Mesh& mesh) {
-  ObjectBvh object;
-  const auto start = std::chrono::steady_clock::now();
+BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
+  BuiltObject built;
+  ObjectBvh& object = built.object;
   const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
   std::vector<PrimitiveBox> boxes = primitive_boxes(mesh, opacities);
-  if (boxes.empty()) return object;
+  if (boxes.empty()) return built;
   const BinaryTree binary = build_binary_tree(std::move(boxes), kLeafSize);
-  const WideTree wide = collapse(binary);
-  object.box = wide.nodes[0].box;
-  for (std::uint32_t c = 0; c < wide.nodes[0].child_count; ++c)
-    object.parts.push_back(wide.nodes[0].children[c].box);
-  object.stack = stack_needed(wide);
-  object.sah_cost = expected_visits(wide);
-  object.nodes = pack_nodes(wide);
-  pack_triangles(object, wide, binary, mesh, opacities);
-  object.build_seconds = seconds_since(start);
-  const auto prefilter_start = std::chrono::steady_clock::now();
-  prefilter(object, wide, TextureIntegrals(scene, object.textured));
-  object.prefilter_seconds = seconds_since(prefilter_start);
-  return object;
+  built.tree = collapse(binary);
+  const WideNode& root = built.tree.nodes[0];
+  object.box = root.box;
+  for (std::uint32_t c = 0; c < root.child_count; ++c) object.parts.push_back(root.children[c].box);
+  object.stack = stack_needed(built.tree);
+  object.sah_cost = expected_visits(built.tree);
+  object.nodes = pack_nodes(built.tree);
+  pack_triangles(object, built.tree, binary, mesh, opacities);
+  return built;
 }
 
 }  // namespace dapple

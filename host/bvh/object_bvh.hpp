@@ -22,12 +22,17 @@ struct ObjectBvh {
   std::uint32_t stack = 0;   ///< traversal stack entries needed
   double sah_cost = 0;       ///< expected node visits of a ray through `box`
   std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
-  double build_seconds = 0, prefilter_seconds = 0;
 };
 
-/// Builds, packs and prefilters the triangles of `mesh` that are not fully transparent.
-/// Empty (no nodes) when there are none.
-ObjectBvh build_object(const Scene& scene, const Mesh& mesh);
+/// A built object and the tree it was packed from, which prefiltering walks.
+struct BuiltObject {
+  ObjectBvh object;
+  WideTree tree;
+};
+
+/// Builds and packs the triangles of `mesh` that are not fully transparent. Empty (no
+/// nodes) when there are none.
+BuiltObject build_object(const Scene& scene, const Mesh& mesh);
 
 /// Fills nodes[*].opacity and `opacity` of a packed object, bottom-up, in parallel and in
 /// time linear in the triangles.

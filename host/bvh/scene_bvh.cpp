@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -67,10 +68,25 @@ V3f instance_opacity(const ObjectBvh& object, const M44f& to_world, const Box3f&
   return opacity;
 }
 
-std::vector<ObjectBvh> build_objects(const Scene& scene) {
-  std::vector<ObjectBvh> objects(scene.meshes.size());
-  tbb::parallel_for(std::size_t{0}, objects.size(),
-                    [&](std::size_t m) { objects[m] = build_object(scene, scene.meshes[m]); });
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Every mesh's object; wall times of both steps into `statistics`.
+std::vector<ObjectBvh> build_objects(const Scene& scene, BvhStatistics& statistics) {
+  std::vector<BuiltObject> built(scene.meshes.size());
+  const auto building = std::chrono::steady_clock::now();
+  tbb::parallel_for(std::size_t{0}, built.size(),
+                    [&](std::size_t m) { built[m] = build_object(scene, scene.meshes[m]); });
+  statistics.build_seconds = seconds_since(building);
+  const auto prefiltering = std::chrono::steady_clock::now();
+  std::vector<ObjectBvh> objects(built.size());
+  tbb::parallel_for(std::size_t{0}, built.size(), [&](std::size_t m) {
+    ObjectBvh& object = built[m].object;
+    if (!object.nodes.empty()) prefilter(object, built[m].tree, TextureIntegrals(scene, object.textured));
+    objects[m] = std::move(object);
+  });
+  statistics.prefilter_seconds = seconds_since(prefiltering);
   return objects;
 }
 
@@ -117,8 +133,6 @@ void add_statistics(BvhStatistics& s, const std::vector<ObjectBvh>& objects) {
     s.opaque += object.opaque;
     s.cut_out += object.cut_out;
     s.translucent += object.translucent;
-    s.build_seconds += object.build_seconds;
-    s.prefilter_seconds += object.prefilter_seconds;
     if (object.triangles > largest) {
       largest = object.triangles;
       s.sah_cost = object.sah_cost;
@@ -206,7 +220,7 @@ void check_stack(std::uint32_t needed, const std::string& source) {
 
 SceneBvh build_bvh(const Scene& scene) {
   SceneBvh bvh;
-  std::vector<ObjectBvh> objects = build_objects(scene);
+  std::vector<ObjectBvh> objects = build_objects(scene, bvh.statistics);
   add_statistics(bvh.statistics, objects);
   std::vector<std::uint32_t> roots;
   for (ObjectBvh& object : objects) roots.push_back(append_object(bvh, object, scene.source));

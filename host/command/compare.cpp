@@ -1,9 +1,9 @@
 // dapple compare: from two EXR files to figures, a heat map and a page, top to bottom.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "command/command.hpp"
 #include "compare/difference.hpp"
@@ -59,13 +59,11 @@ void write_heat_map(const LayerPair& layer, const Film& b, const CompareArgument
   write_whole_file(a.png, encode_png(heat_map(layer, b.data_window, hottest), a.png));
 }
 
-void print_figures(const Comparison& comparison, bool json) {
+void print_figures(const Comparison& comparison, const std::string& reason, bool json) {
   using Json = nlohmann::ordered_json;
-  // EXR's channel names are bytes; JSON must be UTF-8.
-  fmt::print(
-      "{}",
-      json ? comparison_json(comparison).dump(2, ' ', false, Json::error_handler_t::replace) + "\n"
-           : comparison_text(comparison));
+  constexpr auto kRepair = Json::error_handler_t::replace;  // EXR's channel names are bytes
+  fmt::print("{}", json ? comparison_json(comparison, reason).dump(2, ' ', false, kRepair) + "\n"
+                        : comparison_text(comparison));
 }
 
 void run_compare(const CompareArguments& arguments) {
@@ -86,7 +84,7 @@ void run_compare(const CompareArguments& arguments) {
     write_whole_file(arguments.html,
                      comparison_page(a, b, match.pairs, comparison, {arguments.scale, reason}));
   }
-  print_figures(comparison, arguments.json);
+  print_figures(comparison, reason, arguments.json);
   if (!reason.empty()) throw Error(ErrorKind::different, reason);
 }
 

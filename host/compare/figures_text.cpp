@@ -29,7 +29,11 @@ constexpr FigureColumn kColumns[] = {
      [](D d) { return d.rmse_of_largest ? figure(*d.rmse_of_largest) : kAbsent; }, false},
     {"max |A-B|", "largest difference", [](D d) { return figure(d.max_difference); }, true},
     {"at", "its pixel, from the top left, and channel",
-     [](D d) { return fmt::format("{},{} {}", d.max_x, d.max_y, d.max_channel); }, true},
+     [](D d) {
+       return d.max_difference > 0 ? fmt::format("{},{} {}", d.max_x, d.max_y, d.max_channel)
+                                   : kAbsent;
+     },
+     true},
     {"worst RMSE", "RMSE of the window, at most 32 pixels wide and tall, that differs most",
      [](D d) { return figure(d.window_rmse); }, true},
     {"worst window", "X0,Y0,X1,Y1 of that window, as --crop takes them",
@@ -105,7 +109,7 @@ std::string comparison_text(const Comparison& comparison) {
   return text + only_text("A", comparison.only_a) + only_text("B", comparison.only_b);
 }
 
-nlohmann::ordered_json comparison_json(const Comparison& comparison) {
+nlohmann::ordered_json comparison_json(const Comparison& comparison, const std::string& failure) {
   nlohmann::ordered_json json;
   json["a"] = comparison.name_a;
   json["b"] = comparison.name_b;
@@ -117,6 +121,8 @@ nlohmann::ordered_json comparison_json(const Comparison& comparison) {
     json["layers"].push_back(layer_json(layer));
   json["only_in_a"] = comparison.only_a;
   json["only_in_b"] = comparison.only_b;
+  json["passed"] = failure.empty();
+  json["failure"] = failure;
   return json;
 }
 

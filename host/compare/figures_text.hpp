@@ -24,7 +24,7 @@ inline constexpr const char* kAbsent = "-";
 std::span<const FigureColumn> figure_columns();
 
 std::string comparison_text(const Comparison& comparison);
-/// Strings that are not UTF-8 are repaired when dumped with `error_handler_t::replace`.
-nlohmann::ordered_json comparison_json(const Comparison& comparison);
+/// Names may not be UTF-8: dump it with `error_handler_t::replace`.
+nlohmann::ordered_json comparison_json(const Comparison& comparison, const std::string& failure);
 
 }  // namespace dapple

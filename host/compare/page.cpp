@@ -92,8 +92,8 @@ std::string pictures(const Film& a, const Film& b, const LayerPair& pair, const 
       "<section class=\"layer\" id=\"{0}\" aria-labelledby=\"{0}-name\">\n<h3 id=\"{0}-name\">{1}"
       "</h3>\n<div class=\"pictures\">\n<figure>\n<div class=\"swipe\">\n",
       layer_id(index), escape_html(d.layer));
-  html += image(layer_image(b, picture, tone), "under", d.layer + " of B");
   html += image(layer_image(a, picture, tone), "over", d.layer + " of A");
+  html += image(layer_image(b, picture, tone), "under", d.layer + " of B");
   html += "</div>\n<figcaption>A and B, both with B's tone.</figcaption>\n</figure>\n<figure>\n";
   html += image(heat_map(pair, b.data_window, hottest), "heat",
                 fmt::format("Difference of {}, RMSE {:.6g}, largest at {}, {}", d.layer, d.rmse,

@@ -49,12 +49,12 @@ void validate(const RenderOptions& options) {
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);
   check_range("--footprint", options.footprint, 0, 1e6);
-  check_range("--ao-distance", options.ao_distance, 0, 1e30);
+  check_range("--ao-distance", options.ao_distance, 0, 1e30f);
   check_range("--ao-falloff", options.ao_falloff, 0, 100);
   if (options.ao_falloff > 0 && options.ao_distance <= 0) {
     throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
   }
-  if (options.fov_degrees != 0) check_range("--fov", options.fov_degrees, 0.01, 179);
+  if (options.fov_degrees != 0) check_range("--fov", options.fov_degrees, 0.01f, 179);
   if (options.look) {
     check_finite("--look-from", options.look->from);
     check_finite("--look-at", options.look->at);

@@ -1,0 +1,211 @@
+#include "accuracy/node_accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/box_rays.hpp"
+#include "accuracy/composition.hpp"
+#include "accuracy/opacity_models.hpp"
+#include "bvh/quantize.hpp"
+#include "dapple/shared/opacity.h"
+
+namespace dapple::bench {
+namespace {
+
+constexpr std::size_t kSmallest = 4, kLargest = 65536, kStep = 4;
+
+/// Rays along an axis, where a model is given the true opacities, for each ray of a direction.
+constexpr int kAxisRays = 4;
+
+/// The node as the different ablations see it.
+struct JudgedNode {
+  Box3f box;           ///< grown
+  NodeOpacity stored;  ///< what the kernels read
+  V3f exact_box;       ///< opacities of the box before it was grown
+  V3f rectangles;
+  V3f true_axes;  ///< sampled along the axes: no error but the directional one is left
+};
+
+struct Model {
+  const char* name;
+  DirectionalModel directional;
+  V3f JudgedNode::*opacity = nullptr;  ///< in place of the stored ones
+};
+
+/// Each changes one thing of the first, up to the last four.
+constexpr Model kModels[] = {
+    {"renderer", kRendererModel},
+    {"no chord", {Blend::renderer, Chord::none}},
+    {"chord, mean kept", {Blend::renderer, Chord::mean_kept}},
+    {"linear", {Blend::linear, Chord::scaled}},
+    {"areas", {Blend::areas, Chord::scaled}},
+    {"depths", {Blend::depths, Chord::scaled}},
+    {"full matrix", {Blend::renderer, Chord::scaled, true}},
+    {"growth ignored", kRendererModel, &JudgedNode::exact_box},
+    {"rectangles", kRendererModel, &JudgedNode::rectangles},
+    {"true axes", kRendererModel, &JudgedNode::true_axes},
+    {"rectangles, linear, no chord", {Blend::linear, Chord::none}, &JudgedNode::rectangles},
+    {"matrix, areas, mean kept", {Blend::areas, Chord::mean_kept, true}},
+    {"matrix, depths, mean kept", {Blend::depths, Chord::mean_kept, true}},
+    {"matrix, halfway, mean kept", {Blend::halfway, Chord::mean_kept, true}},
+    {"true axes, matrix, halfway, mean kept",
+     {Blend::halfway, Chord::mean_kept, true},
+     &JudgedNode::true_axes},
+};
+constexpr std::size_t kModelCount = std::size(kModels);
+
+V3f unit_axis(int axis) {
+  V3f direction(0.0f);
+  direction[axis] = 1.0f;
+  return direction;
+}
+
+Box3f bounds_of(const std::vector<LeafTriangle>& triangles) {
+  Box3f box;
+  for (const LeafTriangle& triangle : triangles) {
+    box.extendBy(triangle.vertex);
+    box.extendBy(triangle.vertex + triangle.edge1);
+    box.extendBy(triangle.vertex + triangle.edge2);
+  }
+  return box;
+}
+
+/// The stored opacities without the correction for the box's growth.
+V3f before_growing(const V3f& opacity, const V3f& grown, const V3f& exact) {
+  V3f out;
+  for (int axis = 0; axis < 3; ++axis) {
+    const V3f along = unit_axis(axis);
+    const float area = facing_areas(exact, along)[axis];
+    const float ratio = area > 0.0f ? facing_areas(grown, along)[axis] / area : 1.0f;
+    out[axis] = std::min(1.0f, opacity[axis] * ratio);
+  }
+  return out;
+}
+
+/// Mean opacity that a model gives the same rays the truth was sampled with.
+double model_opacity(const Model& model, const JudgedNode& node, const V3f& direction,
+                     const std::vector<BoxRay>& rays) {
+  NodeOpacity known = node.stored;
+  if (model.opacity) known.opacity = node.*model.opacity;
+  double opacity = 0;
+  for (const BoxRay& ray : rays)
+    opacity += 1 - std::exp(-model_depth(model.directional, known, direction, ray.chord));
+  return opacity / static_cast<double>(rays.size());
+}
+
+/// Running sums of one size of subtrees.
+class ErrorSums {
+ public:
+  void add(const JudgedNode& node, const V3f& direction, const SampledOpacity& truth) {
+    ++count_;
+    truth_ += truth.opacity;
+    noise_ += truth.variance;
+    for (std::size_t m = 0; m < kModelCount; ++m) {
+      const double error = model_opacity(kModels[m], node, direction, truth.rays) - truth.opacity;
+      errors_[m] += error;
+      squares_[m] += error * error;
+    }
+  }
+
+  void finish(NodeAccuracyRow& row) const {
+    row.true_opacity = truth_ / count_;
+    for (std::size_t m = 0; m < kModelCount; ++m) {
+      const double bias = errors_[m] / count_;
+      // What is left without the noise is noisy itself, but never below the bias.
+      const double square = std::max(bias * bias, (squares_[m] - noise_) / count_);
+      row.errors.push_back({bias, std::sqrt(square)});
+    }
+  }
+
+ private:
+  double count_ = 0, truth_ = 0, noise_ = 0;
+  double errors_[kModelCount] = {}, squares_[kModelCount] = {};
+};
+
+class NodeJudge {
+ public:
+  NodeJudge(const Scene& scene, const SceneBvh& bvh, const NodeAccuracyOptions& options)
+      : scene_(scene),
+        bvh_(bvh),
+        options_(options),
+        compositions_(compose(bvh, scene)),
+        random_(options.seed) {}
+
+  /// Judges up to options.nodes of the candidates, drawn at random.
+  NodeAccuracyRow judge(std::vector<Subtree> candidates, std::size_t triangles) {
+    const std::size_t count = std::min(candidates.size(), static_cast<std::size_t>(options_.nodes));
+    ErrorSums sums;
+    for (std::size_t i = 0; i < count; ++i) {
+      std::swap(candidates[i], candidates[i + random_.bits() % (candidates.size() - i)]);
+      judge_one(candidates[i], sums);
+    }
+    NodeAccuracyRow row;
+    row.triangles = triangles;
+    row.nodes = static_cast<int>(count);
+    sums.finish(row);
+    return row;
+  }
+
+ private:
+  void judge_one(const Subtree& subtree, ErrorSums& sums) {
+    const BvhNode& node = bvh_.nodes[subtree.node];
+    const auto triangles = triangles_below(bvh_, node, subtree.slot);
+    const oracle::EmbreeOracle truth(scene_of(triangles, bvh_, scene_));
+    const JudgedNode judged = describe(subtree, triangles, truth);
+    for (int d = 0; d < options_.directions; ++d) {
+      const V3f direction(random_.direction());
+      sums.add(judged, direction,
+               sample_opacity(truth, judged.box, direction, options_.rays, random_));
+    }
+  }
+
+  JudgedNode describe(const Subtree& subtree, const std::vector<LeafTriangle>& triangles,
+                      const oracle::EmbreeOracle& truth) {
+    const BvhNode& node = bvh_.nodes[subtree.node];
+    const Composition& composition = compositions_[subtree.node][subtree.slot];
+    JudgedNode judged;
+    judged.box = child_box(node, subtree.slot);
+    judged.stored.size = judged.box.size();
+    judged.stored.correlation = composition.correlation();
+    judged.rectangles = composition.rectangles;
+    for (int axis = 0; axis < 3; ++axis) {
+      judged.stored.opacity[axis] = opacity_decode(node.opacity[axis][subtree.slot]);
+      judged.true_axes[axis] = static_cast<float>(
+          sample_opacity(truth, judged.box, unit_axis(axis), kAxisRays * options_.rays, random_)
+              .opacity);
+    }
+    judged.exact_box =
+        before_growing(judged.stored.opacity, judged.stored.size, bounds_of(triangles).size());
+    return judged;
+  }
+
+  const Scene& scene_;
+  const SceneBvh& bvh_;
+  const NodeAccuracyOptions& options_;
+  Compositions compositions_;
+  oracle::Random random_;
+};
+
+}  // namespace
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const Model& model : kModels) names.emplace_back(model.name);
+  return names;
+}
+
+std::vector<NodeAccuracyRow> measure_nodes(const Scene& scene, const SceneBvh& bvh,
+                                           const NodeAccuracyOptions& options) {
+  NodeJudge judge(scene, bvh, options);
+  const std::vector<Subtree> all = list_subtrees(bvh);
+  std::vector<NodeAccuracyRow> rows;
+  for (std::size_t size = kSmallest; size <= kLargest; size *= kStep) {
+    std::vector<Subtree> candidates;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(candidates),
+                 [&](const Subtree& s) { return s.triangles >= size && s.triangles < 2 * size; });
+    if (!candidates.empty()) rows.push_back(judge.judge(std::move(candidates), size));
+  }
+  return rows;
+}
+
+}  // namespace dapple::bench

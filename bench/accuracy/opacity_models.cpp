@@ -1,0 +1,80 @@
+#include "accuracy/opacity_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/box_rays.hpp"
+#include "dapple/shared/opacity.h"
+
+namespace dapple::bench {
+namespace {
+
+float sum(const V3f& v) { return v.x + v.y + v.z; }
+
+float depth_of(float opacity) {
+  return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
+}
+
+/// Length of `terms`, the ellipsoid's value along a direction, each term >= 0 its part along
+/// an axis. `correlation` bends it away from the axes: SGGX (Heitz et al., "The SGGX
+/// Microflake Distribution", 2015) with the normals' correlations as off-diagonals.
+float ellipsoid(const V3f& terms, const V3f& direction, const V3f& correlation) {
+  V3f v = terms;
+  for (int axis = 0; axis < 3; ++axis) v[axis] = std::copysign(terms[axis], direction[axis]);
+  const float crossed =
+      correlation.x * v.x * v.y + correlation.y * v.y * v.z + correlation.z * v.z * v.x;
+  return std::sqrt(std::max(0.0f, v.length2() + 2.0f * crossed));
+}
+
+/// How far the renderer has gone from areas to depths.
+float filled_share(float mean) {
+  return std::clamp(
+      (mean - DAPPLE_SPARSE_OPACITY) / (DAPPLE_FILLED_OPACITY - DAPPLE_SPARSE_OPACITY), 0.0f, 1.0f);
+}
+
+float chord_depth(float depth, Chord chord, float length, const V3f& facing) {
+  if (chord == Chord::none) return depth;
+  const float counted = std::clamp(length, 0.0f, DAPPLE_LONGEST_CHORD);
+  if (chord == Chord::scaled) return depth * counted;
+  // Chords as if gamma distributed: mean exp(-raised * chord) = (1 + v raised)^(-1/v), which
+  // is to be exp(-depth).
+  const float variance = chord_variance(facing);
+  const float raised = variance > 1e-4f ? std::expm1(variance * depth) / variance : depth;
+  return raised * counted;
+}
+
+}  // namespace
+
+float chord_variance(const V3f& facing) {
+  // Mean square by the box's covariogram, the integral over the longest chord of
+  // prod (1 - q_k s); q_k is the share of side k that this chord spans.
+  const V3f q = facing / std::max({facing.x, facing.y, facing.z, 1e-37f});
+  const float e1 = sum(q), e2 = q.x * q.y + q.y * q.z + q.z * q.x, e3 = q.x * q.y * q.z;
+  return std::max(0.0f, 2.0f * e1 * (1.0f - e1 / 2.0f + e2 / 3.0f - e3 / 4.0f) - 1.0f);
+}
+
+float model_depth(const DirectionalModel& model, const NodeOpacity& node, const V3f& direction,
+                  float chord) {
+  const V3f faces = facing_areas(node.size, direction);
+  const float inverse = 1.0f / (sum(faces) + 1e-37f);
+  const V3f area = node.opacity * faces;
+  const V3f correlation = model.matrix ? node.correlation : V3f(0.0f);
+  const float mean = sum(area) * inverse;
+  const float silhouette = ellipsoid(area, direction, correlation) * inverse;
+  const auto with_chord = [&](float depth) {
+    return chord_depth(depth, model.chord, chord, faces);
+  };
+  if (model.blend == Blend::linear) return with_chord(depth_of(mean));
+  if (model.blend == Blend::areas) return with_chord(depth_of(silhouette));
+  if (model.blend != Blend::renderer) {
+    const V3f depths(depth_of(node.opacity.x), depth_of(node.opacity.y), depth_of(node.opacity.z));
+    const float depth = ellipsoid(depths * faces, direction, correlation) * inverse;
+    const bool halfway = model.blend == Blend::halfway;
+    return with_chord(halfway ? 0.5f * (depth + depth_of(silhouette)) : depth);
+  }
+  const float sparse = with_chord(depth_of(silhouette));
+  const float filled = silhouette / (mean + 1e-37f) * depth_of(mean);
+  return sparse + filled_share(mean) * (filled - sparse);
+}
+
+}  // namespace dapple::bench

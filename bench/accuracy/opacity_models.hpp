@@ -1,0 +1,50 @@
+// Ways to make an optical depth of what a node stores: the renderer's, in scalar form, and
+// the ablations that say what each part of it is worth.
+#pragma once
+
+#include "dapple/scene.hpp"
+
+namespace dapple::bench {
+
+/// What a model may know of a node.
+struct NodeOpacity {
+  V3f size;               ///< of the grown box, metres
+  V3f opacity;            ///< along each axis, [0,1]
+  V3f correlation{0.0f};  ///< of the normals' components xy, yz, zx, [-1,1]
+};
+
+/// How opacities along the axes become one along a direction.
+enum class Blend {
+  renderer,  ///< areas when sparse, on to depths as the node fills
+  linear,    ///< occluding areas add up
+  areas,     ///< occluding areas as an ellipsoid, however full
+  depths,    ///< optical depths as an ellipsoid
+  halfway,   ///< the mean of the depths that `areas` and `depths` give
+};
+
+/// Whether rays that cross more of the box meet more.
+enum class Chord {
+  none,
+  scaled,     ///< depth times chord: the node's mean opacity falls, since exp is convex
+  mean_kept,  ///< the same, with depths raised so that the mean opacity stays
+};
+
+struct DirectionalModel {
+  Blend blend;
+  Chord chord;
+  bool matrix = false;  ///< ellipsoids with off-diagonal terms
+};
+
+/// {Blend::renderer, Chord::scaled} is kernels/footprint.clh's child_depths(), one lane.
+inline constexpr DirectionalModel kRendererModel{Blend::renderer, Chord::scaled};
+
+/// Optical depth of the node along a unit direction for a ray whose chord is `chord` times
+/// the mean chord.
+float model_depth(const DirectionalModel& model, const NodeOpacity& node, const V3f& direction,
+                  float chord);
+
+/// Variance of box chords along a direction, over their squared mean, [0, 1/2]. Of the box
+/// only its faces' projected areas along the direction matter.
+float chord_variance(const V3f& facing);
+
+}  // namespace dapple::bench

@@ -1,0 +1,49 @@
+// The nodes whose opacity is judged: child slots of the object BVHs, with everything below
+// each, as the scene of its own that the truth is sampled from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "dapple/bvh.hpp"
+
+namespace dapple::bench {
+
+/// Child `slot` of node `node` and the triangles below it.
+struct Subtree {
+  std::uint32_t node;
+  unsigned slot;
+  std::size_t triangles;
+};
+
+inline constexpr bool is_inner(const BvhNode& node, unsigned slot) {
+  return (node.inner_mask >> slot & 1u) != 0;
+}
+
+/// Index of the node that inner child `slot` is.
+std::uint32_t child_node(const BvhNode& node, unsigned slot);
+
+/// Roots of the object BVHs, each once.
+std::vector<std::uint32_t> object_roots(const SceneBvh& bvh);
+
+/// Every child slot of every object that has triangles below it; children before parents.
+std::vector<Subtree> list_subtrees(const SceneBvh& bvh);
+
+/// One triangle of a leaf. `opacity` in [0,1], or -(1 + index) into SceneBvh::textured.
+struct LeafTriangle {
+  V3f vertex, edge1, edge2;
+  float opacity;
+};
+
+/// Triangles of leaf child `slot` of the node.
+std::vector<LeafTriangle> leaf_triangles(const SceneBvh& bvh, const BvhNode& node, unsigned slot);
+
+/// All triangles below the child, leaf by leaf.
+std::vector<LeafTriangle> triangles_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot);
+
+/// A scene of only these triangles, in the object's space, with `scene`'s textures.
+Scene scene_of(const std::vector<LeafTriangle>& triangles, const SceneBvh& bvh, const Scene& scene);
+
+}  // namespace dapple::bench
