@@ -8,9 +8,12 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <string_view>
 
+#include "accuracy/accuracy.hpp"
 #include "benchmarks.hpp"
 #include "dapple/error.hpp"
+#include "paper/paper.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -18,6 +21,7 @@ namespace {
 constexpr const char* kHelp =
     "dapple-bench [--scene=SCENE [--opacity=MATERIAL=VALUE]...]... [--device=NAME]\n"
     "             [--kernel-dir=FOLDER] [Google Benchmark's flags, below]\n"
+    "dapple-bench accuracy|paper --help   (where built with Embree)\n"
     "  --scene        measure this scene too: a glTF file or \"scene:NAME?key=value\"\n"
     "  --opacity      give a material of the last --scene this opacity\n"
     "  --device       part of an OpenCL device's name\n"
@@ -127,6 +131,11 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+#ifdef DAPPLE_BENCH_ACCURACY
+    const std::string_view subcommand = argc > 1 ? argv[1] : "";
+    if (subcommand == "accuracy") return dapple::bench::run_accuracy(argc - 1, argv + 1);
+    if (subcommand == "paper") return dapple::bench::run_paper(argc - 1, argv + 1);
+#endif
     return dapple::bench::run(argc, argv);
   } catch (const dapple::Error& error) {
     std::cerr << "dapple-bench: " << error.what() << '\n';

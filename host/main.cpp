@@ -19,7 +19,6 @@ int run(int argc, char** argv) {
       "Ambient occlusion and soft shadows through foliage, hair and forests.\n\n"
       "Example:\n  dapple render scene:demo -o demo.exr --png demo.png"};
   app.set_version_flag("--version", "dapple " DAPPLE_VERSION);
-  app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 pictures differ.\n"
       "dapple COMMAND --help tells more of each.");
@@ -40,6 +39,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? 0 : kUsage;
+  }
+  // Not CLI11's own requirement: that hides the name of a command it does not know.
+  if (app.get_subcommands().empty()) {
+    fmt::print(stderr, "dapple: a subcommand is needed: render, info, scene, devices or compare\n");
+    return kUsage;
   }
   for (const auto& [command, work] : commands) {
     if (command->parsed()) work();

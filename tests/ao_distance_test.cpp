@@ -59,9 +59,10 @@ TEST(AoDistance, APlaneOverheadFallsOffAsItsIntegral) {
         // Without falloff the edge at D is sharp: 2e-4 rms; with it smoother still.
         EXPECT_NEAR(ao(Estimator::exact, 1), expected, 9e-4);
         EXPECT_NEAR(ao(Estimator::prefiltered, 1), expected, 2e-3);
-        // As wide as 64 rays would have: nodes count as at their middle, and their opacity
-        // is that of 8-bit bounds and codes.
-        EXPECT_NEAR(ao(Estimator::prefiltered, 1024), expected, 0.02);
+        // As wide as 64 rays would have: nodes count as at their middle. 8-bit bounds grow a
+        // node by up to 2 of its 64 to 127 steps an axis, and its opacity is that of the grown
+        // box: 3 to 6 % less, of which overlapping neighbours make up for a part.
+        EXPECT_NEAR(ao(Estimator::prefiltered, 1024), expected, 0.04);
       }
     }
   }

@@ -38,14 +38,14 @@ TEST(ClosedForm, ADiskOverAPointOccludesItsFormFactorTimesItsOpacity) {
     // Four times the sampler's rms, and 1e-4 for the 256 segments: (2 pi / 256)^2 / 6.
     EXPECT_NEAR(ao_below(scene, Estimator::exact, 1), expected, 9e-4);
     EXPECT_NEAR(ao_below(scene, Estimator::prefiltered, 1), expected, 1.5e-3);
-    // The footprint of 64 rays: a node's opacity is now spread over its box, which reaches
-    // beyond the disk's rim by what the 8-bit bounds grew (up to 1/64 of the node) and more
-    // where the box is not full. First order cancels, the cosine's change across it does not.
+    // The footprint of 64 rays: nodes of single triangles. Neighbours on the disk have boxes
+    // that overlap, and their factors are multiplied as if independent: two triangles that
+    // fill a square let a quarter through. So up to half of the disk's own part may be lost.
     const float wide = kManyRays / 64.0f;
     const float prefiltered = ao_below(scene, Estimator::prefiltered, wide);
     std::printf("disk %.2f %.2f %.2f: closed form %.5f, wide prefiltered %.5f\n", c.radius,
                 c.height, c.opacity, expected, prefiltered);
-    EXPECT_NEAR(prefiltered, expected, 0.02);
+    EXPECT_NEAR(prefiltered, expected, 0.03);
   }
 }
 
@@ -135,39 +135,67 @@ TEST(ClosedForm, AQuarterAndAHalfGreyLetThroughThreeEighths) {
   }
 }
 
-// From all around a cube of side 1 to places in its inner 90 %: a tenth is where boxes that
-// 8-bit bounds grew by up to 1/64 let the rays in front of their rim pass.
-std::vector<Ray> rays_into_cube(float solid_angle) {
+// Parallel to `direction`, through places in the cube's inner 90 %: the tenth left out is
+// where boxes that 8-bit bounds grew by up to 1/64 let some of a ray pass at their rim.
+std::vector<Ray> rays_into_cube(const V3f& direction, float solid_angle) {
   Points points(7);
   std::vector<Ray> rays;
-  for (int i = 0; i < 20000; ++i) {
-    const V3f from = V3f(0, 0.5f, 0) + points.on_sphere() * 5.0f;
-    rays.push_back(make_ray(from, V3f(0, 0.5f, 0) + points.in_cube(0.45f) - from, solid_angle));
+  for (int i = 0; i < 400; ++i) {
+    const V3f at = V3f(0, 0.5f, 0) + points.in_cube(0.45f);
+    rays.push_back(make_ray(at - direction * 5.0f, direction, solid_angle));
   }
   return rays;
 }
 
+// Along faces, edges and diagonals, and 60 more.
+std::vector<V3f> directions_all_around() {
+  std::vector<V3f> directions;
+  for (int i = 0; i < 27; ++i) {
+    const V3f d(static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1),
+                static_cast<float>(i / 9 - 1));
+    if (d.length() > 0) directions.push_back(d.normalized());
+  }
+  Points points(8);
+  while (directions.size() < 86) directions.push_back(points.on_sphere());
+  return directions;
+}
+
 TEST(SolidCube, IsOpaqueFromEveryDirectionWhateverTheFootprint) {
   for (const char* name : {"scene:cube", "scene:cube?divisions=3", "scene:cube?divisions=50"}) {
-    SCOPED_TRACE(name);
     const SceneOnDevice cube(make_procedural(name));
-    for (const Occlusion& found : cube.trace(rays_into_cube(0), Estimator::exact)) {
-      ASSERT_EQ(found.transmittance, 0.0f);
-    }
-    // At scale 1 nodes of side 0.2 are covered, at 16 the root's children and at 64 all.
+    // A twentieth, a fifth, four fifths of a face, and more than all of it.
     for (const float scale : {1.0f, 4.0f, 16.0f, 64.0f}) {
-      const std::vector<Occlusion> found =
-          cube.trace(rays_into_cube(0.04f / 25), Estimator::prefiltered, scale);
-      float largest = 0;
-      int above = 0;
-      for (const Occlusion& one : found) {
-        largest = std::max(largest, one.transmittance);
-        above += one.transmittance >= 0.02f;
+      double worst = 0, sum = 0;
+      V3f where;
+      for (const V3f& direction : directions_all_around()) {
+        const std::vector<Ray> rays = rays_into_cube(direction, 0.05f / 25);
+        for (const Occlusion& found : cube.trace(rays, Estimator::exact)) {
+          ASSERT_EQ(found.transmittance, 0.0f) << direction;
+        }
+        const double mean = mean_transmittance(cube.trace(rays, Estimator::prefiltered, scale));
+        sum += mean;
+        if (mean > worst) where = direction;
+        worst = std::max(worst, mean);
       }
-      std::printf("%s, footprint scale %g: mean %.5f largest %.5f, %d above 0.02\n", name, scale,
-                  mean_transmittance(found), largest, above);
-      EXPECT_LT(largest, 0.02f) << "footprint scale " << scale;
+      std::printf("%s, footprint scale %g: mean %.4f, worst %.4f along %.2f %.2f %.2f\n", name,
+                  scale, sum / 86, worst, where.x, where.y, where.z);
+      EXPECT_LT(worst, 0.02) << name << " at footprint scale " << scale << " along " << where;
     }
+  }
+}
+
+// What prefiltering has to keep is the area that is hidden, its rim blurred.
+TEST(SolidCube, HidesItsSilhouetteWhateverTheFootprint) {
+  const SceneOnDevice cube(make_procedural("scene:cube"));
+  const std::vector<Ray> rays = rays_across(cube.bvh.bounds, 40000, 0.05f / 9, 9);
+  // A convex body's mean silhouette is a quarter of its surface (Cauchy): 6/4 of pi (3/4). Four
+  // standard deviations of 40,000 rays are 0.01.
+  const double expected = 1.5 / (kPi * 0.75);
+  EXPECT_NEAR(1 - mean_transmittance(cube.trace(rays, Estimator::exact)), expected, 0.01);
+  for (const float scale : {1.0f, 4.0f, 16.0f, 64.0f}) {
+    const double found = 1 - mean_transmittance(cube.trace(rays, Estimator::prefiltered, scale));
+    std::printf("cube's silhouette at scale %g: %.4f of %.4f\n", scale, found, expected);
+    EXPECT_NEAR(found, expected, 0.03) << scale;
   }
 }
 

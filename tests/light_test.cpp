@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 
 #include "scene_on_device.hpp"
 
@@ -222,10 +221,10 @@ TEST(EmissiveMesh, NeverOccludesItsOwnSamplesAndDoesOccludeAo) {
       // Half of the samples lie on faces turned away: noisier, 4 / sqrt(4096) of it at random.
       const float glow = value(film, "light.glow.R");
       EXPECT_NEAR(glow, expected, 0.01 * expected);
-      // Opaque and convex: it hides what it would light. Wide footprints blur its outline.
-      const float ao = value(film, "ao.R");
-      std::printf("glow %.5f of %.5f, ao %.5f of %.5f\n", glow, expected, ao, 1 - expected / kPi);
-      EXPECT_NEAR(ao, 1 - expected / kPi, footprint > 1 ? 0.03 : 0.003);
+      // Opaque and convex: it hides what it would light. Wide footprints blur its outline,
+      // for which SolidCube has the bounds.
+      if (footprint > 1) continue;
+      EXPECT_NEAR(value(film, "ao.R"), 1 - expected / kPi, 0.003);
     }
   }
 }

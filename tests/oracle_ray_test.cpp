@@ -2,68 +2,49 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
 #include "embree_oracle.hpp"
+#include "oracle_rays.hpp"
 #include "oracle_scenes.hpp"
 
 namespace dapple::oracle {
 namespace {
 
-constexpr std::size_t kRays = 100'000;
+constexpr double kTolerance = 1e-4;
+/// A pine's card spans some 600 texels and alpha goes from 0 to 1 within one of them at a
+/// needle's rim: rounding of 1e-6 in u and v is one of 6e-4 in opacity.
+constexpr double kTextureTolerance = 1e-3;
 
-/// A place on a surface, surfaces chosen by number and not by area, so that small ones count.
-V3d random_target(const Scene& scene, Random& random) {
-  const auto pick = [&](std::size_t count) {
-    return static_cast<std::size_t>(random.real() * static_cast<double>(count));
-  };
-  const Instance& instance = scene.instances[pick(scene.instances.size())];
-  const Mesh& mesh = scene.meshes[instance.mesh];
-  const std::uint32_t* corner = &mesh.indices[3 * pick(mesh.triangle_count())];
-  const double root = std::sqrt(random.real()), share = random.real();
-  const V3d a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]),
-      c(mesh.positions[corner[2]]);
-  const V3d point = a * (1 - root) + b * (root * share) + c * (root * (1 - share));
-  return point * Imath::M44d(instance.to_world);
-}
-
-/// From anywhere in the scene's box, grown by a quarter. Of four rays three are aimed at a
-/// surface, one goes anywhere; every other ray ends somewhere, as light rays do.
-std::vector<Segment> random_segments(const Scene& scene, std::uint64_t seed) {
-  Random random(seed);
-  const Box3f box = scene_bounds(scene);
-  const V3d margin = V3d(box.size()) / 8.0;
-  const V3d low = V3d(box.min) - margin, high = V3d(box.max) + margin;
-  std::vector<Segment> segments(kRays);
-  for (std::size_t i = 0; i < kRays; ++i) {
-    V3d origin;
-    for (int k = 0; k < 3; ++k) origin[k] = random.between(low[k], high[k]);
-    const V3d way = random_target(scene, random) - origin;
-    segments[i].origin = V3f(origin);
-    segments[i].direction = V3f(i % 4 == 3 ? random.direction() : way.normalized());
-    if (i % 2) segments[i].t_max = static_cast<float>(2 * random.real() * way.length());
+/// Whether a ray no further from `segment` than a kernel's rounding can carry it has
+/// transmittance `ours`, or one has more and another less: some 16 roundings of 2^-24 each, of
+/// the largest number in the ray.
+bool is_a_neighbours(const EmbreeOracle& oracle, const Segment& segment, double ours,
+                     double tolerance) {
+  constexpr double kRounding = 1e-6;
+  Random random(3);
+  float largest = std::isfinite(segment.t_max) ? segment.t_max : 0;
+  for (int k = 0; k < 3; ++k) largest = std::max(largest, std::fabs(segment.origin[k]));
+  double least = 1, most = 0;
+  for (int i = 0; i < 256; ++i) {
+    Segment neighbour = segment;
+    neighbour.origin = V3f(V3d(segment.origin) + random.direction() * (kRounding * largest));
+    neighbour.t_max *= static_cast<float>(1 + kRounding * random.between(-1, 1));
+    const double transmittance = oracle.transmittance(neighbour);
+    least = std::min(least, transmittance);
+    most = std::max(most, transmittance);
   }
-  return segments;
-}
-
-std::vector<Occlusion> trace_exact(const OnDevice& on_device,
-                                   const std::vector<Segment>& segments) {
-  std::vector<Ray> rays;
-  for (const Segment& s : segments) {
-    rays.push_back({{s.origin.x, s.origin.y, s.origin.z},
-                    s.t_max,
-                    {s.direction.x, s.direction.y, s.direction.z},
-                    0, 0, 0, 1, 0});
-  }
-  return trace(on_device.device, on_device.uploaded, rays, Estimator::exact);
+  return ours >= least - tolerance && ours <= most + tolerance;
 }
 
 struct Disagreement {
-  std::size_t rays = 0;  ///< that differ by more than the tolerance
-  double mean = 0;       ///< signed, over all rays
-  double grey = 0;       ///< share of rays of transmittance in (0, 1): what makes a test severe
+  std::size_t rays = 0;         ///< that differ by more than the tolerance
+  std::size_t unexplained = 0;  ///< of them: not by rounding, as far as neighbours tell
+  double mean = 0;              ///< signed, over all rays
+  double grey = 0;              ///< share of rays of transmittance in (0, 1)
 };
 
 Disagreement compare(const EmbreeOracle& oracle, const std::vector<Segment>& segments,
@@ -75,27 +56,39 @@ Disagreement compare(const EmbreeOracle& oracle, const std::vector<Segment>& seg
   const auto count = static_cast<double>(segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const double difference = ours[i].transmittance - theirs[i];
-    found.rays += !(std::fabs(difference) <= tolerance);
     found.mean += difference / count;
     found.grey += theirs[i] > 0 && theirs[i] < 1 ? 1 / count : 0;
+    if (std::fabs(difference) <= tolerance) continue;
+    ++found.rays;
+    found.unexplained += !is_a_neighbours(oracle, segments[i], ours[i].transmittance, tolerance);
   }
   return found;
 }
 
 /// `loaded` goes to Embree as it is, to the device as `prepared`.
-Disagreement disagreement(const Scene& loaded, const OnDevice& prepared, double tolerance,
-                          const char* label) {
+///
+/// Kernels compute in float and test triangles otherwise than Embree, so a ray within rounding
+/// of an edge may fall on either side of it. Rounding is 1e-6 of some metres and leaves are a
+/// few centimetres wide, so the rim in question is 1e-4 to 1e-3 of a leaf and is decided
+/// wrongly now and then: 2 to 4 of 100,000 were measured without textures, 22 to 25 with; 50
+/// are allowed. Neighbouring rays must confirm that it is an edge, but for three: a ray along an
+/// edge that two triangles share may meet both or neither in the kernels, as none of its
+/// neighbours does (none or one was measured).
+void expect_equal(const Scene& loaded, const OnDevice& prepared, double tolerance,
+                  const char* label) {
   const std::vector<Segment> segments = random_segments(loaded, 1);
   const Disagreement found =
-      compare(EmbreeOracle(loaded), segments, trace_exact(prepared, segments), tolerance);
-  std::printf("%s: %zu of %zu rays differ by more than %g; mean difference %.1e; %.0f %% grey\n",
-              label, found.rays, kRays, tolerance, found.mean, 100 * found.grey);
-  return found;
-}
-
-Scene merged(Scene scene) {
-  merge_single_instances(scene);
-  return scene;
+      compare(EmbreeOracle(loaded), segments,
+              trace(prepared.device, prepared.uploaded, device_rays(segments, 0), Estimator::exact),
+              tolerance);
+  std::printf(
+      "%s: %zu of %zu rays differ by more than %g, %zu unexplained; mean difference %.1e; "
+      "%.0f %% grey\n",
+      label, found.rays, kRays, tolerance, found.unexplained, found.mean, 100 * found.grey);
+  EXPECT_LE(found.rays, 50u) << label;
+  EXPECT_LE(found.unexplained, 3u) << label;
+  // Errors at edges go either way: a tenth of what 50 wholly wrong rays would make.
+  EXPECT_LE(std::fabs(found.mean), 5e-5) << label;
 }
 
 /// Every combination of wrap modes and filter, on small images of sides that are no powers of
@@ -130,11 +123,11 @@ void add_every_material(Scene& scene, Random& random) {
 /// Triangles at random in a cube of side 2 about the origin, of all the scene's materials.
 Mesh random_triangles(const Scene& scene, Random& random) {
   Mesh mesh;
-  for (std::uint32_t i = 0; i < 1000; ++i) {
+  for (std::uint32_t i = 0; i < 342; ++i) {
     const V3d centre(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
     for (std::uint32_t k = 0; k < 3; ++k) {
       mesh.indices.push_back(3 * i + k);
-      mesh.positions.emplace_back(centre + random.direction() * 0.2);
+      mesh.positions.emplace_back(centre + random.direction() * 0.12);
       mesh.uvs.emplace_back(random.between(-3, 3), random.between(-3, 3));
       mesh.vertex_alpha.push_back(static_cast<float>(random.real()));
     }
@@ -169,29 +162,28 @@ TEST(Oracle, GreySheetsMultiply) {
 
 TEST(OracleRays, EveryMaterialInEveryPlacementTransmitsAsInEmbree) {
   const Scene scene = soup_of_every_material();
-  disagreement(scene, OnDevice(scene), 1e-4, "soup");
+  expect_equal(scene, OnDevice(scene), kTextureTolerance, "soup");
 }
 
 TEST(OracleRays, ProceduralPlantsTransmitAsInEmbree) {
   const Scene tree = load_scene("scene:tree?leaves=3000");
-  disagreement(tree, OnDevice(merged(tree)), 1e-4, "tree");
+  expect_equal(tree, OnDevice(merged(tree)), kTolerance, "tree");
   const Scene forest = load_scene("scene:forest?trees=9&leaves=500");
   const OnDevice instanced(merged(forest));
   EXPECT_TRUE(instanced.bvh.has_top);
-  disagreement(forest, instanced, 1e-4, "forest");
+  expect_equal(forest, instanced, kTolerance, "forest");
 }
 
 TEST(OracleRays, TheSaplingTransmitsAsInEmbree) {
   DAPPLE_SKIP_WITHOUT(shared_scene("sapling_100k.glb"));
   const Scene sapling = load_sapling();
-  disagreement(sapling, OnDevice(merged(sapling)), 1e-4, "sapling");
+  expect_equal(sapling, OnDevice(merged(sapling)), kTolerance, "sapling");
 }
 
 TEST(OracleRays, TheTexturedPineTransmitsAsInEmbree) {
   DAPPLE_SKIP_WITHOUT(shared_scene("smallpine"));
   const Scene pine = load_pine();
-  disagreement(pine, OnDevice(merged(pine)), 1e-3, "pine");
-  disagreement(pine, OnDevice(merged(pine)), 1e-4, "pine");
+  expect_equal(pine, OnDevice(merged(pine)), kTextureTolerance, "pine");
 }
 
 }  // namespace dapple::oracle

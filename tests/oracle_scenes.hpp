@@ -14,7 +14,7 @@ inline std::string shared_scene(const std::string& name) {
   return std::string(DAPPLE_SHARED_SCENES) + "/" + name;
 }
 
-#define DAPPLE_SKIP_WITHOUT(path)                                                   \
+#define DAPPLE_SKIP_WITHOUT(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here: left out"
 
 /// A birch of 95,084 triangles; its leaves are given the opacity of a real leaf.
@@ -27,9 +27,16 @@ inline Scene load_sapling() {
 /// A game pine of needle cards, textured and blended.
 inline Scene load_pine() { return load_scene(shared_scene("smallpine/scene.gltf")); }
 
+/// As render() prepares a scene for the BVH.
+inline Scene merged(Scene scene) {
+  merge_single_instances(scene);
+  return scene;
+}
+
 /// A scene that rays can be sent through.
 struct OnDevice {
-  explicit OnDevice(const Scene& scene) : bvh(build_bvh(scene)), uploaded(upload(device, scene, bvh)) {}
+  explicit OnDevice(const Scene& scene)
+      : bvh(build_bvh(scene)), uploaded(upload(device, scene, bvh)) {}
   Device device;
   SceneBvh bvh;  ///< must outlive `uploaded`
   DeviceScene uploaded;

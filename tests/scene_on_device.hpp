@@ -100,6 +100,26 @@ inline std::vector<Ray> rays_through(const Box3f& box, std::size_t count, float 
   return rays;
 }
 
+/// `count` rays that cross the ball around `box` evenly: random directions, uniform over the disk
+/// across each. Their mean opacity is the occluding area that prefiltering has to keep.
+inline std::vector<Ray> rays_across(const Box3f& box, std::size_t count, float solid_angle,
+                                    std::uint32_t seed) {
+  Points points(seed);
+  const float radius = box.size().length() / 2;
+  std::vector<Ray> rays;
+  while (rays.size() < count) {
+    const V3f direction = points.on_sphere();
+    const float x = (2 * points.unit() - 1) * radius, y = (2 * points.unit() - 1) * radius;
+    if (x * x + y * y > radius * radius) continue;
+    const V3f u =
+        direction.cross(std::fabs(direction.x) < 0.5f ? V3f(1, 0, 0) : V3f(0, 1, 0)).normalized();
+    const V3f v = direction.cross(u);
+    const V3f at = box.center() + u * x + v * y;
+    rays.push_back(make_ray(at - direction * (2 * radius), direction, solid_angle));
+  }
+  return rays;
+}
+
 inline Material material_of(float opacity) {
   Material material;
   material.name = "material_" + std::to_string(opacity);

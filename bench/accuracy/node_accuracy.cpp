@@ -196,6 +196,7 @@ std::vector<std::string> model_names() {
 
 std::vector<NodeAccuracyRow> measure_nodes(const Scene& scene, const SceneBvh& bvh,
                                            const NodeAccuracyOptions& options) {
+  check_renderer_model();
   NodeJudge judge(scene, bvh, options);
   const std::vector<Subtree> all = list_subtrees(bvh);
   std::vector<NodeAccuracyRow> rows;

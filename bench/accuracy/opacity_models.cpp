@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accuracy/box_rays.hpp"
+#include "dapple/error.hpp"
 #include "dapple/shared/opacity.h"
 
 namespace dapple::bench {
@@ -34,7 +35,7 @@ float filled_share(float mean) {
 
 float chord_depth(float depth, Chord chord, float length, const V3f& facing) {
   if (chord == Chord::none) return depth;
-  const float counted = std::clamp(length, 0.0f, DAPPLE_LONGEST_CHORD);
+  const float counted = std::max(length, 0.0f);
   if (chord == Chord::scaled) return depth * counted;
   // Chords as if gamma distributed: mean exp(-raised * chord) = (1 + v raised)^(-1/v), which
   // is to be exp(-depth).
@@ -73,8 +74,24 @@ float model_depth(const DirectionalModel& model, const NodeOpacity& node, const 
     return with_chord(halfway ? 0.5f * (depth + depth_of(silhouette)) : depth);
   }
   const float sparse = with_chord(depth_of(silhouette));
-  const float filled = silhouette / (mean + 1e-37f) * depth_of(mean);
+  const float filled = depth_of(mean);
   return sparse + filled_share(mean) * (filled - sparse);
+}
+
+void check_renderer_model() {
+  const V3f direction = V3f(0.3f, -0.5f, 0.8f).normalized();
+  for (const float x : {0.02f, 0.3f, 0.7f, 0.99f}) {
+    for (const float y : {0.02f, 0.3f, 0.7f, 0.99f}) {
+      const NodeOpacity node{V3f(1, 2, 3), V3f(x, y, 0.6f)};
+      const V3f faces = facing_areas(node.size, direction);
+      const float here = model_depth(kRendererModel, node, direction, 1.0f);
+      const float there = opacity_depth(x, y, 0.6f, faces.x, faces.y, faces.z);
+      if (std::fabs(here - there) > 1e-4f * (1.0f + there))
+        throw Error(ErrorKind::failed,
+                    "bench/accuracy/opacity_models.cpp is out of step with opacity_depth() of "
+                    "dapple/shared/opacity.h: change model_depth()");
+    }
+  }
 }
 
 }  // namespace dapple::bench

@@ -79,7 +79,8 @@ struct Bins {
 struct Binning {
   Float4 start, scale = splat4(0.0f);
   int bins_used;
-  Binning(const Box4& centres2, std::uint32_t count) : start(centres2.lower), bins_used(bins_for(count)) {
+  Binning(const Box4& centres2, std::uint32_t count)
+      : start(centres2.lower), bins_used(bins_for(count)) {
     const Float4 size = centres2.upper - centres2.lower;
     for (int a = 0; a < 3; ++a) {
       const float bins = static_cast<float>(bins_used);
@@ -88,7 +89,8 @@ struct Binning {
   }
   [[nodiscard]] Int4 bins(const Loaded& prim) const {
     const Float4 at = (prim.centre2() - start) * scale;
-    return __builtin_convertvector(min4(max4(at, splat4(0.0f)), splat4(static_cast<float>(bins_used - 1))), Int4);
+    return __builtin_convertvector(
+        min4(max4(at, splat4(0.0f)), splat4(static_cast<float>(bins_used - 1))), Int4);
   }
 };
 
@@ -109,7 +111,8 @@ class Builder {
     node = {extent.box.box(), first, count, 0, 0};
     if (count == 1) return;
     const Binning binning(extent.centres2, count);
-    const Split split = depth < kDeepest ? best_split(fill(binning, first, count), binning.bins_used) : Split{};
+    const Split split =
+        depth < kDeepest ? best_split(fill(binning, first, count), binning.bins_used) : Split{};
     const float area = extent.box.half_area();
     const bool as_leaf_is_cheaper =
         split.axis < 0 ||
@@ -154,13 +157,14 @@ class Builder {
   }
 
   Bins fill(const Binning& binning, std::uint32_t first, std::uint32_t count) const {
-    return reduce(first, count, Bins(count >= kParallelBinning ? kBins : binning.bins_used), [&](Bins& bins, const Loaded& prim) {
-      const Int4 at = binning.bins(prim);
-      for (int a = 0; a < 3; ++a) {
-        bins.box[at[a]][a].add(prim.lower, prim.upper);
-        ++bins.count[at[a]][a];
-      }
-    });
+    return reduce(first, count, Bins(count >= kParallelBinning ? kBins : binning.bins_used),
+                  [&](Bins& bins, const Loaded& prim) {
+                    const Int4 at = binning.bins(prim);
+                    for (int a = 0; a < 3; ++a) {
+                      bins.box[at[a]][a].add(prim.lower, prim.upper);
+                      ++bins.count[at[a]][a];
+                    }
+                  });
   }
 
   static Split best_split(const Bins& bins, int used) {

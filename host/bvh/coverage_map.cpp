@@ -9,6 +9,8 @@ namespace dapple {
 namespace {
 
 constexpr float kSize = kMapSize;
+/// Of scaling a triangle's cells to its area; two bring nearly all to a rounding.
+constexpr int kScalingPasses = 3;
 
 /// Where each cell of a child's axis lands in its parent's: a first cell, and how much of
 /// a parent cell's width goes to it and to the next.
@@ -41,7 +43,8 @@ AxisResampling resampling(const Box3f& parent, const Box3f& child, int axis) {
 
 /// A triangle that slipped between the cells: its area shared by the cells it touches.
 void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
-  const int columns = triangle.column1 - triangle.column0 + 1, rows = triangle.row1 - triangle.row0 + 1;
+  const int columns = triangle.column1 - triangle.column0 + 1,
+            rows = triangle.row1 - triangle.row0 + 1;
   const float share = std::min(1.0f, triangle.area / static_cast<float>(columns * rows));
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
     for (int column = 0; column < kMapSize; ++column) {
@@ -49,6 +52,37 @@ void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
       coverage.share[row * kMapSize + column] = touched ? share : 0.0f;
     }
   }
+}
+
+/// Cells that are full stay full; the others are scaled so that the sum is the triangle's
+/// area. True when that filled more cells, so that another pass would come closer.
+DAPPLE_MULTIVERSION
+bool scale_partial_cells(const CellTriangle& triangle, CellCoverage& coverage) {
+  std::array<float, kMapSize> full{}, partial{}, largest{};
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    const float* in = &coverage.share[row * kMapSize];
+    for (int i = 0; i < kMapSize; ++i) {
+      const bool is_full = in[i] >= 1.0f;
+      const float rest = is_full ? 0.0f : in[i];
+      full[i] += is_full ? 1.0f : 0.0f;
+      partial[i] += rest;
+      largest[i] = std::max(largest[i], rest);
+    }
+  }
+  const float full_sum = std::accumulate(full.begin(), full.end(), 0.0f);
+  const float partial_sum = std::accumulate(partial.begin(), partial.end(), 0.0f);
+  if (full_sum + partial_sum <= 0.0f) {
+    spread_evenly(triangle, coverage);
+    return false;
+  }
+  if (partial_sum <= 0.0f) return false;
+  const float scale = std::max(0.0f, triangle.area - full_sum) / partial_sum;
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    float* out = &coverage.share[row * kMapSize];
+    for (int i = 0; i < kMapSize; ++i)
+      out[i] = out[i] >= 1.0f ? 1.0f : std::min(1.0f, out[i] * scale);
+  }
+  return *std::max_element(largest.begin(), largest.end()) * scale > 1.0f;
 }
 
 }  // namespace
@@ -89,7 +123,8 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
   // sliver or along an edge, what is left is c0 + c1 + c2 - 2. The rest is put right by
   // scaling to the known area. Rows are done whole: one or two vectors, no remainders.
   V2f corner[3] = {triangle.a, triangle.a + triangle.edge1, triangle.a + triangle.edge2};
-  if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x) std::swap(corner[1], corner[2]);
+  if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x)
+    std::swap(corner[1], corner[2]);
   float nx[3], ny[3], offset[3];
   for (int e = 0; e < 3; ++e) {
     const V2f from = corner[e], along = corner[(e + 1) % 3] - from;
@@ -99,26 +134,20 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
     ny[e] = along.x * inverse;
     offset[e] = reach > 0.0f ? 0.5f - nx[e] * from.x - ny[e] * from.y : 1.0f;
   }
-  std::array<float, kMapSize> columns{};
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
     const float y = static_cast<float>(row) + 0.5f;
     float* out = &coverage.share[row * kMapSize];
-    const float start0 = offset[0] + ny[0] * y, start1 = offset[1] + ny[1] * y, start2 = offset[2] + ny[2] * y;
+    const float start0 = offset[0] + ny[0] * y, start1 = offset[1] + ny[1] * y,
+                start2 = offset[2] + ny[2] * y;
     for (int i = 0; i < kMapSize; ++i) {
       const float x = static_cast<float>(i) + 0.5f;
       const float c0 = std::min(std::max(start0 + nx[0] * x, 0.0f), 1.0f);
       const float c1 = std::min(std::max(start1 + nx[1] * x, 0.0f), 1.0f);
       const float c2 = std::min(std::max(start2 + nx[2] * x, 0.0f), 1.0f);
       out[i] = std::max(0.0f, c0 + c1 + c2 - 2.0f);
-      columns[i] += out[i];
     }
   }
-  const float sum = std::accumulate(columns.begin(), columns.end(), 0.0f);
-  if (sum <= 0.0f) return spread_evenly(triangle, coverage);
-  const float scale = triangle.area / sum;
-  for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    float* out = &coverage.share[row * kMapSize];
-    for (int i = 0; i < kMapSize; ++i) out[i] = std::min(1.0f, out[i] * scale);
+  for (int pass = 0; pass < kScalingPasses && scale_partial_cells(triangle, coverage); ++pass) {
   }
 }
 

@@ -97,9 +97,12 @@ void cover(CoverageMap& map, const Box3f& box, const CoveringTriangle& triangle,
       for (int column = cells.column0; column <= cells.column1; ++column) {
         const int cell = row * kMapSize + column;
         if (coverage.share[cell] <= 0.0f) continue;
-        const V2f p = V2f(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f) - cells.a;
-        const float u = std::clamp((p.x * cells.edge2.y - p.y * cells.edge2.x) * inverse, 0.0f, 1.0f);
-        const float v = std::clamp((cells.edge1.x * p.y - cells.edge1.y * p.x) * inverse, 0.0f, 1.0f);
+        const V2f p =
+            V2f(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f) - cells.a;
+        const float u =
+            std::clamp((p.x * cells.edge2.y - p.y * cells.edge2.x) * inverse, 0.0f, 1.0f);
+        const float v =
+            std::clamp((cells.edge1.x * p.y - cells.edge1.y * p.x) * inverse, 0.0f, 1.0f);
         const float excess = std::max(u + v, 1.0f);
         out[cell] *= 1.0f - opacity_at(u / excess, v / excess, share) * coverage.share[cell];
       }

@@ -26,7 +26,9 @@ struct Box4 {
   }
   void add(const Box4& other) { add(other.lower, other.upper); }
 
-  [[nodiscard]] Box3f box() const { return {V3f(lower[0], lower[1], lower[2]), V3f(upper[0], upper[1], upper[2])}; }
+  [[nodiscard]] Box3f box() const {
+    return {V3f(lower[0], lower[1], lower[2]), V3f(upper[0], upper[1], upper[2])};
+  }
 
   /// xy + yz + zx; not for empty boxes.
   [[nodiscard]] float half_area() const {

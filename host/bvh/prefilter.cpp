@@ -13,6 +13,9 @@ namespace {
 /// Subtrees of fewer primitives are not worth a task.
 constexpr std::uint32_t kTaskPrimitives = 2048;
 
+/// From here on up to 1, nodes count as parts of something solid.
+constexpr float kNearlySolid = 0.9f;
+
 uchar encode_opacity(float opacity) {
   return static_cast<uchar>(std::lround(std::sqrt(std::clamp(opacity, 0.0f, 1.0f)) * 255.0f));
 }
@@ -129,8 +132,11 @@ void set_child_opacity(BvhNode& node, unsigned slot, const V3f& opacity, const B
   const Box3f grown = child_box(node, slot);
   for (int axis = 0; axis < 3; ++axis) {
     const float area = face_area(grown, axis);
-    const float share = area > 0.0f ? face_area(exact, axis) / area : 0.0f;
-    node.opacity[axis][slot] = encode_opacity(opacity[axis] * std::min(share, 1.0f));
+    const float share = area > 0.0f ? std::min(face_area(exact, axis) / area, 1.0f) : 0.0f;
+    // A solid part of a wall must not leak where its box grew: its neighbours are there.
+    const float solid =
+        std::clamp((opacity[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
+    node.opacity[axis][slot] = encode_opacity(opacity[axis] * (share + solid * (1.0f - share)));
   }
 }
 

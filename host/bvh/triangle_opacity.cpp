@@ -15,6 +15,11 @@ int wrap(int cell, int size, Wrap mode) {
   return r < size ? r : period - 1 - r;
 }
 
+/// A texture coordinate brought near [0,1), so that integers can hold its texel.
+float folded_coordinate(float u, Wrap mode) {
+  return mode == Wrap::clamp ? std::clamp(u, -1.0f, 2.0f) : u - 2.0f * std::floor(0.5f * u);
+}
+
 std::array<float, 3> vertex_alphas(const Material& material, const Mesh& mesh,
                                    std::uint32_t triangle) {
   std::array<float, 3> alpha{material.alpha, material.alpha, material.alpha};
@@ -125,13 +130,12 @@ float OpacityPyramid::bilinear(const Level& level, V2f uv) const {
 }
 
 float OpacityPyramid::mean(V2f uv, float width_texels) const {
-  const V2f folded(uv.x - 2.0f * std::floor(0.5f * uv.x), uv.y - 2.0f * std::floor(0.5f * uv.y));
+  const V2f at(folded_coordinate(uv.x, wrap_s_), folded_coordinate(uv.y, wrap_t_));
   const float level = std::clamp(std::log2(std::max(width_texels, 1.0f)), 0.0f,
                                  static_cast<float>(levels_.size() - 1));
   const auto fine = static_cast<std::size_t>(level);
   const auto coarse = std::min(fine + 1, levels_.size() - 1);
   const float blend = level - static_cast<float>(fine);
-  const V2f& at = wrap_s_ == Wrap::clamp || wrap_t_ == Wrap::clamp ? uv : folded;
   return bilinear(levels_[fine], at) * (1 - blend) + bilinear(levels_[coarse], at) * blend;
 }
 

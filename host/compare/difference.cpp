@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "compare/worst_window.hpp"
 #include "dapple/error.hpp"

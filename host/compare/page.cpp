@@ -57,7 +57,7 @@ std::string controls(const Comparison& c) {
   return fmt::format(
       "<p class=\"controls\"><label>Layer <select id=\"layer\" autocomplete=\"off\">{}</select>"
       "</label>\n<label>A left of the line, B right of it <input type=\"range\" id=\"swipe\" "
-      "min=\"0\" max=\"100\" step=\"any\" value=\"50\" autocomplete=\"off\"></label></p>\n",
+      "min=\"0\" max=\"100\" step=\"1\" value=\"50\" autocomplete=\"off\"></label></p>\n",
       options);
 }
 
@@ -75,7 +75,7 @@ std::string ramp_gradient() {
 
 std::string legend(const LayerDifference& d, double hottest) {
   const std::string no_number =
-      d.nans + d.infinity_mismatches > 0 ? " Green: NaN, or infinity in one of them." : "";
+      d.nans + d.infinity_mismatches > 0 ? " Green: NaN, or infinity in one picture alone." : "";
   return fmt::format(
       "<figcaption>|A - B|, the largest of the channels, from 0 to {:.4g} and more.{}"
       "<span class=\"ramp\" style=\"background:{}\"></span>"

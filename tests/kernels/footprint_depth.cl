@@ -15,3 +15,9 @@ __kernel void depths(__global const BvhNode* nodes, __global const float* direct
   hits.leave = chords * sizes.x * sizes.y * sizes.z / facing.sum;
   vstore8(child_depths(nodes + item, hits, sizes, facing), item, results);
 }
+
+/* minus_log(), eight values an item. */
+__kernel void minus_logs(__global const float* values, __global float* results, uint count) {
+  const uint item = get_global_id(0);
+  if (item < count) vstore8(minus_log(vload8(item, values)), item, results);
+}

@@ -20,15 +20,17 @@ DAPPLE_FUNCTION float opacity_decode(uchar code) {
 }
 
 /* Between these mean opacities the model goes from a sparse set of silhouettes, whose
-   areas add up as an ellipsoid, to a filled box, whose optical depths do. */
+   areas add up as an ellipsoid, to a filled box, as opaque from its corners as from its
+   faces. */
 #define DAPPLE_SPARSE_OPACITY 0.60f
 #define DAPPLE_FILLED_OPACITY 0.95f
 
 /* Transmittances below this count as none, so that optical depths stay finite. */
 #define DAPPLE_LEAST_TRANSMITTANCE 1e-4f
 
-/* A chord counts at most this many mean chords. */
-#define DAPPLE_LONGEST_CHORD 3.0f
+/* Chords are not measured in boxes whose mean chord is below this part of the distance:
+   their length would be rounding. */
+#define DAPPLE_THINNEST 3e-5f
 
 /* Optical depth of a box along a direction. facing_k = (projected area along axis k) *
    |direction_k|, opacity_k in [0,1] the mean opacity seen along axis k.
@@ -44,11 +46,10 @@ DAPPLE_FUNCTION float opacity_depth(float opacity_x, float opacity_y, float opac
   const float ellipsoid =
       sqrt(area_x * area_x + area_y * area_y + area_z * area_z) * inverse;
   const float mean = (area_x + area_y + area_z) * inverse;
-  const float ratio = ellipsoid / (mean + 1e-37f);
   const float sparse = -log(1.0f - ellipsoid > DAPPLE_LEAST_TRANSMITTANCE
                                 ? 1.0f - ellipsoid : DAPPLE_LEAST_TRANSMITTANCE);
-  const float filled = -ratio * log(1.0f - mean > DAPPLE_LEAST_TRANSMITTANCE
-                                        ? 1.0f - mean : DAPPLE_LEAST_TRANSMITTANCE);
+  const float filled = -log(1.0f - mean > DAPPLE_LEAST_TRANSMITTANCE
+                                ? 1.0f - mean : DAPPLE_LEAST_TRANSMITTANCE);
   float blend = (mean - DAPPLE_SPARSE_OPACITY) /
                 (DAPPLE_FILLED_OPACITY - DAPPLE_SPARSE_OPACITY);
   blend = blend < 0.0f ? 0.0f : blend > 1.0f ? 1.0f : blend;
