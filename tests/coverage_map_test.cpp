@@ -142,8 +142,9 @@ TEST(CoverageMap, CompositingKeepsAChildsMeanByArea) {
     Box3f child(in_box(p));
     child.extendBy(in_box(q));
     const CoverageMap inside = random_map(static_cast<unsigned>(i));
-    CoverageMap map;
-    composite(map, kBox, inside, child);
+    NodeCoverage node(kBox);
+    node.add(inside, child);
+    const CoverageMap& map = node.map();
     for (int axis = 0; axis < 3; ++axis) {
       const float share = face_area(child, axis) / face_area(kBox, axis);
       EXPECT_NEAR(map.mean_opacity(axis), share * inside.mean_opacity(axis), 1e-5f);
@@ -154,8 +155,9 @@ TEST(CoverageMap, CompositingKeepsAChildsMeanByArea) {
 
 TEST(CoverageMap, AChildAsLargeAsItsParentIsTakenOverUnchanged) {
   const CoverageMap inside = random_map(5);
-  CoverageMap map;
-  composite(map, kBox, inside, kBox);
+  NodeCoverage node(kBox);
+  node.add(inside, kBox);
+  const CoverageMap& map = node.map();
   for (int axis = 0; axis < 3; ++axis) {
     for (int cell = 0; cell < kMapCells; ++cell) {
       // Cell borders of both maps agree to 16 roundings of a number up to 16.
@@ -164,43 +166,53 @@ TEST(CoverageMap, AChildAsLargeAsItsParentIsTakenOverUnchanged) {
   }
 }
 
-TEST(CoverageMap, SolidHalvesSideBySideFillTheirParent) {
+TEST(CoverageMap, SolidPartsSideBySideFillTheirParentWhereverTheyMeet) {
   for (const float at : {0.5f, 0.25f, 0.37f, 0.501f}) {
     Box3f left = kBox, right = kBox;
     left.max.x = right.min.x = in_box({at, 0, 0}).x;
-    CoverageMap map;
-    composite_uniform(map, kBox, V3f(1, 1, 1), left);
-    composite_uniform(map, kBox, V3f(1, 1, 1), right);
-    // On a cell border exactly; inside a column of cells the two parts multiply, which
-    // leaves at most a quarter of one column in sixteen.
-    const float least = std::fmod(at * kMapSize, 1.0f) == 0 ? 1.0f : 1 - 0.25f / kMapSize;
+    NodeCoverage node(kBox);
+    node.add(uniform_map(V3f(1, 1, 1)), left);
+    node.add(uniform_map(V3f(1, 1, 1)), right);
     for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_LE(map.mean_opacity(axis), 1 + 1e-5f);
-      EXPECT_GE(map.mean_opacity(axis), least - 1e-5f) << "split at " << at << ", axis " << axis;
+      EXPECT_NEAR(node.map().mean_opacity(axis), 1, 1e-5f)
+          << "split at " << at << ", axis " << axis;
     }
   }
 }
 
+TEST(CoverageMap, PartsThatOverlapWithinACellMultiplyOnlyThere) {
+  // Boxes of 3/4 of the width from either side: they share the middle half.
+  Box3f left = kBox, right = kBox;
+  left.max.x = in_box({0.75f, 0, 0}).x;
+  right.min.x = in_box({0.25f, 0, 0}).x;
+  NodeCoverage node(kBox);
+  node.add(uniform_map(V3f(0.5f, 0.5f, 0.5f)), left);
+  node.add(uniform_map(V3f(0.5f, 0.5f, 0.5f)), right);
+  for (const int axis : {1, 2}) {
+    EXPECT_NEAR(node.map().mean_opacity(axis), 0.5f * 0.5f + 0.5f * 0.75f, 1e-5f);
+  }
+}
+
 TEST(CoverageMap, OverlappingChildrenMultiplyAndSolidStaysSolid) {
-  CoverageMap map;
-  composite_uniform(map, kBox, V3f(0.5f, 0.2f, 0), kBox);
-  composite_uniform(map, kBox, V3f(0.5f, 0.9f, 0), kBox);
-  EXPECT_NEAR(map.mean_opacity(0), 0.75f, 1e-5f);
-  EXPECT_NEAR(map.mean_opacity(1), 0.92f, 1e-5f);
-  EXPECT_NEAR(map.mean_opacity(2), 0, 1e-6f);
-  composite_uniform(map, kBox, V3f(1, 1, 1), kBox);
-  composite_uniform(map, kBox, V3f(0.3f, 0.3f, 0.3f), kBox);
-  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(map.mean_opacity(axis), 1, 1e-5f);
+  NodeCoverage node(kBox);
+  node.add(uniform_map(V3f(0.5f, 0.2f, 0)), kBox);
+  node.add(uniform_map(V3f(0.5f, 0.9f, 0)), kBox);
+  EXPECT_NEAR(node.map().mean_opacity(0), 0.75f, 1e-5f);
+  EXPECT_NEAR(node.map().mean_opacity(1), 0.92f, 1e-5f);
+  EXPECT_NEAR(node.map().mean_opacity(2), 0, 1e-6f);
+  node.add(uniform_map(V3f(1, 1, 1)), kBox);
+  node.add(uniform_map(V3f(0.3f, 0.3f, 0.3f)), kBox);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(node.map().mean_opacity(axis), 1, 1e-5f);
 }
 
 TEST(CoverageMap, AFlatBoxIsOpaqueOnlyAlongItsNormal) {
   Box3f flat = kBox;
   flat.max.z = flat.min.z;
-  CoverageMap map;
-  composite_uniform(map, kBox, V3f(0.8f, 0.8f, 0.8f), flat);
-  EXPECT_NEAR(map.mean_opacity(0), 0, 1e-6f);
-  EXPECT_NEAR(map.mean_opacity(1), 0, 1e-6f);
-  EXPECT_NEAR(map.mean_opacity(2), 0.8f, 1e-5f);
+  NodeCoverage node(kBox);
+  node.add(uniform_map(V3f(0.8f, 0.8f, 0.8f)), flat);
+  EXPECT_NEAR(node.map().mean_opacity(0), 0, 1e-6f);
+  EXPECT_NEAR(node.map().mean_opacity(1), 0, 1e-6f);
+  EXPECT_NEAR(node.map().mean_opacity(2), 0.8f, 1e-5f);
 }
 
 Texture noise_texture(std::uint32_t width, std::uint32_t height, unsigned seed) {

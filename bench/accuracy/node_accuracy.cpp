@@ -12,7 +12,8 @@
 namespace dapple::bench {
 namespace {
 
-constexpr std::size_t kSmallest = 4, kLargest = 65536, kStep = 4;
+/// Subtrees of one triangle, and of [n, 2n) for the others.
+constexpr std::size_t kSizes[] = {1, 2, 4, 16, 64, 256, 1024, 4096, 16384, 65536};
 
 /// Rays along an axis, where a model is given the true opacities, for each ray of a direction.
 constexpr int kAxisRays = 4;
@@ -32,7 +33,7 @@ struct Model {
   V3f JudgedNode::*opacity = nullptr;  ///< in place of the stored ones
 };
 
-/// Each changes one thing of the first, up to the last four.
+/// Each changes one thing of the first, up to "true axes".
 constexpr Model kModels[] = {
     {"renderer", kRendererModel},
     {"no chord", {Blend::renderer, Chord::none}},
@@ -45,6 +46,7 @@ constexpr Model kModels[] = {
     {"rectangles", kRendererModel, &JudgedNode::rectangles},
     {"true axes", kRendererModel, &JudgedNode::true_axes},
     {"rectangles, linear, no chord", {Blend::linear, Chord::none}, &JudgedNode::rectangles},
+    {"matrix, depths", {Blend::depths, Chord::scaled, true}},
     {"matrix, areas, mean kept", {Blend::areas, Chord::mean_kept, true}},
     {"matrix, depths, mean kept", {Blend::depths, Chord::mean_kept, true}},
     {"matrix, halfway, mean kept", {Blend::halfway, Chord::mean_kept, true}},
@@ -200,7 +202,7 @@ std::vector<NodeAccuracyRow> measure_nodes(const Scene& scene, const SceneBvh& b
   NodeJudge judge(scene, bvh, options);
   const std::vector<Subtree> all = list_subtrees(bvh);
   std::vector<NodeAccuracyRow> rows;
-  for (std::size_t size = kSmallest; size <= kLargest; size *= kStep) {
+  for (const std::size_t size : kSizes) {
     std::vector<Subtree> candidates;
     std::copy_if(all.begin(), all.end(), std::back_inserter(candidates),
                  [&](const Subtree& s) { return s.triangles >= size && s.triangles < 2 * size; });

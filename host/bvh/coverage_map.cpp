@@ -1,6 +1,7 @@
 #include "bvh/coverage_map.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 #include "bvh/multiversion.hpp"
@@ -11,35 +12,6 @@ namespace {
 constexpr float kSize = kMapSize;
 /// Of scaling a triangle's cells to its area; two bring nearly all to a rounding.
 constexpr int kScalingPasses = 3;
-
-/// Where each cell of a child's axis lands in its parent's: a first cell, and how much of
-/// a parent cell's width goes to it and to the next.
-struct AxisResampling {
-  std::array<int, kMapSize> cell;
-  std::array<float, kMapSize> here, next;
-  int first, last;  ///< parent cells touched
-
-  AxisResampling(float parent_min, float parent_size, float child_min, float child_size) {
-    const float to_cells = kSize / parent_size;
-    const float start = std::clamp((child_min - parent_min) * to_cells, 0.0f, kSize);
-    const float width = std::min(child_size * to_cells, kSize - start) / kSize;
-    for (int i = 0; i < kMapSize; ++i) {
-      const float from = start + width * static_cast<float>(i);
-      const float to = start + width * static_cast<float>(i + 1);
-      cell[i] = std::min(static_cast<int>(from), kMapSize - 1);
-      const float border = static_cast<float>(cell[i] + 1);
-      here[i] = std::min(to, border) - from;
-      next[i] = cell[i] + 1 < kMapSize ? std::max(0.0f, to - border) : 0.0f;
-    }
-    first = cell[0];
-    last = std::min(cell[kMapSize - 1] + 1, kMapSize - 1);
-  }
-};
-
-AxisResampling resampling(const Box3f& parent, const Box3f& child, int axis) {
-  return {parent.min[axis], parent.max[axis] - parent.min[axis], child.min[axis],
-          child.max[axis] - child.min[axis]};
-}
 
 /// A triangle that slipped between the cells: its area shared by the cells it touches.
 void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
@@ -54,23 +26,32 @@ void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
   }
 }
 
+/// A row of a map in one to four registers.
+using Row = float __attribute__((vector_size(kMapSize * sizeof(float))));
+
+inline void load_row(const float* from, Row& row) { std::memcpy(&row, from, sizeof row); }
+inline void store_row(float* to, const Row& row) { std::memcpy(to, &row, sizeof row); }
+inline float sum_of(const Row& row) {
+  float sum = 0.0f;
+  for (int i = 0; i < kMapSize; ++i) sum += row[i];
+  return sum;
+}
+
 /// Cells that are full stay full; the others are scaled so that the sum is the triangle's
 /// area. True when that filled more cells, so that another pass would come closer.
 DAPPLE_MULTIVERSION
 bool scale_partial_cells(const CellTriangle& triangle, CellCoverage& coverage) {
-  std::array<float, kMapSize> full{}, partial{}, largest{};
+  const Row zero{}, one = zero + 1.0f;
+  Row full = zero, partial = zero, largest = zero;
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    const float* in = &coverage.share[row * kMapSize];
-    for (int i = 0; i < kMapSize; ++i) {
-      const bool is_full = in[i] >= 1.0f;
-      const float rest = is_full ? 0.0f : in[i];
-      full[i] += is_full ? 1.0f : 0.0f;
-      partial[i] += rest;
-      largest[i] = std::max(largest[i], rest);
-    }
+    Row in;
+    load_row(&coverage.share[row * kMapSize], in);
+    const Row rest = in >= one ? zero : in;
+    full += in >= one ? one : zero;
+    partial += rest;
+    largest = largest > rest ? largest : rest;
   }
-  const float full_sum = std::accumulate(full.begin(), full.end(), 0.0f);
-  const float partial_sum = std::accumulate(partial.begin(), partial.end(), 0.0f);
+  const float full_sum = sum_of(full), partial_sum = sum_of(partial);
   if (full_sum + partial_sum <= 0.0f) {
     spread_evenly(triangle, coverage);
     return false;
@@ -78,11 +59,18 @@ bool scale_partial_cells(const CellTriangle& triangle, CellCoverage& coverage) {
   if (partial_sum <= 0.0f) return false;
   const float scale = std::max(0.0f, triangle.area - full_sum) / partial_sum;
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    float* out = &coverage.share[row * kMapSize];
-    for (int i = 0; i < kMapSize; ++i)
-      out[i] = out[i] >= 1.0f ? 1.0f : std::min(1.0f, out[i] * scale);
+    Row out;
+    load_row(&coverage.share[row * kMapSize], out);
+    // Selecting by two comparisons at once would come out lane by lane (g++ 12).
+    const Row kept = out >= one ? one : zero;
+    Row scaled = out * scale;
+    scaled = scaled < one ? scaled : one;
+    scaled = scaled > kept ? scaled : kept;
+    store_row(&coverage.share[row * kMapSize], scaled);
   }
-  return *std::max_element(largest.begin(), largest.end()) * scale > 1.0f;
+  float most = 0.0f;
+  for (int i = 0; i < kMapSize; ++i) most = std::max(most, largest[i]);
+  return most * scale > 1.0f;
 }
 
 }  // namespace
@@ -134,18 +122,18 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
     ny[e] = along.x * inverse;
     offset[e] = reach > 0.0f ? 0.5f - nx[e] * from.x - ny[e] * from.y : 1.0f;
   }
+  const Row zero{}, one = zero + 1.0f;
+  Row x;
+  for (int i = 0; i < kMapSize; ++i) x[i] = static_cast<float>(i) + 0.5f;
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
     const float y = static_cast<float>(row) + 0.5f;
-    float* out = &coverage.share[row * kMapSize];
-    const float start0 = offset[0] + ny[0] * y, start1 = offset[1] + ny[1] * y,
-                start2 = offset[2] + ny[2] * y;
-    for (int i = 0; i < kMapSize; ++i) {
-      const float x = static_cast<float>(i) + 0.5f;
-      const float c0 = std::min(std::max(start0 + nx[0] * x, 0.0f), 1.0f);
-      const float c1 = std::min(std::max(start1 + nx[1] * x, 0.0f), 1.0f);
-      const float c2 = std::min(std::max(start2 + nx[2] * x, 0.0f), 1.0f);
-      out[i] = std::max(0.0f, c0 + c1 + c2 - 2.0f);
+    Row left = zero - 2.0f;
+    for (int e = 0; e < 3; ++e) {
+      Row share = x * nx[e] + (offset[e] + ny[e] * y);
+      share = share > zero ? share : zero;
+      left += share < one ? share : one;
     }
+    store_row(&coverage.share[row * kMapSize], left > zero ? left : zero);
   }
   for (int pass = 0; pass < kScalingPasses && scale_partial_cells(triangle, coverage); ++pass) {
   }
@@ -161,42 +149,10 @@ void multiply_uniform(std::array<float, kMapCells>& map, const CellTriangle& tri
   }
 }
 
-DAPPLE_MULTIVERSION
-void composite(CoverageMap& parent, const Box3f& parent_box, const CoverageMap& child,
-               const Box3f& child_box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(face_area(parent_box, axis) > 0.0f)) continue;
-    const AxisResampling across = resampling(parent_box, child_box, column_axis(axis));
-    const AxisResampling down = resampling(parent_box, child_box, row_axis(axis));
-    // Opacity summed into the parent's rows first, child columns kept: one vector a row.
-    std::array<std::array<float, kMapSize>, kMapSize + 1> rows{};
-    for (int q = 0; q < kMapSize; ++q) {
-      const float* in = &child.transmittance[axis][q * kMapSize];
-      auto& here = rows[down.cell[q]];
-      auto& next = rows[down.cell[q] + 1];
-      for (int p = 0; p < kMapSize; ++p) {
-        const float opacity = 1.0f - in[p];
-        here[p] += down.here[q] * opacity;
-        next[p] += down.next[q] * opacity;
-      }
-    }
-    for (int j = down.first; j <= down.last; ++j) {
-      std::array<float, kMapSize + 1> sums{};
-      for (int p = 0; p < kMapSize; ++p) {
-        sums[across.cell[p]] += across.here[p] * rows[j][p];
-        sums[across.cell[p] + 1] += across.next[p] * rows[j][p];
-      }
-      float* out = &parent.transmittance[axis][j * kMapSize];
-      for (int i = across.first; i <= across.last; ++i) out[i] *= 1.0f - std::min(1.0f, sums[i]);
-    }
-  }
-}
-
-void composite_uniform(CoverageMap& parent, const Box3f& parent_box, const V3f& opacity,
-                       const Box3f& child_box) {
-  CoverageMap child;
-  for (int axis = 0; axis < 3; ++axis) child.transmittance[axis].fill(1.0f - opacity[axis]);
-  composite(parent, parent_box, child, child_box);
+CoverageMap uniform_map(const V3f& opacity) {
+  CoverageMap map;
+  for (int axis = 0; axis < 3; ++axis) map.transmittance[axis].fill(1.0f - opacity[axis]);
+  return map;
 }
 
 }  // namespace dapple

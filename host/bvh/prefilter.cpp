@@ -1,6 +1,6 @@
-// Directional opacity, bottom-up: each node draws its leaf triangles into its coverage
-// map, multiplies its inner children's maps in, and hands the map to its parent.
-#include <tbb/task_group.h>
+// Directional opacity, bottom-up: leaves are drawn into coverage maps of their own, and
+// each node puts its children's maps into one that it hands to its parent.
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 
@@ -27,54 +27,35 @@ class Prefilter {
 
   CoverageMap node_map(std::uint32_t index) {
     const WideNode& wide = tree_.nodes[index];
-    CoverageMap map;
+    NodeCoverage coverage(wide.box);
     if (wide.primitives > kTaskPrimitives) {
-      inner_children_in_parallel(index, map);
+      add_in_parallel(index, coverage);
     } else {
-      for (unsigned slot = 0; slot < wide.child_count; ++slot) {
-        const WideChild& child = wide.children[slot];
-        if (child.count == 0) add_inner(index, slot, node_map(child.first), map);
-      }
+      for (unsigned slot = 0; slot < wide.child_count; ++slot)
+        add(index, slot, child_map(index, slot), coverage);
     }
-    for (unsigned slot = 0; slot < wide.child_count; ++slot) {
-      if (wide.children[slot].count) add_leaf(index, slot, map);
-    }
-    return map;
+    return coverage.map();
   }
 
  private:
-  void inner_children_in_parallel(std::uint32_t index, CoverageMap& map) {
-    const WideNode& wide = tree_.nodes[index];
+  CoverageMap child_map(std::uint32_t index, unsigned slot) {
+    const WideChild& child = tree_.nodes[index].children[slot];
+    return child.count ? leaf_map(object_.nodes[index], slot, child.box) : node_map(child.first);
+  }
+
+  void add_in_parallel(std::uint32_t index, NodeCoverage& coverage) {
+    const std::uint32_t count = tree_.nodes[index].child_count;
     std::array<CoverageMap, DAPPLE_BVH_WIDTH> maps;
-    tbb::task_group tasks;
-    for (unsigned slot = 0; slot < wide.child_count; ++slot) {
-      const WideChild& child = wide.children[slot];
-      if (child.count == 0)
-        tasks.run([this, &maps, slot, &child] { maps[slot] = node_map(child.first); });
-    }
-    tasks.wait();
-    // Multiplied in slot order, so that the bits don't depend on which task came first.
-    for (unsigned slot = 0; slot < wide.child_count; ++slot) {
-      if (wide.children[slot].count == 0) add_inner(index, slot, maps[slot], map);
-    }
+    tbb::parallel_for(0u, count, [&](unsigned slot) { maps[slot] = child_map(index, slot); });
+    // Put in by slot, so that the bits don't depend on which task came first.
+    for (unsigned slot = 0; slot < count; ++slot) add(index, slot, maps[slot], coverage);
   }
 
-  void add_inner(std::uint32_t index, unsigned slot, const CoverageMap& child_map,
-                 CoverageMap& map) {
-    const WideNode& wide = tree_.nodes[index];
-    const Box3f& box = wide.children[slot].box;
-    const V3f opacity(child_map.mean_opacity(0), child_map.mean_opacity(1),
-                      child_map.mean_opacity(2));
-    composite(map, wide.box, child_map, box);
+  void add(std::uint32_t index, unsigned slot, const CoverageMap& map, NodeCoverage& coverage) {
+    const Box3f& box = tree_.nodes[index].children[slot].box;
+    const V3f opacity(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2));
+    coverage.add(map, box);
     set_child_opacity(object_.nodes[index], slot, opacity, box);
-  }
-
-  void add_leaf(std::uint32_t index, unsigned slot, CoverageMap& map) {
-    const WideNode& wide = tree_.nodes[index];
-    BvhNode& node = object_.nodes[index];
-    const Box3f& box = wide.children[slot].box;
-    for_each_triangle(node, slot, [&](const CoveringTriangle& t) { draw(map, wide.box, t); });
-    set_child_opacity(node, slot, leaf_opacity(node, slot, box), box);
   }
 
   template <class Visit>
@@ -90,35 +71,15 @@ class Prefilter {
     }
   }
 
-  void draw(CoverageMap& map, const Box3f& box, const CoveringTriangle& triangle) const {
-    cover(map, box, triangle, [&](float u, float v, float share) {
-      return integrals_.mean(object_.textured[static_cast<std::size_t>(-triangle.opacity - 1.0f)],
-                             u, v, share);
-    });
-  }
-
-  /// One triangle of uniform opacity is known in closed form; others are drawn.
-  V3f leaf_opacity(const BvhNode& node, unsigned slot, const Box3f& box) const {
-    V3f opacity(0.0f);
+  CoverageMap leaf_map(const BvhNode& node, unsigned slot, const Box3f& box) const {
     CoverageMap map;
-    bool drawn = false;
-    for_each_triangle(node, slot, [&](const CoveringTriangle& t) {
-      if (t.opacity < 0.0f || node.leaf_end[slot] - bvh_leaf_begin(node.leaf_end, slot) > 1) {
-        draw(map, box, t);
-        drawn = true;
-        return;
-      }
-      const V3f normal = t.edge1.cross(t.edge2);
-      for (int axis = 0; axis < 3; ++axis) {
-        const float area = face_area(box, axis);
-        opacity[axis] =
-            area > 0.0f ? std::min(1.0f, 0.5f * std::fabs(normal[axis]) / area) * t.opacity : 0.0f;
-      }
+    for_each_triangle(node, slot, [&](const CoveringTriangle& triangle) {
+      cover(map, box, triangle, [&](float u, float v, float share) {
+        const auto textured = static_cast<std::size_t>(-triangle.opacity - 1.0f);
+        return integrals_.mean(object_.textured[textured], u, v, share);
+      });
     });
-    if (drawn) {
-      for (int axis = 0; axis < 3; ++axis) opacity[axis] = map.mean_opacity(axis);
-    }
-    return opacity;
+    return map;
   }
 
   ObjectBvh& object_;

@@ -168,21 +168,17 @@ CoverageMap prefilter_top(const WideTree& tree, const std::vector<PrimitiveBox>&
                           const std::vector<Placement>& placed, std::vector<BvhNode>& nodes,
                           std::uint32_t index) {
   const WideNode& wide = tree.nodes[index];
-  CoverageMap map;
+  NodeCoverage coverage(wide.box);
   for (unsigned slot = 0; slot < wide.child_count; ++slot) {
     const WideChild& child = wide.children[slot];
-    V3f opacity;
-    if (child.count) {
-      opacity = placed[order[child.first].primitive].opacity;
-      composite_uniform(map, wide.box, opacity, child.box);
-    } else {
-      const CoverageMap below = prefilter_top(tree, order, placed, nodes, child.first);
-      for (int axis = 0; axis < 3; ++axis) opacity[axis] = below.mean_opacity(axis);
-      composite(map, wide.box, below, child.box);
-    }
-    set_child_opacity(nodes[index], slot, opacity, child.box);
+    const CoverageMap map = child.count ? uniform_map(placed[order[child.first].primitive].opacity)
+                                        : prefilter_top(tree, order, placed, nodes, child.first);
+    coverage.add(map, child.box);
+    set_child_opacity(nodes[index], slot,
+                      V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)),
+                      child.box);
   }
-  return map;
+  return coverage.map();
 }
 
 /// The BVH over instances, one a leaf; returns the stack entries it needs.
