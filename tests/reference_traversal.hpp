@@ -94,26 +94,25 @@ class ReferenceTraversal {
     return facing.x + facing.y + facing.z < footprint && c.enter > 0 && c.leave < t_max * 0.999999f;
   }
 
-  /// opacity_depth() of opacity.h, with the chord's length in its sparse part.
-  static float depth(const BvhNode& node, unsigned slot, const Crossing& c, const V3f& facing) {
-    const float x = opacity_decode(node.opacity[0][slot]);
-    const float y = opacity_decode(node.opacity[1][slot]);
-    const float z = opacity_decode(node.opacity[2][slot]);
+  /// box_depth() and chord_depth() of opacity.h.
+  static float depth(const BvhNode& node, unsigned slot, const Crossing& c, const V3f& facing,
+                     const V3f& direction) {
     const float sum = facing.x + facing.y + facing.z;
     const float mean_chord = c.size.x * c.size.y * c.size.z / (sum + 1e-37f);
     const float longest = sum / (std::max({facing.x, facing.y, facing.z}) + 1e-37f);
     const bool thin = mean_chord <= DAPPLE_THINNEST * c.leave;
     const float chord =
         thin ? 1.0f : std::min((c.leave - c.enter) / (mean_chord + 1e-37f), longest);
-    const V3f area(x * facing.x, y * facing.y, z * facing.z);
-    const float ellipsoid = area.length() / (sum + 1e-37f);
-    const float mean = (area.x + area.y + area.z) / (sum + 1e-37f);
-    const float sparse = -std::log(std::max(1 - ellipsoid, DAPPLE_LEAST_TRANSMITTANCE));
-    const float blend =
-        std::clamp((mean - DAPPLE_SPARSE_OPACITY) / (DAPPLE_FILLED_OPACITY - DAPPLE_SPARSE_OPACITY),
-                   0.0f, 1.0f);
-    return opacity_depth(x, y, z, facing.x, facing.y, facing.z) +
-           (1 - blend) * (chord - 1) * sparse;
+    float depths[3], correlations[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const int next = (axis + 1) % 3;
+      depths[axis] = depth_decode(node.depth[axis][slot]);
+      correlations[axis] = std::copysign(1.0f, direction[axis] * direction[next]) *
+                           correlation_decode(node.correlation[axis][slot]);
+    }
+    return chord_depth(box_depth(depths[0], depths[1], depths[2], correlations[0], correlations[1],
+                                 correlations[2], facing.x, facing.y, facing.z),
+                       chord);
   }
 
   /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
@@ -148,7 +147,7 @@ class ReferenceTraversal {
       const V3f facing = facing_areas(crossing.size, space.direction);
       if (!is_covered(crossing, facing, space, t_max)) continue;
       open[slot] = false;
-      walk.result.transmittance *= std::exp(-depth(node, slot, crossing, facing));
+      walk.result.transmittance *= std::exp(-depth(node, slot, crossing, facing, space.direction));
     }
     if (prefiltered_ && is_opaque(walk)) return;
     if (!in_top) test_leaves(walk, space, node, open);

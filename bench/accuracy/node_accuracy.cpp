@@ -33,26 +33,20 @@ struct Model {
   V3f JudgedNode::*opacity = nullptr;  ///< in place of the stored ones
 };
 
-/// Each changes one thing of the first, up to "true axes".
+/// Each but the last changes one thing of the first.
 constexpr Model kModels[] = {
     {"renderer", kRendererModel},
-    {"no chord", {Blend::renderer, Chord::none}},
-    {"chord, mean kept", {Blend::renderer, Chord::mean_kept}},
+    {"no chord", {Blend::depths, Chord::none, true}},
+    {"chord, mean kept", {Blend::depths, Chord::mean_kept, true}},
+    {"no matrix", {Blend::depths, Chord::scaled, false}},
     {"linear", {Blend::linear, Chord::scaled}},
-    {"areas", {Blend::areas, Chord::scaled}},
-    {"depths", {Blend::depths, Chord::scaled}},
-    {"full matrix", {Blend::renderer, Chord::scaled, true}},
+    {"areas", {Blend::areas, Chord::scaled, true}},
+    {"halfway", {Blend::halfway, Chord::scaled, true}},
+    {"halfway, mean kept", {Blend::halfway, Chord::mean_kept, true}},
     {"growth ignored", kRendererModel, &JudgedNode::exact_box},
     {"rectangles", kRendererModel, &JudgedNode::rectangles},
     {"true axes", kRendererModel, &JudgedNode::true_axes},
     {"rectangles, linear, no chord", {Blend::linear, Chord::none}, &JudgedNode::rectangles},
-    {"matrix, depths", {Blend::depths, Chord::scaled, true}},
-    {"matrix, areas, mean kept", {Blend::areas, Chord::mean_kept, true}},
-    {"matrix, depths, mean kept", {Blend::depths, Chord::mean_kept, true}},
-    {"matrix, halfway, mean kept", {Blend::halfway, Chord::mean_kept, true}},
-    {"true axes, matrix, halfway, mean kept",
-     {Blend::halfway, Chord::mean_kept, true},
-     &JudgedNode::true_axes},
 };
 constexpr std::size_t kModelCount = std::size(kModels);
 
@@ -168,10 +162,10 @@ class NodeJudge {
     JudgedNode judged;
     judged.box = child_box(node, subtree.slot);
     judged.stored.size = judged.box.size();
-    judged.stored.correlation = composition.correlation();
     judged.rectangles = composition.rectangles;
     for (int axis = 0; axis < 3; ++axis) {
-      judged.stored.opacity[axis] = opacity_decode(node.opacity[axis][subtree.slot]);
+      judged.stored.opacity[axis] = 1.0f - std::exp(-depth_decode(node.depth[axis][subtree.slot]));
+      judged.stored.correlation[axis] = correlation_decode(node.correlation[axis][subtree.slot]);
       judged.true_axes[axis] = static_cast<float>(
           sample_opacity(truth, judged.box, unit_axis(axis), kAxisRays * options_.rays, random_)
               .opacity);

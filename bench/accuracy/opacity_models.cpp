@@ -27,16 +27,10 @@ float ellipsoid(const V3f& terms, const V3f& direction, const V3f& correlation) 
   return std::sqrt(std::max(0.0f, v.length2() + 2.0f * crossed));
 }
 
-/// How far the renderer has gone from areas to depths.
-float filled_share(float mean) {
-  return std::clamp(
-      (mean - DAPPLE_SPARSE_OPACITY) / (DAPPLE_FILLED_OPACITY - DAPPLE_SPARSE_OPACITY), 0.0f, 1.0f);
-}
-
-float chord_depth(float depth, Chord chord, float length, const V3f& facing) {
+float depth_with_chord(float depth, Chord chord, float length, const V3f& facing) {
   if (chord == Chord::none) return depth;
   const float counted = std::max(length, 0.0f);
-  if (chord == Chord::scaled) return depth * counted;
+  if (chord == Chord::scaled) return chord_depth(depth, counted);
   // Chords as if gamma distributed: mean exp(-raised * chord) = (1 + v raised)^(-1/v), which
   // is to be exp(-depth).
   const float variance = chord_variance(facing);
@@ -60,35 +54,30 @@ float model_depth(const DirectionalModel& model, const NodeOpacity& node, const 
   const float inverse = 1.0f / (sum(faces) + 1e-37f);
   const V3f area = node.opacity * faces;
   const V3f correlation = model.matrix ? node.correlation : V3f(0.0f);
-  const float mean = sum(area) * inverse;
   const float silhouette = ellipsoid(area, direction, correlation) * inverse;
   const auto with_chord = [&](float depth) {
-    return chord_depth(depth, model.chord, chord, faces);
+    return depth_with_chord(depth, model.chord, chord, faces);
   };
-  if (model.blend == Blend::linear) return with_chord(depth_of(mean));
+  if (model.blend == Blend::linear) return with_chord(depth_of(sum(area) * inverse));
   if (model.blend == Blend::areas) return with_chord(depth_of(silhouette));
-  if (model.blend != Blend::renderer) {
-    const V3f depths(depth_of(node.opacity.x), depth_of(node.opacity.y), depth_of(node.opacity.z));
-    const float depth = ellipsoid(depths * faces, direction, correlation) * inverse;
-    const bool halfway = model.blend == Blend::halfway;
-    return with_chord(halfway ? 0.5f * (depth + depth_of(silhouette)) : depth);
-  }
-  const float sparse = with_chord(depth_of(silhouette));
-  const float filled = depth_of(mean);
-  return sparse + filled_share(mean) * (filled - sparse);
+  const V3f depths(depth_of(node.opacity.x), depth_of(node.opacity.y), depth_of(node.opacity.z));
+  const float depth = ellipsoid(depths * faces, direction, correlation) * inverse;
+  const bool halfway = model.blend == Blend::halfway;
+  return with_chord(halfway ? 0.5f * (depth + depth_of(silhouette)) : depth);
 }
 
 void check_renderer_model() {
-  const V3f direction = V3f(0.3f, -0.5f, 0.8f).normalized();
+  const V3f direction = V3f(0.3f, -0.5f, 0.8f).normalized(), correlation(0.2f, -0.4f, 0.6f);
   for (const float x : {0.02f, 0.3f, 0.7f, 0.99f}) {
     for (const float y : {0.02f, 0.3f, 0.7f, 0.99f}) {
-      const NodeOpacity node{V3f(1, 2, 3), V3f(x, y, 0.6f)};
+      const NodeOpacity node{V3f(1, 2, 3), V3f(x, y, 0.6f), correlation};
       const V3f faces = facing_areas(node.size, direction);
       const float here = model_depth(kRendererModel, node, direction, 1.0f);
-      const float there = opacity_depth(x, y, 0.6f, faces.x, faces.y, faces.z);
+      const float there = box_depth(depth_of(x), depth_of(y), depth_of(0.6f), -correlation.x,
+                                    -correlation.y, correlation.z, faces.x, faces.y, faces.z);
       if (std::fabs(here - there) > 1e-4f * (1.0f + there))
         throw Error(ErrorKind::failed,
-                    "bench/accuracy/opacity_models.cpp is out of step with opacity_depth() of "
+                    "bench/accuracy/opacity_models.cpp is out of step with box_depth() of "
                     "dapple/shared/opacity.h: change model_depth()");
     }
   }

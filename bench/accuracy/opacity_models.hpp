@@ -15,7 +15,6 @@ struct NodeOpacity {
 
 /// How opacities along the axes become one along a direction.
 enum class Blend {
-  renderer,  ///< areas when sparse, on to depths as the node fills
   linear,    ///< occluding areas add up
   areas,     ///< occluding areas as an ellipsoid, however full
   depths,    ///< optical depths as an ellipsoid
@@ -25,7 +24,7 @@ enum class Blend {
 /// Whether rays that cross more of the box meet more.
 enum class Chord {
   none,
-  scaled,     ///< depth times chord: the node's mean opacity falls, since exp is convex
+  scaled,     ///< depth times chord, less so as the node fills: the renderer's
   mean_kept,  ///< the same, with depths raised so that the mean opacity stays
 };
 
@@ -35,15 +34,15 @@ struct DirectionalModel {
   bool matrix = false;  ///< ellipsoids with off-diagonal terms
 };
 
-/// {Blend::renderer, Chord::scaled} is kernels/footprint.clh's child_depths(), one lane.
-inline constexpr DirectionalModel kRendererModel{Blend::renderer, Chord::scaled};
+/// kernels/footprint.clh's child_depths(), one lane.
+inline constexpr DirectionalModel kRendererModel{Blend::depths, Chord::scaled, true};
 
 /// Optical depth of the node along a unit direction for a ray whose chord is `chord` times
 /// the mean chord.
 float model_depth(const DirectionalModel& model, const NodeOpacity& node, const V3f& direction,
                   float chord);
 
-/// Throws Error failed when kRendererModel and the renderer's opacity_depth() differ.
+/// Throws Error failed when kRendererModel and the renderer's box_depth() differ.
 void check_renderer_model();
 
 /// Variance of box chords along a direction, over their squared mean, [0, 1/2]. Of the box

@@ -140,13 +140,47 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
 }
 
 DAPPLE_MULTIVERSION
-void multiply_uniform(std::array<float, kMapCells>& map, const CellTriangle& triangle,
-                      const CellCoverage& coverage, float opacity) {
-  for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    float* out = &map[row * kMapSize];
-    const float* in = &coverage.share[row * kMapSize];
-    for (int i = 0; i < kMapSize; ++i) out[i] *= 1.0f - opacity * in[i];
+void HiddenCells::add_uniform(const CellTriangle& triangle, const CellCoverage& coverage,
+                              float opacity) {
+  row0 = std::min(row0, triangle.row0);
+  row1 = std::max(row1, triangle.row1);
+  for (int cell = triangle.row0 * kMapSize; cell < (triangle.row1 + 1) * kMapSize; ++cell) {
+    hidden[cell] += opacity * coverage.share[cell];
   }
+}
+
+DAPPLE_MULTIVERSION
+void HiddenCells::flush(std::array<float, kMapCells>& map) {
+  for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) {
+    map[cell] *= 1.0f - std::min(1.0f, hidden[cell]);
+    hidden[cell] = 0.0f;
+  }
+  row0 = kMapSize;
+  row1 = -1;
+}
+
+bool side_by_side(const CoveringTriangle& a, const CoveringTriangle& b, int axis) {
+  const V3f p[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
+  const V3f q[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
+  // Edges are stored rounded: corners that were one may differ by a few roundings.
+  const float tolerance =
+      1e-5f * (std::fabs(a.edge1.x) + std::fabs(a.edge1.y) + std::fabs(a.edge1.z) +
+               std::fabs(a.edge2.x) + std::fabs(a.edge2.y) + std::fabs(a.edge2.z));
+  int shared[2][2], count = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (count < 2 && p[i].equalWithAbsError(q[j], tolerance)) {
+        shared[count][0] = i;
+        shared[count++][1] = j;
+      }
+    }
+  }
+  if (count < 2 || shared[0][0] == shared[1][0] || shared[0][1] == shared[1][1]) return false;
+  const V3f& from = p[shared[0][0]];
+  const V3f edge = p[shared[1][0]] - from;
+  const V3f third_a = p[3 - shared[0][0] - shared[1][0]] - from;
+  const V3f third_b = q[3 - shared[0][1] - shared[1][1]] - from;
+  return edge.cross(third_a)[axis] * edge.cross(third_b)[axis] < 0.0f;
 }
 
 CoverageMap uniform_map(const V3f& opacity) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <span>
 
 #include "dapple/scene.hpp"
 #include "dapple/shared/bvh_node.h"
@@ -34,16 +36,17 @@ struct CoverageMap {
   [[nodiscard]] float mean_opacity(int axis) const;
 };
 
-/// A triangle to be drawn. `opacity_at(u, v, share)` is its mean opacity around the
-/// barycentrics over `share` of its area; used only when `opacity` is negative.
+/// A triangle to be drawn. `opacity_at(triangle, u, v, share)` is its mean opacity around the
+/// barycentrics over `share` of its area; asked only when `opacity` is negative.
 struct CoveringTriangle {
   V3f vertex, edge1, edge2;
   float opacity;
 };
 
-/// Multiplies a triangle inside `box` into the map, keeping its projected area exactly.
+/// Multiplies triangles inside `box` into the map, keeping their projected areas. Those
+/// that meet along an edge lie side by side and add up; others overlap as if independent.
 template <class OpacityAt>
-void cover(CoverageMap& map, const Box3f& box, const CoveringTriangle& triangle,
+void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
            const OpacityAt& opacity_at);
 
 /// The map of a node while its children are put in, one after the other. Children whose
@@ -92,38 +95,68 @@ struct CellCoverage {
 /// area exactly, up to cells that would be more than full.
 void rasterize(const CellTriangle& triangle, CellCoverage& coverage);
 
-/// map *= 1 - opacity * coverage over the touched rows of one axis' map.
-void multiply_uniform(std::array<float, kMapCells>& map, const CellTriangle& triangle,
-                      const CellCoverage& coverage, float opacity);
+/// What a group of triangles side by side hides of each cell of one axis' map.
+struct HiddenCells {
+  std::array<float, kMapCells> hidden{};
+  int row0 = kMapSize, row1 = -1;  ///< rows touched, inclusive
+
+  void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
+  /// Multiplies what is left into `map` and empties this.
+  void flush(std::array<float, kMapCells>& map);
+};
+
+/// Whether two triangles share an edge and lie on either side of it, seen along `axis`.
+bool side_by_side(const CoveringTriangle& a, const CoveringTriangle& b, int axis);
 
 template <class OpacityAt>
-void cover(CoverageMap& map, const Box3f& box, const CoveringTriangle& triangle,
+void add_varying(HiddenCells& cells, const CellTriangle& t, const CellCoverage& coverage,
+                 const OpacityAt& opacity_at) {
+  cells.row0 = std::min(cells.row0, t.row0);
+  cells.row1 = std::max(cells.row1, t.row1);
+  const float share = t.area > 1.0f ? 1.0f / t.area : 1.0f;
+  const float inverse = 1.0f / (t.edge1.x * t.edge2.y - t.edge1.y * t.edge2.x);
+  for (int row = t.row0; row <= t.row1; ++row) {
+    for (int column = t.column0; column <= t.column1; ++column) {
+      const int cell = row * kMapSize + column;
+      if (coverage.share[cell] <= 0.0f) continue;
+      const V2f p = V2f(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f) - t.a;
+      const float u = std::clamp((p.x * t.edge2.y - p.y * t.edge2.x) * inverse, 0.0f, 1.0f);
+      const float v = std::clamp((t.edge1.x * p.y - t.edge1.y * p.x) * inverse, 0.0f, 1.0f);
+      const float excess = std::max(u + v, 1.0f);
+      cells.hidden[cell] += opacity_at(u / excess, v / excess, share) * coverage.share[cell];
+    }
+  }
+}
+
+template <class OpacityAt>
+void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
            const OpacityAt& opacity_at) {
   CellCoverage coverage;
+  HiddenCells cells;
   for (int axis = 0; axis < 3; ++axis) {
-    CellTriangle cells;
-    if (!project(triangle, box, axis, cells)) continue;
-    rasterize(cells, coverage);
-    auto& out = map.transmittance[axis];
-    if (triangle.opacity >= 0.0f) {
-      multiply_uniform(out, cells, coverage, triangle.opacity);
-      continue;
-    }
-    const float share = cells.area > 1.0f ? 1.0f / cells.area : 1.0f;
-    const float inverse = 1.0f / (cells.edge1.x * cells.edge2.y - cells.edge1.y * cells.edge2.x);
-    for (int row = cells.row0; row <= cells.row1; ++row) {
-      for (int column = cells.column0; column <= cells.column1; ++column) {
-        const int cell = row * kMapSize + column;
-        if (coverage.share[cell] <= 0.0f) continue;
-        const V2f p =
-            V2f(static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f) - cells.a;
-        const float u =
-            std::clamp((p.x * cells.edge2.y - p.y * cells.edge2.x) * inverse, 0.0f, 1.0f);
-        const float v =
-            std::clamp((cells.edge1.x * p.y - cells.edge1.y * p.x) * inverse, 0.0f, 1.0f);
-        const float excess = std::max(u + v, 1.0f);
-        out[cell] *= 1.0f - opacity_at(u / excess, v / excess, share) * coverage.share[cell];
+    std::uint64_t done = 0;  // leaves hold at most 8 triangles
+    for (std::size_t first = 0; first < triangles.size(); ++first) {
+      // A group: this triangle and every later one beside a member of it.
+      for (std::size_t t = first; t < triangles.size(); ++t) {
+        const auto beside = [&](std::size_t other) {
+          return (done >> other & 1u) && side_by_side(triangles[other], triangles[t], axis);
+        };
+        bool joins = t == first;
+        for (std::size_t other = first; other < t && !joins; ++other) joins = beside(other);
+        if (!joins || (done >> t & 1u)) continue;
+        done |= std::uint64_t{1} << t;
+        CellTriangle projected;
+        if (!project(triangles[t], box, axis, projected)) continue;
+        rasterize(projected, coverage);
+        if (triangles[t].opacity >= 0.0f) {
+          cells.add_uniform(projected, coverage, triangles[t].opacity);
+        } else {
+          add_varying(cells, projected, coverage, [&](float u, float v, float share) {
+            return opacity_at(triangles[t], u, v, share);
+          });
+        }
       }
+      cells.flush(map.transmittance[axis]);
     }
   }
 }

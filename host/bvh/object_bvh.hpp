@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bvh/coverage_map.hpp"
+#include "bvh/node_opacity.hpp"
 #include "bvh/triangle_opacity.hpp"
 #include "bvh/wide_tree.hpp"
 #include "dapple/shared/geometry.h"
@@ -18,7 +19,7 @@ struct ObjectBvh {
   std::vector<TexturedTriangle> textured;
   Box3f box;
   std::vector<Box3f> parts;  ///< boxes of the root's children
-  V3f opacity{0, 0, 0};      ///< of `box` along each axis
+  NodeOpacity opacity;       ///< of `box`
   std::uint32_t stack = 0;   ///< traversal stack entries needed
   double sah_cost = 0;       ///< expected node visits of a ray through `box`
   std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
@@ -43,6 +44,7 @@ void prefilter(ObjectBvh& object, const WideTree& tree, const TextureIntegrals& 
 std::vector<BvhNode> pack_nodes(const WideTree& tree);
 
 /// Stores the opacity of child `slot`, whose exact box had `opacity`, as that of its grown box.
-void set_child_opacity(BvhNode& node, unsigned slot, const V3f& opacity, const Box3f& exact);
+void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
+                       const Box3f& exact);
 
 }  // namespace dapple

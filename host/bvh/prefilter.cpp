@@ -6,6 +6,7 @@
 
 #include "bvh/object_bvh.hpp"
 #include "bvh/quantize.hpp"
+#include "dapple/shared/opacity.h"
 
 namespace dapple {
 namespace {
@@ -16,70 +17,79 @@ constexpr std::uint32_t kTaskPrimitives = 2048;
 /// From here on up to 1, nodes count as parts of something solid.
 constexpr float kNearlySolid = 0.9f;
 
-uchar encode_opacity(float opacity) {
-  return static_cast<uchar>(std::lround(std::sqrt(std::clamp(opacity, 0.0f, 1.0f)) * 255.0f));
+uchar encode_depth(float depth) {
+  return static_cast<uchar>(std::lround(std::sqrt(depth / DAPPLE_GREATEST_DEPTH) * 255.0f));
 }
+
+/// Coverage and normals of a subtree, handed to its parent.
+struct Summary {
+  CoverageMap map;
+  NormalMoments normals;
+  [[nodiscard]] NodeOpacity opacity() const {
+    return {V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals};
+  }
+};
 
 class Prefilter {
  public:
   Prefilter(ObjectBvh& object, const WideTree& tree, const TextureIntegrals& integrals)
       : object_(object), tree_(tree), integrals_(integrals) {}
 
-  CoverageMap node_map(std::uint32_t index) {
-    const WideNode& wide = tree_.nodes[index];
-    NodeCoverage coverage(wide.box);
-    if (wide.primitives > kTaskPrimitives) {
-      add_in_parallel(index, coverage);
+  Summary node(std::uint32_t index) {
+    const std::uint32_t count = tree_.nodes[index].child_count;
+    NodeCoverage coverage(tree_.nodes[index].box);
+    NormalMoments normals;
+    const auto add = [&](unsigned slot, const Summary& child) {
+      const Box3f& box = tree_.nodes[index].children[slot].box;
+      coverage.add(child.map, box);
+      normals.add(child.normals);
+      set_child_opacity(object_.nodes[index], slot, child.opacity(), box);
+    };
+    if (tree_.nodes[index].primitives > kTaskPrimitives) {
+      std::array<Summary, DAPPLE_BVH_WIDTH> children;
+      tbb::parallel_for(0u, count, [&](unsigned slot) { children[slot] = child(index, slot); });
+      // Put in by slot, so that the bits don't depend on which task came first.
+      for (unsigned slot = 0; slot < count; ++slot) add(slot, children[slot]);
     } else {
-      for (unsigned slot = 0; slot < wide.child_count; ++slot)
-        add(index, slot, child_map(index, slot), coverage);
+      for (unsigned slot = 0; slot < count; ++slot) add(slot, child(index, slot));
     }
-    return coverage.map();
+    return {coverage.map(), normals};
   }
 
  private:
-  CoverageMap child_map(std::uint32_t index, unsigned slot) {
+  Summary child(std::uint32_t index, unsigned slot) {
     const WideChild& child = tree_.nodes[index].children[slot];
-    return child.count ? leaf_map(object_.nodes[index], slot, child.box) : node_map(child.first);
+    return child.count ? leaf(object_.nodes[index], slot, child.box) : node(child.first);
   }
 
-  void add_in_parallel(std::uint32_t index, NodeCoverage& coverage) {
-    const std::uint32_t count = tree_.nodes[index].child_count;
-    std::array<CoverageMap, DAPPLE_BVH_WIDTH> maps;
-    tbb::parallel_for(0u, count, [&](unsigned slot) { maps[slot] = child_map(index, slot); });
-    // Put in by slot, so that the bits don't depend on which task came first.
-    for (unsigned slot = 0; slot < count; ++slot) add(index, slot, maps[slot], coverage);
-  }
-
-  void add(std::uint32_t index, unsigned slot, const CoverageMap& map, NodeCoverage& coverage) {
-    const Box3f& box = tree_.nodes[index].children[slot].box;
-    const V3f opacity(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2));
-    coverage.add(map, box);
-    set_child_opacity(object_.nodes[index], slot, opacity, box);
-  }
-
-  template <class Visit>
-  void for_each_triangle(const BvhNode& node, unsigned slot, const Visit& visit) const {
+  Summary leaf(const BvhNode& node, unsigned slot, const Box3f& box) const {
+    std::array<CoveringTriangle, 64> triangles;
+    std::size_t count = 0;
+    Summary summary;
     for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < node.leaf_end[slot]; ++i) {
       const TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
       const unsigned lane = i % 8;
       const auto at = [lane](const float(&v)[3][8]) {
         return V3f(v[0][lane], v[1][lane], v[2][lane]);
       };
-      visit(CoveringTriangle{at(block.vertex), at(block.edge1), at(block.edge2),
-                             block.opacity[lane]});
+      const CoveringTriangle triangle{at(block.vertex), at(block.edge1), at(block.edge2),
+                                      block.opacity[lane]};
+      const float opacity = triangle.opacity >= 0.0f
+                                ? triangle.opacity
+                                : mean_opacity(triangle, 1.0f / 3, 1.0f / 3, 1.0f);
+      summary.normals.add(triangle.edge1.cross(triangle.edge2), opacity);
+      triangles[count++] = triangle;
     }
+    cover(summary.map, box, std::span(triangles.data(), count),
+          [&](const CoveringTriangle& t, float u, float v, float share) {
+            return mean_opacity(t, u, v, share);
+          });
+    return summary;
   }
 
-  CoverageMap leaf_map(const BvhNode& node, unsigned slot, const Box3f& box) const {
-    CoverageMap map;
-    for_each_triangle(node, slot, [&](const CoveringTriangle& triangle) {
-      cover(map, box, triangle, [&](float u, float v, float share) {
-        const auto textured = static_cast<std::size_t>(-triangle.opacity - 1.0f);
-        return integrals_.mean(object_.textured[textured], u, v, share);
-      });
-    });
-    return map;
+  float mean_opacity(const CoveringTriangle& triangle, float u, float v, float share) const {
+    const auto textured = static_cast<std::size_t>(-triangle.opacity - 1.0f);
+    return integrals_.mean(object_.textured[textured], u, v, share);
   }
 
   ObjectBvh& object_;
@@ -89,21 +99,24 @@ class Prefilter {
 
 }  // namespace
 
-void set_child_opacity(BvhNode& node, unsigned slot, const V3f& opacity, const Box3f& exact) {
+void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
+                       const Box3f& exact) {
   const Box3f grown = child_box(node, slot);
+  const V3f correlation = opacity.normals.correlation();
   for (int axis = 0; axis < 3; ++axis) {
     const float area = face_area(grown, axis);
     const float share = area > 0.0f ? std::min(face_area(exact, axis) / area, 1.0f) : 0.0f;
     // A solid part of a wall must not leak where its box grew: its neighbours are there.
     const float solid =
-        std::clamp((opacity[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
-    node.opacity[axis][slot] = encode_opacity(opacity[axis] * (share + solid * (1.0f - share)));
+        std::clamp((opacity.axes[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
+    node.depth[axis][slot] =
+        encode_depth(depth_of(opacity.axes[axis] * (share + solid * (1.0f - share))));
+    node.correlation[axis][slot] = static_cast<schar>(std::lround(127.0f * correlation[axis]));
   }
 }
 
 void prefilter(ObjectBvh& object, const WideTree& tree, const TextureIntegrals& integrals) {
-  const CoverageMap root = Prefilter(object, tree, integrals).node_map(0);
-  for (int axis = 0; axis < 3; ++axis) object.opacity[axis] = root.mean_opacity(axis);
+  object.opacity = Prefilter(object, tree, integrals).node(0).opacity();
 }
 
 }  // namespace dapple

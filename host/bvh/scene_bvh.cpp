@@ -5,11 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "bvh/object_bvh.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/error.hpp"
-#include "dapple/shared/opacity.h"
 
 namespace dapple {
 namespace {
@@ -40,30 +40,23 @@ Box3f world_box(const std::vector<Box3f>& parts, const M44f& to_world) {
   return world;
 }
 
-/// The object's root opacity seen along the world axes, for its world box: along an axis
-/// e the object is crossed in direction M^-1 e, and areas grow by |det M| |M^-1 e|.
-V3f instance_opacity(const ObjectBvh& object, const M44f& to_world, const Box3f& world) {
+/// The object's root opacity as that of its world box: along a world axis e the object is
+/// crossed in direction M^-1 e, and areas grow by |det M| |M^-1 e|.
+NodeOpacity instance_opacity(const ObjectBvh& object, const M44f& to_world, const Box3f& world) {
   const M44f to_object = to_world.inverse();
-  const double scale = matrix_scale(to_world);
-  V3f opacity(0.0f);
+  const V3f size = object.box.max - object.box.min;
+  NodeOpacity opacity;
+  opacity.normals = object.opacity.normals.placed(to_world);
   for (int axis = 0; axis < 3; ++axis) {
     V3f world_axis(0.0f), direction;
     world_axis[axis] = 1.0f;
     to_object.multDirMatrix(world_axis, direction);
-    double squares = 0, linear = 0, facing = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double face = static_cast<double>(face_area(object.box, k)) * std::fabs(direction[k]);
-      const double area = object.opacity[k] * face;
-      squares += area * area;
-      linear += area;
-      facing += face;
-    }
-    const double mean = facing > 0 ? linear / facing : 0.0;
-    const double filled = std::clamp(
-        (mean - DAPPLE_SPARSE_OPACITY) / (DAPPLE_FILLED_OPACITY - DAPPLE_SPARSE_OPACITY), 0.0, 1.0);
-    const double occluding = std::sqrt(squares) + filled * (linear - std::sqrt(squares));
+    float facing = 0;
+    for (int k = 0; k < 3; ++k) facing += face_area(object.box, k) * std::fabs(direction[k]);
+    const double occluding =
+        opacity_along(object.opacity, size, direction) * facing * matrix_scale(to_world);
     const double area = face_area(world, axis);
-    opacity[axis] = area > 0 ? static_cast<float>(std::min(1.0, occluding * scale / area)) : 0.0f;
+    opacity.axes[axis] = area > 0 ? static_cast<float>(std::min(1.0, occluding / area)) : 0.0f;
   }
   return opacity;
 }
@@ -144,7 +137,7 @@ void add_statistics(BvhStatistics& s, const std::vector<ObjectBvh>& objects) {
 /// An instance that can be hit, as the top level sees it.
 struct Placement {
   Box3f box;
-  V3f opacity;
+  NodeOpacity opacity;
   InstanceRecord record;
 };
 
@@ -162,23 +155,32 @@ Placement place(const Instance& instance, const ObjectBvh& object, std::uint32_t
   return placement;
 }
 
-/// Coverage map of a top-level node; sets the opacities below it. Instances count as
-/// evenly filled boxes: how an object clumps is not known along turned axes.
-CoverageMap prefilter_top(const WideTree& tree, const std::vector<PrimitiveBox>& order,
-                          const std::vector<Placement>& placed, std::vector<BvhNode>& nodes,
-                          std::uint32_t index) {
+/// Coverage and normals of a top-level node; sets the opacities below it. Instances count
+/// as evenly filled boxes: how an object clumps is not known along turned axes.
+std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
+                                                    const std::vector<PrimitiveBox>& order,
+                                                    const std::vector<Placement>& placed,
+                                                    std::vector<BvhNode>& nodes,
+                                                    std::uint32_t index) {
   const WideNode& wide = tree.nodes[index];
   NodeCoverage coverage(wide.box);
+  NormalMoments normals;
   for (unsigned slot = 0; slot < wide.child_count; ++slot) {
     const WideChild& child = wide.children[slot];
-    const CoverageMap map = child.count ? uniform_map(placed[order[child.first].primitive].opacity)
-                                        : prefilter_top(tree, order, placed, nodes, child.first);
+    CoverageMap map;
+    NodeOpacity opacity;
+    if (child.count) {
+      opacity = placed[order[child.first].primitive].opacity;
+      map = uniform_map(opacity.axes);
+    } else {
+      std::tie(map, opacity.normals) = prefilter_top(tree, order, placed, nodes, child.first);
+      opacity.axes = V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2));
+    }
     coverage.add(map, child.box);
-    set_child_opacity(nodes[index], slot,
-                      V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)),
-                      child.box);
+    normals.add(opacity.normals);
+    set_child_opacity(nodes[index], slot, opacity, child.box);
   }
-  return coverage.map();
+  return {coverage.map(), normals};
 }
 
 /// The BVH over instances, one a leaf; returns the stack entries it needs.
@@ -189,7 +191,7 @@ std::uint32_t build_top(SceneBvh& bvh, const std::vector<Placement>& placed) {
   const BinaryTree binary = build_binary_tree(std::move(boxes), 1);
   const WideTree wide = collapse(binary);
   std::vector<BvhNode> nodes = pack_nodes(wide);
-  const CoverageMap map = prefilter_top(wide, binary.order, placed, nodes, 0);
+  const CoverageMap map = prefilter_top(wide, binary.order, placed, nodes, 0).first;
   for (int axis = 0; axis < 3; ++axis) bvh.statistics.root_opacity[axis] = map.mean_opacity(axis);
   bvh.root = static_cast<std::uint32_t>(bvh.nodes.size());
   bvh.has_top = true;
@@ -244,7 +246,7 @@ SceneBvh build_bvh(const Scene& scene) {
     bvh.root = roots[first.mesh];
     bvh.instances.push_back(placed[0].record);
     for (int axis = 0; axis < 3; ++axis)
-      bvh.statistics.root_opacity[axis] = objects[first.mesh].opacity[axis];
+      bvh.statistics.root_opacity[axis] = objects[first.mesh].opacity.axes[axis];
     check_stack(object_stack, scene.source);
   } else {
     const std::uint32_t top_stack = build_top(bvh, placed);

@@ -13,7 +13,7 @@ __kernel void depths(__global const BvhNode* nodes, __global const float* direct
   hits.hit = (int8)(-1);
   hits.enter = (float8)(0.0f);
   hits.leave = chords * sizes.x * sizes.y * sizes.z / facing.sum;
-  vstore8(child_depths(nodes + item, hits, sizes, facing), item, results);
+  vstore8(child_depths(nodes + item, hits, sizes, facing, direction), item, results);
 }
 
 /* minus_log(), eight values an item. */

@@ -7,8 +7,8 @@
   STRUCT(BvhNode)                                                                            \
   MEMBER(BvhNode, origin) MEMBER(BvhNode, exponent) MEMBER(BvhNode, inner_mask)              \
   MEMBER(BvhNode, child_base) MEMBER(BvhNode, prim_base) MEMBER(BvhNode, lower)              \
-  MEMBER(BvhNode, upper) MEMBER(BvhNode, opacity) MEMBER(BvhNode, leaf_end)                  \
-  MEMBER(BvhNode, spare)                                                                     \
+  MEMBER(BvhNode, upper) MEMBER(BvhNode, depth) MEMBER(BvhNode, leaf_end)                    \
+  MEMBER(BvhNode, correlation)                                                               \
   STRUCT(TriangleBlock)                                                                      \
   MEMBER(TriangleBlock, vertex) MEMBER(TriangleBlock, edge1) MEMBER(TriangleBlock, edge2)    \
   MEMBER(TriangleBlock, opacity)                                                             \

@@ -27,9 +27,9 @@ typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   uint prim_base;        /* first triangle block (objects) or first instance (top level) */
   uchar lower[3][8];
   uchar upper[3][8];
-  uchar opacity[3][8];   /* of child c's quantized box, seen along each axis; see opacity.h */
+  uchar depth[3][8];       /* optical depth of child c's quantized box along each axis */
   uchar leaf_end[8];
-  uchar spare[24];
+  schar correlation[3][8]; /* of its normals' components xy, yz, zx; codes: opacity.h */
 } BvhNode;
 
 DAPPLE_FUNCTION float bvh_scale(uchar exponent) {

@@ -6,6 +6,7 @@
 
 #ifdef __OPENCL_VERSION__
 #define DAPPLE_GLOBAL __global
+typedef char schar; /* signed in OpenCL C */
 #define DAPPLE_FUNCTION inline
 #define DAPPLE_CACHE_ALIGNED __attribute__((aligned(64)))
 #define dapple_bits_to_float(bits) as_float(bits)
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 namespace dapple {
+using schar = std::int8_t;
 using uchar = std::uint8_t;
 using uint = std::uint32_t;
 }  // namespace dapple

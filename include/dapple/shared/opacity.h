@@ -1,5 +1,6 @@
-/* Directional opacity of a box: three axis opacities, stored in 8 bits each, and the
-   model that turns them into an opacity along any direction. */
+/* Directional opacity of a box: optical depths along the three axes and the correlations
+   of its surfaces' normals, a byte each, and the model that turns them into an optical
+   depth along any ray. Opacity is 1 - exp(-depth). */
 #ifndef DAPPLE_SHARED_OPACITY_H
 #define DAPPLE_SHARED_OPACITY_H
 
@@ -7,53 +8,52 @@
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {
-using std::exp;
-using std::fmin;
-using std::log;
 using std::sqrt;
 #endif
 
-/* A code c in 0..255 means opacity (c / 255)^2: thin nodes don't round to nothing. */
-DAPPLE_FUNCTION float opacity_decode(uchar code) {
-  const float root = (float)code * (1.0f / 255.0f);
-  return root * root;
-}
-
-/* Between these mean opacities the model goes from a sparse set of silhouettes, whose
-   areas add up as an ellipsoid, to a filled box, as opaque from its corners as from its
-   faces. */
-#define DAPPLE_SPARSE_OPACITY 0.60f
-#define DAPPLE_FILLED_OPACITY 0.95f
-
-/* Transmittances below this count as none, so that optical depths stay finite. */
+/* Transmittances below this count as none: -log(1e-4) is the greatest depth stored. */
 #define DAPPLE_LEAST_TRANSMITTANCE 1e-4f
+#define DAPPLE_GREATEST_DEPTH 9.2103404f
 
 /* Chords are not measured in boxes whose mean chord is below this part of the distance:
    their length would be rounding. */
 #define DAPPLE_THINNEST 3e-5f
 
-/* Optical depth of a box along a direction. facing_k = (projected area along axis k) *
-   |direction_k|, opacity_k in [0,1] the mean opacity seen along axis k.
-   Ellipsoid of occluding areas: SGGX (Heitz et al., "The SGGX Microflake
-   Distribution", 2015), without its off-diagonal terms. */
-DAPPLE_FUNCTION float opacity_depth(float opacity_x, float opacity_y, float opacity_z,
-                                    float facing_x, float facing_y, float facing_z) {
-  const float facing = facing_x + facing_y + facing_z;
-  const float area_x = opacity_x * facing_x;
-  const float area_y = opacity_y * facing_y;
-  const float area_z = opacity_z * facing_z;
-  const float inverse = 1.0f / (facing + 1e-37f);
-  const float ellipsoid =
-      sqrt(area_x * area_x + area_y * area_y + area_z * area_z) * inverse;
-  const float mean = (area_x + area_y + area_z) * inverse;
-  const float sparse = -log(1.0f - ellipsoid > DAPPLE_LEAST_TRANSMITTANCE
-                                ? 1.0f - ellipsoid : DAPPLE_LEAST_TRANSMITTANCE);
-  const float filled = -log(1.0f - mean > DAPPLE_LEAST_TRANSMITTANCE
-                                ? 1.0f - mean : DAPPLE_LEAST_TRANSMITTANCE);
-  float blend = (mean - DAPPLE_SPARSE_OPACITY) /
-                (DAPPLE_FILLED_OPACITY - DAPPLE_SPARSE_OPACITY);
-  blend = blend < 0.0f ? 0.0f : blend > 1.0f ? 1.0f : blend;
-  return sparse + blend * (filled - sparse);
+/* From the first of these depths on to the second, a box is taken as filled: how long the
+   ray's way through it is counts less and less, so that solid boxes don't leak at edges. */
+#define DAPPLE_SPARSE_DEPTH 1.0f
+#define DAPPLE_FILLED_DEPTH 3.0f
+
+/* A code c in 0..255 means depth (c / 255)^2 of the greatest: thin nodes don't round to
+   nothing. */
+DAPPLE_FUNCTION float depth_decode(uchar code) {
+  const float root = (float)code * (1.0f / 255.0f);
+  return root * root * DAPPLE_GREATEST_DEPTH;
+}
+
+DAPPLE_FUNCTION float correlation_decode(schar code) { return (float)code * (1.0f / 127.0f); }
+
+/* Mean optical depth of a box along a direction. facing_k = (projected area along axis k) *
+   |direction_k|, depth_k along axis k, correlation_ij in [-1,1] times the sign of
+   direction_i * direction_j. The depths times areas span an ellipsoid whose off-diagonal
+   terms follow the normals: SGGX (Heitz et al., "The SGGX Microflake Distribution", 2015)
+   with optical depths in place of projected areas, so that filled boxes stay filled. */
+DAPPLE_FUNCTION float box_depth(float depth_x, float depth_y, float depth_z, float correlation_xy,
+                                float correlation_yz, float correlation_zx, float facing_x,
+                                float facing_y, float facing_z) {
+  const float x = depth_x * facing_x;
+  const float y = depth_y * facing_y;
+  const float z = depth_z * facing_z;
+  const float square = x * x + y * y + z * z +
+                       2.0f * (correlation_xy * x * y + correlation_yz * y * z + correlation_zx * z * x);
+  return sqrt(square > 0.0f ? square : 0.0f) / (facing_x + facing_y + facing_z + 1e-37f);
+}
+
+/* The depth that a ray meets whose chord is `chord` times the mean chord of the box. */
+DAPPLE_FUNCTION float chord_depth(float depth, float chord) {
+  float filled = (depth - DAPPLE_SPARSE_DEPTH) / (DAPPLE_FILLED_DEPTH - DAPPLE_SPARSE_DEPTH);
+  filled = filled < 0.0f ? 0.0f : filled > 1.0f ? 1.0f : filled;
+  return depth * (chord + filled * (1.0f - chord));
 }
 
 #ifndef __OPENCL_VERSION__
