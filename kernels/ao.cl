@@ -11,8 +11,8 @@ __kernel void ao_rays(__global const SurfacePoint* points, __global const uint* 
   const uint item = get_global_id(0);
   if (item >= params.point_count * params.rays) return;
   const SurfacePoint point = points[active_list[item / params.rays]];
-  const float2 u = sample_2d(point.pixel, point.sample * params.rays + item % params.rays,
-                             DAPPLE_PAIR_AO, params.seed);
+  const uint index = point.sample * params.rays + item % params.rays;
+  const float2 u = sample_2d(point.pixel, index, DAPPLE_PAIR_AO, params.seed);
   const float2 disk = concentric_disk(u);
   const float cosine = sqrt(fmax(1e-8f, 1.0f - dot(disk, disk)));
   const float3 normal = (float3)(point.normal[0], point.normal[1], point.normal[2]);
@@ -27,5 +27,5 @@ __kernel void ao_rays(__global const SurfacePoint* points, __global const uint* 
   ray->first_area = point.area;
   ray->light = 0;
   ray->weight = 1.0f;
-  ray->key = 0;
+  ray->key = ray_key(point.pixel, index, DAPPLE_PAIR_AO, params.seed);
 }

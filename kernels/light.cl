@@ -102,8 +102,9 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   if (item >= params.point_count * params.rays) return;
   const SurfacePoint point = points[active_list[item / params.rays]];
   __global const LightRecord* light = lights + params.light;
-  const float2 u = sample_2d(point.pixel, point.sample * params.rays + item % params.rays,
-                             DAPPLE_PAIR_LIGHT + params.light, params.seed);
+  const uint index = point.sample * params.rays + item % params.rays;
+  const uint pair = DAPPLE_PAIR_LIGHT + params.light;
+  const float2 u = sample_2d(point.pixel, index, pair, params.seed);
   const float3 normal = (float3)(point.normal[0], point.normal[1], point.normal[2]);
   const float3 position = (float3)(point.position[0], point.position[1], point.position[2]);
   const float3 origin = position + normal * point.offset;
@@ -118,5 +119,5 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   ray->first_area = point.area;
   ray->light = light->id;
   ray->weight = weight;
-  ray->key = 0;
+  ray->key = ray_key(point.pixel, index, pair, params.seed);
 }

@@ -27,10 +27,11 @@ class ReferenceTraversal {
 
   [[nodiscard]] Result trace(const Ray& ray) const {
     Walk walk{ray, {}, false};
+    const float scale = footprint_ * footprint_spread(ray.key);
     const Space world{{ray.origin[0], ray.origin[1], ray.origin[2]},
                       {ray.direction[0], ray.direction[1], ray.direction[2]},
-                      footprint_ * ray.first_area,
-                      footprint_ * ray.solid_angle};
+                      scale * ray.first_area,
+                      scale * ray.solid_angle};
     visit(walk, world, bvh_.root, bvh_.has_top);
     if (walk.result.transmittance < kOpaqueEnough) walk.result.transmittance = 0;
     return walk.result;

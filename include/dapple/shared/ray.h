@@ -18,8 +18,15 @@ typedef struct Ray {
   float first_area;   /* square metres */
   uint light;         /* 1 + the mesh light this ray is aimed at; 0: none */
   float weight;       /* what the ray's transmittance is multiplied by in its pass */
-  uint key;           /* random bits of its own, for stochastic opacity */
+  uint key;           /* random bits of its own: stochastic opacity, footprint_spread() */
 } Ray;
+
+/* Each ray's footprint is scaled by a random number from 1/2 to 2, so that nodes come to be
+   covered for some rays before others and nothing pops. */
+DAPPLE_FUNCTION float footprint_spread(uint key) {
+  const float root = 0.70710678f * (1.0f + (float)(key >> 8) * (1.0f / 16777216.0f));
+  return root * root;
+}
 
 /* Result of an occlusion ray. */
 typedef struct Occlusion {
