@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <ostream>
 
 #include "gltf_builder.hpp"
 
@@ -15,6 +16,9 @@ struct Damage {
   std::function<void(json&)> edit;
   const char* says;
 };
+
+/// Failures and lists of tests name the damage instead of dumping the bytes of its pointers.
+void PrintTo(const Damage& damage, std::ostream* out) { *out << damage.name; }
 
 const Damage kDamages[] = {
     {"AccessorPastItsView", [](json& d) { d["accessors"][0]["count"] = 4; },

@@ -68,26 +68,40 @@ void add_overlap(const Box3f& parent, const Box3f& a, const Box3f& b, int axis, 
 
 /// The child's opacity in the parent's cells, times the share of each that it covers.
 /// Returns the rows touched; the others are not set.
+DAPPLE_MULTIVERSION
 std::pair<int, int> resample(const CoverageMap& child, int axis, const AxisResampling& across,
                              const AxisResampling& down, Cells& opacity) {
-  // Summed into the parent's rows first, child columns kept: one vector a row.
-  std::array<std::array<float, kMapSize>, kMapSize + 1> rows{};
+  // Down first, a row of child columns being one vector; then across, a column of parent
+  // rows being one. Adding along a vector would wait for itself at every cell.
+  std::array<float, kMapCells + kMapSize> rows{};  // one too many, for what the last hands on
+  float* row = rows.data();
   for (int q = 0; q < kMapSize; ++q) {
     const float* in = &child.transmittance[axis][q * kMapSize];
-    auto& here = rows[down.cell[q]];
-    auto& next = rows[down.cell[q] + 1];
+    float* here = row + down.cell[q] * kMapSize;
+    float* next = here + kMapSize;
     for (int p = 0; p < kMapSize; ++p) {
       here[p] += down.here[q] * (1.0f - in[p]);
       next[p] += down.next[q] * (1.0f - in[p]);
     }
   }
+  Cells turned{};
   for (int j = down.first; j <= down.last; ++j) {
-    std::array<float, kMapSize + 1> sums{};
-    for (int p = 0; p < kMapSize; ++p) {
-      sums[across.cell[p]] += across.here[p] * rows[j][p];
-      sums[across.cell[p] + 1] += across.next[p] * rows[j][p];
+    for (int p = 0; p < kMapSize; ++p) turned[p * kMapSize + j] = row[j * kMapSize + p];
+  }
+  std::array<float, kMapCells + kMapSize> columns{};
+  for (int p = 0; p < kMapSize; ++p) {
+    const float* in = &turned[p * kMapSize];
+    float* here = &columns[across.cell[p] * kMapSize];
+    float* next = here + kMapSize;
+    for (int j = 0; j < kMapSize; ++j) {
+      here[j] += across.here[p] * in[j];
+      next[j] += across.next[p] * in[j];
     }
-    std::copy_n(sums.begin(), kMapSize, &opacity[j * kMapSize]);
+  }
+  for (int j = down.first; j <= down.last; ++j) {
+    float* out = &opacity[j * kMapSize];
+    std::fill_n(out, kMapSize, 0.0f);
+    for (int i = across.first; i <= across.last; ++i) out[i] = columns[i * kMapSize + j];
   }
   return {down.first, down.last};
 }
@@ -128,6 +142,7 @@ void merge_rows(int first, int last, const AxisShare& across, const AxisShare& d
 
 }  // namespace
 
+DAPPLE_MULTIVERSION
 void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box) {
   const ChildPlacement placement(box_, child_box);
   for (int axis = 0; axis < 3; ++axis) {
