@@ -72,8 +72,7 @@ void pack_triangles(ObjectBvh& object, const WideTree& wide, const BinaryTree& b
                     [&](const auto& range) {
                       for (std::size_t n = range.begin(); n < range.end(); ++n) {
                         std::uint32_t next = 0;
-                        for (std::uint32_t c = 0; c < wide.nodes[n].child_count; ++c) {
-                          const WideChild& child = wide.nodes[n].children[c];
+                        for (const WideChild& child : wide.children_of(wide.nodes[n])) {
                           for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
                             const std::uint32_t triangle = binary.order[child.first + i].primitive;
                             set_lane(object.blocks[object.nodes[n].prim_base + next / 8], next % 8,
@@ -105,7 +104,7 @@ std::vector<BvhNode> pack_nodes(const WideTree& tree) {
       std::uint32_t primitives = 0;
       for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
         if (slot < wide.child_count) {
-          const WideChild& child = wide.children[slot];
+          const WideChild& child = tree.children_of(wide)[slot];
           set_child_box(node, slot, child.box);
           primitives += child.count;
           if (child.count == 0) {
@@ -130,7 +129,7 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   built.tree = collapse(binary);
   const WideNode& root = built.tree.nodes[0];
   object.box = root.box;
-  for (std::uint32_t c = 0; c < root.child_count; ++c) object.parts.push_back(root.children[c].box);
+  for (const WideChild& child : built.tree.children_of(root)) object.parts.push_back(child.box);
   object.stack = stack_needed(built.tree);
   object.sah_cost = expected_visits(built.tree);
   object.nodes = pack_nodes(built.tree);

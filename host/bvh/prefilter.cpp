@@ -40,7 +40,7 @@ class Prefilter {
     NodeCoverage coverage(tree_.nodes[index].box);
     NormalMoments normals;
     const auto add = [&](unsigned slot, const Summary& child) {
-      const Box3f& box = tree_.nodes[index].children[slot].box;
+      const Box3f& box = tree_.children_of(tree_.nodes[index])[slot].box;
       coverage.add(child.map, box);
       normals.add(child.normals);
       set_child_opacity(object_.nodes[index], slot, child.opacity(), box);
@@ -58,7 +58,7 @@ class Prefilter {
 
  private:
   Summary child(std::uint32_t index, unsigned slot) {
-    const WideChild& child = tree_.nodes[index].children[slot];
+    const WideChild& child = tree_.children_of(tree_.nodes[index])[slot];
     return child.count ? leaf(object_.nodes[index], slot, child.box) : node(child.first);
   }
 

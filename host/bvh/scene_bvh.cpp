@@ -166,7 +166,7 @@ std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
   NodeCoverage coverage(wide.box);
   NormalMoments normals;
   for (unsigned slot = 0; slot < wide.child_count; ++slot) {
-    const WideChild& child = wide.children[slot];
+    const WideChild& child = tree.children_of(wide)[slot];
     CoverageMap map;
     NodeOpacity opacity;
     if (child.count) {
@@ -198,8 +198,7 @@ std::uint32_t build_top(SceneBvh& bvh, const std::vector<Placement>& placed) {
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     nodes[n].prim_base = static_cast<std::uint32_t>(bvh.instances.size());
     nodes[n].child_base += bvh.root;
-    for (std::uint32_t c = 0; c < wide.nodes[n].child_count; ++c) {
-      const WideChild& child = wide.nodes[n].children[c];
+    for (const WideChild& child : wide.children_of(wide.nodes[n])) {
       if (child.count) bvh.instances.push_back(placed[binary.order[child.first].primitive].record);
     }
   }

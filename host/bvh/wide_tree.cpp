@@ -42,9 +42,11 @@ WideTree collapse(const BinaryTree& tree) {
     WideNode node;
     node.box = tree.nodes[source[n]].box;
     node.primitives = tree.nodes[source[n]].count;
+    node.first_child = static_cast<std::uint32_t>(wide.children.size());
     for (const std::uint32_t picked : pick_children(tree, source[n])) {
       const BinaryNode& child = tree.nodes[picked];
-      WideChild& slot = node.children[node.child_count++];
+      WideChild& slot = wide.children.emplace_back();
+      ++node.child_count;
       slot.box = child.box;
       if (child.left) {
         slot.first = static_cast<std::uint32_t>(wide.nodes.size());
@@ -57,6 +59,8 @@ WideTree collapse(const BinaryTree& tree) {
     }
     wide.nodes[n] = node;
   }
+  wide.nodes.shrink_to_fit();
+  wide.children.shrink_to_fit();
   return wide;
 }
 
@@ -67,8 +71,8 @@ std::uint32_t stack_needed(const WideTree& tree) {
   for (std::size_t n = tree.nodes.size(); n-- > 0;) {
     const WideNode& node = tree.nodes[n];
     std::uint32_t deepest = 1;
-    for (std::uint32_t c = 0; c < node.child_count; ++c) {
-      if (node.children[c].count == 0) deepest = std::max(deepest, needed[node.children[c].first]);
+    for (const WideChild& child : tree.children_of(node)) {
+      if (child.count == 0) deepest = std::max(deepest, needed[child.first]);
     }
     needed[n] = node.child_count - 1 + deepest;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bvh/binary_tree.hpp"
@@ -19,13 +20,18 @@ struct WideChild {
 /// Inner children of a node lie one after the other in WideTree::nodes, in slot order.
 struct WideNode {
   Box3f box;
+  std::uint32_t first_child = 0;  ///< in WideTree::children
   std::uint32_t child_count = 0;
   std::uint32_t primitives = 0;  ///< in the whole subtree
-  WideChild children[DAPPLE_BVH_WIDTH];
 };
 
 struct WideTree {
   std::vector<WideNode> nodes;  ///< node 0 is the root; children come after their parents
+  std::vector<WideChild> children;
+
+  [[nodiscard]] std::span<const WideChild> children_of(const WideNode& node) const {
+    return {&children[node.first_child], node.child_count};
+  }
 };
 
 WideTree collapse(const BinaryTree& tree);
