@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <optional>
 
+#include "accuracy/line_accuracy.hpp"
+#include "accuracy/prefilter_cost.hpp"
 #include "accuracy/report.hpp"
 #include "dapple/error.hpp"
 #include "film/output_file.hpp"
@@ -17,18 +19,21 @@ namespace {
 struct Arguments {
   std::string scene, json, svg;
   std::vector<std::string> opacity;
-  bool nodes_only = false, images_only = false, quick = false;
+  bool nodes_only = false, images_only = false, line = false, linear = false, quick = false;
   int size = 256;
   NodeAccuracyOptions nodes;
   ImageAccuracyOptions images;
+  LineAccuracyOptions lines;
 };
 
 void add_options(CLI::App& app, Arguments& a) {
-  app.add_option("SCENE", a.scene, "glTF file or a procedural scene, \"scene:tree?leaves=50000\"")
-      ->required();
+  app.add_option("SCENE", a.scene, "glTF file or a procedural scene, \"scene:tree?leaves=50000\"");
   app.add_option("--opacity", a.opacity, "MATERIAL=VALUE: that opacity for a material; repeatable");
   auto* nodes = app.add_flag("--nodes-only", a.nodes_only, "Only nodes; needs no OpenCL device");
   app.add_flag("--images-only", a.images_only, "Only pictures")->excludes(nodes);
+  app.add_flag("--line", a.line,
+               "Only whether AO pops along a line and as the camera is pulled back");
+  app.add_flag("--linear", a.linear, "Only time and memory of prefiltering clouds; takes no SCENE");
   app.add_option("--seeds", a.images.seeds, "Pictures of each footprint")
       ->capture_default_str()
       ->check(CLI::Range(2, 10000));
@@ -47,9 +52,13 @@ void make_quick(Arguments& a) {
   a.nodes.directions = 4;
   a.images.seeds = 4;
   a.size = 160;
+  a.lines.points = 400;
+  a.lines.frames = 20;
 }
 
 void settle(Arguments& a) {
+  if (a.scene.empty() != a.linear)
+    throw Error(ErrorKind::usage, a.linear ? "--linear takes no SCENE" : "SCENE is missing");
   if (a.quick) make_quick(a);
   RenderOptions& render = a.images.render;
   render.width = render.height = a.size;
@@ -57,6 +66,20 @@ void settle(Arguments& a) {
   validate(render);
   if (!a.json.empty()) check_output_path(a.json);
   if (!a.svg.empty()) check_output_path(a.svg);
+}
+
+/// Studies that are nothing but a table. False when none was asked for.
+bool ran_study(const Arguments& a) {
+  if (a.linear) {
+    fmt::print("{}", cost_text(measure_prefilter_cost(a.quick)));
+  } else if (a.line) {
+    LineAccuracyOptions lines = a.lines;
+    lines.render = a.images.render;
+    fmt::print("{}\n{}", a.scene, line_text(measure_line(a.scene, lines)));
+  } else {
+    return false;
+  }
+  return true;
 }
 
 /// The share done, on a line that is overwritten; nothing where nobody watches.
@@ -75,6 +98,7 @@ int run_accuracy(int argc, char** argv) {
   add_options(app, a);
   CLI11_PARSE(app, argc, argv);
   settle(a);
+  if (ran_study(a)) return 0;
   PictureScene scene(a.scene, a.images.render);
   nlohmann::json figures{{"scene", a.scene}, {"opacity", a.opacity}};
   fmt::print("{}, {} triangles\n", a.scene, scene.bvh().statistics.triangles);

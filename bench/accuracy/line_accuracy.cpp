@@ -44,8 +44,8 @@ void measure_points(const Uploaded& scene, const std::string& what, const std::v
   };
   const std::vector<float> exact = traced(rays, Estimator::exact, 0);
   for (const float footprint : options.footprints) {
-    const auto found = popping::largest(popping::steps(
-        exact, traced(rays, Estimator::prefiltered, footprint), rays.size()));
+    const auto found = popping::largest(
+        popping::steps(exact, traced(rays, Estimator::prefiltered, footprint), rays.size()));
     const auto unspread = popping::largest(popping::steps(
         exact, traced(with_one_key(rays), Estimator::prefiltered, footprint), rays.size()));
     rows.push_back({what, footprint, found.exact, found.prefiltered, found.excess, found.error,
@@ -56,13 +56,14 @@ void measure_points(const Uploaded& scene, const std::string& what, const std::v
 void measure_camera(const Uploaded& scene, const LineAccuracyOptions& options,
                     std::vector<LineAccuracyRow>& rows) {
   const popping::PulledBackCamera path(scene.bvh.bounds, options.frames);
-  const popping::FrameTracer tracer(scene.device, scene.on_device, scene.bvh.bounds,
-                                    options.render, options.seeds);
+  const popping::FrameTracer tracer(scene.device, scene.on_device, scene.bvh.bounds, options.render,
+                                    options.seeds);
   const std::vector<popping::Frame> exact = tracer.frames(path, Estimator::exact, 0);
   for (const float footprint : options.footprints) {
     const auto found = popping::largest(
         popping::steps(exact, tracer.frames(path, Estimator::prefiltered, footprint)));
-    rows.push_back({"camera", footprint, found.exact, found.prefiltered, found.excess, found.error});
+    rows.push_back(
+        {"camera", footprint, found.exact, found.prefiltered, found.excess, found.error});
   }
 }
 
@@ -85,10 +86,11 @@ std::string line_text(const std::vector<LineAccuracyRow>& rows) {
                                                "prefiltered step", "excess", "standard error",
                                                "excess unspread"}};
   for (const LineAccuracyRow& row : rows) {
-    cells.push_back({row.what, fmt::format("{:g}", row.footprint), fmt::format("{:.4f}", row.exact),
-                     fmt::format("{:.4f}", row.prefiltered), fmt::format("{:+.4f}", row.excess),
-                     fmt::format("{:.4f}", row.error),
-                     row.shared_key_excess < 0 ? "" : fmt::format("{:+.4f}", row.shared_key_excess)});
+    cells.push_back(
+        {row.what, fmt::format("{:g}", row.footprint), fmt::format("{:.4f}", row.exact),
+         fmt::format("{:.4f}", row.prefiltered), fmt::format("{:+.4f}", row.excess),
+         fmt::format("{:.4f}", row.error),
+         row.shared_key_excess < 0 ? "" : fmt::format("{:+.4f}", row.shared_key_excess)});
   }
   return "Largest changes of AO from one point or frame to the next\n" + table_text(cells);
 }

@@ -12,11 +12,18 @@ namespace dapple::bench {
 
 struct LineAccuracyOptions {
   std::vector<float> footprints{0.5f, 1, 2, 4};
-  int points = 1000;      ///< on the line, from side to side of the scene
-  int rays_across = 64;   ///< squared: rays a point
-  int frames = 100;       ///< of the camera that is pulled back
-  int seeds = 8;          ///< pictures of each frame
-  RenderOptions render;   ///< size, samples, device, opacities
+  int points = 1000;     ///< on the line, from side to side of the scene
+  int rays_across = 64;  ///< squared: rays a point
+  int frames = 100;      ///< of the camera that is pulled back
+  int size = 64;         ///< of a frame, both ways, pixels
+  int seeds = 2;         ///< pictures of each frame
+  RenderOptions render;  ///< samples, device, opacities
+};
+int points = 1000;     ///< on the line, from side to side of the scene
+int rays_across = 64;  ///< squared: rays a point
+int frames = 100;      ///< of the camera that is pulled back
+int seeds = 8;         ///< pictures of each frame
+RenderOptions render;  ///< size, samples, device, opacities
 };
 
 /// The largest changes from one point or frame to the next, at one footprint.

@@ -1,9 +1,9 @@
 #include "bvh/coverage_map.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
+#include "bvh/map_row.hpp"
 #include "bvh/multiversion.hpp"
 
 namespace dapple {
@@ -26,11 +26,6 @@ void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
   }
 }
 
-/// A row of a map in one to four registers.
-using Row = float __attribute__((vector_size(kMapSize * sizeof(float))));
-
-inline void load_row(const float* from, Row& row) { std::memcpy(&row, from, sizeof row); }
-inline void store_row(float* to, const Row& row) { std::memcpy(to, &row, sizeof row); }
 inline float sum_of(const Row& row) {
   float sum = 0.0f;
   for (int i = 0; i < kMapSize; ++i) sum += row[i];

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bvh/coverage_map.hpp"
+#include "bvh/map_row.hpp"
 #include "bvh/multiversion.hpp"
 
 namespace dapple {
@@ -66,38 +67,40 @@ void add_overlap(const Box3f& parent, const Box3f& a, const Box3f& b, int axis, 
   }
 }
 
+/// Sums sixteen rows into the rows of the parent that `along` gives: a row of `out` for
+/// each of along.first .. along.last, and no others.
+inline void sum_rows(const AxisResampling& along, const float* in, bool transmittance, float* out) {
+  const Row zero{}, one = zero + 1.0f;
+  Row sum = zero, carried = zero;
+  int cell = along.first;
+  for (int q = 0; q < kMapSize; ++q) {
+    for (; cell < along.cell[q]; ++cell) {
+      store_row(out + cell * kMapSize, sum);
+      sum = carried;
+      carried = zero;
+    }
+    Row row;
+    load_row(in + q * kMapSize, row);
+    if (transmittance) row = one - row;
+    sum += row * along.here[q];
+    carried += row * along.next[q];
+  }
+  store_row(out + cell * kMapSize, sum);
+  if (cell < along.last) store_row(out + (cell + 1) * kMapSize, carried);
+}
+
 /// The child's opacity in the parent's cells, times the share of each that it covers.
 /// Returns the rows touched; the others are not set.
 DAPPLE_MULTIVERSION
 std::pair<int, int> resample(const CoverageMap& child, int axis, const AxisResampling& across,
                              const AxisResampling& down, Cells& opacity) {
-  // Down first, a row of child columns being one vector; then across, a column of parent
-  // rows being one. Adding along a vector would wait for itself at every cell.
-  std::array<float, kMapCells + kMapSize> rows{};  // one too many, for what the last hands on
-  float* row = rows.data();
-  for (int q = 0; q < kMapSize; ++q) {
-    const float* in = &child.transmittance[axis][q * kMapSize];
-    float* here = row + down.cell[q] * kMapSize;
-    float* next = here + kMapSize;
-    for (int p = 0; p < kMapSize; ++p) {
-      here[p] += down.here[q] * (1.0f - in[p]);
-      next[p] += down.next[q] * (1.0f - in[p]);
-    }
-  }
-  Cells turned{};
+  // Down first, a row of child columns being one vector; then, turned, across.
+  Cells rows, turned{}, columns;
+  sum_rows(down, child.transmittance[axis].data(), true, rows.data());
   for (int j = down.first; j <= down.last; ++j) {
-    for (int p = 0; p < kMapSize; ++p) turned[p * kMapSize + j] = row[j * kMapSize + p];
+    for (int p = 0; p < kMapSize; ++p) turned[p * kMapSize + j] = rows[j * kMapSize + p];
   }
-  std::array<float, kMapCells + kMapSize> columns{};
-  for (int p = 0; p < kMapSize; ++p) {
-    const float* in = &turned[p * kMapSize];
-    float* here = &columns[across.cell[p] * kMapSize];
-    float* next = here + kMapSize;
-    for (int j = 0; j < kMapSize; ++j) {
-      here[j] += across.here[p] * in[j];
-      next[j] += across.next[p] * in[j];
-    }
-  }
+  sum_rows(across, turned.data(), false, columns.data());
   for (int j = down.first; j <= down.last; ++j) {
     float* out = &opacity[j * kMapSize];
     std::fill_n(out, kMapSize, 0.0f);

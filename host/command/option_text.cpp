@@ -67,8 +67,9 @@ std::pair<std::string, float> parse_opacity(const std::string& text) {
 Estimator parse_estimator(const std::string& text) {
   if (text == "exact") return Estimator::exact;
   if (text == "prefiltered") return Estimator::prefiltered;
+  if (text == "packet") return Estimator::packet;
   throw Error(ErrorKind::usage,
-              fmt::format("--estimator {}: there are exact and prefiltered", text));
+              fmt::format("--estimator {}: there are exact, prefiltered and packet", text));
 }
 
 void parse_passes(const std::string& text, RenderOptions& options) {

@@ -14,7 +14,7 @@ V3f parse_vector(const std::string& flag, const std::string& text);
 PixelRect parse_crop(const std::string& text);
 /// "leaf=0.85"; the name may contain '='
 std::pair<std::string, float> parse_opacity(const std::string& text);
-/// "exact" or "prefiltered"
+/// "exact", "prefiltered" or "packet"
 Estimator parse_estimator(const std::string& text);
 /// "ao", "light", "ao,light"
 void parse_passes(const std::string& text, RenderOptions& options);

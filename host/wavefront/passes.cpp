@@ -8,8 +8,24 @@ namespace {
 /// Work-items of the one group that compacts; DAPPLE_SCAN_ITEMS in kernels/compact.cl.
 constexpr std::size_t kScanItems = 256;
 
-KernelName occlusion_kernel(Estimator estimator) {
-  return {"occlusion", "occlusion", Variant{estimator == Estimator::prefiltered}};
+/// Rays of a point from which on a packet is faster than the same rays one by one.
+constexpr uint kLeastPacket = 8;
+
+/// Rays that one item of the packet kernel takes; DAPPLE_BUNDLE_RAYS in kernels/bundle.clh.
+constexpr uint kBundleRays = 64;
+
+/// Items a work-group: of packets few, so that small slices keep all threads busy.
+constexpr std::size_t kRayGroup = 64, kPacketGroup = 16;
+
+const KernelName kPacket{"packet", "packet", {}};
+
+bool takes_packets(Estimator estimator, uint rays_per_point) {
+  return estimator == Estimator::packet && rays_per_point >= kLeastPacket;
+}
+
+KernelName occlusion_kernel(Estimator estimator, uint rays_per_point) {
+  if (takes_packets(estimator, rays_per_point)) return kPacket;
+  return {"occlusion", "occlusion", Variant{estimator != Estimator::exact}};
 }
 
 const KernelName kCameraRays{"camera_rays", "camera", {}};
@@ -77,9 +93,16 @@ void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Qu
 
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params) {
-  context.launch(occlusion_kernel(estimator), label, params.ray_count,
+  std::size_t items = params.ray_count, group = kRayGroup;
+  if (takes_packets(estimator, params.rays_per_point)) {
+    const uint bundles = (params.rays_per_point + kBundleRays - 1) / kBundleRays;
+    items = std::size_t{params.ray_count / params.rays_per_point} * bundles;
+    group = kPacketGroup;
+  }
+  context.launch(occlusion_kernel(estimator, params.rays_per_point), label, items,
                  {scene.nodes, scene.blocks, scene.textured, scene.textures, scene.texels,
-                  scene.instances, queues.rays, queues.occlusions, params});
+                  scene.instances, queues.rays, queues.occlusions, params},
+                 group);
 }
 
 void resolve_surface_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
@@ -103,12 +126,16 @@ void resolve_light_pass(DeviceContext& context, const Queues& queues, const Buff
 void prepare_kernels(DeviceContext& context, const RenderOptions& options) {
   for (const KernelName& kernel : {kCameraRays, kClosestHit, kCompactHits, kResolveSurface})
     context.prepare(kernel);
-  if (options.ao || options.light) context.prepare(occlusion_kernel(options.estimator));
+  const auto prepare_occlusion = [&](int rays) {
+    context.prepare(occlusion_kernel(options.estimator, static_cast<uint>(rays)));
+  };
   if (options.ao) {
+    prepare_occlusion(options.ao_rays);
     context.prepare(kAoRays);
     context.prepare(kResolveAo);
   }
   if (options.light) {
+    prepare_occlusion(options.light_rays);
     context.prepare(kLightRays);
     context.prepare(kResolveLight);
   }

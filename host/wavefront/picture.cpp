@@ -97,7 +97,7 @@ class PictureTracer {
         options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
     ao.seed = options_.seed;
     ao_ray_pass(context_, queues_, ao);
-    OcclusionParams params = occlusion_params(hits * ao.rays);
+    OcclusionParams params = occlusion_params(hits, ao.rays);
     if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
       params.inverse_distance = 1.0f / options_.ao_distance;
       params.falloff = options_.ao_falloff;
@@ -119,17 +119,18 @@ class PictureTracer {
     params.seed = options_.seed;
     light_ray_pass(context_, scene_, queues_, params);
     occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator,
-                   occlusion_params(hits * params.rays));
+                   occlusion_params(hits, params.rays));
     resolve_.plane = layout_.lights[light];
     resolve_.rays = params.rays;
     resolve_.scale = layout_.light_scale;
     resolve_light_pass(context_, queues_, sums_, resolve_);
   }
 
-  [[nodiscard]] OcclusionParams occlusion_params(uint rays) const {
+  [[nodiscard]] OcclusionParams occlusion_params(uint points, uint rays_per_point) const {
     OcclusionParams params{};
     params.scene = scene_.params;
-    params.ray_count = rays;
+    params.ray_count = points * rays_per_point;
+    params.rays_per_point = rays_per_point;
     params.footprint = options_.footprint;
     return params;
   }

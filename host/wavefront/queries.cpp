@@ -17,10 +17,12 @@ namespace {
 /// Rays a launch, so that no launch runs long enough to trip a watchdog.
 constexpr std::size_t kSlice = 1u << 18;
 
-OcclusionParams occlusion_params(const DeviceBuffers& scene, std::size_t rays, float footprint) {
+OcclusionParams occlusion_params(const DeviceBuffers& scene, std::size_t points,
+                                 std::size_t rays_per_point, float footprint) {
   OcclusionParams params{};
   params.scene = scene.params;
-  params.ray_count = static_cast<uint>(rays);
+  params.ray_count = static_cast<uint>(points * rays_per_point);
+  params.rays_per_point = static_cast<uint>(rays_per_point);
   params.footprint = footprint;
   return params;
 }
@@ -39,18 +41,40 @@ SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t i
   return point;
 }
 
+/// Throws Error usage unless the rays are whole points, all of a point from one place to one
+/// light.
+void check_points(std::span<const Ray> rays, std::size_t rays_per_point) {
+  if (rays_per_point < 1 || rays.size() % rays_per_point != 0) {
+    throw Error(ErrorKind::usage, fmt::format("trace: {} rays are no whole number of points of {}",
+                                              rays.size(), rays_per_point));
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& first = rays[i - i % rays_per_point];
+    if (std::equal(first.origin, first.origin + 3, rays[i].origin) && first.light == rays[i].light)
+      continue;
+    throw Error(ErrorKind::usage,
+                fmt::format("trace: ray {} starts elsewhere or is aimed at another light than the "
+                            "first of its point",
+                            i));
+  }
+}
+
 }  // namespace
 
 std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
-                             std::span<const Ray> rays, Estimator estimator, float footprint) {
+                             std::span<const Ray> rays, Estimator estimator, float footprint,
+                             std::size_t rays_per_point) {
+  check_points(rays, rays_per_point);
   DeviceContext& context = device.context();
-  const Queues queues = make_queues(context, std::min(kSlice, rays.size()), 1);
+  const std::size_t slice = std::max<std::size_t>(1, kSlice / rays_per_point) * rays_per_point;
+  const Queues queues = make_queues(context, std::min(slice, rays.size()), 1);
   std::vector<Occlusion> results(rays.size());
-  for (std::size_t begin = 0; begin < rays.size(); begin += kSlice) {
-    const std::size_t count = std::min(kSlice, rays.size() - begin);
+  for (std::size_t begin = 0; begin < rays.size(); begin += slice) {
+    const std::size_t count = std::min(slice, rays.size() - begin);
     context.write(queues.rays, &rays[begin], count * sizeof(Ray));
-    occlusion_pass(context, queues, *scene.buffers, "occlusion", estimator,
-                   occlusion_params(*scene.buffers, count, footprint));
+    occlusion_pass(
+        context, queues, *scene.buffers, "occlusion", estimator,
+        occlusion_params(*scene.buffers, count / rays_per_point, rays_per_point, footprint));
     context.read(queues.occlusions, &results[begin], count * sizeof(Occlusion));
   }
   context.finish();
@@ -105,7 +129,7 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
     ao_ray_pass(context, queues,
                 {static_cast<uint>(count), static_cast<uint>(rays), 1.0f / static_cast<float>(rays),
                  t_max, options.seed});
-    OcclusionParams params = occlusion_params(*scene.buffers, count * rays, options.footprint);
+    OcclusionParams params = occlusion_params(*scene.buffers, count, rays, options.footprint);
     if (options.distance > 0 && options.falloff > 0) {
       params.inverse_distance = 1.0f / options.distance;
       params.falloff = options.falloff;

@@ -24,7 +24,15 @@ class Stopwatch {
 };
 
 const char* name_of(Estimator estimator) {
-  return estimator == Estimator::exact ? "exact" : "prefiltered";
+  switch (estimator) {
+    case Estimator::exact:
+      return "exact";
+    case Estimator::prefiltered:
+      return "prefiltered";
+    case Estimator::packet:
+      return "packet";
+  }
+  return "";
 }
 
 /// Overrides, lights and ground, in the order that framing needs: the camera sees the

@@ -48,7 +48,7 @@
   STRUCT(OcclusionParams)                                                                    \
   MEMBER(OcclusionParams, scene) MEMBER(OcclusionParams, ray_count)                          \
   MEMBER(OcclusionParams, footprint) MEMBER(OcclusionParams, inverse_distance)               \
-  MEMBER(OcclusionParams, falloff)                                                           \
+  MEMBER(OcclusionParams, falloff) MEMBER(OcclusionParams, rays_per_point)                   \
   STRUCT(SliceParams)                                                                        \
   MEMBER(SliceParams, first_pixel) MEMBER(SliceParams, pixel_count)                          \
   MEMBER(SliceParams, first_sample) MEMBER(SliceParams, sample_count)                        \

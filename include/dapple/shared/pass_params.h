@@ -20,6 +20,7 @@ typedef struct OcclusionParams {
   float footprint;            /* scale, >= 0 */
   float inverse_distance;     /* AO: 1 / D for the falloff; 0: none */
   float falloff;              /* AO: the power p; 0: none */
+  uint rays_per_point;        /* packets: rays in a row that share their origin */
 } OcclusionParams;
 
 /* A slice: `pixel_count` pixels of the crop from `first_pixel`, row-major, and of each
