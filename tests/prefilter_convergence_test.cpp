@@ -14,7 +14,7 @@ using scene_test::device;
 using scene_test::SceneOnDevice;
 
 constexpr float kFootprints[] = {4, 2, 1, 1 / 2.0f, 1 / 4.0f, 1 / 8.0f, 1 / 16.0f};
-constexpr int kSeeds = 12;
+constexpr int kSeeds = 24;
 
 using Pixels = std::vector<double>;
 
@@ -118,15 +118,19 @@ void expect_pictures_converge(const SceneOnDevice& scene, const std::string& nam
     std::printf(" %g: %.4f", footprint, std::sqrt(std::max(0.0, squares.back().value())));
   }
   std::printf("\n");
-  for (std::size_t i = 1; i < squares.size(); ++i) {
-    // Three standard errors: one of 700 such comparisons fails by noise alone.
-    EXPECT_LE(squares[i].value(),
-              squares[i - 1].value() + 3 * error_of_difference(squares[i], squares[i - 1]))
-        << name << " from footprint " << kFootprints[i - 1] << " to " << kFootprints[i];
+  // Rises are looked for from every larger scale on, so that slow ones add up. Of 21 comparisons
+  // a scene one in 200 scenes would have one beyond 3.5 standard errors by noise alone.
+  for (std::size_t small = 1; small < squares.size(); ++small) {
+    for (std::size_t large = 0; large < small; ++large) {
+      EXPECT_LE(squares[small].value(),
+                squares[large].value() + 3.5 * error_of_difference(squares[small], squares[large]))
+          << name << " from footprint " << kFootprints[large] << " to " << kFootprints[small];
+    }
   }
-  // All in all it has to fall, and the first has to show something that could.
-  EXPECT_GT(squares.front().value(), 1e-5) << name;
-  EXPECT_LT(squares.back().value(), squares.front().value() / 4) << name;
+  // All in all half of the square goes, and the first holds something that could.
+  const double error = error_of_difference(squares.back(), squares.front());
+  EXPECT_LE(squares.back().value(), squares.front().value() / 2 + 3 * error) << name;
+  EXPECT_GT(squares.front().value(), 0) << name;
 }
 
 /// Rays all through the scene, with footprints of whole twigs that the scale makes nothing.

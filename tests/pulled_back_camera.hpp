@@ -13,12 +13,13 @@
 
 namespace dapple::popping {
 
-/// Distances grow evenly in ratio, from one at which the ball fills the picture on.
+/// Distances grow evenly in ratio, from one at which the ball fills the picture to `times` it.
 class PulledBackCamera {
  public:
-  PulledBackCamera(const Box3f& box, int frame_count)
+  PulledBackCamera(const Box3f& box, int frame_count, float times)
       : centre_(box.min + box.size() * V3f(0.5f, 0.65f, 0.5f)),
         radius_(0.2f * box.size().length()),
+        times_(times),
         frame_count_(frame_count) {}
 
   [[nodiscard]] int frame_count() const { return frame_count_; }
@@ -33,14 +34,14 @@ class PulledBackCamera {
 
  private:
   static constexpr float kFov = 0.7f;
-  static constexpr float kNearest = 3, kFarthest = 12;  ///< in radii of the ball
+  static constexpr float kNearest = 3;  ///< in radii of the ball
   [[nodiscard]] float distance(int frame) const {
     const float share = static_cast<float>(frame) / static_cast<float>(frame_count_ - 1);
-    return radius_ * kNearest * std::pow(kFarthest / kNearest, share);
+    return radius_ * kNearest * std::pow(times_, share);
   }
 
   V3f centre_;
-  float radius_;
+  float radius_, times_;
   int frame_count_;
 };
 
@@ -93,15 +94,14 @@ class FrameTracer {
     options.estimator = estimator;
     options.footprint = footprint;
     options.seed = static_cast<std::uint32_t>(seed);
-    const int size = options.width;
-    const View view{camera, size, size, {0, 0, size - 1, size - 1}};
+    const View view{camera, options.width, options.width, around(outline, options.width)};
     const FilmLayout layout(view, options, bounds_, 0);
     const TracedPicture picture = trace_picture(device_, scene_, view, options, layout, 0, {});
-    for (int row = 0; row < size; ++row) {
-      for (int column = 0; column < size; ++column) {
-        const double share = share_inside(column, row, size, outline);
+    std::size_t pixel = 0;
+    for (int row = view.crop.y0; row <= view.crop.y1; ++row) {
+      for (int column = view.crop.x0; column <= view.crop.x1; ++column, ++pixel) {
+        const double share = share_inside(column, row, options.width, outline);
         if (share <= 0) continue;
-        const auto pixel = static_cast<std::size_t>(row * size + column);
         const auto plane = [&](std::size_t p) {
           return static_cast<double>(picture.sums[p * layout.pixels + pixel]);
         };
@@ -111,6 +111,13 @@ class FrameTracer {
                            (double{layout.unit_scale} * options.ao_rays));
       }
     }
+  }
+
+  /// The pixels that a circle around the picture's middle touches.
+  static PixelRect around(float radius, int size) {
+    const int margin =
+        std::max(0, static_cast<int>(0.5f * (1 - radius) * static_cast<float>(size)));
+    return {margin, margin, size - 1 - margin, size - 1 - margin};
   }
 
   const Device& device_;

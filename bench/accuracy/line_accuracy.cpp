@@ -29,35 +29,27 @@ struct Uploaded {
   DeviceScene on_device;
 };
 
-std::vector<Ray> with_one_key(std::vector<Ray> rays) {
-  for (Ray& ray : rays) ray.key = rays.front().key;
-  return rays;
-}
-
 void measure_points(const Uploaded& scene, const std::string& what, const std::vector<Ray>& rays,
                     const LineAccuracyOptions& options, std::vector<LineAccuracyRow>& rows) {
   const std::vector<V3f> points =
       popping::line_through(scene.bvh.bounds, options.points, options.points);
-  const auto traced = [&](const std::vector<Ray>& from_each, Estimator estimator, float footprint) {
-    return popping::transmittances(scene.device, scene.on_device, points, from_each, estimator,
+  const auto traced = [&](Estimator estimator, float footprint) {
+    return popping::transmittances(scene.device, scene.on_device, points, rays, estimator,
                                    footprint);
   };
-  const std::vector<float> exact = traced(rays, Estimator::exact, 0);
+  const std::vector<float> exact = traced(Estimator::exact, 0);
   for (const float footprint : options.footprints) {
     const auto found = popping::largest(
-        popping::steps(exact, traced(rays, Estimator::prefiltered, footprint), rays.size()));
-    const auto unspread = popping::largest(popping::steps(
-        exact, traced(with_one_key(rays), Estimator::prefiltered, footprint), rays.size()));
-    rows.push_back({what, footprint, found.exact, found.prefiltered, found.excess, found.error,
-                    unspread.excess});
+        popping::steps(exact, traced(Estimator::prefiltered, footprint), rays.size()));
+    rows.push_back({what, footprint, found.exact, found.prefiltered, found.excess, found.error});
   }
 }
 
 void measure_camera(const Uploaded& scene, const LineAccuracyOptions& options,
                     std::vector<LineAccuracyRow>& rows) {
-  const popping::PulledBackCamera path(scene.bvh.bounds, options.frames);
+  const popping::PulledBackCamera path(scene.bvh.bounds, options.frames, 4);
   const popping::FrameTracer tracer(scene.device, scene.on_device, scene.bvh.bounds, options.render,
-                                    options.seeds);
+                                    options.size, options.seeds);
   const std::vector<popping::Frame> exact = tracer.frames(path, Estimator::exact, 0);
   for (const float footprint : options.footprints) {
     const auto found = popping::largest(
@@ -82,15 +74,12 @@ std::vector<LineAccuracyRow> measure_line(const std::string& spec,
 }
 
 std::string line_text(const std::vector<LineAccuracyRow>& rows) {
-  std::vector<std::vector<std::string>> cells{{"moved", "footprint", "exact step",
-                                               "prefiltered step", "excess", "standard error",
-                                               "excess unspread"}};
+  std::vector<std::vector<std::string>> cells{
+      {"moved", "footprint", "exact step", "prefiltered step", "excess", "standard error"}};
   for (const LineAccuracyRow& row : rows) {
-    cells.push_back(
-        {row.what, fmt::format("{:g}", row.footprint), fmt::format("{:.4f}", row.exact),
-         fmt::format("{:.4f}", row.prefiltered), fmt::format("{:+.4f}", row.excess),
-         fmt::format("{:.4f}", row.error),
-         row.shared_key_excess < 0 ? "" : fmt::format("{:+.4f}", row.shared_key_excess)});
+    cells.push_back({row.what, fmt::format("{:g}", row.footprint), fmt::format("{:.4f}", row.exact),
+                     fmt::format("{:.4f}", row.prefiltered), fmt::format("{:+.4f}", row.excess),
+                     fmt::format("{:.4f}", row.error)});
   }
   return "Largest changes of AO from one point or frame to the next\n" + table_text(cells);
 }

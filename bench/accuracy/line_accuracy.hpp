@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "dapple/options.hpp"
-#include "dapple/scene.hpp"
 
 namespace dapple::bench {
 
@@ -19,12 +18,6 @@ struct LineAccuracyOptions {
   int seeds = 2;         ///< pictures of each frame
   RenderOptions render;  ///< samples, device, opacities
 };
-int points = 1000;     ///< on the line, from side to side of the scene
-int rays_across = 64;  ///< squared: rays a point
-int frames = 100;      ///< of the camera that is pulled back
-int seeds = 8;         ///< pictures of each frame
-RenderOptions render;  ///< size, samples, device, opacities
-};
 
 /// The largest changes from one point or frame to the next, at one footprint.
 struct LineAccuracyRow {
@@ -33,7 +26,6 @@ struct LineAccuracyRow {
   double exact = 0, prefiltered = 0;  ///< largest change of mean AO
   double excess = 0;  ///< the most that a prefiltered change is beyond the exact one there
   double error = 0;   ///< largest standard error of the difference of the two changes
-  double shared_key_excess = -1;  ///< `excess` if all rays switched at one distance; < 0: not made
 };
 
 std::vector<LineAccuracyRow> measure_line(const std::string& spec,

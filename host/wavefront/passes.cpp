@@ -8,11 +8,12 @@ namespace {
 /// Work-items of the one group that compacts; DAPPLE_SCAN_ITEMS in kernels/compact.cl.
 constexpr std::size_t kScanItems = 256;
 
-/// Rays of a point from which on a packet is faster than the same rays one by one.
-constexpr uint kLeastPacket = 8;
+/// Rays of a point from which on a packet is faster than the same rays one by one: with 16
+/// samples a pixel, 2 and 3 were slower together, 4 the same, 6 and 8 a quarter faster.
+constexpr uint kLeastPacket = 6;
 
-/// Rays that one item of the packet kernel takes; DAPPLE_BUNDLE_RAYS in kernels/bundle.clh.
-constexpr uint kBundleRays = 64;
+/// Rays that one item of the packet kernel takes; DAPPLE_PACKET_RAYS in kernels/packet_rays.clh.
+constexpr uint kPacketRays = 64;
 
 /// Items a work-group: of packets few, so that small slices keep all threads busy.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16;
@@ -95,8 +96,8 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                     const std::string& label, Estimator estimator, const OcclusionParams& params) {
   std::size_t items = params.ray_count, group = kRayGroup;
   if (takes_packets(estimator, params.rays_per_point)) {
-    const uint bundles = (params.rays_per_point + kBundleRays - 1) / kBundleRays;
-    items = std::size_t{params.ray_count / params.rays_per_point} * bundles;
+    const uint packets = (params.rays_per_point + kPacketRays - 1) / kPacketRays;
+    items = std::size_t{params.ray_count / params.rays_per_point} * packets;
     group = kPacketGroup;
   }
   context.launch(occlusion_kernel(estimator, params.rays_per_point), label, items,

@@ -16,7 +16,7 @@ namespace dapple {
 enum class Estimator : std::uint8_t {
   exact,        ///< every surface on the ray is composited
   prefiltered,  ///< stops at BVH nodes that the ray's footprint covers
-  packet,       ///< prefiltered, all rays of a point at once; pays from 8 rays a point up
+  packet,       ///< prefiltered, all rays of a point at once; pays from 6 rays a point up
 };
 
 /// A pixel rectangle, inclusive at both ends as in EXR windows; (0,0) is top left.

@@ -22,24 +22,24 @@ Function* in_libtbb(const char* symbol) {
 /// Stands in for a spawned task: what its maker did happens before its execution.
 class HandedOff final : public d1::task {
  public:
-  explicit HandedOff(d1::task& task) : task_(task) { __tsan_release(this); }
+  explicit HandedOff(d1::task& spawned) : spawned_(spawned) { __tsan_release(this); }
 
   d1::task* execute(d1::execution_data& data) override {
     __tsan_acquire(this);
-    d1::task* const next = task_.execute(data);
+    d1::task* const next = spawned_.execute(data);
     delete this;
     return next;
   }
 
   d1::task* cancel(d1::execution_data& data) override {
     __tsan_acquire(this);
-    d1::task* const next = task_.cancel(data);
+    d1::task* const next = spawned_.cancel(data);
     delete this;
     return next;
   }
 
  private:
-  d1::task& task_;
+  d1::task& spawned_;
 };
 
 /// libtbb has seen the count reach zero; this reads it again where the sanitizer sees it, so
@@ -64,8 +64,8 @@ void spawn(d1::task& task, d1::task_group_context& context, d1::slot_id slot) {
   spawn_in_libtbb(*new HandedOff(task), context, slot);
 }
 
-void execute_and_wait(d1::task& task, d1::task_group_context& task_context,
-                      d1::wait_context& until, d1::task_group_context& wait_context) {
+void execute_and_wait(d1::task& task, d1::task_group_context& task_context, d1::wait_context& until,
+                      d1::task_group_context& wait_context) {
   using ExecuteAndWait =
       void(d1::task&, d1::task_group_context&, d1::wait_context&, d1::task_group_context&);
   static ExecuteAndWait* const execute_and_wait_in_libtbb = in_libtbb<ExecuteAndWait>(
@@ -77,8 +77,8 @@ void execute_and_wait(d1::task& task, d1::task_group_context& task_context,
 
 void wait(d1::wait_context& until, d1::task_group_context& context) {
   using Wait = void(d1::wait_context&, d1::task_group_context&);
-  static Wait* const wait_in_libtbb = in_libtbb<Wait>(
-      "_ZN3tbb6detail2r14waitERNS0_2d112wait_contextERNS2_18task_group_contextE");
+  static Wait* const wait_in_libtbb =
+      in_libtbb<Wait>("_ZN3tbb6detail2r14waitERNS0_2d112wait_contextERNS2_18task_group_contextE");
   wait_in_libtbb(until, context);
   join(until);
 }
@@ -88,7 +88,7 @@ void wait(d1::wait_context& until, d1::task_group_context& context) {
 void* allocate(d1::small_object_pool*& pool, std::size_t bytes) {
   static char no_pool;
   pool = reinterpret_cast<d1::small_object_pool*>(&no_pool);
-  return ::operator new(bytes, std::align_val_t{d1::task_alignment});
+  return ::operator new (bytes, std::align_val_t{d1::task_alignment});
 }
 
 void* allocate(d1::small_object_pool*& pool, std::size_t bytes, const d1::execution_data&) {
@@ -96,7 +96,7 @@ void* allocate(d1::small_object_pool*& pool, std::size_t bytes, const d1::execut
 }
 
 void deallocate(d1::small_object_pool&, void* object, std::size_t) {
-  ::operator delete(object, std::align_val_t{d1::task_alignment});
+  ::operator delete (object, std::align_val_t{d1::task_alignment});
 }
 
 void deallocate(d1::small_object_pool& pool, void* object, std::size_t bytes,

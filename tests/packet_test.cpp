@@ -1,0 +1,362 @@
+// Packets: the rays of a point traced together find what each would find alone. Exact as the
+// footprint goes to 0, closed forms, any number of rays, and the same bits whatever the threads.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "dapple/error.hpp"
+#include "scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+// `rays` cosine-weighted rays from each of `points` places in `box`, as the AO pass makes them.
+std::vector<Ray> ao_rays(const Box3f& box, std::size_t points, std::size_t rays,
+                         std::uint32_t seed) {
+  Points random(seed);
+  std::vector<Ray> result;
+  for (std::size_t p = 0; p < points; ++p) {
+    const V3f origin = box.center() + V3f(box.size() * random.in_cube(0.5f));
+    const V3f normal = random.on_sphere();
+    for (std::size_t r = 0; r < rays; ++r) {
+      const V3f direction = normal + random.on_sphere() * 0.9999f;
+      const float cosine = direction.normalized().dot(normal);
+      Ray ray = make_ray(origin, direction,
+                         static_cast<float>(kPi) / (static_cast<float>(rays) * cosine));
+      ray.key = static_cast<std::uint32_t>(result.size()) * 0x9e3779b9u;
+      result.push_back(ray);
+    }
+  }
+  return result;
+}
+
+std::vector<Occlusion> packets(const SceneOnDevice& scene, const std::vector<Ray>& rays,
+                               float footprint, std::size_t rays_per_point) {
+  return trace(device(), scene.uploaded, rays, Estimator::packet, footprint, rays_per_point);
+}
+
+int count_different(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b) {
+  int different = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    different += std::fabs(a[i].transmittance - b[i].transmittance) > 1e-4f;
+  }
+  return different;
+}
+
+// Cards turned about the vertical, with a chequered alpha: every other one is cut out.
+Scene textured_cards() {
+  Scene scene;
+  scene.source = "cards";
+  Texture chequers;
+  chequers.width = chequers.height = 8;
+  for (int i = 0; i < 64; ++i) chequers.alpha.push_back((i + i / 8) % 2 ? 220 : 30);
+  scene.textures.push_back(chequers);
+  for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
+    Material material = material_of(1);
+    material.alpha_mode = mode;
+    material.alpha_texture = 0;
+    scene.materials.push_back(material);
+  }
+  Points random(4);
+  Mesh mesh;
+  for (std::uint32_t card = 0; card < 200; ++card) {
+    const V3f corner = random.in_cube(2), side = random.on_sphere();
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const V2f& uv : {V2f(0, 0), V2f(1, 0), V2f(1, 1), V2f(0, 1)}) {
+      mesh.positions.push_back(corner + side * uv.x + V3f(0, uv.y, 0));
+      mesh.uvs.push_back(uv);
+    }
+    mesh.indices.insert(mesh.indices.end(),
+                        {first, first + 1, first + 2, first, first + 2, first + 3});
+    mesh.materials.insert(mesh.materials.end(), {card % 2, card % 2});
+  }
+  place(scene, std::move(mesh));
+  return scene;
+}
+
+// Some trees as they come, others squeezed, mirrored and stretched.
+Scene forest_of_uneven_trees() {
+  Scene scene = make_procedural("scene:forest?trees=9&leaves=500&opacity=0.5");
+  M44f uneven;
+  uneven.setScale(V3f(-1, 0.5f, 2));
+  for (std::size_t i = 0; i < scene.instances.size(); i += 2) {
+    scene.instances[i].to_world = uneven * scene.instances[i].to_world;
+  }
+  return scene;
+}
+
+// The products that decide which side of an edge a ray passes are taken in another order, so that
+// a ray within roundings of an edge may fall on the other side of it: 1 in 1000 at the very most
+// (reference_traversal_test.cpp).
+TEST(Packet, EqualsExactRayByRayAsTheFootprintGoesToZero) {
+  std::vector<Scene> scenes;
+  scenes.push_back(make_procedural("scene:tree?leaves=2000"));
+  scenes.push_back(forest_of_uneven_trees());
+  scenes.push_back(textured_cards());
+  for (Scene& made : scenes) {
+    const SceneOnDevice scene(std::move(made));
+    const Box3f box = scene.bvh.bounds;
+    for (const std::size_t rays : {6u, 9u, 25u, 64u, 65u, 200u}) {
+      std::vector<Ray> queue = ao_rays(box, 6400 / rays, rays, 21);
+      // Rays end somewhere, as on a light, nowhere, or before they start.
+      for (std::size_t i = 0; i < queue.size(); ++i) {
+        if (i % 3 == 0) queue[i].t_max = 0.01f * static_cast<float>(i % 100);
+        if (i % 17 == 0) queue[i].t_max = -1;
+      }
+      const std::vector<Occlusion> exact = scene.trace(queue, Estimator::exact);
+      EXPECT_LT(mean_transmittance(exact), 0.97) << "nothing in the way";
+      for (const float footprint : {0.0f, 1e-7f}) {
+        const int different = count_different(packets(scene, queue, footprint, rays), exact);
+        std::printf("%s, %zu rays, footprint %g: %d differ\n", scene.scene.source.c_str(), rays,
+                    footprint, different);
+        EXPECT_LE(different, 6) << rays;
+      }
+    }
+  }
+}
+
+// Points on surfaces of the scene, as a baker has them.
+struct BakedPoints {
+  std::vector<V3f> positions, normals;
+};
+
+BakedPoints points_on(const SceneOnDevice& scene, std::size_t count) {
+  BakedPoints points;
+  std::vector<Ray> rays = rays_across(scene.bvh.bounds, 24 * count, 0, 31);
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i].key = static_cast<uint>(i) * 0x9e3779b9u;
+  for (const SurfacePoint& hit : closest_hits(device(), scene.uploaded, rays)) {
+    if (hit.t < 0 || points.positions.size() == count) continue;
+    points.positions.emplace_back(hit.position[0], hit.position[1], hit.position[2]);
+    points.normals.emplace_back(hit.normal[0], hit.normal[1], hit.normal[2]);
+  }
+  return points;
+}
+
+std::vector<float> bake(const SceneOnDevice& scene, const BakedPoints& points, Estimator estimator,
+                        float footprint, int rays = 64) {
+  OcclusionOptions options;
+  options.rays = rays;
+  options.estimator = estimator;
+  options.footprint = footprint;
+  return occlusion(device(), scene.uploaded, points.positions, points.normals, options);
+}
+
+struct Difference {
+  double mean, standard_error;
+};
+
+// Of the same rays, so that the noise of where they go cancels.
+Difference difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0, square = 0;
+  const auto n = static_cast<double>(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    sum += d;
+    square += d * d;
+  }
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, square / n - mean * mean) / n)};
+}
+
+TEST(Packet, AgreesWithPrefilteredAndConvergesToExact) {
+  std::vector<Scene> scenes;
+  scenes.push_back(make_procedural("scene:tree?leaves=20000"));
+  scenes.push_back(make_procedural("scene:cloud?leaves=50000&opacity=0.2"));
+  scenes.push_back(make_procedural("scene:forest?trees=40&leaves=2000"));
+  scenes.push_back(forest_of_uneven_trees());
+  for (Scene& made : scenes) {
+    const SceneOnDevice scene(std::move(made));
+    const char* name = scene.scene.source.c_str();
+    const BakedPoints points = points_on(scene, 1500);
+    ASSERT_GT(points.positions.size(), 300u);
+    const std::vector<float> exact = bake(scene, points, Estimator::exact, 0);
+    Difference coarser{1, 0}, whole{};
+    for (const float footprint : {4.0f, 1.0f, 0.25f, 1.0f / 16}) {
+      const std::vector<float> packet = bake(scene, points, Estimator::packet, footprint);
+      const Difference error = difference(packet, exact);
+      const Difference apart =
+          difference(packet, bake(scene, points, Estimator::prefiltered, footprint));
+      std::printf("%s, footprint %g: packet - exact %+.4f (+-%.4f), packet - prefiltered %+.4f\n",
+                  name, footprint, error.mean, error.standard_error, apart.mean);
+      // All that differs is the direction along which a covered child's depth is taken.
+      EXPECT_NEAR(apart.mean, 0, 0.003) << name << " at " << footprint;
+      const double noise = 3 * std::hypot(error.standard_error, coarser.standard_error);
+      EXPECT_LE(std::fabs(error.mean), std::fabs(coarser.mean) + noise) << name << " " << footprint;
+      coarser = error;
+      if (footprint == 1) whole = error;
+    }
+    EXPECT_LE(
+        std::fabs(coarser.mean),
+        std::fabs(whole.mean) / 2 + 3 * std::hypot(coarser.standard_error, whole.standard_error))
+        << name;
+  }
+}
+
+// As in closed_form_test.cpp and ao_distance_test.cpp, which say where the tolerances come from.
+OcclusionOptions many_rays(float footprint) {
+  OcclusionOptions options;
+  options.rays = 1 << 16;
+  options.estimator = Estimator::packet;
+  options.footprint = footprint;
+  return options;
+}
+
+constexpr V3f kOrigin(0, 0, 0), kUp(0, 1, 0);
+
+TEST(Packet, ADiskAStackAndAPlaneThatFallsOffAreTheirClosedForms) {
+  const SceneOnDevice disk(make_procedural("scene:disk?radius=2&height=1&opacity=0.85"));
+  EXPECT_NEAR(disk.occlusion_at(kOrigin, kUp, many_rays(1)), 1 - 0.85 * 0.8, 1.5e-3);
+  EXPECT_NEAR(disk.occlusion_at(kOrigin, kUp, many_rays(1024)), 1 - 0.85 * 0.8, 0.03);
+
+  // Sheets so wide that less than 1e-3 of the cosine-weighted hemisphere passes beside them.
+  Scene sheets;
+  sheets.materials.push_back(material_of(0.25f));
+  Mesh mesh;
+  for (int i = 0; i < 4; ++i) {
+    append_grid(mesh, {-40, 1 + 0.1f * static_cast<float>(i), -40}, {80, 0, 0}, {0, 0, 80}, 160, 0);
+  }
+  place(sheets, std::move(mesh));
+  const SceneOnDevice stack(std::move(sheets));
+  EXPECT_NEAR(stack.occlusion_at(kOrigin, kUp, many_rays(1)), std::pow(0.75, 4), 2.5e-3);
+
+  Scene ceiling;
+  ceiling.materials.push_back(material_of(0.4f));
+  place(ceiling, square_mesh(64, 1, 128, 0));
+  const SceneOnDevice plane(std::move(ceiling));
+  for (const double distance : {1.5, 3.0, 7.5}) {
+    const double k = 1 / distance;
+    for (const auto& [power, part] : {std::pair{0.0f, 1 - k * k}, {1.0f, (1 - k) * (1 - k)}}) {
+      SCOPED_TRACE(testing::Message() << "distance " << distance << " power " << power);
+      OcclusionOptions options = many_rays(1);
+      options.distance = static_cast<float>(distance);
+      options.falloff = power;
+      EXPECT_NEAR(plane.occlusion_at(kOrigin, kUp, options), 1 - 0.4 * part, 2e-3);
+      // Strips of the plane reach from overhead to far away, where they look small: a ray that
+      // meets one overhead must not take it for small.
+      options.footprint = 1024;
+      const float together = plane.occlusion_at(kOrigin, kUp, options);
+      options.estimator = Estimator::prefiltered;
+      const float alone = plane.occlusion_at(kOrigin, kUp, options);
+      std::printf("plane: closed form %.4f, packet %.4f, prefiltered %.4f\n", 1 - 0.4 * part,
+                  together, alone);
+      EXPECT_NEAR(together, alone, 0.01);
+      EXPECT_NEAR(together, 1 - 0.4 * part, 0.04);
+    }
+  }
+}
+
+TEST(Packet, TooFewRaysAreTracedOneByOneAndStrangersAreRefused) {
+  const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
+  const BakedPoints points = points_on(scene, 200);
+  for (const int rays : {1, 3, 5}) {
+    EXPECT_EQ(bake(scene, points, Estimator::packet, 1, rays),
+              bake(scene, points, Estimator::prefiltered, 1, rays))
+        << rays;
+  }
+  EXPECT_NE(bake(scene, points, Estimator::packet, 1, 8),
+            bake(scene, points, Estimator::prefiltered, 1, 8));
+
+  std::vector<Ray> rays = ao_rays(scene.bvh.bounds, 100, 64, 3);
+  const std::vector<Occlusion> alone = scene.trace(rays, Estimator::prefiltered);
+  EXPECT_EQ(count_different(scene.trace(rays, Estimator::packet), alone), 0);
+  // Counted once a packet and shared: in all fewer than a third of each ray's own.
+  double shared_visits = 0, own_visits = 0;
+  const std::vector<Occlusion> together = packets(scene, rays, 1, 64);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    shared_visits += together[i].visits & 65535u;
+    own_visits += alone[i].visits & 65535u;
+  }
+  std::printf("visits a ray: %.2f together, %.2f alone\n", shared_visits / 6400, own_visits / 6400);
+  EXPECT_GT(shared_visits, 0);
+  EXPECT_LT(shared_visits, own_visits / 3);
+
+  EXPECT_THROW(packets(scene, rays, 1, 63), Error);  // 6400 is no multiple
+  EXPECT_THROW(packets(scene, rays, 1, 0), Error);
+  rays[70].origin[1] += 1;
+  EXPECT_THROW(packets(scene, rays, 1, 64), Error);
+  rays[70] = rays[71];
+  rays[70].light = 1;
+  EXPECT_THROW(packets(scene, rays, 1, 64), Error);
+}
+
+float sum_of(const Film& film, const std::string& channel) {
+  const Plane* plane = film.find(channel);
+  EXPECT_NE(plane, nullptr) << channel;
+  float sum = 0;
+  for (const float value : plane ? plane->pixels : std::vector<float>{}) sum += value;
+  return sum;
+}
+
+TEST(Packet, LightAndAoPassesMakeThePictureOfTheExactOnesAndEmittersNeverOccludeThemselves) {
+  Scene scene = make_procedural("scene:tree?leaves=2000");
+  Light glow;
+  glow.name = "glow";
+  glow.kind = LightKind::mesh;
+  glow.double_sided = true;
+  scene.lights.push_back(glow);
+  // Folded, so that one half would hide the other from most of the ground.
+  Mesh folded;
+  append_grid(folded, {-3, 9, -1}, {6, 0, 0}, {0, 1.5f, 1}, 6, 0);
+  append_grid(folded, {-3, 9, 1}, {6, 0, 0}, {0, 1.5f, -1}, 6, 0);
+  place(scene, std::move(folded), {}, 0);
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::sun;
+  sun.direction = V3f(-0.4f, -1, 0.2f).normalized();
+  sun.angular_radius = 0.1f;
+  scene.lights.push_back(sun);
+  RenderOptions options;
+  options.width = 24;
+  options.height = 20;
+  options.spp = 4;
+  options.ao_rays = 9;
+  options.light_rays = 25;
+  options.ground = true;
+  options.estimator = Estimator::exact;
+  const Film exact = render(scene, options).film;
+  options.estimator = Estimator::packet;
+  options.footprint = 0;
+  const RenderResult zero = render(scene, options);
+  EXPECT_EQ(zero.statistics.estimator, "packet");
+  options.footprint = 1;
+  const Film packet = render(scene, options).film;
+  options.estimator = Estimator::prefiltered;
+  const Film prefiltered = render(scene, options).film;
+  for (const char* channel : {"ao.R", "light.glow.R", "light.sun.R"}) {
+    const float truth = sum_of(exact, channel);
+    std::printf("%s: exact %.4f, packet at 0 %.4f, packet %.4f, prefiltered %.4f\n", channel, truth,
+                sum_of(zero.film, channel), sum_of(packet, channel), sum_of(prefiltered, channel));
+    // At most one ray in a thousand falls on the other side of an edge.
+    EXPECT_NEAR(sum_of(zero.film, channel), truth, 1e-3 * truth) << channel;
+    EXPECT_NEAR(sum_of(packet, channel), sum_of(prefiltered, channel), 0.01 * truth) << channel;
+  }
+}
+
+std::string rendered_bytes(const std::string& environment) {
+  namespace fs = std::filesystem;
+  const fs::path path =
+      fs::temp_directory_path() / ("dapple_packet_" + std::to_string(getpid()) + ".exr");
+  const std::string command = environment + " '" + DAPPLE_PROGRAM +
+                              "' render scene:demo --width 40 --height 30 --spp 2 -q -o '" +
+                              path.string() + "' --estimator packet --ao-rays 70 --light-rays 9";
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  fs::remove(path);
+  return bytes;
+}
+
+TEST(Packet, TheProgramWritesTheSameBytesWithAnyNumberOfDeviceThreads) {
+  const std::string one = rendered_bytes("POCL_MAX_PTHREAD_COUNT=1");
+  EXPECT_GT(one.size(), 5000u);
+  EXPECT_EQ(rendered_bytes("POCL_MAX_PTHREAD_COUNT=2"), one);
+}
+
+}  // namespace
+}  // namespace dapple
