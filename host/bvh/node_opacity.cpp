@@ -51,6 +51,49 @@ float depth_of(float opacity) {
   return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
 }
 
+namespace {
+
+/// Hidden area per direction of a single layer and of depths scaled by 1, the latter's
+/// change with the scale, summed over directions.
+struct HiddenArea {
+  double layer = 0, depths = 0, slope = 0;
+  void add(double weight, double facing, double single, double depth) {
+    const double transmitted = std::exp(-depth);
+    layer += weight * std::min(single, facing);
+    depths += weight * facing * (1 - transmitted);
+    slope += weight * facing * depth * transmitted;
+  }
+};
+
+}  // namespace
+
+float single_layer_factor(const NodeOpacity& opacity, const V3f& size) {
+  if (opacity.triangles == 0 || opacity.triangles >= 64) return 1.0f;
+  const float fading = 1.0f - std::log2(static_cast<float>(opacity.triangles)) / 6.0f;
+  const V3f faces(size.y * size.z, size.z * size.x, size.x * size.y);
+  const V3f depths(depth_of(opacity.axes.x), depth_of(opacity.axes.y), depth_of(opacity.axes.z));
+  const V3f c = opacity.normals.correlation();
+  HiddenArea hidden;
+  // The axes and the diagonals of a cube, weighted to integrate polynomials of degree 5 over
+  // the sphere (Abramowitz and Stegun, 25.4.65).
+  for (int k = 0; k < 3; ++k) {
+    hidden.add(2.0 / 15, faces[k], opacity.axes[k] * faces[k], depths[k]);
+  }
+  const float root = std::sqrt(1.0f / 3.0f);
+  const V3f f = faces * root, area = opacity.axes * f;
+  for (const V3f& s : {V3f(1, 1, 1), V3f(1, -1, -1), V3f(-1, 1, -1), V3f(-1, -1, 1)}) {
+    // Signs of xy, yz, zx of the four diagonals.
+    const V3f r = c * s;
+    const float square = area.length2() + 2.0f * (r.x * area.x * area.y + r.y * area.y * area.z +
+                                                  r.z * area.z * area.x);
+    hidden.add(3.0 / 20, f.x + f.y + f.z, std::sqrt(std::max(square, 0.0f)),
+               box_depth(depths.x, depths.y, depths.z, r.x, r.y, r.z, f.x, f.y, f.z));
+  }
+  if (!(hidden.slope > 0)) return 1.0f;
+  const double factor = 1.0 + (hidden.layer - hidden.depths) / hidden.slope;
+  return 1.0f + fading * static_cast<float>(std::clamp(factor, 0.75, 1.25) - 1.0);
+}
+
 float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction) {
   const V3f c = opacity.normals.correlation();
   const auto sign = [](float x) { return std::copysign(1.0f, x); };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "dapple/scene.hpp"
 
@@ -25,10 +26,17 @@ struct NormalMoments {
 struct NodeOpacity {
   V3f axes{0, 0, 0};  ///< opacity along x, y, z, [0,1]
   NormalMoments normals;
+  std::size_t triangles = 0;  ///< in the whole subtree; 0: many
 };
 
 /// -log(1 - opacity), at most the greatest depth that a node can store.
 float depth_of(float opacity);
+
+/// Factor on the depths of a box of `size` with few triangles. Depths suit many surfaces one
+/// behind the other; a single one hides its projected area, which is less between the axes.
+/// The factor makes the hidden area right in the mean over all directions; it fades from one
+/// triangle to 64.
+float single_layer_factor(const NodeOpacity& opacity, const V3f& size);
 
 /// Opacity that a ray of mean chord along `direction` (any length) meets in a box of `size`:
 /// the model of dapple/shared/opacity.h.

@@ -25,8 +25,9 @@ uchar encode_depth(float depth) {
 struct Summary {
   CoverageMap map;
   NormalMoments normals;
+  std::size_t triangles = 0;
   [[nodiscard]] NodeOpacity opacity() const {
-    return {V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals};
+    return {V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals, triangles};
   }
 };
 
@@ -53,7 +54,7 @@ class Prefilter {
     } else {
       for (unsigned slot = 0; slot < count; ++slot) add(slot, child(index, slot));
     }
-    return {coverage.map(), normals};
+    return {coverage.map(), normals, tree_.nodes[index].primitives};
   }
 
  private:
@@ -80,6 +81,7 @@ class Prefilter {
       summary.normals.add(triangle.edge1.cross(triangle.edge2), opacity);
       triangles[count++] = triangle;
     }
+    summary.triangles = count;
     cover(summary.map, box, std::span(triangles.data(), count),
           [&](const CoveringTriangle& t, float u, float v, float share) {
             return mean_opacity(t, u, v, share);
@@ -101,16 +103,21 @@ class Prefilter {
 
 void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
                        const Box3f& exact) {
-  const Box3f grown = child_box(node, slot);
-  const V3f correlation = opacity.normals.correlation();
+  const Box3f box = child_box(node, slot);
+  NodeOpacity grown = opacity;
   for (int axis = 0; axis < 3; ++axis) {
-    const float area = face_area(grown, axis);
+    const float area = face_area(box, axis);
     const float share = area > 0.0f ? std::min(face_area(exact, axis) / area, 1.0f) : 0.0f;
     // A solid part of a wall must not leak where its box grew: its neighbours are there.
     const float solid =
         std::clamp((opacity.axes[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
+    grown.axes[axis] *= share + solid * (1.0f - share);
+  }
+  const float factor = single_layer_factor(grown, box.max - box.min);
+  const V3f correlation = opacity.normals.correlation();
+  for (int axis = 0; axis < 3; ++axis) {
     node.depth[axis][slot] =
-        encode_depth(depth_of(opacity.axes[axis] * (share + solid * (1.0f - share))));
+        encode_depth(std::min(factor * depth_of(grown.axes[axis]), DAPPLE_GREATEST_DEPTH));
     node.correlation[axis][slot] = static_cast<schar>(std::lround(127.0f * correlation[axis]));
   }
 }
