@@ -232,7 +232,8 @@ TEST(Bvh, DegenerateGeometryMakesAWellFormedTree) {
     EXPECT_LE(object.stack, DAPPLE_STACK_SIZE);
     EXPECT_EQ(build_bvh(scene).nodes.size(), object.nodes.size());
     for (int a = 0; a < 3; ++a) {
-      EXPECT_TRUE(object.opacity.axes[a] >= 0 && object.opacity.axes[a] <= 1) << object.opacity.axes[a];
+      EXPECT_TRUE(object.opacity.axes[a] >= 0 && object.opacity.axes[a] <= 1)
+          << object.opacity.axes[a];
     }
   }
 }

@@ -15,10 +15,10 @@ struct NodeOpacity {
 
 /// How opacities along the axes become one along a direction.
 enum class Blend {
-  linear,    ///< occluding areas add up
-  areas,     ///< occluding areas as an ellipsoid, however full
-  depths,    ///< optical depths as an ellipsoid
-  halfway,   ///< the mean of the depths that `areas` and `depths` give
+  linear,   ///< occluding areas add up
+  areas,    ///< occluding areas as an ellipsoid, however full
+  depths,   ///< optical depths as an ellipsoid
+  halfway,  ///< the mean of the depths that `areas` and `depths` give
 };
 
 /// Whether rays that cross more of the box meet more.

@@ -3,6 +3,8 @@
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #define STBI_WRITE_NO_STDIO
+#include "film/png.hpp"
+
 #include <stb_image_write.h>
 
 #include <algorithm>
@@ -15,7 +17,6 @@
 #include "dapple/film.hpp"
 #include "film/film_defect.hpp"
 #include "film/output_file.hpp"
-#include "film/png.hpp"
 
 namespace dapple {
 namespace {

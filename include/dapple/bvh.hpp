@@ -13,19 +13,19 @@ namespace dapple {
 
 /// What building took and made; seconds are wall time.
 struct BvhStatistics {
-  double build_seconds = 0;      ///< SAH build, collapse, quantization
-  double prefilter_seconds = 0;  ///< directional opacity
-  std::size_t triangles = 0;     ///< distinct, before instancing
+  double build_seconds = 0;                              ///< SAH build, collapse, quantization
+  double prefilter_seconds = 0;                          ///< directional opacity
+  std::size_t triangles = 0;                             ///< distinct, before instancing
   std::size_t opaque = 0, cut_out = 0, translucent = 0;  ///< of `triangles`
   std::size_t instanced_triangles = 0;
   std::size_t instances = 0;
-  double lane_use = 0;           ///< used lanes of all triangle blocks, [0,1]
-  double sah_cost = 0;           ///< expected node visits a ray through the largest object's root
+  double lane_use = 0;  ///< used lanes of all triangle blocks, [0,1]
+  double sah_cost = 0;  ///< expected node visits a ray through the largest object's root
   float root_opacity[3] = {0, 0, 0};  ///< of the whole scene's box, along x, y, z
 };
 
 struct SceneBvh {
-  std::vector<BvhNode> nodes;             ///< all objects', then the top level's
+  std::vector<BvhNode> nodes;  ///< all objects', then the top level's
   std::vector<TriangleBlock> blocks;
   std::vector<TexturedTriangle> textured;
   std::vector<InstanceRecord> instances;  ///< in the order of the top level's leaves

@@ -34,10 +34,10 @@ struct LookAt {
 };
 
 struct RenderOptions {
-  int width = 960;   ///< pixels, [1, 65535]
-  int height = 540;  ///< pixels, [1, 65535]
-  int spp = 16;      ///< primary samples a pixel, [1, 2^20]
-  int ao_rays = 1;   ///< AO rays a primary sample, [1, 4096]
+  int width = 960;     ///< pixels, [1, 65535]
+  int height = 540;    ///< pixels, [1, 65535]
+  int spp = 16;        ///< primary samples a pixel, [1, 2^20]
+  int ao_rays = 1;     ///< AO rays a primary sample, [1, 4096]
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
   Estimator estimator = Estimator::prefiltered;
   float footprint = 1.0f;    ///< footprint scale, >= 0; 0 is exact

@@ -49,7 +49,7 @@ struct Material {
   float alpha_cutoff = 0.5f;  ///< mask only
   int alpha_texture = -1;     ///< index into Scene::textures, -1 for none
   bool uses_vertex_alpha = true;
-  V3f emission{0, 0, 0};  ///< emitted radiance, W/(sr m^2), linear RGB
+  V3f emission{0, 0, 0};      ///< emitted radiance, W/(sr m^2), linear RGB
   bool double_sided = false;  ///< matters to emission only: every surface occludes from both sides
 };
 
@@ -59,8 +59,8 @@ struct Mesh {
   std::vector<V3f> positions;
   std::vector<std::uint32_t> indices;    ///< three per triangle
   std::vector<std::uint32_t> materials;  ///< one per triangle, index into Scene::materials
-  std::vector<V2f> uvs;                  ///< per vertex, for the alpha texture, transforms applied; or empty
-  std::vector<float> vertex_alpha;       ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
+  std::vector<V2f> uvs;  ///< per vertex, for the alpha texture, transforms applied; or empty
+  std::vector<float> vertex_alpha;  ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
 
   [[nodiscard]] std::size_t triangle_count() const { return materials.size(); }
 };
@@ -68,8 +68,8 @@ struct Mesh {
 /// One placement of a mesh. Imath's convention: p_world = p_object * to_world.
 struct Instance {
   std::uint32_t mesh = 0;
-  M44f to_world;  ///< affine and invertible
-  int light = -1; ///< the mesh light this placement emits for, else -1
+  M44f to_world;   ///< affine and invertible
+  int light = -1;  ///< the mesh light this placement emits for, else -1
 };
 
 enum class LightKind : std::uint8_t { rect, sphere, sun, mesh };
@@ -78,14 +78,15 @@ enum class LightKind : std::uint8_t { rect, sphere, sun, mesh };
 struct Light {
   std::string name;
   LightKind kind = LightKind::rect;
-  V3f radiance{1, 1, 1};      ///< W/(sr m^2), linear RGB
-  V3f position{0, 0, 0};      ///< rect and sphere: centre
-  V3f direction{0, -1, 0};    ///< rect: the side that emits; sun, spot: the way light travels; unit length
-  V3f edge_u{1, 0, 0};        ///< rect: full first edge
-  V3f edge_v{0, 0, 1};        ///< rect: full second edge
-  float radius = 0.1f;        ///< sphere, metres
+  V3f radiance{1, 1, 1};  ///< W/(sr m^2), linear RGB
+  V3f position{0, 0, 0};  ///< rect and sphere: centre
+  V3f direction{0, -1,
+                0};  ///< rect: the side that emits; sun, spot: the way light travels; unit length
+  V3f edge_u{1, 0, 0};              ///< rect: full first edge
+  V3f edge_v{0, 0, 1};              ///< rect: full second edge
+  float radius = 0.1f;              ///< sphere, metres
   float angular_radius = 0.00465f;  ///< sun, radians (the real sun: 0.2665 degrees)
-  float cos_inner = -1.0f;    ///< spot cone as in KHR_lights_punctual; -1, -1 for none
+  float cos_inner = -1.0f;          ///< spot cone as in KHR_lights_punctual; -1, -1 for none
   float cos_outer = -1.0f;
   bool double_sided = false;  ///< mesh: emits from both sides
 };
@@ -94,9 +95,9 @@ struct Camera {
   enum class Kind : std::uint8_t { perspective, orthographic };
   std::string name;
   Kind kind = Kind::perspective;
-  M44f to_world;           ///< camera looks along its -Z, +Y up, +X right
-  float fov_y = 0.7f;      ///< perspective: full vertical angle, radians
-  float half_height = 1;   ///< orthographic: ymag, metres
+  M44f to_world;          ///< camera looks along its -Z, +Y up, +X right
+  float fov_y = 0.7f;     ///< perspective: full vertical angle, radians
+  float half_height = 1;  ///< orthographic: ymag, metres
 };
 
 struct Scene {

@@ -17,8 +17,8 @@ namespace dapple {
 
 struct RenderStatistics {
   struct {
-    double load = 0, build = 0, prefilter = 0, upload = 0, kernel_build = 0, trace = 0,
-           write = 0, total = 0;
+    double load = 0, build = 0, prefilter = 0, upload = 0, kernel_build = 0, trace = 0, write = 0,
+           total = 0;
   } seconds;  ///< wall time; trace is all passes, camera rays included
   std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
   struct {
@@ -68,8 +68,8 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
 /// Packets need rays that share a point: `rays_per_point` of them in a row, with one origin
 /// and light. Throws Error usage.
 std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
-                             std::span<const Ray> rays, Estimator estimator,
-                             float footprint = 1.0f, std::size_t rays_per_point = 1);
+                             std::span<const Ray> rays, Estimator estimator, float footprint = 1.0f,
+                             std::size_t rays_per_point = 1);
 
 /// First surface met by each ray; a surface of opacity a is met with probability a,
 /// chosen by hashing Ray::key with primitive and instance. Where t < 0 none was met.
