@@ -111,7 +111,8 @@ TEST(GltfCamera, OrthographicOnesKeepTheirHeight) {
 Light load_light(const json& light, const SceneOptions& options = {}) {
   GltfBuilder builder;
   builder.add_triangle();
-  builder.doc["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+  // Not = {light}: an array to g++, a copy of the light to clang 14.
+  builder.doc["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
   builder.doc["extensionsRequired"] = {"KHR_lights_punctual"};
   // A quarter turn about X takes -Z to +Y; the scale must change nothing.
   builder.add("nodes", {{"name", "lamp"},
