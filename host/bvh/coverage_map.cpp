@@ -80,6 +80,26 @@ float CoverageMap::mean_opacity(int axis) const {
   return 1.0f - std::accumulate(columns.begin(), columns.end(), 0.0f) / kMapCells;
 }
 
+DAPPLE_MULTIVERSION
+float CoverageMap::clumping() const {
+  float variance = 0, greatest = 0;
+  for (const auto& map : transmittance) {
+    std::array<float, kMapSize> sums{}, squares{};
+    for (int row = 0; row < kMapSize; ++row) {
+      for (int i = 0; i < kMapSize; ++i) {
+        const float t = map[row * kMapSize + i];
+        sums[i] += t;
+        squares[i] += t * t;
+      }
+    }
+    const float mean = std::accumulate(sums.begin(), sums.end(), 0.0f) / kMapCells;
+    const float square = std::accumulate(squares.begin(), squares.end(), 0.0f) / kMapCells;
+    variance += std::max(0.0f, square - mean * mean);
+    greatest += std::max(0.0f, mean * (1.0f - mean));
+  }
+  return greatest > 1e-6f ? std::min(1.0f, variance / greatest) : 0.0f;
+}
+
 bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out) {
   const int u = column_axis(axis), v = row_axis(axis);
   const float width = box.max[u] - box.min[u], height = box.max[v] - box.min[v];

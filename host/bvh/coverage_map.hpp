@@ -34,6 +34,9 @@ struct CoverageMap {
   }
   /// Mean opacity of the box along `axis`, [0,1].
   [[nodiscard]] float mean_opacity(int axis) const;
+  /// How unevenly the box is filled: variance of the cells over the greatest that their mean
+  /// allows, all axes together. 0: all alike; 1: each cell is clear or hides everything.
+  [[nodiscard]] float clumping() const;
 };
 
 /// A triangle to be drawn. `opacity_at(triangle, u, v, share)` is its mean opacity around the

@@ -53,57 +53,64 @@ float depth_of(float opacity) {
 
 namespace {
 
-/// Hidden area per direction of a single layer and of depths scaled by 1, the latter's
-/// change with the scale, summed over directions.
-struct HiddenArea {
-  double layer = 0, depths = 0, slope = 0;
-  void add(double weight, double facing, double single, double depth) {
-    const double transmitted = std::exp(-depth);
-    layer += weight * std::min(single, facing);
-    depths += weight * facing * (1 - transmitted);
-    slope += weight * facing * depth * transmitted;
-  }
+/// The two ways of blending along one direction, as opacities, and what they were made of.
+struct DirectionalOpacity {
+  float facing;   ///< projected area of the box
+  float depth;    ///< depths blended
+  float opacity;  ///< between that depth's and the blended areas', by clumping
 };
+
+DirectionalOpacity look_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction) {
+  const V3f correlation = opacity.normals.correlation();
+  V3f facing, signed_correlation;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    facing[axis] = size[next] * size[last] * std::fabs(direction[axis]);
+    signed_correlation[axis] =
+        correlation[axis] * std::copysign(1.0f, direction[axis] * direction[next]);
+  }
+  const auto blend = [&](const V3f& axes) {
+    return box_depth(axes.x, axes.y, axes.z, signed_correlation.x, signed_correlation.y,
+                     signed_correlation.z, facing.x, facing.y, facing.z);
+  };
+  DirectionalOpacity along;
+  along.facing = facing.x + facing.y + facing.z;
+  along.depth =
+      blend({depth_of(opacity.axes.x), depth_of(opacity.axes.y), depth_of(opacity.axes.z)});
+  const float even = 1.0f - std::exp(-along.depth), clump = std::min(1.0f, blend(opacity.axes));
+  along.opacity = even + opacity.clumping * (clump - even);
+  return along;
+}
 
 }  // namespace
 
-float single_layer_factor(const NodeOpacity& opacity, const V3f& size) {
-  if (opacity.triangles == 0 || opacity.triangles >= 64) return 1.0f;
-  const float fading = 1.0f - std::log2(static_cast<float>(opacity.triangles)) / 6.0f;
-  const V3f faces(size.y * size.z, size.z * size.x, size.x * size.y);
-  const V3f depths(depth_of(opacity.axes.x), depth_of(opacity.axes.y), depth_of(opacity.axes.z));
-  const V3f c = opacity.normals.correlation();
-  HiddenArea hidden;
-  // The axes and the diagonals of a cube, weighted to integrate polynomials of degree 5 over
-  // the sphere (Abramowitz and Stegun, 25.4.65).
-  for (int k = 0; k < 3; ++k) {
-    hidden.add(2.0 / 15, faces[k], opacity.axes[k] * faces[k], depths[k]);
-  }
-  const float root = std::sqrt(1.0f / 3.0f);
-  const V3f f = faces * root, area = opacity.axes * f;
-  for (const V3f& s : {V3f(1, 1, 1), V3f(1, -1, -1), V3f(-1, 1, -1), V3f(-1, -1, 1)}) {
-    // Signs of xy, yz, zx of the four diagonals.
-    const V3f r = c * s;
-    const float square = area.length2() + 2.0f * (r.x * area.x * area.y + r.y * area.y * area.z +
-                                                  r.z * area.z * area.x);
-    hidden.add(3.0 / 20, f.x + f.y + f.z, std::sqrt(std::max(square, 0.0f)),
-               box_depth(depths.x, depths.y, depths.z, r.x, r.y, r.z, f.x, f.y, f.z));
-  }
-  if (!(hidden.slope > 0)) return 1.0f;
-  const double factor = 1.0 + (hidden.layer - hidden.depths) / hidden.slope;
-  return 1.0f + fading * static_cast<float>(std::clamp(factor, 0.75, 1.25) - 1.0);
+float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction) {
+  return look_along(opacity, size, direction).opacity;
 }
 
-float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction) {
-  const V3f c = opacity.normals.correlation();
-  const auto sign = [](float x) { return std::copysign(1.0f, x); };
-  const V3f& d = direction;
-  const float depth =
-      box_depth(depth_of(opacity.axes.x), depth_of(opacity.axes.y), depth_of(opacity.axes.z),
-                c.x * sign(d.x * d.y), c.y * sign(d.y * d.z), c.z * sign(d.z * d.x),
-                size.y * size.z * std::fabs(d.x), size.z * size.x * std::fabs(d.y),
-                size.x * size.y * std::fabs(d.z));
-  return 1.0f - std::exp(-depth);
+float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
+  // Hidden area summed over directions: what is wanted beyond what the depths give, and how
+  // the latter changes with the factor.
+  double wanting = 0, slope = 0;
+  const auto add = [&](double weight, const V3f& direction) {
+    const DirectionalOpacity along = look_along(opacity, size, direction);
+    const double transmitted = std::exp(-along.depth);
+    wanting += weight * along.facing * (along.opacity - (1 - transmitted));
+    slope += weight * along.facing * along.depth * transmitted;
+  };
+  // The axes, where both agree, and the diagonals of a cube integrate polynomials of degree 5
+  // over the sphere (Abramowitz and Stegun, 25.4.65): weights 2/15 and 3/20.
+  for (int axis = 0; axis < 3; ++axis) {
+    V3f direction(0.0f);
+    direction[axis] = 1.0f;
+    add(2.0 / 15, direction);
+  }
+  const float root = std::sqrt(1.0f / 3.0f);
+  for (const V3f& signs : {V3f(1, 1, 1), V3f(1, -1, -1), V3f(-1, 1, -1), V3f(-1, -1, 1)}) {
+    add(3.0 / 20, signs * root);
+  }
+  if (!(slope > 0)) return 1.0f;
+  return static_cast<float>(std::clamp(1.0 + wanting / slope, 0.75, 1.25));
 }
 
 }  // namespace dapple

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 
 #include "dapple/scene.hpp"
 
@@ -26,20 +25,20 @@ struct NormalMoments {
 struct NodeOpacity {
   V3f axes{0, 0, 0};  ///< opacity along x, y, z, [0,1]
   NormalMoments normals;
-  std::size_t triangles = 0;  ///< in the whole subtree; 0: many
+  float clumping = 0;  ///< CoverageMap::clumping()
 };
 
 /// -log(1 - opacity), at most the greatest depth that a node can store.
 float depth_of(float opacity);
 
-/// Factor on the depths of a box of `size` with few triangles. Depths suit many surfaces one
-/// behind the other; a single one hides its projected area, which is less between the axes.
-/// The factor makes the hidden area right in the mean over all directions; it fades from one
-/// triangle to 64.
-float single_layer_factor(const NodeOpacity& opacity, const V3f& size);
-
-/// Opacity that a ray of mean chord along `direction` (any length) meets in a box of `size`:
-/// the model of dapple/shared/opacity.h.
+/// Mean opacity that rays along `direction` (any length) meet in a box of `size`. Surfaces
+/// that lie evenly, one behind the other, hide what their depths say; a clump hides its
+/// projected area, which is less between the axes. Clumping goes from one to the other.
 float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction);
+
+/// Factor on the depths along the axes with which box_depth() of dapple/shared/opacity.h,
+/// which knows no clumping, hides the same area as opacity_along() in the mean over all
+/// directions.
+float clumping_factor(const NodeOpacity& opacity, const V3f& size);
 
 }  // namespace dapple

@@ -43,6 +43,9 @@ void prefilter(ObjectBvh& object, const WideTree& tree, const TextureIntegrals& 
 /// by the caller.
 std::vector<BvhNode> pack_nodes(const WideTree& tree);
 
+/// What a node's map and normals say of it.
+NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals);
+
 /// Stores the opacity of child `slot`, whose exact box had `opacity`, as that of its grown box.
 void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
                        const Box3f& exact);

@@ -25,10 +25,7 @@ uchar encode_depth(float depth) {
 struct Summary {
   CoverageMap map;
   NormalMoments normals;
-  std::size_t triangles = 0;
-  [[nodiscard]] NodeOpacity opacity() const {
-    return {V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals, triangles};
-  }
+  [[nodiscard]] NodeOpacity opacity() const { return map_opacity(map, normals); }
 };
 
 class Prefilter {
@@ -54,7 +51,7 @@ class Prefilter {
     } else {
       for (unsigned slot = 0; slot < count; ++slot) add(slot, child(index, slot));
     }
-    return {coverage.map(), normals, tree_.nodes[index].primitives};
+    return {coverage.map(), normals};
   }
 
  private:
@@ -81,7 +78,6 @@ class Prefilter {
       summary.normals.add(triangle.edge1.cross(triangle.edge2), opacity);
       triangles[count++] = triangle;
     }
-    summary.triangles = count;
     cover(summary.map, box, std::span(triangles.data(), count),
           [&](const CoveringTriangle& t, float u, float v, float share) {
             return mean_opacity(t, u, v, share);
@@ -101,6 +97,11 @@ class Prefilter {
 
 }  // namespace
 
+NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals) {
+  return {V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals,
+          map.clumping()};
+}
+
 void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
                        const Box3f& exact) {
   const Box3f box = child_box(node, slot);
@@ -113,7 +114,7 @@ void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
         std::clamp((opacity.axes[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
     grown.axes[axis] *= share + solid * (1.0f - share);
   }
-  const float factor = single_layer_factor(grown, box.max - box.min);
+  const float factor = clumping_factor(grown, box.max - box.min);
   const V3f correlation = opacity.normals.correlation();
   for (int axis = 0; axis < 3; ++axis) {
     node.depth[axis][slot] =

@@ -47,6 +47,7 @@ NodeOpacity instance_opacity(const ObjectBvh& object, const M44f& to_world, cons
   const V3f size = object.box.max - object.box.min;
   NodeOpacity opacity;
   opacity.normals = object.opacity.normals.placed(to_world);
+  opacity.clumping = object.opacity.clumping;
   for (int axis = 0; axis < 3; ++axis) {
     V3f world_axis(0.0f), direction;
     world_axis[axis] = 1.0f;
@@ -173,8 +174,9 @@ std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
       opacity = placed[order[child.first].primitive].opacity;
       map = uniform_map(opacity.axes);
     } else {
-      std::tie(map, opacity.normals) = prefilter_top(tree, order, placed, nodes, child.first);
-      opacity.axes = V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2));
+      NormalMoments below;
+      std::tie(map, below) = prefilter_top(tree, order, placed, nodes, child.first);
+      opacity = map_opacity(map, below);
     }
     coverage.add(map, child.box);
     normals.add(opacity.normals);
