@@ -59,8 +59,8 @@ void measure_once(const Scene& scene, PrefilterCostRow& row) {
   BuiltObject built;
   const auto [building, build_peak] =
       cost_of([&] { built = build_object(scene, scene.meshes[0]); });
-  const auto [prefiltering, prefilter_peak] = cost_of(
-      [&] { prefilter(built.object, built.tree, TextureIntegrals(scene, built.object.textured)); });
+  const auto [prefiltering, prefilter_peak] =
+      cost_of([&] { prefilter(built, TextureIntegrals(scene, built.object.textured)); });
   const ObjectBvh& object = built.object;
   row.triangles = object.triangles;
   row.bvh_bytes = bytes(object.nodes) + bytes(object.blocks) + bytes(object.textured);

@@ -164,6 +164,17 @@ void HiddenCells::add_uniform(const CellTriangle& triangle, const CellCoverage& 
   }
 }
 
+void HiddenCells::enclose(HiddenCells& back) {
+  for (int cell = back.row0 * kMapSize; cell < (back.row1 + 1) * kMapSize; ++cell) {
+    hidden[cell] = std::max(hidden[cell], back.hidden[cell]);
+    back.hidden[cell] = 0.0f;
+  }
+  row0 = std::min(row0, back.row0);
+  row1 = std::max(row1, back.row1);
+  back.row0 = kMapSize;
+  back.row1 = -1;
+}
+
 DAPPLE_MULTIVERSION
 void HiddenCells::flush(std::array<float, kMapCells>& map) {
   for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) {
@@ -172,6 +183,22 @@ void HiddenCells::flush(std::array<float, kMapCells>& map) {
   }
   row0 = kMapSize;
   row1 = -1;
+}
+
+std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
+                          CellCoverage& coverage, HiddenCells& cells, HiddenCells& back) {
+  std::uint64_t done = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (!triangles[t].closed) continue;
+    done |= std::uint64_t{1} << t;
+    CellTriangle projected;
+    if (!project(triangles[t], box, axis, projected)) continue;
+    rasterize(projected, coverage);
+    const bool faces_axis = triangles[t].edge1.cross(triangles[t].edge2)[axis] > 0.0f;
+    (faces_axis ? cells : back).add_uniform(projected, coverage, triangles[t].opacity);
+  }
+  cells.enclose(back);
+  return done;
 }
 
 bool side_by_side(const CoveringTriangle& a, const CoveringTriangle& b, int axis) {

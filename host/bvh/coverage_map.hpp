@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "bvh/closed_surface.hpp"
 #include "dapple/scene.hpp"
 #include "dapple/shared/bvh_node.h"
 
@@ -44,17 +45,20 @@ struct CoverageMap {
 struct CoveringTriangle {
   V3f vertex, edge1, edge2;
   float opacity;
+  bool closed = false;  ///< part of a closed surface, opaque: closed_triangles()
 };
 
 /// Multiplies triangles inside `box` into the map, keeping their projected areas. Those
-/// that meet along an edge lie side by side and add up; others overlap as if independent.
+/// that meet along an edge lie side by side and add up, and so does each side of closed
+/// surfaces, one of which hides the other; others overlap as if independent.
 template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
            const OpacityAt& opacity_at);
 
 /// The map of a node while its children are put in, one after the other. Children whose
 /// boxes lie side by side in a cell add up; only where boxes overlap do they multiply.
-/// Taking both as independent would let a quarter of the light through every joint.
+/// Taking both as independent would let a quarter of the light through every joint. Fronts
+/// of closed surfaces hide their backs.
 class NodeCoverage {
  public:
   explicit NodeCoverage(const Box3f& box) : box_(box) {
@@ -62,14 +66,16 @@ class NodeCoverage {
   }
 
   /// Puts in a child with its map over `child_box`, which lies in the node's box.
-  void add(const CoverageMap& child, const Box3f& child_box);
+  void add(const CoverageMap& child, const Box3f& child_box, const SurfaceAreas& areas = {});
 
   [[nodiscard]] const CoverageMap& map() const { return map_; }
+  [[nodiscard]] const SurfaceAreas& areas() const { return areas_; }
 
  private:
   Box3f box_;
   CoverageMap map_;
   std::array<std::array<float, kMapCells>, 3> covered_;  ///< share of each cell that boxes cover
+  SurfaceAreas areas_;
   std::array<Box3f, DAPPLE_BVH_WIDTH> children_;
   int child_count_ = 0;
 };
@@ -104,6 +110,8 @@ struct HiddenCells {
   int row0 = kMapSize, row1 = -1;  ///< rows touched, inclusive
 
   void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
+  /// Hides what either hides: the two sides of closed surfaces. Empties the other.
+  void enclose(HiddenCells& back);
   /// Multiplies what is left into `map` and empties this.
   void flush(std::array<float, kMapCells>& map);
 };
@@ -131,13 +139,19 @@ void add_varying(HiddenCells& cells, const CellTriangle& t, const CellCoverage& 
   }
 }
 
+/// Draws the closed surfaces into `cells`, with `back` as scratch. Returns a bit for each
+/// triangle done; leaves hold at most 8.
+std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
+                          CellCoverage& coverage, HiddenCells& cells, HiddenCells& back);
+
 template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
            const OpacityAt& opacity_at) {
   CellCoverage coverage;
-  HiddenCells cells;
+  HiddenCells cells, back;
   for (int axis = 0; axis < 3; ++axis) {
-    std::uint64_t done = 0;  // leaves hold at most 8 triangles
+    std::uint64_t done = draw_closed(box, triangles, axis, coverage, cells, back);
+    cells.flush(map.transmittance[axis]);
     for (std::size_t first = 0; first < triangles.size(); ++first) {
       // A group: this triangle and every later one beside a member of it.
       for (std::size_t t = first; t < triangles.size(); ++t) {

@@ -121,10 +121,12 @@ struct ChildPlacement {
 };
 
 /// Of a cell, boxes cover F and a child f; in the part that both cover, what they hide
-/// overlaps as if independent, elsewhere not at all.
+/// overlaps as if independent, but for the `enclosed` share, which one of the two hides all of;
+/// elsewhere not at all.
 DAPPLE_MULTIVERSION
 void merge_rows(int first, int last, const AxisShare& across, const AxisShare& down,
-                const Cells& opacity, const Cells& overlap, Cells& map, Cells& map_covered) {
+                const Cells& opacity, const Cells& overlap, float enclosed, Cells& map,
+                Cells& map_covered) {
   for (int row = first; row <= last; ++row) {
     float* transmittance = &map[row * kMapSize];
     float* covered = &map_covered[row * kMapSize];
@@ -134,7 +136,10 @@ void merge_rows(int first, int last, const AxisShare& across, const AxisShare& d
       const float f = down[row] * across[i];
       const float both = std::min(shared[i], std::min(f, covered[i]));
       const float hidden = 1.0f - transmittance[i];
-      const float twice = both * hidden * added[i] / (covered[i] * f + 1e-20f);
+      const float independent = hidden * added[i];
+      const float smaller = std::min(hidden * f, added[i] * covered[i]);
+      const float twice =
+          both * (independent + enclosed * (smaller - independent)) / (covered[i] * f + 1e-20f);
       const float now =
           std::min(1.0f, hidden + added[i] - std::min(twice, std::min(hidden, added[i])));
       transmittance[i] = 1.0f - now;
@@ -146,7 +151,8 @@ void merge_rows(int first, int last, const AxisShare& across, const AxisShare& d
 }  // namespace
 
 DAPPLE_MULTIVERSION
-void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box) {
+void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
+                       const SurfaceAreas& areas) {
   const ChildPlacement placement(box_, child_box);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(face_area(box_, axis) > 0.0f)) continue;
@@ -157,8 +163,9 @@ void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box) {
     const auto [first, last] =
         resample(child, axis, placement.cells[u], placement.cells[v], opacity);
     merge_rows(first, last, placement.share[u], placement.share[v], opacity, overlap,
-               map_.transmittance[axis], covered_[axis]);
+               enclosed_share(areas_, areas, axis), map_.transmittance[axis], covered_[axis]);
   }
+  areas_.add(areas);
   children_[child_count_++] = child_box;
 }
 

@@ -60,27 +60,34 @@ void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32
 }
 
 /// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
-void pack_triangles(ObjectBvh& object, const WideTree& wide, const BinaryTree& binary,
-                    const Mesh& mesh, const std::vector<float>& opacities) {
+void pack_triangles(BuiltObject& built, const BinaryTree& binary, const Mesh& mesh,
+                    const std::vector<float>& opacities) {
+  ObjectBvh& object = built.object;
+  const WideTree& wide = built.tree;
+  const std::vector<bool> closed = closed_triangles(mesh, opacities);
   std::uint32_t blocks = 0;
   for (BvhNode& node : object.nodes) {
     node.prim_base = blocks;
     blocks += (node.leaf_end[DAPPLE_BVH_WIDTH - 1] + 7u) / 8u;
   }
   object.blocks.assign(blocks, TriangleBlock{});
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024),
-                    [&](const auto& range) {
-                      for (std::size_t n = range.begin(); n < range.end(); ++n) {
-                        std::uint32_t next = 0;
-                        for (const WideChild& child : wide.children_of(wide.nodes[n])) {
-                          for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
-                            const std::uint32_t triangle = binary.order[child.first + i].primitive;
-                            set_lane(object.blocks[object.nodes[n].prim_base + next / 8], next % 8,
-                                     mesh, triangle, opacities[triangle]);
-                          }
-                        }
-                      }
-                    });
+  if (!closed.empty()) built.closed.assign(blocks, 0);
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
+        for (std::size_t n = range.begin(); n < range.end(); ++n) {
+          std::uint32_t next = 0;
+          for (const WideChild& child : wide.children_of(wide.nodes[n])) {
+            for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
+              const std::uint32_t triangle = binary.order[child.first + i].primitive;
+              const std::uint32_t block = object.nodes[n].prim_base + next / 8;
+              set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
+              if (!closed.empty() && closed[triangle]) {
+                built.closed[block] |= static_cast<std::uint8_t>(1u << next % 8);
+              }
+            }
+          }
+        }
+      });
 }
 
 /// Expected node visits of a random ray through the root's box, by surface areas.
@@ -133,7 +140,7 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   object.stack = stack_needed(built.tree);
   object.sah_cost = expected_visits(built.tree);
   object.nodes = pack_nodes(built.tree);
-  pack_triangles(object, built.tree, binary, mesh, opacities);
+  pack_triangles(built, binary, mesh, opacities);
   return built;
 }
 

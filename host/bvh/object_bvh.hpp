@@ -25,19 +25,20 @@ struct ObjectBvh {
   std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
 };
 
-/// A built object and the tree it was packed from, which prefiltering walks.
+/// A built object and what prefiltering needs beside it.
 struct BuiltObject {
   ObjectBvh object;
-  WideTree tree;
+  WideTree tree;                     ///< the object was packed from
+  std::vector<std::uint8_t> closed;  ///< by block: bit l for lane l, closed_triangles(); or empty
 };
 
 /// Builds and packs the triangles of `mesh` that are not fully transparent. Empty (no
 /// nodes) when there are none.
 BuiltObject build_object(const Scene& scene, const Mesh& mesh);
 
-/// Fills nodes[*].opacity and `opacity` of a packed object, bottom-up, in parallel and in
+/// Fills the nodes' opacities and `opacity` of a packed object, bottom-up, in parallel and in
 /// time linear in the triangles.
-void prefilter(ObjectBvh& object, const WideTree& tree, const TextureIntegrals& integrals);
+void prefilter(BuiltObject& built, const TextureIntegrals& integrals);
 
 /// Packs a wide tree's boxes and layout into nodes; opacities stay 0, `prim_base` is set
 /// by the caller.

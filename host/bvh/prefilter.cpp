@@ -21,17 +21,18 @@ uchar encode_depth(float depth) {
   return static_cast<uchar>(std::lround(std::sqrt(depth / DAPPLE_GREATEST_DEPTH) * 255.0f));
 }
 
-/// Coverage and normals of a subtree, handed to its parent.
+/// What a subtree hands to its parent.
 struct Summary {
   CoverageMap map;
   NormalMoments normals;
+  SurfaceAreas areas;
   [[nodiscard]] NodeOpacity opacity() const { return map_opacity(map, normals); }
 };
 
 class Prefilter {
  public:
-  Prefilter(ObjectBvh& object, const WideTree& tree, const TextureIntegrals& integrals)
-      : object_(object), tree_(tree), integrals_(integrals) {}
+  Prefilter(BuiltObject& built, const TextureIntegrals& integrals)
+      : object_(built.object), tree_(built.tree), closed_(built.closed), integrals_(integrals) {}
 
   Summary node(std::uint32_t index) {
     const std::uint32_t count = tree_.nodes[index].child_count;
@@ -39,7 +40,7 @@ class Prefilter {
     NormalMoments normals;
     const auto add = [&](unsigned slot, const Summary& child) {
       const Box3f& box = tree_.children_of(tree_.nodes[index])[slot].box;
-      coverage.add(child.map, box);
+      coverage.add(child.map, box, child.areas);
       normals.add(child.normals);
       set_child_opacity(object_.nodes[index], slot, child.opacity(), box);
     };
@@ -51,7 +52,7 @@ class Prefilter {
     } else {
       for (unsigned slot = 0; slot < count; ++slot) add(slot, child(index, slot));
     }
-    return {coverage.map(), normals};
+    return {coverage.map(), normals, coverage.areas()};
   }
 
  private:
@@ -71,11 +72,13 @@ class Prefilter {
         return V3f(v[0][lane], v[1][lane], v[2][lane]);
       };
       const CoveringTriangle triangle{at(block.vertex), at(block.edge1), at(block.edge2),
-                                      block.opacity[lane]};
+                                      block.opacity[lane], is_closed(node.prim_base + i / 8, lane)};
       const float opacity = triangle.opacity >= 0.0f
                                 ? triangle.opacity
                                 : mean_opacity(triangle, 1.0f / 3, 1.0f / 3, 1.0f);
-      summary.normals.add(triangle.edge1.cross(triangle.edge2), opacity);
+      const V3f area = 0.5f * triangle.edge1.cross(triangle.edge2);
+      summary.normals.add(area, opacity);
+      summary.areas.add(area, opacity, triangle.closed);
       triangles[count++] = triangle;
     }
     cover(summary.map, box, std::span(triangles.data(), count),
@@ -85,6 +88,10 @@ class Prefilter {
     return summary;
   }
 
+  bool is_closed(std::uint32_t block, unsigned lane) const {
+    return !closed_.empty() && (closed_[block] >> lane & 1u) != 0;
+  }
+
   float mean_opacity(const CoveringTriangle& triangle, float u, float v, float share) const {
     const auto textured = static_cast<std::size_t>(-triangle.opacity - 1.0f);
     return integrals_.mean(object_.textured[textured], u, v, share);
@@ -92,6 +99,7 @@ class Prefilter {
 
   ObjectBvh& object_;
   const WideTree& tree_;
+  const std::vector<std::uint8_t>& closed_;
   const TextureIntegrals& integrals_;
 };
 
@@ -123,8 +131,8 @@ void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
   }
 }
 
-void prefilter(ObjectBvh& object, const WideTree& tree, const TextureIntegrals& integrals) {
-  object.opacity = Prefilter(object, tree, integrals).node(0).opacity();
+void prefilter(BuiltObject& built, const TextureIntegrals& integrals) {
+  built.object.opacity = Prefilter(built, integrals).node(0).opacity();
 }
 
 }  // namespace dapple

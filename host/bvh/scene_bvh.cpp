@@ -78,7 +78,7 @@ std::vector<ObjectBvh> build_objects(const Scene& scene, BvhStatistics& statisti
   tbb::parallel_for(std::size_t{0}, built.size(), [&](std::size_t m) {
     ObjectBvh& object = built[m].object;
     if (!object.nodes.empty())
-      prefilter(object, built[m].tree, TextureIntegrals(scene, object.textured));
+      prefilter(built[m], TextureIntegrals(scene, object.textured));
     objects[m] = std::move(object);
   });
   statistics.prefilter_seconds = seconds_since(prefiltering);
