@@ -1,7 +1,6 @@
 #include "bvh/coverage_map.hpp"
 
 #include <cmath>
-#include <numeric>
 
 #include "bvh/map_row.hpp"
 #include "bvh/multiversion.hpp"
@@ -72,29 +71,28 @@ bool scale_partial_cells(const CellTriangle& triangle, CellCoverage& coverage) {
 
 DAPPLE_MULTIVERSION
 float CoverageMap::mean_opacity(int axis) const {
-  const auto& map = transmittance[axis];
-  std::array<float, kMapSize> columns{};
+  Row sum{};
   for (int row = 0; row < kMapSize; ++row) {
-    for (int i = 0; i < kMapSize; ++i) columns[i] += map[row * kMapSize + i];
+    Row t;
+    load_row(&transmittance[axis][row * kMapSize], t);
+    sum += t;
   }
-  return 1.0f - std::accumulate(columns.begin(), columns.end(), 0.0f) / kMapCells;
+  return 1.0f - sum_of(sum) / kMapCells;
 }
 
 DAPPLE_MULTIVERSION
 float CoverageMap::clumping() const {
   float variance = 0, greatest = 0;
   for (const auto& map : transmittance) {
-    std::array<float, kMapSize> sums{}, squares{};
+    Row sum{}, squares{};
     for (int row = 0; row < kMapSize; ++row) {
-      for (int i = 0; i < kMapSize; ++i) {
-        const float t = map[row * kMapSize + i];
-        sums[i] += t;
-        squares[i] += t * t;
-      }
+      Row t;
+      load_row(&map[row * kMapSize], t);
+      sum += t;
+      squares += t * t;
     }
-    const float mean = std::accumulate(sums.begin(), sums.end(), 0.0f) / kMapCells;
-    const float square = std::accumulate(squares.begin(), squares.end(), 0.0f) / kMapCells;
-    variance += std::max(0.0f, square - mean * mean);
+    const float mean = sum_of(sum) / kMapCells;
+    variance += std::max(0.0f, sum_of(squares) / kMapCells - mean * mean);
     greatest += std::max(0.0f, mean * (1.0f - mean));
   }
   return greatest > 1e-6f ? std::min(1.0f, variance / greatest) : 0.0f;
@@ -164,25 +162,27 @@ void HiddenCells::add_uniform(const CellTriangle& triangle, const CellCoverage& 
   }
 }
 
+void HiddenCells::clear() {
+  for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) hidden[cell] = 0.0f;
+  row0 = kMapSize;
+  row1 = -1;
+}
+
 void HiddenCells::enclose(HiddenCells& back) {
   for (int cell = back.row0 * kMapSize; cell < (back.row1 + 1) * kMapSize; ++cell) {
     hidden[cell] = std::max(hidden[cell], back.hidden[cell]);
-    back.hidden[cell] = 0.0f;
   }
   row0 = std::min(row0, back.row0);
   row1 = std::max(row1, back.row1);
-  back.row0 = kMapSize;
-  back.row1 = -1;
+  back.clear();
 }
 
 DAPPLE_MULTIVERSION
 void HiddenCells::flush(std::array<float, kMapCells>& map) {
   for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) {
     map[cell] *= 1.0f - std::min(1.0f, hidden[cell]);
-    hidden[cell] = 0.0f;
   }
-  row0 = kMapSize;
-  row1 = -1;
+  clear();
 }
 
 std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
@@ -223,6 +223,19 @@ bool side_by_side(const CoveringTriangle& a, const CoveringTriangle& b, int axis
   const V3f third_a = p[3 - shared[0][0] - shared[1][0]] - from;
   const V3f third_b = q[3 - shared[0][1] - shared[1][1]] - from;
   return edge.cross(third_a)[axis] * edge.cross(third_b)[axis] < 0.0f;
+}
+
+bool is_single_layer(std::span<const CoveringTriangle> triangles) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t t = 1; t < triangles.size(); ++t) {
+      bool joined = false;
+      for (std::size_t other = 0; other < t && !joined; ++other) {
+        joined = side_by_side(triangles[other], triangles[t], axis);
+      }
+      if (!joined) return false;
+    }
+  }
+  return true;
 }
 
 CoverageMap uniform_map(const V3f& opacity) {

@@ -68,10 +68,16 @@ class NodeCoverage {
   /// Puts in a child with its map over `child_box`, which lies in the node's box.
   void add(const CoverageMap& child, const Box3f& child_box, const SurfaceAreas& areas = {});
 
+  /// Puts in a leaf's triangles, a single layer as is_single_layer() says, of uniform opacities.
+  void add_layer(std::span<const CoveringTriangle> triangles, const Box3f& child_box,
+                 const SurfaceAreas& areas);
+
   [[nodiscard]] const CoverageMap& map() const { return map_; }
   [[nodiscard]] const SurfaceAreas& areas() const { return areas_; }
 
  private:
+  void overlap_children(const Box3f& child_box, int axis, std::array<float, kMapCells>& overlap);
+
   Box3f box_;
   CoverageMap map_;
   std::array<std::array<float, kMapCells>, 3> covered_;  ///< share of each cell that boxes cover
@@ -79,6 +85,10 @@ class NodeCoverage {
   std::array<Box3f, DAPPLE_BVH_WIDTH> children_;
   int child_count_ = 0;
 };
+
+/// Whether triangles of a leaf hide nothing of each other seen along any axis: they lie side by
+/// side, edge to edge.
+bool is_single_layer(std::span<const CoveringTriangle> triangles);
 
 /// A map of one opacity an axis all over.
 CoverageMap uniform_map(const V3f& opacity);
@@ -112,6 +122,7 @@ struct HiddenCells {
   void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
   /// Hides what either hides: the two sides of closed surfaces. Empties the other.
   void enclose(HiddenCells& back);
+  void clear();
   /// Multiplies what is left into `map` and empties this.
   void flush(std::array<float, kMapCells>& map);
 };

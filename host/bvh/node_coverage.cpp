@@ -151,19 +151,50 @@ void merge_rows(int first, int last, const AxisShare& across, const AxisShare& d
 }  // namespace
 
 DAPPLE_MULTIVERSION
+void NodeCoverage::overlap_children(const Box3f& child_box, int axis, Cells& overlap) {
+  overlap.fill(0.0f);
+  for (int c = 0; c < child_count_; ++c) add_overlap(box_, children_[c], child_box, axis, overlap);
+}
+
+DAPPLE_MULTIVERSION
 void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
                        const SurfaceAreas& areas) {
   const ChildPlacement placement(box_, child_box);
+  Cells opacity, overlap;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(face_area(box_, axis) > 0.0f)) continue;
     const int u = column_axis(axis), v = row_axis(axis);
-    Cells opacity, overlap{};
-    for (int c = 0; c < child_count_; ++c)
-      add_overlap(box_, children_[c], child_box, axis, overlap);
+    overlap_children(child_box, axis, overlap);
     const auto [first, last] =
         resample(child, axis, placement.cells[u], placement.cells[v], opacity);
     merge_rows(first, last, placement.share[u], placement.share[v], opacity, overlap,
                enclosed_share(areas_, areas, axis), map_.transmittance[axis], covered_[axis]);
+  }
+  areas_.add(areas);
+  children_[child_count_++] = child_box;
+}
+
+DAPPLE_MULTIVERSION
+void NodeCoverage::add_layer(std::span<const CoveringTriangle> triangles, const Box3f& child_box,
+                             const SurfaceAreas& areas) {
+  const AxisShare share[3] = {axis_share(box_, child_box, 0), axis_share(box_, child_box, 1),
+                              axis_share(box_, child_box, 2)};
+  CellCoverage coverage;
+  HiddenCells cells;
+  Cells overlap;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(face_area(box_, axis) > 0.0f)) continue;
+    for (const CoveringTriangle& triangle : triangles) {
+      CellTriangle projected;
+      if (!project(triangle, box_, axis, projected)) continue;
+      rasterize(projected, coverage);
+      cells.add_uniform(projected, coverage, triangle.opacity);
+    }
+    overlap_children(child_box, axis, overlap);
+    merge_rows(cells.row0, cells.row1, share[column_axis(axis)], share[row_axis(axis)],
+               cells.hidden, overlap, enclosed_share(areas_, areas, axis), map_.transmittance[axis],
+               covered_[axis]);
+    cells.clear();
   }
   areas_.add(areas);
   children_[child_count_++] = child_box;

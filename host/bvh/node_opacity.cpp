@@ -53,64 +53,77 @@ float depth_of(float opacity) {
 
 namespace {
 
-/// The two ways of blending along one direction, as opacities, and what they were made of.
-struct DirectionalOpacity {
-  float facing;   ///< projected area of the box
-  float depth;    ///< depths blended
-  float opacity;  ///< between that depth's and the blended areas', by clumping
-};
+/// Looks at a box of some size from any direction.
+class DirectionalOpacity {
+ public:
+  DirectionalOpacity(const NodeOpacity& opacity, const V3f& size)
+      : faces_(size.y * size.z, size.z * size.x, size.x * size.y),
+        axes_(opacity.axes),
+        depths_(depth_of(axes_.x), depth_of(axes_.y), depth_of(axes_.z)),
+        correlation_(opacity.normals.correlation()),
+        clumping_(opacity.clumping) {}
 
-DirectionalOpacity look_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction) {
-  const V3f correlation = opacity.normals.correlation();
-  V3f facing, signed_correlation;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-    facing[axis] = size[next] * size[last] * std::fabs(direction[axis]);
-    signed_correlation[axis] =
-        correlation[axis] * std::copysign(1.0f, direction[axis] * direction[next]);
-  }
-  const auto blend = [&](const V3f& axes) {
-    return box_depth(axes.x, axes.y, axes.z, signed_correlation.x, signed_correlation.y,
-                     signed_correlation.z, facing.x, facing.y, facing.z);
+  struct View {
+    float facing;   ///< projected area of the box
+    float depth;    ///< depths blended
+    float even;     ///< opacity of that depth
+    float opacity;  ///< from there to that of the blended areas, by clumping
   };
-  DirectionalOpacity along;
-  along.facing = facing.x + facing.y + facing.z;
-  along.depth =
-      blend({depth_of(opacity.axes.x), depth_of(opacity.axes.y), depth_of(opacity.axes.z)});
-  const float even = 1.0f - std::exp(-along.depth), clump = std::min(1.0f, blend(opacity.axes));
-  along.opacity = even + opacity.clumping * (clump - even);
-  return along;
-}
+
+  [[nodiscard]] View along(const V3f& direction) const {
+    V3f facing, correlation;
+    for (int axis = 0; axis < 3; ++axis) {
+      facing[axis] = faces_[axis] * std::fabs(direction[axis]);
+      correlation[axis] =
+          correlation_[axis] * std::copysign(1.0f, direction[axis] * direction[(axis + 1) % 3]);
+    }
+    const auto blend = [&](const V3f& axes) {
+      return box_depth(axes.x, axes.y, axes.z, correlation.x, correlation.y, correlation.z,
+                       facing.x, facing.y, facing.z);
+    };
+    View view;
+    view.facing = facing.x + facing.y + facing.z;
+    view.depth = blend(depths_);
+    view.even = 1.0f - std::exp(-view.depth);
+    view.opacity = view.even + clumping_ * (std::min(1.0f, blend(axes_)) - view.even);
+    return view;
+  }
+
+  /// Along an axis, where even and clumped agree.
+  [[nodiscard]] View along_axis(int axis) const {
+    return {faces_[axis], depths_[axis], axes_[axis], axes_[axis]};
+  }
+
+ private:
+  V3f faces_, axes_, depths_, correlation_;
+  float clumping_;
+};
 
 }  // namespace
 
 float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction) {
-  return look_along(opacity, size, direction).opacity;
+  return DirectionalOpacity(opacity, size).along(direction).opacity;
 }
 
 float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
+  if (!(opacity.clumping > 0.0f)) return 1.0f;
+  const DirectionalOpacity directional(opacity, size);
   // Hidden area summed over directions: what is wanted beyond what the depths give, and how
   // the latter changes with the factor.
-  double wanting = 0, slope = 0;
-  const auto add = [&](double weight, const V3f& direction) {
-    const DirectionalOpacity along = look_along(opacity, size, direction);
-    const double transmitted = std::exp(-along.depth);
-    wanting += weight * along.facing * (along.opacity - (1 - transmitted));
-    slope += weight * along.facing * along.depth * transmitted;
+  float wanting = 0, slope = 0;
+  const auto add = [&](float weight, const DirectionalOpacity::View& view) {
+    wanting += weight * view.facing * (view.opacity - view.even);
+    slope += weight * view.facing * view.depth * (1.0f - view.even);
   };
-  // The axes, where both agree, and the diagonals of a cube integrate polynomials of degree 5
-  // over the sphere (Abramowitz and Stegun, 25.4.65): weights 2/15 and 3/20.
-  for (int axis = 0; axis < 3; ++axis) {
-    V3f direction(0.0f);
-    direction[axis] = 1.0f;
-    add(2.0 / 15, direction);
-  }
+  // The axes and the diagonals of a cube, weighted 2/15 and 3/20, integrate polynomials of
+  // degree 5 over the sphere (Abramowitz and Stegun, 25.4.65).
+  for (int axis = 0; axis < 3; ++axis) add(2.0f / 15, directional.along_axis(axis));
   const float root = std::sqrt(1.0f / 3.0f);
   for (const V3f& signs : {V3f(1, 1, 1), V3f(1, -1, -1), V3f(-1, 1, -1), V3f(-1, -1, 1)}) {
-    add(3.0 / 20, signs * root);
+    add(3.0f / 20, directional.along(signs * root));
   }
-  if (!(slope > 0)) return 1.0f;
-  return static_cast<float>(std::clamp(1.0 + wanting / slope, 0.75, 1.25));
+  if (!(slope > 0.0f)) return 1.0f;
+  return std::clamp(1.0f + wanting / slope, 0.75f, 1.25f);
 }
 
 }  // namespace dapple

@@ -26,8 +26,41 @@ struct Summary {
   CoverageMap map;
   NormalMoments normals;
   SurfaceAreas areas;
-  [[nodiscard]] NodeOpacity opacity() const { return map_opacity(map, normals); }
 };
+
+/// A leaf's triangles and what adds up over them.
+struct Leaf {
+  std::array<CoveringTriangle, 8> storage;
+  std::size_t count = 0;
+  bool textured = false;
+  NormalMoments normals;
+  SurfaceAreas areas;
+  [[nodiscard]] std::span<const CoveringTriangle> triangles() const {
+    return {storage.data(), count};
+  }
+};
+
+/// What map_opacity() would say of a single layer, had its map endless cells.
+NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
+  NodeOpacity opacity;
+  opacity.normals = leaf.normals;
+  float variance = 0, greatest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float face = face_area(box, axis);
+    if (!(face > 0.0f)) continue;
+    float hidden = 0, square = 0;
+    for (const CoveringTriangle& t : leaf.triangles()) {
+      const float share = 0.5f * std::fabs(t.edge1.cross(t.edge2)[axis]) / face;
+      hidden += t.opacity * share;
+      square += t.opacity * t.opacity * share;
+    }
+    opacity.axes[axis] = hidden = std::min(hidden, 1.0f);
+    variance += std::max(0.0f, square - hidden * hidden);
+    greatest += hidden * (1.0f - hidden);
+  }
+  if (greatest > 1e-6f) opacity.clumping = std::min(1.0f, variance / greatest);
+  return opacity;
+}
 
 class Prefilter {
  public:
@@ -35,36 +68,56 @@ class Prefilter {
       : object_(built.object), tree_(built.tree), closed_(built.closed), integrals_(integrals) {}
 
   Summary node(std::uint32_t index) {
-    const std::uint32_t count = tree_.nodes[index].child_count;
-    NodeCoverage coverage(tree_.nodes[index].box);
+    const WideNode& wide = tree_.nodes[index];
+    const auto children = tree_.children_of(wide);
+    NodeCoverage coverage(wide.box);
     NormalMoments normals;
-    const auto add = [&](unsigned slot, const Summary& child) {
-      const Box3f& box = tree_.children_of(tree_.nodes[index])[slot].box;
-      coverage.add(child.map, box, child.areas);
-      normals.add(child.normals);
-      set_child_opacity(object_.nodes[index], slot, child.opacity(), box);
+    const auto add_inner = [&](unsigned slot, const Summary& below) {
+      coverage.add(below.map, children[slot].box, below.areas);
+      normals.add(below.normals);
+      set_child_opacity(object_.nodes[index], slot, map_opacity(below.map, below.normals),
+                        children[slot].box);
     };
-    if (tree_.nodes[index].primitives > kTaskPrimitives) {
-      std::array<Summary, DAPPLE_BVH_WIDTH> children;
-      tbb::parallel_for(0u, count, [&](unsigned slot) { children[slot] = child(index, slot); });
-      // Put in by slot, so that the bits don't depend on which task came first.
-      for (unsigned slot = 0; slot < count; ++slot) add(slot, children[slot]);
-    } else {
-      for (unsigned slot = 0; slot < count; ++slot) add(slot, child(index, slot));
+    const bool parallel = wide.primitives > kTaskPrimitives;
+    std::vector<Summary> below(parallel ? wide.child_count : 0);
+    if (parallel) {
+      tbb::parallel_for(0u, wide.child_count, [&](unsigned slot) {
+        if (!children[slot].count) below[slot] = node(children[slot].first);
+      });
+    }
+    // By slot, so that the bits don't depend on which task came first.
+    for (unsigned slot = 0; slot < wide.child_count; ++slot) {
+      if (children[slot].count) {
+        normals.add(add_leaf(object_.nodes[index], slot, children[slot].box, coverage));
+      } else {
+        add_inner(slot, parallel ? below[slot] : node(children[slot].first));
+      }
     }
     return {coverage.map(), normals, coverage.areas()};
   }
 
  private:
-  Summary child(std::uint32_t index, unsigned slot) {
-    const WideChild& child = tree_.children_of(tree_.nodes[index])[slot];
-    return child.count ? leaf(object_.nodes[index], slot, child.box) : node(child.first);
+  /// Sets the leaf's opacity and puts it into its node's coverage; returns its normals.
+  NormalMoments add_leaf(BvhNode& node, unsigned slot, const Box3f& box,
+                         NodeCoverage& coverage) const {
+    const Leaf leaf = load_leaf(node, slot);
+    if (!leaf.textured && is_single_layer(leaf.triangles())) {
+      coverage.add_layer(leaf.triangles(), box, leaf.areas);
+      set_child_opacity(node, slot, layer_opacity(leaf, box), box);
+      return leaf.normals;
+    }
+    CoverageMap map;
+    cover(map, box, leaf.triangles(),
+          [&](const CoveringTriangle& t, float u, float v, float share) {
+            return mean_opacity(t, u, v, share);
+          });
+    coverage.add(map, box, leaf.areas);
+    set_child_opacity(node, slot, map_opacity(map, leaf.normals), box);
+    return leaf.normals;
   }
 
-  Summary leaf(const BvhNode& node, unsigned slot, const Box3f& box) const {
-    std::array<CoveringTriangle, 64> triangles;
-    std::size_t count = 0;
-    Summary summary;
+  Leaf load_leaf(const BvhNode& node, unsigned slot) const {
+    Leaf leaf;
     for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < node.leaf_end[slot]; ++i) {
       const TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
       const unsigned lane = i % 8;
@@ -73,19 +126,16 @@ class Prefilter {
       };
       const CoveringTriangle triangle{at(block.vertex), at(block.edge1), at(block.edge2),
                                       block.opacity[lane], is_closed(node.prim_base + i / 8, lane)};
+      leaf.textured |= triangle.opacity < 0.0f;
       const float opacity = triangle.opacity >= 0.0f
                                 ? triangle.opacity
                                 : mean_opacity(triangle, 1.0f / 3, 1.0f / 3, 1.0f);
       const V3f area = 0.5f * triangle.edge1.cross(triangle.edge2);
-      summary.normals.add(area, opacity);
-      summary.areas.add(area, opacity, triangle.closed);
-      triangles[count++] = triangle;
+      leaf.normals.add(area, opacity);
+      leaf.areas.add(area, opacity, triangle.closed);
+      leaf.storage[leaf.count++] = triangle;
     }
-    cover(summary.map, box, std::span(triangles.data(), count),
-          [&](const CoveringTriangle& t, float u, float v, float share) {
-            return mean_opacity(t, u, v, share);
-          });
-    return summary;
+    return leaf;
   }
 
   bool is_closed(std::uint32_t block, unsigned lane) const {
@@ -132,7 +182,8 @@ void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
 }
 
 void prefilter(BuiltObject& built, const TextureIntegrals& integrals) {
-  built.object.opacity = Prefilter(built, integrals).node(0).opacity();
+  const Summary all = Prefilter(built, integrals).node(0);
+  built.object.opacity = map_opacity(all.map, all.normals);
 }
 
 }  // namespace dapple
