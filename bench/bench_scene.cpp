@@ -31,6 +31,10 @@ SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, CameraPa
   SceneRays rays;
   rays.camera = make_queues(context, kPixels, 1);
   rays.camera_count = kPixels;
+  std::vector<PixelWork> work;
+  for (uint pixel = 0; pixel < kPixels; ++pixel) work.push_back({pixel, 0});
+  rays.camera.work = context.allocate(work.size() * sizeof(PixelWork));
+  context.write(rays.camera.work, work.data(), work.size() * sizeof(PixelWork));
   camera.slice = {0, static_cast<uint>(kPixels), 0, 1};
   camera_pass(context, rays.camera, camera);
   closest_hit_pass(context, scene, rays.camera, kPixels);

@@ -3,12 +3,14 @@
 #include "random.clh"
 #include "scene.clh"
 
-__kernel void camera_rays(__global Ray* rays, __global SurfacePoint* points, CameraParams params) {
+__kernel void camera_rays(__global const PixelWork* work, __global Ray* rays,
+                          __global SurfacePoint* points, CameraParams params) {
   const uint item = get_global_id(0);
   const SliceParams slice = params.slice;
   if (item >= slice.pixel_count * slice.sample_count) return;
-  const uint crop_pixel = slice.first_pixel + item / slice.sample_count;
-  const uint sample = slice.first_sample + item % slice.sample_count;
+  const PixelWork entry = work[slice.first_work + item / slice.sample_count];
+  const uint crop_pixel = entry.pixel;
+  const uint sample = entry.first_sample + slice.first_sample + item % slice.sample_count;
   const uint column = params.crop_x + crop_pixel % params.crop_width;
   const uint row = params.crop_y + crop_pixel / params.crop_width;
   const uint pixel = row * params.width + column;

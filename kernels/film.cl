@@ -10,9 +10,26 @@ inline void add_to_plane(__global long* film, ResolveParams params, uint p, uint
 
 inline long fixed_point(float value, float scale) { return convert_long_sat_rte(value * scale); }
 
+/* Means of batches, squared and added up; what does not fill a batch is left out. */
+typedef struct Batches {
+  float sum, squares;
+} Batches;
+
+inline void add_to_batch(Batches* batches, uint sample, float value) {
+  batches->sum += value;
+  if ((sample + 1u) % DAPPLE_BATCH) return;
+  const float mean = batches->sum * (1.0f / DAPPLE_BATCH);
+  batches->squares += mean * mean;
+  batches->sum = 0.0f;
+}
+
+inline uint pixel_of(__global const PixelWork* work, ResolveParams params, uint local_pixel) {
+  return work[params.slice.first_work + local_pixel].pixel;
+}
+
 /* Planes: hits, N (3), P (3), Z, camera visits, camera tests. */
-__kernel void resolve_surface(__global const SurfacePoint* points, __global long* film,
-                              ResolveParams params) {
+__kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
+                              __global long* film, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   long hits = 0, visits = 0, tests = 0, depth = 0;
@@ -31,7 +48,7 @@ __kernel void resolve_surface(__global const SurfacePoint* points, __global long
     }
     depth += fixed_point(along, params.depth_scale);
   }
-  const uint pixel = params.slice.first_pixel + local_pixel;
+  const uint pixel = pixel_of(work, params, local_pixel);
   add_to_plane(film, params, 0, pixel, hits);
   for (uint axis = 0; axis < 3; ++axis) {
     add_to_plane(film, params, 1 + axis, pixel, normal[axis]);
@@ -42,20 +59,26 @@ __kernel void resolve_surface(__global const SurfacePoint* points, __global long
   add_to_plane(film, params, 9, pixel, tests);
 }
 
-/* Planes: transmittance over hits, bent normal (3), visits, tests. */
-__kernel void resolve_ao(__global const SurfacePoint* points, __global const uint* slot,
-                         __global const Ray* rays, __global const Occlusion* occlusions,
-                         __global long* film, ResolveParams params) {
+/* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
+   is 0 where samples missed. */
+__kernel void resolve_ao(__global const PixelWork* work, __global const SurfacePoint* points,
+                         __global const uint* slot, __global const Ray* rays,
+                         __global const Occlusion* occlusions, __global long* film,
+                         __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   long sum = 0, visits = 0, tests = 0;
   long bent[3] = {0, 0, 0};
+  Batches batches = {0.0f, 0.0f};
+  const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     const uint sample = local_pixel * params.slice.sample_count + s;
-    if (points[sample].t < 0.0f) continue;
-    for (uint r = 0; r < params.rays; ++r) {
+    const bool missed = points[sample].t < 0.0f;
+    float value = 0.0f;
+    for (uint r = 0; !missed && r < params.rays; ++r) {
       const uint item = slot[sample] * params.rays + r;
       const Occlusion found = occlusions[item];
+      value += (1.0f - found.transmittance) * inverse_rays;
       sum += fixed_point(found.transmittance, params.scale);
       for (uint axis = 0; axis < 3; ++axis) {
         bent[axis] += fixed_point(found.transmittance * rays[item].direction[axis], params.scale);
@@ -63,8 +86,10 @@ __kernel void resolve_ao(__global const SurfacePoint* points, __global const uin
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
+    add_to_batch(&batches, s, value);
   }
-  const uint pixel = params.slice.first_pixel + local_pixel;
+  const uint pixel = pixel_of(work, params, local_pixel);
+  squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
   add_to_plane(film, params, 0, pixel, sum);
   for (uint axis = 0; axis < 3; ++axis) add_to_plane(film, params, 1 + axis, pixel, bent[axis]);
   add_to_plane(film, params, 4, pixel, visits);
@@ -72,26 +97,33 @@ __kernel void resolve_ao(__global const SurfacePoint* points, __global const uin
 }
 
 /* Planes: irradiance at radiance 1, the same unoccluded, visits, tests. */
-__kernel void resolve_light(__global const SurfacePoint* points, __global const uint* slot,
-                            __global const Ray* rays, __global const Occlusion* occlusions,
-                            __global long* film, ResolveParams params) {
+__kernel void resolve_light(__global const PixelWork* work, __global const SurfacePoint* points,
+                            __global const uint* slot, __global const Ray* rays,
+                            __global const Occlusion* occlusions, __global long* film,
+                            __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   long shadowed = 0, unoccluded = 0, visits = 0, tests = 0;
+  Batches batches = {0.0f, 0.0f};
+  const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     const uint sample = local_pixel * params.slice.sample_count + s;
-    if (points[sample].t < 0.0f) continue;
-    for (uint r = 0; r < params.rays; ++r) {
+    const bool missed = points[sample].t < 0.0f;
+    float value = 0.0f;
+    for (uint r = 0; !missed && r < params.rays; ++r) {
       const uint item = slot[sample] * params.rays + r;
       const Occlusion found = occlusions[item];
       const float weight = rays[item].weight;
+      value += weight * found.transmittance * inverse_rays;
       shadowed += fixed_point(weight * found.transmittance, params.scale);
       unoccluded += fixed_point(weight, params.scale);
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
+    add_to_batch(&batches, s, value);
   }
-  const uint pixel = params.slice.first_pixel + local_pixel;
+  const uint pixel = pixel_of(work, params, local_pixel);
+  squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
   add_to_plane(film, params, 0, pixel, shadowed);
   add_to_plane(film, params, 1, pixel, unoccluded);
   add_to_plane(film, params, 2, pixel, visits);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accuracy/box_rays.hpp"
+#include "bvh/node_opacity.hpp"
 #include "dapple/error.hpp"
 #include "dapple/shared/opacity.h"
 
@@ -11,10 +12,6 @@ namespace dapple::bench {
 namespace {
 
 float sum(const V3f& v) { return v.x + v.y + v.z; }
-
-float depth_of(float opacity) {
-  return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
-}
 
 /// Length of `terms`, the ellipsoid's value along a direction, each term >= 0 its part along
 /// an axis. `correlation` bends it away from the axes: SGGX (Heitz et al., "The SGGX
@@ -39,14 +36,6 @@ float depth_with_chord(float depth, Chord chord, float length, const V3f& facing
 }
 
 }  // namespace
-
-float chord_variance(const V3f& facing) {
-  // Mean square by the box's covariogram, the integral over the longest chord of
-  // prod (1 - q_k s); q_k is the share of side k that this chord spans.
-  const V3f q = facing / std::max({facing.x, facing.y, facing.z, 1e-37f});
-  const float e1 = sum(q), e2 = q.x * q.y + q.y * q.z + q.z * q.x, e3 = q.x * q.y * q.z;
-  return std::max(0.0f, 2.0f * e1 * (1.0f - e1 / 2.0f + e2 / 3.0f - e3 / 4.0f) - 1.0f);
-}
 
 float model_depth(const DirectionalModel& model, const NodeOpacity& node, const V3f& direction,
                   float chord) {

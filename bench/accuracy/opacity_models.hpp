@@ -45,8 +45,4 @@ float model_depth(const DirectionalModel& model, const NodeOpacity& node, const 
 /// Throws Error failed when kRendererModel and the renderer's box_depth() differ.
 void check_renderer_model();
 
-/// Variance of box chords along a direction, over their squared mean, [0, 1/2]. Of the box
-/// only its faces' projected areas along the direction matter.
-float chord_variance(const V3f& facing);
-
 }  // namespace dapple::bench

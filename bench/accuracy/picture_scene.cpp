@@ -22,7 +22,7 @@ Scene furnished(const std::string& spec, const RenderOptions& options, View& vie
   return scene;
 }
 
-/// Planes of film sums as reals; their order is that of kernels/film.cl.
+/// Planes of film sums as means over samples; their order is that of kernels/film.cl.
 class Sums {
  public:
   Sums(const TracedPicture& picture, const FilmLayout& layout)
@@ -31,8 +31,8 @@ class Sums {
   [[nodiscard]] std::vector<double> plane(std::uint32_t plane, double scale) const {
     std::vector<double> values(layout_.pixels);
     for (std::uint32_t p = 0; p < layout_.pixels; ++p)
-      values[p] =
-          static_cast<double>(picture_.sums[std::size_t{plane} * layout_.pixels + p]) * scale;
+      values[p] = static_cast<double>(picture_.sums[std::size_t{plane} * layout_.pixels + p]) *
+                  scale / picture_.samples[p];
     return values;
   }
 
@@ -44,10 +44,9 @@ class Sums {
 /// Means over a pixel's samples, 1 for samples that met nothing.
 std::vector<double> ao_values(const Sums& sums, const FilmLayout& layout,
                               const RenderOptions& options) {
-  const double inverse_spp = 1.0 / options.spp;
-  const std::vector<double> covered = sums.plane(0, inverse_spp);
+  const std::vector<double> covered = sums.plane(0, 1.0);
   std::vector<double> values =
-      sums.plane(layout.ao, inverse_spp / (double{layout.unit_scale} * options.ao_rays));
+      sums.plane(layout.ao, 1.0 / (double{layout.unit_scale} * options.ao_rays));
   for (std::size_t p = 0; p < values.size(); ++p) values[p] += 1.0 - covered[p];
   return values;
 }
@@ -110,7 +109,7 @@ Picture PictureScene::render(const RenderOptions& options) {
     picture.largest.push_back(1.0);
   }
   for (std::size_t l = 0; l < lights; ++l) {
-    const double scale = 1.0 / (double{layout.light_scale} * options.spp * options.light_rays);
+    const double scale = 1.0 / (double{layout.light_scale} * options.light_rays);
     const std::vector<double> unoccluded = sums.plane(layout.lights[l] + 1, scale);
     const double largest = *std::max_element(unoccluded.begin(), unoccluded.end());
     picture.largest.push_back(largest);

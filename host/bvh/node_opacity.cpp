@@ -51,7 +51,23 @@ float depth_of(float opacity) {
   return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
 }
 
+float chord_variance(const V3f& facing) {
+  // Mean square by the box's covariogram, the integral over the longest chord of
+  // prod (1 - q_k s); q_k is the share of side k that this chord spans.
+  const V3f q = facing / std::max({facing.x, facing.y, facing.z, 1e-37f});
+  const float e1 = q.x + q.y + q.z, e2 = q.x * q.y + q.y * q.z + q.z * q.x, e3 = q.x * q.y * q.z;
+  return std::max(0.0f, 2.0f * e1 * (1.0f - e1 / 2.0f + e2 / 3.0f - e3 / 4.0f) - 1.0f);
+}
+
 namespace {
+
+/// Of rays that meet chord_depth(), with chords as if gamma distributed.
+float mean_transmittance(float depth, const V3f& facing) {
+  const float counted = chord_depth(depth, 2.0f) / depth - 1.0f;  // of a chord's deviation
+  const float variance = chord_variance(facing) * counted * counted;
+  return variance * depth > 1e-3f ? std::exp(-std::log1p(variance * depth) / variance)
+                                  : std::exp(-depth);
+}
 
 /// Looks at a box of some size from any direction.
 class DirectionalOpacity {
@@ -66,7 +82,7 @@ class DirectionalOpacity {
   struct View {
     float facing;   ///< projected area of the box
     float depth;    ///< depths blended
-    float even;     ///< opacity of that depth
+    float even;     ///< mean opacity of that depth over the chords
     float opacity;  ///< from there to that of the blended areas, by clumping
   };
 
@@ -84,7 +100,7 @@ class DirectionalOpacity {
     View view;
     view.facing = facing.x + facing.y + facing.z;
     view.depth = blend(depths_);
-    view.even = 1.0f - std::exp(-view.depth);
+    view.even = 1.0f - mean_transmittance(view.depth, facing);
     view.opacity = view.even + clumping_ * (std::min(1.0f, blend(axes_)) - view.even);
     return view;
   }

@@ -31,14 +31,18 @@ struct NodeOpacity {
 /// -log(1 - opacity), at most the greatest depth that a node can store.
 float depth_of(float opacity);
 
+/// Variance of a box's chords along a direction over their squared mean, [0, 1/2]. Of the box
+/// only its faces' projected areas along the direction matter.
+float chord_variance(const V3f& facing);
+
 /// Mean opacity that rays along `direction` (any length) meet in a box of `size`. Surfaces
 /// that lie evenly, one behind the other, hide what their depths say; a clump hides its
 /// projected area, which is less between the axes. Clumping goes from one to the other.
 float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction);
 
-/// Factor on the depths along the axes with which box_depth() of dapple/shared/opacity.h,
-/// which knows no clumping, hides the same area as opacity_along() in the mean over all
-/// directions.
+/// Factor on the depths along the axes with which rays that meet box_depth() and chord_depth() of
+/// dapple/shared/opacity.h, which know no clumping, are stopped as opacity_along() says in the
+/// mean over all directions and chords.
 float clumping_factor(const NodeOpacity& opacity, const V3f& size);
 
 }  // namespace dapple

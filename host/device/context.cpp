@@ -133,10 +133,10 @@ void DeviceContext::write(const Buffer& buffer, const void* data, std::size_t by
   });
 }
 
-void DeviceContext::read(const Buffer& buffer, void* data, std::size_t bytes) {
+void DeviceContext::read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
   if (bytes == 0) return;
   in_opencl("reading from the device", [&] {
-    state_->queue.enqueueReadBuffer(buffer.memory()->buffer, CL_TRUE, 0, bytes, data);
+    state_->queue.enqueueReadBuffer(buffer.memory()->buffer, CL_TRUE, offset, bytes, data);
   });
 }
 

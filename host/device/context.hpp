@@ -70,8 +70,8 @@ class DeviceContext {
   Buffer share(const void* data, std::size_t bytes);
   void fill_zero(const Buffer& buffer);
   void write(const Buffer& buffer, const void* data, std::size_t bytes);
-  /// Waits for all launches before it.
-  void read(const Buffer& buffer, void* data, std::size_t bytes);
+  /// Waits for all launches before it. `offset`: bytes into the buffer.
+  void read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset = 0);
 
   /// Compiles a kernel ahead of its first launch.
   void prepare(const KernelName& kernel);

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <set>
+
+#include "wavefront/picture.hpp"
 
 namespace dapple {
 namespace {
@@ -49,16 +52,18 @@ class Sums {
 /// The largest unoccluded irradiance of all lights together, a channel at a time the same.
 class LightPlanes {
  public:
-  LightPlanes(const Sums& sums, const FilmLayout& layout, const RenderOptions& options,
-              const std::vector<Light>& lights)
+  LightPlanes(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
+              const RenderOptions& options, const std::vector<Light>& lights)
       : sums_(sums),
+        samples_(picture.samples),
         layout_(layout),
         lights_(lights),
-        inverse_(1.0 / (double{layout.light_scale} * options.spp * options.light_rays)) {}
+        inverse_(1.0 / (double{layout.light_scale} * options.light_rays)) {}
 
   [[nodiscard]] V3d shadowed(std::uint32_t pixel) const { return sum(pixel, 0); }
   [[nodiscard]] V3d one(std::size_t light, std::uint32_t pixel) const {
-    return V3d(lights_[light].radiance) * (sums_.at(layout_.lights[light], pixel) * inverse_);
+    return V3d(lights_[light].radiance) *
+           (sums_.at(layout_.lights[light], pixel) * inverse_ / samples_[pixel]);
   }
   [[nodiscard]] double largest_unoccluded() const {
     double largest = 0;
@@ -73,11 +78,13 @@ class LightPlanes {
   [[nodiscard]] V3d sum(std::uint32_t pixel, std::uint32_t plane) const {
     V3d value(0.0);
     for (std::size_t l = 0; l < lights_.size(); ++l) {
-      value += V3d(lights_[l].radiance) * (sums_.at(layout_.lights[l] + plane, pixel) * inverse_);
+      value += V3d(lights_[l].radiance) *
+               (sums_.at(layout_.lights[l] + plane, pixel) * inverse_ / samples_[pixel]);
     }
     return value;
   }
   const Sums& sums_;
+  const std::vector<std::uint32_t>& samples_;
   const FilmLayout& layout_;
   const std::vector<Light>& lights_;
   double inverse_;
@@ -124,10 +131,10 @@ double per_ray(double sum, std::uint64_t rays) {
   return rays ? sum / static_cast<double>(rays) : 0.0;
 }
 
-void count_visits(const Sums& sums, const FilmLayout& layout, const RenderOptions& options,
-                  std::size_t lights, RenderStatistics& s) {
+void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
+                  const RenderOptions& options, std::size_t lights, RenderStatistics& s) {
   const double hits = sums.total(0);
-  s.rays.camera = std::uint64_t{layout.pixels} * static_cast<std::uint64_t>(options.spp);
+  s.rays.camera = std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0});
   s.camera = {per_ray(sums.total(8), s.rays.camera), per_ray(sums.total(9), s.rays.camera)};
   if (options.ao) {
     s.rays.ao = static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.ao_rays);
@@ -152,10 +159,12 @@ FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box
   if (options.ao) {
     ao = plane_count;
     plane_count += kAoPlanes;
+    ++squares;
   }
   for (std::size_t l = 0; l < light_count; ++l) {
     lights.push_back(plane_count);
     plane_count += kLightPlanes;
+    ++squares;
   }
   unit_scale = scale_for(1.0);
   light_scale = scale_for(1024.0 * std::numbers::pi);
@@ -166,29 +175,29 @@ FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box
   depth_scale = scale_for((with_eye.max - with_eye.min).length());
 }
 
-std::vector<Plane> develop(const std::vector<std::int64_t>& raw, const FilmLayout& layout,
+std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layout,
                            const RenderOptions& options, const std::vector<Light>& lights,
                            RenderStatistics& statistics) {
-  const Sums sums(raw, layout.pixels);
-  const double spp = options.spp;
+  const Sums sums(picture.sums, layout.pixels);
+  const auto spp = [&](std::uint32_t p) { return static_cast<double>(picture.samples[p]); };
   const auto hits = [&](std::uint32_t p) { return sums.at(0, p); };
   const auto ao = [&](std::uint32_t p) {
     if (!options.ao) return 1.0;
-    return sums.at(layout.ao, p) / (double{layout.unit_scale} * options.ao_rays * spp) + 1.0 -
-           hits(p) / spp;
+    return sums.at(layout.ao, p) / (double{layout.unit_scale} * options.ao_rays * spp(p)) + 1.0 -
+           hits(p) / spp(p);
   };
-  const LightPlanes light(sums, layout, options, lights);
+  const LightPlanes light(sums, picture, layout, options, lights);
   const double largest = lights.empty() ? 0.0 : light.largest_unoccluded();
 
   Planes planes(layout.pixels);
   // Premultiplied: pixels and parts of pixels that the scene leaves free are 0.
   planes.add3("", "RGB", [&](std::uint32_t p) {
-    const double covered = ao(p) - (1.0 - hits(p) / spp);
+    const double covered = ao(p) - (1.0 - hits(p) / spp(p));
     if (lights.empty()) return V3d(covered);
-    const double over_hits = hits(p) > 0 ? covered * spp / hits(p) : 0.0;
+    const double over_hits = hits(p) > 0 ? covered * spp(p) / hits(p) : 0.0;
     return largest > 0 ? light.shadowed(p) * (over_hits / largest) : V3d(0.0);
   });
-  planes.add("A", [&](std::uint32_t p) { return hits(p) / spp; });
+  planes.add("A", [&](std::uint32_t p) { return hits(p) / spp(p); });
   if (options.ao) {
     planes.add3("ao", "RGB", [&](std::uint32_t p) { return V3d(ao(p)); });
     planes.add3("bent", "XYZ", [&](std::uint32_t p) {
@@ -213,8 +222,13 @@ std::vector<Plane> develop(const std::vector<std::int64_t>& raw, const FilmLayou
     return hits(p) > 0 ? sums.at(7, p) / (double{layout.depth_scale} * hits(p))
                        : std::numeric_limits<double>::infinity();
   });
-  planes.add("samples", [&](std::uint32_t) { return spp; });
-  count_visits(sums, layout, options, lights.size(), statistics);
+  planes.add("samples", spp);
+  for (std::size_t pass = 0; pass < picture.errors.size(); ++pass) {
+    const bool is_ao = options.ao && pass == 0;
+    planes.add("error." + (is_ao ? "ao" : layers[pass - (options.ao ? 1 : 0)]),
+               [&](std::uint32_t p) { return picture.errors[pass][p]; });
+  }
+  count_visits(sums, picture, layout, options, lights.size(), statistics);
   return planes.take();
 }
 

@@ -22,6 +22,7 @@ struct FilmLayout {
   std::uint32_t plane_count = 0;
   std::uint32_t ao = 0;               ///< first AO plane
   std::vector<std::uint32_t> lights;  ///< first plane of each light
+  std::uint32_t squares = 0;          ///< planes of squares: one of AO, then one a light
   float unit_scale = 0;               ///< of values up to 1
   float light_scale = 0;              ///< of irradiance at radiance 1, up to 1024 pi
   float position_scale = 0;
@@ -29,14 +30,23 @@ struct FilmLayout {
 
   FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
              std::size_t light_count);
-  [[nodiscard]] std::size_t bytes() const {
+  /// Plane of squares of a light; AO's is 0.
+  [[nodiscard]] std::uint32_t light_squares(std::size_t light) const {
+    return static_cast<std::uint32_t>(light) + (ao ? 1u : 0u);
+  }
+  [[nodiscard]] std::size_t sum_bytes() const {
     return std::size_t{pixels} * plane_count * sizeof(std::int64_t);
+  }
+  [[nodiscard]] std::size_t square_bytes() const {
+    return std::size_t{pixels} * squares * sizeof(float);
   }
 };
 
+struct TracedPicture;
+
 /// Means of the sums as the planes an EXR gets (channel names as the README lists them);
 /// also the visit counts, into `statistics`.
-std::vector<Plane> develop(const std::vector<std::int64_t>& sums, const FilmLayout& layout,
+std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layout,
                            const RenderOptions& options, const std::vector<Light>& lights,
                            RenderStatistics& statistics);
 

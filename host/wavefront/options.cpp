@@ -34,10 +34,13 @@ void check_crop(const RenderOptions& options) {
 }
 
 /// Sums are kept in 64-bit fixed point with 24 bits to spare for samples.
-void check_sample_product(const char* flag, int spp, int rays) {
+void check_sample_product(const char* flag, const RenderOptions& options, int rays) {
+  const bool adaptive = options.target_error > 0;
+  const int spp = adaptive ? options.max_spp : options.spp;
   if (static_cast<double>(spp) * rays <= (1 << 24)) return;
-  throw Error(ErrorKind::usage, fmt::format("--spp {} times {} {} is more than {} rays a pixel",
-                                            spp, flag, rays, 1 << 24));
+  throw Error(ErrorKind::usage,
+              fmt::format("{} {} times {} {} is more than {} rays a pixel",
+                          adaptive ? "--max-spp" : "--spp", spp, flag, rays, 1 << 24));
 }
 
 }  // namespace
@@ -46,6 +49,12 @@ void validate(const RenderOptions& options) {
   check_range("--width", options.width, 1, 65535);
   check_range("--height", options.height, 1, 65535);
   check_range("--spp", options.spp, 1, 1 << 20);
+  check_range("--target-error", options.target_error, 0, 1);
+  check_range("--max-spp", options.max_spp, 1, 1 << 20);
+  if (options.target_error > 0 && options.max_spp < options.spp) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--max-spp {} is less than --spp {}", options.max_spp, options.spp));
+  }
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);
   check_range("--footprint", options.footprint, 0, 1e6);
@@ -61,8 +70,8 @@ void validate(const RenderOptions& options) {
     check_finite("--up", options.look->up);
   }
   check_crop(options);
-  check_sample_product("--ao-rays", options.spp, options.ao_rays);
-  check_sample_product("--light-rays", options.spp, options.light_rays);
+  check_sample_product("--ao-rays", options, options.ao_rays);
+  check_sample_product("--light-rays", options, options.light_rays);
 }
 
 }  // namespace dapple

@@ -42,8 +42,8 @@ const KernelName kResolveLight{"resolve_light", "film", {}};
 }  // namespace
 
 std::size_t Queues::bytes() const {
-  return rays.bytes() + points.bytes() + slots.bytes() + active.bytes() + active_count.bytes() +
-         occlusions.bytes();
+  return work.bytes() + rays.bytes() + points.bytes() + slots.bytes() + active.bytes() +
+         active_count.bytes() + occlusions.bytes();
 }
 
 Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample) {
@@ -59,7 +59,8 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
 
 void camera_pass(DeviceContext& context, const Queues& queues, const CameraParams& params) {
   const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
-  context.launch(kCameraRays, "camera rays", samples, {queues.rays, queues.points, params});
+  context.launch(kCameraRays, "camera rays", samples,
+                 {queues.work, queues.rays, queues.points, params});
 }
 
 void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -107,22 +108,24 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                  group);
 }
 
-void resolve_surface_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                           const ResolveParams& params) {
   context.launch(kResolveSurface, "resolve", params.slice.pixel_count,
-                 {queues.points, sums, params});
+                 {queues.work, queues.points, film.sums, params});
 }
 
-void resolve_ao_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                      const ResolveParams& params) {
   context.launch(kResolveAo, "resolve", params.slice.pixel_count,
-                 {queues.points, queues.slots, queues.rays, queues.occlusions, sums, params});
+                 {queues.work, queues.points, queues.slots, queues.rays, queues.occlusions,
+                  film.sums, film.squares, params});
 }
 
-void resolve_light_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params) {
   context.launch(kResolveLight, "resolve", params.slice.pixel_count,
-                 {queues.points, queues.slots, queues.rays, queues.occlusions, sums, params});
+                 {queues.work, queues.points, queues.slots, queues.rays, queues.occlusions,
+                  film.sums, film.squares, params});
 }
 
 void prepare_kernels(DeviceContext& context, const RenderOptions& options) {

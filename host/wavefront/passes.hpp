@@ -10,6 +10,7 @@ namespace dapple {
 
 /// Queues for one slice; sized once, reused by every slice.
 struct Queues {
+  Buffer work;          ///< PixelWork of camera_pass(), allocated by who makes pictures
   Buffer rays;          ///< Ray
   Buffer points;        ///< SurfacePoint, one a camera sample
   Buffer slots;         ///< uint a sample: its place among those that hit
@@ -20,6 +21,12 @@ struct Queues {
 };
 
 Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample);
+
+/// What passes resolve into.
+struct FilmBuffers {
+  Buffer sums;     ///< 64-bit fixed point planes as FilmLayout says
+  Buffer squares;  ///< float planes, FilmLayout::squares: means of batches, squared and summed
+};
 
 /// Camera rays of the slice into `rays` and `points`.
 void camera_pass(DeviceContext& context, const Queues& queues, const CameraParams& params);
@@ -41,11 +48,11 @@ void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Qu
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params);
 
-void resolve_surface_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                           const ResolveParams& params);
-void resolve_ao_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                      const ResolveParams& params);
-void resolve_light_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params);
 
 /// Compiles every kernel that `options` will need.

@@ -1,9 +1,12 @@
 #include "wavefront/picture.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "wavefront/passes.hpp"
+#include "wavefront/pixel_error.hpp"
+#include "wavefront/sample_plan.hpp"
 
 namespace dapple {
 namespace {
@@ -22,43 +25,119 @@ class PictureTracer {
         options_(options),
         layout_(layout),
         light_count_(options.light ? light_count : 0),
+        width_(view.crop.width()),
         camera_(camera_params(view, options)) {
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
-    const std::size_t samples =
-        std::max<std::size_t>(1, (device.info().kind == "GPU" ? kGpuSlice : kCpuSlice) / rays);
-    const auto spp = static_cast<std::size_t>(options.spp);
-    slice_samples_ = static_cast<uint>(std::min(spp, samples));
-    slice_pixels_ = static_cast<uint>(std::max<std::size_t>(1, samples / slice_samples_));
-    slice_pixels_ = std::min(slice_pixels_, layout.pixels);
-    queues_ = make_queues(context_, std::size_t{slice_pixels_} * slice_samples_, rays);
-    sums_ = context_.allocate(layout.bytes());
-    context_.fill_zero(sums_);
+    const std::size_t samples = (device.info().kind == "GPU" ? kGpuSlice : kCpuSlice) / rays;
+    slice_samples_ = std::max(DAPPLE_BATCH, static_cast<uint>(samples));
+    queues_ = make_queues(context_, slice_samples_, rays);
+    queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
+    film_.sums = context_.allocate(layout.sum_bytes());
+    film_.squares = context_.allocate(layout.square_bytes());
+    context_.fill_zero(film_.sums);
+    context_.fill_zero(film_.squares);
     resolve_ = resolve_params(view);
   }
 
   TracedPicture trace(const Progress& progress) {
-    const auto spp = static_cast<uint>(options_.spp);
-    const double total = static_cast<double>(layout_.pixels) * spp;
-    double done = 0;
-    for (uint pixel = 0; pixel < layout_.pixels; pixel += slice_pixels_) {
-      for (uint sample = 0; sample < spp; sample += slice_samples_) {
-        const SliceParams slice{pixel, std::min(slice_pixels_, layout_.pixels - pixel), sample,
-                                std::min(slice_samples_, spp - sample)};
-        trace_slice(slice);
-        done += static_cast<double>(slice.pixel_count) * slice.sample_count;
-        if (progress) progress(done / total);
-      }
+    SamplePlan plan(layout_.pixels, options_);
+    trace_group(plan.first(), plan.is_adaptive() ? Progress{} : progress);
+    while (plan.is_adaptive()) {
+      const std::vector<WorkGroup> groups = plan.next(variances(plan.samples()));
+      if (progress) progress(plan.fraction_done());
+      if (groups.empty()) break;
+      for (const WorkGroup& group : groups) trace_group(group, {});
     }
     TracedPicture picture;
-    picture.sums.resize(layout_.bytes() / sizeof(std::int64_t));
-    context_.read(sums_, picture.sums.data(), layout_.bytes());
+    picture.samples = plan.samples();
+    if (plan.is_adaptive()) picture.errors = standard_errors(plan.samples());
+    picture.sums.resize(layout_.sum_bytes() / sizeof(std::int64_t));
+    context_.read(film_.sums, picture.sums.data(), layout_.sum_bytes());
     context_.finish();
     picture.queue_bytes = queues_.bytes();
     return picture;
   }
 
  private:
+  void trace_group(const WorkGroup& group, const Progress& progress) {
+    context_.write(queues_.work, group.work.data(), group.work.size() * sizeof(PixelWork));
+    // Whole batches, unless all samples fit.
+    const uint samples = group.samples <= slice_samples_
+                             ? group.samples
+                             : slice_samples_ / DAPPLE_BATCH * DAPPLE_BATCH;
+    const uint pixels = slice_samples_ / samples, count = static_cast<uint>(group.work.size());
+    const double total = static_cast<double>(count) * group.samples;
+    double done = 0;
+    for (uint first = 0; first < count; first += pixels) {
+      for (uint sample = 0; sample < group.samples; sample += samples) {
+        const SliceParams slice{first, std::min(pixels, count - first), sample,
+                                std::min(samples, group.samples - sample)};
+        trace_slice(slice);
+        done += static_cast<double>(slice.pixel_count) * slice.sample_count;
+        if (progress) progress(done / total);
+      }
+    }
+  }
+
+  /// Sums of one plane as reals.
+  std::vector<double> read_plane(uint plane, double scale) {
+    std::vector<std::int64_t> sums(layout_.pixels);
+    const std::size_t bytes = sums.size() * sizeof(std::int64_t);
+    context_.read(film_.sums, sums.data(), bytes, plane * bytes);
+    std::vector<double> values(sums.size());
+    for (std::size_t p = 0; p < sums.size(); ++p) values[p] = static_cast<double>(sums[p]) / scale;
+    return values;
+  }
+
+  /// Moments of a pass whose samples' values, divided by `divisor`, add up to `values`.
+  BatchMoments moments(const std::vector<double>& values, uint squares_plane, double divisor,
+                       const std::vector<std::uint32_t>& samples) {
+    BatchMoments moments;
+    moments.mean.resize(layout_.pixels);
+    moments.squares.resize(layout_.pixels);
+    const std::size_t bytes = layout_.pixels * sizeof(float);
+    context_.read(film_.squares, moments.squares.data(), bytes, squares_plane * bytes);
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      moments.mean[p] = static_cast<float>(values[p] / (samples[p] * divisor));
+      moments.squares[p] = static_cast<float>(moments.squares[p] / (divisor * divisor));
+    }
+    return moments;
+  }
+
+  /// batch_variances() of every pass, lights relative to their largest unoccluded irradiance.
+  std::vector<std::vector<float>> variances(const std::vector<std::uint32_t>& samples) {
+    std::vector<std::vector<float>> out;
+    if (options_.ao) {
+      const std::vector<double> hits = read_plane(0, 1.0);
+      std::vector<double> ao =  // from here on, occlusion
+          read_plane(layout_.ao, double{layout_.unit_scale} * options_.ao_rays);
+      std::transform(hits.begin(), hits.end(), ao.begin(), ao.begin(), std::minus<>());
+      out.push_back(batch_variances(moments(ao, 0, 1.0, samples), samples, width_));
+    }
+    const double scale = double{layout_.light_scale} * options_.light_rays;
+    for (std::size_t light = 0; light < light_count_; ++light) {
+      const std::vector<double> unoccluded = read_plane(layout_.lights[light] + 1, scale);
+      double largest = 0;
+      for (std::size_t p = 0; p < unoccluded.size(); ++p)
+        largest = std::max(largest, unoccluded[p] / samples[p]);
+      out.push_back(batch_variances(
+          moments(read_plane(layout_.lights[light], scale), layout_.light_squares(light),
+                  largest > 0 ? largest : 1.0, samples),
+          samples, width_));
+    }
+    return out;
+  }
+
+  std::vector<std::vector<float>> standard_errors(const std::vector<std::uint32_t>& samples) {
+    std::vector<std::vector<float>> errors = variances(samples);
+    for (std::vector<float>& pass : errors) {
+      for (std::size_t p = 0; p < pass.size(); ++p)
+        pass[p] = std::sqrt(pass[p] * DAPPLE_BATCH / static_cast<float>(samples[p]));
+    }
+    return errors;
+  }
+
   ResolveParams resolve_params(const View& view) const {
     ResolveParams params{};
     params.film_pixels = layout_.pixels;
@@ -80,7 +159,7 @@ class PictureTracer {
     closest_hit_pass(context_, scene_, queues_, samples);
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
-    resolve_surface_pass(context_, queues_, sums_, resolve_);
+    resolve_surface_pass(context_, queues_, film_, resolve_);
     const std::uint32_t hits = compact_pass(context_, queues_, samples);
     if (hits == 0) return;
     if (options_.ao) trace_ao(hits);
@@ -104,9 +183,10 @@ class PictureTracer {
     }
     occlusion_pass(context_, queues_, scene_, "ao occlusion", options_.estimator, params);
     resolve_.plane = layout_.ao;
+    resolve_.squares = 0;
     resolve_.rays = ao.rays;
     resolve_.scale = layout_.unit_scale;
-    resolve_ao_pass(context_, queues_, sums_, resolve_);
+    resolve_ao_pass(context_, queues_, film_, resolve_);
   }
 
   void trace_light(uint light, std::uint32_t hits) {
@@ -121,9 +201,10 @@ class PictureTracer {
     occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator,
                    occlusion_params(hits, params.rays));
     resolve_.plane = layout_.lights[light];
+    resolve_.squares = layout_.light_squares(light);
     resolve_.rays = params.rays;
     resolve_.scale = layout_.light_scale;
-    resolve_light_pass(context_, queues_, sums_, resolve_);
+    resolve_light_pass(context_, queues_, film_, resolve_);
   }
 
   [[nodiscard]] OcclusionParams occlusion_params(uint points, uint rays_per_point) const {
@@ -140,11 +221,12 @@ class PictureTracer {
   const RenderOptions& options_;
   const FilmLayout& layout_;
   std::size_t light_count_;
+  int width_;  ///< pixels of the crop
   CameraParams camera_;
   ResolveParams resolve_{};
-  uint slice_pixels_ = 1, slice_samples_ = 1;
+  uint slice_samples_ = 1;  ///< of all pixels together
   Queues queues_;
-  Buffer sums_;
+  FilmBuffers film_;
 };
 
 }  // namespace

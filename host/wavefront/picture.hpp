@@ -8,7 +8,11 @@
 namespace dapple {
 
 struct TracedPicture {
-  std::vector<std::int64_t> sums;  ///< as FilmLayout says
+  std::vector<std::int64_t> sums;      ///< as FilmLayout says
+  std::vector<std::uint32_t> samples;  ///< of each pixel
+  /// With a target error: standard errors by pass (AO, then the lights, these relative to their
+  /// largest unoccluded irradiance) and pixel.
+  std::vector<std::vector<float>> errors;
   std::size_t queue_bytes = 0;
 };
 

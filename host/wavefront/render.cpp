@@ -65,6 +65,10 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   };
   set("estimator", name_of(options.estimator));
   set("footprint", options.footprint);
+  if (options.target_error > 0) {
+    set("target_error", options.target_error);
+    set("max_spp", options.max_spp);
+  }
   set("ao_rays", options.ao_rays);
   set("light_rays", options.light_rays);
   set("ao_distance", options.ao_distance);
@@ -115,14 +119,14 @@ RenderResult render(Scene scene, const RenderOptions& options, const Progress& p
       trace_picture(device, on_device, view, options, layout, lights.size(), progress);
   statistics.seconds.trace = tracing.seconds();
   statistics.pass_seconds = device.context().pass_seconds();
-  statistics.bytes.film = layout.bytes();
+  statistics.bytes.film = layout.sum_bytes() + layout.square_bytes();
   statistics.bytes.queues = picture.queue_bytes;
 
   Film& film = result.film;
   film.width = view.width;
   film.height = view.height;
   film.data_window = view.crop;
-  film.planes = develop(picture.sums, layout, options, lights, statistics);
+  film.planes = develop(picture, layout, options, lights, statistics);
   film.metadata = metadata(scene, view, options, device.info());
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   statistics.seconds.total = total.seconds();

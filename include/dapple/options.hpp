@@ -34,9 +34,12 @@ struct LookAt {
 };
 
 struct RenderOptions {
-  int width = 960;     ///< pixels, [1, 65535]
-  int height = 540;    ///< pixels, [1, 65535]
-  int spp = 16;        ///< primary samples a pixel, [1, 2^20]
+  int width = 960;   ///< pixels, [1, 65535]
+  int height = 540;  ///< pixels, [1, 65535]
+  int spp = 16;      ///< primary samples a pixel, [1, 2^20]; with target_error the least
+  float target_error =
+      0;               ///< sample each pixel until its standard error is below, [0, 1]; 0: don't
+  int max_spp = 4096;  ///< with target_error the most, [spp, 2^20]
   int ao_rays = 1;     ///< AO rays a primary sample, [1, 4096]
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
   Estimator estimator = Estimator::prefiltered;

@@ -49,8 +49,9 @@
   MEMBER(OcclusionParams, scene) MEMBER(OcclusionParams, ray_count)                          \
   MEMBER(OcclusionParams, footprint) MEMBER(OcclusionParams, inverse_distance)               \
   MEMBER(OcclusionParams, falloff) MEMBER(OcclusionParams, rays_per_point)                   \
+  STRUCT(PixelWork) MEMBER(PixelWork, pixel) MEMBER(PixelWork, first_sample)                 \
   STRUCT(SliceParams)                                                                        \
-  MEMBER(SliceParams, first_pixel) MEMBER(SliceParams, pixel_count)                          \
+  MEMBER(SliceParams, first_work) MEMBER(SliceParams, pixel_count)                          \
   MEMBER(SliceParams, first_sample) MEMBER(SliceParams, sample_count)                        \
   STRUCT(CameraParams)                                                                       \
   MEMBER(CameraParams, slice) MEMBER(CameraParams, to_world)                                 \
@@ -67,7 +68,8 @@
   MEMBER(LightParams, inverse_count) MEMBER(LightParams, light) MEMBER(LightParams, seed)    \
   STRUCT(ResolveParams)                                                                      \
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
-  MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, scale)      \
+  MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \
+  MEMBER(ResolveParams, scale)                                                               \
   MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
   MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)
 

@@ -23,10 +23,20 @@ typedef struct OcclusionParams {
   uint rays_per_point;        /* packets: rays in a row that share their origin */
 } OcclusionParams;
 
-/* A slice: `pixel_count` pixels of the crop from `first_pixel`, row-major, and of each
-   the samples from first_sample; item = pixel * sample_count + sample. */
+/* Samples of a pixel whose mean counts once in the sum of squares that errors come from. */
+#define DAPPLE_BATCH 8u
+
+/* A pixel of the crop (row-major) that is to be sampled, and how many samples it has. */
+typedef struct PixelWork {
+  uint pixel;
+  uint first_sample;
+} PixelWork;
+
+/* A slice: `pixel_count` entries of the work list from `first_work`, and of each the samples
+   from first_sample on, counted from its own; item = entry * sample_count + sample. Slices
+   that don't end their pixels' samples are whole batches. */
 typedef struct SliceParams {
-  uint first_pixel;
+  uint first_work;
   uint pixel_count;
   uint first_sample;
   uint sample_count;
@@ -69,6 +79,7 @@ typedef struct ResolveParams {
   uint film_pixels;     /* pixels of a plane */
   uint plane;           /* first plane to add to */
   uint rays;            /* rays a sample */
+  uint squares;         /* plane of squares to add to */
   float scale;          /* of unit-range values */
   float position_scale;
   float depth_scale;
