@@ -99,7 +99,7 @@ inline Nearest find_closest(Scene scene, SceneParams where, Ray ray) {
       if (inner_mask >> slot & 1u) {
         next = node->child_base + popcount(inner_mask & ((1u << slot) - 1u));
       } else if (in_top) {
-        next = DAPPLE_INSTANCE_ENTRY | (node->prim_base + node->leaf_end[slot] - 1u);
+        next = DAPPLE_INSTANCE_ENTRY | (node->prim_base + bvh_leaf_end(node->leaf_end, slot) - 1u);
       } else {
         bits |= leaf_bits(node, slot);
         continue;

@@ -115,7 +115,8 @@ class Walk {
     Box3f box;
     std::uint32_t inner = 0;
     for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
-      const std::uint32_t begin = bvh_leaf_begin(n.leaf_end, slot), end = n.leaf_end[slot];
+      const std::uint32_t begin = bvh_leaf_begin(n.leaf_end, slot),
+                          end = bvh_leaf_end(n.leaf_end, slot);
       EXPECT_LE(begin, end);
       const bool is_inner = n.inner_mask >> slot & 1;
       if (n.lower[0][slot] > n.upper[0][slot]) {
@@ -158,7 +159,7 @@ class Walk {
   }
 
   void check_unused_lanes(const BvhNode& n) const {
-    const std::uint32_t used = n.leaf_end[DAPPLE_BVH_WIDTH - 1];
+    const std::uint32_t used = bvh_leaf_end(n.leaf_end, DAPPLE_BVH_WIDTH - 1);
     EXPECT_LE(used, 64u);
     for (std::uint32_t i = used; i % 8; ++i) {
       const TriangleBlock& block = object_.blocks[n.prim_base + i / 8];
@@ -173,7 +174,7 @@ class Walk {
     std::uint32_t next = 0;
     for (const BvhNode& n : object_.nodes) {
       EXPECT_EQ(n.prim_base, next);
-      next += (n.leaf_end[DAPPLE_BVH_WIDTH - 1] + 7u) / 8u;
+      next += (bvh_leaf_end(n.leaf_end, DAPPLE_BVH_WIDTH - 1) + 7u) / 8u;
     }
     return next;
   }
@@ -319,8 +320,8 @@ Box3f walk_top(const SceneBvh& bvh, const Mesh& mesh, std::uint32_t index, std::
     if (n.inner_mask >> slot & 1) {
       child = walk_top(bvh, mesh, n.child_base + inner++, met);
     } else {
-      EXPECT_EQ(n.leaf_end[slot], bvh_leaf_begin(n.leaf_end, slot) + 1);
-      const std::uint32_t instance = n.prim_base + n.leaf_end[slot] - 1u;
+      EXPECT_EQ(bvh_leaf_end(n.leaf_end, slot), bvh_leaf_begin(n.leaf_end, slot) + 1);
+      const std::uint32_t instance = n.prim_base + bvh_leaf_end(n.leaf_end, slot) - 1u;
       ++met.at(instance);
       const float* m = bvh.instances[instance].to_world;
       for (const V3f& p : mesh.positions) {

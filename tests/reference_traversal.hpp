@@ -56,7 +56,7 @@ class ReferenceTraversal {
   struct Crossing {
     bool hit = false;
     float enter = 0, leave = 0;
-    V3f size;
+    V3f size, centre;  ///< of the box; the centre from the ray's origin
   };
 
   /// The slab test of Kay and Kajiya ("Ray Tracing Complex Scenes", 1986) for one child, its
@@ -77,6 +77,7 @@ class ReferenceTraversal {
       crossing.enter = std::max(crossing.enter, std::min(a, b));
       crossing.leave = std::min(crossing.leave, std::max(a, b));
       crossing.size[axis] = upper - lower;
+      crossing.centre[axis] = offset + 0.5f * (lower + upper);
     }
     crossing.leave *= 1.0000005f;
     crossing.hit = crossing.enter <= crossing.leave;
@@ -95,7 +96,7 @@ class ReferenceTraversal {
     return facing.x + facing.y + facing.z < footprint && c.enter > 0 && c.leave < t_max * 0.999999f;
   }
 
-  /// box_depth() and chord_depth() of opacity.h.
+  /// box_depth(), chord_depth() and centre_weight() of opacity.h.
   static float depth(const BvhNode& node, unsigned slot, const Crossing& c, const V3f& facing,
                      const V3f& direction) {
     const float sum = facing.x + facing.y + facing.z;
@@ -111,9 +112,23 @@ class ReferenceTraversal {
       correlations[axis] = std::copysign(1.0f, direction[axis] * direction[next]) *
                            correlation_decode(node.correlation[axis][slot]);
     }
-    return chord_depth(box_depth(depths[0], depths[1], depths[2], correlations[0], correlations[1],
+    const float weight =
+        thin ? 1.0f
+             : centre_weight(bvh_concentration(node.leaf_end, slot), off_centre(c, direction));
+    return weight *
+           chord_depth(box_depth(depths[0], depths[1], depths[2], correlations[0], correlations[1],
                                  correlations[2], facing.x, facing.y, facing.z),
                        chord);
+  }
+
+  static float off_centre(const Crossing& c, const V3f& direction) {
+    float sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float away = (0.5f * (c.enter + c.leave) * direction[axis] - c.centre[axis]) /
+                         (0.5f * c.size[axis] + 1e-37f);
+      sum += away * away;
+    }
+    return sum;
   }
 
   /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
@@ -161,7 +176,7 @@ class ReferenceTraversal {
         for (unsigned before = 0; before < slot; ++before) child += node.inner_mask >> before & 1;
         visit(walk, space, child, in_top);
       } else if (in_top) {
-        enter(walk, space, bvh_.instances[node.prim_base + node.leaf_end[slot] - 1u]);
+        enter(walk, space, bvh_.instances[node.prim_base + bvh_leaf_end(node.leaf_end, slot) - 1u]);
       }
     }
   }
@@ -170,7 +185,8 @@ class ReferenceTraversal {
                    const std::array<bool, DAPPLE_BVH_WIDTH>& open) const {
     for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
       if (!open[slot] || (node.inner_mask >> slot & 1)) continue;
-      for (uint i = bvh_leaf_begin(node.leaf_end, slot); i < node.leaf_end[slot]; ++i) {
+      for (uint i = bvh_leaf_begin(node.leaf_end, slot); i < bvh_leaf_end(node.leaf_end, slot);
+           ++i) {
         const TriangleBlock& block = bvh_.blocks[node.prim_base + i / 8];
         const float opacity = block.opacity[i % 8];
         if (opacity < 0) std::abort();  // textured: not for this reference

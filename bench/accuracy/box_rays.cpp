@@ -41,7 +41,9 @@ BoxRay ray_through(const Box3f& box, const V3f& direction, oracle::Random& rando
   const float mean_length = size.x * size.y * size.z / (facing.x + facing.y + facing.z);
   // All of the subtree lies inside the box, so rays may start before it.
   const V3f origin = entry - direction * (0.01f * size.length());
-  return {{origin, direction}, length_inside(box, entry, direction) / mean_length};
+  const float length = length_inside(box, entry, direction);
+  const V3f away = (entry + direction * (0.5f * length) - box.center()) / (size * 0.5f);
+  return {{origin, direction}, length / mean_length, away.length2()};
 }
 
 SampledOpacity sample_opacity(const oracle::EmbreeOracle& subtree, const Box3f& box,

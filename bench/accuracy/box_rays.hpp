@@ -10,10 +10,12 @@
 namespace dapple::bench {
 
 /// Through a box along a unit direction; `chord` is the length inside the box over the mean
-/// length of all such rays, volume / projected area.
+/// length of all such rays, volume / projected area; `off_centre` is the squared distance of the
+/// middle of its way inside from the box's centre, in half sizes.
 struct BoxRay {
   oracle::Segment segment;
   float chord;
+  float off_centre;
 };
 
 /// Projected areas of the box's faces along `direction`, axis by axis, square metres.

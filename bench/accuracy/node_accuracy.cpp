@@ -38,6 +38,7 @@ constexpr Model kModels[] = {
     {"renderer", kRendererModel},
     {"no chord", {Blend::depths, Chord::none, true}},
     {"chord, mean kept", {Blend::depths, Chord::mean_kept, true}},
+    {"no centre", {Blend::depths, Chord::scaled, true, false}},
     {"no matrix", {Blend::depths, Chord::scaled, false}},
     {"linear", {Blend::linear, Chord::scaled}},
     {"areas", {Blend::areas, Chord::scaled, true}},
@@ -85,7 +86,8 @@ double model_opacity(const Model& model, const JudgedNode& node, const V3f& dire
   if (model.opacity) known.opacity = node.*model.opacity;
   double opacity = 0;
   for (const BoxRay& ray : rays)
-    opacity += 1 - std::exp(-model_depth(model.directional, known, direction, ray.chord));
+    opacity +=
+        1 - std::exp(-model_depth(model.directional, known, direction, ray.chord, ray.off_centre));
   return opacity / static_cast<double>(rays.size());
 }
 
@@ -162,6 +164,7 @@ class NodeJudge {
     JudgedNode judged;
     judged.box = child_box(node, subtree.slot);
     judged.stored.size = judged.box.size();
+    judged.stored.concentration = bvh_concentration(node.leaf_end, subtree.slot);
     judged.rectangles = composition.rectangles;
     for (int axis = 0; axis < 3; ++axis) {
       judged.stored.opacity[axis] = 1.0f - std::exp(-depth_decode(node.depth[axis][subtree.slot]));

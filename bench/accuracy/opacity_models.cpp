@@ -38,14 +38,15 @@ float depth_with_chord(float depth, Chord chord, float length, const V3f& facing
 }  // namespace
 
 float model_depth(const DirectionalModel& model, const NodeOpacity& node, const V3f& direction,
-                  float chord) {
+                  float chord, float off_centre) {
   const V3f faces = facing_areas(node.size, direction);
   const float inverse = 1.0f / (sum(faces) + 1e-37f);
   const V3f area = node.opacity * faces;
   const V3f correlation = model.matrix ? node.correlation : V3f(0.0f);
   const float silhouette = ellipsoid(area, direction, correlation) * inverse;
+  const float weight = model.centred ? centre_weight(node.concentration, off_centre) : 1.0f;
   const auto with_chord = [&](float depth) {
-    return depth_with_chord(depth, model.chord, chord, faces);
+    return weight * depth_with_chord(depth, model.chord, chord, faces);
   };
   if (model.blend == Blend::linear) return with_chord(depth_of(sum(area) * inverse));
   if (model.blend == Blend::areas) return with_chord(depth_of(silhouette));
@@ -61,7 +62,7 @@ void check_renderer_model() {
     for (const float y : {0.02f, 0.3f, 0.7f, 0.99f}) {
       const NodeOpacity node{V3f(1, 2, 3), V3f(x, y, 0.6f), correlation};
       const V3f faces = facing_areas(node.size, direction);
-      const float here = model_depth(kRendererModel, node, direction, 1.0f);
+      const float here = model_depth(kRendererModel, node, direction, 1.0f, 0.0f);
       const float there = box_depth(depth_of(x), depth_of(y), depth_of(0.6f), -correlation.x,
                                     -correlation.y, correlation.z, faces.x, faces.y, faces.z);
       if (std::fabs(here - there) > 1e-4f * (1.0f + there))

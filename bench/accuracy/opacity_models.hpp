@@ -8,9 +8,10 @@ namespace dapple::bench {
 
 /// What a model may know of a node.
 struct NodeOpacity {
-  V3f size;               ///< of the grown box, metres
-  V3f opacity;            ///< along each axis, [0,1]
-  V3f correlation{0.0f};  ///< of the normals' components xy, yz, zx, [-1,1]
+  V3f size;                 ///< of the grown box, metres
+  V3f opacity;              ///< along each axis, [0,1]
+  V3f correlation{0.0f};    ///< of the normals' components xy, yz, zx, [-1,1]
+  float concentration = 0;  ///< around the box's centre, [0,1]
 };
 
 /// How opacities along the axes become one along a direction.
@@ -32,15 +33,16 @@ struct DirectionalModel {
   Blend blend;
   Chord chord;
   bool matrix = false;  ///< ellipsoids with off-diagonal terms
+  bool centred = true;  ///< rays that pass the box's centre meet more
 };
 
 /// kernels/footprint.clh's child_depths(), one lane.
 inline constexpr DirectionalModel kRendererModel{Blend::depths, Chord::scaled, true};
 
 /// Optical depth of the node along a unit direction for a ray whose chord is `chord` times
-/// the mean chord.
+/// the mean chord and that passes `off_centre`, as in BoxRay.
 float model_depth(const DirectionalModel& model, const NodeOpacity& node, const V3f& direction,
-                  float chord);
+                  float chord, float off_centre);
 
 /// Throws Error failed when kRendererModel and the renderer's box_depth() differ.
 void check_renderer_model();

@@ -14,9 +14,9 @@ std::size_t add_subtrees(const SceneBvh& bvh, std::uint32_t index, std::vector<S
   const BvhNode& node = bvh.nodes[index];
   std::size_t total = 0;
   for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
-    const std::size_t below = is_inner(node, slot)
-                                  ? add_subtrees(bvh, child_node(node, slot), out)
-                                  : node.leaf_end[slot] - bvh_leaf_begin(node.leaf_end, slot);
+    const std::size_t below = is_inner(node, slot) ? add_subtrees(bvh, child_node(node, slot), out)
+                                                   : bvh_leaf_end(node.leaf_end, slot) -
+                                                         bvh_leaf_begin(node.leaf_end, slot);
     if (below > 0) out.push_back({index, slot, below});
     total += below;
   }
@@ -94,7 +94,8 @@ std::vector<Subtree> list_subtrees(const SceneBvh& bvh) {
 
 std::vector<LeafTriangle> leaf_triangles(const SceneBvh& bvh, const BvhNode& node, unsigned slot) {
   std::vector<LeafTriangle> triangles;
-  for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < node.leaf_end[slot]; ++i) {
+  for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < bvh_leaf_end(node.leaf_end, slot);
+       ++i) {
     const TriangleBlock& block = bvh.blocks[node.prim_base + i / 8];
     const auto at = [lane = i % 8](const float(&v)[3][8]) {
       return V3f(v[0][lane], v[1][lane], v[2][lane]);

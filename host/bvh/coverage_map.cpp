@@ -81,6 +81,23 @@ float CoverageMap::mean_opacity(int axis) const {
 }
 
 DAPPLE_MULTIVERSION
+float CoverageMap::opacity_off_centre(int axis) const {
+  const auto square = [](int cell) {
+    const float x = (static_cast<float>(cell) + 0.5f) * (2.0f / kMapSize) - 1.0f;
+    return x * x;
+  };
+  Row columns, sum{};
+  for (int i = 0; i < kMapSize; ++i) columns[i] = square(i);
+  const Row one = Row{} + 1.0f;
+  for (int row = 0; row < kMapSize; ++row) {
+    Row t;
+    load_row(&transmittance[axis][row * kMapSize], t);
+    sum += (one - t) * (columns + square(row));
+  }
+  return sum_of(sum) / kMapCells;
+}
+
+DAPPLE_MULTIVERSION
 float CoverageMap::clumping() const {
   float variance = 0, greatest = 0;
   for (const auto& map : transmittance) {

@@ -25,8 +25,14 @@ struct NormalMoments {
 struct NodeOpacity {
   V3f axes{0, 0, 0};  ///< opacity along x, y, z, [0,1]
   NormalMoments normals;
-  float clumping = 0;  ///< CoverageMap::clumping()
+  float clumping = 0;       ///< CoverageMap::clumping()
+  float concentration = 0;  ///< concentration_of(), [0,1]
 };
+
+/// The concentration that makes centre_weight() of dapple/shared/opacity.h fit: from the mean
+/// squared distance of what hides from the centre of the box, seen along the axes, in half
+/// sizes. 2/3 and more, as of things that fill the box evenly or stay away from its middle: 0.
+float concentration_of(float off_centre);
 
 /// -log(1 - opacity), at most the greatest depth that a node can store.
 float depth_of(float opacity);
@@ -40,9 +46,9 @@ float chord_variance(const V3f& facing);
 /// projected area, which is less between the axes. Clumping goes from one to the other.
 float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction);
 
-/// Factor on the depths along the axes with which rays that meet box_depth() and chord_depth() of
-/// dapple/shared/opacity.h, which know no clumping, are stopped as opacity_along() says in the
-/// mean over all directions and chords.
+/// Factor on the depths along the axes with which rays that meet box_depth(), chord_depth() and
+/// centre_weight() of dapple/shared/opacity.h are stopped as opacity_along() says in the mean
+/// over all directions and ways through the box.
 float clumping_factor(const NodeOpacity& opacity, const V3f& size);
 
 }  // namespace dapple

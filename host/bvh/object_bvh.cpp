@@ -10,8 +10,9 @@
 namespace dapple {
 namespace {
 
-/// Primitives a leaf may hold: at most 8, so that a node's fit 64 bits (leaf_bits()).
+/// Primitives a leaf may hold.
 constexpr std::uint32_t kLeafSize = 4;
+static_assert(kLeafSize * DAPPLE_BVH_WIDTH <= DAPPLE_MOST_PRIMITIVES);
 
 /// Opacity of each triangle: [0,1], or -(1 + index) of a textured one.
 std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
@@ -68,7 +69,7 @@ void pack_triangles(BuiltObject& built, const BinaryTree& binary, const Mesh& me
   std::uint32_t blocks = 0;
   for (BvhNode& node : object.nodes) {
     node.prim_base = blocks;
-    blocks += (node.leaf_end[DAPPLE_BVH_WIDTH - 1] + 7u) / 8u;
+    blocks += (bvh_leaf_end(node.leaf_end, DAPPLE_BVH_WIDTH - 1) + 7u) / 8u;
   }
   object.blocks.assign(blocks, TriangleBlock{});
   if (!closed.empty()) built.closed.assign(blocks, 0);

@@ -44,8 +44,8 @@ void prefilter(BuiltObject& built, const TextureIntegrals& integrals);
 /// by the caller.
 std::vector<BvhNode> pack_nodes(const WideTree& tree);
 
-/// What a node's map and normals say of it.
-NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals);
+/// What a node's map and normals say of it and its box.
+NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box);
 
 /// Stores the opacity of child `slot`, whose exact box had `opacity`, as that of its grown box.
 void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,

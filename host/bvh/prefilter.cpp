@@ -40,11 +40,24 @@ struct Leaf {
   }
 };
 
+/// Mean over the triangle, seen along `axis`, of the squared distance from the box's centre in
+/// half sizes.
+float mean_off_centre(const CoveringTriangle& t, const Box3f& box, int axis) {
+  float sum = 0;
+  for (const int k : {column_axis(axis), row_axis(axis)}) {
+    const float half = 0.5f * (box.max[k] - box.min[k]);
+    const float a = (t.vertex[k] - box.min[k]) / half - 1.0f;
+    const float b = a + t.edge1[k] / half, c = a + t.edge2[k] / half;
+    sum += (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0f;
+  }
+  return sum;
+}
+
 /// What map_opacity() would say of a single layer, had its map endless cells.
 NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
   NodeOpacity opacity;
   opacity.normals = leaf.normals;
-  float variance = 0, greatest = 0;
+  float variance = 0, greatest = 0, off_centre = 0, total = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const float face = face_area(box, axis);
     if (!(face > 0.0f)) continue;
@@ -53,12 +66,15 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
       const float share = 0.5f * std::fabs(t.edge1.cross(t.edge2)[axis]) / face;
       hidden += t.opacity * share;
       square += t.opacity * t.opacity * share;
+      off_centre += t.opacity * share * face * mean_off_centre(t, box, axis);
+      total += t.opacity * share * face;
     }
     opacity.axes[axis] = hidden = std::min(hidden, 1.0f);
     variance += std::max(0.0f, square - hidden * hidden);
     greatest += hidden * (1.0f - hidden);
   }
   if (greatest > 1e-6f) opacity.clumping = std::min(1.0f, variance / greatest);
+  if (total > 0.0f) opacity.concentration = concentration_of(off_centre / total);
   return opacity;
 }
 
@@ -75,7 +91,8 @@ class Prefilter {
     const auto add_inner = [&](unsigned slot, const Summary& below) {
       coverage.add(below.map, children[slot].box, below.areas);
       normals.add(below.normals);
-      set_child_opacity(object_.nodes[index], slot, map_opacity(below.map, below.normals),
+      set_child_opacity(object_.nodes[index], slot,
+                        map_opacity(below.map, below.normals, children[slot].box),
                         children[slot].box);
     };
     const bool parallel = wide.primitives > kTaskPrimitives;
@@ -112,13 +129,14 @@ class Prefilter {
             return mean_opacity(t, u, v, share);
           });
     coverage.add(map, box, leaf.areas);
-    set_child_opacity(node, slot, map_opacity(map, leaf.normals), box);
+    set_child_opacity(node, slot, map_opacity(map, leaf.normals, box), box);
     return leaf.normals;
   }
 
   Leaf load_leaf(const BvhNode& node, unsigned slot) const {
     Leaf leaf;
-    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < node.leaf_end[slot]; ++i) {
+    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
+         i < bvh_leaf_end(node.leaf_end, slot); ++i) {
       const TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
       const unsigned lane = i % 8;
       const auto at = [lane](const float(&v)[3][8]) {
@@ -155,9 +173,16 @@ class Prefilter {
 
 }  // namespace
 
-NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals) {
-  return {V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals,
-          map.clumping()};
+NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box) {
+  NodeOpacity opacity{V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals,
+                      map.clumping()};
+  float off_centre = 0, total = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    off_centre += face_area(box, axis) * map.opacity_off_centre(axis);
+    total += face_area(box, axis) * opacity.axes[axis];
+  }
+  if (total > 0.0f) opacity.concentration = concentration_of(off_centre / total);
+  return opacity;
 }
 
 void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
@@ -179,11 +204,13 @@ void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
         encode_depth(std::min(factor * depth_of(grown.axes[axis]), DAPPLE_GREATEST_DEPTH));
     node.correlation[axis][slot] = static_cast<schar>(std::lround(127.0f * correlation[axis]));
   }
+  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.concentration));
+  node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
 }
 
 void prefilter(BuiltObject& built, const TextureIntegrals& integrals) {
   const Summary all = Prefilter(built, integrals).node(0);
-  built.object.opacity = map_opacity(all.map, all.normals);
+  built.object.opacity = map_opacity(all.map, all.normals, built.object.box);
 }
 
 }  // namespace dapple

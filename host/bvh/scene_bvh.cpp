@@ -48,6 +48,7 @@ NodeOpacity instance_opacity(const ObjectBvh& object, const M44f& to_world, cons
   NodeOpacity opacity;
   opacity.normals = object.opacity.normals.placed(to_world);
   opacity.clumping = object.opacity.clumping;
+  opacity.concentration = object.opacity.concentration;
   for (int axis = 0; axis < 3; ++axis) {
     V3f world_axis(0.0f), direction;
     world_axis[axis] = 1.0f;
@@ -77,8 +78,7 @@ std::vector<ObjectBvh> build_objects(const Scene& scene, BvhStatistics& statisti
   std::vector<ObjectBvh> objects(built.size());
   tbb::parallel_for(std::size_t{0}, built.size(), [&](std::size_t m) {
     ObjectBvh& object = built[m].object;
-    if (!object.nodes.empty())
-      prefilter(built[m], TextureIntegrals(scene, object.textured));
+    if (!object.nodes.empty()) prefilter(built[m], TextureIntegrals(scene, object.textured));
     objects[m] = std::move(object);
   });
   statistics.prefilter_seconds = seconds_since(prefiltering);
@@ -176,7 +176,7 @@ std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
     } else {
       NormalMoments below;
       std::tie(map, below) = prefilter_top(tree, order, placed, nodes, child.first);
-      opacity = map_opacity(map, below);
+      opacity = map_opacity(map, below, child.box);
     }
     coverage.add(map, child.box);
     normals.add(opacity.normals);

@@ -1,5 +1,6 @@
 /* The vectorized opacity model of footprint.clh: optical depths of a node's children along
-   a direction, the ray crossing `chords` mean chords of each box. */
+   a direction, the ray crossing `chords` mean chords of each box. Where it passes does not
+   count: nothing in the nodes is concentrated. */
 #include "footprint.clh"
 
 __kernel void depths(__global const BvhNode* nodes, __global const float* directions,
@@ -13,7 +14,8 @@ __kernel void depths(__global const BvhNode* nodes, __global const float* direct
   hits.hit = (int8)(-1);
   hits.enter = (float8)(0.0f);
   hits.leave = chords * sizes.x * sizes.y * sizes.z / facing.sum;
-  vstore8(child_depths(nodes + item, hits, sizes, facing, direction), item, results);
+  const Span span = make_span((float3)(0.0f), direction, INFINITY);
+  vstore8(child_depths(nodes + item, hits, sizes, facing, span), item, results);
 }
 
 /* minus_log(), eight values an item. */

@@ -16,9 +16,8 @@ namespace dapple {
 
 /* Child c spans origin + lower[axis][c] * 2^e .. origin + upper[axis][c] * 2^e per axis.
    An empty slot has lower 255 and upper 0. Inner children lie one after the other from
-   child_base, in slot order. Leaf children own primitives: slot c those from
-   leaf_end[c - 1] (0 for c = 0) up to leaf_end[c], counted from prim_base; inner and
-   empty slots own none. */
+   child_base, in slot order. Leaf children own primitives: slot c those from the leaf end of
+   c - 1 (0 for c = 0) up to its own, counted from prim_base; inner and empty slots own none. */
 typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   float origin[3];
   uchar exponent[3];     /* biased by 127, as in a float: scale = 2^(exponent - 127) */
@@ -28,7 +27,7 @@ typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   uchar lower[3][8];
   uchar upper[3][8];
   uchar depth[3][8];       /* optical depth of child c's quantized box along each axis */
-  uchar leaf_end[8];
+  uchar leaf_end[8];       /* bits 0 to 5: where its primitives end; 6 and 7: concentration */
   schar correlation[3][8]; /* of its normals' components xy, yz, zx; codes: opacity.h */
 } BvhNode;
 
@@ -36,8 +35,19 @@ DAPPLE_FUNCTION float bvh_scale(uchar exponent) {
   return dapple_bits_to_float((uint)exponent << 23);
 }
 
+#define DAPPLE_MOST_PRIMITIVES 63 /* a node owns */
+
+DAPPLE_FUNCTION uint bvh_leaf_end(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
+  return (uint)leaf_end[slot] & 63u;
+}
+
 DAPPLE_FUNCTION uint bvh_leaf_begin(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
-  return slot == 0u ? 0u : (uint)leaf_end[slot - 1u];
+  return slot == 0u ? 0u : bvh_leaf_end(leaf_end, slot - 1u);
+}
+
+/* How far what is in child `slot` gathers around its middle, [0,1]: centre_weight(). */
+DAPPLE_FUNCTION float bvh_concentration(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
+  return (float)(leaf_end[slot] >> 6) * (1.0f / 3.0f);
 }
 
 #ifndef __OPENCL_VERSION__
