@@ -25,12 +25,6 @@ void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
   }
 }
 
-inline float sum_of(const Row& row) {
-  float sum = 0.0f;
-  for (int i = 0; i < kMapSize; ++i) sum += row[i];
-  return sum;
-}
-
 /// Cells that are full stay full; the others are scaled so that the sum is the triangle's
 /// area. True when that filled more cells, so that another pass would come closer.
 DAPPLE_MULTIVERSION

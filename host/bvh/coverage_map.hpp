@@ -58,6 +58,13 @@ template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
            const OpacityAt& opacity_at);
 
+/// Where a box lies in its node's along each axis, in map cells: 0 to kMapSize. Of use only
+/// along axes in which the node has size.
+struct CellRange {
+  float from, to;
+};
+using CellRanges = std::array<CellRange, 3>;
+
 /// The map of a node while its children are put in, one after the other. Children whose
 /// boxes lie side by side in a cell add up; only where boxes overlap do they multiply.
 /// Taking both as independent would let a quarter of the light through every joint. Fronts
@@ -79,13 +86,16 @@ class NodeCoverage {
   [[nodiscard]] const SurfaceAreas& areas() const { return areas_; }
 
  private:
-  void overlap_children(const Box3f& child_box, int axis, std::array<float, kMapCells>& overlap);
+  [[nodiscard]] CellRanges cell_ranges(const Box3f& child) const;
+  /// What the children so far share with the next of each cell, summed.
+  void overlap_children(const CellRanges& child, int axis,
+                        std::array<float, kMapCells>& overlap) const;
 
   Box3f box_;
   CoverageMap map_;
   std::array<std::array<float, kMapCells>, 3> covered_;  ///< share of each cell that boxes cover
   SurfaceAreas areas_;
-  std::array<Box3f, DAPPLE_BVH_WIDTH> children_;
+  std::array<CellRanges, DAPPLE_BVH_WIDTH> children_;
   int child_count_ = 0;
 };
 

@@ -13,4 +13,13 @@ using Row = float __attribute__((vector_size(kMapSize * sizeof(float))));
 inline void load_row(const float* from, Row& row) { std::memcpy(&row, from, sizeof row); }
 inline void store_row(float* to, const Row& row) { std::memcpy(to, &row, sizeof row); }
 
+/// Halves added to halves: four additions deep instead of sixteen.
+inline float sum_of(const Row& row) {
+  Row sum = row;
+  sum += __builtin_shufflevector(sum, sum, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
+  sum += __builtin_shufflevector(sum, sum, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11);
+  sum += __builtin_shufflevector(sum, sum, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
+  return sum[0] + sum[1];
+}
+
 }  // namespace dapple

@@ -36,40 +36,49 @@ struct AxisResampling {
   }
 };
 
-/// Share of each of the parent's cells, along one axis, that lies between two coordinates.
-using AxisShare = std::array<float, kMapSize>;
+/// Share of each of the parent's cells, along one axis, that lies in the range.
+inline void cell_shares(const CellRange& range, Row& share) {
+  const Row zero{};
+  Row begin;
+  for (int i = 0; i < kMapSize; ++i) begin[i] = static_cast<float>(i);
+  const Row end = begin + 1.0f, from = zero + range.from, to = zero + range.to;
+  const Row width = (to < end ? to : end) - (from > begin ? from : begin);
+  share = width > zero ? width : zero;
+}
 
-AxisShare axis_share(const Box3f& parent, const Box3f& box, int axis) {
+CellRange cell_range(const Box3f& parent, const Box3f& box, int axis) {
   const float to_cells = kSize / (parent.max[axis] - parent.min[axis]);
-  const float from = (box.min[axis] - parent.min[axis]) * to_cells;
-  const float to = (box.max[axis] - parent.min[axis]) * to_cells;
-  AxisShare share;
-  for (int i = 0; i < kMapSize; ++i) {
-    const float cell = static_cast<float>(i);
-    share[i] = std::max(0.0f, std::min(to, cell + 1.0f) - std::max(from, cell));
-  }
-  return share;
+  return {(box.min[axis] - parent.min[axis]) * to_cells,
+          (box.max[axis] - parent.min[axis]) * to_cells};
+}
+
+CellRange intersection(const CellRange& a, const CellRange& b) {
+  return {std::max(a.from, b.from), std::min(a.to, b.to)};
 }
 
 using Cells = std::array<float, kMapCells>;
 
 /// Adds to `overlap` what two boxes share of each cell.
-void add_overlap(const Box3f& parent, const Box3f& a, const Box3f& b, int axis, Cells& overlap) {
-  const int u = column_axis(axis), v = row_axis(axis);
-  const Box3f both(
-      V3f(std::max(a.min.x, b.min.x), std::max(a.min.y, b.min.y), std::max(a.min.z, b.min.z)),
-      V3f(std::min(a.max.x, b.max.x), std::min(a.max.y, b.max.y), std::min(a.max.z, b.max.z)));
-  if (both.min[u] >= both.max[u] || both.min[v] >= both.max[v]) return;
-  const AxisShare across = axis_share(parent, both, u), down = axis_share(parent, both, v);
-  for (int row = 0; row < kMapSize; ++row) {
-    if (down[row] <= 0.0f) continue;
-    for (int i = 0; i < kMapSize; ++i) overlap[row * kMapSize + i] += down[row] * across[i];
+inline void add_overlap(const CellRanges& a, const CellRanges& b, int axis, Cells& overlap) {
+  const CellRange columns = intersection(a[column_axis(axis)], b[column_axis(axis)]);
+  const CellRange rows = intersection(a[row_axis(axis)], b[row_axis(axis)]);
+  if (columns.from >= columns.to || rows.from >= rows.to) return;
+  Row across, sum;
+  cell_shares(columns, across);
+  const int first = std::max(0, static_cast<int>(rows.from));
+  const int last = std::min(kMapSize - 1, static_cast<int>(rows.to));
+  for (int row = first; row <= last; ++row) {
+    const float y = static_cast<float>(row);
+    const float down = std::max(0.0f, std::min(rows.to, y + 1.0f) - std::max(rows.from, y));
+    load_row(&overlap[row * kMapSize], sum);
+    sum += across * down;
+    store_row(&overlap[row * kMapSize], sum);
   }
 }
 
 /// Sums sixteen rows into the rows of the parent that `along` gives: a row of `out` for
 /// each of along.first .. along.last, and no others.
-inline void sum_rows(const AxisResampling& along, const float* in, bool transmittance, float* out) {
+inline void sum_rows(const AxisResampling& along, const float* transmittance, float* out) {
   const Row zero{}, one = zero + 1.0f;
   Row sum = zero, carried = zero;
   int cell = along.first;
@@ -80,8 +89,8 @@ inline void sum_rows(const AxisResampling& along, const float* in, bool transmit
       carried = zero;
     }
     Row row;
-    load_row(in + q * kMapSize, row);
-    if (transmittance) row = one - row;
+    load_row(transmittance + q * kMapSize, row);
+    row = one - row;
     sum += row * along.here[q];
     carried += row * along.next[q];
   }
@@ -94,39 +103,40 @@ inline void sum_rows(const AxisResampling& along, const float* in, bool transmit
 DAPPLE_MULTIVERSION
 std::pair<int, int> resample(const CoverageMap& child, int axis, const AxisResampling& across,
                              const AxisResampling& down, Cells& opacity) {
-  // Down first, a row of child columns being one vector; then, turned, across.
-  Cells rows, turned{}, columns;
-  sum_rows(down, child.transmittance[axis].data(), true, rows.data());
-  for (int j = down.first; j <= down.last; ++j) {
-    for (int p = 0; p < kMapSize; ++p) turned[p * kMapSize + j] = rows[j * kMapSize + p];
+  // Down first, a row of child columns being one vector; then across, a row of parent columns.
+  Cells rows;
+  sum_rows(down, child.transmittance[axis].data(), rows.data());
+  Cells shares{};
+  for (int p = 0; p < kMapSize; ++p) {
+    float* row = &shares[p * kMapSize];
+    row[across.cell[p]] = across.here[p];
+    if (across.cell[p] + 1 < kMapSize) row[across.cell[p] + 1] = across.next[p];
   }
-  sum_rows(across, turned.data(), false, columns.data());
   for (int j = down.first; j <= down.last; ++j) {
-    float* out = &opacity[j * kMapSize];
-    std::fill_n(out, kMapSize, 0.0f);
-    for (int i = across.first; i <= across.last; ++i) out[i] = columns[i * kMapSize + j];
+    Row even{}, odd{}, share;
+    for (int p = 0; p < kMapSize; p += 2) {
+      load_row(&shares[p * kMapSize], share);
+      even += share * rows[j * kMapSize + p];
+      load_row(&shares[(p + 1) * kMapSize], share);
+      odd += share * rows[j * kMapSize + p + 1];
+    }
+    store_row(&opacity[j * kMapSize], even + odd);
   }
   return {down.first, down.last};
 }
-
-/// How a child lies in its parent, along each axis. Axes along which the parent has no
-/// size hold nothing of use.
-struct ChildPlacement {
-  AxisResampling cells[3];
-  AxisShare share[3];
-  ChildPlacement(const Box3f& parent, const Box3f& child)
-      : cells{{parent, child, 0}, {parent, child, 1}, {parent, child, 2}},
-        share{axis_share(parent, child, 0), axis_share(parent, child, 1),
-              axis_share(parent, child, 2)} {}
-};
 
 /// Of a cell, boxes cover F and a child f; in the part that both cover, what they hide
 /// overlaps as if independent, but for the `enclosed` share, which one of the two hides all of;
 /// elsewhere not at all.
 DAPPLE_MULTIVERSION
-void merge_rows(int first, int last, const AxisShare& across, const AxisShare& down,
-                const Cells& opacity, const Cells& overlap, float enclosed, Cells& map,
-                Cells& map_covered) {
+void merge_rows(int first, int last, const CellRanges& child, int axis, const Cells& opacity,
+                const Cells& overlap, float enclosed, Cells& map, Cells& map_covered) {
+  std::array<float, kMapSize> across, down;
+  Row share;
+  cell_shares(child[column_axis(axis)], share);
+  store_row(across.data(), share);
+  cell_shares(child[row_axis(axis)], share);
+  store_row(down.data(), share);
   for (int row = first; row <= last; ++row) {
     float* transmittance = &map[row * kMapSize];
     float* covered = &map_covered[row * kMapSize];
@@ -150,35 +160,39 @@ void merge_rows(int first, int last, const AxisShare& across, const AxisShare& d
 
 }  // namespace
 
+CellRanges NodeCoverage::cell_ranges(const Box3f& child) const {
+  return {cell_range(box_, child, 0), cell_range(box_, child, 1), cell_range(box_, child, 2)};
+}
+
 DAPPLE_MULTIVERSION
-void NodeCoverage::overlap_children(const Box3f& child_box, int axis, Cells& overlap) {
+void NodeCoverage::overlap_children(const CellRanges& child, int axis, Cells& overlap) const {
   overlap.fill(0.0f);
-  for (int c = 0; c < child_count_; ++c) add_overlap(box_, children_[c], child_box, axis, overlap);
+  for (int c = 0; c < child_count_; ++c) add_overlap(children_[c], child, axis, overlap);
 }
 
 DAPPLE_MULTIVERSION
 void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
                        const SurfaceAreas& areas) {
-  const ChildPlacement placement(box_, child_box);
+  const CellRanges ranges = cell_ranges(child_box);
+  const AxisResampling cells[3] = {
+      {box_, child_box, 0}, {box_, child_box, 1}, {box_, child_box, 2}};
   Cells opacity, overlap;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(face_area(box_, axis) > 0.0f)) continue;
-    const int u = column_axis(axis), v = row_axis(axis);
-    overlap_children(child_box, axis, overlap);
+    overlap_children(ranges, axis, overlap);
     const auto [first, last] =
-        resample(child, axis, placement.cells[u], placement.cells[v], opacity);
-    merge_rows(first, last, placement.share[u], placement.share[v], opacity, overlap,
-               enclosed_share(areas_, areas, axis), map_.transmittance[axis], covered_[axis]);
+        resample(child, axis, cells[column_axis(axis)], cells[row_axis(axis)], opacity);
+    merge_rows(first, last, ranges, axis, opacity, overlap, enclosed_share(areas_, areas, axis),
+               map_.transmittance[axis], covered_[axis]);
   }
   areas_.add(areas);
-  children_[child_count_++] = child_box;
+  children_[child_count_++] = ranges;
 }
 
 DAPPLE_MULTIVERSION
 void NodeCoverage::add_layer(std::span<const CoveringTriangle> triangles, const Box3f& child_box,
                              const SurfaceAreas& areas) {
-  const AxisShare share[3] = {axis_share(box_, child_box, 0), axis_share(box_, child_box, 1),
-                              axis_share(box_, child_box, 2)};
+  const CellRanges ranges = cell_ranges(child_box);
   CellCoverage coverage;
   HiddenCells cells;
   Cells overlap;
@@ -190,14 +204,13 @@ void NodeCoverage::add_layer(std::span<const CoveringTriangle> triangles, const 
       rasterize(projected, coverage);
       cells.add_uniform(projected, coverage, triangle.opacity);
     }
-    overlap_children(child_box, axis, overlap);
-    merge_rows(cells.row0, cells.row1, share[column_axis(axis)], share[row_axis(axis)],
-               cells.hidden, overlap, enclosed_share(areas_, areas, axis), map_.transmittance[axis],
-               covered_[axis]);
+    overlap_children(ranges, axis, overlap);
+    merge_rows(cells.row0, cells.row1, ranges, axis, cells.hidden, overlap,
+               enclosed_share(areas_, areas, axis), map_.transmittance[axis], covered_[axis]);
     cells.clear();
   }
   areas_.add(areas);
-  children_[child_count_++] = child_box;
+  children_[child_count_++] = ranges;
 }
 
 }  // namespace dapple

@@ -75,8 +75,9 @@ float mean_transmittance(float depth, const V3f& facing, float concentration) {
   // Sampled for boxes of any shape, to a tenth: long chords are those through the middle.
   const float variance =
       chords * (1.0f + 1.3f * concentration) + 0.17f * concentration * concentration;
-  return variance * depth > 1e-3f ? std::exp(-std::log1p(variance * depth) / variance)
-                                  : std::exp(-depth);
+  // (1 + v depth)^(-1 / v), with log(1 + x) as x (6 + x) / (6 + 4 x), to a hundredth up to 2.
+  const float x = variance * depth;
+  return std::exp(-depth * (6.0f + x) / (6.0f + 4.0f * x));
 }
 
 /// Looks at a box of some size from any direction.
