@@ -14,6 +14,7 @@
 #include "benchmarks.hpp"
 #include "dapple/error.hpp"
 #include "paper/paper.hpp"
+#include "rivals/rivals.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 constexpr const char* kHelp =
     "dapple-bench [--scene=SCENE [--opacity=MATERIAL=VALUE]...]... [--device=NAME]\n"
     "             [--kernel-dir=FOLDER] [Google Benchmark's flags, below]\n"
-    "dapple-bench accuracy|paper --help   (where built with Embree)\n"
+    "dapple-bench accuracy|paper|rivals --help   (where built with Embree)\n"
     "  --scene        measure this scene too: a glTF file or \"scene:NAME?key=value\"\n"
     "  --opacity      give a material of the last --scene this opacity\n"
     "  --device       part of an OpenCL device's name\n"
@@ -135,6 +136,7 @@ int main(int argc, char** argv) {
     const std::string_view subcommand = argc > 1 ? argv[1] : "";
     if (subcommand == "accuracy") return dapple::bench::run_accuracy(argc - 1, argv + 1);
     if (subcommand == "paper") return dapple::bench::run_paper(argc - 1, argv + 1);
+    if (subcommand == "rivals") return dapple::bench::run_rivals(argc - 1, argv + 1);
 #endif
     return dapple::bench::run(argc, argv);
   } catch (const dapple::Error& error) {

@@ -8,11 +8,12 @@
 namespace dapple::bench {
 namespace {
 
-constexpr double kWidth = 720, kHeight = 440;
-constexpr double kLeft = 70, kRight = 190, kTop = 40, kBottom = 50;
+constexpr double kWidth = 770, kHeight = 440;
+constexpr double kLeft = 70, kRight = 240, kTop = 40, kBottom = 50;
 
 /// Colours of Okabe and Ito, told apart by colour-blind readers as well.
-constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"};
+constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73",
+                                    "#cc79a7", "#e69f00", "#56b4e9"};
 
 const char* color_of(const PlotLine& line) {
   return kPalette[static_cast<std::size_t>(line.color) % std::size(kPalette)];
@@ -89,35 +90,29 @@ class PlotWriter {
         y_.include(point.y);
       }
     }
-    x_.round_out(10);
+    x_.round_out(plot.decimal_x ? 1 : 10);
     y_.round_out(1);
   }
 
-  std::string write() {
-    std::string out = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-        "viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\" font-size=\"11\">\n"
-        "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-        kWidth, kHeight);
+  /// All that goes inside the svg element, `top` pixels down.
+  std::string write(double top) {
+    std::string out = fmt::format("<g transform=\"translate(0,{})\">\n", top);
     out += text_at(kLeft, 22, "start", plot_.title) + grid();
     double row = kTop + 10;
     for (const PlotLine& line : plot_.lines) {
       out += drawn(line) + legend(line, row);
       row += 18;
     }
-    return out + "</svg>\n";
+    return out + "</g>\n";
   }
 
  private:
   std::string grid() const {
     std::string out;
     for (int power = -20; power <= 20; ++power) {
-      const double x = std::exp2(power);
-      if (x_.shows(x)) {
-        out += grid_line(x_.pixel(x), kTop, x_.pixel(x), kHeight - kBottom) +
-               text_at(x_.pixel(x), kHeight - kBottom + 16, "middle", fmt::format("{:g}", x));
-      }
+      if (!plot_.decimal_x) out += column(std::exp2(power));
       for (const double digit : {1.0, 2.0, 5.0}) {
+        if (plot_.decimal_x) out += column(digit * std::pow(10.0, power));
         const double y = digit * std::pow(10.0, power);
         if (!y_.shows(y)) continue;
         out += grid_line(kLeft, y_.pixel(y), kWidth - kRight, y_.pixel(y)) +
@@ -126,6 +121,13 @@ class PlotWriter {
     }
     return out + text_at(0.5 * (kLeft + kWidth - kRight), kHeight - 12, "middle", plot_.x_name) +
            text_at(12, kTop - 6, "start", plot_.y_name);
+  }
+
+  /// A vertical line of the grid with its number; nothing where the axis does not reach.
+  std::string column(double x) const {
+    if (!x_.shows(x)) return "";
+    return grid_line(x_.pixel(x), kTop, x_.pixel(x), kHeight - kBottom) +
+           text_at(x_.pixel(x), kHeight - kBottom + 16, "middle", fmt::format("{:g}", x));
   }
 
   std::string drawn(const PlotLine& line) const {
@@ -164,6 +166,21 @@ class PlotWriter {
 
 }  // namespace
 
-std::string svg_text(const Plot& plot) { return PlotWriter(plot).write(); }
+std::string svg_text(const std::vector<Plot>& plots) {
+  const double height = kHeight * static_cast<double>(std::max<std::size_t>(1, plots.size()));
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+      "viewBox=\"0 0 {0} {1}\" font-family=\"sans-serif\" font-size=\"11\">\n"
+      "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+      kWidth, height);
+  double top = 0;
+  for (const Plot& plot : plots) {
+    out += PlotWriter(plot).write(top);
+    top += kHeight;
+  }
+  return out + "</svg>\n";
+}
+
+std::string svg_text(const Plot& plot) { return svg_text(std::vector<Plot>{plot}); }
 
 }  // namespace dapple::bench

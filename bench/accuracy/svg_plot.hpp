@@ -21,9 +21,12 @@ struct PlotLine {
 struct Plot {
   std::string title, x_name, y_name;
   std::vector<PlotLine> lines;
+  bool decimal_x = false;  ///< ticks at 1, 2, 5, 10... instead of powers of two
 };
 
 /// The SVG file's text; an empty plot still has its title.
 std::string svg_text(const Plot& plot);
+/// Plots one below the other.
+std::string svg_text(const std::vector<Plot>& plots);
 
 }  // namespace dapple::bench

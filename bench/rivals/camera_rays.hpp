@@ -1,0 +1,28 @@
+// Camera rays for Embree, from the very view that dapple renders.
+#pragma once
+
+#include "rivals/ray_batch.hpp"
+#include "wavefront/view.hpp"
+
+namespace dapple::bench {
+
+class CameraRays {
+ public:
+  explicit CameraRays(const View& view);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+
+  /// Rays through stratified places of pixels (row * width + column), sample by sample; `x` and
+  /// `y` are scratch. Fills `rays.count` rays.
+  void fill(const std::uint32_t* pixel, const std::uint32_t* sample, unsigned count,
+            std::uint32_t seed, float* x, float* y, RayBatch& rays) const;
+
+ private:
+  V3f eye_, right_, up_, forward_;
+  float half_width_ = 0, half_height_ = 0;  ///< of the image plane: at distance 1, or in metres
+  bool orthographic_ = false;
+  int width_ = 0, height_ = 0;  ///< pixels
+};
+
+}  // namespace dapple::bench

@@ -1,0 +1,43 @@
+#include "rivals/embree_geometry.hpp"
+
+namespace dapple::bench {
+namespace {
+
+EmbreeMesh sorted_by_opacity(const Scene& scene, const Mesh& mesh) {
+  EmbreeMesh sorted;
+  sorted.positions = mesh.positions;
+  sorted.positions.emplace_back(0.0f);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const std::optional<float> constant = constant_opacity(scene, mesh, t);
+    if (constant && *constant <= 0.0f) continue;
+    const bool opaque = constant && *constant >= 1.0f;
+    if (!opaque) sorted.opacity.append(scene, mesh, t);
+    auto& indices = sorted.triangles[opaque ? kOpaqueGeometry : kTranslucentGeometry];
+    for (std::size_t k = 0; k < 3; ++k) indices.push_back(mesh.indices[3 * t + k]);
+  }
+  return sorted;
+}
+
+EmbreePlacement placed(const Instance& instance) {
+  EmbreePlacement placement{instance.mesh, instance.to_world, instance.to_world};
+  placement.normal_matrix[3][0] = placement.normal_matrix[3][1] = placement.normal_matrix[3][2] = 0;
+  placement.normal_matrix = placement.normal_matrix.inverse().transposed();
+  return placement;
+}
+
+}  // namespace
+
+EmbreeGeometry::EmbreeGeometry(const Scene& scene) {
+  for (const Mesh& mesh : scene.meshes) {
+    const EmbreeMesh& sorted = meshes.emplace_back(sorted_by_opacity(scene, mesh));
+    bytes += sorted.positions.size() * sizeof(V3f) + sorted.opacity.bytes();
+    for (const auto& indices : sorted.triangles) {
+      triangles += indices.size() / 3;
+      bytes += indices.size() * sizeof(unsigned);
+    }
+  }
+  for (const Instance& instance : scene.instances) placements.push_back(placed(instance));
+  flat = placements.size() == 1 && placements[0].to_world == M44f();
+}
+
+}  // namespace dapple::bench

@@ -1,0 +1,161 @@
+#include "rivals/image_protocol.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <limits>
+
+#include "rivals/ray_protocol.hpp"
+#include "rivals/reference_cache.hpp"
+
+namespace dapple::bench {
+namespace {
+
+constexpr std::uint32_t kReferenceSeeds[2] = {0x7e000001u, 0x7e000002u};
+constexpr int kCalibrationRounds = 5;
+
+/// Samples a pixel from which the largest unoccluded irradiance is known well enough.
+constexpr int kLargestSpp = 256;
+
+/// AO rays a camera sample of the packet contestant.
+constexpr int kPacketRays = 16;
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Seconds of each method's fastest round, tried in turn: a choice between methods must not hang
+/// on who was disturbed.
+std::vector<double> try_out(const std::vector<EmbreeMethod>& methods,
+                            const std::function<void(const EmbreeMethod&)>& work) {
+  std::vector<double> fastest(methods.size(), std::numeric_limits<double>::infinity());
+  for (int round = 0; round < kCalibrationRounds; ++round)
+    for (std::size_t m = 0; m < methods.size(); ++m)
+      fastest[m] = std::min(fastest[m], seconds_of([&] { work(methods[m]); }));
+  return fastest;
+}
+
+std::vector<Light> lights_of(Pass pass, const Scene& scene) {
+  return pass == Pass::light ? scene.lights : std::vector<Light>{};
+}
+
+}  // namespace
+
+ImageStudy::ImageStudy(RivalScene& scene, Pass pass, ImageOptions options)
+    : scene_(scene),
+      pass_(pass),
+      options_(std::move(options)),
+      pictures_(scene.embree, scene.view, lights_of(pass, scene.ours.scene())) {
+  set_largest();
+}
+
+RenderOptions ImageStudy::render_options(int spp, std::uint32_t seed) const {
+  RenderOptions options = scene_.options;
+  options.ao = pass_ == Pass::ao;
+  options.light = pass_ == Pass::light;
+  options.spp = spp;
+  options.seed = seed;
+  return options;
+}
+
+void ImageStudy::set_largest() {
+  largest_ = {1.0};
+  if (pass_ == Pass::light) {
+    RenderOptions options = render_options(kLargestSpp, 0);
+    scene_.ours.set_largest({});
+    largest_ = scene_.ours.render(options).largest;
+  }
+  scene_.ours.set_largest(largest_);
+}
+
+std::vector<double> ImageStudy::relative(std::vector<double> irradiance) const {
+  const std::size_t pixels = irradiance.size() / largest_.size();
+  for (std::size_t i = 0; i < irradiance.size(); ++i)
+    irradiance[i] /= largest_[i / pixels] > 0 ? largest_[i / pixels] : 1.0;
+  return irradiance;
+}
+
+Truth ImageStudy::truth() {
+  const PictureMethod method{{Alpha::stochastic, 16, false, false},
+                             {Alpha::multiplicative, 1, false, false}};
+  const int half = (options_.reference_spp + 1) / 2;
+  const ReferenceHalves halves = cached_reference(
+      options_.cache, reference_key(), scene_.view.pixel_count() * largest_.size(),
+      [&](int number) {
+        return pictures_.render(pass_, half, kReferenceSeeds[number], method, kReferenceBlack);
+      });
+  return truth_of_halves(relative(halves.first), relative(halves.second));
+}
+
+std::string ImageStudy::reference_key() const {
+  return reference_key_text(scene_, pass_ == Pass::ao ? "ao" : "light", options_.reference_spp);
+}
+
+void ImageStudy::calibrate() {
+  const bool flat = scene_.geometry.flat;
+  const std::vector<EmbreeMethod> cameras = camera_methods(flat);
+  const EmbreeMethod camera =
+      best_of_each_alpha(cameras, try_out(cameras, [&](const EmbreeMethod& method) {
+                           pictures_.trace_camera_rays(1, 0, method);
+                         }))[0];
+  const std::vector<EmbreeMethod> occlusions = occlusion_methods(pass_ == Pass::light && flat);
+  const auto seconds = try_out(occlusions, [&](const EmbreeMethod& method) {
+    (void)pictures_.render(pass_, 1, 0, {camera, method}, kContestBlack);
+  });
+  for (const EmbreeMethod& best : best_of_each_alpha(occlusions, seconds))
+    methods_.push_back({camera, best});
+}
+
+std::vector<Contestant> ImageStudy::contestants() {
+  calibrate();
+  std::vector<Contestant> contestants;
+  for (const PictureMethod& method : methods_) contestants.push_back(by_embree(method));
+  RenderOptions changes = scene_.options;
+  changes.estimator = Estimator::exact;
+  contestants.push_back(by_dapple("exact", changes));
+  changes.estimator = Estimator::prefiltered;
+  contestants.push_back(by_dapple("prefiltered", changes));
+  if (pass_ == Pass::ao) {
+    // With one ray a sample packets are single rays: this trades camera rays for AO rays.
+    changes.estimator = Estimator::packet;
+    changes.ao_rays = kPacketRays;
+    contestants.push_back(by_dapple("packet, 16 rays a sample", changes));
+  }
+  // Further ways to render go here: a name, the options that differ, and, where effort is not
+  // samples a pixel, a ladder and a by_dapple() of their own (a target error, say).
+  return contestants;
+}
+
+Contestant ImageStudy::by_embree(const PictureMethod& method) {
+  Contestant contestant{"Embree " + method.occlusion.name(), true, true, {}, {}};
+  for (int spp = 1; spp <= options_.most_spp; spp *= 2) contestant.ladder.push_back(spp);
+  contestant.run = [this, method](double spp, std::uint32_t seed) {
+    Outcome outcome;
+    outcome.seconds = seconds_of([&] {
+      outcome.values = pictures_.render(pass_, static_cast<int>(spp), seed, method, kContestBlack);
+    });
+    outcome.values = relative(std::move(outcome.values));
+    return outcome;
+  };
+  return contestant;
+}
+
+Contestant ImageStudy::by_dapple(const std::string& name, const RenderOptions& changes) {
+  Contestant contestant{name, false, changes.estimator == Estimator::exact, {}, {}};
+  for (int spp = 1; spp <= options_.most_spp; spp *= 2) contestant.ladder.push_back(spp);
+  contestant.run = [this, changes](double spp, std::uint32_t seed) {
+    RenderOptions options = render_options(static_cast<int>(spp), seed);
+    options.estimator = changes.estimator;
+    options.ao_rays = changes.ao_rays;
+    const Picture picture = scene_.ours.render(options);
+    Outcome outcome{picture.trace_seconds, {}};
+    for (const PicturePass& pass : picture.passes)
+      outcome.values.insert(outcome.values.end(), pass.pixels.begin(), pass.pixels.end());
+    return outcome;
+  };
+  return contestant;
+}
+
+}  // namespace dapple::bench

@@ -1,0 +1,81 @@
+#include "rivals/light_sampler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dapple::bench {
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+/// About a unit axis, uniform in the cone whose 1 - cosine is `one_minus_cos` (Duff et al.,
+/// "Building an Orthonormal Basis, Revisited", 2017).
+V3f cone_direction(const V3f& axis, float one_minus_cos, float x, float y) {
+  const float height = x * one_minus_cos, angle = 2 * kPi * y;
+  const float radius = std::sqrt(std::max(0.0f, height * (2 - height)));
+  const float s = std::copysign(1.0f, axis.z), a = -1 / (s + axis.z), b = axis.x * axis.y * a;
+  const V3f tangent(1 + s * axis.x * axis.x * a, s * b, -s * axis.x);
+  const V3f bitangent(b, s + axis.y * axis.y * a, -axis.y);
+  return (tangent * (radius * std::cos(angle)) + bitangent * (radius * std::sin(angle)) +
+          axis * (1 - height))
+      .normalized();
+}
+
+LightSample sample_rect(const Light& light, const V3f& origin, float x, float y) {
+  const V3f way = light.position + light.edge_u * (x - 0.5f) + light.edge_v * (y - 0.5f) - origin;
+  const float square = std::max(way.dot(way), 1e-20f), distance = std::sqrt(square);
+  const V3f direction = way * (1 / distance);
+  const float area = light.edge_u.cross(light.edge_v).length();
+  return {direction, distance, area * std::max(0.0f, -direction.dot(light.direction)) / square};
+}
+
+/// KHR_lights_punctual's falloff between the spot's cones.
+float spot_share(const Light& light, const V3f& axis) {
+  if (light.cos_outer <= -1) return 1;
+  const float inside = -axis.dot(light.direction) - light.cos_outer;
+  const float edge =
+      std::clamp(inside / std::max(0.001f, light.cos_inner - light.cos_outer), 0.0f, 1.0f);
+  return edge * edge;
+}
+
+/// Uniform in the cone that the sphere fills; from inside, over all directions.
+LightSample sample_sphere(const Light& light, const V3f& origin, float x, float y) {
+  const V3f way = light.position - origin;
+  const float distance = way.length(), radius = light.radius;
+  const bool inside = distance <= radius;
+  const V3f axis = distance > 0 ? way * (1 / distance) : V3f(0, 1, 0);
+  const float sine = radius / std::max(distance, radius);
+  const float cone = inside ? 2 : sine * sine / (1 + std::sqrt(std::max(0.0f, 1 - sine * sine)));
+  const V3f direction = cone_direction(axis, cone, x, y);
+  const float along = direction.dot(way);
+  const float half_chord =
+      std::sqrt(std::max(0.0f, radius * radius - (distance * distance - along * along)));
+  return {direction, inside ? along + half_chord : along - half_chord,
+          2 * kPi * cone * spot_share(light, axis)};
+}
+
+LightSample sample_sun(const Light& light, float x, float y) {
+  const float half = std::sin(0.5f * light.angular_radius), cone = 2 * half * half;
+  return {cone_direction(-light.direction, cone, x, y), std::numeric_limits<float>::infinity(),
+          2 * kPi * cone};
+}
+
+}  // namespace
+
+bool can_sample(const Light& light) { return light.kind != LightKind::mesh; }
+
+LightSample sample_light(const Light& light, const V3f& origin, float x, float y) {
+  switch (light.kind) {
+    case LightKind::rect:
+      return sample_rect(light, origin, x, y);
+    case LightKind::sphere:
+      return sample_sphere(light, origin, x, y);
+    case LightKind::sun:
+    case LightKind::mesh:
+      break;
+  }
+  return sample_sun(light, x, y);
+}
+
+}  // namespace dapple::bench

@@ -1,0 +1,38 @@
+// A picture cut into tiles of 8x8 pixels, which one thread renders at a time. Within a tile
+// pixels follow a Z-shaped curve, so that neighbours in a packet are neighbours in the picture.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace dapple::bench {
+
+inline constexpr int kTileWidth = 8;
+inline constexpr unsigned kTilePixels = kTileWidth * kTileWidth;
+
+struct PixelTile {
+  unsigned count = 0;                 ///< fewer than kTilePixels at the picture's edge
+  std::uint32_t pixels[kTilePixels];  ///< row * width + column
+};
+
+/// The even bits of a number below 64, side by side.
+inline int even_bits(unsigned x) {
+  return static_cast<int>((x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u));
+}
+
+inline std::vector<PixelTile> pixel_tiles(int width, int height) {
+  std::vector<PixelTile> tiles;
+  for (int top = 0; top < height; top += kTileWidth) {
+    for (int left = 0; left < width; left += kTileWidth) {
+      PixelTile& tile = tiles.emplace_back();
+      for (unsigned i = 0; i < kTilePixels; ++i) {
+        const int column = left + even_bits(i), row = top + even_bits(i >> 1);
+        if (column < width && row < height)
+          tile.pixels[tile.count++] = static_cast<std::uint32_t>(row * width + column);
+      }
+    }
+  }
+  return tiles;
+}
+
+}  // namespace dapple::bench

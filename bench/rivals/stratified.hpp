@@ -1,0 +1,49 @@
+// Stratified random points and directions for the Embree side: the sequences that
+// kernels/random.clh documents (a Sobol (0,2) sequence a pixel and dimension pair, Owen-scrambled
+// by hashing), so that both sides pay for the same quality. Plain loops over floats, which the
+// compiler turns into vector code.
+#pragma once
+
+#include <cstdint>
+
+namespace dapple::bench {
+
+/// Dimension pairs of a pixel or shading point; light l uses kLightPair + l.
+inline constexpr std::uint32_t kPixelPair = 0, kAoPair = 1, kLightPair = 2;
+
+/// 32 bits with full avalanche (the lowbias32 constants found by C. Wellons).
+inline std::uint32_t hash_uint(std::uint32_t x) {
+  x = (x ^ x >> 16) * 0x7feb352du;
+  x = (x ^ x >> 15) * 0x846ca68bu;
+  return x ^ x >> 16;
+}
+
+inline std::uint32_t hash_pair(std::uint32_t a, std::uint32_t b) {
+  return hash_uint(a * 0x9e3779b1u + hash_uint(b));
+}
+
+/// The upper 24 bits as a number in [0,1).
+inline float unit_float(std::uint32_t bits) {
+  return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * (1.0f / 16777216.0f);
+}
+
+/// Random bits of a ray for stochastic opacity.
+inline std::uint32_t ray_key(std::uint32_t pixel, std::uint32_t index, std::uint32_t pair,
+                             std::uint32_t seed) {
+  return hash_pair(hash_pair(pixel, pair ^ 0x5851f42du), hash_pair(index, seed));
+}
+
+/// Points `index[i]` of the sequences of `pixel[i]`, in [0,1)^2.
+void sample_squares(const std::uint32_t* pixel, const std::uint32_t* index, unsigned count,
+                    std::uint32_t pair, std::uint32_t seed, float* x, float* y);
+
+/// ray_key() of each.
+void ray_keys(const std::uint32_t* pixel, const std::uint32_t* index, unsigned count,
+              std::uint32_t pair, std::uint32_t seed, std::uint32_t* keys);
+
+/// Points of the unit square -> unit directions about unit normals, cosine-weighted. The
+/// arrays must not overlap.
+void cosine_directions(const float* x, const float* y, const float* const normal[3], unsigned count,
+                       float* const direction[3]);
+
+}  // namespace dapple::bench
