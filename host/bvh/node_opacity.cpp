@@ -67,14 +67,18 @@ float concentration_of(float off_centre) {
 
 namespace {
 
-/// Of rays that meet chord_depth() and centre_weight(), with depths as if gamma distributed.
-float mean_transmittance(float depth, const V3f& facing, float concentration) {
-  if (!(depth > 0.0f)) return 1.0f;
+/// Variance of the depths that chord_depth() and centre_weight() give rays, over the square of
+/// their mean `depth`. Sampled for boxes of any shape, to a tenth: long chords are those through
+/// the middle.
+float depth_variance(float depth, const V3f& facing, float concentration) {
+  if (!(depth > 0.0f)) return 0.0f;
   const float counted = chord_depth(depth, 2.0f) / depth - 1.0f;  // of a chord's deviation
   const float chords = chord_variance(facing) * counted * counted;
-  // Sampled for boxes of any shape, to a tenth: long chords are those through the middle.
-  const float variance =
-      chords * (1.0f + 1.3f * concentration) + 0.17f * concentration * concentration;
+  return chords * (1.0f + 1.3f * concentration) + 0.17f * concentration * concentration;
+}
+
+/// Of rays whose depths have this mean and variance, as if gamma distributed.
+float mean_transmittance(float depth, float variance) {
   // (1 + v depth)^(-1 / v), with log(1 + x) as x (6 + x) / (6 + 4 x), to a hundredth up to 2.
   const float x = variance * depth;
   return std::exp(-depth * (6.0f + x) / (6.0f + 4.0f * x));
@@ -93,8 +97,8 @@ class DirectionalOpacity {
 
   struct View {
     float facing;   ///< projected area of the box
-    float depth;    ///< depths blended
-    float met;      ///< mean opacity that rays of that depth meet
+    float met;      ///< mean opacity that rays meet
+    float slope;    ///< its change with a factor on depths
     float opacity;  ///< that they should meet
   };
 
@@ -109,11 +113,11 @@ class DirectionalOpacity {
       return box_depth(axes.x, axes.y, axes.z, correlation.x, correlation.y, correlation.z,
                        facing.x, facing.y, facing.z);
     };
-    View view;
-    view.facing = facing.x + facing.y + facing.z;
-    view.depth = blend(depths_);
-    view.met = 1.0f - mean_transmittance(view.depth, facing, concentration_);
-    const float even = 1.0f - mean_transmittance(view.depth, facing, 0.0f);
+    const float depth = blend(depths_);
+    View view = meet(facing, depth);
+    // What gathers around the middle is no less opaque for the box's empty corners.
+    const float even = 1.0f - mean_transmittance(depth, (1.0f - concentration_) *
+                                                            depth_variance(depth, facing, 0.0f));
     view.opacity = even + clumping_ * (std::min(1.0f, blend(axes_)) - even);
     return view;
   }
@@ -122,12 +126,19 @@ class DirectionalOpacity {
   [[nodiscard]] View along_axis(int axis) const {
     V3f facing(0.0f);
     facing[axis] = faces_[axis];
-    const float depth = depths_[axis];
-    return {faces_[axis], depth, 1.0f - mean_transmittance(depth, facing, concentration_),
-            axes_[axis]};
+    View view = meet(facing, depths_[axis]);
+    view.opacity = axes_[axis];
+    return view;
   }
 
  private:
+  [[nodiscard]] View meet(const V3f& facing, float depth) const {
+    const float variance = depth_variance(depth, facing, concentration_);
+    const float transmittance = mean_transmittance(depth, variance);
+    return {facing.x + facing.y + facing.z, 1.0f - transmittance,
+            depth * transmittance / (1.0f + variance * depth), 0.0f};
+  }
+
   V3f faces_, axes_, depths_, correlation_;
   float clumping_, concentration_;
 };
@@ -145,7 +156,7 @@ float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
   float wanting = 0, slope = 0;
   const auto add = [&](float weight, const DirectionalOpacity::View& view) {
     wanting += weight * view.facing * (view.opacity - view.met);
-    slope += weight * view.facing * view.depth * (1.0f - view.met);
+    slope += weight * view.facing * view.slope;
   };
   // The axes and the diagonals of a cube, weighted 2/15 and 3/20, integrate polynomials of
   // degree 5 over the sphere (Abramowitz and Stegun, 25.4.65).
@@ -155,7 +166,7 @@ float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
     add(3.0f / 20, directional.along(signs * root));
   }
   if (!(slope > 0.0f)) return 1.0f;
-  return std::clamp(1.0f + wanting / slope, 0.75f, 1.25f);
+  return std::clamp(1.0f + wanting / slope, 0.6f, 1.6f);
 }
 
 }  // namespace dapple
