@@ -58,6 +58,13 @@ TEST_F(Determinism, TheProgramWritesTheSameBytesAgainAndWithAnyNumberOfDeviceThr
   EXPECT_EQ(bytes_of(rendered("two.exr", "", "POCL_MAX_PTHREAD_COUNT=2 ")), first);
 }
 
+TEST_F(Determinism, SoItDoesWithATargetErrorWhosePixelsStopWhenTheyWill) {
+  const std::string adaptive = "--target-error 0.05";
+  const std::string first = bytes_of(rendered("first.exr", adaptive));
+  EXPECT_EQ(bytes_of(rendered("one.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=1 ")), first);
+  EXPECT_EQ(bytes_of(rendered("two.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=2 ")), first);
+}
+
 TEST_F(Determinism, AnotherSeedGivesOtherNoiseInEveryPass) {
   const Film a = read_exr(rendered("a.exr"));
   const Film b = read_exr(rendered("b.exr", "--seed 1"));

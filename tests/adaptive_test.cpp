@@ -1,0 +1,158 @@
+// --target-error: pixels are sampled until their estimated error is below the target, the
+// picture is as far from the truth as that says, and its bits are the same on every run.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <numeric>
+
+#include "dapple/error.hpp"
+#include "dapple/shared/pass_params.h"
+#include "dapple/wavefront.hpp"
+#include "wavefront/pixel_error.hpp"
+#include "wavefront/sample_plan.hpp"
+
+namespace dapple {
+namespace {
+
+RenderOptions small_picture() {
+  RenderOptions options;
+  options.width = 48;
+  options.height = 40;
+  return options;
+}
+
+RenderResult draw(const RenderOptions& options) {
+  return render(make_procedural("scene:tree?leaves=2000"), options);
+}
+
+const std::vector<float>& channel(const RenderResult& result, const char* name) {
+  const Plane* plane = result.film.find(name);
+  EXPECT_NE(plane, nullptr) << name;
+  return plane->pixels;
+}
+
+double mean(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+TEST(AdaptiveSampling, EveryPixelEndsBelowTheTargetOrAtTheMost) {
+  RenderOptions options = small_picture();
+  options.target_error = 0.03f;
+  options.max_spp = 512;
+  const RenderResult result = draw(options);
+  const auto& samples = channel(result, "samples");
+  const auto &ao = channel(result, "error.ao"), &light = channel(result, "error.light.key");
+  std::uint64_t total = 0;
+  float least = 1e9f, most = 0;
+  for (std::size_t p = 0; p < samples.size(); ++p) {
+    EXPECT_EQ(std::fmod(samples[p], static_cast<float>(DAPPLE_BATCH)), 0) << p;
+    EXPECT_TRUE(samples[p] >= 512 || (ao[p] <= 0.0301f && light[p] <= 0.0301f)) << p;
+    least = std::min(least, samples[p]);
+    most = std::max(most, samples[p]);
+    total += static_cast<std::uint64_t>(samples[p]);
+  }
+  EXPECT_EQ(least, 16) << "sky needs no more than the least";
+  EXPECT_GT(most, 64) << "leaves do";
+  EXPECT_LE(most, 512);
+  EXPECT_EQ(result.statistics.rays.camera, total) << "the samples layer tells the truth";
+}
+
+TEST(AdaptiveSampling, ThePictureIsAsFarFromTheTruthAsTheErrorLayersSay) {
+  RenderOptions options = small_picture();
+  options.target_error = 0.03f;
+  const RenderResult adaptive = draw(options);
+  RenderOptions many = small_picture();
+  many.spp = 4096;
+  // Footprints follow the samples asked for: the same truth needs the same footprints.
+  many.footprint =
+      options.footprint * static_cast<float>(many.spp) / static_cast<float>(options.spp);
+  const RenderResult truth = draw(many);
+  const auto &a = channel(adaptive, "ao.R"), &b = channel(truth, "ao.R"),
+             &e = channel(adaptive, "error.ao");
+  double square = 0, predicted = 0;
+  for (std::size_t p = 0; p < a.size(); ++p) {
+    square += (a[p] - b[p]) * (a[p] - b[p]);
+    predicted += e[p] * e[p];
+  }
+  // 1,900 pixels: their sum of squares is known to 5 %; batches of 8 are stratified each, all
+  // samples together more so, and errors come out smaller than the batches say.
+  EXPECT_LT(square, 1.2 * predicted);
+  EXPECT_GT(square, 0.2 * predicted);
+  EXPECT_NEAR(mean(a), mean(b), 0.003);
+}
+
+TEST(AdaptiveSampling, TheSameCommandGivesTheSameBits) {
+  RenderOptions options = small_picture();
+  options.target_error = 0.05f;
+  const RenderResult first = draw(options), again = draw(options);
+  ASSERT_EQ(first.film.planes.size(), again.film.planes.size());
+  for (std::size_t i = 0; i < first.film.planes.size(); ++i) {
+    const auto &a = first.film.planes[i].pixels, &b = again.film.planes[i].pixels;
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0)
+        << first.film.planes[i].channel;
+  }
+}
+
+TEST(AdaptiveSampling, AHalvedTargetTakesAboutFourTimesTheSamples) {
+  RenderOptions options = small_picture();
+  options.light = false;
+  options.target_error = 0.04f;
+  const double coarse = static_cast<double>(draw(options).statistics.rays.camera);
+  options.target_error = 0.02f;
+  const double fine = static_cast<double>(draw(options).statistics.rays.camera);
+  const double least = 16.0 * options.width * options.height;
+  EXPECT_GT((fine - least) / (coarse - least), 3.0);
+  EXPECT_LT((fine - least) / (coarse - least), 8.0);
+}
+
+TEST(AdaptiveSampling, OptionsThatCannotBeAreRefused) {
+  RenderOptions options;
+  options.target_error = -0.1f;
+  EXPECT_THROW(validate(options), Error);
+  options.target_error = 0.1f;
+  options.max_spp = 4;
+  EXPECT_THROW(validate(options), Error) << "less than --spp";
+}
+
+TEST(BatchVariances, OfKnownBatchesAreTheirSampleVariance) {
+  // Sixty-four pixels alike, of two batches with means 0.2 and 0.6: variance 0.08.
+  const std::vector<std::uint32_t> samples(64, 2 * DAPPLE_BATCH);
+  const BatchMoments moments{std::vector<float>(64, 0.4f), std::vector<float>(64, 0.4f)};
+  for (const float variance : batch_variances(moments, samples, 8)) {
+    EXPECT_NEAR(variance, 0.08f, 1e-6f);
+  }
+}
+
+TEST(BatchVariances, NeighboursStandInWhereAPixelKnowsLittle) {
+  const std::vector<std::uint32_t> samples(9, 2 * DAPPLE_BATCH);
+  BatchMoments moments{std::vector<float>(9, 0.5f), std::vector<float>(9, 0.5f)};
+  // The middle pixel alone saw its batches differ: 0 and 1.
+  moments.squares[4] = 1.0f;
+  const std::vector<float> variances = batch_variances(moments, samples, 3);
+  // Its own 0.5 with weight 1, the neighbourhood's 0.5 / 9 with weight 4.
+  EXPECT_NEAR(variances[4], (0.5f + 4 * 0.5f / 9) / 5, 1e-6f);
+  EXPECT_NEAR(variances[0], 4 * 0.5f / 4 / 5, 1e-6f) << "a corner has four in its neighbourhood";
+}
+
+TEST(SamplePlan, NoPixelMoreThanDoublesAndAllEndAtTheMost) {
+  RenderOptions options;
+  options.target_error = 0.01f;
+  options.max_spp = 200;
+  SamplePlan plan(10, options);
+  EXPECT_EQ(plan.first().samples, 16u);
+  const std::vector<std::vector<float>> variances{std::vector<float>(10, 1.0f)};
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<std::uint32_t> before = plan.samples();
+    if (plan.next(variances).empty()) break;
+    for (std::size_t p = 0; p < before.size(); ++p) {
+      EXPECT_LE(plan.samples()[p], 2 * before[p]);
+      EXPECT_GT(plan.samples()[p], before[p]);
+    }
+  }
+  for (const std::uint32_t samples : plan.samples()) EXPECT_EQ(samples, 200u);
+}
+
+}  // namespace
+}  // namespace dapple
