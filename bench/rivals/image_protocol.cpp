@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include "rivals/ray_protocol.hpp"
 #include "rivals/reference_cache.hpp"
@@ -16,6 +17,9 @@ constexpr int kCalibrationRounds = 5;
 
 /// Samples a pixel from which the largest unoccluded irradiance is known well enough.
 constexpr int kLargestSpp = 256;
+
+/// Samples that the adaptive contestant gives every pixel.
+constexpr int kAdaptiveSpp = 8;
 
 /// AO rays a camera sample of the packet contestant.
 constexpr int kPacketRays = 16;
@@ -123,8 +127,7 @@ std::vector<Contestant> ImageStudy::contestants() {
     changes.ao_rays = kPacketRays;
     contestants.push_back(by_dapple("packet, 16 rays a sample", changes));
   }
-  // Further ways to render go here: a name, the options that differ, and, where effort is not
-  // samples a pixel, a ladder and a by_dapple() of their own (a target error, say).
+  contestants.push_back(adaptive());
   return contestants;
 }
 
@@ -142,6 +145,14 @@ Contestant ImageStudy::by_embree(const PictureMethod& method) {
   return contestant;
 }
 
+Outcome ImageStudy::render(const RenderOptions& options) {
+  const Picture picture = scene_.ours.render(options);
+  Outcome outcome{picture.trace_seconds, {}};
+  for (const PicturePass& pass : picture.passes)
+    outcome.values.insert(outcome.values.end(), pass.pixels.begin(), pass.pixels.end());
+  return outcome;
+}
+
 Contestant ImageStudy::by_dapple(const std::string& name, const RenderOptions& changes) {
   Contestant contestant{name, false, changes.estimator == Estimator::exact, {}, {}};
   for (int spp = 1; spp <= options_.most_spp; spp *= 2) contestant.ladder.push_back(spp);
@@ -149,11 +160,20 @@ Contestant ImageStudy::by_dapple(const std::string& name, const RenderOptions& c
     RenderOptions options = render_options(static_cast<int>(spp), seed);
     options.estimator = changes.estimator;
     options.ao_rays = changes.ao_rays;
-    const Picture picture = scene_.ours.render(options);
-    Outcome outcome{picture.trace_seconds, {}};
-    for (const PicturePass& pass : picture.passes)
-      outcome.values.insert(outcome.values.end(), pass.pixels.begin(), pass.pixels.end());
-    return outcome;
+    return render(options);
+  };
+  return contestant;
+}
+
+Contestant ImageStudy::adaptive() {
+  Contestant contestant{"adaptive", false, false, {}, {}};
+  for (double inverse_error = 5; inverse_error < 150; inverse_error *= std::numbers::sqrt2)
+    contestant.ladder.push_back(inverse_error);
+  contestant.run = [this](double inverse_error, std::uint32_t seed) {
+    RenderOptions options = render_options(kAdaptiveSpp, seed);
+    options.estimator = Estimator::prefiltered;
+    options.target_error = static_cast<float>(1 / inverse_error);
+    return render(options);
   };
   return contestant;
 }

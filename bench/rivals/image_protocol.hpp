@@ -33,6 +33,9 @@ class ImageStudy {
   void set_largest();
   void calibrate();
   Contestant by_embree(const PictureMethod& method);
+  Outcome render(const RenderOptions& options);
+  /// By target error: its efforts are one over that.
+  Contestant adaptive();
   Contestant by_dapple(const std::string& name, const RenderOptions& changes);
   [[nodiscard]] std::vector<double> relative(std::vector<double> irradiance) const;
   [[nodiscard]] std::string reference_key() const;
