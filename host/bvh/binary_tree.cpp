@@ -105,27 +105,34 @@ class Builder {
   Builder(BinaryTree& tree, std::uint32_t leaf_size)
       : nodes_(tree.nodes), order_(tree.order), leaf_size_(leaf_size) {}
 
-  void build(std::uint32_t index, std::uint32_t first, std::uint32_t count, int depth) {
-    const Extent extent = measure(first, count);
+  void build() {
+    const auto count = static_cast<std::uint32_t>(order_.size());
+    build(0, {0, count}, measure({0, count}), 0);
+  }
+
+ private:
+  struct Range {
+    std::uint32_t first, count;
+  };
+
+  void build(std::uint32_t index, Range range, const Extent& extent, int depth) {
     BinaryNode& node = nodes_[index];
-    node = {extent.box.box(), first, count, 0, 0};
-    if (count == 1) return;
-    const Binning binning(extent.centres2, count);
+    node = {extent.box.box(), range.first, range.count, 0, 0};
+    if (range.count == 1) return;
+    if (range.count == 2 && leaf_size_ >= 2) return build_pair(index, range.first, extent);
+    const Binning binning(extent.centres2, range.count);
     const Split split =
-        depth < kDeepest ? best_split(fill(binning, first, count), binning.bins_used) : Split{};
-    const float area = extent.box.half_area();
-    const bool as_leaf_is_cheaper =
-        split.axis < 0 ||
-        area + kPrimitiveCost * split.cost >= kPrimitiveCost * area * static_cast<float>(count);
-    if (count <= leaf_size_ && as_leaf_is_cheaper) return;
-    const std::uint32_t left_count = partition(binning, split, first, count);
+        depth < kDeepest ? best_split(fill(binning, range), binning.bins_used) : Split{};
+    if (range.count <= leaf_size_ && leaf_is_cheaper(extent, range.count, split.cost)) return;
+    Extent part[2];
+    const std::uint32_t left_count = partition(binning, split, range, part);
     node.left = index + 1;
     node.right = index + 2 * left_count;
-    const auto left = [&] { build(node.left, first, left_count, depth + 1); };
+    const auto left = [&] { build(node.left, {range.first, left_count}, part[0], depth + 1); };
     const auto right = [&] {
-      build(node.right, first + left_count, count - left_count, depth + 1);
+      build(node.right, {range.first + left_count, range.count - left_count}, part[1], depth + 1);
     };
-    if (count > kParallelSubtree) {
+    if (range.count > kParallelSubtree) {
       tbb::parallel_invoke(left, right);
     } else {
       left();
@@ -133,18 +140,35 @@ class Builder {
     }
   }
 
- private:
+  /// Two primitives: a third of all nodes, and there is only one way to split them.
+  void build_pair(std::uint32_t index, std::uint32_t first, const Extent& extent) {
+    const Loaded a = load(order_[first]), b = load(order_[first + 1]);
+    const Box4 box_a{a.lower, a.upper}, box_b{b.lower, b.upper};
+    if (leaf_is_cheaper(extent, 2, box_a.half_area() + box_b.half_area())) return;
+    nodes_[index].left = index + 1;
+    nodes_[index].right = index + 2;
+    nodes_[index + 1] = {box_a.box(), first, 1, 0, 0};
+    nodes_[index + 2] = {box_b.box(), first + 1, 1, 0, 0};
+  }
+
+  /// `split_cost`: areas of the parts times their primitives, summed; infinite without a split.
+  static bool leaf_is_cheaper(const Extent& extent, std::uint32_t count, float split_cost) {
+    const float area = extent.box.half_area();
+    return area + kPrimitiveCost * split_cost >= kPrimitiveCost * area * static_cast<float>(count);
+  }
+
   template <class Sum, class Add>
-  Sum reduce(std::uint32_t first, std::uint32_t count, const Sum& empty, const Add& add) const {
+  Sum reduce(Range range, const Sum& empty, const Add& add) const {
     const auto range_sum = [&](std::uint32_t begin, std::uint32_t end, Sum sum) {
       for (std::uint32_t i = begin; i < end; ++i) add(sum, load(order_[i]));
       return sum;
     };
-    if (count < kParallelBinning) return range_sum(first, first + count, empty);
+    const std::uint32_t end = range.first + range.count;
+    if (range.count < kParallelBinning) return range_sum(range.first, end, empty);
     return tbb::parallel_reduce(
-        tbb::blocked_range<std::uint32_t>(first, first + count, kParallelBinning / 4), empty,
-        [&](const auto& range, Sum sum) {
-          return range_sum(range.begin(), range.end(), std::move(sum));
+        tbb::blocked_range<std::uint32_t>(range.first, end, kParallelBinning / 4), empty,
+        [&](const auto& part, Sum sum) {
+          return range_sum(part.begin(), part.end(), std::move(sum));
         },
         [](Sum a, const Sum& b) {
           a.add(b);
@@ -152,12 +176,12 @@ class Builder {
         });
   }
 
-  Extent measure(std::uint32_t first, std::uint32_t count) const {
-    return reduce(first, count, Extent{}, [](Extent& e, const Loaded& prim) { e.add(prim); });
+  Extent measure(Range range) const {
+    return reduce(range, Extent{}, [](Extent& e, const Loaded& prim) { e.add(prim); });
   }
 
-  Bins fill(const Binning& binning, std::uint32_t first, std::uint32_t count) const {
-    return reduce(first, count, Bins(count >= kParallelBinning ? kBins : binning.bins_used),
+  Bins fill(const Binning& binning, Range range) const {
+    return reduce(range, Bins(range.count >= kParallelBinning ? kBins : binning.bins_used),
                   [&](Bins& bins, const Loaded& prim) {
                     const Int4 at = binning.bins(prim);
                     for (int a = 0; a < 3; ++a) {
@@ -191,15 +215,28 @@ class Builder {
     return best;
   }
 
-  /// Number of primitives that went left, in [1, count - 1].
-  std::uint32_t partition(const Binning& binning, const Split& split, std::uint32_t first,
-                          std::uint32_t count) {
-    if (split.axis < 0) return count / 2;
-    const auto begin = order_.begin() + first;
-    const auto middle = std::partition(begin, begin + count, [&](const PrimitiveBox& prim) {
-      return binning.bins(load(prim))[split.axis] <= split.last_left;
-    });
-    return static_cast<std::uint32_t>(middle - begin);
+  /// Number of primitives that went left, in [1, count - 1]; extents of both sides.
+  std::uint32_t partition(const Binning& binning, const Split& split, Range range,
+                          Extent (&part)[2]) {
+    if (split.axis < 0) {
+      const std::uint32_t half = range.count / 2;
+      part[0] = measure({range.first, half});
+      part[1] = measure({range.first + half, range.count - half});
+      return half;
+    }
+    // From both ends; what is looked at is measured on the way.
+    std::uint32_t left = range.first, right = range.first + range.count;
+    while (left < right) {
+      const Loaded prim = load(order_[left]);
+      const bool goes_right = binning.bins(prim)[split.axis] > split.last_left;
+      part[goes_right].add(prim);
+      if (goes_right) {
+        std::swap(order_[left], order_[--right]);
+      } else {
+        ++left;
+      }
+    }
+    return left - range.first;
   }
 
   std::vector<BinaryNode>& nodes_;
@@ -214,7 +251,7 @@ BinaryTree build_binary_tree(std::vector<PrimitiveBox> boxes, std::uint32_t leaf
   tree.order = std::move(boxes);
   const auto count = static_cast<std::uint32_t>(tree.order.size());
   tree.nodes.resize(2 * std::size_t{count} - 1);
-  Builder(tree, leaf_size).build(0, 0, count, 0);
+  Builder(tree, leaf_size).build();
   return tree;
 }
 
