@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "dapple/scene.hpp"
 
@@ -25,8 +26,9 @@ struct NormalMoments {
 struct NodeOpacity {
   V3f axes{0, 0, 0};  ///< opacity along x, y, z, [0,1]
   NormalMoments normals;
-  float clumping = 0;       ///< CoverageMap::clumping()
-  float concentration = 0;  ///< concentration_of(), [0,1]
+  float clumping = 0;         ///< CoverageMap::clumping()
+  float concentration = 0;    ///< concentration_of(), [0,1]
+  std::size_t triangles = 0;  ///< in the whole subtree
 };
 
 /// The concentration that makes centre_weight() of dapple/shared/opacity.h fit: from the mean

@@ -57,6 +57,7 @@ float mean_off_centre(const CoveringTriangle& t, const Box3f& box, int axis) {
 NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
   NodeOpacity opacity;
   opacity.normals = leaf.normals;
+  opacity.triangles = leaf.count;
   float variance = 0, greatest = 0, off_centre = 0, total = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const float face = face_area(box, axis);
@@ -91,9 +92,9 @@ class Prefilter {
     const auto add_inner = [&](unsigned slot, const Summary& below) {
       coverage.add(below.map, children[slot].box, below.areas);
       normals.add(below.normals);
-      set_child_opacity(object_.nodes[index], slot,
-                        map_opacity(below.map, below.normals, children[slot].box),
-                        children[slot].box);
+      NodeOpacity opacity = map_opacity(below.map, below.normals, children[slot].box);
+      opacity.triangles = tree_.nodes[children[slot].first].primitives;
+      set_child_opacity(object_.nodes[index], slot, opacity, children[slot].box);
     };
     const bool parallel = wide.primitives > kTaskPrimitives;
     std::vector<Summary> below(parallel ? wide.child_count : 0);
@@ -129,7 +130,9 @@ class Prefilter {
             return mean_opacity(t, u, v, share);
           });
     coverage.add(map, box, leaf.areas);
-    set_child_opacity(node, slot, map_opacity(map, leaf.normals, box), box);
+    NodeOpacity opacity = map_opacity(map, leaf.normals, box);
+    opacity.triangles = leaf.count;
+    set_child_opacity(node, slot, opacity, box);
     return leaf.normals;
   }
 
@@ -211,6 +214,7 @@ void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
 void prefilter(BuiltObject& built, const TextureIntegrals& integrals) {
   const Summary all = Prefilter(built, integrals).node(0);
   built.object.opacity = map_opacity(all.map, all.normals, built.object.box);
+  built.object.opacity.triangles = built.object.triangles;
 }
 
 }  // namespace dapple
