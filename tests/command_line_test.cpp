@@ -221,6 +221,30 @@ TEST_F(CommandLine, ARenderSaysWhatItMadeAndACropKeepsItsPlace) {
   EXPECT_NE(film.find("ao.R"), nullptr);
 }
 
+TEST_F(CommandLine, VisitsAreALayerAndAHeatMapBesideThePreview) {
+  const Outcome run = render("--passes ao,visits --png out.png --stats-json stats.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(bytes_of(path("out_visits.png")).substr(1, 3), "PNG");
+  const Film film = read_exr(path("out.exr"));
+  const Plane* nodes = film.find("visits.nodes");
+  ASSERT_NE(nodes, nullptr);
+  ASSERT_NE(film.find("visits.triangles"), nullptr);
+  // Every camera ray visits the root; the means add up to what the statistics count.
+  double sum = 0;
+  for (const float visits : nodes->pixels) {
+    EXPECT_GE(visits, 1);
+    sum += visits;
+  }
+  const auto json = nlohmann::json::parse(bytes_of(path("stats.json")));
+  const double samples = film.find("samples")->pixels.front();
+  double counted = 0;
+  for (const char* kind : {"camera", "ao"})
+    counted += json["node_visits_per_ray"][kind].get<double>() * json["rays"][kind].get<double>();
+  EXPECT_NEAR(sum * samples, counted, 1e-3 * counted);
+  EXPECT_EQ(render("--passes ao").code, 0);
+  EXPECT_EQ(read_exr(path("out.exr")).find("visits.nodes"), nullptr) << "only when asked for";
+}
+
 TEST_F(CommandLine, OnePixelAndOneColumnArePictures) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 2000}, {2000, 1}}) {
     const Outcome run = dapple("render 'scene:cube?divisions=1' -o out.exr -q --spp 1 --width " +

@@ -307,7 +307,7 @@ TEST(Procedural, AnUnknownSceneOrKeyIsRefusedWithTheKnownOnes) {
 }
 
 TEST(Procedural, AValueThatIsNoNumberOrOutOfRangeIsRefused) {
-  EXPECT_EQ(complaint("scene:tree?leaves=0"), "scene:tree: leaves=0 is outside [1, 5000000]");
+  EXPECT_EQ(complaint("scene:tree?leaves=0"), "scene:tree: leaves=0 is outside [1, 10000000]");
   EXPECT_EQ(complaint("scene:tree?leaves=1.5"), "scene:tree: leaves=1.5 is not a whole number");
   EXPECT_EQ(complaint("scene:tree?opacity=2"), "scene:tree: opacity=2 is outside [0, 1]");
   EXPECT_EQ(complaint("scene:tree?opacity=nan"), "scene:tree: opacity=nan is outside [0, 1]");

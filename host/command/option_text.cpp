@@ -73,14 +73,17 @@ Estimator parse_estimator(const std::string& text) {
 }
 
 void parse_passes(const std::string& text, RenderOptions& options) {
-  options.ao = options.light = false;
+  options.ao = options.light = options.visits = false;
   for (const std::string& pass : split(text, ',')) {
     if (pass == "ao") {
       options.ao = true;
     } else if (pass == "light") {
       options.light = true;
+    } else if (pass == "visits") {
+      options.visits = true;
     } else {
-      throw Error(ErrorKind::usage, fmt::format("--passes {}: there are ao and light", text));
+      throw Error(ErrorKind::usage,
+                  fmt::format("--passes {}: there are ao, light and visits", text));
     }
   }
 }

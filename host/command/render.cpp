@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "command/command.hpp"
@@ -55,7 +56,9 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
          "--footprint", o.footprint,
          "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
       ->capture_default_str();
-  app.add_option("--passes", a.passes, "Which passes to make: ao, light or both")
+  app.add_option(
+         "--passes", a.passes,
+         "Which passes to make, with commas between: ao, light; visits: what the others' rays cost")
       ->capture_default_str();
   app.add_option("--ao-distance", o.ao_distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
@@ -116,6 +119,13 @@ void check_outputs(const RenderArguments& a) {
   }
 }
 
+/// Where the heat map goes that accompanies a preview: tree.png, tree_visits.png.
+std::string visits_path(const std::string& png) {
+  const std::filesystem::path path(png);
+  return (path.parent_path() / (path.stem().string() + "_visits" + path.extension().string()))
+      .string();
+}
+
 void run_render(const RenderArguments& a) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point start) {
@@ -136,6 +146,8 @@ void run_render(const RenderArguments& a) {
   const auto writing = Clock::now();
   write_exr(result.film, a.output);
   if (!a.png.empty()) write_png(result.film, a.png);
+  if (!a.png.empty() && options.visits)
+    write_heat_map(result.film, visits_path(a.png), "visits.nodes");
   RenderStatistics& statistics = result.statistics;
   statistics.seconds.load = load_seconds;
   statistics.seconds.write = since(writing);
@@ -155,7 +167,8 @@ Run add_render_command(CLI::App& app) {
                  "glTF file (.gltf, .glb) or a procedural scene, \"scene:tree?leaves=50000\"")
       ->required();
   app.add_option("-o,--output", a->output, "OpenEXR file to write")->required();
-  app.add_option("--png", a->png, "Also write an 8-bit preview");
+  app.add_option("--png", a->png,
+                 "Also write an 8-bit preview, and with visits a heat map F_visits.png");
   add_picture_options(app, *a);
   add_scene_options(app, *a);
   app.add_option("--device", a->options.device,
@@ -167,7 +180,8 @@ Run add_render_command(CLI::App& app) {
   app.footer(
       "Example:\n  dapple render tree.glb --opacity leaf=0.85 --spp 64 -o tree.exr --png "
       "tree.png\n\n"
-      "Layers: R,G,B,A; ao; bent; light.NAME; N; P; Z; samples. Where rays miss, ao is 1.");
+      "Layers: R,G,B,A; ao; bent; light.NAME; N; P; Z; samples; error; visits. Where rays miss, ao "
+      "is 1.");
   return [a] { run_render(*a); };
 }
 

@@ -18,20 +18,6 @@ double larger_difference(double so_far, float a, float b) {
 
 }  // namespace
 
-Rgb heat_color(double heat) {
-  constexpr std::size_t kLast = kHeatRamp.size() - 1;
-  const double clamped = heat > 0 ? std::min(heat, 1.0) : 0.0;  // NaN becomes 0
-  const double place = clamped * static_cast<double>(kLast);
-  const std::size_t index = std::min(static_cast<std::size_t>(place), kLast - 1);
-  const double part = place - static_cast<double>(index);
-  Rgb color{};
-  for (std::size_t c = 0; c < color.size(); ++c) {
-    const double mixed = (1 - part) * kHeatRamp[index][c] + part * kHeatRamp[index + 1][c];
-    color[c] = static_cast<std::uint8_t>(std::lround(mixed));
-  }
-  return color;
-}
-
 double hottest_difference(const Tone& tone_b, double scale) {
   return 1 / (scale * static_cast<double>(tone_b.scale));
 }

@@ -2,40 +2,14 @@
 // orange to pale yellow where they differ, green where a number has no counterpart.
 #pragma once
 
-#include <array>
-#include <cstdint>
-
 #include "compare/layers.hpp"
+#include "film/heat_color.hpp"
 #include "film/png.hpp"
 
 namespace dapple {
 
-using Rgb = std::array<std::uint8_t, 3>;
-
-/// Every 17th colour of magma, by Nathaniel J. Smith and Stefan van der Walt (CC0): lightness
-/// rises evenly, so that equal steps look equal, in grey and to the colour-blind as well.
-inline constexpr std::array<Rgb, 16> kHeatRamp{{{0x00, 0x00, 0x04},
-                                                {0x0B, 0x09, 0x24},
-                                                {0x20, 0x11, 0x4B},
-                                                {0x3B, 0x0F, 0x70},
-                                                {0x57, 0x15, 0x7E},
-                                                {0x72, 0x1F, 0x81},
-                                                {0x8C, 0x29, 0x81},
-                                                {0xA8, 0x32, 0x7D},
-                                                {0xC4, 0x3C, 0x75},
-                                                {0xDE, 0x49, 0x68},
-                                                {0xF1, 0x60, 0x5D},
-                                                {0xFA, 0x7F, 0x5E},
-                                                {0xFE, 0x9F, 0x6D},
-                                                {0xFE, 0xBF, 0x84},
-                                                {0xFD, 0xDE, 0x9F},
-                                                {0xFC, 0xFD, 0xBF}}};
-
 /// NaN, or infinity against anything else: no colour of the ramp.
 inline constexpr Rgb kNoNumberColor{0x00, 0xFF, 0x00};
-
-/// The ramp's colour at `heat`, clamped to [0,1]; NaN counts as 0.
-Rgb heat_color(double heat);
 
 /// The difference that gets the ramp's last colour: 1 / scale of the range that previews show
 /// (1 for AO and RGBA, the largest value in B for lights, B's range for Z and P, 2 for N).

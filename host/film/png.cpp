@@ -16,6 +16,7 @@
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
 #include "film/film_defect.hpp"
+#include "film/heat_color.hpp"
 #include "film/output_file.hpp"
 
 namespace dapple {
@@ -133,6 +134,21 @@ void write_png(const Film& film, const std::string& path, const std::string& lay
   const std::string defect = film_defect(film);
   if (!defect.empty()) throw Error(ErrorKind::failed, "cannot write " + path + ": " + defect);
   const ByteImage image = layer_image(film, layer, layer_tone(film, layer));
+  write_whole_file(path, encode_png(image, path));
+}
+
+void write_heat_map(const Film& film, const std::string& path, const std::string& channel) {
+  const std::string defect = film_defect(film);
+  if (!defect.empty()) throw Error(ErrorKind::failed, "cannot write " + path + ": " + defect);
+  const Plane* plane = film.find(channel);
+  if (plane == nullptr) refuse_layer(film, channel);
+  const float largest = finite_range({plane}).high;
+  ByteImage image{film.data_window.width(), film.data_window.height(), 3, {}};
+  image.bytes.reserve(plane->pixels.size() * 3);
+  for (const float value : plane->pixels) {
+    const Rgb color = heat_color(largest > 0 ? value / largest : 0.0f);
+    image.bytes.insert(image.bytes.end(), color.begin(), color.end());
+  }
   write_whole_file(path, encode_png(image, path));
 }
 

@@ -20,7 +20,7 @@ struct Recipe {
 };
 
 Parameter leaves_of(double count, const char* help) {
-  return {"leaves", count, 1, 5'000'000, true, help};
+  return {"leaves", count, 1, 10'000'000, true, help};
 }
 
 Parameter opacity_of(const char* material, double value) {

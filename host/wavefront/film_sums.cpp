@@ -151,6 +151,19 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
   s.light = {per_ray(visits, s.rays.light), per_ray(tests, s.rays.light)};
 }
 
+/// What a camera sample and the rays that it brings cost, a pixel's mean.
+void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
+                const FilmLayout& layout, const RenderOptions& options) {
+  const auto total = [&](std::uint32_t p, std::uint32_t which) {
+    double sum = sums.at(8 + which, p);
+    if (options.ao) sum += sums.at(layout.ao + 4 + which, p);
+    for (const std::uint32_t light : layout.lights) sum += sums.at(light + 2 + which, p);
+    return sum / picture.samples[p];
+  };
+  planes.add("visits.nodes", [&](std::uint32_t p) { return total(p, 0); });
+  planes.add("visits.triangles", [&](std::uint32_t p) { return total(p, 1); });
+}
+
 }  // namespace
 
 FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
@@ -223,6 +236,7 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
                        : std::numeric_limits<double>::infinity();
   });
   planes.add("samples", spp);
+  if (options.visits) add_visits(planes, sums, picture, layout, options);
   for (std::size_t pass = 0; pass < picture.errors.size(); ++pass) {
     const bool is_ao = options.ao && pass == 0;
     planes.add("error." + (is_ao ? "ao" : layers[pass - (options.ao ? 1 : 0)]),

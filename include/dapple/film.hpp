@@ -57,4 +57,8 @@ Film read_exr(const std::string& path);
 /// value. Throws Error usage when there is no such layer, otherwise failed.
 void write_png(const Film& film, const std::string& path, const std::string& layer = "");
 
+/// Writes an 8-bit heat map of one channel: black at 0, pale yellow at its largest value. Throws
+/// Error usage when there is no such channel, otherwise failed.
+void write_heat_map(const Film& film, const std::string& path, const std::string& channel);
+
 }  // namespace dapple

@@ -46,6 +46,7 @@ struct RenderOptions {
   float footprint = 1.0f;    ///< footprint scale, >= 0; 0 is exact
   bool ao = true;            ///< make the AO pass
   bool light = true;         ///< make the light passes
+  bool visits = false;       ///< make layers of what rays cost
   float ao_distance = 0.0f;  ///< metres; 0 is no limit
   float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
   std::string camera;        ///< by name; empty: the first, or one that frames the scene
