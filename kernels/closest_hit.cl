@@ -2,6 +2,7 @@
    A surface of opacity a is met with probability a, decided by hashing the ray's key with
    primitive and instance, so that stacked layers are independent. */
 #include "pass_params.h"
+#include "prefetch.clh"
 #include "random.clh"
 #include "triangle_block.clh"
 
@@ -98,6 +99,7 @@ inline Nearest find_closest(Scene scene, SceneParams where, Ray ray) {
       uint next;
       if (inner_mask >> slot & 1u) {
         next = node->child_base + popcount(inner_mask & ((1u << slot) - 1u));
+        prefetch_node(scene.nodes + next);
       } else if (in_top) {
         next = DAPPLE_INSTANCE_ENTRY | (node->prim_base + bvh_leaf_end(node->leaf_end, slot) - 1u);
       } else {

@@ -88,6 +88,7 @@ float mean_transmittance(float depth, float variance) {
 /// many triangles. Neighbouring small nodes hide the same rays more than independent ones would,
 /// and a little too much light in each sets their product right (measured on trees).
 float compensation(std::size_t triangles) {
+  if (triangles == 0) return 1.0f;
   return std::clamp(std::log2(static_cast<float>(triangles) + 1.0f) / 12.0f, 0.0f, 1.0f);
 }
 

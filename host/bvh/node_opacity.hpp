@@ -28,7 +28,7 @@ struct NodeOpacity {
   NormalMoments normals;
   float clumping = 0;         ///< CoverageMap::clumping()
   float concentration = 0;    ///< concentration_of(), [0,1]
-  std::size_t triangles = 0;  ///< in the whole subtree
+  std::size_t triangles = 0;  ///< in the whole subtree; 0: many
 };
 
 /// The concentration that makes centre_weight() of dapple/shared/opacity.h fit: from the mean

@@ -37,8 +37,11 @@ WideTree collapse(const BinaryTree& tree) {
   wide.nodes.reserve(tree.order.size() / 4 + 1);
   std::vector<std::uint32_t> source{0};  // binary node of each wide node
   wide.nodes.emplace_back();
-  // Breadth first, by groups of siblings: children of a node are appended together.
-  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
+  // Depth first, by groups of siblings: what a ray visits together lies together.
+  std::vector<std::uint32_t> waiting{0};
+  while (!waiting.empty()) {
+    const std::uint32_t n = waiting.back();
+    waiting.pop_back();
     WideNode node;
     node.box = tree.nodes[source[n]].box;
     node.primitives = tree.nodes[source[n]].count;
@@ -58,6 +61,10 @@ WideTree collapse(const BinaryTree& tree) {
       }
     }
     wide.nodes[n] = node;
+    for (unsigned slot = node.child_count; slot-- > 0;) {
+      const WideChild& child = wide.children[node.first_child + slot];
+      if (child.count == 0) waiting.push_back(child.first);
+    }
   }
   wide.nodes.shrink_to_fit();
   wide.children.shrink_to_fit();
