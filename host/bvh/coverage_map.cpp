@@ -212,7 +212,7 @@ std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> tr
   return done;
 }
 
-bool side_by_side(const CoveringTriangle& a, const CoveringTriangle& b, int axis) {
+unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b) {
   const V3f p[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
   const V3f q[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
   // Edges are stored rounded: corners that were one may differ by a few roundings.
@@ -228,23 +228,23 @@ bool side_by_side(const CoveringTriangle& a, const CoveringTriangle& b, int axis
       }
     }
   }
-  if (count < 2 || shared[0][0] == shared[1][0] || shared[0][1] == shared[1][1]) return false;
+  if (count < 2 || shared[0][0] == shared[1][0] || shared[0][1] == shared[1][1]) return 0;
   const V3f& from = p[shared[0][0]];
   const V3f edge = p[shared[1][0]] - from;
   const V3f third_a = p[3 - shared[0][0] - shared[1][0]] - from;
   const V3f third_b = q[3 - shared[0][1] - shared[1][1]] - from;
-  return edge.cross(third_a)[axis] * edge.cross(third_b)[axis] < 0.0f;
+  const V3f turn_a = edge.cross(third_a), turn_b = edge.cross(third_b);
+  unsigned axes = 0;
+  for (int axis = 0; axis < 3; ++axis) axes |= unsigned{turn_a[axis] * turn_b[axis] < 0.0f} << axis;
+  return axes;
 }
 
 bool is_single_layer(std::span<const CoveringTriangle> triangles) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t t = 1; t < triangles.size(); ++t) {
-      bool joined = false;
-      for (std::size_t other = 0; other < t && !joined; ++other) {
-        joined = side_by_side(triangles[other], triangles[t], axis);
-      }
-      if (!joined) return false;
-    }
+  for (std::size_t t = 1; t < triangles.size(); ++t) {
+    unsigned axes = 0;
+    for (std::size_t other = 0; other < t && axes != 7u; ++other)
+      axes |= side_by_side(triangles[other], triangles[t]);
+    if (axes != 7u) return false;
   }
   return true;
 }

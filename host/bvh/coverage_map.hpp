@@ -140,8 +140,8 @@ struct HiddenCells {
   void flush(std::array<float, kMapCells>& map);
 };
 
-/// Whether two triangles share an edge and lie on either side of it, seen along `axis`.
-bool side_by_side(const CoveringTriangle& a, const CoveringTriangle& b, int axis);
+/// Bit k is set where two triangles share an edge and lie on either side of it, seen along axis k.
+unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b);
 
 template <class OpacityAt>
 void add_varying(HiddenCells& cells, const CellTriangle& t, const CellCoverage& coverage,
@@ -180,7 +180,8 @@ void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle>
       // A group: this triangle and every later one beside a member of it.
       for (std::size_t t = first; t < triangles.size(); ++t) {
         const auto beside = [&](std::size_t other) {
-          return (done >> other & 1u) && side_by_side(triangles[other], triangles[t], axis);
+          return (done >> other & 1u) &&
+                 (side_by_side(triangles[other], triangles[t]) >> axis & 1u);
         };
         bool joins = t == first;
         for (std::size_t other = first; other < t && !joins; ++other) joins = beside(other);

@@ -45,9 +45,9 @@ struct Leaf {
 float mean_off_centre(const CoveringTriangle& t, const Box3f& box, int axis) {
   float sum = 0;
   for (const int k : {column_axis(axis), row_axis(axis)}) {
-    const float half = 0.5f * (box.max[k] - box.min[k]);
-    const float a = (t.vertex[k] - box.min[k]) / half - 1.0f;
-    const float b = a + t.edge1[k] / half, c = a + t.edge2[k] / half;
+    const float halves = 2.0f / (box.max[k] - box.min[k]);
+    const float a = (t.vertex[k] - box.min[k]) * halves - 1.0f;
+    const float b = a + t.edge1[k] * halves, c = a + t.edge2[k] * halves;
     sum += (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0f;
   }
   return sum;
