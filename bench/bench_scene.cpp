@@ -36,8 +36,7 @@ SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, CameraPa
   rays.camera.work = context.allocate(work.size() * sizeof(PixelWork));
   context.write(rays.camera.work, work.data(), work.size() * sizeof(PixelWork));
   camera.slice = {0, static_cast<uint>(kPixels), 0, 1};
-  camera_pass(context, rays.camera, camera);
-  closest_hit_pass(context, scene, rays.camera, kPixels);
+  camera_pass(context, scene, rays.camera, camera);
   const std::uint32_t hits = compact_pass(context, rays.camera, kPixels);
   if (hits == 0) throw Error(ErrorKind::failed, "the camera sees nothing of the scene");
   rays.ao_count = std::size_t{hits} * kRaysPerPoint;

@@ -1,47 +1,51 @@
-/* The camera pass: a ray through a stratified place in its pixel (box filter). */
-#include "pass_params.h"
-#include "random.clh"
-#include "scene.clh"
+/* The camera pass: where the slice's camera rays meet the scene, a beam of them an item. */
+#include "beam_nearest.clh"
+#include "camera.clh"
+#include "surface_point.clh"
 
-__kernel void camera_rays(__global const PixelWork* work, __global Ray* rays,
-                          __global SurfacePoint* points, CameraParams params) {
-  const uint item = get_global_id(0);
-  const SliceParams slice = params.slice;
-  if (item >= slice.pixel_count * slice.sample_count) return;
-  const PixelWork entry = work[slice.first_work + item / slice.sample_count];
-  const uint crop_pixel = entry.pixel;
-  const uint sample = entry.first_sample + slice.first_sample + item % slice.sample_count;
-  const uint column = params.crop_x + crop_pixel % params.crop_width;
-  const uint row = params.crop_y + crop_pixel / params.crop_width;
-  const uint pixel = row * params.width + column;
-  const float2 jitter = sample_2d(pixel, sample, DAPPLE_PAIR_PIXEL, params.seed);
-  const float x = (2.0f * (column + jitter.x) / params.width - 1.0f) * params.half_width;
-  const float y = (1.0f - 2.0f * (row + jitter.y) / params.height) * params.half_height;
-  const float pixel_area = 4.0f * params.half_width * params.half_height /
-                           ((float)params.width * (float)params.height) * params.inverse_spp;
-  const float* m = params.to_world;
-  float3 origin = (float3)(m[3], m[7], m[11]);
-  float3 direction = (float3)(-m[2], -m[6], -m[10]);
-  float solid_angle = 0.0f, first_area = 0.0f;
-  const float3 aside = x * (float3)(m[0], m[4], m[8]) + y * (float3)(m[1], m[5], m[9]);
-  if (params.orthographic) {
-    origin += aside;
-    first_area = pixel_area;
-  } else {
-    direction += aside;
-    const float stretch = rsqrt(dot(direction, direction));
-    solid_angle = pixel_area * stretch * stretch * stretch;
+/* Stores what sample i of the beam met. */
+inline void store_hit(Scene scene, const CameraSamples* samples, const BeamRays* rays,
+                      const float* area, const BeamNearest* nearest, uint i,
+                      __global SurfacePoint* point) {
+  const float3 direction = (float3)(((const float*)&rays->direction[0])[i],
+                                    ((const float*)&rays->direction[1])[i],
+                                    ((const float*)&rays->direction[2])[i]);
+  store_point(scene, nearest_of_ray(nearest, i).hit, direction, area[i], point);
+  point->pixel = samples->pixel[i];
+  point->sample = samples->sample[i];
+}
+
+/* Points of samples that miss are left as they are. */
+__kernel void camera_hits(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                          __global const TexturedTriangle* textured,
+                          __global const TextureRecord* textures, __global const uchar* texels,
+                          __global const InstanceRecord* instances,
+                          __global const PixelWork* work, __global SurfacePoint* points,
+                          __global CameraBeam* beams, CameraParams params) {
+  const uint samples = params.slice.pixel_count * params.slice.sample_count;
+  const uint first = get_global_id(0) * DAPPLE_BEAM_RAYS;
+  if (first >= samples) return;
+  const Scene scene = {nodes, blocks, textured, textures, texels, instances};
+  const uint count = min(samples - first, DAPPLE_BEAM_RAYS);
+  CameraSamples chosen;
+  choose_samples(work, params, first, count, &chosen);
+  BeamRays rays;
+  float16 solid_angle, first_area;
+  aim(params, &chosen, &rays, &solid_angle, &first_area);
+  BeamNearest nearest;
+  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) nearest.t.f[i] = i < count ? INFINITY : 0.0f;
+  nearest.u.v = nearest.v.v = (float16)(0.0f);
+  nearest.triangle.v = nearest.instance.v = (int16)(0);
+  nearest.farthest = INFINITY;
+  nearest.visits = nearest.tests = 0u;
+  find_nearest(scene, params.scene, &rays, chosen.key, &nearest);
+  const uint hits = bits_of_rays((nearest.t.v > 0.0f) & (nearest.t.v < INFINITY));
+  BeamFloats area;
+  area.v = first_area + solid_angle * nearest.t.v * nearest.t.v;
+  for (uint left = hits; left; left &= left - 1u) {
+    const uint i = popcount((left & -left) - 1u);
+    store_hit(scene, &chosen, &rays, area.f, &nearest, i, points + first + i);
   }
-  direction = normalize(direction);
-  __global Ray* ray = rays + item;
-  store3(ray->origin, origin);
-  store3(ray->direction, direction);
-  ray->t_max = INFINITY;
-  ray->solid_angle = solid_angle;
-  ray->first_area = first_area;
-  ray->light = 0;
-  ray->weight = 1.0f;
-  ray->key = hash_pair(hash_pair(pixel, sample), params.seed);
-  points[item].pixel = pixel;
-  points[item].sample = sample;
+  const CameraBeam found = {hits, 0u, nearest.visits, nearest.tests};
+  beams[get_global_id(0)] = found;
 }

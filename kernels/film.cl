@@ -1,5 +1,6 @@
 /* Resolving: one item a pixel adds up the pixel's samples of the slice, in order, into
    64-bit fixed point planes, so that the sum does not depend on slices or threads. */
+#include "camera_beams.clh"
 #include "pass_params.h"
 #include "scene.clh"
 
@@ -27,56 +28,74 @@ inline uint pixel_of(__global const PixelWork* work, ResolveParams params, uint 
   return work[params.slice.first_work + local_pixel].pixel;
 }
 
-/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. */
+typedef struct SurfaceSums {
+  long hits, depth;
+  long normal[3], position[3];
+} SurfaceSums;
+
+inline void add_point(SurfaceSums* sums, ResolveParams params, __global const SurfacePoint* point) {
+  float along = 0.0f;
+  ++sums->hits;
+  for (uint axis = 0; axis < 3; ++axis) {
+    sums->normal[axis] += fixed_point(point->normal[axis], params.scale);
+    sums->position[axis] += fixed_point(point->position[axis], params.position_scale);
+    along += (point->position[axis] - params.eye[axis]) * params.axis[axis];
+  }
+  sums->depth += fixed_point(along, params.depth_scale);
+}
+
+/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. A beam's visits count in full for
+   each of its samples. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
-                              __global long* film, ResolveParams params) {
+                              __global const CameraBeam* beams, __global long* film,
+                              ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
-  long hits = 0, visits = 0, tests = 0, depth = 0;
-  long normal[3] = {0, 0, 0}, position[3] = {0, 0, 0};
-  for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const SurfacePoint point = points[local_pixel * params.slice.sample_count + s];
-    visits += point.visits & 65535u;
-    tests += point.visits >> 16;
-    if (point.t < 0.0f) continue;
-    ++hits;
-    float along = 0.0f;
-    for (uint axis = 0; axis < 3; ++axis) {
-      normal[axis] += fixed_point(point.normal[axis], params.scale);
-      position[axis] += fixed_point(point.position[axis], params.position_scale);
-      along += (point.position[axis] - params.eye[axis]) * params.axis[axis];
+  SurfaceSums sums = {0, 0, {0, 0, 0}, {0, 0, 0}};
+  long visits = 0, tests = 0;
+  const uint begin = local_pixel * params.slice.sample_count;
+  const uint end = begin + params.slice.sample_count;
+  for (uint b = begin / DAPPLE_BEAM_RAYS; b * DAPPLE_BEAM_RAYS < end; ++b) {
+    const CameraBeam beam = beams[b];
+    const uint range = beam_range(b, begin, end);
+    visits += (long)beam.visits * popcount(range);
+    tests += (long)beam.tests * popcount(range);
+    for (uint left = beam.hits & range; left; left &= left - 1u) {
+      add_point(&sums, params, points + b * DAPPLE_BEAM_RAYS + popcount((left & -left) - 1u));
     }
-    depth += fixed_point(along, params.depth_scale);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
-  add_to_plane(film, params, 0, pixel, hits);
-  for (uint axis = 0; axis < 3; ++axis) {
-    add_to_plane(film, params, 1 + axis, pixel, normal[axis]);
-    add_to_plane(film, params, 4 + axis, pixel, position[axis]);
-  }
-  add_to_plane(film, params, 7, pixel, depth);
   add_to_plane(film, params, 8, pixel, visits);
   add_to_plane(film, params, 9, pixel, tests);
+  if (!sums.hits) return;
+  add_to_plane(film, params, 0, pixel, sums.hits);
+  for (uint axis = 0; axis < 3; ++axis) {
+    add_to_plane(film, params, 1 + axis, pixel, sums.normal[axis]);
+    add_to_plane(film, params, 4 + axis, pixel, sums.position[axis]);
+  }
+  add_to_plane(film, params, 7, pixel, sums.depth);
 }
 
 /* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
    is 0 where samples missed. */
-__kernel void resolve_ao(__global const PixelWork* work, __global const SurfacePoint* points,
-                         __global const uint* slot, __global const Ray* rays,
+__kernel void resolve_ao(__global const PixelWork* work, __global const CameraBeam* beams,
+                         __global const Ray* rays,
                          __global const Occlusion* occlusions, __global long* film,
                          __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
+  const uint begin = local_pixel * params.slice.sample_count;
+  if (!any_sample_hit(beams, begin, begin + params.slice.sample_count)) return;
   long sum = 0, visits = 0, tests = 0;
   long bent[3] = {0, 0, 0};
   Batches batches = {0.0f, 0.0f};
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const uint sample = local_pixel * params.slice.sample_count + s;
-    const bool missed = points[sample].t < 0.0f;
+    const bool hit = sample_hit(beams, begin + s);
+    const uint first = hit ? sample_slot(beams, begin + s) * params.rays : 0u;
     float value = 0.0f;
-    for (uint r = 0; !missed && r < params.rays; ++r) {
-      const uint item = slot[sample] * params.rays + r;
+    for (uint r = 0; hit && r < params.rays; ++r) {
+      const uint item = first + r;
       const Occlusion found = occlusions[item];
       value += (1.0f - found.transmittance) * inverse_rays;
       sum += fixed_point(found.transmittance, params.scale);
@@ -97,21 +116,23 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SurfaceP
 }
 
 /* Planes: irradiance at radiance 1, the same unoccluded, visits, tests. */
-__kernel void resolve_light(__global const PixelWork* work, __global const SurfacePoint* points,
-                            __global const uint* slot, __global const Ray* rays,
+__kernel void resolve_light(__global const PixelWork* work, __global const CameraBeam* beams,
+                            __global const Ray* rays,
                             __global const Occlusion* occlusions, __global long* film,
                             __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
+  const uint begin = local_pixel * params.slice.sample_count;
+  if (!any_sample_hit(beams, begin, begin + params.slice.sample_count)) return;
   long shadowed = 0, unoccluded = 0, visits = 0, tests = 0;
   Batches batches = {0.0f, 0.0f};
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const uint sample = local_pixel * params.slice.sample_count + s;
-    const bool missed = points[sample].t < 0.0f;
+    const bool hit = sample_hit(beams, begin + s);
+    const uint first = hit ? sample_slot(beams, begin + s) * params.rays : 0u;
     float value = 0.0f;
-    for (uint r = 0; !missed && r < params.rays; ++r) {
-      const uint item = slot[sample] * params.rays + r;
+    for (uint r = 0; hit && r < params.rays; ++r) {
+      const uint item = first + r;
       const Occlusion found = occlusions[item];
       const float weight = rays[item].weight;
       value += weight * found.transmittance * inverse_rays;

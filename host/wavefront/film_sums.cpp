@@ -135,7 +135,8 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
                   const RenderOptions& options, std::size_t lights, RenderStatistics& s) {
   const double hits = sums.total(0);
   s.rays.camera = std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0});
-  s.camera = {per_ray(sums.total(8), s.rays.camera), per_ray(sums.total(9), s.rays.camera)};
+  s.camera = {per_ray(sums.total(8) / DAPPLE_BEAM_RAYS, s.rays.camera),
+              per_ray(sums.total(9), s.rays.camera)};
   if (options.ao) {
     s.rays.ao = static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.ao_rays);
     s.ao = {per_ray(sums.total(layout.ao + 4), s.rays.ao),
@@ -155,7 +156,7 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
 void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
                 const FilmLayout& layout, const RenderOptions& options) {
   const auto total = [&](std::uint32_t p, std::uint32_t which) {
-    double sum = sums.at(8 + which, p);
+    double sum = sums.at(8 + which, p) / (which == 0 ? DAPPLE_BEAM_RAYS : 1u);
     if (options.ao) sum += sums.at(layout.ao + 4 + which, p);
     for (const std::uint32_t light : layout.lights) sum += sums.at(light + 2 + which, p);
     return sum / picture.samples[p];

@@ -16,8 +16,15 @@ constexpr uint kLeastPacket = 6;
 /// Rays that one item of the packet kernel takes; DAPPLE_PACKET_RAYS in kernels/packet_rays.clh.
 constexpr uint kPacketRays = 64;
 
-/// Items a work-group: of packets few, so that small slices keep all threads busy.
-constexpr std::size_t kRayGroup = 64, kPacketGroup = 16;
+/// Items a work-group: of packets and beams few, so that small slices keep all threads busy.
+constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 8;
+
+/// Rays that one item of the AO ray kernel makes; DAPPLE_AO_LANES in kernels/ao.cl.
+constexpr std::size_t kAoLanes = 16;
+
+std::size_t beams_of(std::size_t samples) {
+  return (samples + DAPPLE_BEAM_RAYS - 1) / DAPPLE_BEAM_RAYS;
+}
 
 const KernelName kPacket{"packet", "packet", {}};
 
@@ -30,7 +37,7 @@ KernelName occlusion_kernel(Estimator estimator, uint rays_per_point) {
   return {"occlusion", "occlusion", Variant{estimator != Estimator::exact}};
 }
 
-const KernelName kCameraRays{"camera_rays", "camera", {}};
+const KernelName kCameraHits{"camera_hits", "camera", {}};
 const KernelName kClosestHit{"closest_hit", "closest_hit", {}};
 const KernelName kCompactHits{"compact_hits", "compact", {}};
 const KernelName kAoRays{"ao_rays", "ao", {}};
@@ -42,7 +49,7 @@ const KernelName kResolveLight{"resolve_light", "film", {}};
 }  // namespace
 
 std::size_t Queues::bytes() const {
-  return work.bytes() + rays.bytes() + points.bytes() + slots.bytes() + active.bytes() +
+  return work.bytes() + rays.bytes() + points.bytes() + beams.bytes() + active.bytes() +
          active_count.bytes() + occlusions.bytes();
 }
 
@@ -50,17 +57,22 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
   Queues queues;
   queues.rays = context.allocate(samples * rays_per_sample * sizeof(Ray));
   queues.points = context.allocate(samples * sizeof(SurfacePoint));
-  queues.slots = context.allocate(samples * sizeof(uint));
+  queues.beams = context.allocate(beams_of(samples) * sizeof(CameraBeam));
   queues.active = context.allocate(samples * sizeof(uint));
   queues.active_count = context.allocate(sizeof(uint));
   queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
   return queues;
 }
 
-void camera_pass(DeviceContext& context, const Queues& queues, const CameraParams& params) {
+void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                 const CameraParams& params) {
   const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
-  context.launch(kCameraRays, "camera rays", samples,
-                 {queues.work, queues.rays, queues.points, params});
+  CameraParams camera = params;
+  camera.scene = scene.params;
+  context.launch(kCameraHits, "camera", beams_of(samples),
+                 {scene.nodes, scene.blocks, scene.textured, scene.textures, scene.texels,
+                  scene.instances, queues.work, queues.points, queues.beams, camera},
+                 kBeamGroup);
 }
 
 void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -76,7 +88,7 @@ void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const 
 std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples) {
   context.launch(
       kCompactHits, "compact", kScanItems,
-      {queues.points, queues.slots, queues.active, queues.active_count, static_cast<uint>(samples)},
+      {queues.beams, queues.active, queues.active_count, static_cast<uint>(beams_of(samples))},
       kScanItems);
   std::uint32_t count = 0;
   context.read(queues.active_count, &count, sizeof count);
@@ -84,8 +96,9 @@ std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::si
 }
 
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
-  context.launch(kAoRays, "ao rays", std::size_t{params.point_count} * params.rays,
-                 {queues.points, queues.active, queues.rays, params});
+  const std::size_t rays = std::size_t{params.point_count} * params.rays;
+  context.launch(kAoRays, "ao rays", (rays + kAoLanes - 1) / kAoLanes,
+                 {queues.points, queues.active, queues.rays, params}, kBeamGroup);
 }
 
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -111,25 +124,25 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
 void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                           const ResolveParams& params) {
   context.launch(kResolveSurface, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.points, film.sums, params});
+                 {queues.work, queues.points, queues.beams, film.sums, params});
 }
 
 void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                      const ResolveParams& params) {
   context.launch(kResolveAo, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.points, queues.slots, queues.rays, queues.occlusions,
-                  film.sums, film.squares, params});
+                 {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums,
+                  film.squares, params});
 }
 
 void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params) {
   context.launch(kResolveLight, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.points, queues.slots, queues.rays, queues.occlusions,
-                  film.sums, film.squares, params});
+                 {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums,
+                  film.squares, params});
 }
 
 void prepare_kernels(DeviceContext& context, const RenderOptions& options) {
-  for (const KernelName& kernel : {kCameraRays, kClosestHit, kCompactHits, kResolveSurface})
+  for (const KernelName& kernel : {kCameraHits, kCompactHits, kResolveSurface})
     context.prepare(kernel);
   const auto prepare_occlusion = [&](int rays) {
     context.prepare(occlusion_kernel(options.estimator, static_cast<uint>(rays)));

@@ -13,7 +13,7 @@ struct Queues {
   Buffer work;          ///< PixelWork of camera_pass(), allocated by who makes pictures
   Buffer rays;          ///< Ray
   Buffer points;        ///< SurfacePoint, one a camera sample
-  Buffer slots;         ///< uint a sample: its place among those that hit
+  Buffer beams;         ///< CameraBeam, one for DAPPLE_BEAM_RAYS samples
   Buffer active;        ///< uint: samples that hit, in order
   Buffer active_count;  ///< uint
   Buffer occlusions;    ///< Occlusion, one a ray
@@ -28,14 +28,15 @@ struct FilmBuffers {
   Buffer squares;  ///< float planes, FilmLayout::squares: means of batches, squared and summed
 };
 
-/// Camera rays of the slice into `rays` and `points`.
-void camera_pass(DeviceContext& context, const Queues& queues, const CameraParams& params);
+/// First surfaces of the slice's camera rays into `points` and `beams`.
+void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                 const CameraParams& params);
 
 /// First surface of each ray in `rays` into `points`.
 void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                       std::size_t rays);
 
-/// Fills `slots` and `active`; returns how many samples hit. Waits for the device.
+/// Fills `active` and places hits in `beams`; returns how many samples hit. Waits for the device.
 std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples);
 
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params);

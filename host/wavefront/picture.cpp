@@ -155,8 +155,7 @@ class PictureTracer {
     const std::size_t samples = std::size_t{slice.pixel_count} * slice.sample_count;
     camera_.slice = slice;
     resolve_.slice = slice;
-    camera_pass(context_, queues_, camera_);
-    closest_hit_pass(context_, scene_, queues_, samples);
+    camera_pass(context_, scene_, queues_, camera_);
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);

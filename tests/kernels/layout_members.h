@@ -28,6 +28,9 @@
   MEMBER(Ray, first_area) MEMBER(Ray, light) MEMBER(Ray, weight) MEMBER(Ray, key)            \
   STRUCT(Occlusion)                                                                          \
   MEMBER(Occlusion, transmittance) MEMBER(Occlusion, visits)                                 \
+  STRUCT(CameraBeam)                                                                         \
+  MEMBER(CameraBeam, hits) MEMBER(CameraBeam, first_slot)                                    \
+  MEMBER(CameraBeam, visits) MEMBER(CameraBeam, tests)                                       \
   STRUCT(SurfacePoint)                                                                       \
   MEMBER(SurfacePoint, position) MEMBER(SurfacePoint, t) MEMBER(SurfacePoint, normal)        \
   MEMBER(SurfacePoint, offset) MEMBER(SurfacePoint, area) MEMBER(SurfacePoint, pixel)        \
@@ -54,7 +57,7 @@
   MEMBER(SliceParams, first_work) MEMBER(SliceParams, pixel_count)                          \
   MEMBER(SliceParams, first_sample) MEMBER(SliceParams, sample_count)                        \
   STRUCT(CameraParams)                                                                       \
-  MEMBER(CameraParams, slice) MEMBER(CameraParams, to_world)                                 \
+  MEMBER(CameraParams, slice) MEMBER(CameraParams, scene) MEMBER(CameraParams, to_world)     \
   MEMBER(CameraParams, half_width) MEMBER(CameraParams, half_height)                         \
   MEMBER(CameraParams, orthographic) MEMBER(CameraParams, width)                             \
   MEMBER(CameraParams, height) MEMBER(CameraParams, crop_x) MEMBER(CameraParams, crop_y)     \

@@ -9,7 +9,11 @@ __kernel void sobol_points(__global float* points, uint pixel, uint pair, uint s
 
 __kernel void disk_points(__global const float* squares, __global float* disk, uint count) {
   const uint item = get_global_id(0);
-  if (item < count) vstore2(concentric_disk(vload2(item, squares)), item, disk);
+  if (item >= count) return;
+  const float2 square = vload2(item, squares);
+  float x, y;
+  concentric_disk(square.x, square.y, &x, &y);
+  vstore2((float2)(x, y), item, disk);
 }
 
 __kernel void frames(__global const float* normals, __global float* tangents,

@@ -44,6 +44,7 @@ typedef struct SliceParams {
 
 typedef struct CameraParams {
   SliceParams slice;
+  SceneParams scene;
   float to_world[12];   /* rows of a 3x4 matrix, column vectors */
   float half_width;     /* of the image plane: at distance 1, or in metres if orthographic */
   float half_height;

@@ -34,6 +34,16 @@ typedef struct Occlusion {
   uint visits;          /* nodes visited | triangles tested << 16, each clamped to 65535 */
 } Occlusion;
 
+/* Camera rays of consecutive samples of a slice that are traced together. */
+#define DAPPLE_BEAM_RAYS 16u
+
+typedef struct CameraBeam {
+  uint hits;        /* bit i: sample i of the beam met a surface */
+  uint first_slot;  /* place of its first hit among all hits of the slice */
+  uint visits;      /* nodes, for all its rays */
+  uint tests;       /* triangles, each against all its rays */
+} CameraBeam;
+
 /* Where a camera ray met a surface; t < 0: it met none. */
 typedef struct SurfacePoint {
   float position[3];
@@ -41,7 +51,7 @@ typedef struct SurfacePoint {
   float normal[3];   /* geometric, unit, turned to the viewer */
   float offset;      /* how far rays must start along the normal to clear rounding */
   float area;        /* square metres across the ray that the pixel's share covers */
-  uint pixel;        /* index in the crop, row-major */
+  uint pixel;        /* index in the whole picture, row-major; seeds the random numbers */
   uint sample;       /* number of the sample in its pixel */
   uint visits;       /* as in Occlusion, of the camera ray */
 } SurfacePoint;
@@ -49,6 +59,7 @@ typedef struct SurfacePoint {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(Ray) == 48);
 static_assert(sizeof(Occlusion) == 8);
+static_assert(sizeof(CameraBeam) == 16);
 static_assert(sizeof(SurfacePoint) == 48);
 }  // namespace dapple
 #endif
