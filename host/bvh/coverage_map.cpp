@@ -69,6 +69,12 @@ inline bool scale_partial_cells(const CellTriangle& triangle, Tally& tally,
 }  // namespace
 
 DAPPLE_MULTIVERSION
+void fill_cells(std::array<float, kMapCells>& cells, float value) {
+  const Row filled = Row{} + value;
+  for (int row = 0; row < kMapSize; ++row) store_row(&cells[row * kMapSize], filled);
+}
+
+DAPPLE_MULTIVERSION
 float CoverageMap::mean_opacity(int axis) const {
   Row sum{};
   for (int row = 0; row < kMapSize; ++row) {

@@ -26,12 +26,14 @@ inline float face_area(const Box3f& box, int axis) {
          (box.max[row_axis(axis)] - box.min[row_axis(axis)]);
 }
 
+void fill_cells(std::array<float, kMapCells>& cells, float value);
+
 /// transmittance[axis][row * kMapSize + column], in [0,1].
 struct CoverageMap {
   alignas(64) std::array<std::array<float, kMapCells>, 3> transmittance;
 
   CoverageMap() {
-    for (auto& map : transmittance) map.fill(1.0f);
+    for (auto& map : transmittance) fill_cells(map, 1.0f);
   }
   /// Mean opacity of the box along `axis`, [0,1].
   [[nodiscard]] float mean_opacity(int axis) const;
@@ -79,9 +81,10 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage);
 
 /// What a group of triangles side by side hides of each cell of one axis' map.
 struct HiddenCells {
-  std::array<float, kMapCells> hidden{};
+  std::array<float, kMapCells> hidden;
   int row0 = kMapSize, row1 = -1;  ///< rows touched, inclusive
 
+  HiddenCells() { fill_cells(hidden, 0.0f); }
   void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
   /// Hides what either hides: the two sides of closed surfaces. Empties the other.
   void enclose(HiddenCells& back);
@@ -104,7 +107,7 @@ using CellRanges = std::array<CellRange, 3>;
 class NodeCoverage {
  public:
   explicit NodeCoverage(const Box3f& box) : box_(box) {
-    for (auto& covered : covered_) covered.fill(0.0f);
+    for (auto& covered : covered_) fill_cells(covered, 0.0f);
   }
 
   /// Puts in a child with its map over `child_box`, which lies in the node's box.

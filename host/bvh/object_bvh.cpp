@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <numeric>
+#include <span>
 
 #include "bvh/quantize.hpp"
 
@@ -72,10 +74,9 @@ Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
   return box;
 }
 
-/// Of the triangles that can be seen, in their order.
-std::vector<PrimitiveBox> primitive_boxes(const Mesh& mesh, const std::vector<float>& opacities,
-                                          std::size_t seen) {
-  std::vector<PrimitiveBox> boxes(seen);
+/// Of the triangles that can be seen, in their order. Fills `boxes`, one for each.
+void fill_boxes(const Mesh& mesh, const std::vector<float>& opacities,
+                std::span<PrimitiveBox> boxes) {
   std::vector<std::size_t> next((opacities.size() + kGrain - 1) / kGrain + 1, 0);
   for_each_block(opacities.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
     const auto transparent = std::count(&opacities[begin], opacities.data() + end, 0.0f);
@@ -89,7 +90,6 @@ std::vector<PrimitiveBox> primitive_boxes(const Mesh& mesh, const std::vector<fl
       boxes[to++] = primitive_box(triangle_box(mesh, t), static_cast<std::uint32_t>(t));
     }
   });
-  return boxes;
 }
 
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
@@ -105,17 +105,24 @@ void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32
   block.opacity[lane] = opacity;
 }
 
+std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
+
+std::size_t count_blocks(const WideTree& tree) {
+  std::size_t blocks = 0;
+  for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
+  return blocks;
+}
+
 /// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
-void pack_triangles(BuiltObject& built, const std::vector<PrimitiveBox>& boxes, const Mesh& mesh,
+void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
                     const std::vector<float>& opacities, const std::vector<bool>& closed) {
   ObjectBvh& object = built.object;
   const WideTree& wide = built.tree;
   std::uint32_t blocks = 0;
-  for (BvhNode& node : object.nodes) {
-    node.prim_base = blocks;
-    blocks += (bvh_leaf_end(node.leaf_end, DAPPLE_BVH_WIDTH - 1) + 7u) / 8u;
+  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
+    object.nodes[n].prim_base = blocks;
+    blocks += blocks_of(wide.nodes[n]);
   }
-  object.blocks.resize(blocks);
   if (!closed.empty()) built.closed.assign(blocks, 0);
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
@@ -176,22 +183,21 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   ObjectBvh& object = built.object;
   const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
   if (object.triangles == 0) return built;
-  std::vector<PrimitiveBox> boxes = primitive_boxes(mesh, opacities, object.triangles);
+  // Not cleared, so that the threads that write the pages also get them from the system.
+  const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);
+  const std::span boxes(storage.get(), object.triangles);
+  fill_boxes(mesh, opacities, boxes);
   std::vector<bool> closed;
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
                        [&] { closed = closed_triangles(mesh, opacities); });
-  const WideNode& root = built.tree.nodes[0];
-  object.box = root.box;
-  for (const WideChild& child : built.tree.children_of(root)) object.parts.push_back(child.box);
-  tbb::parallel_invoke(
-      [&] {
-        object.nodes = pack_nodes(built.tree);
-        pack_triangles(built, boxes, mesh, opacities, closed);
-      },
-      [&] {
-        object.stack = stack_needed(built.tree);
-        object.sah_cost = expected_visits(built.tree);
-      });
+  const WideTree& tree = built.tree;
+  object.box = tree.nodes[0].box;
+  for (const WideChild& child : tree.children_of(tree.nodes[0])) object.parts.push_back(child.box);
+  tbb::parallel_invoke([&] { object.blocks.resize(count_blocks(tree)); },
+                       [&] { object.nodes = pack_nodes(tree); },
+                       [&] { object.stack = stack_needed(tree); },
+                       [&] { object.sah_cost = expected_visits(tree); });
+  pack_triangles(built, boxes, mesh, opacities, closed);
   return built;
 }
 

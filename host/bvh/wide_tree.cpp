@@ -4,9 +4,11 @@
 #include "bvh/wide_tree.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include "bvh/splitter.hpp"
 
@@ -37,10 +39,11 @@ struct Parts {
 /// Appends a node's children; inner ones will be nodes from `next_node` on.
 WideNode add_children(const Part& whole, const Parts& parts, std::uint32_t next_node,
                       std::vector<WideChild>& children) {
-  const WideNode node{whole.box.box(), static_cast<std::uint32_t>(children.size()), parts.count,
-                      whole.count};
+  WideNode node{whole.box.box(), static_cast<std::uint32_t>(children.size()), parts.count,
+                whole.count, 0};
   for (unsigned i = 0; i < parts.count; ++i) {
     const Part& part = parts.part[i];
+    if (part.leaf) node.leaf_primitives += part.count;
     children.push_back({part.box.box(), part.leaf ? part.first : next_node++,
                         part.leaf ? part.count : 0});
   }
@@ -134,21 +137,21 @@ void place(Branch& branch, std::size_t root, std::size_t nodes, std::size_t chil
   });
 }
 
-Branch grow_all(std::vector<PrimitiveBox>& boxes, std::uint32_t leaf_size) {
-  std::vector<PrimitiveBox> second(boxes.size());
-  const Splitter splitter(boxes, second, leaf_size);
+Branch grow_all(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size) {
+  const auto second = std::make_unique_for_overwrite<PrimitiveBox[]>(boxes.size());
+  const Splitter splitter(boxes, {second.get(), boxes.size()}, leaf_size);
   Part whole = splitter.all();
   return grow_branch(splitter, whole);
 }
 
 }  // namespace
 
-WideTree build_wide_tree(std::vector<PrimitiveBox>& boxes, std::uint32_t leaf_size) {
+WideTree build_wide_tree(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size) {
   Branch branch = grow_all(boxes, leaf_size);
   if (branch.below.empty()) return std::move(branch.tree);
   WideTree tree;
-  tree.nodes.resize(branch.node_count);
-  tree.children.resize(branch.child_count);
+  tbb::parallel_invoke([&] { tree.nodes.resize(branch.node_count); },
+                       [&] { tree.children.resize(branch.child_count); });
   place(branch, 0, 1, 0, tree);
   return tree;
 }

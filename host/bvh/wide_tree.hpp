@@ -22,7 +22,8 @@ struct WideNode {
   Box3f box;
   std::uint32_t first_child = 0;  ///< in WideTree::children
   std::uint32_t child_count = 0;
-  std::uint32_t primitives = 0;  ///< in the whole subtree
+  std::uint32_t primitives = 0;       ///< in the whole subtree
+  std::uint32_t leaf_primitives = 0;  ///< in the children that are leaves
 };
 
 struct WideTree {
@@ -37,7 +38,7 @@ struct WideTree {
 /// Builds in O(n log n), in parallel, the same tree whatever the thread count. `boxes` is not
 /// empty and has finite boxes; it is reordered so that leaves, of at most `leaf_size`
 /// primitives, are ranges.
-WideTree build_wide_tree(std::vector<PrimitiveBox>& boxes, std::uint32_t leaf_size);
+WideTree build_wide_tree(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size);
 
 /// Entries that a depth-first traversal of the tree may have on its stack at once.
 std::uint32_t stack_needed(const WideTree& tree);
