@@ -115,7 +115,7 @@ inline void sum_rows(const AxisResampling& along, const float* transmittance, fl
 /// Returns the rows touched; the others are not set.
 DAPPLE_MULTIVERSION
 Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
-                             const AxisResampling& down, Cells& opacity) {
+              const AxisResampling& down, Cells& opacity) {
   // Down first, a row of child columns being one vector; then across, a row of parent columns.
   Cells rows;
   sum_rows(down, child.transmittance[axis].data(), rows.data());
@@ -155,8 +155,7 @@ void merge_rows(const Rows& rows, const CellRanges& child, int axis, const Cells
   const CellRange down = child[row_axis(axis)];
   for (int row = rows.first; row <= rows.last; ++row) {
     const float y = static_cast<float>(row);
-    const Row f =
-        across * std::max(0.0f, std::min(down.to, y + 1.0f) - std::max(down.from, y));
+    const Row f = across * std::max(0.0f, std::min(down.to, y + 1.0f) - std::max(down.from, y));
     Row transmittance, covered, added;
     load_row(&map[row * kMapSize], transmittance);
     load_row(&map_covered[row * kMapSize], covered);
@@ -200,8 +199,8 @@ void NodeCoverage::merge(const CellRanges& child, int axis, int first_row, int l
   for (int c = 0; c < child_count_; ++c) {
     add_overlap(children_[c], child, axis, rows, overlap, overlapped);
   }
-  merge_rows(rows, child, axis, opacity, overlap, overlapped,
-             enclosed_share(areas_, areas, axis), map_.transmittance[axis], covered_[axis]);
+  merge_rows(rows, child, axis, opacity, overlap, overlapped, enclosed_share(areas_, areas, axis),
+             map_.transmittance[axis], covered_[axis]);
 }
 
 DAPPLE_MULTIVERSION

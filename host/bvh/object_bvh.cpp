@@ -193,10 +193,9 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   const WideTree& tree = built.tree;
   object.box = tree.nodes[0].box;
   for (const WideChild& child : tree.children_of(tree.nodes[0])) object.parts.push_back(child.box);
-  tbb::parallel_invoke([&] { object.blocks.resize(count_blocks(tree)); },
-                       [&] { object.nodes = pack_nodes(tree); },
-                       [&] { object.stack = stack_needed(tree); },
-                       [&] { object.sah_cost = expected_visits(tree); });
+  tbb::parallel_invoke(
+      [&] { object.blocks.resize(count_blocks(tree)); }, [&] { object.nodes = pack_nodes(tree); },
+      [&] { object.stack = stack_needed(tree); }, [&] { object.sah_cost = expected_visits(tree); });
   pack_triangles(built, boxes, mesh, opacities, closed);
   return built;
 }

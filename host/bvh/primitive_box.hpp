@@ -21,10 +21,7 @@ struct alignas(32) PrimitiveBox {
 };
 
 inline PrimitiveBox primitive_box(const Box3f& box, std::uint32_t primitive) {
-  return {{box.min.x, box.min.y, box.min.z},
-          primitive,
-          {-box.max.x, -box.max.y, -box.max.z},
-          0};
+  return {{box.min.x, box.min.y, box.min.z}, primitive, {-box.max.x, -box.max.y, -box.max.z}, 0};
 }
 
 using Float4 = float __attribute__((vector_size(16)));

@@ -73,8 +73,7 @@ Part Splitter::all() const {
   std::vector<Part> measured(blocks, part);
   tbb::parallel_for(0u, blocks, [&](std::uint32_t b) {
     const std::uint32_t first = b * kBlock;
-    measure(home_ + first, std::min(kBlock, count_ - first), measured[b].box,
-            measured[b].centres2);
+    measure(home_ + first, std::min(kBlock, count_ - first), measured[b].box, measured[b].centres2);
   });
   for (const Part& block : measured) {
     part.box.add(block.box);
@@ -90,9 +89,9 @@ void Splitter::judge(Part& part) const {
   if (part.count == 1 || part.count > kFew) return;
   const FewSplit best = best_of_all(at(part), part.count);
   part.left_set = best.left_set;
-  part.leaf = part.count <= leaf_size_ &&
-              part.area + kPrimitiveCost * best.cost >=
-                  kPrimitiveCost * part.area * static_cast<float>(part.count);
+  part.leaf =
+      part.count <= leaf_size_ && part.area + kPrimitiveCost * best.cost >=
+                                      kPrimitiveCost * part.area * static_cast<float>(part.count);
 }
 
 void Splitter::split(Part& part, Part& right) const {

@@ -44,8 +44,8 @@ WideNode add_children(const Part& whole, const Parts& parts, std::uint32_t next_
   for (unsigned i = 0; i < parts.count; ++i) {
     const Part& part = parts.part[i];
     if (part.leaf) node.leaf_primitives += part.count;
-    children.push_back({part.box.box(), part.leaf ? part.first : next_node++,
-                        part.leaf ? part.count : 0});
+    children.push_back(
+        {part.box.box(), part.leaf ? part.first : next_node++, part.leaf ? part.count : 0});
   }
   return node;
 }
@@ -55,8 +55,7 @@ WideNode add_children(const Part& whole, const Parts& parts, std::uint32_t next_
 void grow(const Splitter& splitter, const Part& whole, std::size_t index, WideTree& tree) {
   const Parts parts(whole, splitter);
   std::size_t next = tree.nodes.size();
-  const WideNode node =
-      add_children(whole, parts, static_cast<std::uint32_t>(next), tree.children);
+  const WideNode node = add_children(whole, parts, static_cast<std::uint32_t>(next), tree.children);
   tree.nodes[index] = node;
   for (unsigned i = 0; i < parts.count; ++i) {
     if (!parts.part[i].leaf) tree.nodes.emplace_back();
@@ -93,9 +92,8 @@ Branch grow_branch(const Splitter& splitter, Part& whole) {
     if (!parts.part[i].leaf) inner.push_back(&parts.part[i]);
   }
   branch.below.resize(inner.size());
-  tbb::parallel_for(std::size_t{0}, inner.size(), [&](std::size_t i) {
-    branch.below[i] = grow_branch(splitter, *inner[i]);
-  });
+  tbb::parallel_for(std::size_t{0}, inner.size(),
+                    [&](std::size_t i) { branch.below[i] = grow_branch(splitter, *inner[i]); });
   branch.node_count = 1;
   branch.child_count = branch.tree.children.size();
   for (const Branch& child : branch.below) {
@@ -123,8 +121,7 @@ void place(Branch& branch, std::size_t root, std::size_t nodes, std::size_t chil
   }
   const std::size_t below_count = branch.below.size();
   std::vector<std::size_t> node_at(below_count), child_at(below_count);
-  std::size_t next_node = nodes + below_count,
-              next_child = children + branch.tree.children.size();
+  std::size_t next_node = nodes + below_count, next_child = children + branch.tree.children.size();
   branch.tree = {};
   for (std::size_t i = 0; i < below_count; ++i) {
     node_at[i] = next_node;
