@@ -14,7 +14,7 @@ using scene_test::device;
 using scene_test::SceneOnDevice;
 
 constexpr float kFootprints[] = {4, 2, 1, 1 / 2.0f, 1 / 4.0f, 1 / 8.0f, 1 / 16.0f};
-constexpr int kSeeds = 24;
+constexpr int kSeeds = 36;
 
 using Pixels = std::vector<double>;
 

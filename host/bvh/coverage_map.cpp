@@ -25,27 +25,33 @@ void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
   }
 }
 
-/// Cells that are full stay full; the others are scaled so that the sum is the triangle's
-/// area. True when that filled more cells, so that another pass would come closer.
-DAPPLE_MULTIVERSION
-bool scale_partial_cells(const CellTriangle& triangle, CellCoverage& coverage) {
-  const Row zero{}, one = zero + 1.0f;
-  Row full = zero, partial = zero, largest = zero;
-  for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    Row in;
-    load_row(&coverage.share[row * kMapSize], in);
+/// Of the touched rows, column by column, cells that are full and what the others hold.
+struct Tally {
+  Row full{}, partial{}, largest{};
+
+  void add(const Row& in) {
+    const Row zero{}, one = zero + 1.0f;
     const Row rest = in >= one ? zero : in;
     full += in >= one ? one : zero;
     partial += rest;
     largest = largest > rest ? largest : rest;
   }
-  const float full_sum = sum_of(full), partial_sum = sum_of(partial);
+};
+
+/// Cells that are full stay full; the others are scaled so that the sum is the triangle's
+/// area. True when that filled more cells, so that another pass would come closer.
+inline bool scale_partial_cells(const CellTriangle& triangle, Tally& tally,
+                                CellCoverage& coverage) {
+  const float full_sum = sum_of(tally.full), partial_sum = sum_of(tally.partial);
   if (full_sum + partial_sum <= 0.0f) {
     spread_evenly(triangle, coverage);
     return false;
   }
   if (partial_sum <= 0.0f) return false;
   const float scale = std::max(0.0f, triangle.area - full_sum) / partial_sum;
+  const bool fills_more = largest_of(tally.largest) * scale > 1.0f;
+  const Row zero{}, one = zero + 1.0f;
+  tally = {};
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
     Row out;
     load_row(&coverage.share[row * kMapSize], out);
@@ -55,13 +61,18 @@ bool scale_partial_cells(const CellTriangle& triangle, CellCoverage& coverage) {
     scaled = scaled < one ? scaled : one;
     scaled = scaled > kept ? scaled : kept;
     store_row(&coverage.share[row * kMapSize], scaled);
+    if (fills_more) tally.add(scaled);
   }
-  float most = 0.0f;
-  for (int i = 0; i < kMapSize; ++i) most = std::max(most, largest[i]);
-  return most * scale > 1.0f;
+  return fills_more;
 }
 
 }  // namespace
+
+DAPPLE_MULTIVERSION
+void fill_cells(std::array<float, kMapCells>& cells, float value) {
+  const Row filled = Row{} + value;
+  for (int row = 0; row < kMapSize; ++row) store_row(&cells[row * kMapSize], filled);
+}
 
 DAPPLE_MULTIVERSION
 float CoverageMap::mean_opacity(int axis) const {
@@ -149,6 +160,7 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
   const Row zero{}, one = zero + 1.0f;
   Row x;
   for (int i = 0; i < kMapSize; ++i) x[i] = static_cast<float>(i) + 0.5f;
+  Tally tally;
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
     const float y = static_cast<float>(row) + 0.5f;
     Row left = zero - 2.0f;
@@ -157,9 +169,12 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
       share = share > zero ? share : zero;
       left += share < one ? share : one;
     }
-    store_row(&coverage.share[row * kMapSize], left > zero ? left : zero);
+    left = left > zero ? left : zero;
+    store_row(&coverage.share[row * kMapSize], left);
+    tally.add(left);
   }
-  for (int pass = 0; pass < kScalingPasses && scale_partial_cells(triangle, coverage); ++pass) {
+  for (int pass = 0; pass < kScalingPasses; ++pass) {
+    if (!scale_partial_cells(triangle, tally, coverage)) break;
   }
 }
 

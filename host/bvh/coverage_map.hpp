@@ -26,12 +26,14 @@ inline float face_area(const Box3f& box, int axis) {
          (box.max[row_axis(axis)] - box.min[row_axis(axis)]);
 }
 
+void fill_cells(std::array<float, kMapCells>& cells, float value);
+
 /// transmittance[axis][row * kMapSize + column], in [0,1].
 struct CoverageMap {
   alignas(64) std::array<std::array<float, kMapCells>, 3> transmittance;
 
   CoverageMap() {
-    for (auto& map : transmittance) map.fill(1.0f);
+    for (auto& map : transmittance) fill_cells(map, 1.0f);
   }
   /// Mean opacity of the box along `axis`, [0,1].
   [[nodiscard]] float mean_opacity(int axis) const;
@@ -58,56 +60,6 @@ template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
            const OpacityAt& opacity_at);
 
-/// Where a box lies in its node's along each axis, in map cells: 0 to kMapSize. Of use only
-/// along axes in which the node has size.
-struct CellRange {
-  float from, to;
-};
-using CellRanges = std::array<CellRange, 3>;
-
-/// The map of a node while its children are put in, one after the other. Children whose
-/// boxes lie side by side in a cell add up; only where boxes overlap do they multiply.
-/// Taking both as independent would let a quarter of the light through every joint. Fronts
-/// of closed surfaces hide their backs.
-class NodeCoverage {
- public:
-  explicit NodeCoverage(const Box3f& box) : box_(box) {
-    for (auto& covered : covered_) covered.fill(0.0f);
-  }
-
-  /// Puts in a child with its map over `child_box`, which lies in the node's box.
-  void add(const CoverageMap& child, const Box3f& child_box, const SurfaceAreas& areas = {});
-
-  /// Puts in a leaf's triangles, a single layer as is_single_layer() says, of uniform opacities.
-  void add_layer(std::span<const CoveringTriangle> triangles, const Box3f& child_box,
-                 const SurfaceAreas& areas);
-
-  [[nodiscard]] const CoverageMap& map() const { return map_; }
-  [[nodiscard]] const SurfaceAreas& areas() const { return areas_; }
-
- private:
-  [[nodiscard]] CellRanges cell_ranges(const Box3f& child) const;
-  /// What the children so far share with the next of each cell, summed.
-  void overlap_children(const CellRanges& child, int axis,
-                        std::array<float, kMapCells>& overlap) const;
-
-  Box3f box_;
-  CoverageMap map_;
-  std::array<std::array<float, kMapCells>, 3> covered_;  ///< share of each cell that boxes cover
-  SurfaceAreas areas_;
-  std::array<CellRanges, DAPPLE_BVH_WIDTH> children_;
-  int child_count_ = 0;
-};
-
-/// Whether triangles of a leaf hide nothing of each other seen along any axis: they lie side by
-/// side, edge to edge.
-bool is_single_layer(std::span<const CoveringTriangle> triangles);
-
-/// A map of one opacity an axis all over.
-CoverageMap uniform_map(const V3f& opacity);
-
-// Implementation of cover().
-
 /// A projected triangle in units of map cells, and the cells it may touch.
 struct CellTriangle {
   V2f a, edge1, edge2;               ///< edges as the triangle has them, either orientation
@@ -129,9 +81,10 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage);
 
 /// What a group of triangles side by side hides of each cell of one axis' map.
 struct HiddenCells {
-  std::array<float, kMapCells> hidden{};
+  std::array<float, kMapCells> hidden;
   int row0 = kMapSize, row1 = -1;  ///< rows touched, inclusive
 
+  HiddenCells() { fill_cells(hidden, 0.0f); }
   void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
   /// Hides what either hides: the two sides of closed surfaces. Empties the other.
   void enclose(HiddenCells& back);
@@ -139,6 +92,57 @@ struct HiddenCells {
   /// Multiplies what is left into `map` and empties this.
   void flush(std::array<float, kMapCells>& map);
 };
+
+/// Where a box lies in its node's along each axis, in map cells: 0 to kMapSize. Of use only
+/// along axes in which the node has size.
+struct CellRange {
+  float from, to;
+};
+using CellRanges = std::array<CellRange, 3>;
+
+/// The map of a node while its children are put in, one after the other. Children whose
+/// boxes lie side by side in a cell add up; only where boxes overlap do they multiply.
+/// Taking both as independent would let a quarter of the light through every joint. Fronts
+/// of closed surfaces hide their backs.
+class NodeCoverage {
+ public:
+  explicit NodeCoverage(const Box3f& box) : box_(box) {
+    for (auto& covered : covered_) fill_cells(covered, 0.0f);
+  }
+
+  /// Puts in a child with its map over `child_box`, which lies in the node's box.
+  void add(const CoverageMap& child, const Box3f& child_box, const SurfaceAreas& areas = {});
+
+  /// Puts in a leaf's triangles, a single layer as is_single_layer() says, of uniform opacities.
+  void add_layer(std::span<const CoveringTriangle> triangles, const Box3f& child_box,
+                 const SurfaceAreas& areas);
+
+  [[nodiscard]] const CoverageMap& map() const { return map_; }
+  [[nodiscard]] const SurfaceAreas& areas() const { return areas_; }
+
+ private:
+  [[nodiscard]] CellRanges cell_ranges(const Box3f& child) const;
+  /// Puts one axis' `opacity` of the next child into the map, in these rows, inclusive.
+  void merge(const CellRanges& child, int axis, int first_row, int last_row,
+             const std::array<float, kMapCells>& opacity, const SurfaceAreas& areas);
+
+  Box3f box_;
+  CoverageMap map_;
+  std::array<std::array<float, kMapCells>, 3> covered_;  ///< share of each cell that boxes cover
+  SurfaceAreas areas_;
+  HiddenCells layer_;  ///< of the leaf being put in; empty between them
+  std::array<CellRanges, DAPPLE_BVH_WIDTH> children_;
+  int child_count_ = 0;
+};
+
+/// Whether triangles of a leaf hide nothing of each other seen along any axis: they lie side by
+/// side, edge to edge.
+bool is_single_layer(std::span<const CoveringTriangle> triangles);
+
+/// A map of one opacity an axis all over.
+CoverageMap uniform_map(const V3f& opacity);
+
+// Implementation of cover().
 
 /// Bit k is set where two triangles share an edge and lie on either side of it, seen along axis k.
 unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b);

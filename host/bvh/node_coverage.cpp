@@ -58,15 +58,27 @@ CellRange intersection(const CellRange& a, const CellRange& b) {
 
 using Cells = std::array<float, kMapCells>;
 
-/// Adds to `overlap` what two boxes share of each cell.
-inline void add_overlap(const CellRanges& a, const CellRanges& b, int axis, Cells& overlap) {
+/// A range of rows, inclusive.
+struct Rows {
+  int first = kMapSize, last = -1;
+};
+
+/// Adds to `overlap`, in rows of `within`, what two boxes share of each cell. `touched` are
+/// the rows set so far, to which it adds.
+inline void add_overlap(const CellRanges& a, const CellRanges& b, int axis, const Rows& within,
+                        Cells& overlap, Rows& touched) {
   const CellRange columns = intersection(a[column_axis(axis)], b[column_axis(axis)]);
   const CellRange rows = intersection(a[row_axis(axis)], b[row_axis(axis)]);
   if (columns.from >= columns.to || rows.from >= rows.to) return;
+  if (touched.last < 0) {
+    for (int row = within.first; row <= within.last; ++row) {
+      store_row(&overlap[row * kMapSize], Row{});
+    }
+  }
   Row across, sum;
   cell_shares(columns, across);
-  const int first = std::max(0, static_cast<int>(rows.from));
-  const int last = std::min(kMapSize - 1, static_cast<int>(rows.to));
+  const int first = std::max(within.first, static_cast<int>(rows.from));
+  const int last = std::min(within.last, static_cast<int>(rows.to));
   for (int row = first; row <= last; ++row) {
     const float y = static_cast<float>(row);
     const float down = std::max(0.0f, std::min(rows.to, y + 1.0f) - std::max(rows.from, y));
@@ -74,6 +86,7 @@ inline void add_overlap(const CellRanges& a, const CellRanges& b, int axis, Cell
     sum += across * down;
     store_row(&overlap[row * kMapSize], sum);
   }
+  touched = {std::min(touched.first, first), std::max(touched.last, last)};
 }
 
 /// Sums sixteen rows into the rows of the parent that `along` gives: a row of `out` for
@@ -101,16 +114,20 @@ inline void sum_rows(const AxisResampling& along, const float* transmittance, fl
 /// The child's opacity in the parent's cells, times the share of each that it covers.
 /// Returns the rows touched; the others are not set.
 DAPPLE_MULTIVERSION
-std::pair<int, int> resample(const CoverageMap& child, int axis, const AxisResampling& across,
-                             const AxisResampling& down, Cells& opacity) {
+Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
+              const AxisResampling& down, Cells& opacity) {
   // Down first, a row of child columns being one vector; then across, a row of parent columns.
   Cells rows;
   sum_rows(down, child.transmittance[axis].data(), rows.data());
-  Cells shares{};
+  Cells shares;
+  const Row zero{};
+  Row column;
+  for (int i = 0; i < kMapSize; ++i) column[i] = static_cast<float>(i);
   for (int p = 0; p < kMapSize; ++p) {
-    float* row = &shares[p * kMapSize];
-    row[across.cell[p]] = across.here[p];
-    if (across.cell[p] + 1 < kMapSize) row[across.cell[p] + 1] = across.next[p];
+    const float cell = static_cast<float>(across.cell[p]);
+    const Row here = column == zero + cell ? zero + across.here[p] : zero;
+    const Row next = column == zero + (cell + 1.0f) ? zero + across.next[p] : zero;
+    store_row(&shares[p * kMapSize], here + next);
   }
   for (int j = down.first; j <= down.last; ++j) {
     Row even{}, odd{}, share;
@@ -129,32 +146,41 @@ std::pair<int, int> resample(const CoverageMap& child, int axis, const AxisResam
 /// overlaps as if independent, but for the `enclosed` share, which one of the two hides all of;
 /// elsewhere not at all.
 DAPPLE_MULTIVERSION
-void merge_rows(int first, int last, const CellRanges& child, int axis, const Cells& opacity,
-                const Cells& overlap, float enclosed, Cells& map, Cells& map_covered) {
-  std::array<float, kMapSize> across, down;
-  Row share;
-  cell_shares(child[column_axis(axis)], share);
-  store_row(across.data(), share);
-  cell_shares(child[row_axis(axis)], share);
-  store_row(down.data(), share);
-  for (int row = first; row <= last; ++row) {
-    float* transmittance = &map[row * kMapSize];
-    float* covered = &map_covered[row * kMapSize];
-    const float* added = &opacity[row * kMapSize];
-    const float* shared = &overlap[row * kMapSize];
-    for (int i = 0; i < kMapSize; ++i) {
-      const float f = down[row] * across[i];
-      const float both = std::min(shared[i], std::min(f, covered[i]));
-      const float hidden = 1.0f - transmittance[i];
-      const float independent = hidden * added[i];
-      const float smaller = std::min(hidden * f, added[i] * covered[i]);
-      const float twice =
-          both * (independent + enclosed * (smaller - independent)) / (covered[i] * f + 1e-20f);
-      const float now =
-          std::min(1.0f, hidden + added[i] - std::min(twice, std::min(hidden, added[i])));
-      transmittance[i] = 1.0f - now;
-      covered[i] = std::min(1.0f, covered[i] + f - both);
+void merge_rows(const Rows& rows, const CellRanges& child, int axis, const Cells& opacity,
+                const Cells& overlap, const Rows& overlapped, float enclosed, Cells& map,
+                Cells& map_covered) {
+  const Row zero{}, one = zero + 1.0f;
+  Row across;
+  cell_shares(child[column_axis(axis)], across);
+  const CellRange down = child[row_axis(axis)];
+  for (int row = rows.first; row <= rows.last; ++row) {
+    const float y = static_cast<float>(row);
+    const Row f = across * std::max(0.0f, std::min(down.to, y + 1.0f) - std::max(down.from, y));
+    Row transmittance, covered, added;
+    load_row(&map[row * kMapSize], transmittance);
+    load_row(&map_covered[row * kMapSize], covered);
+    load_row(&opacity[row * kMapSize], added);
+    const Row hidden = one - transmittance;
+    Row now = hidden + added, all = covered + f;
+    if (row >= overlapped.first && row <= overlapped.last) {
+      Row both;
+      load_row(&overlap[row * kMapSize], both);
+      keep_least(both, f);
+      keep_least(both, covered);
+      const Row independent = hidden * added;
+      Row smaller = hidden * f;
+      keep_least(smaller, added * covered);
+      Row twice =
+          both * (independent + enclosed * (smaller - independent)) / (covered * f + 1e-20f);
+      keep_least(twice, hidden);
+      keep_least(twice, added);
+      now -= twice;
+      all -= both;
     }
+    keep_least(now, one);
+    keep_least(all, one);
+    store_row(&map[row * kMapSize], one - now);
+    store_row(&map_covered[row * kMapSize], all);
   }
 }
 
@@ -165,9 +191,16 @@ CellRanges NodeCoverage::cell_ranges(const Box3f& child) const {
 }
 
 DAPPLE_MULTIVERSION
-void NodeCoverage::overlap_children(const CellRanges& child, int axis, Cells& overlap) const {
-  overlap.fill(0.0f);
-  for (int c = 0; c < child_count_; ++c) add_overlap(children_[c], child, axis, overlap);
+void NodeCoverage::merge(const CellRanges& child, int axis, int first_row, int last_row,
+                         const Cells& opacity, const SurfaceAreas& areas) {
+  const Rows rows{first_row, last_row};
+  Cells overlap;
+  Rows overlapped;
+  for (int c = 0; c < child_count_; ++c) {
+    add_overlap(children_[c], child, axis, rows, overlap, overlapped);
+  }
+  merge_rows(rows, child, axis, opacity, overlap, overlapped, enclosed_share(areas_, areas, axis),
+             map_.transmittance[axis], covered_[axis]);
 }
 
 DAPPLE_MULTIVERSION
@@ -176,38 +209,31 @@ void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
   const CellRanges ranges = cell_ranges(child_box);
   const AxisResampling cells[3] = {
       {box_, child_box, 0}, {box_, child_box, 1}, {box_, child_box, 2}};
-  Cells opacity, overlap;
+  Cells opacity;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(face_area(box_, axis) > 0.0f)) continue;
-    overlap_children(ranges, axis, overlap);
-    const auto [first, last] =
+    const Rows rows =
         resample(child, axis, cells[column_axis(axis)], cells[row_axis(axis)], opacity);
-    merge_rows(first, last, ranges, axis, opacity, overlap, enclosed_share(areas_, areas, axis),
-               map_.transmittance[axis], covered_[axis]);
+    merge(ranges, axis, rows.first, rows.last, opacity, areas);
   }
   areas_.add(areas);
   children_[child_count_++] = ranges;
 }
 
-DAPPLE_MULTIVERSION
 void NodeCoverage::add_layer(std::span<const CoveringTriangle> triangles, const Box3f& child_box,
                              const SurfaceAreas& areas) {
   const CellRanges ranges = cell_ranges(child_box);
   CellCoverage coverage;
-  HiddenCells cells;
-  Cells overlap;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(face_area(box_, axis) > 0.0f)) continue;
     for (const CoveringTriangle& triangle : triangles) {
       CellTriangle projected;
       if (!project(triangle, box_, axis, projected)) continue;
       rasterize(projected, coverage);
-      cells.add_uniform(projected, coverage, triangle.opacity);
+      layer_.add_uniform(projected, coverage, triangle.opacity);
     }
-    overlap_children(ranges, axis, overlap);
-    merge_rows(cells.row0, cells.row1, ranges, axis, cells.hidden, overlap,
-               enclosed_share(areas_, areas, axis), map_.transmittance[axis], covered_[axis]);
-    cells.clear();
+    merge(ranges, axis, layer_.row0, layer_.row1, layer_.hidden, areas);
+    layer_.clear();
   }
   areas_.add(areas);
   children_[child_count_++] = ranges;

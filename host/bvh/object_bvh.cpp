@@ -2,8 +2,13 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
-#include <cmath>
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <numeric>
+#include <span>
 
 #include "bvh/quantize.hpp"
 
@@ -14,37 +19,77 @@ namespace {
 constexpr std::uint32_t kLeafSize = 4;
 static_assert(kLeafSize * DAPPLE_BVH_WIDTH <= DAPPLE_MOST_PRIMITIVES);
 
-/// Opacity of each triangle: [0,1], or -(1 + index) of a textured one.
-std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
+/// Triangles to a task of one pass over them all.
+constexpr std::uint32_t kGrain = 1u << 14;
+
+template <class Body>
+void for_each_block(std::size_t count, const Body& body) {
+  tbb::parallel_for(std::size_t{0}, (count + kGrain - 1) / kGrain, [&](std::size_t block) {
+    body(block, block * kGrain, std::min(count, (block + 1) * kGrain));
+  });
+}
+
+/// Stands for a textured triangle until it has its index.
+constexpr float kTextured = -1.0f;
+
+/// Opacity of each triangle, [0,1], or kTextured; counts their kinds.
+std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
   std::vector<float> opacities(mesh.triangle_count());
-  for (std::uint32_t t = 0; t < opacities.size(); ++t) {
-    const bool mask = scene.materials[mesh.materials[t]].alpha_mode == AlphaMode::mask;
-    if (const auto uniform = uniform_opacity(scene, mesh, t)) {
-      opacities[t] = *uniform;
-      if (*uniform <= 0.0f) continue;
-      ++(mask ? object.cut_out : *uniform >= 1.0f ? object.opaque : object.translucent);
-      continue;
+  std::atomic<std::size_t> opaque = 0, cut_out = 0, translucent = 0;
+  for_each_block(opacities.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::size_t here[3] = {0, 0, 0};
+    for (std::size_t t = begin; t < end; ++t) {
+      const bool mask = scene.materials[mesh.materials[t]].alpha_mode == AlphaMode::mask;
+      opacities[t] =
+          uniform_opacity(scene, mesh, static_cast<std::uint32_t>(t)).value_or(kTextured);
+      if (opacities[t] != 0.0f) ++here[mask ? 1 : opacities[t] >= 1.0f ? 0 : 2];
     }
-    opacities[t] = -1.0f - static_cast<float>(object.textured.size());
-    object.textured.push_back(textured_triangle(scene, mesh, t));
-    ++(mask ? object.cut_out : object.translucent);
-  }
+    opaque += here[0];
+    cut_out += here[1];
+    translucent += here[2];
+  });
+  object.opaque = opaque;
+  object.cut_out = cut_out;
+  object.translucent = translucent;
   object.triangles = object.opaque + object.cut_out + object.translucent;
   return opacities;
 }
 
-std::vector<PrimitiveBox> primitive_boxes(const Mesh& mesh, const std::vector<float>& opacities) {
-  std::vector<PrimitiveBox> boxes;
-  boxes.reserve(opacities.size());
+/// Opacity of each triangle: [0,1], or -(1 + index) of a textured one.
+std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
+  std::vector<float> opacities = uniform_opacities(scene, mesh, object);
   for (std::uint32_t t = 0; t < opacities.size(); ++t) {
-    if (opacities[t] == 0.0f) continue;
-    Box3f box;
-    for (int corner = 0; corner < 3; ++corner) {
-      box.extendBy(mesh.positions[mesh.indices[3 * std::size_t{t} + corner]]);
-    }
-    boxes.push_back({box.min, t, box.max, 0});
+    if (opacities[t] >= 0.0f) continue;
+    opacities[t] = -1.0f - static_cast<float>(object.textured.size());
+    object.textured.push_back(textured_triangle(scene, mesh, t));
   }
-  return boxes;
+  return opacities;
+}
+
+Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
+  Box3f box;
+  for (int corner = 0; corner < 3; ++corner) {
+    box.extendBy(mesh.positions[mesh.indices[3 * triangle + corner]]);
+  }
+  return box;
+}
+
+/// Of the triangles that can be seen, in their order. Fills `boxes`, one for each.
+void fill_boxes(const Mesh& mesh, const std::vector<float>& opacities,
+                std::span<PrimitiveBox> boxes) {
+  std::vector<std::size_t> next((opacities.size() + kGrain - 1) / kGrain + 1, 0);
+  for_each_block(opacities.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+    const auto transparent = std::count(&opacities[begin], opacities.data() + end, 0.0f);
+    next[block + 1] = end - begin - static_cast<std::size_t>(transparent);
+  });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for_each_block(opacities.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::size_t to = next[block];
+    for (std::size_t t = begin; t < end; ++t) {
+      if (opacities[t] == 0.0f) continue;
+      boxes[to++] = primitive_box(triangle_box(mesh, t), static_cast<std::uint32_t>(t));
+    }
+  });
 }
 
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
@@ -60,18 +105,24 @@ void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32
   block.opacity[lane] = opacity;
 }
 
+std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
+
+std::size_t count_blocks(const WideTree& tree) {
+  std::size_t blocks = 0;
+  for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
+  return blocks;
+}
+
 /// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
-void pack_triangles(BuiltObject& built, const BinaryTree& binary, const Mesh& mesh,
-                    const std::vector<float>& opacities) {
+void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
+                    const std::vector<float>& opacities, const std::vector<bool>& closed) {
   ObjectBvh& object = built.object;
   const WideTree& wide = built.tree;
-  const std::vector<bool> closed = closed_triangles(mesh, opacities);
   std::uint32_t blocks = 0;
-  for (BvhNode& node : object.nodes) {
-    node.prim_base = blocks;
-    blocks += (bvh_leaf_end(node.leaf_end, DAPPLE_BVH_WIDTH - 1) + 7u) / 8u;
+  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
+    object.nodes[n].prim_base = blocks;
+    blocks += blocks_of(wide.nodes[n]);
   }
-  object.blocks.assign(blocks, TriangleBlock{});
   if (!closed.empty()) built.closed.assign(blocks, 0);
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
@@ -79,7 +130,7 @@ void pack_triangles(BuiltObject& built, const BinaryTree& binary, const Mesh& me
           std::uint32_t next = 0;
           for (const WideChild& child : wide.children_of(wide.nodes[n])) {
             for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
-              const std::uint32_t triangle = binary.order[child.first + i].primitive;
+              const std::uint32_t triangle = boxes[child.first + i].primitive;
               const std::uint32_t block = object.nodes[n].prim_base + next / 8;
               set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
               if (!closed.empty() && closed[triangle]) {
@@ -131,17 +182,21 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   BuiltObject built;
   ObjectBvh& object = built.object;
   const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
-  std::vector<PrimitiveBox> boxes = primitive_boxes(mesh, opacities);
-  if (boxes.empty()) return built;
-  const BinaryTree binary = build_binary_tree(std::move(boxes), kLeafSize);
-  built.tree = collapse(binary);
-  const WideNode& root = built.tree.nodes[0];
-  object.box = root.box;
-  for (const WideChild& child : built.tree.children_of(root)) object.parts.push_back(child.box);
-  object.stack = stack_needed(built.tree);
-  object.sah_cost = expected_visits(built.tree);
-  object.nodes = pack_nodes(built.tree);
-  pack_triangles(built, binary, mesh, opacities);
+  if (object.triangles == 0) return built;
+  // Not cleared, so that the threads that write the pages also get them from the system.
+  const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);
+  const std::span boxes(storage.get(), object.triangles);
+  fill_boxes(mesh, opacities, boxes);
+  std::vector<bool> closed;
+  tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
+                       [&] { closed = closed_triangles(mesh, opacities); });
+  const WideTree& tree = built.tree;
+  object.box = tree.nodes[0].box;
+  for (const WideChild& child : tree.children_of(tree.nodes[0])) object.parts.push_back(child.box);
+  tbb::parallel_invoke(
+      [&] { object.blocks.resize(count_blocks(tree)); }, [&] { object.nodes = pack_nodes(tree); },
+      [&] { object.stack = stack_needed(tree); }, [&] { object.sah_cost = expected_visits(tree); });
+  pack_triangles(built, boxes, mesh, opacities, closed);
   return built;
 }
 

@@ -189,11 +189,10 @@ std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
 std::uint32_t build_top(SceneBvh& bvh, const std::vector<Placement>& placed) {
   std::vector<PrimitiveBox> boxes;
   for (std::uint32_t i = 0; i < placed.size(); ++i)
-    boxes.push_back({placed[i].box.min, i, placed[i].box.max, 0});
-  const BinaryTree binary = build_binary_tree(std::move(boxes), 1);
-  const WideTree wide = collapse(binary);
+    boxes.push_back(primitive_box(placed[i].box, i));
+  const WideTree wide = build_wide_tree(boxes, 1);
   std::vector<BvhNode> nodes = pack_nodes(wide);
-  const CoverageMap map = prefilter_top(wide, binary.order, placed, nodes, 0).first;
+  const CoverageMap map = prefilter_top(wide, boxes, placed, nodes, 0).first;
   for (int axis = 0; axis < 3; ++axis) bvh.statistics.root_opacity[axis] = map.mean_opacity(axis);
   bvh.root = static_cast<std::uint32_t>(bvh.nodes.size());
   bvh.has_top = true;
@@ -201,7 +200,7 @@ std::uint32_t build_top(SceneBvh& bvh, const std::vector<Placement>& placed) {
     nodes[n].prim_base = static_cast<std::uint32_t>(bvh.instances.size());
     nodes[n].child_base += bvh.root;
     for (const WideChild& child : wide.children_of(wide.nodes[n])) {
-      if (child.count) bvh.instances.push_back(placed[binary.order[child.first].primitive].record);
+      if (child.count) bvh.instances.push_back(placed[boxes[child.first].primitive].record);
     }
   }
   bvh.nodes.insert(bvh.nodes.end(), nodes.begin(), nodes.end());

@@ -1,74 +1,156 @@
-// Greedy collapse: open the child with the largest surface until eight are found (Wald,
-// Benthin, Boulos, "Getting Rid of Packets", 2008).
+// Each node opens the widest of its children until there are eight (Wald, Benthin, Boulos,
+// "Getting Rid of Packets", 2008), so that no binary tree is ever written down. Subtrees grow
+// in parallel, each in arrays of its own that are put together in the end.
 #include "bvh/wide_tree.hpp"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
+#include <array>
+#include <memory>
+
+#include "bvh/splitter.hpp"
 
 namespace dapple {
 namespace {
 
-/// Up to eight nodes of the binary tree that together cover `root`.
-std::vector<std::uint32_t> pick_children(const BinaryTree& tree, std::uint32_t root) {
-  std::vector<std::uint32_t> picked;
-  picked.reserve(DAPPLE_BVH_WIDTH);
-  picked.push_back(root);
-  while (picked.size() < DAPPLE_BVH_WIDTH) {
-    int widest = -1;
-    float widest_area = -1.0f;
-    for (std::size_t i = 0; i < picked.size(); ++i) {
-      const BinaryNode& node = tree.nodes[picked[i]];
-      if (node.left && half_area(node.box) > widest_area) {
-        widest = static_cast<int>(i);
-        widest_area = half_area(node.box);
+/// Subtrees of up to this many primitives grow on one thread.
+constexpr std::uint32_t kTaskPrimitives = 1u << 15;
+
+/// Up to eight parts that together cover one.
+struct Parts {
+  std::array<Part, DAPPLE_BVH_WIDTH> part;
+  unsigned count = 1;
+
+  Parts(const Part& whole, const Splitter& splitter) {
+    part[0] = whole;
+    while (count < DAPPLE_BVH_WIDTH) {
+      Part* widest = nullptr;
+      for (unsigned i = 0; i < count; ++i) {
+        if (!part[i].leaf && (!widest || part[i].area > widest->area)) widest = &part[i];
       }
+      if (!widest) break;
+      splitter.split(*widest, part[count++]);
     }
-    if (widest < 0) break;
-    const BinaryNode& opened = tree.nodes[picked[widest]];
-    picked[widest] = opened.left;
-    picked.push_back(opened.right);
   }
-  return picked;
+};
+
+/// Appends a node's children; inner ones will be nodes from `next_node` on.
+WideNode add_children(const Part& whole, const Parts& parts, std::uint32_t next_node,
+                      std::vector<WideChild>& children) {
+  WideNode node{whole.box.box(), static_cast<std::uint32_t>(children.size()), parts.count,
+                whole.count, 0};
+  for (unsigned i = 0; i < parts.count; ++i) {
+    const Part& part = parts.part[i];
+    if (part.leaf) node.leaf_primitives += part.count;
+    children.push_back(
+        {part.box.box(), part.leaf ? part.first : next_node++, part.leaf ? part.count : 0});
+  }
+  return node;
+}
+
+/// Opens node `index`, which is `whole`, and all below. Depth first, by groups of siblings:
+/// what a ray visits together lies together.
+void grow(const Splitter& splitter, const Part& whole, std::size_t index, WideTree& tree) {
+  const Parts parts(whole, splitter);
+  std::size_t next = tree.nodes.size();
+  const WideNode node = add_children(whole, parts, static_cast<std::uint32_t>(next), tree.children);
+  tree.nodes[index] = node;
+  for (unsigned i = 0; i < parts.count; ++i) {
+    if (!parts.part[i].leaf) tree.nodes.emplace_back();
+  }
+  for (unsigned i = 0; i < parts.count; ++i) {
+    if (!parts.part[i].leaf) grow(splitter, parts.part[i], next++, tree);
+  }
+}
+
+/// A subtree in arrays of its own; of a large one only the root, its children being branches.
+struct Branch {
+  WideTree tree;
+  std::vector<Branch> below;
+  std::size_t node_count = 0, child_count = 0;  ///< with all below
+};
+
+Branch grow_branch(const Splitter& splitter, Part& whole) {
+  Branch branch;
+  branch.tree.nodes.emplace_back();
+  if (whole.count <= kTaskPrimitives) {
+    splitter.bring_home(whole);
+    branch.tree.nodes.reserve(whole.count / 5 + 1);
+    branch.tree.children.reserve(whole.count + 1);
+    grow(splitter, whole, 0, branch.tree);
+    branch.node_count = branch.tree.nodes.size();
+    branch.child_count = branch.tree.children.size();
+    return branch;
+  }
+  Parts parts(whole, splitter);
+  branch.tree.nodes[0] = add_children(whole, parts, 0, branch.tree.children);
+  std::vector<Part*> inner;
+  for (unsigned i = 0; i < parts.count; ++i) {
+    if (parts.part[i].leaf) splitter.bring_home(parts.part[i]);
+    if (!parts.part[i].leaf) inner.push_back(&parts.part[i]);
+  }
+  branch.below.resize(inner.size());
+  tbb::parallel_for(std::size_t{0}, inner.size(),
+                    [&](std::size_t i) { branch.below[i] = grow_branch(splitter, *inner[i]); });
+  branch.node_count = 1;
+  branch.child_count = branch.tree.children.size();
+  for (const Branch& child : branch.below) {
+    branch.node_count += child.node_count;
+    branch.child_count += child.child_count;
+  }
+  return branch;
+}
+
+/// Copies a branch to where it belongs: its root to node `root`, all other nodes from `nodes`
+/// on and children from `children` on. Frees it.
+void place(Branch& branch, std::size_t root, std::size_t nodes, std::size_t children,
+           WideTree& tree) {
+  const std::size_t own = branch.tree.nodes.size();
+  for (std::size_t n = 0; n < own; ++n) {
+    WideNode& node = tree.nodes[n ? nodes + n - 1 : root] = branch.tree.nodes[n];
+    node.first_child += static_cast<std::uint32_t>(children);
+  }
+  // A subtree counts its nodes from its root, a lone root from its first inner child.
+  const std::size_t inner_base = branch.below.empty() ? nodes - 1 : nodes;
+  WideChild* to = &tree.children[children];
+  for (WideChild child : branch.tree.children) {
+    if (child.count == 0) child.first += static_cast<std::uint32_t>(inner_base);
+    *to++ = child;
+  }
+  const std::size_t below_count = branch.below.size();
+  std::vector<std::size_t> node_at(below_count), child_at(below_count);
+  std::size_t next_node = nodes + below_count, next_child = children + branch.tree.children.size();
+  branch.tree = {};
+  for (std::size_t i = 0; i < below_count; ++i) {
+    node_at[i] = next_node;
+    child_at[i] = next_child;
+    next_node += branch.below[i].node_count - 1;
+    next_child += branch.below[i].child_count;
+  }
+  tbb::parallel_for(std::size_t{0}, below_count, [&](std::size_t i) {
+    place(branch.below[i], nodes + i, node_at[i], child_at[i], tree);
+  });
+}
+
+Branch grow_all(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size) {
+  const auto second = std::make_unique_for_overwrite<PrimitiveBox[]>(boxes.size());
+  const Splitter splitter(boxes, {second.get(), boxes.size()}, leaf_size);
+  Part whole = splitter.all();
+  return grow_branch(splitter, whole);
 }
 
 }  // namespace
 
-WideTree collapse(const BinaryTree& tree) {
-  WideTree wide;
-  wide.nodes.reserve(tree.order.size() / 4 + 1);
-  std::vector<std::uint32_t> source{0};  // binary node of each wide node
-  wide.nodes.emplace_back();
-  // Depth first, by groups of siblings: what a ray visits together lies together.
-  std::vector<std::uint32_t> waiting{0};
-  while (!waiting.empty()) {
-    const std::uint32_t n = waiting.back();
-    waiting.pop_back();
-    WideNode node;
-    node.box = tree.nodes[source[n]].box;
-    node.primitives = tree.nodes[source[n]].count;
-    node.first_child = static_cast<std::uint32_t>(wide.children.size());
-    for (const std::uint32_t picked : pick_children(tree, source[n])) {
-      const BinaryNode& child = tree.nodes[picked];
-      WideChild& slot = wide.children.emplace_back();
-      ++node.child_count;
-      slot.box = child.box;
-      if (child.left) {
-        slot.first = static_cast<std::uint32_t>(wide.nodes.size());
-        wide.nodes.emplace_back();
-        source.push_back(picked);
-      } else {
-        slot.first = child.first;
-        slot.count = child.count;
-      }
-    }
-    wide.nodes[n] = node;
-    for (unsigned slot = node.child_count; slot-- > 0;) {
-      const WideChild& child = wide.children[node.first_child + slot];
-      if (child.count == 0) waiting.push_back(child.first);
-    }
-  }
-  wide.nodes.shrink_to_fit();
-  wide.children.shrink_to_fit();
-  return wide;
+WideTree build_wide_tree(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size) {
+  Branch branch = grow_all(boxes, leaf_size);
+  if (branch.below.empty()) return std::move(branch.tree);
+  WideTree tree;
+  tbb::parallel_invoke([&] { tree.nodes.resize(branch.node_count); },
+                       [&] { tree.children.resize(branch.child_count); });
+  place(branch, 0, 1, 0, tree);
+  return tree;
 }
 
 std::uint32_t stack_needed(const WideTree& tree) {

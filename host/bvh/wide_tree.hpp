@@ -1,19 +1,19 @@
-// The binary tree collapsed to nodes of up to eight children, not yet quantized.
+// The tree before it is quantized: nodes of up to eight children with their exact boxes. Knows
+// nothing of what is inside the primitives' boxes.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "bvh/binary_tree.hpp"
+#include "bvh/primitive_box.hpp"
 #include "dapple/shared/bvh_node.h"
 
 namespace dapple {
 
 struct WideChild {
   Box3f box;
-  std::uint32_t first =
-      0;  ///< leaf: first primitive in BinaryTree::order; inner: index of its node
+  std::uint32_t first = 0;  ///< leaf: first of its primitives; inner: index of its node
   std::uint32_t count = 0;  ///< leaf: primitives; inner: 0
 };
 
@@ -22,7 +22,8 @@ struct WideNode {
   Box3f box;
   std::uint32_t first_child = 0;  ///< in WideTree::children
   std::uint32_t child_count = 0;
-  std::uint32_t primitives = 0;  ///< in the whole subtree
+  std::uint32_t primitives = 0;       ///< in the whole subtree
+  std::uint32_t leaf_primitives = 0;  ///< in the children that are leaves
 };
 
 struct WideTree {
@@ -34,7 +35,10 @@ struct WideTree {
   }
 };
 
-WideTree collapse(const BinaryTree& tree);
+/// Builds in O(n log n), in parallel, the same tree whatever the thread count. `boxes` is not
+/// empty and has finite boxes; it is reordered so that leaves, of at most `leaf_size`
+/// primitives, are ranges.
+WideTree build_wide_tree(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size);
 
 /// Entries that a depth-first traversal of the tree may have on its stack at once.
 std::uint32_t stack_needed(const WideTree& tree);
