@@ -11,7 +11,7 @@ constexpr std::size_t kScanItems = 256;
 /// Rays of a point from which on packets never lost: with 16 samples a pixel 3 and 4 rays took as
 /// long one by one, 8 a twentieth longer, 16 a fifth. (Of baking, where a footprint is shared by
 /// no other samples, even 2 gained.)
-constexpr uint kLeastPacket = 6;
+constexpr uint kLeastPacket = 6, kLeastExactPacket = 6;
 
 /// Rays that one item of the packet kernel takes; DAPPLE_PACKET_RAYS in kernels/packet_rays.clh.
 constexpr uint kPacketRays = 64;
@@ -19,15 +19,15 @@ constexpr uint kPacketRays = 64;
 /// Items a work-group: of packets few, so that small slices keep all threads busy.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16;
 
-const KernelName kPacket{"packet", "packet", {}};
-
 bool takes_packets(Estimator estimator, uint rays_per_point) {
+  if (estimator == Estimator::exact) return rays_per_point >= kLeastExactPacket;
   return estimator == Estimator::packet && rays_per_point >= kLeastPacket;
 }
 
 KernelName occlusion_kernel(Estimator estimator, uint rays_per_point) {
-  if (takes_packets(estimator, rays_per_point)) return kPacket;
-  return {"occlusion", "occlusion", Variant{estimator != Estimator::exact}};
+  const Variant variant{estimator != Estimator::exact};
+  if (takes_packets(estimator, rays_per_point)) return {"packet", "packet", variant};
+  return {"occlusion", "occlusion", variant};
 }
 
 const KernelName kCameraRays{"camera_rays", "camera", {}};
