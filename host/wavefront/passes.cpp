@@ -8,8 +8,8 @@ namespace {
 /// Work-items of the one group that compacts; DAPPLE_SCAN_ITEMS in kernels/compact.cl.
 constexpr std::size_t kScanItems = 256;
 
-/// Rays of a point from which on packets pay: of AO rays 2 took up to a tenth longer together than
-/// one by one, 4 were 1.15 to 1.6 times as fast, exact or prefiltered (sapling, tree, cards).
+/// Rays of a point from which on packets pay: of AO rays 2 took up to a seventh longer together
+/// than one by one, 4 were 1.15 to 1.4 times as fast, exact or prefiltered (sapling, tree, cards).
 constexpr uint kLeastPacket = 4;
 
 /// Rays that one item of the packet kernel takes; DAPPLE_PACKET_RAYS in kernels/packet_rays.clh.
