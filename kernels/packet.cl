@@ -2,9 +2,21 @@
    those of occlusion.cl. */
 #include "packet.clh"
 
-/* Part `index` of `total` shared over `count` without remainder. */
-inline uint share(uint total, uint index, uint count) {
-  return total * (index + 1u) / count - total * index / count;
+/* A count shared over a packet's rays without remainder. */
+typedef struct Shares {
+  uint each, more, over, count;
+} Shares;
+
+inline Shares make_shares(uint total, uint count) {
+  const Shares shares = {total / count, total % count, 0u, count};
+  return shares;
+}
+
+inline uint next_share(Shares* shares) {
+  shares->over += shares->more;
+  const uint one = shares->over >= shares->count;
+  shares->over -= one ? shares->count : 0u;
+  return min(shares->each + one, 65535u);
 }
 
 /* Rays lie as points * rays_per_point; each point's are cut into groups of about the same
@@ -25,12 +37,18 @@ __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock
   const Scene scene = {nodes, blocks, textured, textures, texels, instances};
   PacketRays world;
   load_rays(rays + first, count, params.footprint, &world);
+  prefetch_rays(rays + first + count, count);
   Packet packet;
   start_packet(count, &packet);
   traverse_packet(scene, params, rays[first].light, &world, &packet);
-  for (uint i = 0; i < count; ++i) {
-    results[first + i].transmittance = packet_transmittance(&packet, i);
-    results[first + i].visits = min(share(packet.visits, i, count), 65535u) |
-                                min(share(packet.tests, i, count), 65535u) << 16;
+  Shares visits = make_shares(packet.visits, count);
+  Shares tests = make_shares(packet.tests, count);
+  for (uint i = 0; i < count; i += 8u) {
+    Lanes transmittance;
+    transmittance.v = packet_transmittance(&packet, i);
+    for (uint lane = 0; lane < min(8u, count - i); ++lane) {
+      results[first + i + lane].transmittance = transmittance.f[lane];
+      results[first + i + lane].visits = next_share(&visits) | next_share(&tests) << 16;
+    }
   }
 }

@@ -63,12 +63,12 @@ class DeviceRays {
     context_.write(queues_.rays, rays.rays.data(), rays.rays.size() * sizeof(Ray));
   }
 
-  Traced trace(Estimator estimator, float footprint) {
+  Traced trace(Estimator estimator, std::size_t together) {
     OcclusionParams params{};
     params.scene = scene_.params;
     params.ray_count = static_cast<uint>(results_.size());
-    params.rays_per_point = static_cast<uint>(kRaysAPoint);
-    params.footprint = footprint;
+    params.rays_per_point = static_cast<uint>(together);
+    params.footprint = 1;
     const double before = device_seconds();
     occlusion_pass(context_, queues_, scene_, "rivals", estimator, params);
     Traced traced;
@@ -156,17 +156,17 @@ std::vector<RayRow> measure_rays(RivalScene& scene, const PreparedRays& rays,
     });
   }
   std::optional<DeviceRays> on_device;
-  const auto add = [&](const char* name, Estimator estimator, float footprint) {
-    racers.emplace_back(name, false, [&on_device, estimator, footprint] {
-      return on_device->trace(estimator, footprint);
+  const auto add = [&](const char* name, Estimator estimator, std::size_t together) {
+    racers.emplace_back(name, false, [&on_device, estimator, together] {
+      return on_device->trace(estimator, together);
     });
   };
   if (ours) {
     on_device.emplace(scene, rays);
-    add("exact", Estimator::exact, 0);
-    add("exact packet", Estimator::packet, 0);
+    add("exact", Estimator::exact, 1);
+    add("exact packet", Estimator::exact, kRaysAPoint);
     add("prefiltered", Estimator::prefiltered, 1);
-    add("packet", Estimator::packet, 1);
+    add("packet", Estimator::packet, kRaysAPoint);
   }
   // The first round fills caches and compiles kernels.
   for (int round = 0; round <= repeats; ++round) {

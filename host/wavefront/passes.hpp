@@ -44,8 +44,8 @@ void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& p
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params);
 
-/// Transmittance of each ray in `rays` into `occlusions`. The packet estimator traces a point's
-/// rays one by one where `params.rays_per_point` is too small for packets to pay.
+/// Transmittance of each ray in `rays` into `occlusions`. Exact and packet estimators trace a
+/// point's rays together, where `params.rays_per_point` is large enough for that to pay.
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params);
 

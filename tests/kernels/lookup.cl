@@ -6,7 +6,7 @@ __kernel void look_up(__global const TextureRecord* textures, __global const uch
   const uint item = get_global_id(0);
   if (item >= count) return;
   const Scene scene = {0, 0, 0, textures, texels, 0};
-  alphas[item] = texture_alpha(scene, textures[texture], vload2(item, uvs));
+  alphas[item] = read_texels(scene, find_texels(textures[texture], vload2(item, uvs)));
 }
 
 /* Barycentrics in, opacity of textured triangle `triangle` out. */
