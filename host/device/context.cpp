@@ -44,7 +44,8 @@ struct DeviceContext::State {
 };
 
 std::string Variant::options() const {
-  return fmt::format("-cl-std=CL1.2 -DDAPPLE_PREFILTERED={}", prefiltered ? 1 : 0);
+  return fmt::format("-cl-std=CL1.2 -DDAPPLE_PREFILTERED={} -DDAPPLE_ONE_POINT={}",
+                     prefiltered ? 1 : 0, one_point ? 1 : 0);
 }
 
 cl::Program& DeviceContext::State::program(const std::string& file, const Variant& variant) {

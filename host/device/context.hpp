@@ -43,6 +43,7 @@ struct KernelArgument {
 /// What a program is compiled for. Few of these, integers only.
 struct Variant {
   bool prefiltered = false;
+  bool one_point = false;  ///< rays traced together start from one point
   [[nodiscard]] std::string options() const;
   auto operator<=>(const Variant&) const = default;
 };

@@ -25,14 +25,18 @@ std::size_t beams_of(std::size_t samples) {
   return (samples + DAPPLE_BEAM_RAYS - 1) / DAPPLE_BEAM_RAYS;
 }
 
-bool takes_packets(Estimator estimator, uint rays_per_point) {
-  return estimator != Estimator::prefiltered && rays_per_point >= kLeastPacket;
+/// How many rays the packet kernel takes as one point's; 0: the rays are traced one by one.
+std::size_t packet_rays(Estimator estimator, std::size_t rays, uint rays_per_point, RayOrder order,
+                        const DeviceInfo& device) {
+  const bool together = estimator != Estimator::prefiltered && rays_per_point >= kLeastPacket;
+  if (together) return rays_per_point;
+  return order == RayOrder::by_pixel && device.kind == "CPU" ? rays : 0;
 }
 
-KernelName occlusion_kernel(Estimator estimator, uint rays_per_point) {
-  const Variant variant{estimator != Estimator::exact};
-  if (takes_packets(estimator, rays_per_point)) return {"packet", "packet", variant};
-  return {"occlusion", "occlusion", variant};
+KernelName occlusion_kernel(Estimator estimator, bool together, bool one_point) {
+  const bool prefiltered = estimator != Estimator::exact;
+  if (together) return {"packet", "packet", {prefiltered, one_point}};
+  return {"occlusion", "occlusion", {prefiltered}};
 }
 
 const KernelName kCameraHits{"camera_hits", "camera", {}};
@@ -106,16 +110,21 @@ void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Qu
 }
 
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
-                    const std::string& label, Estimator estimator, const OcclusionParams& params) {
+                    const std::string& label, Estimator estimator, const OcclusionParams& params,
+                    RayOrder order) {
+  const std::size_t together =
+      packet_rays(estimator, params.ray_count, params.rays_per_point, order, context.info());
   std::size_t items = params.ray_count, group = kRayGroup;
-  if (takes_packets(estimator, params.rays_per_point)) {
-    const uint packets = (params.rays_per_point + kPacketRays - 1) / kPacketRays;
-    items = std::size_t{params.ray_count / params.rays_per_point} * packets;
+  OcclusionParams launched = params;
+  if (together) {
+    items = params.ray_count / together * ((together + kPacketRays - 1) / kPacketRays);
     group = kPacketGroup;
+    launched.rays_per_point = static_cast<uint>(together);
   }
-  context.launch(occlusion_kernel(estimator, params.rays_per_point), label, items,
+  const bool one_point = together == params.rays_per_point;
+  context.launch(occlusion_kernel(estimator, together > 0, one_point), label, items,
                  {scene.nodes, scene.blocks, scene.textured, scene.textures, scene.texels,
-                  scene.instances, queues.rays, queues.occlusions, params},
+                  scene.instances, queues.rays, queues.occlusions, launched},
                  group);
 }
 
@@ -143,7 +152,10 @@ void prepare_kernels(DeviceContext& context, const RenderOptions& options) {
   for (const KernelName& kernel : {kCameraHits, kCompactHits, kResolveSurface})
     context.prepare(kernel);
   const auto prepare_occlusion = [&](int rays) {
-    context.prepare(occlusion_kernel(options.estimator, static_cast<uint>(rays)));
+    const auto count = static_cast<uint>(rays);
+    const std::size_t together =
+        packet_rays(options.estimator, 2 * count, count, RayOrder::by_pixel, context.info());
+    context.prepare(occlusion_kernel(options.estimator, together > 0, together == count));
   };
   if (options.ao) {
     prepare_occlusion(options.ao_rays);

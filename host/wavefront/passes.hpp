@@ -8,6 +8,12 @@
 
 namespace dapple {
 
+/// What rays next to each other in a queue have in common.
+enum class RayOrder {
+  any,       ///< nothing, but that rays_per_point in a row start from one point
+  by_pixel,  ///< they start near each other: CPUs trace them together
+};
+
 /// Queues for one slice; sized once, reused by every slice.
 struct Queues {
   Buffer work;          ///< PixelWork of camera_pass(), allocated by who makes pictures
@@ -47,7 +53,8 @@ void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Qu
 /// Transmittance of each ray in `rays` into `occlusions`. Exact and packet estimators trace a
 /// point's rays together, where `params.rays_per_point` is large enough for that to pay.
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
-                    const std::string& label, Estimator estimator, const OcclusionParams& params);
+                    const std::string& label, Estimator estimator, const OcclusionParams& params,
+                    RayOrder order = RayOrder::any);
 
 void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                           const ResolveParams& params);

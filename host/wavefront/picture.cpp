@@ -180,7 +180,8 @@ class PictureTracer {
       params.inverse_distance = 1.0f / options_.ao_distance;
       params.falloff = options_.ao_falloff;
     }
-    occlusion_pass(context_, queues_, scene_, "ao occlusion", options_.estimator, params);
+    occlusion_pass(context_, queues_, scene_, "ao occlusion", options_.estimator, params,
+                   RayOrder::by_pixel);
     resolve_.plane = layout_.ao;
     resolve_.squares = 0;
     resolve_.rays = ao.rays;
@@ -198,7 +199,7 @@ class PictureTracer {
     params.seed = options_.seed;
     light_ray_pass(context_, scene_, queues_, params);
     occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator,
-                   occlusion_params(hits, params.rays));
+                   occlusion_params(hits, params.rays), RayOrder::by_pixel);
     resolve_.plane = layout_.lights[light];
     resolve_.squares = layout_.light_squares(light);
     resolve_.rays = params.rays;
