@@ -70,6 +70,15 @@ TEST_F(CommandLine, HelpOfEveryCommandHasAnExample) {
   EXPECT_EQ(version.out.rfind("dapple ", 0), 0u) << version.out;
 }
 
+TEST_F(CommandLine, TheTwoTargetsExcludeEachOther) {
+  const Outcome run = render("--target-error 0.1 --target-rmse 0.1");
+  expect_failure(run, 2, "--target-error");
+  expect_failure(run, 2, "--target-rmse");
+  const Outcome one = render("--target-rmse 0.1");
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_TRUE(contains(one.out, "estimated RMSE: ao 0.")) << one.out;
+}
+
 TEST_F(CommandLine, UsageErrorsNameTheirFlagAndLeaveNothingBehind) {
   const std::pair<const char*, const char*> cases[] = {
       {"--no-such-flag", "--no-such-flag"},
@@ -87,6 +96,8 @@ TEST_F(CommandLine, UsageErrorsNameTheirFlagAndLeaveNothingBehind) {
       {"--footprint -1", "--footprint"},
       {"--ao-distance -1", "--ao-distance"},
       {"--ao-falloff 2", "--ao-distance"},
+      {"--target-rmse 2", "--target-rmse"},
+      {"--target-rmse nan", "--target-rmse"},
       {"--crop 0,0,8,7", "--crop"},
       {"--crop 5,5,4,4", "--crop"},
       {"--crop -1,0,4,4", "--crop"},

@@ -58,11 +58,12 @@ TEST_F(Determinism, TheProgramWritesTheSameBytesAgainAndWithAnyNumberOfDeviceThr
   EXPECT_EQ(bytes_of(rendered("two.exr", "", "POCL_MAX_PTHREAD_COUNT=2 ")), first);
 }
 
-TEST_F(Determinism, SoItDoesWithATargetErrorWhosePixelsStopWhenTheyWill) {
-  const std::string adaptive = "--target-error 0.05";
-  const std::string first = bytes_of(rendered("first.exr", adaptive));
-  EXPECT_EQ(bytes_of(rendered("one.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=1 ")), first);
-  EXPECT_EQ(bytes_of(rendered("two.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=2 ")), first);
+TEST_F(Determinism, SoItDoesWithATargetWhosePixelsStopWhenTheyWill) {
+  for (const std::string adaptive : {"--target-error 0.05", "--target-rmse 0.02"}) {
+    const std::string first = bytes_of(rendered("first.exr", adaptive));
+    EXPECT_EQ(bytes_of(rendered("one.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=1 ")), first);
+    EXPECT_EQ(bytes_of(rendered("two.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=2 ")), first);
+  }
 }
 
 TEST_F(Determinism, AnotherSeedGivesOtherNoiseInEveryPass) {

@@ -127,7 +127,9 @@ std::vector<Contestant> ImageStudy::contestants() {
     changes.ao_rays = kPacketRays;
     contestants.push_back(by_dapple("packet, 16 rays a sample", changes));
   }
-  contestants.push_back(adaptive());
+  contestants.push_back(adaptive("adaptive", &RenderOptions::target_error, 5));
+  // Below 20 all would be what the least of samples give.
+  contestants.push_back(adaptive("adaptive, least RMSE", &RenderOptions::target_rmse, 20));
   return contestants;
 }
 
@@ -165,14 +167,15 @@ Contestant ImageStudy::by_dapple(const std::string& name, const RenderOptions& c
   return contestant;
 }
 
-Contestant ImageStudy::adaptive() {
-  Contestant contestant{"adaptive", false, false, {}, {}};
-  for (double inverse_error = 5; inverse_error < 150; inverse_error *= std::numbers::sqrt2)
+Contestant ImageStudy::adaptive(const std::string& name, float RenderOptions::*target,
+                                double first) {
+  Contestant contestant{name, false, false, {}, {}};
+  for (double inverse_error = first; inverse_error < 150; inverse_error *= std::numbers::sqrt2)
     contestant.ladder.push_back(inverse_error);
-  contestant.run = [this](double inverse_error, std::uint32_t seed) {
+  contestant.run = [this, target](double inverse_error, std::uint32_t seed) {
     RenderOptions options = render_options(kAdaptiveSpp, seed);
     options.estimator = Estimator::prefiltered;
-    options.target_error = static_cast<float>(1 / inverse_error);
+    options.*target = static_cast<float>(1 / inverse_error);
     return render(options);
   };
   return contestant;

@@ -34,8 +34,8 @@ class ImageStudy {
   void calibrate();
   Contestant by_embree(const PictureMethod& method);
   Outcome render(const RenderOptions& options);
-  /// By target error: its efforts are one over that.
-  Contestant adaptive();
+  /// By a target, of pixels or of the picture: efforts are one over that, from `first` up.
+  Contestant adaptive(const std::string& name, float RenderOptions::*target, double first);
   Contestant by_dapple(const std::string& name, const RenderOptions& changes);
   [[nodiscard]] std::vector<double> relative(std::vector<double> irradiance) const;
   [[nodiscard]] std::string reference_key() const;

@@ -35,14 +35,20 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
       "--crop", a.crop,
       "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
-  app.add_option("--spp", o.spp, "Camera samples a pixel; with --target-error the least")
+  app.add_option("--spp", o.spp, "Camera samples a pixel; with a target the least")
       ->capture_default_str();
   app.add_option(
          "--target-error", o.target_error,
          "Sample each pixel until its estimated standard error is below this: of AO, and of "
          "lights relative to their largest unoccluded irradiance; 0: --spp everywhere")
       ->capture_default_str();
-  app.add_option("--max-spp", o.max_spp, "With --target-error the most samples a pixel")
+  app.add_option(
+         "--target-rmse", o.target_rmse,
+         "Sample where that lowers the picture's error most, until the estimated root mean square "
+         "of its pixels' errors is below this in every pass; 0: don't. Fewer samples than "
+         "--target-error takes to the same mean, but pixels' errors differ")
+      ->capture_default_str();
+  app.add_option("--max-spp", o.max_spp, "With a target the most samples a pixel")
       ->capture_default_str();
   app.add_option("--ao-rays", o.ao_rays, "AO rays a camera sample")->capture_default_str();
   app.add_option("--light-rays", o.light_rays, "Rays a light and camera sample")

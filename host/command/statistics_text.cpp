@@ -27,6 +27,13 @@ std::string rays_line(const char* kind, std::uint64_t rays, double seconds, doub
       count_text(count), speed, visits, tests);
 }
 
+std::string errors_line(const std::map<std::string, double>& rmse) {
+  std::string passes;
+  for (const auto& [layer, value] : rmse)
+    passes += fmt::format("{}{} {:.4f}", passes.empty() ? "" : ", ", layer, value);
+  return passes.empty() ? "" : fmt::format("  estimated RMSE: {}\n", passes);
+}
+
 }  // namespace
 
 std::string bytes_text(double bytes) {
@@ -52,6 +59,7 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
       {"camera", s.camera.visits}, {"ao", s.ao.visits}, {"light", s.light.visits}};
   json["triangle_tests_per_ray"] = {
       {"camera", s.camera.tests}, {"ao", s.ao.tests}, {"light", s.light.tests}};
+  if (!s.rmse.empty()) json["estimated_rmse"] = s.rmse;
   json["triangles"] = s.triangles;
   json["nodes"] = s.nodes;
   json["bytes"] = {{"nodes", s.bytes.nodes},       {"triangles", s.bytes.triangles},
@@ -71,6 +79,7 @@ std::string statistics_text(const RenderStatistics& s) {
   text += rays_line("ao", s.rays.ao, pass_seconds(s, "ao occlusion"), s.ao.visits, s.ao.tests);
   text += rays_line("light", s.rays.light, pass_seconds(s, "light occlusion"), s.light.visits,
                     s.light.tests);
+  text += errors_line(s.rmse);
   const auto& t = s.seconds;
   text += fmt::format(
       "  seconds: load {:.2f}, build {:.2f}, prefilter {:.2f}, upload {:.2f}, kernels {:.2f}, "

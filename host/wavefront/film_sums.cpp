@@ -131,6 +131,12 @@ double per_ray(double sum, std::uint64_t rays) {
   return rays ? sum / static_cast<double>(rays) : 0.0;
 }
 
+double root_mean_square(const std::vector<float>& values) {
+  const double sum = std::transform_reduce(values.begin(), values.end(), 0.0, std::plus<>(),
+                                           [](float value) { return double{value} * value; });
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
 void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
                   const RenderOptions& options, std::size_t lights, RenderStatistics& s) {
   const double hits = sums.total(0);
@@ -240,8 +246,10 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
   if (options.visits) add_visits(planes, sums, picture, layout, options);
   for (std::size_t pass = 0; pass < picture.errors.size(); ++pass) {
     const bool is_ao = options.ao && pass == 0;
-    planes.add("error." + (is_ao ? "ao" : layers[pass - (options.ao ? 1 : 0)]),
-               [&](std::uint32_t p) { return picture.errors[pass][p]; });
+    const std::string layer = is_ao ? "ao" : layers[pass - (options.ao ? 1 : 0)];
+    const std::vector<float>& errors = picture.errors[pass];
+    planes.add("error." + layer, [&](std::uint32_t p) { return errors[p]; });
+    statistics.rmse[layer] = root_mean_square(errors);
   }
   count_visits(sums, picture, layout, options, lights.size(), statistics);
   return planes.take();

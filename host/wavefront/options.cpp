@@ -35,12 +35,27 @@ void check_crop(const RenderOptions& options) {
 
 /// Sums are kept in 64-bit fixed point with 24 bits to spare for samples.
 void check_sample_product(const char* flag, const RenderOptions& options, int rays) {
-  const bool adaptive = options.target_error > 0;
+  const bool adaptive = is_adaptive(options);
   const int spp = adaptive ? options.max_spp : options.spp;
   if (static_cast<double>(spp) * rays <= (1 << 24)) return;
   throw Error(ErrorKind::usage,
               fmt::format("{} {} times {} {} is more than {} rays a pixel",
                           adaptive ? "--max-spp" : "--spp", spp, flag, rays, 1 << 24));
+}
+
+void check_targets(const RenderOptions& options) {
+  check_range("--target-error", options.target_error, 0, 1);
+  check_range("--target-rmse", options.target_rmse, 0, 1);
+  check_range("--max-spp", options.max_spp, 1, 1 << 20);
+  if (options.target_error > 0 && options.target_rmse > 0) {
+    throw Error(ErrorKind::usage,
+                "--target-error and --target-rmse exclude each other: pixels are sampled until "
+                "each is below an error, or until all together are");
+  }
+  if (is_adaptive(options) && options.max_spp < options.spp) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--max-spp {} is less than --spp {}", options.max_spp, options.spp));
+  }
 }
 
 }  // namespace
@@ -49,12 +64,7 @@ void validate(const RenderOptions& options) {
   check_range("--width", options.width, 1, 65535);
   check_range("--height", options.height, 1, 65535);
   check_range("--spp", options.spp, 1, 1 << 20);
-  check_range("--target-error", options.target_error, 0, 1);
-  check_range("--max-spp", options.max_spp, 1, 1 << 20);
-  if (options.target_error > 0 && options.max_spp < options.spp) {
-    throw Error(ErrorKind::usage,
-                fmt::format("--max-spp {} is less than --spp {}", options.max_spp, options.spp));
-  }
+  check_targets(options);
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);
   check_range("--footprint", options.footprint, 0, 1e6);

@@ -41,7 +41,7 @@ class PictureTracer {
   }
 
   TracedPicture trace(const Progress& progress) {
-    SamplePlan plan(layout_.pixels, options_);
+    SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_);
     trace_group(plan.first(), plan.is_adaptive() ? Progress{} : progress);
     while (plan.is_adaptive()) {
       const std::vector<WorkGroup> groups = plan.next(variances(plan.samples()));

@@ -65,10 +65,9 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   };
   set("estimator", name_of(options.estimator));
   set("footprint", options.footprint);
-  if (options.target_error > 0) {
-    set("target_error", options.target_error);
-    set("max_spp", options.max_spp);
-  }
+  if (options.target_error > 0) set("target_error", options.target_error);
+  if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
+  if (is_adaptive(options)) set("max_spp", options.max_spp);
   set("ao_rays", options.ao_rays);
   set("light_rays", options.light_rays);
   set("ao_distance", options.ao_distance);

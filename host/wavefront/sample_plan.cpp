@@ -1,24 +1,46 @@
 #include "wavefront/sample_plan.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <map>
 
 namespace dapple {
 namespace {
 
+/// Side of the tiles in which work is listed: 64 neighbours see much the same of the scene.
+constexpr int kTile = 8;
+
+/// Times the samples that it has, a pixel may get more in a round. With 1 or 7 in its place
+/// pictures took the same seconds to the same error.
+constexpr std::uint32_t kMostMore = 3;
+
+/// Batches that a pixel gets more at a time. One would fit each pixel's wants better, by less than
+/// could be measured, and make more and smaller groups.
+constexpr std::uint32_t kUnit = 4;
+
 std::uint32_t whole_batches(int samples) {
   return (static_cast<std::uint32_t>(samples) + DAPPLE_BATCH - 1) / DAPPLE_BATCH * DAPPLE_BATCH;
 }
 
+std::vector<std::uint32_t> tile_order(int width, int height) {
+  std::vector<std::uint32_t> order;
+  order.reserve(static_cast<std::size_t>(width) * height);
+  for (int tile_y = 0; tile_y < height; tile_y += kTile)
+    for (int tile_x = 0; tile_x < width; tile_x += kTile)
+      for (int y = tile_y; y < std::min(tile_y + kTile, height); ++y)
+        for (int x = tile_x; x < std::min(tile_x + kTile, width); ++x)
+          order.push_back(static_cast<std::uint32_t>(y * width + x));
+  return order;
+}
+
 }  // namespace
 
-SamplePlan::SamplePlan(std::uint32_t pixels, const RenderOptions& options)
-    : samples_(pixels, 0),
+SamplePlan::SamplePlan(int width, int height, const RenderOptions& options)
+    : order_(tile_order(width, height)),
+      samples_(order_.size(), 0),
       least_(static_cast<std::uint32_t>(options.spp)),
       most_(least_),
-      target_(options.target_error) {
+      target_error_(options.target_error),
+      target_rmse_(options.target_rmse) {
   if (!is_adaptive()) return;
   // Two batches are the least that tell a variance.
   least_ = std::max(2 * DAPPLE_BATCH, whole_batches(options.spp));
@@ -28,37 +50,48 @@ SamplePlan::SamplePlan(std::uint32_t pixels, const RenderOptions& options)
 WorkGroup SamplePlan::first() {
   WorkGroup group;
   group.samples = least_;
-  for (std::uint32_t pixel = 0; pixel < samples_.size(); ++pixel) {
-    group.work.push_back({pixel, 0});
-    samples_[pixel] = least_;
-  }
+  group.work.reserve(order_.size());
+  for (const std::uint32_t pixel : order_) group.work.push_back({pixel, 0});
+  std::fill(samples_.begin(), samples_.end(), least_);
   return group;
 }
 
-std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances) {
-  std::map<std::uint32_t, WorkGroup> groups;
-  double done = 0, wanted = 0;
-  for (std::uint32_t pixel = 0; pixel < samples_.size(); ++pixel) {
-    const std::uint32_t batches = samples_[pixel] / DAPPLE_BATCH;
-    float variance = 0;
-    for (const std::vector<float>& pass : variances) variance = std::max(variance, pass[pixel]);
-    const double enough = std::ceil(double{variance} / (double{target_} * target_));
-    const double most = most_ / DAPPLE_BATCH;
-    done += batches;
-    if (batches >= std::min(enough, most)) continue;
-    wanted += std::min(enough, most) - batches;
-    const auto more = static_cast<std::uint32_t>(
-        std::min({enough - batches, most - batches, static_cast<double>(batches)}));
-    // Powers of two make few groups; what is missing after one comes with the next round.
-    const std::uint32_t samples = std::bit_floor(more) * DAPPLE_BATCH;
-    WorkGroup& group = groups[samples];
-    group.samples = samples;
-    group.work.push_back({pixel, samples_[pixel]});
-    samples_[pixel] += samples;
+BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances) const {
+  BatchCounts have(samples_);
+  for (std::uint32_t& batches : have) batches /= DAPPLE_BATCH;
+  BatchCounts wanted = have;
+  const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
+  for (const std::vector<float>& pass : variances) {
+    if (target_rmse_ > 0)
+      want_rmse(pass, target_rmse_, have, limits, wanted);
+    else
+      want_error(pass, target_error_, have, limits, wanted);
   }
-  fraction_done_ = std::max(fraction_done_, done / (done + wanted));
+  return wanted;
+}
+
+std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances) {
+  const BatchCounts all = wanted(variances);
+  std::map<std::uint32_t, WorkGroup> groups;
+  double done = 0, missing = 0;
+  for (const std::uint32_t pixel : order_) {
+    const std::uint32_t has = samples_[pixel] / DAPPLE_BATCH;
+    done += has;
+    missing += all[pixel] - has;
+    const std::uint32_t most_more = std::max(kMostMore * has / kUnit, 1u) * kUnit;
+    const std::uint32_t more = std::min(all[pixel] - has, most_more);
+    // By powers of two: few groups, whatever pixels want.
+    for (std::uint32_t batches = 1; batches <= more; batches *= 2) {
+      if (!(more & batches)) continue;
+      WorkGroup& group = groups[batches];
+      group.samples = batches * DAPPLE_BATCH;
+      group.work.push_back({pixel, samples_[pixel]});
+      samples_[pixel] += group.samples;
+    }
+  }
+  fraction_done_ = std::max(fraction_done_, done / (done + missing));
   std::vector<WorkGroup> out;
-  for (auto& [samples, group] : groups) out.push_back(std::move(group));
+  for (auto& [batches, group] : groups) out.push_back(std::move(group));
   return out;
 }
 

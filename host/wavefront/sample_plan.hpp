@@ -5,26 +5,28 @@
 
 #include "dapple/options.hpp"
 #include "dapple/shared/pass_params.h"
+#include "wavefront/sample_allocation.hpp"
 
 namespace dapple {
 
 /// Pixels that get the same number of samples.
 struct WorkGroup {
   std::uint32_t samples = 0;
-  std::vector<PixelWork> work;  ///< in the order of the pixels
+  std::vector<PixelWork> work;  ///< tile by tile: neighbours in the list are so in the picture
 };
 
 /// What is decided depends on the pixels' values alone, never on slices or threads.
 class SamplePlan {
  public:
-  SamplePlan(std::uint32_t pixels, const RenderOptions& options);
+  SamplePlan(int width, int height, const RenderOptions& options);
 
-  [[nodiscard]] bool is_adaptive() const { return target_ > 0; }
-  /// Every pixel's first samples: all of them, or with a target error the least.
+  [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
+  /// Every pixel's first samples: all of them, or with a target the least.
   WorkGroup first();
-  /// With a target error: what pixels want whose errors are above it. `variances`: of a batch's
-  /// mean, by pass and pixel, batch_variances(). No pixel more than doubles, so that the next
-  /// decision rests on more; empty when all are done.
+  /// With a target: what is missing for it, in sixteens but for the most. `variances`: of a batch's
+  /// mean, by pass and pixel, batch_variances(). No pixel gets more than 16, or three times what it
+  /// has, so that the next decision rests on more; empty when all are done. A pixel may be in
+  /// several groups, to be traced in their order.
   std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances);
 
   /// Samples of each pixel once all work given out is done.
@@ -33,9 +35,13 @@ class SamplePlan {
   [[nodiscard]] double fraction_done() const { return fraction_done_; }
 
  private:
+  /// Batches that every pixel should have in all.
+  [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances) const;
+
+  std::vector<std::uint32_t> order_;  ///< pixels, tile by tile
   std::vector<std::uint32_t> samples_;
   std::uint32_t least_, most_;
-  float target_;
+  float target_error_, target_rmse_;
   double fraction_done_ = 0;
 };
 

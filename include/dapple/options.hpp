@@ -36,10 +36,14 @@ struct LookAt {
 struct RenderOptions {
   int width = 960;   ///< pixels, [1, 65535]
   int height = 540;  ///< pixels, [1, 65535]
-  int spp = 16;      ///< primary samples a pixel, [1, 2^20]; with target_error the least
-  float target_error =
-      0;               ///< sample each pixel until its standard error is below, [0, 1]; 0: don't
-  int max_spp = 4096;  ///< with target_error the most, [spp, 2^20]
+  int spp = 16;      ///< primary samples a pixel, [1, 2^20]; with a target the least, 8 or more
+  /// Sample each pixel until its estimated standard error is below this, [0, 1]; 0: don't. Of AO,
+  /// and of lights relative to their largest unoccluded irradiance.
+  float target_error = 0;
+  /// Sample where that lowers the picture's error most, until the estimated root mean square of its
+  /// pixels' errors is below this in every pass, [0, 1]; 0: don't. Not together with target_error.
+  float target_rmse = 0;
+  int max_spp = 4096;  ///< with a target the most samples a pixel, [spp, 2^20]
   int ao_rays = 1;     ///< AO rays a primary sample, [1, 4096]
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
   Estimator estimator = Estimator::prefiltered;
@@ -59,6 +63,11 @@ struct RenderOptions {
   bool ground = false;     ///< put an opaque plane under the scene
   std::vector<std::pair<std::string, float>> opacity;  ///< material name, opacity in [0,1]
 };
+
+/// Whether pixels get as many samples as they need, by one of the two targets.
+[[nodiscard]] inline bool is_adaptive(const RenderOptions& options) {
+  return options.target_error > 0 || options.target_rmse > 0;
+}
 
 /// Throws Error usage, naming the command line's flag, when a value is out of range.
 void validate(const RenderOptions& options);

@@ -27,6 +27,9 @@ struct RenderStatistics {
   struct {
     double visits = 0, tests = 0;  ///< node visits and triangle tests a ray
   } camera, ao, light;
+  /// With a target: estimated root mean square of the pixels' errors, by layer ("ao",
+  /// "light.NAME"); of lights relative to their largest unoccluded irradiance.
+  std::map<std::string, double> rmse;
   std::size_t triangles = 0, nodes = 0;
   struct {
     std::size_t nodes = 0, triangles = 0, textures = 0, instances = 0, film = 0, queues = 0;

@@ -1,0 +1,114 @@
+#include "wavefront/sample_allocation.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace dapple {
+namespace {
+
+/// Pixels that are added up in a row: sums must not depend on threads.
+constexpr std::size_t kSumGrain = 4096;
+
+/// Halvings of the interval in which the density is looked for: to a thousandth of itself.
+constexpr int kHalvings = 10;
+
+/// Doublings after which all that vary want the most.
+constexpr int kDoublings = 60;
+
+/// `have` and whole units more, as near `batches` as `rounding` says, and no more than the most.
+std::uint32_t in_units(double batches, std::uint32_t have, double rounding,
+                       const AllocationLimits& limits) {
+  if (batches <= have || have >= limits.most) return have;
+  const double units = std::floor((batches - have) / limits.unit + rounding);
+  const double all = have + units * limits.unit;
+  return all < limits.most ? static_cast<std::uint32_t>(all) : limits.most;
+}
+
+/// One pass, whose pixels are given batches by the density: so many for a deviation of 1.
+class ByDeviation {
+ public:
+  ByDeviation(const std::vector<float>& variances, const BatchCounts& have,
+              const AllocationLimits& limits, const BatchCounts& wanted)
+      : have_(have), limits_(limits), wanted_(wanted), deviations_(variances.size()) {
+    std::transform(variances.begin(), variances.end(), deviations_.begin(),
+                   [](float variance) { return std::sqrt(variance); });
+  }
+
+  [[nodiscard]] std::uint32_t batches(std::size_t pixel, double density) const {
+    return std::max(wanted_[pixel],
+                    in_units(density * deviations_[pixel], have_[pixel], 0.5, limits_));
+  }
+  [[nodiscard]] double squared_error_sum(double density) const {
+    return sum([&](std::size_t pixel) {
+      const double deviation = deviations_[pixel];
+      return deviation * deviation / batches(pixel, density);
+    });
+  }
+  [[nodiscard]] double deviation_sum() const {
+    return sum([&](std::size_t pixel) { return double{deviations_[pixel]}; });
+  }
+
+ private:
+  template <class Value>
+  [[nodiscard]] double sum(const Value& value) const {
+    using Range = tbb::blocked_range<std::size_t>;
+    return tbb::parallel_deterministic_reduce(
+        Range(0, deviations_.size(), kSumGrain), 0.0,
+        [&](const Range& range, double partial) {
+          for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel)
+            partial += value(pixel);
+          return partial;
+        },
+        std::plus<>());
+  }
+
+  const BatchCounts& have_;
+  const AllocationLimits& limits_;
+  const BatchCounts& wanted_;
+  std::vector<float> deviations_;
+};
+
+/// The least density whose squared errors add up to no more than `enough`.
+double least_density(const ByDeviation& pass, double enough) {
+  // What it would be if every pixel began at none and had no most.
+  double high = pass.deviation_sum() / enough, low = 0;
+  for (int i = 0; i < kDoublings && pass.squared_error_sum(high) > enough; ++i) {
+    low = high;
+    high *= 2;
+  }
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (pass.squared_error_sum(middle) > enough ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+void want_error(const std::vector<float>& variances, float target, const BatchCounts& have,
+                const AllocationLimits& limits, BatchCounts& wanted) {
+  for (std::size_t pixel = 0; pixel < wanted.size(); ++pixel) {
+    // Rounded up, where whole units leave nothing over.
+    const double enough = std::ceil(double{variances[pixel]} / (double{target} * target));
+    const double all_but_one = 1.0 - 1.0 / limits.unit;
+    wanted[pixel] = std::max(wanted[pixel], in_units(enough, have[pixel], all_but_one, limits));
+  }
+}
+
+void want_rmse(const std::vector<float>& variances, float target, const BatchCounts& have,
+               const AllocationLimits& limits, BatchCounts& wanted) {
+  const ByDeviation pass(variances, have, limits, wanted);
+  const double enough = double{target} * target * static_cast<double>(wanted.size());
+  if (pass.squared_error_sum(0) <= enough) return;
+  const double density = least_density(pass, enough);
+  BatchCounts raised(wanted.size());
+  for (std::size_t pixel = 0; pixel < raised.size(); ++pixel)
+    raised[pixel] = pass.batches(pixel, density);
+  wanted = std::move(raised);
+}
+
+}  // namespace dapple

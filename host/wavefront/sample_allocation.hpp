@@ -1,0 +1,31 @@
+// How many samples pixels should have in all: enough everywhere, or where they help most.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace dapple {
+
+/// Batches of DAPPLE_BATCH samples that each pixel has, or should have.
+using BatchCounts = std::vector<std::uint32_t>;
+
+/// What allocations keep to.
+struct AllocationLimits {
+  std::uint32_t unit = 1;  ///< batches: what a pixel is given more is a multiple of this
+  std::uint32_t most = 1;  ///< batches a pixel, which goes before `unit`
+};
+
+/// Raises `wanted`, from `have` up, until each pixel's standard error is below `target`.
+/// `variances`: of a batch's mean, by pixel.
+void want_error(const std::vector<float>& variances, float target, const BatchCounts& have,
+                const AllocationLimits& limits, BatchCounts& wanted);
+
+/// Raises `wanted`, from `have` up, until the root of the pixels' mean squared error is below
+/// `target`, with the fewest samples: those of a pixel in proportion to its standard deviation
+/// (Neyman, "On the Two Different Aspects of the Representative Method", 1934, section III).
+/// What is wanted already, for another pass, counts. Where `most` is in the way of the target,
+/// all pixels that vary want that.
+void want_rmse(const std::vector<float>& variances, float target, const BatchCounts& have,
+               const AllocationLimits& limits, BatchCounts& wanted);
+
+}  // namespace dapple

@@ -1,0 +1,216 @@
+// Who gets samples, without a renderer: allocations on known deviations, and the rounds of a plan
+// on pixels whose samples are Gaussian.
+#include "wavefront/sample_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "dapple/shared/pass_params.h"
+#include "wavefront/pixel_error.hpp"
+#include "wavefront/sample_allocation.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr AllocationLimits kFree{1, 1u << 20};
+
+double rmse(const std::vector<float>& variances, const BatchCounts& batches) {
+  double sum = 0;
+  for (std::size_t p = 0; p < batches.size(); ++p) sum += double{variances[p]} / batches[p];
+  return std::sqrt(sum / static_cast<double>(batches.size()));
+}
+
+std::vector<float> rising_variances(std::size_t pixels) {
+  std::vector<float> variances;
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const float deviation = 0.05f + 0.9f * static_cast<float>(p) / static_cast<float>(pixels);
+    variances.push_back(deviation * deviation);
+  }
+  return variances;
+}
+
+TEST(WantRmse, GivesInProportionToTheDeviationAndReachesTheTarget) {
+  const std::vector<float> variances = rising_variances(500);
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts wanted = have;
+  want_rmse(variances, 0.01f, have, kFree, wanted);
+  EXPECT_LE(rmse(variances, wanted), 0.01);
+  EXPECT_GT(rmse(variances, wanted), 0.00999);
+  const double density = wanted.back() / std::sqrt(double{variances.back()});
+  for (std::size_t p = 0; p < wanted.size(); ++p)
+    EXPECT_NEAR(wanted[p], density * std::sqrt(double{variances[p]}), 1.0) << p;
+}
+
+TEST(WantRmse, TakesFewerThanEqualErrorsDoByWhatDeviationsDiffer) {
+  const std::vector<float> variances = rising_variances(500);
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts by_rmse = have, by_error = have;
+  want_rmse(variances, 0.01f, have, kFree, by_rmse);
+  want_error(variances, 0.01f, have, kFree, by_error);
+  double samples = 0, equal = 0, deviation = 0, variance = 0;
+  for (std::size_t p = 0; p < variances.size(); ++p) {
+    samples += by_rmse[p];
+    equal += by_error[p];
+    deviation += std::sqrt(variances[p]) / 500;
+    variance += variances[p] / 500;
+  }
+  EXPECT_NEAR(equal / samples, variance / (deviation * deviation), 0.01);
+}
+
+TEST(WantRmse, WhatAnotherPassWantsCounts) {
+  const std::vector<float> variances = rising_variances(100);
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts once = have;
+  want_rmse(variances, 0.02f, have, kFree, once);
+  BatchCounts again = once;
+  want_rmse(variances, 0.02f, have, kFree, again);
+  EXPECT_EQ(again, once);
+  want_rmse(variances, 0.03f, have, kFree, again);
+  EXPECT_EQ(again, once) << "an easier target is reached already";
+}
+
+TEST(WantRmse, OutOfReachEveryPixelThatVariesWantsTheMost) {
+  std::vector<float> variances = rising_variances(50);
+  variances[7] = 0;
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts wanted = have;
+  want_rmse(variances, 1e-4f, have, {4, 100}, wanted);
+  for (std::size_t p = 0; p < wanted.size(); ++p) EXPECT_EQ(wanted[p], p == 7 ? 2u : 100u) << p;
+}
+
+TEST(WantError, RoundsUpToWholeUnits) {
+  const std::vector<float> variances{0.01f, 0.05f, 0.1f, 0.0f};
+  const BatchCounts have(4, 2);
+  BatchCounts wanted = have;
+  want_error(variances, 0.1f, have, {4, 9}, wanted);  // 1, 5, 10 and no batches are enough
+  EXPECT_EQ(wanted, (BatchCounts{2, 6, 9, 2}));
+}
+
+// Pixels whose batches' means are Gaussian around 0.
+class GaussianPixels {
+ public:
+  explicit GaussianPixels(std::vector<float> variances)
+      : variances_(std::move(variances)),
+        sums_(variances_.size()),
+        squares_(variances_.size()),
+        batches_(variances_.size()) {}
+
+  void trace(const WorkGroup& group) {
+    for (const PixelWork& work : group.work) {
+      EXPECT_EQ(work.first_sample, batches_[work.pixel] * DAPPLE_BATCH);
+      for (std::uint32_t s = 0; s < group.samples; s += DAPPLE_BATCH) {
+        const double value = normal_(random_) * std::sqrt(variances_[work.pixel]);
+        sums_[work.pixel] += value;
+        squares_[work.pixel] += value * value;
+        ++batches_[work.pixel];
+      }
+    }
+  }
+  [[nodiscard]] double mean(std::size_t p) const { return sums_[p] / batches_[p]; }
+  [[nodiscard]] std::vector<float> variances(int width) const {
+    BatchMoments moments;
+    std::vector<std::uint32_t> samples;
+    for (std::size_t p = 0; p < sums_.size(); ++p) {
+      moments.mean.push_back(static_cast<float>(mean(p)));
+      moments.squares.push_back(static_cast<float>(squares_[p]));
+      samples.push_back(batches_[p] * DAPPLE_BATCH);
+    }
+    return batch_variances(moments, samples, width);
+  }
+
+ private:
+  std::vector<float> variances_;
+  std::vector<double> sums_, squares_;
+  std::vector<std::uint32_t> batches_;
+  std::mt19937 random_{1};
+  std::normal_distribution<double> normal_;
+};
+
+RenderOptions by_rmse(float target) {
+  RenderOptions options;
+  options.spp = 8;
+  options.target_rmse = target;
+  return options;
+}
+
+struct Drawn {
+  double rmse = 0;
+  int rounds = 0;
+  std::vector<std::uint32_t> samples;
+};
+
+Drawn draw(int width, int height, const RenderOptions& options) {
+  const std::size_t count = static_cast<std::size_t>(width) * height;
+  GaussianPixels pixels(rising_variances(count));
+  SamplePlan plan(width, height, options);
+  pixels.trace(plan.first());
+  Drawn drawn;
+  for (; drawn.rounds < 30; ++drawn.rounds) {
+    const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)});
+    if (groups.empty()) break;
+    for (const WorkGroup& group : groups) pixels.trace(group);
+  }
+  double squares = 0;
+  for (std::size_t p = 0; p < count; ++p) squares += pixels.mean(p) * pixels.mean(p);
+  drawn.rmse = std::sqrt(squares / static_cast<double>(count));
+  drawn.samples = plan.samples();
+  return drawn;
+}
+
+TEST(SamplePlan, GaussianPixelsReachTheRmseInFewRounds) {
+  const Drawn drawn = draw(64, 64, by_rmse(0.05f));
+  // 4,096 pixels know their RMSE to 1.1 %.
+  EXPECT_NEAR(drawn.rmse, 0.05, 0.05 * 0.05);
+  EXPECT_LE(drawn.rounds, 8);
+  EXPECT_EQ(draw(64, 64, by_rmse(0.05f)).samples, drawn.samples);
+}
+
+TEST(SamplePlan, EveryPixelHasTheLeastAndNoneMoreThanTheMost) {
+  RenderOptions options = by_rmse(0.01f);
+  options.spp = 20;
+  options.max_spp = 200;
+  const Drawn drawn = draw(16, 16, options);
+  for (const std::uint32_t samples : drawn.samples) {
+    EXPECT_GE(samples, 20u);
+    EXPECT_LE(samples, 200u);
+  }
+  EXPECT_EQ(drawn.samples.back(), 200u);
+}
+
+TEST(SamplePlan, NoPixelMoreThanQuadruplesAndAllEndAtTheMost) {
+  RenderOptions options;
+  options.target_error = 0.01f;
+  options.max_spp = 200;
+  SamplePlan plan(5, 2, options);
+  EXPECT_EQ(plan.first().samples, 16u);
+  const std::vector<std::vector<float>> variances{std::vector<float>(10, 1.0f)};
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<std::uint32_t> before = plan.samples();
+    if (plan.next(variances).empty()) break;
+    for (std::size_t p = 0; p < before.size(); ++p) {
+      EXPECT_LE(plan.samples()[p], 4 * before[p]);
+      EXPECT_GT(plan.samples()[p], before[p]);
+    }
+  }
+  for (const std::uint32_t samples : plan.samples()) EXPECT_EQ(samples, 200u);
+  EXPECT_EQ(plan.fraction_done(), 1.0);
+}
+
+TEST(SamplePlan, ListsEveryPixelOnceTileByTile) {
+  SamplePlan plan(19, 11, RenderOptions{});
+  const WorkGroup all = plan.first();
+  ASSERT_EQ(all.work.size(), 19u * 11u);
+  std::map<std::uint32_t, int> seen;
+  for (const PixelWork& work : all.work) ++seen[work.pixel];
+  EXPECT_EQ(seen.size(), all.work.size());
+  for (std::size_t i = 0; i < 64; ++i) {
+    EXPECT_LT(all.work[i].pixel % 19, 8u);
+    EXPECT_LT(all.work[i].pixel / 19, 8u);
+  }
+}
+
+}  // namespace
+}  // namespace dapple
