@@ -13,7 +13,7 @@ namespace {
 
 /// Rays in flight: on a CPU few enough for the queues to stay in its caches, on a GPU
 /// enough to fill it.
-constexpr std::size_t kCpuSlice = 1u << 15;
+constexpr std::size_t kCpuSlice = 1u << 16;
 constexpr std::size_t kGpuSlice = 1u << 19;
 
 class PictureTracer {
