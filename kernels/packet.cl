@@ -19,36 +19,81 @@ inline uint next_share(Shares* shares) {
   return min(shares->each + one, 65535u);
 }
 
-/* Rays lie as points * rays_per_point; each point's are cut into groups of about the same
-   size, of at most DAPPLE_PACKET_RAYS. A group's node visits and triangle tests are counted once
-   and shared over its rays. */
-__kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
-                     __global const TexturedTriangle* textured,
-                     __global const TextureRecord* textures, __global const uchar* texels,
-                     __global const InstanceRecord* instances, __global const Ray* rays,
-                     __global Occlusion* results, OcclusionParams params) {
-  const uint groups = (params.rays_per_point + DAPPLE_PACKET_RAYS - 1u) / DAPPLE_PACKET_RAYS;
-  const uint item = get_global_id(0);
-  if (item >= params.ray_count / params.rays_per_point * groups) return;
-  const uint size = (params.rays_per_point + groups - 1u) / groups;
-  const uint skipped = item % groups * size;
-  const uint first = item / groups * params.rays_per_point + skipped;
-  const uint count = min(size, params.rays_per_point - skipped);
-  const Scene scene = {nodes, blocks, textured, textures, texels, instances};
+/* Rays that an item takes from the queue, to trace those together that go the same way;
+   kPacketChunk in host/wavefront/passes.cpp. */
+#define DAPPLE_PACKET_CHUNK 512u
+
+/* One of eight, by the signs of the direction, each next to those that differ in one sign. */
+inline uint octant(__global const Ray* ray) {
+  const uint y = ray->direction[1] < 0.0f;
+  const uint xy = y ^ (ray->direction[0] < 0.0f ? 1u : 0u);
+  const uint xyz = xy ^ (ray->direction[2] < 0.0f ? 1u : 0u);
+  return y << 2 | xy << 1 | xyz;
+}
+
+/* Numbers of the `count` rays from `queue` on, by octant. */
+inline void sort_by_octant(__global const Ray* queue, uint count, ushort* order) {
+  uint start[8] = {0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u};
+  uchar of[DAPPLE_PACKET_CHUNK];
+  for (uint i = 0; i < count; ++i) {
+    of[i] = (uchar)octant(queue + i);
+    ++start[of[i]];
+  }
+  uint next = 0;
+  for (uint cell = 0; cell < 8u; ++cell) {
+    const uint size = start[cell];
+    start[cell] = next;
+    next += size;
+  }
+  for (uint i = 0; i < count; ++i) order[start[of[i]]++] = (ushort)i;
+}
+
+/* Rays queue[order[0]] to queue[order[count - 1]]. Node visits and triangle tests are counted once
+   and shared over them. */
+inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray* queue,
+                         const ushort* order, uint count, __global Occlusion* results) {
   PacketRays world;
-  load_rays(rays + first, count, params.footprint, &world);
-  prefetch_rays(rays + first + count, count);
+  load_rays(queue, order, count, params.footprint, &world);
   Packet packet;
   start_packet(count, &packet);
-  traverse_packet(scene, params, rays[first].light, &world, &packet);
+  traverse_packet(scene, params, queue[order[0]].light, &world, &packet);
   Shares visits = make_shares(packet.visits, count);
   Shares tests = make_shares(packet.tests, count);
   for (uint i = 0; i < count; i += 8u) {
     Lanes transmittance;
     transmittance.v = packet_transmittance(&packet, i);
     for (uint lane = 0; lane < min(8u, count - i); ++lane) {
-      results[first + i + lane].transmittance = transmittance.f[lane];
-      results[first + i + lane].visits = next_share(&visits) | next_share(&tests) << 16;
+      __global Occlusion* result = results + order[i + lane];
+      result->transmittance = transmittance.f[lane];
+      result->visits = next_share(&visits) | next_share(&tests) << 16;
     }
+  }
+}
+
+/* Rays lie as points * rays_per_point; each point's are cut into chunks of about the same size, of
+   at most DAPPLE_PACKET_CHUNK, one an item. */
+__kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                     __global const TexturedTriangle* textured,
+                     __global const TextureRecord* textures, __global const uchar* texels,
+                     __global const InstanceRecord* instances, __global const Ray* rays,
+                     __global Occlusion* results, OcclusionParams params) {
+  const uint chunks = (params.rays_per_point + DAPPLE_PACKET_CHUNK - 1u) / DAPPLE_PACKET_CHUNK;
+  const uint item = get_global_id(0);
+  if (item >= params.ray_count / params.rays_per_point * chunks) return;
+  const uint size = (params.rays_per_point + chunks - 1u) / chunks;
+  const uint skipped = item % chunks * size;
+  const uint first = item / chunks * params.rays_per_point + skipped;
+  const uint count = min(size, params.rays_per_point - skipped);
+  const Scene scene = {nodes, blocks, textured, textures, texels, instances};
+  prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
+  ushort order[DAPPLE_PACKET_CHUNK];
+  if (count > DAPPLE_PACKET_RAYS) {
+    sort_by_octant(rays + first, count, order);
+  } else {
+    for (uint i = 0; i < count; ++i) order[i] = (ushort)i;
+  }
+  for (uint i = 0; i < count; i += DAPPLE_PACKET_RAYS) {
+    trace_packet(scene, params, rays + first, order + i, min(count - i, DAPPLE_PACKET_RAYS),
+                 results + first);
   }
 }

@@ -12,8 +12,8 @@ constexpr std::size_t kScanItems = 256;
 /// than one by one, 4 were 1.15 to 1.4 times as fast, exact or prefiltered (sapling, tree, cards).
 constexpr uint kLeastPacket = 4;
 
-/// Rays that one item of the packet kernel takes; DAPPLE_PACKET_RAYS in kernels/packet_rays.clh.
-constexpr uint kPacketRays = 64;
+/// Rays that one item of the packet kernel takes; DAPPLE_PACKET_CHUNK in kernels/packet.cl.
+constexpr uint kPacketChunk = 512;
 
 /// Items a work-group: of packets and beams few, so that small slices keep all threads busy.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 8;
@@ -28,9 +28,10 @@ std::size_t beams_of(std::size_t samples) {
 /// How many rays the packet kernel takes as one point's; 0: the rays are traced one by one.
 std::size_t packet_rays(Estimator estimator, std::size_t rays, uint rays_per_point, RayOrder order,
                         const DeviceInfo& device) {
-  const bool together = estimator != Estimator::prefiltered && rays_per_point >= kLeastPacket;
-  if (together) return rays_per_point;
-  return order == RayOrder::by_pixel && device.kind == "CPU" ? rays : 0;
+  const bool is_cpu = device.kind == "CPU";
+  const bool may = is_cpu || estimator == Estimator::packet;
+  if (may && rays_per_point >= kLeastPacket) return rays_per_point;
+  return is_cpu && order == RayOrder::by_pixel ? rays : 0;
 }
 
 KernelName occlusion_kernel(Estimator estimator, bool together, bool one_point) {
@@ -116,12 +117,12 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
       packet_rays(estimator, params.ray_count, params.rays_per_point, order, context.info());
   std::size_t items = params.ray_count, group = kRayGroup;
   OcclusionParams launched = params;
+  const bool one_point = together == params.rays_per_point;
   if (together) {
-    items = params.ray_count / together * ((together + kPacketRays - 1) / kPacketRays);
-    group = kPacketGroup;
+    items = params.ray_count / together * ((together + kPacketChunk - 1) / kPacketChunk);
+    group = one_point ? kPacketGroup : 1;
     launched.rays_per_point = static_cast<uint>(together);
   }
-  const bool one_point = together == params.rays_per_point;
   context.launch(occlusion_kernel(estimator, together > 0, one_point), label, items,
                  {scene.nodes, scene.blocks, scene.textured, scene.textures, scene.texels,
                   scene.instances, queues.rays, queues.occlusions, launched},

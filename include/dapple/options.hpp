@@ -14,9 +14,9 @@ namespace dapple {
 
 /// How an occlusion ray is estimated.
 enum class Estimator : std::uint8_t {
-  exact,        ///< every surface on the ray is composited; from 4 rays a point up all at once
-  prefiltered,  ///< stops at BVH nodes that the ray's footprint covers, ray by ray
-  packet,       ///< prefiltered, from 4 rays a point up all at once, which is faster
+  exact,        ///< every surface on the ray is composited
+  prefiltered,  ///< stops at BVH nodes that the ray's footprint covers
+  packet,       ///< prefiltered; from 4 rays a point up all at once on GPUs too, as CPUs do anyway
 };
 
 /// A pixel rectangle, inclusive at both ends as in EXR windows; (0,0) is top left.

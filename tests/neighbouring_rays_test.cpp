@@ -1,0 +1,100 @@
+// Rays that start near each other, traced together: each finds what it finds alone, and the same
+// bits in any company.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "device/scene_upload.hpp"
+#include "scene_on_device.hpp"
+#include "wavefront/passes.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+std::vector<Occlusion> together(const SceneOnDevice& scene, const std::vector<Ray>& rays,
+                                Estimator estimator) {
+  DeviceContext& context = device().context();
+  const Queues queues = make_queues(context, rays.size(), 1);
+  context.write(queues.rays, rays.data(), rays.size() * sizeof(Ray));
+  OcclusionParams params{};
+  params.scene = scene.uploaded.buffers->params;
+  params.ray_count = static_cast<uint>(rays.size());
+  params.rays_per_point = 1;
+  params.footprint = 1;
+  occlusion_pass(context, queues, *scene.uploaded.buffers, "test", estimator, params,
+                 RayOrder::by_pixel);
+  std::vector<Occlusion> found(rays.size());
+  context.read(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
+  return found;
+}
+
+std::vector<float> transmittances(const std::vector<Occlusion>& found) {
+  std::vector<float> values;
+  for (const Occlusion& one : found) values.push_back(one.transmittance);
+  return values;
+}
+
+Scene forest_with_sheared_trees() {
+  Scene scene = make_procedural("scene:forest?trees=9&leaves=500");
+  scene.instances[0].to_world[1][0] += 0.3f;
+  return scene;
+}
+
+class NeighbouringRays : public testing::TestWithParam<const char*> {
+ protected:
+  const SceneOnDevice scene_{std::string(GetParam()) == "sheared" ? forest_with_sheared_trees()
+                                                                  : make_procedural(GetParam())};
+  const std::vector<Ray> rays_ = make_rays();
+
+ private:
+  std::vector<Ray> make_rays() const {
+    const float radius = scene_.bvh.bounds.size().length();
+    std::vector<Ray> rays = rays_through(scene_.bvh.bounds, 5003, radius, 0.01f, 7);
+    Points random(3);
+    for (Ray& ray : rays) {
+      ray.key = static_cast<std::uint32_t>(random.unit() * 4e9f);
+      ray.first_area = 1e-4f;
+      if (random.unit() < 0.3f) ray.t_max = radius * 2 * random.unit();
+    }
+    return rays;
+  }
+};
+
+// Borders of boxes and triangles are met or not by roundings, which differ between the kernels.
+TEST_P(NeighbouringRays, FindTogetherWhatTheyFindAlone) {
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    const auto alone = scene_.trace(rays_, estimator);
+    const auto found = together(scene_, rays_, estimator);
+    int different = 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      different += std::fabs(found[i].transmittance - alone[i].transmittance) > 1e-4f;
+      sum += found[i].transmittance - alone[i].transmittance;
+    }
+    EXPECT_LE(different, 5);
+    EXPECT_LT(std::fabs(sum / static_cast<double>(rays_.size())), 2e-4);
+  }
+}
+
+TEST_P(NeighbouringRays, FindTheSameBitsInAnyCompany) {
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    std::vector<float> found = transmittances(together(scene_, rays_, estimator));
+    std::vector<Ray> reversed(rays_.rbegin(), rays_.rend());
+    std::vector<float> backwards = transmittances(together(scene_, reversed, estimator));
+    std::reverse(backwards.begin(), backwards.end());
+    EXPECT_EQ(found, backwards);
+    const std::vector<Ray> few(rays_.begin() + 100, rays_.begin() + 137);
+    const std::vector<float> of_few = transmittances(together(scene_, few, estimator));
+    EXPECT_TRUE(std::equal(of_few.begin(), of_few.end(), found.begin() + 100));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, NeighbouringRays,
+                         testing::Values("scene:tree?leaves=3000", "scene:cloud?leaves=3000&opacity=0.2",
+                                         "scene:forest?trees=9&leaves=500", "sheared"));
+
+}  // namespace
+}  // namespace dapple
