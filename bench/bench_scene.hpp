@@ -67,6 +67,8 @@ class BenchScene {
   const Device& device() { return device_.open(); }
   const DeviceScene& on_device();
   const SceneRays& rays();
+  /// That of the picture; set once scene() is made.
+  const CameraParams& camera() const { return *camera_; }
 
  private:
   SceneRecipe recipe_;

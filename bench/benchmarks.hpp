@@ -6,8 +6,8 @@
 
 namespace dapple::bench {
 
-/// Occlusion/exact and Occlusion/prefiltered: the occlusion kernel on AO rays. ClosestHit:
-/// the camera pass's traversal.
+/// Occlusion, OcclusionTogether, OcclusionOfPoints, each exact and prefiltered: AO rays one by one,
+/// with their neighbours, with those of their point. Camera: the camera pass.
 void register_tracing(BenchScene& scene);
 /// Build: all of build_bvh(). Prefilter: the part of it that makes opacities.
 void register_building(BenchScene& scene);

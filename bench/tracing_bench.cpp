@@ -1,4 +1,5 @@
-// The two traversal kernels on rays that lie ready on the device, timed by its own clock.
+// The traversal kernels, timed by the device's own clock: AO rays that lie ready on it, and whole
+// camera passes.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks.hpp"
@@ -18,21 +19,10 @@ double device_seconds(DeviceContext& context) {
   return seconds;
 }
 
-/// Node visits and triangle tests a ray, from results' packed `visits`.
-template <class Result>
-void count_work(benchmark::State& state, DeviceContext& context, const Buffer& buffer,
-                std::size_t rays) {
-  std::vector<Result> results(rays);
-  context.read(buffer, results.data(), rays * sizeof(Result));
-  double visits = 0, tests = 0;
-  for (const Result& result : results) {
-    visits += result.visits & 0xffffu;
-    tests += result.visits >> 16;
-  }
-  const auto count = static_cast<double>(rays);
-  state.counters["visits/ray"] = visits / count;
-  state.counters["tests/ray"] = tests / count;
-  state.counters["rays"] = benchmark::Counter(count * static_cast<double>(state.iterations()),
+void report_work(benchmark::State& state, double visits, double tests, double rays) {
+  state.counters["visits/ray"] = visits / rays;
+  state.counters["tests/ray"] = tests / rays;
+  state.counters["rays"] = benchmark::Counter(rays * static_cast<double>(state.iterations()),
                                               benchmark::Counter::kIsRate);
 }
 
@@ -49,26 +39,55 @@ void time_launches(benchmark::State& state, DeviceContext& context, const Launch
   }
 }
 
-void measure_occlusion(benchmark::State& state, BenchScene& scene, Estimator estimator) {
+/// The scene's AO rays, of which `rays_per_point` in a row are said to share a point.
+void measure_occlusion(benchmark::State& state, BenchScene& scene, Estimator estimator,
+                       uint rays_per_point, RayOrder order) {
   const SceneRays& rays = scene.rays();
   const DeviceBuffers& buffers = *scene.on_device().buffers;
   DeviceContext& context = scene.device().context();
   OcclusionParams params{};
   params.scene = buffers.params;
   params.ray_count = static_cast<uint>(rays.ao_count);
+  params.rays_per_point = rays_per_point;
   params.footprint = 1.0f;
-  time_launches(state, context,
-                [&] { occlusion_pass(context, rays.ao, buffers, kLabel, estimator, params); });
-  count_work<Occlusion>(state, context, rays.ao.occlusions, rays.ao_count);
+  time_launches(state, context, [&] {
+    occlusion_pass(context, rays.ao, buffers, kLabel, estimator, params, order);
+  });
+  std::vector<Occlusion> found(rays.ao_count);
+  context.read(rays.ao.occlusions, found.data(), found.size() * sizeof(Occlusion));
+  double visits = 0, tests = 0;
+  for (const Occlusion& one : found) {
+    visits += one.visits & 0xffffu;
+    tests += one.visits >> 16;
+  }
+  report_work(state, visits, tests, static_cast<double>(rays.ao_count));
 }
 
-void measure_closest_hit(benchmark::State& state, BenchScene& scene) {
+/// The picture's camera pass at `samples` a pixel, in slices of as many samples as it has pixels.
+void measure_camera(benchmark::State& state, BenchScene& scene, uint samples) {
   const SceneRays& rays = scene.rays();
   const DeviceBuffers& buffers = *scene.on_device().buffers;
   DeviceContext& context = scene.device().context();
-  time_launches(state, context,
-                [&] { closest_hit_pass(context, buffers, rays.camera, rays.camera_count); });
-  count_work<SurfacePoint>(state, context, rays.camera.points, rays.camera_count);
+  CameraParams camera = scene.camera();
+  const uint pixels = static_cast<uint>(rays.camera_count) / samples;
+  const auto for_each_slice = [&](const auto& work) {
+    for (uint slice = 0; slice < samples; ++slice) {
+      camera.slice = {slice * pixels, pixels, 0, samples};
+      camera_pass(context, buffers, rays.camera, camera);
+      work();
+    }
+  };
+  time_launches(state, context, [&] { for_each_slice([] {}); });
+  std::vector<CameraBeam> beams(rays.camera_count / DAPPLE_BEAM_RAYS);
+  double visits = 0, tests = 0;
+  for_each_slice([&] {
+    context.read(rays.camera.beams, beams.data(), beams.size() * sizeof(CameraBeam));
+    for (const CameraBeam& beam : beams) {
+      visits += beam.visits;
+      tests += double{DAPPLE_BEAM_RAYS} * beam.tests;
+    }
+  });
+  report_work(state, visits, tests, static_cast<double>(rays.camera_count * samples));
 }
 
 template <class Measure>
@@ -85,13 +104,22 @@ void add(const std::string& name, const Measure& measure) {
 }  // namespace
 
 void register_tracing(BenchScene& scene) {
-  add("Occlusion/exact/" + scene.name(),
-      [&scene](benchmark::State& state) { measure_occlusion(state, scene, Estimator::exact); });
-  add("Occlusion/prefiltered/" + scene.name(), [&scene](benchmark::State& state) {
-    measure_occlusion(state, scene, Estimator::prefiltered);
-  });
-  add("ClosestHit/" + scene.name(),
-      [&scene](benchmark::State& state) { measure_closest_hit(state, scene); });
+  for (const auto& [name, estimator] :
+       {std::pair("exact", Estimator::exact), {"prefiltered", Estimator::prefiltered}}) {
+    const auto add_occlusion = [&](const std::string& kind, uint rays_per_point, RayOrder order) {
+      add(kind + "/" + name + "/" + scene.name(),
+          [&scene, estimator = estimator, rays_per_point, order](benchmark::State& state) {
+            measure_occlusion(state, scene, estimator, rays_per_point, order);
+          });
+    };
+    add_occlusion("Occlusion", 1, RayOrder::any);
+    add_occlusion("OcclusionTogether", 1, RayOrder::by_pixel);
+    add_occlusion("OcclusionOfPoints", kRaysPerPoint, RayOrder::any);
+  }
+  for (const uint samples : {1u, 16u}) {
+    add("Camera/" + std::to_string(samples) + "/" + scene.name(),
+        [&scene, samples](benchmark::State& state) { measure_camera(state, scene, samples); });
+  }
 }
 
 }  // namespace dapple::bench

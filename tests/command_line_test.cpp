@@ -241,12 +241,11 @@ TEST_F(CommandLine, VisitsAreALayerAndAHeatMapBesideThePreview) {
   const Plane* nodes = film.find("visits.nodes");
   ASSERT_NE(nodes, nullptr);
   ASSERT_NE(film.find("visits.triangles"), nullptr);
-  // Every beam of camera rays visits the root; the means add up to what the statistics count.
+  // Several beams of camera rays visit the root together; the means add up to what the statistics
+  // count.
   double sum = 0;
-  for (const float visits : nodes->pixels) {
-    EXPECT_GE(visits, 1.0 / DAPPLE_BEAM_RAYS);
-    sum += visits;
-  }
+  for (const float visits : nodes->pixels) sum += visits;
+  EXPECT_GT(sum, 0);
   const auto json = nlohmann::json::parse(bytes_of(path("stats.json")));
   const double samples = film.find("samples")->pixels.front();
   double counted = 0;

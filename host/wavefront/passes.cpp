@@ -16,10 +16,13 @@ constexpr uint kLeastPacket = 4;
 constexpr uint kPacketChunk = 512;
 
 /// Items a work-group: of packets and beams few, so that small slices keep all threads busy.
-constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 8;
+constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 4;
 
 /// Rays that one item of the AO ray kernel makes; DAPPLE_AO_LANES in kernels/ao.cl.
 constexpr std::size_t kAoLanes = 16;
+
+/// Beams that one item of the camera kernel traces; DAPPLE_BEAMS_PER_ITEM in kernels/camera.cl.
+constexpr std::size_t kBeamsPerItem = 4;
 
 std::size_t beams_of(std::size_t samples) {
   return (samples + DAPPLE_BEAM_RAYS - 1) / DAPPLE_BEAM_RAYS;
@@ -72,7 +75,7 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
   CameraParams camera = params;
   camera.scene = scene.params;
-  context.launch(kCameraHits, "camera", beams_of(samples),
+  context.launch(kCameraHits, "camera", (beams_of(samples) + kBeamsPerItem - 1) / kBeamsPerItem,
                  {scene.nodes, scene.blocks, scene.textured, scene.textures, scene.texels,
                   scene.instances, queues.work, queues.points, queues.beams, camera},
                  kBeamGroup);
