@@ -8,9 +8,13 @@ namespace {
 /// Work-items of the one group that compacts; DAPPLE_SCAN_ITEMS in kernels/compact.cl.
 constexpr std::size_t kScanItems = 256;
 
-/// Rays of a point from which on packets pay: of AO rays 2 took up to a seventh longer together
-/// than one by one, 4 were 1.15 to 1.4 times as fast, exact or prefiltered (sapling, tree, cards).
+/// Rays of a point from which on they go together: of AO rays 2 took up to a seventh longer than
+/// one by one, 4 were 1.15 to 1.4 times as fast, exact or prefiltered (sapling, tree, cards).
 constexpr uint kLeastPacket = 4;
+
+/// And from which on they go without those of other points: what 16 have in common is worth less
+/// than that packets of 64 are full (OcclusionTogether beside OcclusionOfPoints in the bench).
+constexpr uint kLeastOfPoint = 32;
 
 /// Rays that one item of the packet kernel takes; DAPPLE_PACKET_CHUNK in kernels/packet.cl.
 constexpr uint kPacketChunk = 512;
@@ -31,10 +35,11 @@ std::size_t beams_of(std::size_t samples) {
 /// How many rays the packet kernel takes as one point's; 0: the rays are traced one by one.
 std::size_t packet_rays(Estimator estimator, std::size_t rays, uint rays_per_point, RayOrder order,
                         const DeviceInfo& device) {
-  const bool is_cpu = device.kind == "CPU";
-  const bool may = is_cpu || estimator == Estimator::packet;
-  if (may && rays_per_point >= kLeastPacket) return rays_per_point;
-  return is_cpu && order == RayOrder::by_pixel ? rays : 0;
+  if (device.kind == "CPU") {
+    if (rays_per_point >= kLeastOfPoint) return rays_per_point;
+    return rays_per_point >= kLeastPacket || order == RayOrder::by_pixel ? rays : 0;
+  }
+  return estimator == Estimator::packet && rays_per_point >= kLeastPacket ? rays_per_point : 0;
 }
 
 KernelName occlusion_kernel(Estimator estimator, bool together, bool one_point) {
