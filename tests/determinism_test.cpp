@@ -84,6 +84,28 @@ std::vector<float> cropped(const Film& film, const Plane& plane, const PixelRect
   return pixels;
 }
 
+// A ray that has no company is traced as one that has.
+TEST(Crop, OfASinglePixelAndSampleEqualsThatOfTheWholePicture) {
+  Scene scene = make_procedural("scene:tree?leaves=3000");
+  RenderOptions options;
+  options.width = 16;
+  options.height = 16;
+  options.spp = 1;
+  const Film whole = render(scene, options).film;
+  int hits = 0;
+  for (int x = 5; x < 11; ++x) {
+    options.crop = PixelRect{x, 7, x, 7};
+    const Film part = render(scene, options).film;
+    hits += part.find("A")->pixels[0] > 0;
+    for (const char* channel : {"ao.R", "bent.X", "light.key.R", "Z"}) {
+      EXPECT_TRUE(same_bits(part.find(channel)->pixels,
+                            cropped(whole, *whole.find(channel), *options.crop)))
+          << channel << " at " << x;
+    }
+  }
+  EXPECT_GT(hits, 2);
+}
+
 TEST(Crop, EqualsTheSamePartOfTheWholePictureBitForBit) {
   Scene scene = make_procedural("scene:tree?leaves=3000");
   RenderOptions options;

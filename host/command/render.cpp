@@ -56,7 +56,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
          "--estimator", a.estimator,
          "exact: every surface counts; prefiltered: stop at BVH nodes the ray's footprint covers; "
-         "packet: prefiltered, all rays of a camera sample at once, for 4 --ao-rays and more")
+         "packet: prefiltered, with 4 --ao-rays and more those of a camera sample at once on GPUs "
+         "too, as CPUs do anyway")
       ->capture_default_str();
   app.add_option(
          "--footprint", o.footprint,

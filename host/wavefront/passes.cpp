@@ -32,20 +32,23 @@ std::size_t beams_of(std::size_t samples) {
   return (samples + DAPPLE_BEAM_RAYS - 1) / DAPPLE_BEAM_RAYS;
 }
 
-/// How many rays the packet kernel takes as one point's; 0: the rays are traced one by one.
-std::size_t packet_rays(Estimator estimator, std::size_t rays, uint rays_per_point, RayOrder order,
-                        const DeviceInfo& device) {
-  if (device.kind == "CPU") {
-    if (rays_per_point >= kLeastOfPoint) return rays_per_point;
-    return rays_per_point >= kLeastPacket || order == RayOrder::by_pixel ? rays : 0;
-  }
-  return estimator == Estimator::packet && rays_per_point >= kLeastPacket ? rays_per_point : 0;
+/// Whom a ray is traced with. Never a question of how many rays there are in all: kernels differ in
+/// roundings, and a crop must make the bits of the whole picture.
+enum class Company { none, neighbours, point };
+
+Company company(Estimator estimator, uint rays_per_point, RayOrder order,
+                const DeviceInfo& device) {
+  const bool share = rays_per_point >= kLeastPacket;
+  if (device.kind != "CPU")
+    return share && estimator == Estimator::packet ? Company::point : Company::none;
+  if (rays_per_point >= kLeastOfPoint) return Company::point;
+  return share || order == RayOrder::by_pixel ? Company::neighbours : Company::none;
 }
 
-KernelName occlusion_kernel(Estimator estimator, bool together, bool one_point) {
+KernelName occlusion_kernel(Estimator estimator, Company with) {
   const bool prefiltered = estimator != Estimator::exact;
-  if (together) return {"packet", "packet", {prefiltered, one_point}};
-  return {"occlusion", "occlusion", {prefiltered}};
+  if (with == Company::none) return {"occlusion", "occlusion", {prefiltered}};
+  return {"packet", "packet", {prefiltered, with == Company::point}};
 }
 
 const KernelName kCameraHits{"camera_hits", "camera", {}};
@@ -121,17 +124,17 @@ void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Qu
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order) {
-  const std::size_t together =
-      packet_rays(estimator, params.ray_count, params.rays_per_point, order, context.info());
+  if (params.ray_count == 0) return;
+  const Company with = company(estimator, params.rays_per_point, order, context.info());
   std::size_t items = params.ray_count, group = kRayGroup;
   OcclusionParams launched = params;
-  const bool one_point = together == params.rays_per_point;
-  if (together) {
-    items = params.ray_count / together * ((together + kPacketChunk - 1) / kPacketChunk);
-    group = one_point ? kPacketGroup : 1;
-    launched.rays_per_point = static_cast<uint>(together);
+  if (with != Company::none) {
+    if (with == Company::neighbours) launched.rays_per_point = params.ray_count;
+    const uint rays = launched.rays_per_point;
+    items = std::size_t{params.ray_count / rays} * ((rays + kPacketChunk - 1) / kPacketChunk);
+    group = with == Company::point ? kPacketGroup : 1;
   }
-  context.launch(occlusion_kernel(estimator, together > 0, one_point), label, items,
+  context.launch(occlusion_kernel(estimator, with), label, items,
                  {scene.nodes, scene.blocks, scene.textured, scene.textures, scene.texels,
                   scene.instances, queues.rays, queues.occlusions, launched},
                  group);
@@ -161,10 +164,9 @@ void prepare_kernels(DeviceContext& context, const RenderOptions& options) {
   for (const KernelName& kernel : {kCameraHits, kCompactHits, kResolveSurface})
     context.prepare(kernel);
   const auto prepare_occlusion = [&](int rays) {
-    const auto count = static_cast<uint>(rays);
-    const std::size_t together =
-        packet_rays(options.estimator, 2 * count, count, RayOrder::by_pixel, context.info());
-    context.prepare(occlusion_kernel(options.estimator, together > 0, together == count));
+    const Company with = company(options.estimator, static_cast<uint>(rays), RayOrder::by_pixel,
+                                 context.info());
+    context.prepare(occlusion_kernel(options.estimator, with));
   };
   if (options.ao) {
     prepare_occlusion(options.ao_rays);

@@ -50,8 +50,9 @@ void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& p
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params);
 
-/// Transmittance of each ray in `rays` into `occlusions`. Exact and packet estimators trace a
-/// point's rays together, where `params.rays_per_point` is large enough for that to pay.
+/// Transmittance of each ray in `rays` into `occlusions`. On CPUs rays of one point, where
+/// `params.rays_per_point` is large enough for that to pay, and neighbours are traced together; on
+/// other devices those of a point if the estimator is packet.
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order = RayOrder::any);

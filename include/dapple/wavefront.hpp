@@ -68,8 +68,8 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
                              const OcclusionOptions& options = {});
 
 /// Transmittance along each ray. `footprint` 0 with the prefiltered estimator equals exact.
-/// Exact and packet rays are traced together where they share a point: `rays_per_point` of them in
-/// a row, with one origin and light. Throws Error usage.
+/// Rays that share a point may be traced together: `rays_per_point` of them in a row, with one
+/// origin and light. Throws Error usage.
 std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              std::span<const Ray> rays, Estimator estimator, float footprint = 1.0f,
                              std::size_t rays_per_point = 1);
