@@ -60,10 +60,23 @@ void check_targets(const RenderOptions& options) {
 
 }  // namespace
 
+std::string name_of(Estimator estimator) {
+  switch (estimator) {
+    case Estimator::exact:
+      return "exact";
+    case Estimator::prefiltered:
+      return "prefiltered";
+    case Estimator::packet:
+      return "packet";
+  }
+  return "";
+}
+
 void validate(const RenderOptions& options) {
   check_range("--width", options.width, 1, 65535);
   check_range("--height", options.height, 1, 65535);
   check_range("--spp", options.spp, 1, 1 << 20);
+  check_range("footprint_spp", options.footprint_spp, 0, 1 << 20);
   check_targets(options);
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);

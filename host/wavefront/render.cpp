@@ -23,18 +23,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-const char* name_of(Estimator estimator) {
-  switch (estimator) {
-    case Estimator::exact:
-      return "exact";
-    case Estimator::prefiltered:
-      return "prefiltered";
-    case Estimator::packet:
-      return "packet";
-  }
-  return "";
-}
-
 /// Overrides, lights and ground, in the order that framing needs: the camera sees the
 /// scene as it came, without the ground.
 View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {

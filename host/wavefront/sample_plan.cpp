@@ -17,6 +17,9 @@ constexpr std::uint32_t kMostMore = 3;
 /// could be measured, and make more and smaller groups.
 constexpr std::uint32_t kUnit = 4;
 
+/// Samples that every pixel has before any has more: a beam's, which are traced together.
+constexpr std::uint32_t kFirst = 16;
+
 std::uint32_t whole_batches(int samples) {
   return (static_cast<std::uint32_t>(samples) + DAPPLE_BATCH - 1) / DAPPLE_BATCH * DAPPLE_BATCH;
 }
@@ -32,28 +35,41 @@ std::vector<std::uint32_t> tile_order(int width, int height) {
   return order;
 }
 
+std::vector<WorkGroup> in_order(std::map<std::uint32_t, WorkGroup>&& groups) {
+  std::vector<WorkGroup> out;
+  for (auto& [size, group] : groups) out.push_back(std::move(group));
+  return out;
+}
+
 }  // namespace
 
-SamplePlan::SamplePlan(int width, int height, const RenderOptions& options)
+SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
+                       std::vector<std::uint32_t> samples)
     : order_(tile_order(width, height)),
-      samples_(order_.size(), 0),
+      samples_(std::move(samples)),
       least_(static_cast<std::uint32_t>(options.spp)),
       most_(least_),
       target_error_(options.target_error),
       target_rmse_(options.target_rmse) {
+  samples_.resize(order_.size(), 0);
   if (!is_adaptive()) return;
   // Two batches are the least that tell a variance.
   least_ = std::max(2 * DAPPLE_BATCH, whole_batches(options.spp));
   most_ = std::max(least_, whole_batches(options.max_spp));
 }
 
-WorkGroup SamplePlan::first() {
-  WorkGroup group;
-  group.samples = least_;
-  group.work.reserve(order_.size());
-  for (const std::uint32_t pixel : order_) group.work.push_back({pixel, 0});
-  std::fill(samples_.begin(), samples_.end(), least_);
-  return group;
+std::vector<WorkGroup> SamplePlan::least() {
+  std::map<std::uint32_t, WorkGroup> groups;
+  for (const std::uint32_t pixel : order_) {
+    std::uint32_t& has = samples_[pixel];
+    if (has >= least_) continue;
+    const std::uint32_t more = std::min(least_ - has, std::max(has, kFirst));
+    WorkGroup& group = groups[more];
+    group.samples = more;
+    group.work.push_back({pixel, has});
+    has += more;
+  }
+  return in_order(std::move(groups));
 }
 
 BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances) const {
@@ -90,9 +106,7 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
     }
   }
   fraction_done_ = std::max(fraction_done_, done / (done + missing));
-  std::vector<WorkGroup> out;
-  for (auto& [batches, group] : groups) out.push_back(std::move(group));
-  return out;
+  return in_order(std::move(groups));
 }
 
 }  // namespace dapple

@@ -4,25 +4,22 @@
 #include <vector>
 
 #include "dapple/options.hpp"
-#include "dapple/shared/pass_params.h"
+#include "wavefront/round.hpp"
 #include "wavefront/sample_allocation.hpp"
 
 namespace dapple {
 
-/// Pixels that get the same number of samples.
-struct WorkGroup {
-  std::uint32_t samples = 0;
-  std::vector<PixelWork> work;  ///< tile by tile: neighbours in the list are so in the picture
-};
-
 /// What is decided depends on the pixels' values alone, never on slices or threads.
 class SamplePlan {
  public:
-  SamplePlan(int width, int height, const RenderOptions& options);
+  /// `samples`: of each pixel, what an earlier plan gave it; empty: none.
+  SamplePlan(int width, int height, const RenderOptions& options,
+             std::vector<std::uint32_t> samples = {});
 
   [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
-  /// Every pixel's first samples: all of them, or with a target the least.
-  WorkGroup first();
+  /// What pixels lack to the samples that each has, with a target the least: sixteen, and from
+  /// then on as many as there are, so that a picture is whole early. Empty when none do.
+  std::vector<WorkGroup> least();
   /// With a target: what is missing for it, in sixteens but for the most. `variances`: of a batch's
   /// mean, by pass and pixel, batch_variances(). No pixel gets more than 16, or three times what it
   /// has, so that the next decision rests on more; empty when all are done. A pixel may be in

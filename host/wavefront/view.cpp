@@ -79,7 +79,7 @@ CameraParams camera_params(const View& view, const RenderOptions& options) {
   params.crop_y = static_cast<uint>(view.crop.y0);
   params.crop_width = static_cast<uint>(view.crop.width());
   params.seed = options.seed;
-  params.inverse_spp = 1.0f / static_cast<float>(options.spp);
+  params.inverse_spp = 1.0f / static_cast<float>(footprint_samples(options));
   return params;
 }
 

@@ -19,6 +19,9 @@ enum class Estimator : std::uint8_t {
   packet,       ///< prefiltered; from 4 rays a point up all at once on GPUs too, as CPUs do anyway
 };
 
+/// As the command line spells it.
+std::string name_of(Estimator estimator);
+
 /// A pixel rectangle, inclusive at both ends as in EXR windows; (0,0) is top left.
 struct PixelRect {
   int x0 = 0, y0 = 0, x1 = -1, y1 = -1;
@@ -43,6 +46,9 @@ struct RenderOptions {
   /// Sample where that lowers the picture's error most, until the estimated root mean square of its
   /// pixels' errors is below this in every pass, [0, 1]; 0: don't. Not together with target_error.
   float target_rmse = 0;
+  /// Samples a pixel that footprints are made for, [1, 2^20]; 0: spp. A render that goes on from a
+  /// checkpoint keeps those of its beginning, so that more samples estimate the same picture.
+  int footprint_spp = 0;
   int max_spp = 4096;  ///< with a target the most samples a pixel, [spp, 2^20]
   int ao_rays = 1;     ///< AO rays a primary sample, [1, 4096]
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
@@ -67,6 +73,11 @@ struct RenderOptions {
 /// Whether pixels get as many samples as they need, by one of the two targets.
 [[nodiscard]] inline bool is_adaptive(const RenderOptions& options) {
   return options.target_error > 0 || options.target_rmse > 0;
+}
+
+/// Samples a pixel whose shares footprints begin with.
+[[nodiscard]] inline int footprint_samples(const RenderOptions& options) {
+  return options.footprint_spp > 0 ? options.footprint_spp : options.spp;
 }
 
 /// Throws Error usage, naming the command line's flag, when a value is out of range.

@@ -17,9 +17,9 @@ namespace dapple {
 
 struct RenderStatistics {
   struct {
-    double load = 0, build = 0, prefilter = 0, upload = 0, kernel_build = 0, trace = 0, write = 0,
-           total = 0;
-  } seconds;  ///< wall time; trace is all passes, camera rays included
+    double load = 0, build = 0, prefilter = 0, upload = 0, kernel_build = 0, trace = 0,
+           checkpoint = 0, write = 0, total = 0;
+  } seconds;  ///< wall time; trace is all passes, camera rays included, checkpoints not
   std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
   struct {
     std::uint64_t camera = 0, ao = 0, light = 0;
@@ -42,13 +42,33 @@ struct RenderStatistics {
 struct RenderResult {
   Film film;
   RenderStatistics statistics;
+  /// Stopped early: the film is what there was by then, its layer `samples` says how much. Pixels
+  /// without samples are as those whose rays miss.
+  bool interrupted = false;
 };
 
 /// Called now and then with the fraction done, [0,1].
 using Progress = std::function<void(double)>;
 
+/// Asked before each slice of a fraction of a second; true ends the render.
+using Stop = std::function<bool()>;
+
+/// How a long render is watched, interrupted and continued; nothing of it changes the picture.
+struct RenderControl {
+  Progress progress;
+  Stop stop;
+  /// File that holds what is traced, for `resume`: written every `checkpoint_every` seconds and at
+  /// the end, whole or not at all; empty: none.
+  std::string checkpoint;
+  double checkpoint_every = 60;
+  /// Checkpoint to go on from. Scene and options must be those that it was made with, but for more
+  /// samples or other targets. Empty: begin.
+  std::string resume;
+};
+
 /// Renders `scene` as `options` say: applies overrides, ground, lights and camera, builds,
 /// uploads, traces. Throws Error usage, input, device or failed.
+RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control);
 RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress = {});
 
 struct OcclusionOptions {
