@@ -1,6 +1,6 @@
 // Files that appear whole or not at all: paths refused beforehand, links and permissions kept,
 // and nothing left behind by a write that fails.
-#include "film/output_file.hpp"
+#include "file/output_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "accuracy/svg_plot.hpp"
-#include "film/output_file.hpp"
+#include "file/output_file.hpp"
 
 namespace dapple::bench {
 namespace {

@@ -12,7 +12,7 @@
 #include "compare/page.hpp"
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
-#include "film/output_file.hpp"
+#include "file/output_file.hpp"
 
 namespace dapple {
 namespace {

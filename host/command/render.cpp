@@ -12,7 +12,7 @@
 #include "command/statistics_text.hpp"
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
-#include "film/output_file.hpp"
+#include "file/output_file.hpp"
 
 namespace dapple {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "command/command.hpp"
 #include "dapple/error.hpp"
-#include "film/output_file.hpp"
+#include "file/output_file.hpp"
 #include "scene/procedural.hpp"
 
 namespace dapple {

@@ -25,8 +25,8 @@
 
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
+#include "file/output_file.hpp"
 #include "film/film_defect.hpp"
-#include "film/output_file.hpp"
 
 namespace dapple {
 namespace {

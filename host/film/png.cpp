@@ -15,9 +15,9 @@
 
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
+#include "file/output_file.hpp"
 #include "film/film_defect.hpp"
 #include "film/heat_color.hpp"
-#include "film/output_file.hpp"
 
 namespace dapple {
 namespace {

@@ -1,13 +1,12 @@
 // Pending files on POSIX calls: iostreams lose errno, and "No space left on device" is the
 // one thing that the user must be told. In: bytes. Out: a finished file, or an Error.
-#include "film/output_file.hpp"
+#include "file/output_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "dapple/error.hpp"
+#include "file/temporary_file.hpp"
 
 namespace dapple {
 namespace {
@@ -23,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-constexpr int kNameAttempts = 100;
 
 std::string cannot_write(const std::string& path, const std::string& reason) {
   return "cannot write " + path + ": " + reason;
@@ -63,14 +62,6 @@ std::string refusal(const std::string& target) {
   return {};
 }
 
-// The name does not contain the target's: that may already be as long as names can be.
-std::string next_temporary_name(const std::string& target) {
-  static std::atomic<unsigned> counter{0};
-  const std::string name =
-      ".dapple-" + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".tmp";
-  return (fs::path(folder_of(target)) / name).string();
-}
-
 // An overwritten file keeps its permissions. Where that fails, the umask's are no worse.
 void copy_permissions(const std::string& from, int to) {
   struct stat existing {};
@@ -82,20 +73,19 @@ void copy_permissions(const std::string& from, int to) {
 void check_output_path(const std::string& path) {
   const std::string reason = refusal(follow_links(path));
   if (!reason.empty()) throw Error(ErrorKind::usage, cannot_write(path, reason));
+  remove_abandoned_files(folder_of(follow_links(path)));
 }
 
 PendingFile::PendingFile(const std::string& target) : name_(target), target_(follow_links(target)) {
   const std::string reason = refusal(target_);
   if (!reason.empty()) throw Error(ErrorKind::failed, cannot_write(name_, reason));
-  // O_EXCL: whatever already has that name, a link planted in /tmp included, is not ours.
-  for (int attempt = 0; attempt < kNameAttempts && descriptor_ < 0; ++attempt) {
-    temporary_ = next_temporary_name(target_);
-    descriptor_ = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-    if (descriptor_ < 0 && errno != EEXIST) break;
-  }
+  TemporaryFile file = create_temporary_file(folder_of(target_));
+  descriptor_ = file.descriptor;
   if (descriptor_ < 0) {
     throw Error(ErrorKind::failed, cannot_write(name_, std::strerror(errno)));
   }
+  temporary_ = std::move(file.path);
+  lock_ = fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
   copy_permissions(target_, descriptor_);
   buffer_.reserve(kBufferBytes);
 }
@@ -103,6 +93,7 @@ PendingFile::PendingFile(const std::string& target) : name_(target), target_(fol
 PendingFile::~PendingFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (lock_ >= 0) ::close(lock_);
 }
 
 void PendingFile::fail(const std::string& reason) {
@@ -142,10 +133,11 @@ void PendingFile::seek(std::uint64_t position) {
   flushed_ = position;
 }
 
-void PendingFile::close() {
+void PendingFile::close(Durable durable) {
   flush();
   // EINVAL: some file systems cannot sync, which is theirs to decide.
-  if (fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS) fail_with_errno();
+  if (durable == Durable::yes && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS)
+    fail_with_errno();
   const int descriptor = descriptor_;
   descriptor_ = -1;
   if (::close(descriptor) != 0) fail_with_errno();

@@ -1,0 +1,48 @@
+// XXH3, 128 bits, of bytes that come in pieces: for the seals of our files and the names of
+// cached ones. Against damage, not against those who forge.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+
+namespace dapple {
+
+using Checksum = std::array<std::uint64_t, 2>;
+
+/// 32 hexadecimal digits.
+std::string hex_text(const Checksum& checksum);
+
+class ChecksumStream {
+ public:
+  ChecksumStream();
+  ~ChecksumStream();
+  ChecksumStream(const ChecksumStream&) = delete;
+  ChecksumStream& operator=(const ChecksumStream&) = delete;
+
+  void add(std::span<const std::byte> bytes);
+
+  /// The bits of a plain value without padding.
+  template <class T>
+  requires std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>
+  void add_value(const T& value) { add(std::as_bytes(std::span(&value, 1))); }
+
+  /// How many values there are, and their bits.
+  template <class Range>
+  void add_range(const Range& values) {
+    add_value(static_cast<std::uint64_t>(std::size(values)));
+    add(std::as_bytes(std::span(std::data(values), std::size(values))));
+  }
+
+  [[nodiscard]] Checksum value() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace dapple
