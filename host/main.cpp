@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command/command.hpp"
+#include "command/interruption.hpp"
 #include "dapple/error.hpp"
 
 namespace {
@@ -20,7 +21,8 @@ int run(int argc, char** argv) {
       "Example:\n  dapple render scene:demo -o demo.exr --png demo.png"};
   app.set_version_flag("--version", "dapple " DAPPLE_VERSION);
   app.footer(
-      "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 pictures differ.\n"
+      "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 pictures differ,\n"
+      "130, 143 interrupted by SIGINT, SIGTERM.\n"
       "dapple COMMAND --help tells more of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
   CLI::App& info = *app.add_subcommand("info", "Tell what is in a scene and what its BVH costs");
@@ -48,7 +50,7 @@ int run(int argc, char** argv) {
   for (const auto& [command, work] : commands) {
     if (command->parsed()) work();
   }
-  return 0;
+  return dapple::interruption_code();
 }
 
 }  // namespace

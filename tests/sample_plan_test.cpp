@@ -146,7 +146,7 @@ Drawn draw(int width, int height, const RenderOptions& options) {
   const std::size_t count = static_cast<std::size_t>(width) * height;
   GaussianPixels pixels(rising_variances(count));
   SamplePlan plan(width, height, options);
-  pixels.trace(plan.first());
+  for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) pixels.trace(first.at(0));
   Drawn drawn;
   for (; drawn.rounds < 30; ++drawn.rounds) {
     const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)});
@@ -185,7 +185,7 @@ TEST(SamplePlan, NoPixelMoreThanQuadruplesAndAllEndAtTheMost) {
   options.target_error = 0.01f;
   options.max_spp = 200;
   SamplePlan plan(5, 2, options);
-  EXPECT_EQ(plan.first().samples, 16u);
+  EXPECT_EQ(plan.least().at(0).samples, 16u);
   const std::vector<std::vector<float>> variances{std::vector<float>(10, 1.0f)};
   for (int round = 0; round < 20; ++round) {
     const std::vector<std::uint32_t> before = plan.samples();
@@ -201,7 +201,7 @@ TEST(SamplePlan, NoPixelMoreThanQuadruplesAndAllEndAtTheMost) {
 
 TEST(SamplePlan, ListsEveryPixelOnceTileByTile) {
   SamplePlan plan(19, 11, RenderOptions{});
-  const WorkGroup all = plan.first();
+  const WorkGroup all = plan.least().at(0);
   ASSERT_EQ(all.work.size(), 19u * 11u);
   std::map<std::uint32_t, int> seen;
   for (const PixelWork& work : all.work) ++seen[work.pixel];

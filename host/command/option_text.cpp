@@ -72,6 +72,17 @@ Estimator parse_estimator(const std::string& text) {
               fmt::format("--estimator {}: there are exact, prefiltered and packet", text));
 }
 
+double parse_seconds(const std::string& flag, const std::string& text) {
+  const std::string units = "smh";
+  const std::size_t unit = text.empty() ? std::string::npos : units.find(text.back());
+  const bool plain = unit == std::string::npos;
+  double seconds = parse_number<double>(flag, plain ? text : text.substr(0, text.size() - 1));
+  for (std::size_t i = 0; !plain && i < unit; ++i) seconds *= 60;
+  if (seconds > 0 && seconds <= 1e9) return seconds;
+  throw Error(ErrorKind::usage,
+              fmt::format("{} {}: expected a time above 0, as in 30, 30s, 5m or 1h", flag, text));
+}
+
 void parse_passes(const std::string& text, RenderOptions& options) {
   options.ao = options.light = options.visits = false;
   for (const std::string& pass : split(text, ',')) {

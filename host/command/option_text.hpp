@@ -19,4 +19,7 @@ Estimator parse_estimator(const std::string& text);
 /// "ao", "light", "ao,light"
 void parse_passes(const std::string& text, RenderOptions& options);
 
+/// "30", "30s", "5m", "1h" to seconds, above 0
+double parse_seconds(const std::string& flag, const std::string& text);
+
 }  // namespace dapple

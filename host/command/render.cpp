@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "command/command.hpp"
+#include "command/interruption.hpp"
 #include "command/option_text.hpp"
 #include "command/progress.hpp"
 #include "command/statistics_text.hpp"
@@ -23,6 +24,7 @@ struct RenderArguments {
   std::string estimator = "prefiltered", passes = "ao,light";
   std::string look_from, look_at, up, crop;
   std::vector<std::string> opacity;
+  std::string checkpoint, checkpoint_every = "60s", resume;
   SceneOptions scene_options;
   RenderOptions options;
   bool quiet = false;
@@ -94,6 +96,24 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
 }
 
+void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
+  CLI::Option& checkpoint = *app.add_option(
+      "--checkpoint", a.checkpoint,
+      "Keep what is traced in this file, for --resume; also when interrupted, and at the end");
+  app.add_option("--checkpoint-every", a.checkpoint_every,
+                 "How often, as in 30, 30s, 5m or 1h")
+      ->capture_default_str()
+      ->needs(&checkpoint);
+  app.add_option("--resume", a.resume,
+                 "Go on from this checkpoint: same scene and options, but --spp, --max-spp and "
+                 "the targets may ask for more");
+}
+
+RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
+  return {progress.callback(), save_when_interrupted(), a.checkpoint,
+          parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
+}
+
 RenderOptions to_options(const RenderArguments& a) {
   RenderOptions o = a.options;
   o.estimator = parse_estimator(a.estimator);
@@ -121,7 +141,7 @@ void write_statistics(const RenderStatistics& statistics, const std::string& pat
 }
 
 void check_outputs(const RenderArguments& a) {
-  for (const std::string& path : {a.output, a.png, a.stats_json}) {
+  for (const std::string& path : {a.output, a.png, a.stats_json, a.checkpoint}) {
     if (!path.empty()) check_output_path(path);
   }
 }
@@ -140,14 +160,16 @@ void run_render(const RenderArguments& a) {
   };
   const auto start = Clock::now();
   const RenderOptions options = to_options(a);
+  ProgressBar progress(a.quiet);
+  const RenderControl control = to_control(a, progress);
   check_outputs(a);
+  catch_interruptions();
 
   Scene scene = load_scene(a.scene, a.scene_options);
   if (!a.lights.empty()) use_lights(scene, a.lights);
   const double load_seconds = since(start);
 
-  ProgressBar progress(a.quiet);
-  RenderResult result = render(std::move(scene), options, progress.callback());
+  RenderResult result = render(std::move(scene), options, control);
   progress.clear();
 
   const auto writing = Clock::now();
@@ -160,6 +182,8 @@ void run_render(const RenderArguments& a) {
   statistics.seconds.write = since(writing);
   statistics.seconds.total = since(start);
   if (!a.stats_json.empty()) write_statistics(statistics, a.stats_json);
+  if (!result.checkpoint_failure.empty())
+    throw Error(ErrorKind::failed, result.checkpoint_failure + "; the picture is written");
   if (a.quiet) return;
   for (const std::string& note : statistics.notes) fmt::print(stderr, "note: {}\n", note);
   fmt::print("{}wrote {}{}\n", statistics_text(statistics), a.output,
@@ -178,6 +202,7 @@ Run add_render_command(CLI::App& app) {
                  "Also write an 8-bit preview, and with visits a heat map F_visits.png");
   add_picture_options(app, *a);
   add_scene_options(app, *a);
+  add_checkpoint_options(app, *a);
   app.add_option("--device", a->options.device,
                  "OpenCL device, by part of its name (see dapple devices)");
   app.add_option("--kernel-dir", a->options.kernel_dir,
@@ -186,7 +211,10 @@ Run add_render_command(CLI::App& app) {
   app.add_flag("-q,--quiet", a->quiet, "Print nothing but errors");
   app.footer(
       "Example:\n  dapple render tree.glb --opacity leaf=0.85 --spp 64 -o tree.exr --png "
-      "tree.png\n\n"
+      "tree.png\n"
+      "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt  # Ctrl-C saves\n"
+      "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt --resume tree.ckpt"
+      "\n\n"
       "Layers: R,G,B,A; ao; bent; light.NAME; N; P; Z; samples; error; visits. Where rays miss, ao "
       "is 1.");
   return [a] { run_render(*a); };

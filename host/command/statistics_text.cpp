@@ -51,6 +51,7 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
                      {"upload", s.seconds.upload},
                      {"kernel_build", s.seconds.kernel_build},
                      {"trace", s.seconds.trace},
+                     {"checkpoint", s.seconds.checkpoint},
                      {"write", s.seconds.write},
                      {"total", s.seconds.total}};
   json["pass_seconds"] = s.pass_seconds;
@@ -83,8 +84,9 @@ std::string statistics_text(const RenderStatistics& s) {
   const auto& t = s.seconds;
   text += fmt::format(
       "  seconds: load {:.2f}, build {:.2f}, prefilter {:.2f}, upload {:.2f}, kernels {:.2f}, "
-      "trace {:.2f}, write {:.2f}, total {:.2f}\n",
-      t.load, t.build, t.prefilter, t.upload, t.kernel_build, t.trace, t.write, t.total);
+      "trace {:.2f}, {}write {:.2f}, total {:.2f}\n",
+      t.load, t.build, t.prefilter, t.upload, t.kernel_build, t.trace,
+      t.checkpoint > 0 ? fmt::format("checkpoint {:.2f}, ", t.checkpoint) : "", t.write, t.total);
   std::string passes;
   for (const auto& [label, seconds] : s.pass_seconds)
     passes += fmt::format("{}{} {:.2f}", passes.empty() ? "" : ", ", label, seconds);

@@ -85,6 +85,7 @@ Checkpoint checkpoint_of(const SealedFile& file) {
 bool fits(const Round& round, std::uint32_t slice_samples, std::size_t pixels) {
   for (const WorkGroup& group : round.groups) {
     if (group.samples < 1 || group.samples > kMostSamples) return false;
+    if (group.work.empty() || group.work.size() > pixels) return false;
     for (const PixelWork& work : group.work)
       if (work.pixel >= pixels || work.first_sample > kMostSamples) return false;
   }
@@ -135,7 +136,11 @@ void check_state(const std::string& path, const TraceState& state, const StateSh
       !fits(state.round, state.slice_samples, shape.pixels)) {
     refuse(path, "damaged: its list of work is not of this picture");
   }
-  traced_samples(state.round, state.slice_samples, state.samples);
+  try {
+    traced_samples(state.round, state.slice_samples, state.samples);
+  } catch (const Error& error) {
+    refuse(path, fmt::format("damaged: {}", error.what()));
+  }
 }
 
 }  // namespace dapple

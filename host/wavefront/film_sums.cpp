@@ -49,13 +49,18 @@ class Sums {
   std::uint32_t pixels_;
 };
 
+/// What a pixel's sums are divided by. Without samples they are 0, and it looks as if rays missed.
+double sample_count(const TracedPicture& picture, std::uint32_t pixel) {
+  return std::max(1u, picture.samples[pixel]);
+}
+
 /// The largest unoccluded irradiance of all lights together, a channel at a time the same.
 class LightPlanes {
  public:
   LightPlanes(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
               const RenderOptions& options, const std::vector<Light>& lights)
       : sums_(sums),
-        samples_(picture.samples),
+        picture_(picture),
         layout_(layout),
         lights_(lights),
         inverse_(1.0 / (double{layout.light_scale} * options.light_rays)) {}
@@ -63,7 +68,7 @@ class LightPlanes {
   [[nodiscard]] V3d shadowed(std::uint32_t pixel) const { return sum(pixel, 0); }
   [[nodiscard]] V3d one(std::size_t light, std::uint32_t pixel) const {
     return V3d(lights_[light].radiance) *
-           (sums_.at(layout_.lights[light], pixel) * inverse_ / samples_[pixel]);
+           (sums_.at(layout_.lights[light], pixel) * inverse_ / sample_count(picture_, pixel));
   }
   [[nodiscard]] double largest_unoccluded() const {
     double largest = 0;
@@ -79,12 +84,13 @@ class LightPlanes {
     V3d value(0.0);
     for (std::size_t l = 0; l < lights_.size(); ++l) {
       value += V3d(lights_[l].radiance) *
-               (sums_.at(layout_.lights[l] + plane, pixel) * inverse_ / samples_[pixel]);
+               (sums_.at(layout_.lights[l] + plane, pixel) * inverse_ /
+                sample_count(picture_, pixel));
     }
     return value;
   }
   const Sums& sums_;
-  const std::vector<std::uint32_t>& samples_;
+  const TracedPicture& picture_;
   const FilmLayout& layout_;
   const std::vector<Light>& lights_;
   double inverse_;
@@ -165,7 +171,7 @@ void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
     double sum = sums.at(8 + which, p) / (which == 0 ? DAPPLE_BEAM_RAYS : 1u);
     if (options.ao) sum += sums.at(layout.ao + 4 + which, p);
     for (const std::uint32_t light : layout.lights) sum += sums.at(light + 2 + which, p);
-    return sum / picture.samples[p];
+    return sum / sample_count(picture, p);
   };
   planes.add("visits.nodes", [&](std::uint32_t p) { return total(p, 0); });
   planes.add("visits.triangles", [&](std::uint32_t p) { return total(p, 1); });
@@ -199,7 +205,7 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
                            const RenderOptions& options, const std::vector<Light>& lights,
                            RenderStatistics& statistics) {
   const Sums sums(picture.sums, layout.pixels);
-  const auto spp = [&](std::uint32_t p) { return static_cast<double>(picture.samples[p]); };
+  const auto spp = [&](std::uint32_t p) { return sample_count(picture, p); };
   const auto hits = [&](std::uint32_t p) { return sums.at(0, p); };
   const auto ao = [&](std::uint32_t p) {
     if (!options.ao) return 1.0;
@@ -242,7 +248,7 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
     return hits(p) > 0 ? sums.at(7, p) / (double{layout.depth_scale} * hits(p))
                        : std::numeric_limits<double>::infinity();
   });
-  planes.add("samples", spp);
+  planes.add("samples", [&](std::uint32_t p) { return picture.samples[p]; });
   if (options.visits) add_visits(planes, sums, picture, layout, options);
   for (std::size_t pass = 0; pass < picture.errors.size(); ++pass) {
     const bool is_ao = options.ao && pass == 0;

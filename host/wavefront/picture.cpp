@@ -1,8 +1,10 @@
 #include "wavefront/picture.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "wavefront/passes.hpp"
 #include "wavefront/pixel_error.hpp"
@@ -16,68 +18,138 @@ namespace {
 constexpr std::size_t kCpuSlice = 1u << 16;
 constexpr std::size_t kGpuSlice = 1u << 19;
 
+/// Rays of all kinds that a slice may trace, as a multiple of those in flight: with many lights it
+/// would take too long to wait for when the render is to stop.
+constexpr std::size_t kRaysOverInFlight = 4;
+
+std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
+                               std::size_t lights, std::size_t rays_in_flight) {
+  const std::size_t slice = device.kind == "GPU" ? kGpuSlice : kCpuSlice;
+  const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
+                           lights * static_cast<std::size_t>(options.light_rays);
+  const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);
+  return std::max(DAPPLE_BATCH, static_cast<uint>(samples));
+}
+
 class PictureTracer {
  public:
   PictureTracer(const Device& device, const DeviceScene& scene, const View& view,
-                const RenderOptions& options, const FilmLayout& layout, std::size_t light_count)
+                const RenderOptions& options, const FilmLayout& layout, std::size_t light_count,
+                TraceState state)
       : context_(device.context()),
         scene_(*scene.buffers),
         options_(options),
         layout_(layout),
         light_count_(options.light ? light_count : 0),
         width_(view.crop.width()),
-        camera_(camera_params(view, options)) {
+        camera_(camera_params(view, options)),
+        state_(std::move(state)) {
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
-    const std::size_t samples = (device.info().kind == "GPU" ? kGpuSlice : kCpuSlice) / rays;
-    slice_samples_ = std::max(DAPPLE_BATCH, static_cast<uint>(samples));
-    queues_ = make_queues(context_, slice_samples_, rays);
+    if (state_.slice_samples == 0)
+      state_.slice_samples = samples_of_slice(device.info(), options, light_count_, rays);
+    queues_ = make_queues(context_, state_.slice_samples, rays);
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
     film_.sums = context_.allocate(layout.sum_bytes());
     film_.squares = context_.allocate(layout.square_bytes());
-    context_.fill_zero(film_.sums);
-    context_.fill_zero(film_.squares);
+    place_sums();
     resolve_ = resolve_params(view);
   }
 
-  TracedPicture trace(const Progress& progress) {
-    SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_);
-    trace_group(plan.first(), plan.is_adaptive() ? Progress{} : progress);
-    while (plan.is_adaptive()) {
-      const std::vector<WorkGroup> groups = plan.next(variances(plan.samples()));
-      if (progress) progress(plan.fraction_done());
-      if (groups.empty()) break;
-      for (const WorkGroup& group : groups) trace_group(group, {});
-    }
+  TracedPicture trace(const TraceControl& control) {
+    SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples);
+    traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
     TracedPicture picture;
-    picture.samples = plan.samples();
-    if (plan.is_adaptive()) picture.errors = standard_errors(plan.samples());
-    picture.sums.resize(layout_.sum_bytes() / sizeof(std::int64_t));
-    context_.read(film_.sums, picture.sums.data(), layout_.sum_bytes());
-    context_.finish();
+    while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control.progress)))
+      picture.interrupted = !trace_round(plan, control);
+    read_state(plan);
+    if (control.save) control.save(state_);
+    picture.samples = traced_samples(state_.round, state_.slice_samples, state_.samples);
+    if (plan.is_adaptive() && all_know_errors(picture.samples))
+      picture.errors = standard_errors(picture.samples);
+    picture.sums = std::move(state_.sums);
+    picture.pass_seconds = std::move(state_.pass_seconds);
     picture.queue_bytes = queues_.bytes();
     return picture;
   }
 
  private:
-  void trace_group(const WorkGroup& group, const Progress& progress) {
-    context_.write(queues_.work, group.work.data(), group.work.size() * sizeof(PixelWork));
-    // Whole batches, unless all samples fit.
-    const uint samples = group.samples <= slice_samples_
-                             ? group.samples
-                             : slice_samples_ / DAPPLE_BATCH * DAPPLE_BATCH;
-    const uint pixels = slice_samples_ / samples, count = static_cast<uint>(group.work.size());
-    const double total = static_cast<double>(count) * group.samples;
-    double done = 0;
-    for (uint first = 0; first < count; first += pixels) {
-      for (uint sample = 0; sample < group.samples; sample += samples) {
-        const SliceParams slice{first, std::min(pixels, count - first), sample,
-                                std::min(samples, group.samples - sample)};
-        trace_slice(slice);
-        done += static_cast<double>(slice.pixel_count) * slice.sample_count;
-        if (progress) progress(done / total);
-      }
+  using Clock = std::chrono::steady_clock;
+
+  static double sum_of(const std::vector<std::uint32_t>& samples) {
+    return std::accumulate(samples.begin(), samples.end(), 0.0);
+  }
+
+  /// Whether each pixel has the two batches that tell a variance.
+  static bool all_know_errors(const std::vector<std::uint32_t>& samples) {
+    return *std::min_element(samples.begin(), samples.end()) >= 2 * DAPPLE_BATCH;
+  }
+
+  /// Onto the device, where from now on they are.
+  void place_sums() {
+    earlier_seconds_ = state_.pass_seconds;
+    if (state_.sums.empty()) {
+      context_.fill_zero(film_.sums);
+      context_.fill_zero(film_.squares);
+      return;
     }
+    context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
+    context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
+    release_sums();
+  }
+
+  void release_sums() {
+    state_.sums = {};
+    state_.squares = {};
+  }
+
+  void read_state(const SamplePlan& plan) {
+    state_.sums.resize(layout_.sum_bytes() / sizeof(std::int64_t));
+    state_.squares.resize(layout_.square_bytes() / sizeof(float));
+    context_.read(film_.sums, state_.sums.data(), layout_.sum_bytes());
+    context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
+    context_.finish();
+    state_.samples = plan.samples();
+    state_.pass_seconds = earlier_seconds_;
+    for (const auto& [label, seconds] : context_.pass_seconds())
+      state_.pass_seconds[label] += seconds;
+  }
+
+  /// False when there is no more to trace.
+  bool next_round(SamplePlan& plan, const Progress& progress) {
+    state_.round = {plan.least()};
+    if (state_.round.is_done() && plan.is_adaptive()) {
+      state_.round = {plan.next(variances(plan.samples()))};
+      if (progress) progress(plan.fraction_done());
+    }
+    return !state_.round.is_done();
+  }
+
+  /// What is left of the round; false when asked to stop before its end.
+  bool trace_round(const SamplePlan& plan, const TraceControl& control) {
+    Round& round = state_.round;
+    const double total = static_cast<double>(layout_.pixels) * options_.spp;
+    for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
+      if (control.stop && control.stop()) return false;
+      if (control.save && Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
+        save(plan, control);
+      const WorkGroup& group = round.groups[round.group];
+      if (new_group)
+        context_.write(queues_.work, group.work.data(), group.work.size() * sizeof(PixelWork));
+      const SliceParams slice = next_slice(round, state_.slice_samples);
+      trace_slice(slice);
+      traced_ += static_cast<double>(slice.pixel_count) * slice.sample_count;
+      advance(round, state_.slice_samples);
+      if (control.progress && !plan.is_adaptive()) control.progress(traced_ / total);
+    }
+    return true;
+  }
+
+  void save(const SamplePlan& plan, const TraceControl& control) {
+    read_state(plan);
+    control.save(state_);
+    release_sums();
+    saved_ = Clock::now();
   }
 
   /// Sums of one plane as reals.
@@ -169,8 +241,8 @@ class PictureTracer {
     AoParams ao{};
     ao.point_count = hits;
     ao.rays = static_cast<uint>(options_.ao_rays);
-    ao.inverse_count =
-        1.0f / (static_cast<float>(options_.spp) * static_cast<float>(options_.ao_rays));
+    ao.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
+                               static_cast<float>(options_.ao_rays));
     ao.t_max =
         options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
     ao.seed = options_.seed;
@@ -193,8 +265,8 @@ class PictureTracer {
     LightParams params{};
     params.point_count = hits;
     params.rays = static_cast<uint>(options_.light_rays);
-    params.inverse_count =
-        1.0f / (static_cast<float>(options_.spp) * static_cast<float>(options_.light_rays));
+    params.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
+                                   static_cast<float>(options_.light_rays));
     params.light = light;
     params.seed = options_.seed;
     light_ray_pass(context_, scene_, queues_, params);
@@ -224,17 +296,22 @@ class PictureTracer {
   int width_;  ///< pixels of the crop
   CameraParams camera_;
   ResolveParams resolve_{};
-  uint slice_samples_ = 1;  ///< of all pixels together
   Queues queues_;
   FilmBuffers film_;
+  TraceState state_;    ///< without sums and squares while these are on the device
+  double traced_ = 0;   ///< samples, of all pixels
+  std::map<std::string, double> earlier_seconds_;
+  Clock::time_point saved_ = Clock::now();
 };
 
 }  // namespace
 
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
                             const RenderOptions& options, const FilmLayout& layout,
-                            std::size_t light_count, const Progress& progress) {
-  return PictureTracer(device, scene, view, options, layout, light_count).trace(progress);
+                            std::size_t light_count, const TraceControl& control,
+                            TraceState state) {
+  return PictureTracer(device, scene, view, options, layout, light_count, std::move(state))
+      .trace(control);
 }
 
 }  // namespace dapple

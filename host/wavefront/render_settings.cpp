@@ -88,9 +88,9 @@ Settings option_settings(const RenderOptions& options, const View& view) {
 Settings content_settings(const RenderOptions& options, const View& view, const SceneBvh& bvh,
                           const DeviceBuffers& scene) {
   return {
-      {"camera", camera_checksum(view.camera)},
       {"scene, --opacity or --ground", scene_checksum(bvh, scene)},
       {"lights", options.light ? light_checksum(scene) : "none"},
+      {"camera", camera_checksum(view.camera)},
       {"version of dapple", DAPPLE_VERSION},
       {"kernels", kernel_checksum(options)},
   };

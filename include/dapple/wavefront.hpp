@@ -45,6 +45,8 @@ struct RenderResult {
   /// Stopped early: the film is what there was by then, its layer `samples` says how much. Pixels
   /// without samples are as those whose rays miss.
   bool interrupted = false;
+  /// Why the last checkpoint could not be written; empty: it could. The one before it is kept.
+  std::string checkpoint_failure;
 };
 
 /// Called now and then with the fraction done, [0,1].
