@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <thread>
 
 #include "command/command.hpp"
 #include "command/interruption.hpp"
@@ -14,6 +15,7 @@
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
 #include "file/output_file.hpp"
+#include "film/exr_threads.hpp"
 
 namespace dapple {
 namespace {
@@ -173,6 +175,7 @@ void run_render(const RenderArguments& a) {
   progress.clear();
 
   const auto writing = Clock::now();
+  use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
   write_exr(result.film, a.output);
   if (!a.png.empty()) write_png(result.film, a.png);
   if (!a.png.empty() && options.visits)

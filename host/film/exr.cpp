@@ -1,6 +1,6 @@
 // Films as OpenEXR files; no other file knows OpenEXR. In: a Film, or any single-part
-// scanline or tiled EXR. Out: a verified file, or a Film. One thread throughout: the
-// library's pool would be a setting of the whole process, which is not ours to change.
+// scanline or tiled EXR. Out: a verified file, or a Film. OpenEXR's threads are a setting of the
+// whole process: the program's to make, use_exr_threads(), and otherwise the caller's.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -11,6 +11,7 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <ImfTileDescriptionAttribute.h>
 #include <ImfVersion.h>
 
@@ -26,6 +27,7 @@
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
 #include "file/output_file.hpp"
+#include "film/exr_threads.hpp"
 #include "film/film_defect.hpp"
 
 namespace dapple {
@@ -127,7 +129,7 @@ class PendingStream final : public Imf::OStream {
 
 void encode(const Film& film, PendingFile& file) {
   PendingStream stream(file);
-  Imf::OutputFile out(stream, header_of(film), 0);
+  Imf::OutputFile out(stream, header_of(film), Imf::globalThreadCount());
   Imf::FrameBuffer buffer;
   const Box2i window = window_of(film.data_window);
   for (const Plane& plane : film.planes) {
@@ -139,7 +141,7 @@ void encode(const Film& film, PendingFile& file) {
 
 // Bits are compared, not values: NaNs are equal to themselves here.
 void verify(const Film& film, PendingFile& file) {
-  Imf::InputFile in(file.temporary_path().c_str(), 0);
+  Imf::InputFile in(file.temporary_path().c_str(), Imf::globalThreadCount());
   if (in.header().dataWindow() != window_of(film.data_window)) {
     file.fail("the data window that was read back differs from the film's");
   }
@@ -267,6 +269,8 @@ Film decode(const std::string& path) {
 }
 
 }  // namespace
+
+void use_exr_threads(int count) { Imf::setGlobalThreadCount(count); }
 
 void write_exr(const Film& film, const std::string& path) {
   PendingFile file(path);

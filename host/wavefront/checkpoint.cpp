@@ -1,5 +1,5 @@
-// Sections: what there is to read as JSON, sums, squares, samples, then the work of each group of
-// the round. Values are in this machine's byte order, which the seal checks.
+// Sections: what there is to read as JSON, then compressed sums, squares, samples and the work of
+// each group of the round. Values are in this machine's byte order, which the seal checks.
 #include "wavefront/checkpoint.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dapple/error.hpp"
+#include "file/compression.hpp"
 #include "file/sealed_file.hpp"
 
 namespace dapple {
@@ -48,8 +49,13 @@ json header(const Checkpoint& checkpoint, const TraceState& state) {
 
 template <class T>
 std::vector<T> vector_of(const SealedFile& file, std::size_t section) {
-  const std::span<const T> values = file.values<T>(section);
-  return {values.begin(), values.end()};
+  const Section frames = file.section(section);
+  const std::size_t bytes = decompressed_size(frames);
+  std::vector<T> values(bytes / sizeof(T));
+  if (bytes % sizeof(T) != 0 || !decompress(frames, std::as_writable_bytes(std::span(values)))) {
+    throw Error(ErrorKind::failed, fmt::format("damaged: section {} does not unpack", section));
+  }
+  return values;
 }
 
 Round round_of(const SealedFile& file, const json& about) {
@@ -104,9 +110,13 @@ bool fits(const Round& round, std::uint32_t slice_samples, std::size_t pixels) {
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
                       const TraceState& state) {
   const std::string about = header(checkpoint, state).dump();
-  std::vector<Section> sections{as_section(about), as_section(state.sums),
-                                as_section(state.squares), as_section(state.samples)};
-  for (const WorkGroup& group : state.round.groups) sections.push_back(as_section(group.work));
+  std::vector<std::vector<std::byte>> packed{compress(as_section(state.sums)),
+                                             compress(as_section(state.squares)),
+                                             compress(as_section(state.samples))};
+  for (const WorkGroup& group : state.round.groups)
+    packed.push_back(compress(as_section(group.work)));
+  std::vector<Section> sections{as_section(about)};
+  for (const std::vector<std::byte>& bytes : packed) sections.emplace_back(bytes);
   // Not forced onto the disk: that takes many times as long, and a checksum tells after a power
   // failure. Whoever is killed loses nothing by it.
   write_sealed_file(path, kKind, sections, Durable::no);

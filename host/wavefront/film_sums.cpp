@@ -1,5 +1,7 @@
 #include "wavefront/film_sums.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -103,7 +105,8 @@ class Planes {
   template <class Value>
   void add(const std::string& channel, const Value& value) {
     Plane plane{channel, std::vector<float>(pixels_)};
-    for (std::uint32_t p = 0; p < pixels_; ++p) plane.pixels[p] = static_cast<float>(value(p));
+    tbb::parallel_for(0u, pixels_,
+                      [&](std::uint32_t p) { plane.pixels[p] = static_cast<float>(value(p)); });
     planes_.push_back(std::move(plane));
   }
   template <class Value>
