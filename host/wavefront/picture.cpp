@@ -60,7 +60,7 @@ class PictureTracer {
     SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples);
     traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
     TracedPicture picture;
-    while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control.progress)))
+    while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control)))
       picture.interrupted = !trace_round(plan, control);
     read_state(plan);
     if (control.save) control.save(state_);
@@ -116,11 +116,12 @@ class PictureTracer {
   }
 
   /// False when there is no more to trace.
-  bool next_round(SamplePlan& plan, const Progress& progress) {
-    state_.round = {plan.least()};
+  bool next_round(SamplePlan& plan, const TraceControl& control) {
+    // Errors depend on the order, by roundings: with a target it is always the same.
+    state_.round = {plan.least(plan.is_adaptive() ? SampleOrder::pixels : control.order)};
     if (state_.round.is_done() && plan.is_adaptive()) {
       state_.round = {plan.next(variances(plan.samples()))};
-      if (progress) progress(plan.fraction_done());
+      if (control.progress) control.progress(plan.fraction_done());
     }
     return !state_.round.is_done();
   }

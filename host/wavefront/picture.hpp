@@ -4,6 +4,7 @@
 #include "dapple/wavefront.hpp"
 #include "device/scene_upload.hpp"
 #include "wavefront/film_sums.hpp"
+#include "wavefront/sample_plan.hpp"
 #include "wavefront/trace_state.hpp"
 
 namespace dapple {
@@ -19,12 +20,13 @@ struct TracedPicture {
   bool interrupted = false;
 };
 
-/// How tracing is watched and left; any of the three may be empty.
+/// How tracing is watched and left; any of the functions may be empty.
 struct TraceControl {
   Progress progress;
   Stop stop;                                    ///< asked before each slice
   std::function<void(const TraceState&)> save;  ///< called every `save_every` and at the end
   double save_every = 0;                        ///< seconds
+  SampleOrder order = SampleOrder::pixels;
 };
 
 /// Runs every pass that `options` ask for over the view's crop. The result depends on

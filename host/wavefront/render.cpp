@@ -130,6 +130,7 @@ void check_resumed(const std::string& path, const Checkpoint& checkpoint, const 
 void write_checkpoints(TraceControl& tracing, const RenderControl& control, Checkpoint about,
                        RenderResult& result) {
   if (control.checkpoint.empty()) return;
+  tracing.order = SampleOrder::passes;
   tracing.save_every = control.checkpoint_every;
   tracing.save = [&control, &result, about = std::move(about)](const TraceState& state) {
     const Stopwatch writing;
@@ -185,7 +186,7 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
   if (resumed || !control.checkpoint.empty())
     about.content = content_settings(options, view, bvh, *on_device.buffers);
   if (resumed) check_resumed(control.resume, *resumed, about.content, layout, statistics);
-  TraceControl tracing{control.progress, control.stop, {}, 0};
+  TraceControl tracing{control.progress, control.stop, {}, 0, SampleOrder::pixels};
   write_checkpoints(tracing, control, std::move(about), result);
 
   const Stopwatch trace_time;

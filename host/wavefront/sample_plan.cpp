@@ -17,7 +17,7 @@ constexpr std::uint32_t kMostMore = 3;
 /// could be measured, and make more and smaller groups.
 constexpr std::uint32_t kUnit = 4;
 
-/// Samples that every pixel has before any has more: a beam's, which are traced together.
+/// Samples that in passes every pixel has before any has more: a beam's, traced together.
 constexpr std::uint32_t kFirst = 16;
 
 std::uint32_t whole_batches(int samples) {
@@ -58,12 +58,13 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
   most_ = std::max(least_, whole_batches(options.max_spp));
 }
 
-std::vector<WorkGroup> SamplePlan::least() {
+std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
   std::map<std::uint32_t, WorkGroup> groups;
   for (const std::uint32_t pixel : order_) {
     std::uint32_t& has = samples_[pixel];
     if (has >= least_) continue;
-    const std::uint32_t more = std::min(least_ - has, std::max(has, kFirst));
+    std::uint32_t more = least_ - has;
+    if (order == SampleOrder::passes) more = std::min(more, std::max(kMostMore * has, kFirst));
     WorkGroup& group = groups[more];
     group.samples = more;
     group.work.push_back({pixel, has});

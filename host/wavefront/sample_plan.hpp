@@ -9,6 +9,14 @@
 
 namespace dapple {
 
+/// In which order samples come that all pixels get alike. Their sums are the same.
+enum class SampleOrder {
+  pixels,  ///< all of a pixel, then the next
+  /// Sixteen of every pixel, then three times what there are, so that the picture is whole early.
+  /// Pixels alone took 2 to 8 % less time: 256 to 64 samples a pixel.
+  passes,
+};
+
 /// What is decided depends on the pixels' values alone, never on slices or threads.
 class SamplePlan {
  public:
@@ -17,9 +25,8 @@ class SamplePlan {
              std::vector<std::uint32_t> samples = {});
 
   [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
-  /// What pixels lack to the samples that each has, with a target the least: sixteen, and from
-  /// then on as many as there are, so that a picture is whole early. Empty when none do.
-  std::vector<WorkGroup> least();
+  /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
+  std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
   /// With a target: what is missing for it, in sixteens but for the most. `variances`: of a batch's
   /// mean, by pass and pixel, batch_variances(). No pixel gets more than 16, or three times what it
   /// has, so that the next decision rests on more; empty when all are done. A pixel may be in
