@@ -102,8 +102,7 @@ void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& checkpoint = *app.add_option(
       "--checkpoint", a.checkpoint,
       "Keep what is traced in this file, for --resume; also when interrupted, and at the end");
-  app.add_option("--checkpoint-every", a.checkpoint_every,
-                 "How often, as in 30, 30s, 5m or 1h")
+  app.add_option("--checkpoint-every", a.checkpoint_every, "How often, as in 30, 30s, 5m or 1h")
       ->capture_default_str()
       ->needs(&checkpoint);
   app.add_option("--resume", a.resume,

@@ -43,7 +43,8 @@ std::vector<std::byte> compress(Section bytes) {
   tbb::enumerable_thread_specific<Workshop> workshops;
   tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
     const std::size_t first = i * kFrame;
-    frames[i] = compress_frame(workshops.local(), bytes.subspan(first, std::min(kFrame, bytes.size() - first)));
+    frames[i] = compress_frame(workshops.local(),
+                               bytes.subspan(first, std::min(kFrame, bytes.size() - first)));
   });
   std::vector<std::byte> all;
   for (const std::vector<std::byte>& frame : frames)

@@ -85,9 +85,8 @@ class LightPlanes {
   [[nodiscard]] V3d sum(std::uint32_t pixel, std::uint32_t plane) const {
     V3d value(0.0);
     for (std::size_t l = 0; l < lights_.size(); ++l) {
-      value += V3d(lights_[l].radiance) *
-               (sums_.at(layout_.lights[l] + plane, pixel) * inverse_ /
-                sample_count(picture_, pixel));
+      value += V3d(lights_[l].radiance) * (sums_.at(layout_.lights[l] + plane, pixel) * inverse_ /
+                                           sample_count(picture_, pixel));
     }
     return value;
   }

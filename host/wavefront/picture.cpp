@@ -132,7 +132,8 @@ class PictureTracer {
     const double total = static_cast<double>(layout_.pixels) * options_.spp;
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
       if (control.stop && control.stop()) return false;
-      if (control.save && Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
+      if (control.save &&
+          Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
         save(plan, control);
       const WorkGroup& group = round.groups[round.group];
       if (new_group)
@@ -299,8 +300,8 @@ class PictureTracer {
   ResolveParams resolve_{};
   Queues queues_;
   FilmBuffers film_;
-  TraceState state_;    ///< without sums and squares while these are on the device
-  double traced_ = 0;   ///< samples, of all pixels
+  TraceState state_;   ///< without sums and squares while these are on the device
+  double traced_ = 0;  ///< samples, of all pixels
   std::map<std::string, double> earlier_seconds_;
   Clock::time_point saved_ = Clock::now();
 };

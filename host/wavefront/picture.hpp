@@ -12,8 +12,8 @@ namespace dapple {
 struct TracedPicture {
   std::vector<std::int64_t> sums;      ///< as FilmLayout says
   std::vector<std::uint32_t> samples;  ///< of each pixel; 0 only where interrupted
-  /// With a target, unless interrupted before they are known: standard errors by pass (AO, then the lights, these relative to their
-  /// largest unoccluded irradiance) and pixel.
+  /// With a target, unless interrupted before they are known: standard errors by pass (AO, then the
+  /// lights, these relative to their largest unoccluded irradiance) and pixel.
   std::vector<std::vector<float>> errors;
   std::map<std::string, double> pass_seconds;  ///< device seconds by label, earlier runs' too
   std::size_t queue_bytes = 0;

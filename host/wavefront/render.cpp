@@ -60,8 +60,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
-  if (footprint_samples(options) != options.spp)
-    set("footprint_spp", footprint_samples(options));
+  if (footprint_samples(options) != options.spp) set("footprint_spp", footprint_samples(options));
   set("ao_rays", options.ao_rays);
   set("light_rays", options.light_rays);
   set("ao_distance", options.ao_distance);
@@ -88,9 +87,8 @@ void require_enough_samples(const std::string& path, const TraceState& state,
                             const RenderOptions& options) {
   const bool adaptive = is_adaptive(options);
   const int asked = adaptive ? options.max_spp : options.spp;
-  const auto most = state.samples.empty()
-                        ? 0u
-                        : *std::max_element(state.samples.begin(), state.samples.end());
+  const auto most =
+      state.samples.empty() ? 0u : *std::max_element(state.samples.begin(), state.samples.end());
   if (most <= static_cast<std::uint32_t>(asked)) return;
   throw Error(ErrorKind::usage,
               fmt::format("--resume {}: has {} samples a pixel already, {} {} asks for fewer", path,
@@ -145,9 +143,8 @@ void write_checkpoints(TraceControl& tracing, const RenderControl& control, Chec
 }
 
 std::string interruption_note(const TracedPicture& picture, const RenderControl& control) {
-  const double samples =
-      std::accumulate(picture.samples.begin(), picture.samples.end(), 0.0) /
-      static_cast<double>(picture.samples.size());
+  const double samples = std::accumulate(picture.samples.begin(), picture.samples.end(), 0.0) /
+                         static_cast<double>(picture.samples.size());
   const std::string next = control.checkpoint.empty()
                                ? "with --checkpoint F it could go on"
                                : "--resume " + control.checkpoint + " goes on";
@@ -181,8 +178,8 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
   const FilmLayout layout(view, options, bvh.bounds, lights.size());
-  Checkpoint about{option_settings(options, view), {}, footprint_samples(options),
-                   statistics.device, {}};
+  Checkpoint about{
+      option_settings(options, view), {}, footprint_samples(options), statistics.device, {}};
   if (resumed || !control.checkpoint.empty())
     about.content = content_settings(options, view, bvh, *on_device.buffers);
   if (resumed) check_resumed(control.resume, *resumed, about.content, layout, statistics);

@@ -89,8 +89,8 @@ Settings content_settings(const RenderOptions& options, const View& view, const 
                           const DeviceBuffers& scene) {
   return {
       {"scene, --opacity or --ground", scene_checksum(bvh, scene)},
-      {"lights", options.light ? light_checksum(scene) : "none"},
       {"camera", camera_checksum(view.camera)},
+      {"lights", options.light ? light_checksum(scene) : "none"},
       {"version of dapple", DAPPLE_VERSION},
       {"kernels", kernel_checksum(options)},
   };

@@ -1,0 +1,73 @@
+// The program in a process of its own that a test can send signals to.
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace dapple::program_test {
+
+using Milliseconds = std::chrono::milliseconds;
+
+/// Whether `condition` came true in time.
+inline bool wait_until(const std::function<bool()>& condition, Milliseconds limit) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(Milliseconds(2));
+  }
+  return true;
+}
+
+class RunningProgram {
+ public:
+  /// `arguments` follow the program's name; what it prints goes into the file `output`.
+  RunningProgram(const std::vector<std::string>& arguments, const std::string& output) {
+    std::vector<char*> argv{const_cast<char*>(DAPPLE_PROGRAM)};
+    for (const std::string& argument : arguments)
+      argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    process_ = fork();
+    if (process_ != 0) return;
+    const int file = open(output.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0666);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    execv(DAPPLE_PROGRAM, argv.data());
+    _exit(127);
+  }
+  ~RunningProgram() {
+    if (!ended_) {
+      send(SIGKILL);
+      wait();
+    }
+  }
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  void send(int signal) const { kill(process_, signal); }
+  [[nodiscard]] bool has_ended() {
+    if (!ended_) ended_ = waitpid(process_, &status_, WNOHANG) == process_;
+    return ended_;
+  }
+  /// Exit code; 128 + signal of a process that one ended, as shells have it.
+  int wait() {
+    if (!ended_) waitpid(process_, &status_, 0);
+    ended_ = true;
+    return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+  }
+
+ private:
+  pid_t process_ = 0;
+  int status_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace dapple::program_test
