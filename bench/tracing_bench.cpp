@@ -49,7 +49,7 @@ void measure_occlusion(benchmark::State& state, BenchScene& scene, Estimator est
   params.scene = buffers.params;
   params.ray_count = static_cast<uint>(rays.ao_count);
   params.rays_per_point = rays_per_point;
-  params.footprint = 1.0f;
+  params.footprint = kDefaultFootprint;
   time_launches(state, context, [&] {
     occlusion_pass(context, rays.ao, buffers, kLabel, estimator, params, order);
   });

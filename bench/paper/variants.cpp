@@ -90,7 +90,7 @@ std::vector<PaperVariant> paper_variants(int primary_samples) {
     for (const int rays : kRayCounts) variants.push_back({name, estimator, rays, footprint});
   };
   add("exact", Estimator::exact, 0.0f);
-  add("prefiltered", Estimator::prefiltered, 1.0f);
+  add("prefiltered", Estimator::prefiltered, kDefaultFootprint);
   add("prefiltered, n = rays", Estimator::prefiltered, static_cast<float>(primary_samples));
   return variants;
 }

@@ -19,7 +19,7 @@ constexpr int kCalibrationRounds = 5;
 constexpr int kLargestSpp = 256;
 
 /// Samples that the adaptive contestant gives every pixel.
-constexpr int kAdaptiveSpp = 8;
+constexpr int kAdaptiveSpp = 4;
 
 /// AO rays a camera sample of the packet contestant.
 constexpr int kPacketRays = 16;

@@ -36,6 +36,7 @@ Contestant by_dapple(const RivalScene& scene, std::shared_ptr<BakedPoints> point
     OcclusionOptions options;
     options.rays = static_cast<int>(rays);
     options.estimator = estimator;
+    options.footprint = scene.options.footprint;
     options.seed = seed;
     const auto start = std::chrono::steady_clock::now();
     const std::vector<float> ao =

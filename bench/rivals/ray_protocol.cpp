@@ -68,7 +68,7 @@ class DeviceRays {
     params.scene = scene_.params;
     params.ray_count = static_cast<uint>(results_.size());
     params.rays_per_point = static_cast<uint>(together);
-    params.footprint = 1;
+    params.footprint = kDefaultFootprint;
     const double before = device_seconds();
     occlusion_pass(context_, queues_, scene_, "rivals", estimator, params);
     Traced traced;

@@ -61,6 +61,9 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--pass", a.pass, "Of pictures: which pass")
       ->capture_default_str()
       ->check(CLI::IsMember({"ao", "light", "all"}));
+  app.add_option("--footprint", a.render.footprint,
+                 "dapple's footprint scale, of pictures and points")
+      ->capture_default_str();
   app.add_option("--device", a.render.device, "Part of an OpenCL device's name");
   app.add_flag("--quick", a.quick, "A fraction of the work, to see whether all works");
   app.add_option("--json", a.json, "Write the figures as JSON");

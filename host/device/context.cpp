@@ -14,6 +14,16 @@ namespace {
 /// Events are collected every so many launches, so that long renders hold few of them.
 constexpr std::size_t kEventsHeld = 256;
 
+/// What buffers are cleared with: PoCL stores one pattern after the other, and a film of a
+/// megapixel cleared byte by byte took as long as its rays.
+constexpr cl_ulong8 kZeros{};
+
+/// `bytes`, rounded up to whole patterns, at least one.
+std::size_t whole_patterns(std::size_t bytes) {
+  const std::size_t patterns = (bytes + sizeof kZeros - 1) / sizeof kZeros;
+  return std::max<std::size_t>(patterns, 1) * sizeof kZeros;
+}
+
 std::string first_lines(const std::string& text, int count) {
   std::size_t end = 0;
   for (int i = 0; i < count && end != std::string::npos; ++i) end = text.find('\n', end + 1);
@@ -101,8 +111,7 @@ const DeviceInfo& DeviceContext::info() const { return state_->info; }
 Buffer DeviceContext::allocate(std::size_t bytes) {
   return in_opencl(fmt::format("allocating {} bytes on {}", bytes, state_->info.name), [&] {
     auto memory = std::make_shared<Buffer::Memory>();
-    memory->buffer =
-        cl::Buffer(state_->context, CL_MEM_READ_WRITE, std::max<std::size_t>(bytes, 1));
+    memory->buffer = cl::Buffer(state_->context, CL_MEM_READ_WRITE, whole_patterns(bytes));
     return Buffer(std::move(memory), bytes);
   });
 }
@@ -123,7 +132,8 @@ Buffer DeviceContext::share(const void* data, std::size_t bytes) {
 void DeviceContext::fill_zero(const Buffer& buffer) {
   if (buffer.bytes() == 0) return;
   in_opencl("clearing a buffer", [&] {
-    state_->queue.enqueueFillBuffer(buffer.memory()->buffer, cl_uchar{0}, 0, buffer.bytes());
+    state_->queue.enqueueFillBuffer(buffer.memory()->buffer, kZeros, 0,
+                                    whole_patterns(buffer.bytes()));
   });
 }
 

@@ -64,7 +64,7 @@ class DeviceContext {
 
   [[nodiscard]] const DeviceInfo& info() const;
 
-  /// Uninitialized memory; at least one byte is allocated. Throws Error device.
+  /// Uninitialized memory, rounded up to whole cache lines. Throws Error device.
   Buffer allocate(std::size_t bytes);
   /// Read-only copy of host data; on devices that share memory with the host no copy is
   /// made and the data must stay where it is.

@@ -27,8 +27,8 @@ class SamplePlan {
   [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
-  /// With a target: what is missing for it, in sixteens but for the most. `variances`: of a batch's
-  /// mean, by pass and pixel, batch_variances(). No pixel gets more than 16, or three times what it
+  /// With a target: what is missing for it, in eights but for the most. `variances`: of a batch's
+  /// mean, by pass and pixel, batch_variances(). No pixel gets more than 8, or three times what it
   /// has, so that the next decision rests on more; empty when all are done. A pixel may be in
   /// several groups, to be traced in their order.
   std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances);

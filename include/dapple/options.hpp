@@ -12,6 +12,10 @@
 
 namespace dapple {
 
+/// Footprint scale of all defaults. Measured with `dapple-bench accuracy`: from 1 to 4 the bias of
+/// pictures stays or falls, noise and time fall by a tenth to a third; from 8 on bias shows.
+inline constexpr float kDefaultFootprint = 4.0f;
+
 /// How an occlusion ray is estimated.
 enum class Estimator : std::uint8_t {
   exact,        ///< every surface on the ray is composited
@@ -53,13 +57,13 @@ struct RenderOptions {
   int ao_rays = 1;     ///< AO rays a primary sample, [1, 4096]
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
   Estimator estimator = Estimator::prefiltered;
-  float footprint = 1.0f;    ///< footprint scale, >= 0; 0 is exact
-  bool ao = true;            ///< make the AO pass
-  bool light = true;         ///< make the light passes
-  bool visits = false;       ///< make layers of what rays cost
-  float ao_distance = 0.0f;  ///< metres; 0 is no limit
-  float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
-  std::string camera;        ///< by name; empty: the first, or one that frames the scene
+  float footprint = kDefaultFootprint;  ///< scale, >= 0; 0 is exact
+  bool ao = true;                       ///< make the AO pass
+  bool light = true;                    ///< make the light passes
+  bool visits = false;                  ///< make layers of what rays cost
+  float ao_distance = 0.0f;             ///< metres; 0 is no limit
+  float ao_falloff = 0.0f;              ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
+  std::string camera;                   ///< by name; empty: the first, or one that frames the scene
   std::optional<LookAt> look;
   float fov_degrees = 0.0f;  ///< vertical; 0: the camera's own, or 40 with `look`
   std::optional<PixelRect> crop;

@@ -76,7 +76,7 @@ RenderResult render(Scene scene, const RenderOptions& options, const Progress& p
 struct OcclusionOptions {
   int rays = 64;  ///< a point, [1, 2^20]
   Estimator estimator = Estimator::prefiltered;
-  float footprint = 1.0f;
+  float footprint = kDefaultFootprint;
   float distance = 0.0f;  ///< metres; 0: no limit
   float falloff = 0.0f;
   std::uint32_t seed = 0;
@@ -93,8 +93,8 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
 /// Rays that share a point may be traced together: `rays_per_point` of them in a row, with one
 /// origin and light. Throws Error usage.
 std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
-                             std::span<const Ray> rays, Estimator estimator, float footprint = 1.0f,
-                             std::size_t rays_per_point = 1);
+                             std::span<const Ray> rays, Estimator estimator,
+                             float footprint = kDefaultFootprint, std::size_t rays_per_point = 1);
 
 /// First surface met by each ray; a surface of opacity a is met with probability a,
 /// chosen by hashing Ray::key with primitive and instance. Where t < 0 none was met.

@@ -24,7 +24,7 @@ typedef struct OcclusionParams {
 } OcclusionParams;
 
 /* Samples of a pixel whose mean counts once in the sum of squares that errors come from. */
-#define DAPPLE_BATCH 4u
+#define DAPPLE_BATCH 2u
 
 /* A pixel of the crop (row-major) that is to be sampled, and how many samples it has. */
 typedef struct PixelWork {
