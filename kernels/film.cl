@@ -1,32 +1,6 @@
-/* Resolving: one item a pixel adds up the pixel's samples of the slice, in order, into
-   64-bit fixed point planes, so that the sum does not depend on slices or threads. */
-#include "camera_beams.clh"
-#include "pass_params.h"
+/* The passes that add up camera samples, AO and lights: see film.clh. */
+#include "film.clh"
 #include "scene.clh"
-
-/* plane p of the film, from the pass's first plane. */
-inline void add_to_plane(__global long* film, ResolveParams params, uint p, uint pixel, long value) {
-  film[(ulong)(params.plane + p) * params.film_pixels + pixel] += value;
-}
-
-inline long fixed_point(float value, float scale) { return convert_long_sat_rte(value * scale); }
-
-/* Means of batches, squared and added up; what does not fill a batch is left out. */
-typedef struct Batches {
-  float sum, squares;
-} Batches;
-
-inline void add_to_batch(Batches* batches, uint sample, float value) {
-  batches->sum += value;
-  if ((sample + 1u) % DAPPLE_BATCH) return;
-  const float mean = batches->sum * (1.0f / DAPPLE_BATCH);
-  batches->squares += mean * mean;
-  batches->sum = 0.0f;
-}
-
-inline uint pixel_of(__global const PixelWork* work, ResolveParams params, uint local_pixel) {
-  return work[params.slice.first_work + local_pixel].pixel;
-}
 
 typedef struct SurfaceSums {
   long hits, depth;

@@ -1,6 +1,7 @@
 /* The light pass: rays from every active point to one light, weighted so that their mean
    transmittance times weight is the irradiance of that light at radiance 1. */
 #include "direction.clh"
+#include "dome.clh"
 #include "light_record.h"
 #include "pass_params.h"
 #include "random.clh"
@@ -9,12 +10,14 @@
 typedef struct LightSample {
   float3 direction;   /* towards the light, unit */
   float distance;
-  float solid_angle;  /* 1 / pdf; also the weight but for the receiver's cosine */
+  float solid_angle;  /* 1 / pdf; also the weight but for the receiver's cosine and radiance */
+  float radiance;     /* dome: the luminance from there; else 1 */
 } LightSample;
 
 /* A point of a flat emitter, uniform over `area`. */
 inline LightSample towards(float3 from, float3 to, float3 light_normal, float area, bool two_sided) {
   LightSample sample;
+  sample.radiance = 1.0f;
   const float3 way = to - from;
   const float square = fmax(dot(way, way), 1e-20f);
   sample.distance = sqrt(square);
@@ -33,6 +36,7 @@ inline LightSample sample_rect(__global const LightRecord* light, float3 from, f
 /* Uniform in the cone that the sphere subtends; from inside, over all directions. */
 inline LightSample sample_sphere(__global const LightRecord* light, float3 from, float2 u) {
   LightSample sample;
+  sample.radiance = 1.0f;
   const float3 way = load3(light->position) - from;
   const float distance = length(way);
   const float3 axis = distance > 0.0f ? way / distance : (float3)(0.0f, 1.0f, 0.0f);
@@ -57,6 +61,7 @@ inline LightSample sample_sphere(__global const LightRecord* light, float3 from,
 
 inline LightSample sample_sun(__global const LightRecord* light, float2 u) {
   LightSample sample;
+  sample.radiance = 1.0f;
   sample.direction = sample_cone(-load3(light->direction), light->one_minus_cos, u);
   sample.solid_angle = 2.0f * M_PI_F * light->one_minus_cos;
   sample.distance = INFINITY;
@@ -84,8 +89,17 @@ inline LightSample sample_mesh(__global const LightRecord* light,
   return towards(from, to, normalize(cross(edge1, edge2)), light->area, light->two_sided != 0u);
 }
 
-inline LightSample sample_light(__global const LightRecord* light,
-                                __global const EmitterTriangle* emitters, float3 from, float2 u) {
+inline LightSample sample_around(__global const LightRecord* light,
+                                 __global const float* environments, float3 normal, float2 u) {
+  const Dome dome = dome_of(light, environments);
+  LightSample sample;
+  sample.direction = sample_dome(&dome, normal, u, &sample.solid_angle, &sample.radiance);
+  sample.distance = INFINITY;
+  return sample;
+}
+
+inline LightSample sample_source(__global const LightRecord* light,
+                                 __global const EmitterTriangle* emitters, float3 from, float2 u) {
   switch (light->kind) {
     case DAPPLE_LIGHT_RECT: return sample_rect(light, from, u);
     case DAPPLE_LIGHT_SPHERE: return sample_sphere(light, from, u);
@@ -96,7 +110,8 @@ inline LightSample sample_light(__global const LightRecord* light,
 
 __kernel void light_rays(__global const SurfacePoint* points, __global const uint* active_list,
                          __global const LightRecord* lights,
-                         __global const EmitterTriangle* emitters, __global Ray* rays,
+                         __global const EmitterTriangle* emitters,
+                         __global const float* environments, __global Ray* rays,
                          LightParams params) {
   const uint item = get_global_id(0);
   if (item >= params.point_count * params.rays) return;
@@ -108,8 +123,11 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   const float3 normal = (float3)(point.normal[0], point.normal[1], point.normal[2]);
   const float3 position = (float3)(point.position[0], point.position[1], point.position[2]);
   const float3 origin = position + normal * point.offset;
-  const LightSample sample = sample_light(light, emitters, origin, u);
-  const float weight = sample.solid_angle * fmax(dot(normal, sample.direction), 0.0f);
+  const LightSample sample = light->kind == DAPPLE_LIGHT_DOME
+                                 ? sample_around(light, environments, normal, u)
+                                 : sample_source(light, emitters, origin, u);
+  const float weight =
+      sample.solid_angle * fmax(dot(normal, sample.direction), 0.0f) * sample.radiance;
   __global Ray* ray = rays + item;
   store3(ray->origin, origin);
   store3(ray->direction, sample.direction);

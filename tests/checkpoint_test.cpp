@@ -56,7 +56,7 @@ class Tracing {
       : tree_(tree),
         options_(options),
         view_(choose_view(tree.scene, options, notes_)),
-        layout_(view_, options, tree.bvh.bounds, tree.scene.lights.size()) {}
+        layout_(view_, options, tree.bvh.bounds, tree.scene.lights) {}
 
   [[nodiscard]] TracedPicture trace(const TraceControl& control = {}, TraceState from = {}) const {
     return trace_picture(device(), tree_.uploaded, view_, options_, layout_,

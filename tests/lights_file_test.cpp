@@ -153,7 +153,7 @@ TEST(LightsFile, AMissingOrMistypedKeyIsNamed) {
   EXPECT_EQ(complaint_about(kSphere), "light 1: radius is missing");
   EXPECT_EQ(complaint_about("\"name\": \"a\""), "light 1 (\"a\"): type is missing");
   EXPECT_EQ(complaint_about(R"("type": "spot")"),
-            "light 1: type \"spot\" is not rect, sphere or sun");
+            "light 1: type \"spot\" is not rect, sphere, sun or dome");
   EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1], "radiance": 1)"),
             "light 1: direction must be an array of 3 numbers");
   EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1, "x"], "radiance": 1)"),

@@ -34,7 +34,7 @@ class Pictures {
     options.estimator = footprint > 0 ? Estimator::prefiltered : Estimator::exact;
     options.footprint = footprint;
     options.seed = static_cast<std::uint32_t>(seed);
-    const FilmLayout layout(view_, options, scene_.bvh.bounds, 0);
+    const FilmLayout layout(view_, options, scene_.bvh.bounds, {});
     const TracedPicture picture =
         trace_picture(device(), scene_.uploaded, view_, options, layout, 0, {});
     // Misses add nothing to the plane, exact or not: they drop out of differences.

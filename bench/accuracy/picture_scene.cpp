@@ -88,12 +88,12 @@ std::string PictureScene::device_name() {
 
 Picture PictureScene::render(const RenderOptions& options) {
   open();
-  prepare_kernels(device_->context(), options);
-  const std::size_t lights = options.light ? scene_.lights.size() : 0;
+  prepare_kernels(device_->context(), options, scene_.lights);
+  const std::vector<Light> lights = options.light ? scene_.lights : std::vector<Light>{};
   const FilmLayout layout(view_, options, bvh_.bounds, lights);
   const auto start = std::chrono::steady_clock::now();
   const TracedPicture traced =
-      trace_picture(*device_, on_device_, view_, options, layout, lights, {});
+      trace_picture(*device_, on_device_, view_, options, layout, lights.size(), {});
   Picture picture;
   picture.trace_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -108,15 +108,15 @@ Picture PictureScene::render(const RenderOptions& options) {
     picture.passes.push_back({"ao", ao_values(sums, layout, options)});
     picture.largest.push_back(1.0);
   }
-  for (std::size_t l = 0; l < lights; ++l) {
+  for (std::size_t l = 0; l < lights.size(); ++l) {
     const double scale = 1.0 / (double{layout.light_scale} * options.light_rays);
-    const std::vector<double> unoccluded = sums.plane(layout.lights[l] + 1, scale);
+    const std::vector<double> unoccluded = sums.plane(layout.lights[l].unoccluded(), scale);
     const double largest = *std::max_element(unoccluded.begin(), unoccluded.end());
     picture.largest.push_back(largest);
     const std::size_t pass = picture.passes.size();
     const double divisor = pass < largest_.size() ? largest_[pass] : largest;
     picture.passes.push_back(
-        {scene_.lights[l].name, sums.plane(layout.lights[l], divisor > 0 ? scale / divisor : 0.0)});
+        {lights[l].name, sums.plane(layout.lights[l].first, divisor > 0 ? scale / divisor : 0.0)});
   }
   return picture;
 }

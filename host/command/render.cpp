@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <thread>
 
 #include "command/command.hpp"
@@ -22,7 +24,8 @@ namespace {
 
 /// What was typed, before it becomes options.
 struct RenderArguments {
-  std::string scene, output, png, stats_json, lights;
+  std::string scene, output, png, stats_json, lights, dome;
+  double dome_rotation = 0;
   std::string estimator = "prefiltered", passes = "ao,light";
   std::string look_from, look_at, up, crop;
   std::vector<std::string> opacity;
@@ -90,6 +93,13 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--fov", o.fov_degrees,
                  "Vertical field of view, degrees; default: the camera's own, or 40");
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
+  app.add_option(
+      "--dome", a.dome,
+      "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
+      "around, beside other lights");
+  app.add_option("--dome-rotation", a.dome_rotation,
+                 "Degrees by which it is turned about +Y, from +Z towards +X")
+      ->capture_default_str();
   app.add_option("--light-radius", a.scene_options.light_radius,
                  "Radius that glTF point lights get, metres")
       ->capture_default_str();
@@ -137,6 +147,16 @@ void use_lights(Scene& scene, const std::string& path) {
   scene.lights = load_lights(path);
 }
 
+void add_dome(Scene& scene, const RenderArguments& a) {
+  Light dome;
+  dome.name = "dome";
+  dome.kind = LightKind::dome;
+  dome.environment = load_environment(a.dome);
+  dome.rotation =
+      static_cast<float>(std::remainder(a.dome_rotation, 360.0) * std::numbers::pi / 180);
+  scene.lights.push_back(std::move(dome));
+}
+
 void write_statistics(const RenderStatistics& statistics, const std::string& path) {
   write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
 }
@@ -168,6 +188,7 @@ void run_render(const RenderArguments& a) {
 
   Scene scene = load_scene(a.scene, a.scene_options);
   if (!a.lights.empty()) use_lights(scene, a.lights);
+  if (!a.dome.empty()) add_dome(scene, a);
   const double load_seconds = since(start);
 
   RenderResult result = render(std::move(scene), options, control);

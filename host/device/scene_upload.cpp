@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dapple/error.hpp"
+#include "device/dome_upload.hpp"
 #include "device/light_upload.hpp"
 
 namespace dapple {
@@ -42,12 +43,14 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   auto buffers = std::make_shared<DeviceBuffers>(device);
   pack_textures(scene, *buffers);
   pack_lights(scene, buffers->light_records, buffers->emitter_triangles);
+  pack_domes(scene, buffers->light_records, buffers->environment_data);
   DeviceContext& context = device.context();
   const auto bytes = [](const auto& data) { return data.size() * sizeof(data[0]); };
   DeviceScene result;
   result.bytes = bytes(bvh.nodes) + bytes(bvh.blocks) + bytes(bvh.textured) + bytes(bvh.instances) +
                  bytes(buffers->texture_records) + bytes(buffers->texel_data) +
-                 bytes(buffers->light_records) + bytes(buffers->emitter_triangles);
+                 bytes(buffers->light_records) + bytes(buffers->emitter_triangles) +
+                 bytes(buffers->environment_data);
   check_memory(device.info(), result.bytes);
   buffers->nodes = share(context, bvh.nodes);
   buffers->blocks = share(context, bvh.blocks);
@@ -57,6 +60,7 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   buffers->texels = share(context, buffers->texel_data);
   buffers->lights = share(context, buffers->light_records);
   buffers->emitters = share(context, buffers->emitter_triangles);
+  buffers->environments = share(context, buffers->environment_data);
   buffers->params = {bvh.root, bvh.has_top ? 1u : 0u};
   context.finish();
   result.buffers = std::move(buffers);

@@ -11,13 +11,14 @@ struct DeviceBuffers {
   explicit DeviceBuffers(const Device& d) : device(d) {}
   Device device;
   Buffer nodes, blocks, textured, textures, texels, instances;
-  Buffer lights, emitters;
+  Buffer lights, emitters, environments;
   SceneParams params{};
   // What `share` may point into where memory is shared.
   std::vector<TextureRecord> texture_records;
   std::vector<uchar> texel_data;
   std::vector<LightRecord> light_records;
   std::vector<EmitterTriangle> emitter_triangles;
+  std::vector<float> environment_data;
 };
 
 }  // namespace dapple

@@ -221,7 +221,22 @@ Light read_sun(const LightFields& fields) {
   return light;
 }
 
-Light read_light(const LightFields& fields, std::size_t number) {
+Light read_dome(const LightFields& fields, const std::filesystem::path& folder) {
+  fields.allow_only({"image", "radiance", "rotation_degrees"});
+  Light light;
+  light.kind = LightKind::dome;
+  if (fields.has("radiance")) light.radiance = fields.colour("radiance");
+  if (fields.has("image"))
+    light.environment = load_environment((folder / fields.text("image")).string());
+  if (fields.has("rotation_degrees")) {
+    light.rotation = static_cast<float>(std::remainder(fields.number("rotation_degrees"), 360.0) *
+                                        std::numbers::pi / 180);
+  }
+  return light;
+}
+
+Light read_light(const LightFields& fields, std::size_t number,
+                 const std::filesystem::path& folder) {
   const std::string type = fields.text("type");
   Light light;
   if (type == "rect") {
@@ -230,8 +245,10 @@ Light read_light(const LightFields& fields, std::size_t number) {
     light = read_sphere(fields);
   } else if (type == "sun") {
     light = read_sun(fields);
+  } else if (type == "dome") {
+    light = read_dome(fields, folder);
   } else {
-    fields.fail_at("type", fmt::format("\"{}\" is not rect, sphere or sun", type));
+    fields.fail_at("type", fmt::format("\"{}\" is not rect, sphere, sun or dome", type));
   }
   light.name = fields.has("name") ? fields.text("name") : fmt::format("{}_{}", type, number);
   return light;
@@ -250,7 +267,8 @@ std::vector<Light> load_lights(const std::string& path) {
   std::vector<Light> lights;
   for (const Json& fields : file["lights"]) {
     const std::size_t number = lights.size() + 1;
-    lights.push_back(read_light(LightFields(path, number, fields), number));
+    lights.push_back(read_light(LightFields(path, number, fields), number,
+                                std::filesystem::path(path).parent_path()));
   }
   return lights;
 }

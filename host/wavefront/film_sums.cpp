@@ -67,29 +67,34 @@ class LightPlanes {
         lights_(lights),
         inverse_(1.0 / (double{layout.light_scale} * options.light_rays)) {}
 
-  [[nodiscard]] V3d shadowed(std::uint32_t pixel) const { return sum(pixel, 0); }
+  [[nodiscard]] V3d shadowed(std::uint32_t pixel) const {
+    V3d value(0.0);
+    for (std::size_t l = 0; l < lights_.size(); ++l) value += one(l, pixel);
+    return value;
+  }
   [[nodiscard]] V3d one(std::size_t light, std::uint32_t pixel) const {
-    return V3d(lights_[light].radiance) *
-           (sums_.at(layout_.lights[light], pixel) * inverse_ / sample_count(picture_, pixel));
+    return of_planes(light, layout_.lights[light].first, pixel);
   }
   [[nodiscard]] double largest_unoccluded() const {
     double largest = 0;
     for (std::uint32_t p = 0; p < layout_.pixels; ++p) {
-      const V3d value = sum(p, 1);
+      V3d value(0.0);
+      for (std::size_t l = 0; l < lights_.size(); ++l)
+        value += of_planes(l, layout_.lights[l].unoccluded(), p);
       largest = std::max({largest, value.x, value.y, value.z});
     }
     return largest;
   }
 
  private:
-  [[nodiscard]] V3d sum(std::uint32_t pixel, std::uint32_t plane) const {
-    V3d value(0.0);
-    for (std::size_t l = 0; l < lights_.size(); ++l) {
-      value += V3d(lights_[l].radiance) * (sums_.at(layout_.lights[l] + plane, pixel) * inverse_ /
-                                           sample_count(picture_, pixel));
-    }
-    return value;
+  /// Of the light's one channel or its three from `first` on.
+  [[nodiscard]] V3d of_planes(std::size_t light, std::uint32_t first, std::uint32_t pixel) const {
+    const std::uint32_t last = layout_.lights[light].channels - 1;
+    const V3d sum(sums_.at(first, pixel), sums_.at(first + std::min(1u, last), pixel),
+                  sums_.at(first + last, pixel));
+    return V3d(lights_[light].radiance) * sum * (inverse_ / sample_count(picture_, pixel));
   }
+
   const Sums& sums_;
   const TracedPicture& picture_;
   const FilmLayout& layout_;
@@ -159,9 +164,9 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
   s.rays.light =
       static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.light_rays) * lights;
   double visits = 0, tests = 0;
-  for (const std::uint32_t plane : layout.lights) {
-    visits += sums.total(plane + 2);
-    tests += sums.total(plane + 3);
+  for (const LightPlaneRange& planes : layout.lights) {
+    visits += sums.total(planes.visits());
+    tests += sums.total(planes.visits() + 1);
   }
   s.light = {per_ray(visits, s.rays.light), per_ray(tests, s.rays.light)};
 }
@@ -172,7 +177,7 @@ void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
   const auto total = [&](std::uint32_t p, std::uint32_t which) {
     double sum = sums.at(8 + which, p) / (which == 0 ? DAPPLE_BEAM_RAYS : 1u);
     if (options.ao) sum += sums.at(layout.ao + 4 + which, p);
-    for (const std::uint32_t light : layout.lights) sum += sums.at(light + 2 + which, p);
+    for (const LightPlaneRange& light : layout.lights) sum += sums.at(light.visits() + which, p);
     return sum / sample_count(picture, p);
   };
   planes.add("visits.nodes", [&](std::uint32_t p) { return total(p, 0); });
@@ -182,16 +187,16 @@ void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
 }  // namespace
 
 FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
-                       std::size_t light_count)
+                       const std::vector<Light>& scene_lights)
     : pixels(view.pixel_count()), plane_count(kSurfacePlanes) {
   if (options.ao) {
     ao = plane_count;
     plane_count += kAoPlanes;
     ++squares;
   }
-  for (std::size_t l = 0; l < light_count; ++l) {
-    lights.push_back(plane_count);
-    plane_count += kLightPlanes;
+  for (const Light& light : scene_lights) {
+    lights.push_back({plane_count, light.kind == LightKind::dome ? 3u : 1u});
+    plane_count += lights.back().count();
     ++squares;
   }
   unit_scale = scale_for(1.0);

@@ -13,23 +13,32 @@ namespace dapple {
 
 inline constexpr std::uint32_t kSurfacePlanes = 10;
 inline constexpr std::uint32_t kAoPlanes = 6;
-inline constexpr std::uint32_t kLightPlanes = 4;
+
+/// A light's planes: irradiance and the same unoccluded, each of 1 channel, of a dome 3; then
+/// visits and tests.
+struct LightPlaneRange {
+  std::uint32_t first = 0;
+  std::uint32_t channels = 1;
+  [[nodiscard]] std::uint32_t unoccluded() const { return first + channels; }
+  [[nodiscard]] std::uint32_t visits() const { return first + 2 * channels; }
+  [[nodiscard]] std::uint32_t count() const { return 2 * channels + 2; }
+};
 
 /// First plane of each pass, and the powers of two by which values are scaled. A sum of
 /// 2^24 samples of the largest value still fits 63 bits.
 struct FilmLayout {
   std::uint32_t pixels = 0;
   std::uint32_t plane_count = 0;
-  std::uint32_t ao = 0;               ///< first AO plane
-  std::vector<std::uint32_t> lights;  ///< first plane of each light
-  std::uint32_t squares = 0;          ///< planes of squares: one of AO, then one a light
-  float unit_scale = 0;               ///< of values up to 1
-  float light_scale = 0;              ///< of irradiance at radiance 1, up to 1024 pi
+  std::uint32_t ao = 0;  ///< first AO plane
+  std::vector<LightPlaneRange> lights;
+  std::uint32_t squares = 0;  ///< planes of squares: one of AO, then one a light
+  float unit_scale = 0;       ///< of values up to 1
+  float light_scale = 0;      ///< of irradiance at radiance 1, up to 1024 pi
   float position_scale = 0;
   float depth_scale = 0;
 
   FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
-             std::size_t light_count);
+             const std::vector<Light>& lights);
   /// Plane of squares of a light; AO's is 0.
   [[nodiscard]] std::uint32_t light_squares(std::size_t light) const {
     return static_cast<std::uint32_t>(light) + (ao ? 1u : 0u);

@@ -59,6 +59,7 @@ const KernelName kLightRays{"light_rays", "light", {}};
 const KernelName kResolveSurface{"resolve_surface", "film", {}};
 const KernelName kResolveAo{"resolve_ao", "film", {}};
 const KernelName kResolveLight{"resolve_light", "film", {}};
+const KernelName kResolveDome{"resolve_dome", "dome", {}};
 
 }  // namespace
 
@@ -118,7 +119,8 @@ void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& p
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params) {
   context.launch(kLightRays, "light rays", std::size_t{params.point_count} * params.rays,
-                 {queues.points, queues.active, scene.lights, scene.emitters, queues.rays, params});
+                 {queues.points, queues.active, scene.lights, scene.emitters, scene.environments,
+                  queues.rays, params});
 }
 
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
@@ -148,24 +150,32 @@ void resolve_surface_pass(DeviceContext& context, const Queues& queues, const Fi
 
 void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                      const ResolveParams& params) {
-  context.launch(kResolveAo, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums,
-                  film.squares, params});
+  context.launch(
+      kResolveAo, "resolve", params.slice.pixel_count,
+      {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums, film.squares, params});
 }
 
 void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params) {
-  context.launch(kResolveLight, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums,
-                  film.squares, params});
+  context.launch(
+      kResolveLight, "resolve", params.slice.pixel_count,
+      {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums, film.squares, params});
 }
 
-void prepare_kernels(DeviceContext& context, const RenderOptions& options) {
+void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                       const FilmBuffers& film, const ResolveParams& params, uint light) {
+  context.launch(kResolveDome, "resolve", params.slice.pixel_count,
+                 {queues.work, queues.beams, queues.rays, queues.occlusions, scene.lights,
+                  scene.environments, film.sums, film.squares, params, light});
+}
+
+void prepare_kernels(DeviceContext& context, const RenderOptions& options,
+                     const std::vector<Light>& lights) {
   for (const KernelName& kernel : {kCameraHits, kCompactHits, kResolveSurface})
     context.prepare(kernel);
   const auto prepare_occlusion = [&](int rays) {
-    const Company with = company(options.estimator, static_cast<uint>(rays), RayOrder::by_pixel,
-                                 context.info());
+    const Company with =
+        company(options.estimator, static_cast<uint>(rays), RayOrder::by_pixel, context.info());
     context.prepare(occlusion_kernel(options.estimator, with));
   };
   if (options.ao) {
@@ -176,7 +186,8 @@ void prepare_kernels(DeviceContext& context, const RenderOptions& options) {
   if (options.light) {
     prepare_occlusion(options.light_rays);
     context.prepare(kLightRays);
-    context.prepare(kResolveLight);
+    for (const Light& light : lights)
+      context.prepare(light.kind == LightKind::dome ? kResolveDome : kResolveLight);
   }
 }
 

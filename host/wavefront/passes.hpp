@@ -64,7 +64,12 @@ void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuf
 void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params);
 
-/// Compiles every kernel that `options` will need.
-void prepare_kernels(DeviceContext& context, const RenderOptions& options);
+/// As resolve_light_pass() for a dome: three channels, see DomePlanes in kernels/dome.cl.
+void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                       const FilmBuffers& film, const ResolveParams& params, uint light);
+
+/// Compiles every kernel that `options` and the lights will need.
+void prepare_kernels(DeviceContext& context, const RenderOptions& options,
+                     const std::vector<Light>& lights);
 
 }  // namespace dapple

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "scene/environment.hpp"
 #include "wavefront/passes.hpp"
 #include "wavefront/pixel_error.hpp"
 #include "wavefront/sample_plan.hpp"
@@ -164,6 +165,17 @@ class PictureTracer {
     return values;
   }
 
+  /// Of one channel itself, of three their luminance.
+  std::vector<double> read_luminance(uint first, uint channels, double scale) {
+    if (channels == 1) return read_plane(first, scale);
+    std::vector<double> values = read_plane(first, scale);
+    const std::vector<double> green = read_plane(first + 1, scale);
+    const std::vector<double> blue = read_plane(first + 2, scale);
+    for (std::size_t p = 0; p < values.size(); ++p)
+      values[p] = luminance(V3d(values[p], green[p], blue[p]));
+    return values;
+  }
+
   /// Moments of a pass whose samples' values, divided by `divisor`, add up to `values`.
   BatchMoments moments(const std::vector<double>& values, uint squares_plane, double divisor,
                        const std::vector<std::uint32_t>& samples) {
@@ -191,13 +203,15 @@ class PictureTracer {
     }
     const double scale = double{layout_.light_scale} * options_.light_rays;
     for (std::size_t light = 0; light < light_count_; ++light) {
-      const std::vector<double> unoccluded = read_plane(layout_.lights[light] + 1, scale);
+      const LightPlaneRange& planes = layout_.lights[light];
+      const std::vector<double> unoccluded =
+          read_luminance(planes.unoccluded(), planes.channels, scale);
       double largest = 0;
       for (std::size_t p = 0; p < unoccluded.size(); ++p)
         largest = std::max(largest, unoccluded[p] / samples[p]);
       out.push_back(batch_variances(
-          moments(read_plane(layout_.lights[light], scale), layout_.light_squares(light),
-                  largest > 0 ? largest : 1.0, samples),
+          moments(read_luminance(planes.first, planes.channels, scale),
+                  layout_.light_squares(light), largest > 0 ? largest : 1.0, samples),
           samples, width_));
     }
     return out;
@@ -274,11 +288,14 @@ class PictureTracer {
     light_ray_pass(context_, scene_, queues_, params);
     occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator,
                    occlusion_params(hits, params.rays), RayOrder::by_pixel);
-    resolve_.plane = layout_.lights[light];
+    resolve_.plane = layout_.lights[light].first;
     resolve_.squares = layout_.light_squares(light);
     resolve_.rays = params.rays;
     resolve_.scale = layout_.light_scale;
-    resolve_light_pass(context_, queues_, film_, resolve_);
+    if (layout_.lights[light].channels == 3)
+      resolve_dome_pass(context_, scene_, queues_, film_, resolve_, light);
+    else
+      resolve_light_pass(context_, queues_, film_, resolve_);
   }
 
   [[nodiscard]] OcclusionParams occlusion_params(uint points, uint rays_per_point) const {

@@ -39,6 +39,7 @@ View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string
   }
   if (options.ground) add_ground(scene);
   merge_single_instances(scene);
+  settle_domes(scene);
   return view;
 }
 
@@ -173,11 +174,11 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
   statistics.seconds.upload = uploading.seconds();
   add_bvh_statistics(statistics, bvh, *on_device.buffers);
 
-  prepare_kernels(device.context(), options);
+  prepare_kernels(device.context(), options, scene.lights);
   statistics.seconds.kernel_build = device.context().kernel_build_seconds();
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
-  const FilmLayout layout(view, options, bvh.bounds, lights.size());
+  const FilmLayout layout(view, options, bvh.bounds, lights);
   Checkpoint about{
       option_settings(options, view), {}, footprint_samples(options), statistics.device, {}};
   if (resumed || !control.checkpoint.empty())

@@ -48,6 +48,7 @@ std::string light_checksum(const DeviceBuffers& scene) {
   ChecksumStream stream;
   stream.add_range(scene.light_records);
   stream.add_range(scene.emitter_triangles);
+  stream.add_range(scene.environment_data);
   return hex_text(stream.value());
 }
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -72,7 +73,14 @@ struct Instance {
   int light = -1;  ///< the mesh light this placement emits for, else -1
 };
 
-enum class LightKind : std::uint8_t { rect, sphere, sun, mesh };
+enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome };
+
+/// Radiance from all around: a latitude-longitude image as OpenEXR defines it (ImfEnvmap.h). The top
+/// row looks up +Y, the middle column along +Z, the one a quarter from the left along +X.
+struct Environment {
+  std::uint32_t width = 0, height = 0;
+  std::vector<V3f> radiance;  ///< row by row, linear RGB, finite, not negative
+};
 
 /// A light. Irradiance at a point is the integral of radiance * cosine * transmittance.
 struct Light {
@@ -89,6 +97,9 @@ struct Light {
   float cos_inner = -1.0f;          ///< spot cone as in KHR_lights_punctual; -1, -1 for none
   float cos_outer = -1.0f;
   bool double_sided = false;  ///< mesh: emits from both sides
+  /// dome: multiplied by `radiance`; none: the same from all around.
+  std::shared_ptr<const Environment> environment;
+  float rotation = 0;  ///< dome: radians about +Y; what lies along +Z turns towards +X
 };
 
 struct Camera {
@@ -127,6 +138,14 @@ Scene make_procedural(const std::string& name);
 
 /// Reads a JSON file of lights (README, "Lights"). Throws Error: input.
 std::vector<Light> load_lights(const std::string& path);
+
+/// Reads a latitude-longitude image for a dome light: OpenEXR (channels R, G, B or Y) or Radiance
+/// HDR. Negative values become 0. Throws Error: input.
+std::shared_ptr<const Environment> load_environment(const std::string& path);
+
+/// What domes are sampled by: images of more than 2048 x 1024 pixels are averaged down, and all are
+/// divided by their mean luminance, by which the lights' radiances are multiplied instead.
+void settle_domes(Scene& scene);
 
 /// Writes meshes, instances, materials (no textures), cameras as one GLB file. Throws Error.
 void write_glb(const Scene& scene, const std::string& path);

@@ -41,7 +41,9 @@
   MEMBER(LightRecord, edge_v) MEMBER(LightRecord, cos_inner) MEMBER(LightRecord, cos_outer)  \
   MEMBER(LightRecord, kind) MEMBER(LightRecord, first_triangle)                              \
   MEMBER(LightRecord, triangle_count) MEMBER(LightRecord, two_sided)                         \
-  MEMBER(LightRecord, id) MEMBER(LightRecord, spare)                                         \
+  MEMBER(LightRecord, id) MEMBER(LightRecord, environment_first)                             \
+  MEMBER(LightRecord, environment_width) MEMBER(LightRecord, environment_height)             \
+  MEMBER(LightRecord, rotation)                                                              \
   STRUCT(EmitterTriangle)                                                                    \
   MEMBER(EmitterTriangle, vertex) MEMBER(EmitterTriangle, cumulative)                        \
   MEMBER(EmitterTriangle, edge1) MEMBER(EmitterTriangle, spare1)                             \

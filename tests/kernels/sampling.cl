@@ -41,7 +41,7 @@ __kernel void light_samples(__global const LightRecord* lights,
   const uint item = get_global_id(0);
   if (item >= count) return;
   const float2 u = sample_2d(0, item, DAPPLE_PAIR_LIGHT, 1);
-  const LightSample sample = sample_light(lights + light, emitters, (float3)(0.0f), u);
+  const LightSample sample = sample_source(lights + light, emitters, (float3)(0.0f), u);
   vstore3(sample.direction, item, directions);
   distances[item] = sample.distance;
   solid_angles[item] = sample.solid_angle;

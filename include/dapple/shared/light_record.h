@@ -13,6 +13,7 @@ namespace dapple {
 #define DAPPLE_LIGHT_SPHERE 1u
 #define DAPPLE_LIGHT_SUN 2u
 #define DAPPLE_LIGHT_MESH 3u
+#define DAPPLE_LIGHT_DOME 4u
 
 typedef struct LightRecord {
   float position[3];
@@ -20,16 +21,18 @@ typedef struct LightRecord {
   float direction[3];  /* rect: emitting side; sun, spot: the way light travels */
   float one_minus_cos; /* sun: 1 - cosine of its angular radius */
   float edge_u[3];
-  float area;          /* rect, mesh: square metres */
+  float area; /* rect, mesh: square metres */
   float edge_v[3];
-  float cos_inner;     /* spot cone; cos_outer = -1: none */
+  float cos_inner; /* spot cone; cos_outer = -1: none */
   float cos_outer;
   uint kind;
   uint first_triangle; /* mesh: in the emitter triangle buffer */
   uint triangle_count;
   uint two_sided;
-  uint id;             /* mesh: 1 + index of the light; else 0 */
-  uint spare[2];
+  uint id;                /* mesh: 1 + index of the light; else 0 */
+  uint environment_first; /* dome: where its floats begin, see kernels/dome.clh */
+  uint environment_width, environment_height;
+  float rotation; /* dome: radians about +Y */
 } LightRecord;
 
 /* A triangle of a mesh light in world space; cumulative is the share of the light's area
@@ -44,7 +47,7 @@ typedef struct EmitterTriangle {
 } EmitterTriangle;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(LightRecord) == 96);
+static_assert(sizeof(LightRecord) == 104);
 static_assert(sizeof(EmitterTriangle) == 48);
 }  // namespace dapple
 #endif

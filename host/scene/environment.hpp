@@ -1,0 +1,27 @@
+// Arithmetic of latitude-longitude images: see Environment in dapple/scene.hpp.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+inline const V3f& texel(const Environment& environment, std::uint32_t x, std::uint32_t y) {
+  return environment.radiance[std::size_t{y} * environment.width + x];
+}
+
+/// Of linear RGB with the primaries of ITU-R BT.709.
+inline double luminance(const V3d& rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z; }
+inline double luminance(const V3f& rgb) { return luminance(V3d(rgb)); }
+
+/// Steradians of a texel of row `y`.
+inline double texel_solid_angle(const Environment& environment, std::uint32_t y) {
+  using std::numbers::pi;
+  const auto height = static_cast<double>(environment.height);
+  return 2 * pi / environment.width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
+}
+
+}  // namespace dapple
