@@ -327,7 +327,7 @@ TEST_F(CheckpointFile, OneThatCannotBeWrittenCostsNoPictureAndKeepsTheOneBefore)
   const RenderResult result = draw(options, control);
   EXPECT_TRUE(contains(result.checkpoint_failure, "missing/a.ckpt")) << result.checkpoint_failure;
   EXPECT_FALSE(result.interrupted);
-  EXPECT_EQ(bytes_of(path("a.ckpt")), before);
+  EXPECT_TRUE(bytes_of(path("a.ckpt")) == before);
 }
 
 /// A file of a few hundred bytes.
