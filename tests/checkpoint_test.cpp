@@ -391,6 +391,7 @@ TEST_F(CheckpointFile, StatesThatDoNotFitThePictureAreRefused) {
       [](auto& s) { s.squares.clear(); },
       [](auto& s) { s.samples.push_back(1); },
       [](auto& s) { s.samples[0] = 3; },
+      [](auto& s) { s.samples[0] = ~0u; },
       [](auto& s) { s.slice_samples = 0; },
       [](auto& s) { s.slice_samples = ~0u; },
       [](auto& s) { s.round.groups[0].samples = 0; },
