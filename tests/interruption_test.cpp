@@ -117,7 +117,7 @@ TEST_F(Interruption, IgnoredSignalsStayIgnored) {
 
 // A picture so large that files of the OpenCL compiler are smaller, so that they fit.
 TEST_F(Interruption, ACheckpointTooLargeForTheDiskIsAnErrorAndTheOneBeforeIsKept) {
-  std::vector<std::string> arguments = with_checkpoint(4, "0.01");
+  std::vector<std::string> arguments = with_checkpoint(4, "1h");
   arguments.insert(arguments.end(), {"--crop", "0,100,799,499"});
   arguments[5] = "800";
   arguments[7] = "600";
@@ -133,7 +133,7 @@ TEST_F(Interruption, ACheckpointTooLargeForTheDiskIsAnErrorAndTheOneBeforeIsKept
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_TRUE(contains(bytes_of(log()), "cannot write " + path("a.ckpt") + ": File too large"))
       << bytes_of(log());
-  EXPECT_EQ(bytes_of(path("a.ckpt")), before);
+  EXPECT_TRUE(bytes_of(path("a.ckpt")) == before);
   EXPECT_EQ(read_exr(path("out.exr")).width, 800) << "the picture is not lost";
   EXPECT_EQ(files_in_folder(), 2u);
 }

@@ -32,6 +32,10 @@ ProgressBar::~ProgressBar() { clear(); }
 
 void ProgressBar::show(double done) {
   const auto now = std::chrono::steady_clock::now();
+  if (begun_ < 0) {
+    begun_ = done;
+    start_ = now;
+  }
   if (quiet_ ||
       now - last_ <
           (terminal_ ? kRedraw : std::chrono::duration_cast<std::chrono::milliseconds>(kLineEvery)))
@@ -39,7 +43,7 @@ void ProgressBar::show(double done) {
   last_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const std::string left =
-      done > 0 ? duration_text(elapsed * (1 - done) / done) + " left" : "starting";
+      done > begun_ ? duration_text(elapsed * (1 - done) / (done - begun_)) + " left" : "starting";
   if (!terminal_) {
     fmt::print(stderr, "rendering: {:.0f} %, {}\n", 100 * done, left);
     return;

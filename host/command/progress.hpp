@@ -24,6 +24,7 @@ class ProgressBar {
 
  private:
   bool quiet_, terminal_, drawn_ = false;
+  double begun_ = -1;  ///< what was done when it was first told
   std::chrono::steady_clock::time_point start_, last_;
 };
 

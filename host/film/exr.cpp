@@ -50,15 +50,15 @@ Box2i window_of(const PixelRect& rect) { return {V2i(rect.x0, rect.y0), V2i(rect
 
 using Rows = std::vector<std::vector<float>>;  // one vector a channel
 
-Rows read_rows(Imf::InputFile& file, const std::vector<std::string>& channels, const Box2i& strip) {
-  Rows rows(channels.size(), std::vector<float>(static_cast<std::size_t>(area(strip))));
+void read_rows(Imf::InputFile& file, const std::vector<std::string>& channels, const Box2i& strip,
+               Rows& rows) {
   Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < channels.size(); ++i) {
+    rows[i].resize(static_cast<std::size_t>(area(strip)));
     buffer.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, rows[i].data(), strip));
   }
   file.setFrameBuffer(buffer);
   file.readPixels(strip.min.y, strip.max.y);
-  return rows;
 }
 
 // Calls `visit(first_pixel, rows)` from the top strip to the bottom one.
@@ -66,10 +66,12 @@ template <typename Visit>
 void for_each_strip(Imf::InputFile& file, const std::vector<std::string>& channels, Visit visit) {
   const Box2i window = file.header().dataWindow();
   std::size_t first_pixel = 0;
+  Rows rows(channels.size());  // one memory for all strips: new pages take longer than unzipping
   for (std::int64_t y = window.min.y; y <= window.max.y; y += kStripRows) {
     const int last = static_cast<int>(std::min<std::int64_t>(y + kStripRows - 1, window.max.y));
     const Box2i strip(V2i(window.min.x, static_cast<int>(y)), V2i(window.max.x, last));
-    visit(first_pixel, read_rows(file, channels, strip));
+    read_rows(file, channels, strip, rows);
+    visit(first_pixel, rows);
     first_pixel += static_cast<std::size_t>(area(strip));
   }
 }

@@ -142,7 +142,9 @@ void check_state(const std::string& path, const TraceState& state, const StateSh
                              state.sums.size(), state.squares.size(), state.samples.size(),
                              shape.sums, shape.squares, shape.pixels));
   }
-  if (state.slice_samples < DAPPLE_BATCH || state.slice_samples > kMostSamples ||
+  const bool too_many = std::any_of(state.samples.begin(), state.samples.end(),
+                                    [](std::uint32_t samples) { return samples > kMostSamples; });
+  if (too_many || state.slice_samples < DAPPLE_BATCH || state.slice_samples > kMostSamples ||
       !fits(state.round, state.slice_samples, shape.pixels)) {
     refuse(path, "damaged: its list of work is not of this picture");
   }

@@ -12,7 +12,7 @@ struct Checkpoint {
   Settings options, content;  ///< option_settings(), content_settings()
   int footprint_spp = 1;      ///< samples that its footprints are made for
   std::string device;         ///< that traced it last
-  TraceState state;
+  TraceState state = {};
 };
 
 /// What the file is beside the state; `state` apart, so that it need not be copied.

@@ -2,30 +2,18 @@
 // what dapple does.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
-#include <numeric>
 #include <optional>
 
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
 #include "device/context.hpp"
-#include "wavefront/checkpoint.hpp"
 #include "wavefront/passes.hpp"
 #include "wavefront/picture.hpp"
+#include "wavefront/resume.hpp"
+#include "wavefront/stopwatch.hpp"
 
 namespace dapple {
 namespace {
-
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Overrides, lights and ground, in the order that framing needs: the camera sees the
 /// scene as it came, without the ground.
@@ -83,75 +71,6 @@ void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBu
   s.bytes.instances = buffers.instances.bytes();
 }
 
-/// More samples may be asked for than a checkpoint has, not fewer.
-void require_enough_samples(const std::string& path, const TraceState& state,
-                            const RenderOptions& options) {
-  const bool adaptive = is_adaptive(options);
-  const int asked = adaptive ? options.max_spp : options.spp;
-  const auto most =
-      state.samples.empty() ? 0u : *std::max_element(state.samples.begin(), state.samples.end());
-  if (most <= static_cast<std::uint32_t>(asked)) return;
-  throw Error(ErrorKind::usage,
-              fmt::format("--resume {}: has {} samples a pixel already, {} {} asks for fewer", path,
-                          most, adaptive ? "--max-spp" : "--spp", asked));
-}
-
-/// The checkpoint `path`, and in `options` the footprints of its beginning.
-Checkpoint resume(const std::string& path, const View& view, RenderOptions& options) {
-  Checkpoint checkpoint = read_checkpoint(path);
-  require_same(path, checkpoint.options, option_settings(options, view));
-  require_enough_samples(path, checkpoint.state, options);
-  if (options.footprint_spp > 0 && options.footprint_spp != checkpoint.footprint_spp) {
-    throw Error(ErrorKind::usage,
-                fmt::format("--resume {}: was made with footprint_spp {}, this render has {}", path,
-                            checkpoint.footprint_spp, options.footprint_spp));
-  }
-  options.footprint_spp = checkpoint.footprint_spp;
-  return checkpoint;
-}
-
-/// Throws Error unless the checkpoint was made of this very picture; notes where it comes from.
-void check_resumed(const std::string& path, const Checkpoint& checkpoint, const Settings& content,
-                   const FilmLayout& layout, RenderStatistics& statistics) {
-  require_same(path, checkpoint.content, content);
-  check_state(path, checkpoint.state,
-              {layout.pixels, layout.sum_bytes() / sizeof(std::int64_t),
-               layout.square_bytes() / sizeof(float)});
-  statistics.notes.push_back("went on from " + path);
-  if (checkpoint.device == statistics.device) return;
-  statistics.notes.push_back(
-      fmt::format("{} was traced on {}: the picture's bits are not those of one device", path,
-                  checkpoint.device));
-}
-
-/// Writes checkpoints as tracing gets on. A failure is kept for the end: a full disk must not cost
-/// what is traced.
-void write_checkpoints(TraceControl& tracing, const RenderControl& control, Checkpoint about,
-                       RenderResult& result) {
-  if (control.checkpoint.empty()) return;
-  tracing.order = SampleOrder::passes;
-  tracing.save_every = control.checkpoint_every;
-  tracing.save = [&control, &result, about = std::move(about)](const TraceState& state) {
-    const Stopwatch writing;
-    result.checkpoint_failure.clear();
-    try {
-      write_checkpoint(control.checkpoint, about, state);
-    } catch (const Error& error) {
-      result.checkpoint_failure = error.what();
-    }
-    result.statistics.seconds.checkpoint += writing.seconds();
-  };
-}
-
-std::string interruption_note(const TracedPicture& picture, const RenderControl& control) {
-  const double samples = std::accumulate(picture.samples.begin(), picture.samples.end(), 0.0) /
-                         static_cast<double>(picture.samples.size());
-  const std::string next = control.checkpoint.empty()
-                               ? "with --checkpoint F it could go on"
-                               : "--resume " + control.checkpoint + " goes on";
-  return fmt::format("interrupted after {:.3g} samples a pixel on average; {}", samples, next);
-}
-
 }  // namespace
 
 RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl& control) {
@@ -179,13 +98,14 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
   const FilmLayout layout(view, options, bvh.bounds, lights);
-  Checkpoint about{
-      option_settings(options, view), {}, footprint_samples(options), statistics.device, {}};
-  if (resumed || !control.checkpoint.empty())
-    about.content = content_settings(options, view, bvh, *on_device.buffers);
-  if (resumed) check_resumed(control.resume, *resumed, about.content, layout, statistics);
   TraceControl tracing{control.progress, control.stop, {}, 0, SampleOrder::pixels};
-  write_checkpoints(tracing, control, std::move(about), result);
+  if (resumed || !control.checkpoint.empty()) {
+    Checkpoint about{option_settings(options, view),
+                     content_settings(options, view, bvh, *on_device.buffers),
+                     footprint_samples(options), statistics.device};
+    if (resumed) check_resumed(control.resume, *resumed, about, layout, statistics.notes);
+    write_checkpoints(tracing, control, std::move(about), result);
+  }
 
   const Stopwatch trace_time;
   const TracedPicture picture =
