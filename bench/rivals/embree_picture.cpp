@@ -131,9 +131,10 @@ EmbreePictures::EmbreePictures(const EmbreeScenes& scenes, const View& view,
     : scenes_(scenes), camera_(view), lights_(std::move(lights)) {
   for (const Light& light : lights_) {
     if (!can_sample(light))
-      throw Error(ErrorKind::usage, fmt::format("rivals: {} is a mesh light, which the Embree side "
-                                                "cannot sample; measure --pass ao",
-                                                light.name));
+      throw Error(ErrorKind::usage,
+                  fmt::format("rivals: {} is a mesh or dome light, which the Embree side "
+                              "cannot sample; measure --pass ao",
+                              light.name));
   }
 }
 

@@ -63,7 +63,7 @@ LightSample sample_sun(const Light& light, float x, float y) {
 
 }  // namespace
 
-bool can_sample(const Light& light) { return light.kind != LightKind::mesh; }
+bool can_sample(const Light& light) { return light.kind <= LightKind::sun; }
 
 LightSample sample_light(const Light& light, const V3f& origin, float x, float y) {
   switch (light.kind) {
@@ -73,6 +73,7 @@ LightSample sample_light(const Light& light, const V3f& origin, float x, float y
       return sample_sphere(light, origin, x, y);
     case LightKind::sun:
     case LightKind::mesh:
+    case LightKind::dome:
       break;
   }
   return sample_sun(light, x, y);
