@@ -49,7 +49,7 @@ inline CameraBeam trace_beam(Scene scene, CameraParams params, __global const Pi
 /* Points of samples that miss are left as they are. */
 __kernel void camera_hits(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                           __global const TexturedTriangle* textured,
-                          __global const TextureRecord* textures, __global const uchar* texels,
+                          __global const MaterialRecord* materials, __global const uchar* texels,
                           __global const InstanceRecord* instances,
                           __global const PixelWork* work, __global SurfacePoint* points,
                           __global CameraBeam* beams, CameraParams params) {
@@ -57,7 +57,7 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
   const uint begin = get_global_id(0) * DAPPLE_BEAMS_PER_ITEM * DAPPLE_BEAM_RAYS;
   if (begin >= samples) return;
   const uint end = min(begin + DAPPLE_BEAMS_PER_ITEM * DAPPLE_BEAM_RAYS, samples);
-  const Scene scene = {nodes, blocks, textured, textures, texels, instances};
+  const Scene scene = {nodes, blocks, textured, materials, texels, instances};
   BeamBounds bounds;
   bound_samples(work, params, begin, end - begin, &bounds);
   Entries entries;

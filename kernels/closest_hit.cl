@@ -5,12 +5,12 @@
 
 __kernel void closest_hit(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                           __global const TexturedTriangle* textured,
-                          __global const TextureRecord* textures, __global const uchar* texels,
+                          __global const MaterialRecord* materials, __global const uchar* texels,
                           __global const InstanceRecord* instances, __global const Ray* rays,
                           __global SurfacePoint* points, OcclusionParams params) {
   const uint item = get_global_id(0);
   if (item >= params.ray_count) return;
-  const Scene scene = {nodes, blocks, textured, textures, texels, instances};
+  const Scene scene = {nodes, blocks, textured, materials, texels, instances};
   const Ray ray = rays[item];
   const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
   Nearest nearest = {no_hit(ray.t_max), 0u, 0u};

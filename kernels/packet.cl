@@ -74,7 +74,7 @@ inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray
    at most DAPPLE_PACKET_CHUNK, one an item. */
 __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                      __global const TexturedTriangle* textured,
-                     __global const TextureRecord* textures, __global const uchar* texels,
+                     __global const MaterialRecord* materials, __global const uchar* texels,
                      __global const InstanceRecord* instances, __global const Ray* rays,
                      __global Occlusion* results, OcclusionParams params) {
   const uint chunks = (params.rays_per_point + DAPPLE_PACKET_CHUNK - 1u) / DAPPLE_PACKET_CHUNK;
@@ -84,7 +84,7 @@ __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock
   const uint skipped = item % chunks * size;
   const uint first = item / chunks * params.rays_per_point + skipped;
   const uint count = min(size, params.rays_per_point - skipped);
-  const Scene scene = {nodes, blocks, textured, textures, texels, instances};
+  const Scene scene = {nodes, blocks, textured, materials, texels, instances};
   prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
   ushort order[DAPPLE_PACKET_CHUNK];
   if (count > DAPPLE_PACKET_RAYS) {

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "bvh/textured_triangle.hpp"
 #include "dapple/scene.hpp"
 #include "dapple/shared/geometry.h"
 #include "test_kernel.hpp"
@@ -134,13 +135,18 @@ TEST(OpacityLookup, TheDeviceLooksUpAsGltfDefinesNearAndFar) {
 }
 
 TEST(OpacityLookup, ATrianglesOpacityIsFactorsTimesTextureThresholdedLast) {
-  TexturedTriangle blended{{{0.1f, 0.2f}, {0.9f, 0.3f}, {0.4f, 0.8f}}, {1, 0.5f, 0.25f}, -1, 0, 0};
-  TexturedTriangle cut_out = blended, plain = blended;
-  cut_out.cutoff = 0.3f;
-  plain.texture = DAPPLE_NO_TEXTURE;
-  const std::vector<TexturedTriangle> triangles{blended, cut_out, plain};
+  TexturedCorners corners;
+  corners.uv = {V2f(0.1f, 0.2f), V2f(0.9f, 0.3f), V2f(0.4f, 0.8f)};
+  corners.alpha = {1, 0.5f, 0.25f};
+  std::vector<TexturedTriangle> triangles;
+  for (const std::uint32_t t : {0u, 1u, 2u}) {
+    corners.material = t % 2;
+    corners.has_texture = t < 2;
+    triangles.push_back(pack_textured(corners, Wrap::repeat, Wrap::repeat));
+  }
   const Texture texture = noise_texture(Wrap::repeat, Wrap::repeat, false);
-  const std::vector<TextureRecord> records{{0, 13, 6, 0}};
+  const TextureRecord record{0, 13, 6, 0};
+  const std::vector<MaterialRecord> materials{{record, 0.8f, -1, {}}, {record, 0.8f, 0.3f, {}}};
   std::vector<V2f> barycentrics{{0, 0}, {1, 0}, {0, 1}};
   for (int i = 0; i < 20; ++i) {
     for (int j = 0; i + j < 20; ++j) {
@@ -150,16 +156,16 @@ TEST(OpacityLookup, ATrianglesOpacityIsFactorsTimesTextureThresholdedLast) {
   const Buffer results = device().allocate(barycentrics.size() * sizeof(float));
   for (uint t = 0; t < 3; ++t) {
     run("lookup", "look_up_triangle", barycentrics.size(),
-        {upload(triangles), upload(records), upload(texture.alpha), upload(barycentrics), results,
+        {upload(triangles), upload(materials), upload(texture.alpha), upload(barycentrics), results,
          t, static_cast<uint>(barycentrics.size())});
     const auto opacities = download<float>(results, barycentrics.size());
     for (std::size_t i = 0; i < barycentrics.size(); ++i) {
       const float u = barycentrics[i].x, v = barycentrics[i].y, w = 1 - u - v;
       const V2f uv(0.1f * w + 0.9f * u + 0.4f * v, 0.2f * w + 0.3f * u + 0.8f * v);
-      const double factor = w + 0.5 * u + 0.25 * v;
+      const double factor = 0.8 * (w + 0.5 * u + 0.25 * v);
       const double alpha = t == 2 ? factor : factor * look_up(texture, uv);
       if (t == 1 && std::fabs(alpha - 0.3) < 1e-5) continue;  // either side may be right
-      // Interpolated coordinates are off by a few roundings of 1, times 13 texels.
+      // Interpolated coordinates are off by 2^-22 and a few roundings of 1, times 13 texels.
       EXPECT_NEAR(opacities[i], t == 1 ? (alpha >= 0.3 ? 1.0 : 0.0) : alpha, 1e-5);
     }
   }

@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "bvh/textured_triangle.hpp"
+
 namespace dapple::bench {
 namespace {
 
@@ -34,40 +36,49 @@ void append_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot,
   for (unsigned s = 0; s < DAPPLE_BVH_WIDTH; ++s) append_below(bvh, child, s, out);
 }
 
-/// Materials of a rebuilt scene: uniform triangles carry their opacity as vertex alpha,
-/// varying ones are told apart by texture and cutoff.
+/// Materials of a rebuilt scene: uniform triangles carry their opacity as vertex alpha, varying
+/// ones have the material that they had, without texture where it did not count.
 class Materials {
  public:
-  explicit Materials(Scene& scene) : scene_(scene) {}
+  Materials(Scene& scene, const Scene& original) : scene_(scene), original_(original) {}
 
-  std::uint32_t find(int texture, float cutoff) {
-    const auto [at, added] = index_.try_emplace(
-        std::pair(texture, cutoff), static_cast<std::uint32_t>(scene_.materials.size()));
-    if (added) {
-      Material material;
-      material.alpha_mode = cutoff < 0.0f ? AlphaMode::blend : AlphaMode::mask;
-      material.alpha_cutoff = cutoff;
-      material.alpha_texture = texture;
-      scene_.materials.push_back(material);
-    }
-    return at->second;
+  std::uint32_t uniform() {
+    Material material;
+    material.alpha_mode = AlphaMode::blend;
+    return find({-1, false}, material);
+  }
+
+  std::uint32_t of(const TexturedCorners& corners) {
+    Material material = original_.materials[corners.material];
+    material.uses_vertex_alpha = true;  // alphas are 1 where they were not used
+    if (!corners.has_texture) material.alpha_texture = -1;
+    return find({corners.material, corners.has_texture}, material);
   }
 
  private:
+  using Key = std::pair<std::int64_t, bool>;  ///< index of the original, whether with texture
+
+  std::uint32_t find(const Key& key, const Material& material) {
+    const auto [at, added] =
+        index_.try_emplace(key, static_cast<std::uint32_t>(scene_.materials.size()));
+    if (added) scene_.materials.push_back(material);
+    return at->second;
+  }
+
   Scene& scene_;
-  std::map<std::pair<int, float>, std::uint32_t> index_;
+  const Scene& original_;
+  std::map<Key, std::uint32_t> index_;
 };
 
-void append_triangle(Mesh& mesh, const LeafTriangle& triangle, const TexturedTriangle* textured) {
+void append_triangle(Mesh& mesh, const LeafTriangle& triangle, const TexturedCorners& corners) {
   for (const V3f& corner :
        {triangle.vertex, triangle.vertex + triangle.edge1, triangle.vertex + triangle.edge2}) {
     mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
     mesh.positions.push_back(corner);
   }
   for (int corner = 0; corner < 3; ++corner) {
-    mesh.uvs.push_back(textured ? V2f(textured->uv[corner][0], textured->uv[corner][1])
-                                : V2f(0.0f));
-    mesh.vertex_alpha.push_back(textured ? textured->alpha[corner] : triangle.opacity);
+    mesh.uvs.push_back(corners.uv[corner]);
+    mesh.vertex_alpha.push_back(corners.alpha[corner]);
   }
 }
 
@@ -117,17 +128,20 @@ Scene scene_of(const std::vector<LeafTriangle>& triangles, const SceneBvh& bvh,
   part.textures = scene.textures;
   part.meshes.emplace_back();
   part.instances.push_back({0, M44f(), -1});
-  Materials materials(part);
+  Materials materials(part, scene);
   Mesh& mesh = part.meshes[0];
   for (const LeafTriangle& triangle : triangles) {
-    const TexturedTriangle* textured =
-        triangle.opacity < 0.0f ? &bvh.textured[static_cast<std::size_t>(-triangle.opacity - 1.0f)]
-                                : nullptr;
-    append_triangle(mesh, triangle, textured);
-    const bool has_texture = textured && textured->texture != DAPPLE_NO_TEXTURE;
-    mesh.materials.push_back(
-        materials.find(has_texture ? static_cast<int>(textured->texture) : -1,
-                       textured && textured->cutoff >= 0.0f ? textured->cutoff : -1.0f));
+    if (triangle.opacity < 0.0f) {
+      const auto index = static_cast<std::size_t>(-triangle.opacity - 1.0f);
+      const TexturedCorners corners = unpack_textured(bvh.textured[index]);
+      append_triangle(mesh, triangle, corners);
+      mesh.materials.push_back(materials.of(corners));
+    } else {
+      TexturedCorners corners;
+      corners.alpha.fill(triangle.opacity);
+      append_triangle(mesh, triangle, corners);
+      mesh.materials.push_back(materials.uniform());
+    }
   }
   return part;
 }

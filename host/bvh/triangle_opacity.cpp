@@ -1,8 +1,12 @@
 #include "bvh/triangle_opacity.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "dapple/error.hpp"
 
 namespace dapple {
 namespace {
@@ -22,17 +26,13 @@ float folded_coordinate(float u, Wrap mode) {
 
 std::array<float, 3> vertex_alphas(const Material& material, const Mesh& mesh,
                                    std::uint32_t triangle) {
-  std::array<float, 3> alpha{material.alpha, material.alpha, material.alpha};
+  std::array<float, 3> alpha{1, 1, 1};
   if (material.uses_vertex_alpha && !mesh.vertex_alpha.empty()) {
     for (int corner = 0; corner < 3; ++corner) {
-      alpha[corner] *= mesh.vertex_alpha[mesh.indices[3 * std::size_t{triangle} + corner]];
+      alpha[corner] = mesh.vertex_alpha[mesh.indices[3 * std::size_t{triangle} + corner]];
     }
   }
   return alpha;
-}
-
-float cutoff_of(const Material& material) {
-  return material.alpha_mode == AlphaMode::mask ? std::max(material.alpha_cutoff, 0.0f) : -1.0f;
 }
 
 float thresholded(float alpha, float cutoff) {
@@ -40,13 +40,31 @@ float thresholded(float alpha, float cutoff) {
   return alpha >= cutoff ? 1.0f : 0.0f;
 }
 
+bool has_texture(const Material& material, const Mesh& mesh) {
+  return material.alpha_texture >= 0 && !mesh.uvs.empty();
+}
+
+void check_material(const Scene& scene, std::uint32_t material) {
+  if (material < DAPPLE_MOST_TEXTURED_MATERIALS) return;
+  throw Error(ErrorKind::failed,
+              fmt::format("{}: the opacity of material {} ({}) varies over triangles, which only "
+                          "the first {} materials' may; merge materials that are equal",
+                          scene.source, material, scene.materials[material].name,
+                          DAPPLE_MOST_TEXTURED_MATERIALS));
+}
+
 }  // namespace
+
+float cutoff_of(const Material& material) {
+  return material.alpha_mode == AlphaMode::mask ? std::max(material.alpha_cutoff, 0.0f) : -1.0f;
+}
 
 std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
   const Material& material = scene.materials[mesh.materials[triangle]];
   if (material.alpha_mode == AlphaMode::opaque) return 1.0f;
-  if (material.alpha_texture >= 0 && !mesh.uvs.empty()) return std::nullopt;
-  const auto alpha = vertex_alphas(material, mesh, triangle);
+  if (has_texture(material, mesh)) return std::nullopt;
+  auto alpha = vertex_alphas(material, mesh, triangle);
+  for (float& corner : alpha) corner *= material.alpha;
   const float cutoff = cutoff_of(material);
   const float first = thresholded(alpha[0], cutoff);
   const bool same_alpha = alpha[0] == alpha[1] && alpha[1] == alpha[2];
@@ -58,20 +76,17 @@ std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::
 
 TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
   const Material& material = scene.materials[mesh.materials[triangle]];
-  TexturedTriangle record{};
-  const auto alpha = vertex_alphas(material, mesh, triangle);
+  TexturedCorners corners;
+  corners.material = mesh.materials[triangle];
+  check_material(scene, corners.material);
+  corners.alpha = vertex_alphas(material, mesh, triangle);
+  corners.has_texture = has_texture(material, mesh);
+  if (!corners.has_texture) return pack_textured(corners, Wrap::repeat, Wrap::repeat);
   for (int corner = 0; corner < 3; ++corner) {
-    record.alpha[corner] = alpha[corner];
-    if (mesh.uvs.empty()) continue;
-    const V2f uv = mesh.uvs[mesh.indices[3 * std::size_t{triangle} + corner]];
-    record.uv[corner][0] = uv.x;
-    record.uv[corner][1] = uv.y;
+    corners.uv[corner] = mesh.uvs[mesh.indices[3 * std::size_t{triangle} + corner]];
   }
-  record.cutoff = cutoff_of(material);
-  const bool textured = material.alpha_texture >= 0 && !mesh.uvs.empty();
-  record.texture =
-      textured ? static_cast<std::uint32_t>(material.alpha_texture) : DAPPLE_NO_TEXTURE;
-  return record;
+  const Texture& texture = scene.textures[material.alpha_texture];
+  return pack_textured(corners, texture.wrap_s, texture.wrap_t);
 }
 
 OpacityPyramid::OpacityPyramid(const Texture& texture, float factor, float cutoff)
@@ -139,20 +154,25 @@ float OpacityPyramid::mean(V2f uv, float width_texels) const {
   return bilinear(levels_[fine], at) * (1 - blend) + bilinear(levels_[coarse], at) * blend;
 }
 
-TextureIntegrals::Key TextureIntegrals::key_of(const TexturedTriangle& triangle) {
+TextureIntegrals::Key TextureIntegrals::key_of(const TexturedCorners& corners) const {
   // A blended texture's mean is linear in the factor, which is applied later; a cut-out's
   // is not, so it gets a pyramid for each factor (rounded, where vertices differ).
-  if (triangle.cutoff < 0.0f) return {triangle.texture, 1.0f, -1.0f};
-  const float factor = (triangle.alpha[0] + triangle.alpha[1] + triangle.alpha[2]) / 3.0f;
-  return {triangle.texture, std::round(factor * 64.0f) / 64.0f, triangle.cutoff};
+  const Material& material = materials_[corners.material];
+  const float cutoff = cutoff_of(material);
+  if (cutoff < 0.0f) return {material.alpha_texture, 1.0f, -1.0f};
+  const float factor =
+      material.alpha * (corners.alpha[0] + corners.alpha[1] + corners.alpha[2]) / 3.0f;
+  return {material.alpha_texture, std::round(factor * 64.0f) / 64.0f, cutoff};
 }
 
 TextureIntegrals::TextureIntegrals(const Scene& scene,
-                                   const std::vector<TexturedTriangle>& textured) {
+                                   const std::vector<TexturedTriangle>& textured)
+    : materials_(scene.materials) {
   std::vector<Key> keys;
   for (const TexturedTriangle& triangle : textured) {
-    if (triangle.texture == DAPPLE_NO_TEXTURE) continue;
-    const Key key = key_of(triangle);
+    const TexturedCorners corners = unpack_textured(triangle);
+    if (!corners.has_texture) continue;
+    const Key key = key_of(corners);
     if (keys.empty() || keys.back() != key) keys.push_back(key);
   }
   std::sort(keys.begin(), keys.end());
@@ -172,17 +192,18 @@ const OpacityPyramid* TextureIntegrals::find(const Key& key) const {
 
 float TextureIntegrals::mean(const TexturedTriangle& triangle, float u, float v,
                              float share) const {
+  const TexturedCorners corners = unpack_textured(triangle);
   const float w = 1.0f - u - v;
-  const float alpha = triangle.alpha[0] * w + triangle.alpha[1] * u + triangle.alpha[2] * v;
-  const OpacityPyramid* pyramid =
-      triangle.texture == DAPPLE_NO_TEXTURE ? nullptr : find(key_of(triangle));
-  if (!pyramid) return thresholded(alpha, triangle.cutoff);
-  const V2f a(triangle.uv[0][0], triangle.uv[0][1]), b(triangle.uv[1][0], triangle.uv[1][1]),
-      c(triangle.uv[2][0], triangle.uv[2][1]);
+  const float cutoff = cutoff_of(materials_[corners.material]);
+  const float alpha = materials_[corners.material].alpha *
+                      (corners.alpha[0] * w + corners.alpha[1] * u + corners.alpha[2] * v);
+  const OpacityPyramid* pyramid = corners.has_texture ? find(key_of(corners)) : nullptr;
+  if (!pyramid) return thresholded(alpha, cutoff);
+  const auto& [a, b, c] = corners.uv;
   const V2f e1 = (b - a) * pyramid->size(), e2 = (c - a) * pyramid->size();
   const float texels = 0.5f * std::fabs(e1.x * e2.y - e1.y * e2.x) * share;
   const float mean = pyramid->mean(a * w + b * u + c * v, std::sqrt(texels));
-  return triangle.cutoff < 0.0f ? std::clamp(mean * alpha, 0.0f, 1.0f) : mean;
+  return cutoff < 0.0f ? std::clamp(mean * alpha, 0.0f, 1.0f) : mean;
 }
 
 }  // namespace dapple

@@ -7,15 +7,19 @@
 #include <optional>
 #include <vector>
 
+#include "bvh/textured_triangle.hpp"
 #include "dapple/scene.hpp"
-#include "dapple/shared/geometry.h"
 
 namespace dapple {
 
 /// The triangle's opacity in [0,1] if it is the same all over, else nothing.
 std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
 
-/// The record the kernels look a varying triangle up by.
+/// The alpha from which on a masked material is opaque, or -1 where alpha is opacity.
+float cutoff_of(const Material& material);
+
+/// The record the kernels look a varying triangle up by. Throws Error failed where its material
+/// is beyond the most that the records can name.
 TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
 
 /// A texture's opacities averaged over squares of 1, 2, 4... texels. Of a cut-out the
@@ -46,7 +50,7 @@ class OpacityPyramid {
 /// Answers "how opaque is this part of the triangle on average" for textured triangles.
 class TextureIntegrals {
  public:
-  /// Makes the pyramids that `textured` need, each once.
+  /// Makes the pyramids that `textured` need, each once. Keeps `scene`'s materials by address.
   TextureIntegrals(const Scene& scene, const std::vector<TexturedTriangle>& textured);
 
   /// Mean opacity of the triangle around barycentrics (u, v) over an area that is `share`
@@ -55,13 +59,14 @@ class TextureIntegrals {
 
  private:
   struct Key {
-    std::uint32_t texture;
+    int texture;
     float factor, cutoff;
     auto operator<=>(const Key&) const = default;
   };
-  static Key key_of(const TexturedTriangle& triangle);
+  [[nodiscard]] Key key_of(const TexturedCorners& corners) const;
   [[nodiscard]] const OpacityPyramid* find(const Key& key) const;
 
+  const std::vector<Material>& materials_;
   std::vector<std::pair<Key, OpacityPyramid>> pyramids_;  ///< sorted by key
 };
 

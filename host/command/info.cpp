@@ -23,8 +23,11 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   const auto per_triangle = [&](std::size_t bytes) {
     return static_cast<double>(bytes) / static_cast<double>(std::max<std::size_t>(1, s.triangles));
   };
-  std::size_t texels = 0;
-  for (const Texture& texture : scene.textures) texels += texture.alpha.size();
+  std::size_t textures = 0;
+  if (!bvh.textured.empty()) {
+    textures = scene.materials.size() * sizeof(MaterialRecord);
+    for (const Texture& texture : scene.textures) textures += texture.alpha.size();
+  }
   const std::size_t nodes = bvh.nodes.size() * sizeof(BvhNode);
   const std::size_t triangles =
       bvh.blocks.size() * sizeof(TriangleBlock) + bvh.textured.size() * sizeof(TexturedTriangle);
@@ -45,10 +48,10 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
                     {"max", {bvh.bounds.max.x, bvh.bounds.max.y, bvh.bounds.max.z}}};
   json["nodes"] = bvh.nodes.size();
   json["bytes"] = {
-      {"nodes", nodes}, {"triangles", triangles}, {"textures", texels}, {"instances", instances}};
+      {"nodes", nodes}, {"triangles", triangles}, {"textures", textures}, {"instances", instances}};
   json["bytes_per_triangle"] = {{"nodes", per_triangle(nodes)},
                                 {"triangles", per_triangle(triangles)},
-                                {"all", per_triangle(nodes + triangles + texels + instances)}};
+                                {"all", per_triangle(nodes + triangles + textures + instances)}};
   json["seconds"] = {{"build", s.build_seconds}, {"prefilter", s.prefilter_seconds}};
   json["sah_node_visits"] = s.sah_cost;
   json["lane_use"] = s.lane_use;

@@ -10,11 +10,11 @@ namespace dapple {
 struct DeviceBuffers {
   explicit DeviceBuffers(const Device& d) : device(d) {}
   Device device;
-  Buffer nodes, blocks, textured, textures, texels, instances;
+  Buffer nodes, blocks, textured, materials, texels, instances;
   Buffer lights, emitters, environments;
   SceneParams params{};
   // What `share` may point into where memory is shared.
-  std::vector<TextureRecord> texture_records;
+  std::vector<MaterialRecord> material_records;
   std::vector<uchar> texel_data;
   std::vector<LightRecord> light_records;
   std::vector<EmitterTriangle> emitter_triangles;

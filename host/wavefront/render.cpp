@@ -67,7 +67,7 @@ void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBu
   s.nodes = bvh.nodes.size();
   s.bytes.nodes = buffers.nodes.bytes();
   s.bytes.triangles = buffers.blocks.bytes() + buffers.textured.bytes();
-  s.bytes.textures = buffers.texels.bytes() + buffers.textures.bytes();
+  s.bytes.textures = buffers.texels.bytes() + buffers.materials.bytes();
   s.bytes.instances = buffers.instances.bytes();
 }
 

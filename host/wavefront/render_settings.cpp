@@ -34,7 +34,7 @@ std::string scene_checksum(const SceneBvh& bvh, const DeviceBuffers& scene) {
   stream.add_range(bvh.blocks);
   stream.add_range(bvh.textured);
   stream.add_range(bvh.instances);
-  stream.add_range(scene.texture_records);
+  stream.add_range(scene.material_records);
   stream.add_range(scene.texel_data);
   stream.add_value(bvh.root);
   for (int axis = 0; axis < 3; ++axis) {

@@ -13,12 +13,13 @@
   MEMBER(TriangleBlock, vertex) MEMBER(TriangleBlock, edge1) MEMBER(TriangleBlock, edge2)    \
   MEMBER(TriangleBlock, opacity)                                                             \
   STRUCT(TexturedTriangle)                                                                   \
-  MEMBER(TexturedTriangle, uv) MEMBER(TexturedTriangle, alpha)                               \
-  MEMBER(TexturedTriangle, cutoff) MEMBER(TexturedTriangle, texture)                         \
-  MEMBER(TexturedTriangle, spare)                                                            \
+  MEMBER(TexturedTriangle, corner)                                                           \
   STRUCT(TextureRecord)                                                                      \
   MEMBER(TextureRecord, offset) MEMBER(TextureRecord, width) MEMBER(TextureRecord, height)   \
   MEMBER(TextureRecord, flags)                                                               \
+  STRUCT(MaterialRecord)                                                                     \
+  MEMBER(MaterialRecord, texture) MEMBER(MaterialRecord, alpha)                              \
+  MEMBER(MaterialRecord, cutoff) MEMBER(MaterialRecord, spare)                               \
   STRUCT(InstanceRecord)                                                                     \
   MEMBER(InstanceRecord, to_object) MEMBER(InstanceRecord, to_world)                         \
   MEMBER(InstanceRecord, inverse_area_scale) MEMBER(InstanceRecord, root)                    \

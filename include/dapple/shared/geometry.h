@@ -1,9 +1,10 @@
-/* What the leaves and the top level point to: triangle blocks, textured triangles,
-   opacity textures, instances. */
+/* What the leaves and the top level point to: triangle blocks, opacity textures, materials of
+   textured triangles, instances. */
 #ifndef DAPPLE_SHARED_GEOMETRY_H
 #define DAPPLE_SHARED_GEOMETRY_H
 
 #include "language.h"
+#include "textured_triangle.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {
@@ -19,20 +20,9 @@ typedef struct DAPPLE_CACHE_ALIGNED TriangleBlock {
   float opacity[8];
 } TriangleBlock;
 
-/* A triangle whose opacity varies: opacity = vertex alpha (interpolated) * texture alpha,
-   then 1 where >= cutoff and 0 below if cutoff >= 0. */
-typedef struct TexturedTriangle {
-  float uv[3][2];
-  float alpha[3];  /* per vertex: COLOR_0.a * baseColorFactor.a */
-  float cutoff;    /* < 0: blended */
-  uint texture;    /* index of a TextureRecord; 0xffffffff for none */
-  uint spare;
-} TexturedTriangle;
-
 #define DAPPLE_WRAP_REPEAT 0u
 #define DAPPLE_WRAP_CLAMP 1u
 #define DAPPLE_WRAP_MIRROR 2u
-#define DAPPLE_NO_TEXTURE 0xffffffffu
 
 /* An 8-bit alpha image inside the texel buffer. */
 typedef struct TextureRecord {
@@ -41,6 +31,15 @@ typedef struct TextureRecord {
   uint height;
   uint flags;   /* wrap_s | wrap_t << 2 | nearest << 4 */
 } TextureRecord;
+
+/* What textured triangles share: opacity = vertex alpha (interpolated) * alpha * texture alpha,
+   then 1 where >= cutoff and 0 below if cutoff >= 0. */
+typedef struct MaterialRecord {
+  TextureRecord texture;  /* zeros for none */
+  float alpha;            /* baseColorFactor.a */
+  float cutoff;           /* < 0: blended */
+  uint spare[2];
+} MaterialRecord;
 
 /* A placed object. p_object = to_object * (p_world, 1), rows of a 3x4 matrix; rays keep
    their parameter t: directions are transformed without normalizing. */
@@ -55,8 +54,8 @@ typedef struct InstanceRecord {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(TriangleBlock) == 320);
-static_assert(sizeof(TexturedTriangle) == 48);
 static_assert(sizeof(TextureRecord) == 16);
+static_assert(sizeof(MaterialRecord) == 32);
 static_assert(sizeof(InstanceRecord) == 112);
 }  // namespace dapple
 #endif

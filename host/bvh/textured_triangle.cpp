@@ -1,0 +1,102 @@
+#include "bvh/textured_triangle.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace dapple {
+namespace {
+
+/// The finest steps are those of coordinates in [0,1): where textures touch 1, or begin anywhere
+/// else, floats have little more to offer.
+constexpr int kFinestExponent = -21;
+static_assert(DAPPLE_UV_CODES == 1 << -kFinestExponent);
+
+constexpr double kFarthest = 0x1p60;  // floats don't tell tiles apart long before
+
+using Coordinates = std::array<std::array<double, 2>, 3>;
+
+double whole_tiles(double least, Wrap wrap) {
+  if (wrap == Wrap::clamp) return 0;
+  return wrap == Wrap::mirror ? 2 * std::floor(0.5 * least) : std::floor(least);
+}
+
+Coordinates without_whole_tiles(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t) {
+  Coordinates uv{};
+  for (int axis = 0; axis < 2; ++axis) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const double at = corners.uv[corner][axis];
+      uv[corner][axis] = std::isnan(at) ? 0 : std::clamp(at, -kFarthest, kFarthest);
+    }
+    const double least = std::min({uv[0][axis], uv[1][axis], uv[2][axis]});
+    const double tiles = whole_tiles(least, axis == 0 ? wrap_s : wrap_t);
+    for (auto& corner : uv) corner[axis] -= tiles;
+  }
+  return uv;
+}
+
+/// The finest steps that span a triangle's coordinates.
+struct Steps {
+  int exponent = kFinestExponent;
+  double origin = 0;  ///< code of 0
+
+  [[nodiscard]] double code(double coordinate) const {
+    return std::round(std::ldexp(coordinate, -exponent)) + origin;
+  }
+};
+
+Steps steps_for(const Coordinates& uv) {
+  const auto [least, most] =
+      std::minmax({uv[0][0], uv[0][1], uv[1][0], uv[1][1], uv[2][0], uv[2][1]});
+  Steps steps;
+  if (steps.code(least) < 0) steps.origin = DAPPLE_UV_CODES / 2;
+  while (steps.code(least) < 0 || steps.code(most) >= DAPPLE_UV_CODES) ++steps.exponent;
+  return steps;
+}
+
+std::uint32_t alpha_code(float alpha) {
+  const float inside = alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f;  // of NaN 0
+  return static_cast<std::uint32_t>(std::lround(inside * DAPPLE_ALPHA_ONE));
+}
+
+std::uint32_t frame_bits(const Steps& steps, bool has_texture) {
+  return static_cast<std::uint32_t>(steps.exponent + 127) |
+         (steps.origin > 0 ? DAPPLE_UV_FROM_MIDDLE : 0u) | (has_texture ? DAPPLE_UV_TEXTURED : 0u);
+}
+
+}  // namespace
+
+TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t) {
+  assert(corners.material < DAPPLE_MOST_TEXTURED_MATERIALS);
+  const Coordinates uv = without_whole_tiles(corners, wrap_s, wrap_t);
+  const Steps steps = steps_for(uv);
+  const std::uint32_t lowest_bits[3] = {corners.material & 1023u, corners.material >> 10,
+                                        frame_bits(steps, corners.has_texture)};
+  TexturedTriangle triangle{};
+  for (int corner = 0; corner < 3; ++corner) {
+    const auto u = static_cast<std::uint32_t>(steps.code(uv[corner][0]));
+    const auto v = static_cast<std::uint32_t>(steps.code(uv[corner][1]));
+    const std::uint32_t alpha = alpha_code(corners.alpha[corner]);
+    triangle.corner[corner][0] = u << 11 | alpha >> 1;
+    triangle.corner[corner][1] = v << 11 | (alpha & 1u) << 10 | lowest_bits[corner];
+  }
+  return triangle;
+}
+
+TexturedCorners unpack_textured(const TexturedTriangle& triangle) {
+  TexturedCorners corners;
+  const auto coordinate = [&](uint corner, uint axis) {
+    return uv_step(&triangle) *
+           static_cast<float>(uv_code(&triangle, corner, axis) - uv_origin(&triangle));
+  };
+  for (uint corner = 0; corner < 3; ++corner) {
+    corners.uv[corner] = V2f(coordinate(corner, 0), coordinate(corner, 1));
+    corners.alpha[corner] =
+        static_cast<float>(vertex_alpha(&triangle, corner)) * (1.0f / DAPPLE_ALPHA_ONE);
+  }
+  corners.material = textured_material(&triangle);
+  corners.has_texture = has_texture(&triangle) != 0;
+  return corners;
+}
+
+}  // namespace dapple
