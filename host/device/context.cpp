@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "device/kernel_cache.hpp"
 #include "device/kernel_source.hpp"
 #include "device/opencl.hpp"
 #include "device/platforms.hpp"
@@ -20,6 +21,13 @@ std::string first_lines(const std::string& text, int count) {
   return text.substr(0, end);
 }
 
+/// Where memory runs out LLVM throws through PoCL's C, which keeps its locks then: to go on would
+/// be to wait for them for ever. So nothing gets past here, and the process ends.
+cl_int compile(const cl::Program& program, const cl::Device& device,
+               const std::string& options) noexcept {
+  return clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
+}
+
 }  // namespace
 
 struct Buffer::Memory {
@@ -27,6 +35,7 @@ struct Buffer::Memory {
 };
 
 struct DeviceContext::State {
+  DriverInUse driver_in_use;
   DeviceInfo info;
   std::string kernel_dir;
   cl::Device device;
@@ -34,6 +43,7 @@ struct DeviceContext::State {
   cl::CommandQueue queue;
   std::map<std::pair<std::string, Variant>, cl::Program> programs;
   std::map<std::tuple<std::string, std::string, Variant>, cl::Kernel> kernels;
+  std::vector<std::string> known_programs;  ///< what KernelCache knows programs by
   std::vector<std::pair<std::string, cl::Event>> events;
   std::map<std::string, double> pass_seconds;
   double build_seconds = 0;
@@ -52,15 +62,19 @@ cl::Program& DeviceContext::State::program(const std::string& file, const Varian
   const auto key = std::pair(file, variant);
   if (const auto found = programs.find(key); found != programs.end()) return found->second;
   const auto start = std::chrono::steady_clock::now();
-  cl::Program built(context, expand_kernel(file, kernel_dir));
-  try {
-    built.build({device}, variant.options().c_str());
-  } catch (const cl::Error& error) {
+  const std::string source = expand_kernel(file, kernel_dir), options = variant.options();
+  const std::string known_by =
+      fmt::format("{}\n{}\n{}\n{}\n{}", info.platform, info.driver, info.name, options, source);
+  cl::Program built(context, source);
+  cl_int result = CL_SUCCESS;
+  KernelCache::of_process().build(known_by, [&] { result = compile(built, device, options); });
+  if (result != CL_SUCCESS) {
     const auto log = built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
     throw Error(ErrorKind::device,
                 fmt::format("{}: the OpenCL compiler of {} refused it ({}):\n{}", file, info.name,
-                            opencl_error_name(error.err()), first_lines(log, 12)));
+                            opencl_error_name(result), first_lines(log, 12)));
   }
+  known_programs.push_back(known_by);
   build_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return programs.emplace(key, built).first->second;
 }
@@ -94,7 +108,10 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir)
   });
 }
 
-DeviceContext::~DeviceContext() = default;
+// Kernels are compiled when they are first launched, not before.
+DeviceContext::~DeviceContext() {
+  for (const std::string& program : state_->known_programs) KernelCache::of_process().keep(program);
+}
 
 const DeviceInfo& DeviceContext::info() const { return state_->info; }
 
