@@ -115,6 +115,12 @@ DeviceContext::~DeviceContext() {
 
 const DeviceInfo& DeviceContext::info() const { return state_->info; }
 
+std::vector<std::string> DeviceContext::notes() const {
+  const std::string& refusals = KernelCache::of_process().refusals();
+  if (refusals.empty()) return {};
+  return {"compiled kernels are not kept: " + refusals};
+}
+
 Buffer DeviceContext::allocate(std::size_t bytes) {
   return in_opencl(fmt::format("allocating {} bytes on {}", bytes, state_->info.name), [&] {
     auto memory = std::make_shared<Buffer::Memory>();
@@ -190,6 +196,8 @@ void DeviceContext::finish() {
     state_->collect_events();
   });
 }
+
+void DeviceContext::wait() noexcept { clFinish(state_->queue()); }
 
 const std::map<std::string, double>& DeviceContext::pass_seconds() const {
   return state_->pass_seconds;

@@ -63,6 +63,8 @@ class DeviceContext {
   DeviceContext& operator=(const DeviceContext&) = delete;
 
   [[nodiscard]] const DeviceInfo& info() const;
+  /// What users should know of how it works here: "compiled kernels are not kept: ...".
+  [[nodiscard]] std::vector<std::string> notes() const;
 
   /// Uninitialized memory; at least one byte is allocated. Throws Error device.
   Buffer allocate(std::size_t bytes);
@@ -81,6 +83,8 @@ class DeviceContext {
   void launch(const KernelName& kernel, const std::string& label, std::size_t items,
               std::initializer_list<KernelArgument> arguments, std::size_t group = 64);
   void finish();
+  /// Waits like finish(), but whatever has become of the launches.
+  void wait() noexcept;
 
   /// Device seconds of all finished launches, by label.
   [[nodiscard]] const std::map<std::string, double>& pass_seconds() const;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -56,7 +57,7 @@ std::optional<std::vector<SealedFile>> read_list(const fs::path& folder) {
     std::string path;
     if (!(words >> std::hex >> file.sum >> path)) return std::nullopt;
     if (path == kListName) {
-      if (file.sum == checksum(before)) return files;
+      if (file.sum == checksum(before) && lines.peek() == EOF) return files;
       return std::nullopt;
     }
     file.path = path;

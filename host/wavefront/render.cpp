@@ -101,6 +101,7 @@ RenderResult render(Scene scene, const RenderOptions& options, const Progress& p
   const View view = furnish(scene, options, statistics.notes);
   const Device device(options.device, options.kernel_dir);
   statistics.device = device.info().name;
+  for (std::string& note : device.context().notes()) statistics.notes.push_back(std::move(note));
 
   const SceneBvh bvh = build_bvh(scene);
   const Stopwatch uploading;
