@@ -72,6 +72,15 @@ Estimator parse_estimator(const std::string& text) {
               fmt::format("--estimator {}: there are exact, prefiltered and packet", text));
 }
 
+Company parse_company(const std::string& text) {
+  if (text == "auto") return Company::automatic;
+  if (text == "alone") return Company::alone;
+  if (text == "neighbours") return Company::neighbours;
+  if (text == "point") return Company::point;
+  throw Error(ErrorKind::usage,
+              fmt::format("--trace-with {}: it is auto, alone, neighbours or point", text));
+}
+
 void parse_passes(const std::string& text, RenderOptions& options) {
   options.ao = options.light = options.visits = false;
   for (const std::string& pass : split(text, ',')) {

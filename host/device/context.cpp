@@ -38,6 +38,7 @@ struct DeviceContext::State {
   DriverInUse driver_in_use;
   DeviceInfo info;
   std::string kernel_dir;
+  Company trace_with = Company::automatic;
   cl::Device device;
   cl::Context context;
   cl::CommandQueue queue;
@@ -96,10 +97,11 @@ void DeviceContext::State::collect_events() {
   events.clear();
 }
 
-DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir)
+DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Company trace_with)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.kernel_dir = std::move(kernel_dir);
+  s.trace_with = trace_with;
   s.device = choose_device(name);
   s.info = describe(s.device);
   in_opencl("opening " + s.info.name, [&] {
@@ -114,6 +116,8 @@ DeviceContext::~DeviceContext() {
 }
 
 const DeviceInfo& DeviceContext::info() const { return state_->info; }
+
+Company DeviceContext::trace_with() const { return state_->trace_with; }
 
 std::vector<std::string> DeviceContext::notes() const {
   const std::string& refusals = KernelCache::of_process().refusals();
@@ -166,6 +170,12 @@ void DeviceContext::read(const Buffer& buffer, void* data, std::size_t bytes, st
 
 void DeviceContext::prepare(const KernelName& kernel) {
   in_opencl("compiling kernel " + kernel.name, [&] { state_->kernel(kernel); });
+}
+
+std::size_t DeviceContext::largest_group(const KernelName& kernel) {
+  return in_opencl("compiling kernel " + kernel.name, [&] {
+    return state_->kernel(kernel).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->device);
+  });
 }
 
 void DeviceContext::launch(const KernelName& name, const std::string& label, std::size_t items,

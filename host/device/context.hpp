@@ -57,12 +57,15 @@ struct KernelName {
 
 class DeviceContext {
  public:
-  DeviceContext(const std::string& name, std::string kernel_dir);
+  DeviceContext(const std::string& name, std::string kernel_dir,
+                Company trace_with = Company::automatic);
   ~DeviceContext();
   DeviceContext(const DeviceContext&) = delete;
   DeviceContext& operator=(const DeviceContext&) = delete;
 
   [[nodiscard]] const DeviceInfo& info() const;
+  /// Whom whoever opened the device wants rays to be traced with.
+  [[nodiscard]] Company trace_with() const;
   /// What users should know of how it works here: "compiled kernels are not kept: ...".
   [[nodiscard]] std::vector<std::string> notes() const;
 
@@ -78,6 +81,8 @@ class DeviceContext {
 
   /// Compiles a kernel ahead of its first launch.
   void prepare(const KernelName& kernel);
+  /// The most items a work-group of the kernel can have here.
+  std::size_t largest_group(const KernelName& kernel);
   /// Enqueues `items` work-items, rounded up to whole groups of `group`: kernels check
   /// bounds. `label` names the pass in pass_seconds().
   void launch(const KernelName& kernel, const std::string& label, std::size_t items,

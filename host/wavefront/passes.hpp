@@ -64,6 +64,17 @@ void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuf
 void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params);
 
+/// A kernel and the items of its work-groups.
+struct KernelShape {
+  KernelName kernel;
+  std::size_t group = 0;
+};
+/// All that any picture or query needs.
+std::vector<KernelShape> every_kernel();
+
+/// Whom the occlusion rays of a picture are traced with, that many of each sample.
+Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays);
+
 /// Compiles every kernel that `options` will need.
 void prepare_kernels(DeviceContext& context, const RenderOptions& options);
 

@@ -35,6 +35,20 @@ const char* name_of(Estimator estimator) {
   return "";
 }
 
+const char* name_of(Company company) {
+  switch (company) {
+    case Company::automatic:
+      return "auto";
+    case Company::alone:
+      return "alone";
+    case Company::neighbours:
+      return "neighbours";
+    case Company::point:
+      return "point";
+  }
+  return "";
+}
+
 /// Overrides, lights and ground, in the order that framing needs: the camera sees the
 /// scene as it came, without the ground.
 View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
@@ -65,6 +79,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   };
   set("estimator", name_of(options.estimator));
   set("footprint", options.footprint);
+  if (options.trace_with != Company::automatic) set("trace_with", name_of(options.trace_with));
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
@@ -99,7 +114,7 @@ RenderResult render(Scene scene, const RenderOptions& options, const Progress& p
   statistics.estimator = name_of(options.estimator);
 
   const View view = furnish(scene, options, statistics.notes);
-  const Device device(options.device, options.kernel_dir);
+  const Device device(options.device, options.kernel_dir, options.trace_with);
   statistics.device = device.info().name;
   for (std::string& note : device.context().notes()) statistics.notes.push_back(std::move(note));
 
