@@ -1,6 +1,7 @@
 // Chooses a command, and turns what goes wrong into one line and an exit code.
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <new>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "command/command.hpp"
 #include "command/interruption.hpp"
 #include "dapple/error.hpp"
+#include "device/driver_crash.hpp"
 
 namespace {
 
@@ -56,6 +58,8 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a write past ulimit -f fails, and says why
+  dapple::report_driver_crashes();
   try {
     return run(argc, argv);
   } catch (const dapple::Error& error) {

@@ -1,59 +1,23 @@
 // The program as its users meet it: exit codes, messages that name what is wrong, nothing
 // left behind by a failure, and the files of a success.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "dapple/film.hpp"
 #include "dapple/shared/ray.h"
-#include "film_files.hpp"
+#include "program_run.hpp"
 
 namespace dapple {
 namespace {
 
 using namespace film_test;
 
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
+using program_test::Outcome;
 
-class CommandLine : public FilmFile {
- protected:
-  CommandLine() { std::filesystem::create_directory(logs()); }
-  ~CommandLine() override { std::filesystem::remove_all(logs()); }
-
-  /// Runs the program in the test's folder; `before` is shell that precedes it.
-  [[nodiscard]] Outcome dapple(const std::string& arguments, const std::string& before = "") const {
-    const std::string out = (logs() / "out").string(), err = (logs() / "err").string();
-    const std::string command = "cd '" + folder_.string() + "' && " + before +
-                                " " DAPPLE_PROGRAM " " + arguments + " >'" + out + "' 2>'" + err +
-                                "' </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(out), bytes_of(err)};
-  }
-
-  /// A picture of 8 by 8 pixels, one sample each, into out.exr.
-  [[nodiscard]] Outcome render(const std::string& arguments, const std::string& before = "") const {
-    return dapple(
-        "render 'scene:cube?divisions=1' -o out.exr --width 8 --height 8 --spp 1 " + arguments,
-        before);
-  }
-
- private:
-  /// Beside the test's folder, so that files_in_folder() counts the program's files only.
-  [[nodiscard]] std::filesystem::path logs() const { return folder_.string() + "_logs"; }
-};
-
-void expect_failure(const Outcome& run, int code, const std::string& part) {
-  EXPECT_EQ(run.code, code) << run.err;
-  EXPECT_TRUE(contains(run.err, part)) << "'" << part << "' is not in: " << run.err;
-  EXPECT_EQ(run.out, "");
-}
+class CommandLine : public program_test::ProgramRun {};
 
 TEST_F(CommandLine, HelpOfEveryCommandHasAnExample) {
   for (const char* arguments :
@@ -177,17 +141,6 @@ TEST_F(CommandLine, InputsThatCannotBeReadAreNamed) {
   expect_failure(render("--lights lights.json"), 3, "lights.json");
   expect_failure(render("--opacity cube=0"), 3, "transparent");
   EXPECT_EQ(files_in_folder(), 2u);
-}
-
-TEST_F(CommandLine, NoDeviceAndNoSuchDeviceExitWith4) {
-  std::filesystem::create_directory(path("no_vendors"));
-  const std::string no_icd = "OCL_ICD_VENDORS='" + path("no_vendors") + "'";
-  expect_failure(render("", no_icd), 4, "no OpenCL platform");
-  expect_failure(dapple("devices", no_icd), 4, "no OpenCL platform");
-  const Outcome other = render("--device nosuch");
-  expect_failure(other, 4, "nosuch");
-  EXPECT_TRUE(contains(other.err, "there are: '")) << other.err;
-  EXPECT_EQ(files_in_folder(), 1u);
 }
 
 TEST_F(CommandLine, AFailedWriteExitsWith1AndLeavesNothingBehind) {

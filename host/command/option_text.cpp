@@ -83,6 +83,15 @@ double parse_seconds(const std::string& flag, const std::string& text) {
               fmt::format("{} {}: expected a time above 0, as in 30, 30s, 5m or 1h", flag, text));
 }
 
+Company parse_company(const std::string& text) {
+  if (text == "auto") return Company::automatic;
+  if (text == "alone") return Company::alone;
+  if (text == "neighbours") return Company::neighbours;
+  if (text == "point") return Company::point;
+  throw Error(ErrorKind::usage,
+              fmt::format("--trace-with {}: it is auto, alone, neighbours or point", text));
+}
+
 void parse_passes(const std::string& text, RenderOptions& options) {
   options.ao = options.light = options.visits = false;
   for (const std::string& pass : split(text, ',')) {

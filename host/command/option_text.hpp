@@ -16,6 +16,8 @@ PixelRect parse_crop(const std::string& text);
 std::pair<std::string, float> parse_opacity(const std::string& text);
 /// "exact", "prefiltered" or "packet"
 Estimator parse_estimator(const std::string& text);
+/// "auto", "alone", "neighbours" or "point"
+Company parse_company(const std::string& text);
 /// "ao", "light", "ao,light"
 void parse_passes(const std::string& text, RenderOptions& options);
 

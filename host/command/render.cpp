@@ -26,7 +26,7 @@ namespace {
 struct RenderArguments {
   std::string scene, output, png, stats_json, lights, dome;
   double dome_rotation = 0;
-  std::string estimator = "prefiltered", passes = "ao,light";
+  std::string estimator = "prefiltered", passes = "ao,light", trace_with = "auto";
   std::string look_from, look_at, up, crop;
   std::vector<std::string> opacity;
   std::string checkpoint, checkpoint_every = "60s", resume;
@@ -128,6 +128,7 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
 RenderOptions to_options(const RenderArguments& a) {
   RenderOptions o = a.options;
   o.estimator = parse_estimator(a.estimator);
+  o.trace_with = parse_company(a.trace_with);
   parse_passes(a.passes, o);
   if (!a.crop.empty()) o.crop = parse_crop(a.crop);
   if (!a.look_from.empty() || !a.look_at.empty()) {
@@ -228,6 +229,10 @@ Run add_render_command(CLI::App& app) {
   add_checkpoint_options(app, *a);
   app.add_option("--device", a->options.device,
                  "OpenCL device, by part of its name (see dapple devices)");
+  app.add_option("--trace-with", a->trace_with,
+                 "Whom a ray is traced with, for devices that do better than dapple guesses: auto; "
+                 "alone; neighbours; point: the rays of its own point")
+      ->capture_default_str();
   app.add_option("--kernel-dir", a->options.kernel_dir,
                  "Read OpenCL kernels from this folder (for developers)");
   app.add_option("--stats-json", a->stats_json, "Write the statistics as JSON");

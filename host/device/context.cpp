@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "device/kernel_cache.hpp"
 #include "device/kernel_source.hpp"
 #include "device/opencl.hpp"
 #include "device/platforms.hpp"
@@ -30,6 +31,13 @@ std::string first_lines(const std::string& text, int count) {
   return text.substr(0, end);
 }
 
+/// Where memory runs out LLVM throws through PoCL's C, which keeps its locks then: to go on would
+/// be to wait for them for ever. So nothing gets past here, and the process ends.
+cl_int compile(const cl::Program& program, const cl::Device& device,
+               const std::string& options) noexcept {
+  return clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
+}
+
 }  // namespace
 
 struct Buffer::Memory {
@@ -37,13 +45,16 @@ struct Buffer::Memory {
 };
 
 struct DeviceContext::State {
+  DriverInUse driver_in_use;
   DeviceInfo info;
   std::string kernel_dir;
+  Company trace_with = Company::automatic;
   cl::Device device;
   cl::Context context;
   cl::CommandQueue queue;
   std::map<std::pair<std::string, Variant>, cl::Program> programs;
   std::map<std::tuple<std::string, std::string, Variant>, cl::Kernel> kernels;
+  std::vector<std::string> known_programs;  ///< what KernelCache knows programs by
   std::vector<std::pair<std::string, cl::Event>> events;
   std::map<std::string, double> pass_seconds;
   double build_seconds = 0;
@@ -62,15 +73,19 @@ cl::Program& DeviceContext::State::program(const std::string& file, const Varian
   const auto key = std::pair(file, variant);
   if (const auto found = programs.find(key); found != programs.end()) return found->second;
   const auto start = std::chrono::steady_clock::now();
-  cl::Program built(context, expand_kernel(file, kernel_dir));
-  try {
-    built.build({device}, variant.options().c_str());
-  } catch (const cl::Error& error) {
+  const std::string source = expand_kernel(file, kernel_dir), options = variant.options();
+  const std::string known_by =
+      fmt::format("{}\n{}\n{}\n{}\n{}", info.platform, info.driver, info.name, options, source);
+  cl::Program built(context, source);
+  cl_int result = CL_SUCCESS;
+  KernelCache::of_process().build(known_by, [&] { result = compile(built, device, options); });
+  if (result != CL_SUCCESS) {
     const auto log = built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
     throw Error(ErrorKind::device,
                 fmt::format("{}: the OpenCL compiler of {} refused it ({}):\n{}", file, info.name,
-                            opencl_error_name(error.err()), first_lines(log, 12)));
+                            opencl_error_name(result), first_lines(log, 12)));
   }
+  known_programs.push_back(known_by);
   build_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return programs.emplace(key, built).first->second;
 }
@@ -92,10 +107,11 @@ void DeviceContext::State::collect_events() {
   events.clear();
 }
 
-DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir)
+DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Company trace_with)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.kernel_dir = std::move(kernel_dir);
+  s.trace_with = trace_with;
   s.device = choose_device(name);
   s.info = describe(s.device);
   in_opencl("opening " + s.info.name, [&] {
@@ -104,9 +120,20 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir)
   });
 }
 
-DeviceContext::~DeviceContext() = default;
+// Kernels are compiled when they are first launched, not before.
+DeviceContext::~DeviceContext() {
+  for (const std::string& program : state_->known_programs) KernelCache::of_process().keep(program);
+}
 
 const DeviceInfo& DeviceContext::info() const { return state_->info; }
+
+Company DeviceContext::trace_with() const { return state_->trace_with; }
+
+std::vector<std::string> DeviceContext::notes() const {
+  const std::string& refusals = KernelCache::of_process().refusals();
+  if (refusals.empty()) return {};
+  return {"compiled kernels are not kept: " + refusals};
+}
 
 Buffer DeviceContext::allocate(std::size_t bytes) {
   return in_opencl(fmt::format("allocating {} bytes on {}", bytes, state_->info.name), [&] {
@@ -155,6 +182,12 @@ void DeviceContext::prepare(const KernelName& kernel) {
   in_opencl("compiling kernel " + kernel.name, [&] { state_->kernel(kernel); });
 }
 
+std::size_t DeviceContext::largest_group(const KernelName& kernel) {
+  return in_opencl("compiling kernel " + kernel.name, [&] {
+    return state_->kernel(kernel).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->device);
+  });
+}
+
 void DeviceContext::launch(const KernelName& name, const std::string& label, std::size_t items,
                            std::initializer_list<KernelArgument> arguments, std::size_t group) {
   if (items == 0) return;
@@ -183,6 +216,8 @@ void DeviceContext::finish() {
     state_->collect_events();
   });
 }
+
+void DeviceContext::wait() noexcept { clFinish(state_->queue()); }
 
 const std::map<std::string, double>& DeviceContext::pass_seconds() const {
   return state_->pass_seconds;

@@ -57,12 +57,17 @@ struct KernelName {
 
 class DeviceContext {
  public:
-  DeviceContext(const std::string& name, std::string kernel_dir);
+  DeviceContext(const std::string& name, std::string kernel_dir,
+                Company trace_with = Company::automatic);
   ~DeviceContext();
   DeviceContext(const DeviceContext&) = delete;
   DeviceContext& operator=(const DeviceContext&) = delete;
 
   [[nodiscard]] const DeviceInfo& info() const;
+  /// Whom whoever opened the device wants rays to be traced with.
+  [[nodiscard]] Company trace_with() const;
+  /// What users should know of how it works here: "compiled kernels are not kept: ...".
+  [[nodiscard]] std::vector<std::string> notes() const;
 
   /// Uninitialized memory, rounded up to whole cache lines. Throws Error device.
   Buffer allocate(std::size_t bytes);
@@ -76,11 +81,15 @@ class DeviceContext {
 
   /// Compiles a kernel ahead of its first launch.
   void prepare(const KernelName& kernel);
+  /// The most items a work-group of the kernel can have here.
+  std::size_t largest_group(const KernelName& kernel);
   /// Enqueues `items` work-items, rounded up to whole groups of `group`: kernels check
   /// bounds. `label` names the pass in pass_seconds().
   void launch(const KernelName& kernel, const std::string& label, std::size_t items,
               std::initializer_list<KernelArgument> arguments, std::size_t group = 64);
   void finish();
+  /// Waits like finish(), but whatever has become of the launches.
+  void wait() noexcept;
 
   /// Device seconds of all finished launches, by label.
   [[nodiscard]] const std::map<std::string, double>& pass_seconds() const;

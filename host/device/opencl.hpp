@@ -14,15 +14,17 @@
 #include <utility>
 
 #include "dapple/error.hpp"
+#include "device/driver_crash.hpp"
 
 namespace dapple {
 
 /// "CL_OUT_OF_RESOURCES" for -5, and so on; the number for codes without a name.
 std::string opencl_error_name(int code);
 
-/// Runs `work`; an OpenCL error becomes Error device: "doing (call: CL_NAME)".
+/// Runs `work`; an OpenCL error becomes Error device: "doing failed (call: CL_NAME)".
 template <class Work>
 auto in_opencl(const std::string& doing, const Work& work) -> decltype(work()) {
+  const DriverAtWork at_work(doing);
   try {
     return work();
   } catch (const cl::Error& error) {

@@ -1,33 +1,36 @@
 #include "device/platforms.hpp"
 
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
+
+#include "device/environment_while.hpp"
+#include "device/kernel_cache.hpp"
 
 namespace dapple {
 namespace {
 
-/// PoCL 3.1 aborts the process on a damaged kernel cache: it gets a folder of its own
-/// instead of one shared with every other program. An explicit POCL_CACHE_DIR is kept.
-void give_pocl_a_private_cache() {
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);
-    return std::string(value ? value : "");
-  };
-  if (!variable("POCL_CACHE_DIR").empty()) return;
-  std::filesystem::path folder = variable("XDG_CACHE_HOME");
-  if (folder.empty() && !variable("HOME").empty())
-    folder = std::filesystem::path(variable("HOME")) / ".cache";
-  if (folder.empty()) folder = std::filesystem::temp_directory_path();
-  folder = folder / "dapple" / "pocl";
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error) setenv("POCL_CACHE_DIR", folder.c_str(), 0);
+/// Without /sys, as in some containers, PoCL finds no memory and aborts the process: what it would
+/// have read there is told to hwloc, through which it looks. Empty where /sys is there.
+std::string machine_for_hwloc() {
+  std::error_code ignored;
+  if (std::filesystem::exists("/sys/devices/system/cpu", ignored)) return {};
+  for (const char* told_otherwise : {"HWLOC_SYNTHETIC", "HWLOC_XMLFILE", "HWLOC_FSROOT"}) {
+    if (std::getenv(told_otherwise)) return {};
+  }
+  const auto bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+                     static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return fmt::format("numa:1(memory={}) pu:{}", bytes,
+                     std::max(1u, std::thread::hardware_concurrency()));
 }
 
 std::vector<cl::Platform> platforms() {
-  give_pocl_a_private_cache();
   std::vector<cl::Platform> found;
   try {
     cl::Platform::get(&found);
@@ -62,6 +65,45 @@ std::string trimmed(std::string text) {
   return text;
 }
 
+bool is_pocl(const cl::Platform& platform) {
+  return trimmed(platform.getInfo<CL_PLATFORM_NAME>()) == "Portable Computing Language";
+}
+
+std::string no_platform() {
+  const char* vendors = std::getenv("OCL_ICD_VENDORS");
+  return std::string("no OpenCL platform found") +
+         (vendors ? std::string(" where OCL_ICD_VENDORS points, ") + vendors
+                  : std::string(" in /etc/OpenCL/vendors")) +
+         "; install a driver, for the CPU: apt install pocl-opencl-icd";
+}
+
+std::string no_device(const std::vector<cl::Platform>& found, const KernelCache& cache) {
+  std::string names;
+  for (const cl::Platform& platform : found)
+    names += (names.empty() ? "" : ", ") + trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+  std::string message = "no OpenCL device can compile kernels; platforms without one: " + names;
+  if (cache.folder().empty()) {
+    message += "; PoCL has no folder to compile kernels in (" + cache.refusals() +
+               "): let XDG_CACHE_HOME name one that can be written";
+  } else if (!names.empty()) {
+    message += "; PoCL needs /proc and some 0.8 GB of address space (ulimit -v)";
+  }
+  return message;
+}
+
+/// PoCL compiles to files, the largest of some 700 kB; where it cannot write them it refuses the
+/// kernels without a reason, or ends the process.
+void check_file_limit(const cl::Device& device) {
+  constexpr std::uint64_t kBytesNeeded = 2u << 20;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur >= kBytesNeeded) return;
+  if (!is_pocl(cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()))) return;
+  throw Error(ErrorKind::failed,
+              fmt::format("PoCL cannot compile kernels: files may not grow past {} bytes here "
+                          "(ulimit -f), and it writes up to {}",
+                          limit.rlim_cur, kBytesNeeded));
+}
+
 }  // namespace
 
 DeviceInfo describe(const cl::Device& device) {
@@ -82,28 +124,26 @@ DeviceInfo describe(const cl::Device& device) {
 }
 
 std::vector<cl::Device> usable_devices() {
+  const DriverAtWork at_work("looking for devices");
+  const KernelCache& cache = KernelCache::of_process();
+  // PoCL reads these when it is first asked for its devices.
+  const EnvironmentWhile cache_folder("POCL_CACHE_DIR", cache.folder().string());
+  const EnvironmentWhile machine("HWLOC_SYNTHETIC", machine_for_hwloc());
   const auto found = platforms();
-  if (found.empty()) {
-    throw Error(
-        ErrorKind::device,
-        "no OpenCL platform found; install a driver, for the CPU: apt install pocl-opencl-icd");
-  }
+  if (found.empty()) throw Error(ErrorKind::device, no_platform());
   std::vector<cl::Device> usable;
   for (const cl::Platform& platform : found) {
+    if (cache.folder().empty() && is_pocl(platform)) continue;  // its builds would fail, or worse
     std::vector<cl::Device> devices;
     try {
       platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+      std::copy_if(devices.begin(), devices.end(), std::back_inserter(usable), is_usable);
     } catch (const cl::Error&) {
       continue;  // a platform without devices reports an error, not an empty list
     }
-    std::copy_if(devices.begin(), devices.end(), std::back_inserter(usable), is_usable);
   }
-  if (usable.empty()) {
-    throw Error(
-        ErrorKind::device,
-        "there are OpenCL platforms but none has a device that can compile kernels; in a container "
-        "PoCL needs /sys and /proc mounted");
-  }
+  renew_crash_reports();
+  if (usable.empty()) throw Error(ErrorKind::device, no_device(found, cache));
   std::stable_sort(usable.begin(), usable.end(),
                    [](const cl::Device& a, const cl::Device& b) { return rank(a) > rank(b); });
   return usable;
@@ -114,8 +154,10 @@ cl::Device choose_device(const std::string& name) {
   std::string list;
   for (const cl::Device& device : devices) {
     const DeviceInfo info = describe(device);
-    if (lower_case(info.name + "\n" + info.platform).find(lower_case(name)) != std::string::npos)
+    if (lower_case(info.name + "\n" + info.platform).find(lower_case(name)) != std::string::npos) {
+      check_file_limit(device);
       return device;
+    }
     list += (list.empty() ? "" : ", ") + ("'" + info.name + "' (" + info.platform + ")");
   }
   throw Error(ErrorKind::device,

@@ -9,6 +9,10 @@ namespace dapple {
 
 struct DeviceBuffers {
   explicit DeviceBuffers(const Device& d) : device(d) {}
+  /// Waits for kernels that still run, as after an error: they read the host's memory.
+  ~DeviceBuffers() { device.context().wait(); }
+  DeviceBuffers(const DeviceBuffers&) = delete;
+  DeviceBuffers& operator=(const DeviceBuffers&) = delete;
   Device device;
   Buffer nodes, blocks, textured, materials, texels, instances;
   Buffer lights, emitters, environments;

@@ -72,6 +72,20 @@ std::string name_of(Estimator estimator) {
   return "";
 }
 
+std::string name_of(Company company) {
+  switch (company) {
+    case Company::automatic:
+      return "auto";
+    case Company::alone:
+      return "alone";
+    case Company::neighbours:
+      return "neighbours";
+    case Company::point:
+      return "point";
+  }
+  return "";
+}
+
 void validate(const RenderOptions& options) {
   check_range("--width", options.width, 1, 65535);
   check_range("--height", options.height, 1, 65535);

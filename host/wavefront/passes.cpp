@@ -32,22 +32,21 @@ std::size_t beams_of(std::size_t samples) {
   return (samples + DAPPLE_BEAM_RAYS - 1) / DAPPLE_BEAM_RAYS;
 }
 
-/// Whom a ray is traced with. Never a question of how many rays there are in all: kernels differ in
-/// roundings, and a crop must make the bits of the whole picture.
-enum class Company { none, neighbours, point };
-
+/// Never a question of how many rays there are in all: kernels differ in roundings, and a crop must
+/// make the bits of the whole picture.
 Company company(Estimator estimator, uint rays_per_point, RayOrder order,
-                const DeviceInfo& device) {
+                const DeviceContext& context) {
+  if (context.trace_with() != Company::automatic) return context.trace_with();
   const bool share = rays_per_point >= kLeastPacket;
-  if (device.kind != "CPU")
-    return share && estimator == Estimator::packet ? Company::point : Company::none;
+  if (context.info().kind != "CPU")
+    return share && estimator == Estimator::packet ? Company::point : Company::alone;
   if (rays_per_point >= kLeastOfPoint) return Company::point;
-  return share || order == RayOrder::by_pixel ? Company::neighbours : Company::none;
+  return share || order == RayOrder::by_pixel ? Company::neighbours : Company::alone;
 }
 
 KernelName occlusion_kernel(Estimator estimator, Company with) {
   const bool prefiltered = estimator != Estimator::exact;
-  if (with == Company::none) return {"occlusion", "occlusion", {prefiltered}};
+  if (with == Company::alone) return {"occlusion", "occlusion", {prefiltered}};
   return {"packet", "packet", {prefiltered, with == Company::point}};
 }
 
@@ -127,10 +126,10 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order) {
   if (params.ray_count == 0) return;
-  const Company with = company(estimator, params.rays_per_point, order, context.info());
+  const Company with = company(estimator, params.rays_per_point, order, context);
   std::size_t items = params.ray_count, group = kRayGroup;
   OcclusionParams launched = params;
-  if (with != Company::none) {
+  if (with != Company::alone) {
     if (with == Company::neighbours) launched.rays_per_point = params.ray_count;
     const uint rays = launched.rays_per_point;
     items = std::size_t{params.ray_count / rays} * ((rays + kPacketChunk - 1) / kPacketChunk);
@@ -162,6 +161,24 @@ void resolve_light_pass(DeviceContext& context, const Queues& queues, const Film
       {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums, film.squares, params});
 }
 
+std::vector<KernelShape> every_kernel() {
+  std::vector<KernelShape> kernels{
+      {kCameraHits, kBeamGroup}, {kClosestHit, kRayGroup},   {kCompactHits, kScanItems},
+      {kAoRays, kBeamGroup},     {kLightRays, kRayGroup},    {kResolveSurface, kRayGroup},
+      {kResolveAo, kRayGroup},   {kResolveLight, kRayGroup}, {kResolveDome, kRayGroup},
+  };
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    kernels.push_back({occlusion_kernel(estimator, Company::alone), kRayGroup});
+    kernels.push_back({occlusion_kernel(estimator, Company::neighbours), 1});
+    kernels.push_back({occlusion_kernel(estimator, Company::point), kPacketGroup});
+  }
+  return kernels;
+}
+
+Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays) {
+  return company(estimator, static_cast<uint>(rays), RayOrder::by_pixel, context);
+}
+
 void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                        const FilmBuffers& film, const ResolveParams& params, uint light) {
   context.launch(kResolveDome, "resolve", params.slice.pixel_count,
@@ -174,9 +191,8 @@ void prepare_kernels(DeviceContext& context, const RenderOptions& options,
   for (const KernelName& kernel : {kCameraHits, kCompactHits, kResolveSurface})
     context.prepare(kernel);
   const auto prepare_occlusion = [&](int rays) {
-    const Company with =
-        company(options.estimator, static_cast<uint>(rays), RayOrder::by_pixel, context.info());
-    context.prepare(occlusion_kernel(options.estimator, with));
+    context.prepare(
+        occlusion_kernel(options.estimator, company_in_picture(context, options.estimator, rays)));
   };
   if (options.ao) {
     prepare_occlusion(options.ao_rays);

@@ -68,6 +68,17 @@ void resolve_light_pass(DeviceContext& context, const Queues& queues, const Film
 void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                        const FilmBuffers& film, const ResolveParams& params, uint light);
 
+/// A kernel and the items of its work-groups.
+struct KernelShape {
+  KernelName kernel;
+  std::size_t group = 0;
+};
+/// All that any picture or query needs.
+std::vector<KernelShape> every_kernel();
+
+/// Whom the occlusion rays of a picture are traced with, that many of each sample.
+Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays);
+
 /// Compiles every kernel that `options` and the lights will need.
 void prepare_kernels(DeviceContext& context, const RenderOptions& options,
                      const std::vector<Light>& lights);

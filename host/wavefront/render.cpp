@@ -46,6 +46,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   };
   set("estimator", name_of(options.estimator));
   set("footprint", options.footprint);
+  if (options.trace_with != Company::automatic) set("trace_with", name_of(options.trace_with));
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
@@ -84,8 +85,9 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
   const View view = furnish(scene, options, statistics.notes);
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);
-  const Device device(options.device, options.kernel_dir);
+  const Device device(options.device, options.kernel_dir, options.trace_with);
   statistics.device = device.info().name;
+  for (std::string& note : device.context().notes()) statistics.notes.push_back(std::move(note));
 
   const SceneBvh bvh = build_bvh(scene);
   const Stopwatch uploading;

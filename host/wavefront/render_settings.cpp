@@ -76,6 +76,7 @@ Settings option_settings(const RenderOptions& options, const View& view) {
       {"--crop", fmt::format("{},{},{},{}", crop.x0, crop.y0, crop.x1, crop.y1)},
       {"--seed", number(options.seed)},
       {"--estimator", name_of(options.estimator)},
+      {"--trace-with", name_of(options.trace_with)},
       {"--footprint", number(options.footprint)},
       {"--passes", passes_text(options)},
       {"--ao-rays", number(options.ao_rays)},

@@ -1,6 +1,7 @@
 // OpenCL devices without OpenCL types: list, choose, upload a scene.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,6 +9,16 @@
 #include "dapple/bvh.hpp"
 
 namespace dapple {
+
+/// Whom an occlusion ray is traced with, which is a question of time: roundings apart all find the
+/// same, but that prefiltered rays of a point may stop at other nodes.
+enum class Company : std::uint8_t {
+  automatic,  ///< what suits the device: on CPUs neighbours, or from 32 rays a point up point; else
+              ///< alone
+  alone,      ///< every ray is a work-item
+  neighbours,  ///< up to 64 rays that start near each other
+  point,       ///< the rays of one point
+};
 
 struct DeviceInfo {
   std::string name, platform, driver;
@@ -26,7 +37,8 @@ class Device {
  public:
   /// Opens the best device whose name or platform contains `name` (any case), the best
   /// of all when `name` is empty. Throws Error device, listing what there is.
-  explicit Device(const std::string& name = "", const std::string& kernel_dir = "");
+  explicit Device(const std::string& name = "", const std::string& kernel_dir = "",
+                  Company trace_with = Company::automatic);
 
   [[nodiscard]] const DeviceInfo& info() const;
   [[nodiscard]] DeviceContext& context() const { return *context_; }

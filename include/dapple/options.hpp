@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "dapple/device.hpp"
 #include "dapple/scene.hpp"
 
 namespace dapple {
@@ -25,6 +26,7 @@ enum class Estimator : std::uint8_t {
 
 /// As the command line spells it.
 std::string name_of(Estimator estimator);
+std::string name_of(Company company);
 
 /// A pixel rectangle, inclusive at both ends as in EXR windows; (0,0) is top left.
 struct PixelRect {
@@ -68,7 +70,8 @@ struct RenderOptions {
   float fov_degrees = 0.0f;  ///< vertical; 0: the camera's own, or 40 with `look`
   std::optional<PixelRect> crop;
   std::uint32_t seed = 0;
-  std::string device;      ///< part of an OpenCL device's name; empty: the best one
+  std::string device;  ///< part of an OpenCL device's name; empty: the best one
+  Company trace_with = Company::automatic;
   std::string kernel_dir;  ///< read kernels from this folder instead of the built-in ones
   bool ground = false;     ///< put an opaque plane under the scene
   std::vector<std::pair<std::string, float>> opacity;  ///< material name, opacity in [0,1]

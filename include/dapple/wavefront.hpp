@@ -73,6 +73,13 @@ struct RenderControl {
 RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control);
 RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress = {});
 
+/// Whether a device can do all that dapple asks of devices, found out by compiling every kernel.
+struct DeviceCheck {
+  std::vector<std::string> refusals;        ///< a line a kernel that cannot run; empty: none
+  Company trace_with = Company::automatic;  ///< of a picture's occlusion rays, never automatic
+};
+DeviceCheck check_device(const Device& device);
+
 struct OcclusionOptions {
   int rays = 64;  ///< a point, [1, 2^20]
   Estimator estimator = Estimator::prefiltered;

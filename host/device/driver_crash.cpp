@@ -1,0 +1,84 @@
+// Signal handlers call nothing but write() and _exit(); what they say is put together beforehand.
+#include "device/driver_crash.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+std::atomic<bool> reporting{false};
+std::atomic<int> calls_under_way{0};
+std::atomic<int> devices_open{0};
+
+/// What the driver was asked to do last, ended by a zero. A crash while another thread writes here
+/// garbles a message, no more.
+std::array<char, 160> doing{};
+
+void say(const char* text) { (void)!write(STDERR_FILENO, text, std::strlen(text)); }
+
+const char* name_of(int signal) {
+  switch (signal) {
+    case SIGABRT:
+      return "it aborted";
+    case SIGBUS:
+      return "a file or memory it used went away";
+    default:
+      return "it reached for memory that is not there";
+  }
+}
+
+/// An abort is the driver's as long as a device is open: kernels are compiled when they first run,
+/// on threads of its own. Any other crash only while it was asked for something.
+void on_crash(int signal) {
+  const bool of_driver = calls_under_way > 0 || (signal == SIGABRT && devices_open > 0);
+  if (!of_driver) {
+    std::signal(signal, SIG_DFL);
+    raise(signal);
+    return;
+  }
+  say("dapple: the OpenCL driver crashed while ");
+  say(doing.data());
+  say(": ");
+  say(name_of(signal));
+  say(". What it said itself is above; often memory (ulimit -v) or disk space has run out. "
+      "--device chooses another device\n");
+  _exit(static_cast<int>(ErrorKind::device));
+}
+
+}  // namespace
+
+void report_driver_crashes() {
+  reporting = true;
+  renew_crash_reports();
+}
+
+void renew_crash_reports() {
+  if (!reporting) return;
+  struct sigaction action {};
+  action.sa_handler = on_crash;
+  action.sa_flags = SA_ONSTACK;
+  for (const int signal : {SIGABRT, SIGBUS, SIGSEGV, SIGILL}) sigaction(signal, &action, nullptr);
+}
+
+DriverAtWork::DriverAtWork(const std::string& what) {
+  const std::size_t length = std::min(what.size(), doing.size() - 1);
+  std::memcpy(doing.data(), what.data(), length);
+  doing[length] = '\0';
+  ++calls_under_way;
+}
+
+DriverAtWork::~DriverAtWork() { --calls_under_way; }
+
+DriverInUse::DriverInUse() { ++devices_open; }
+
+DriverInUse::~DriverInUse() { --devices_open; }
+
+}  // namespace dapple

@@ -1,0 +1,24 @@
+// Folders whose files are listed with their checksums, so that a truncated, emptied or missing
+// one is noticed before anybody relies on it. Against damage, not against malice.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace dapple {
+
+/// 64 bits of `bytes`, following on from `seed`.
+std::uint64_t checksum(std::string_view bytes, std::uint64_t seed = 0);
+
+/// Writes the list of `files`, paths inside `folder`. False where one cannot be read or the list
+/// not be written.
+bool seal(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
+
+/// Puts the files that `sealed` lists into `target`, by hard links where that goes, and their paths
+/// into `files`. False, and nothing is left in `target`, where one is not what was sealed.
+bool unseal(const std::filesystem::path& sealed, const std::filesystem::path& target,
+            std::vector<std::filesystem::path>& files);
+
+}  // namespace dapple

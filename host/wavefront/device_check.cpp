@@ -1,0 +1,30 @@
+// Whether a device can run every kernel: each is compiled, none launched.
+#include <fmt/format.h>
+
+#include "dapple/error.hpp"
+#include "dapple/wavefront.hpp"
+#include "device/context.hpp"
+#include "wavefront/passes.hpp"
+
+namespace dapple {
+
+DeviceCheck check_device(const Device& device) {
+  DeviceContext& context = device.context();
+  DeviceCheck check;
+  check.trace_with = company_in_picture(context, Estimator::prefiltered, 1);
+  for (const auto& [kernel, group] : every_kernel()) {
+    try {
+      const std::size_t largest = context.largest_group(kernel);
+      if (largest >= group) continue;
+      check.refusals.push_back(fmt::format("kernel {} needs work-groups of {} items, of {} at most",
+                                           kernel.name, group, largest));
+    } catch (const Error& error) {
+      // The kernels of a file that does not compile all say the same.
+      if (check.refusals.empty() || check.refusals.back() != error.what())
+        check.refusals.emplace_back(error.what());
+    }
+  }
+  return check;
+}
+
+}  // namespace dapple
