@@ -147,8 +147,7 @@ TextureIntegrals::Key TextureIntegrals::key_of(const TexturedTriangle& triangle)
   return {triangle.texture, std::round(factor * 64.0f) / 64.0f, triangle.cutoff};
 }
 
-TextureIntegrals::TextureIntegrals(const Scene& scene,
-                                   const std::vector<TexturedTriangle>& textured) {
+TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured) {
   std::vector<Key> keys;
   for (const TexturedTriangle& triangle : textured) {
     if (triangle.texture == DAPPLE_NO_TEXTURE) continue;

@@ -78,6 +78,15 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   return m;
 }
 
+void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
+  s.cache.used = true;
+  s.cache.objects_read = bvh.cache.objects_read;
+  s.cache.objects_written = bvh.cache.objects_written;
+  s.cache.seconds_saved = bvh.cache.seconds_saved;
+  s.seconds.cache = bvh.cache.read_seconds + bvh.cache.write_seconds;
+  if (!bvh.cache.note.empty()) s.notes.push_back("BVH cache: " + bvh.cache.note);
+}
+
 void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBuffers& buffers) {
   s.seconds.build = bvh.statistics.build_seconds;
   s.seconds.prefilter = bvh.statistics.prefilter_seconds;
@@ -102,7 +111,8 @@ RenderResult render(Scene scene, const RenderOptions& options, const Progress& p
   const Device device(options.device, options.kernel_dir);
   statistics.device = device.info().name;
 
-  const SceneBvh bvh = build_bvh(scene);
+  const SceneBvh bvh = build_bvh(scene, options.cache);
+  if (!options.cache.empty()) add_cache_statistics(statistics, bvh.statistics);
   const Stopwatch uploading;
   const DeviceScene on_device = upload(device, scene, bvh);
   statistics.seconds.upload = uploading.seconds();
