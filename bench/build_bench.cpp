@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kRepetitions = 5;
 
-template <class T>
-double bytes(const std::vector<T>& data) {
-  return static_cast<double>(data.size() * sizeof(T));
+template <class Array>
+double bytes(const Array& data) {
+  return static_cast<double>(data.size() * sizeof(data[0]));
 }
 
 /// Triangles a second, and bytes a distinct triangle: of nodes, and of everything that a ray

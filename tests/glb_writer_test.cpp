@@ -250,8 +250,7 @@ TEST(GlbWriter, AFolderInTheWayIsNotReplaced) {
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::failed);
-    EXPECT_EQ(error.what(),
-              folder.file("scene.glb") + ": is there already and is not a regular file");
+    EXPECT_EQ(error.what(), "cannot write " + folder.file("scene.glb") + ": it is a folder");
   }
   EXPECT_EQ(folder.count(), 1);
 }

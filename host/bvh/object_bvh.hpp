@@ -1,4 +1,4 @@
-// One mesh's finished BVH, and the steps that make it: build, pack, prefilter.
+// One mesh's BVH, and the steps that make it: build, pack, prefilter.
 #pragma once
 
 #include <vector>
@@ -11,18 +11,22 @@
 
 namespace dapple {
 
-/// Indices inside (child_base, prim_base, textured codes) count from this object's own
-/// first node, block and textured triangle.
-struct ObjectBvh {
-  std::vector<BvhNode> nodes;
-  std::vector<TriangleBlock> blocks;
-  std::vector<TexturedTriangle> textured;
+/// What the top level and statistics need to know of an object.
+struct ObjectSummary {
   Box3f box;
   std::vector<Box3f> parts;  ///< boxes of the root's children
   NodeOpacity opacity;       ///< of `box`
   std::uint32_t stack = 0;   ///< traversal stack entries needed
   double sah_cost = 0;       ///< expected node visits of a ray through `box`
   std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
+};
+
+/// Indices inside (child_base, prim_base, textured codes) count from this object's own
+/// first node, block and textured triangle.
+struct ObjectBvh : ObjectSummary {
+  std::vector<BvhNode> nodes;
+  std::vector<TriangleBlock> blocks;
+  std::vector<TexturedTriangle> textured;
 };
 
 /// A built object and what prefiltering needs beside it.

@@ -1,13 +1,12 @@
 // All objects' BVHs put together, and the top-level BVH over their instances.
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
-#include "bvh/object_bvh.hpp"
+#include "bvh/joined_objects.hpp"
+#include "bvh/scene_objects.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/error.hpp"
 
@@ -42,7 +41,8 @@ Box3f world_box(const std::vector<Box3f>& parts, const M44f& to_world) {
 
 /// The object's root opacity as that of its world box: along a world axis e the object is
 /// crossed in direction M^-1 e, and areas grow by |det M| |M^-1 e|.
-NodeOpacity instance_opacity(const ObjectBvh& object, const M44f& to_world, const Box3f& world) {
+NodeOpacity instance_opacity(const ObjectSummary& object, const M44f& to_world,
+                             const Box3f& world) {
   const M44f to_object = to_world.inverse();
   const V3f size = object.box.max - object.box.min;
   NodeOpacity opacity;
@@ -63,67 +63,9 @@ NodeOpacity instance_opacity(const ObjectBvh& object, const M44f& to_world, cons
   return opacity;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Every mesh's object; wall times of both steps into `statistics`.
-std::vector<ObjectBvh> build_objects(const Scene& scene, BvhStatistics& statistics) {
-  std::vector<BuiltObject> built(scene.meshes.size());
-  const auto building = std::chrono::steady_clock::now();
-  tbb::parallel_for(std::size_t{0}, built.size(),
-                    [&](std::size_t m) { built[m] = build_object(scene, scene.meshes[m]); });
-  statistics.build_seconds = seconds_since(building);
-  const auto prefiltering = std::chrono::steady_clock::now();
-  std::vector<ObjectBvh> objects(built.size());
-  tbb::parallel_for(std::size_t{0}, built.size(), [&](std::size_t m) {
-    ObjectBvh& object = built[m].object;
-    if (!object.nodes.empty()) prefilter(built[m], TextureIntegrals(scene, object.textured));
-    objects[m] = std::move(object);
-  });
-  statistics.prefilter_seconds = seconds_since(prefiltering);
-  return objects;
-}
-
-template <class T>
-void append(std::vector<T>& to, std::vector<T>& from) {
-  if (to.empty()) {
-    to = std::move(from);
-  } else {
-    to.insert(to.end(), from.begin(), from.end());
-  }
-  from = {};
-}
-
-/// Moves an object's arrays behind those of the others, its indices made absolute.
-/// Returns its root.
-std::uint32_t append_object(SceneBvh& bvh, ObjectBvh& object, const std::string& source) {
-  const std::size_t nodes = bvh.nodes.size(), blocks = bvh.blocks.size(),
-                    textured = bvh.textured.size();
-  // The stack's top bit marks instances; a textured triangle's index must fit a float.
-  if (nodes + object.nodes.size() > 0x7fffffffu || blocks + object.blocks.size() > 0xffffffffu ||
-      textured + object.textured.size() >= 1u << 24) {
-    throw Error(ErrorKind::failed,
-                fmt::format("{}: too many triangles for the BVH's indices", source));
-  }
-  for (BvhNode& node : object.nodes) {
-    node.child_base += static_cast<std::uint32_t>(nodes);
-    node.prim_base += static_cast<std::uint32_t>(blocks);
-  }
-  for (TriangleBlock& block : object.blocks) {
-    for (float& opacity : block.opacity) {
-      if (opacity < 0.0f) opacity -= static_cast<float>(textured);
-    }
-  }
-  append(bvh.nodes, object.nodes);
-  append(bvh.blocks, object.blocks);
-  append(bvh.textured, object.textured);
-  return static_cast<std::uint32_t>(nodes);
-}
-
-void add_statistics(BvhStatistics& s, const std::vector<ObjectBvh>& objects) {
+void add_statistics(BvhStatistics& s, const std::vector<FinishedObject>& objects) {
   std::size_t largest = 0;
-  for (const ObjectBvh& object : objects) {
+  for (const FinishedObject& object : objects) {
     s.triangles += object.triangles;
     s.opaque += object.opaque;
     s.cut_out += object.cut_out;
@@ -142,7 +84,7 @@ struct Placement {
   InstanceRecord record;
 };
 
-Placement place(const Instance& instance, const ObjectBvh& object, std::uint32_t root) {
+Placement place(const Instance& instance, const ObjectSummary& object, std::uint32_t root) {
   Placement placement;
   placement.box = world_box(object.parts, instance.to_world);
   placement.opacity = instance_opacity(object, instance.to_world, placement.box);
@@ -185,8 +127,13 @@ std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
   return {coverage.map(), normals};
 }
 
-/// The BVH over instances, one a leaf; returns the stack entries it needs.
-std::uint32_t build_top(SceneBvh& bvh, const std::vector<Placement>& placed) {
+struct TopLevel {
+  std::vector<BvhNode> nodes;
+  std::uint32_t stack = 0;  ///< traversal stack entries needed
+};
+
+/// The BVH over instances, one a leaf; its nodes will follow `first_node` others.
+TopLevel build_top(SceneBvh& bvh, const std::vector<Placement>& placed, std::size_t first_node) {
   std::vector<PrimitiveBox> boxes;
   for (std::uint32_t i = 0; i < placed.size(); ++i)
     boxes.push_back(primitive_box(placed[i].box, i));
@@ -194,7 +141,7 @@ std::uint32_t build_top(SceneBvh& bvh, const std::vector<Placement>& placed) {
   std::vector<BvhNode> nodes = pack_nodes(wide);
   const CoverageMap map = prefilter_top(wide, boxes, placed, nodes, 0).first;
   for (int axis = 0; axis < 3; ++axis) bvh.statistics.root_opacity[axis] = map.mean_opacity(axis);
-  bvh.root = static_cast<std::uint32_t>(bvh.nodes.size());
+  bvh.root = static_cast<std::uint32_t>(first_node);
   bvh.has_top = true;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     nodes[n].prim_base = static_cast<std::uint32_t>(bvh.instances.size());
@@ -203,8 +150,7 @@ std::uint32_t build_top(SceneBvh& bvh, const std::vector<Placement>& placed) {
       if (child.count) bvh.instances.push_back(placed[boxes[child.first].primitive].record);
     }
   }
-  bvh.nodes.insert(bvh.nodes.end(), nodes.begin(), nodes.end());
-  return stack_needed(wide);
+  return {std::move(nodes), stack_needed(wide)};
 }
 
 void check_stack(std::uint32_t needed, const std::string& source) {
@@ -217,18 +163,18 @@ void check_stack(std::uint32_t needed, const std::string& source) {
 
 }  // namespace
 
-SceneBvh build_bvh(const Scene& scene) {
+SceneBvh build_bvh(const Scene& scene, const std::string& cache_folder) {
+  if (!cache_folder.empty()) prepare_bvh_cache(cache_folder);
   SceneBvh bvh;
-  std::vector<ObjectBvh> objects = build_objects(scene, bvh.statistics);
+  std::vector<FinishedObject> objects = finish_objects(scene, cache_folder, bvh.statistics);
   add_statistics(bvh.statistics, objects);
-  std::vector<std::uint32_t> roots;
-  for (ObjectBvh& object : objects) roots.push_back(append_object(bvh, object, scene.source));
+  const std::vector<ObjectOffsets> offsets = lay_out(objects, scene.source);
   std::vector<Placement> placed;
   std::uint32_t object_stack = 0;
   for (const Instance& instance : scene.instances) {
-    const ObjectBvh& object = objects[instance.mesh];
+    const FinishedObject& object = objects[instance.mesh];
     if (object.box.isEmpty()) continue;
-    placed.push_back(place(instance, object, roots[instance.mesh]));
+    placed.push_back(place(instance, object, offsets[instance.mesh].node));
     bvh.bounds.extendBy(placed.back().box);
     bvh.statistics.instanced_triangles += object.triangles;
     object_stack = std::max(object_stack, object.stack);
@@ -239,19 +185,20 @@ SceneBvh build_bvh(const Scene& scene) {
         fmt::format("{}: nothing to hit: every triangle is fully transparent", scene.source));
   }
   bvh.statistics.instances = placed.size();
-  bvh.statistics.lane_use = static_cast<double>(bvh.statistics.triangles) /
-                            (8.0 * static_cast<double>(bvh.blocks.size()));
   const Instance& first = scene.instances.front();
+  TopLevel top;
   if (scene.instances.size() == 1 && first.to_world == M44f() && first.light < 0) {
-    bvh.root = roots[first.mesh];
+    bvh.root = offsets[first.mesh].node;
     bvh.instances.push_back(placed[0].record);
     for (int axis = 0; axis < 3; ++axis)
       bvh.statistics.root_opacity[axis] = objects[first.mesh].opacity.axes[axis];
-    check_stack(object_stack, scene.source);
   } else {
-    const std::uint32_t top_stack = build_top(bvh, placed);
-    check_stack(top_stack + object_stack, scene.source);
+    top = build_top(bvh, placed, offsets.back().node);
   }
+  check_stack(top.stack + object_stack, scene.source);
+  join(bvh, objects, offsets, std::move(top.nodes));
+  bvh.statistics.lane_use = static_cast<double>(bvh.statistics.triangles) /
+                            (8.0 * static_cast<double>(bvh.blocks.size()));
   return bvh;
 }
 

@@ -165,8 +165,7 @@ TextureIntegrals::Key TextureIntegrals::key_of(const TexturedCorners& corners) c
   return {material.alpha_texture, std::round(factor * 64.0f) / 64.0f, cutoff};
 }
 
-TextureIntegrals::TextureIntegrals(const Scene& scene,
-                                   const std::vector<TexturedTriangle>& textured)
+TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured)
     : materials_(scene.materials) {
   std::vector<Key> keys;
   for (const TexturedTriangle& triangle : textured) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "bvh/textured_triangle.hpp"
@@ -51,7 +52,7 @@ class OpacityPyramid {
 class TextureIntegrals {
  public:
   /// Makes the pyramids that `textured` need, each once. Keeps `scene`'s materials by address.
-  TextureIntegrals(const Scene& scene, const std::vector<TexturedTriangle>& textured);
+  TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured);
 
   /// Mean opacity of the triangle around barycentrics (u, v) over an area that is `share`
   /// of the triangle's, [0,1].

@@ -166,6 +166,7 @@ void check_outputs(const RenderArguments& a) {
   for (const std::string& path : {a.output, a.png, a.stats_json, a.checkpoint}) {
     if (!path.empty()) check_output_path(path);
   }
+  if (!a.options.cache.empty()) prepare_bvh_cache(a.options.cache);
 }
 
 /// Where the heat map goes that accompanies a preview: tree.png, tree_visits.png.
@@ -235,6 +236,9 @@ Run add_render_command(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--kernel-dir", a->options.kernel_dir,
                  "Read OpenCL kernels from this folder (for developers)");
+  app.add_option("--cache", a->options.cache,
+                 "Keep built BVHs in this folder, made if there is none, and reuse them; it may be "
+                 "deleted at any time");
   app.add_option("--stats-json", a->stats_json, "Write the statistics as JSON");
   app.add_flag("-q,--quiet", a->quiet, "Print nothing but errors");
   app.footer(

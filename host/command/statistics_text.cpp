@@ -27,6 +27,19 @@ std::string rays_line(const char* kind, std::uint64_t rays, double seconds, doub
       count_text(count), speed, visits, tests);
 }
 
+/// Where the trees came from, in a word or two; small objects don't count.
+const char* bvh_source(const RenderStatistics& s) {
+  const bool read = s.cache.objects_read > 0;
+  if (read && s.cache.objects_written > 0) return "partly from cache";
+  return read ? "from cache" : "built";
+}
+
+std::string cache_line(const RenderStatistics& s) {
+  if (!s.cache.used) return {};
+  return fmt::format("  bvh: {} (objects read {}, written {}), {:.2f} s saved\n", bvh_source(s),
+                     s.cache.objects_read, s.cache.objects_written, s.cache.seconds_saved);
+}
+
 std::string errors_line(const std::map<std::string, double>& rmse) {
   std::string passes;
   for (const auto& [layer, value] : rmse)
@@ -45,15 +58,11 @@ std::string bytes_text(double bytes) {
 
 nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
   nlohmann::ordered_json json;
-  json["seconds"] = {{"load", s.seconds.load},
-                     {"build", s.seconds.build},
-                     {"prefilter", s.seconds.prefilter},
-                     {"upload", s.seconds.upload},
-                     {"kernel_build", s.seconds.kernel_build},
-                     {"trace", s.seconds.trace},
-                     {"checkpoint", s.seconds.checkpoint},
-                     {"write", s.seconds.write},
-                     {"total", s.seconds.total}};
+  json["seconds"] = {{"load", s.seconds.load},     {"cache", s.seconds.cache},
+                     {"build", s.seconds.build},   {"prefilter", s.seconds.prefilter},
+                     {"upload", s.seconds.upload}, {"kernel_build", s.seconds.kernel_build},
+                     {"trace", s.seconds.trace},   {"checkpoint", s.seconds.checkpoint},
+                     {"write", s.seconds.write},   {"total", s.seconds.total}};
   json["pass_seconds"] = s.pass_seconds;
   json["rays"] = {{"camera", s.rays.camera}, {"ao", s.rays.ao}, {"light", s.rays.light}};
   json["node_visits_per_ray"] = {
@@ -63,6 +72,12 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
   if (!s.rmse.empty()) json["estimated_rmse"] = s.rmse;
   json["triangles"] = s.triangles;
   json["nodes"] = s.nodes;
+  json["bvh"] = bvh_source(s);
+  if (s.cache.used) {
+    json["cache"] = {{"objects_read", s.cache.objects_read},
+                     {"objects_written", s.cache.objects_written},
+                     {"seconds_saved", s.cache.seconds_saved}};
+  }
   json["bytes"] = {{"nodes", s.bytes.nodes},       {"triangles", s.bytes.triangles},
                    {"textures", s.bytes.textures}, {"instances", s.bytes.instances},
                    {"film", s.bytes.film},         {"queues", s.bytes.queues}};
@@ -81,11 +96,12 @@ std::string statistics_text(const RenderStatistics& s) {
   text += rays_line("light", s.rays.light, pass_seconds(s, "light occlusion"), s.light.visits,
                     s.light.tests);
   text += errors_line(s.rmse);
+  text += cache_line(s);
   const auto& t = s.seconds;
   text += fmt::format(
-      "  seconds: load {:.2f}, build {:.2f}, prefilter {:.2f}, upload {:.2f}, kernels {:.2f}, "
-      "trace {:.2f}, {}write {:.2f}, total {:.2f}\n",
-      t.load, t.build, t.prefilter, t.upload, t.kernel_build, t.trace,
+      "  seconds: load {:.2f}, cache {:.2f}, build {:.2f}, prefilter {:.2f}, upload {:.2f}, "
+      "kernels {:.2f}, trace {:.2f}, {}write {:.2f}, total {:.2f}\n",
+      t.load, t.cache, t.build, t.prefilter, t.upload, t.kernel_build, t.trace,
       t.checkpoint > 0 ? fmt::format("checkpoint {:.2f}, ", t.checkpoint) : "", t.write, t.total);
   std::string passes;
   for (const auto& [label, seconds] : s.pass_seconds)

@@ -40,9 +40,9 @@ void pack_materials(const Scene& scene, DeviceBuffers& buffers) {
   }
 }
 
-template <class T>
-Buffer share(DeviceContext& context, const std::vector<T>& data) {
-  return context.share(data.data(), data.size() * sizeof(T));
+template <class Array>
+Buffer share(DeviceContext& context, const Array& data) {
+  return context.share(data.data(), data.size() * sizeof(data[0]));
 }
 
 void check_memory(const DeviceInfo& info, std::size_t needed) {

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <vector>
 
 #include "dapple/error.hpp"
 #include "file/temporary_file.hpp"
@@ -66,6 +65,21 @@ std::string refusal(const std::string& target) {
 void copy_permissions(const std::string& from, int to) {
   struct stat existing {};
   if (stat(from.c_str(), &existing) == 0 && fchmod(to, existing.st_mode & 0777) != 0) errno = 0;
+}
+
+// Whether the file is these pieces and nothing else.
+bool holds(const std::string& path, std::span<const std::string_view> pieces) {
+  std::ifstream file(path, std::ios::binary);
+  std::string block(kBufferBytes, '\0');
+  for (std::string_view piece : pieces) {
+    while (!piece.empty()) {
+      const std::size_t step = std::min(piece.size(), block.size());
+      file.read(block.data(), static_cast<std::streamsize>(step));
+      if (!file || piece.substr(0, step) != std::string_view(block.data(), step)) return false;
+      piece.remove_prefix(step);
+    }
+  }
+  return file.peek() == std::ifstream::traits_type::eof();
 }
 
 }  // namespace
@@ -150,20 +164,16 @@ void PendingFile::commit() {
 }
 
 void write_whole_file(const std::string& path, std::string_view bytes) {
-  PendingFile file(path);
-  file.write(bytes.data(), bytes.size());
-  file.close();
+  write_whole_file(path, std::span(&bytes, 1));
+}
 
-  std::ifstream reread(file.temporary_path(), std::ios::binary);
-  std::vector<char> block(kBufferBytes);
-  std::size_t done = 0;
-  while (reread.read(block.data(), static_cast<std::streamsize>(block.size())),
-         reread.gcount() > 0) {
-    const std::string_view got(block.data(), static_cast<std::size_t>(reread.gcount()));
-    if (bytes.substr(std::min(done, bytes.size()), got.size()) != got) break;
-    done += got.size();
+void write_whole_file(const std::string& path, std::span<const std::string_view> pieces) {
+  PendingFile file(path);
+  for (const std::string_view piece : pieces) file.write(piece.data(), piece.size());
+  file.close();
+  if (!holds(file.temporary_path(), pieces)) {
+    file.fail("what was read back differs from what was written");
   }
-  if (done != bytes.size()) file.fail("what was read back differs from what was written");
   file.commit();
 }
 

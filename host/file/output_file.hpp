@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -59,7 +60,9 @@ class PendingFile {
   int lock_ = -1;  // a duplicate: the file stays locked until it has its name
 };
 
-/// All of `bytes` as the file `path`, read back before it takes the name. Throws Error failed.
+/// All of `bytes`, or of the pieces one after the other, as the file `path`, read back before it
+/// takes the name. Throws Error failed.
 void write_whole_file(const std::string& path, std::string_view bytes);
+void write_whole_file(const std::string& path, std::span<const std::string_view> pieces);
 
 }  // namespace dapple

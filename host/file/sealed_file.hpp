@@ -60,6 +60,9 @@ class SealedFile {
     return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
 
+  /// Keeps the sections in memory after this has gone.
+  [[nodiscard]] std::shared_ptr<const void> keeper() const { return mapping_; }
+
  private:
   friend SealedFile open_sealed_file(const std::string& path, SealedKind kind);
   [[nodiscard]] Section section_of(std::size_t index, std::size_t value_bytes) const;

@@ -1,17 +1,14 @@
-// Writes a scene as one GLB file (glTF 2.0 Specification, section 4), beside its path and
-// then renamed over it, so that nobody meets half a file. The same scene gives the same bytes.
+// Writes a scene as one GLB file (glTF 2.0 Specification, section 4). The same scene gives the
+// same bytes.
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
+#include <string_view>
+#include <vector>
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "file/output_file.hpp"
 #include "scene/glb_layout.hpp"
 
 namespace dapple {
@@ -25,72 +22,9 @@ constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
 
 // GLB is little-endian whatever the machine.
-void write_word(std::ostream& out, std::size_t word) {
-  std::array<char, 4> bytes{};
-  for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<char>((word >> (8 * i)) & 0xff);
-  out.write(bytes.data(), bytes.size());
+void append_word(std::string& out, std::size_t word) {
+  for (std::size_t i = 0; i < 4; ++i) out += static_cast<char>((word >> (8 * i)) & 0xff);
 }
-
-void write_chunks(std::ostream& out, const GlbLayout& layout, std::size_t total) {
-  write_word(out, kGlbMagic);
-  write_word(out, kGlbVersion);
-  write_word(out, total);
-  write_word(out, layout.json.size());
-  write_word(out, kJsonChunk);
-  out.write(layout.json.data(), static_cast<std::streamsize>(layout.json.size()));
-  if (layout.byte_count == 0) return;
-  write_word(out, layout.byte_count);
-  write_word(out, kBinChunk);
-  for (const auto& piece : layout.pieces) {
-    out.write(reinterpret_cast<const char*>(piece.data()),
-              static_cast<std::streamsize>(piece.size()));
-  }
-}
-
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw Error(ErrorKind::failed, fmt::format("{}: {}", path, what));
-}
-
-std::string errno_text() { return std::strerror(errno); }
-
-// The name under which the file grows; gone again unless it was renamed.
-class FileBeside {
- public:
-  explicit FileBeside(const std::string& path)
-      : path_(path), beside_(fmt::format("{}.{}.part", path, getpid())) {
-    std::error_code ignored;
-    const auto status = std::filesystem::status(path, ignored);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-      fail(path, "is there already and is not a regular file");
-    }
-    file_.open(beside_, std::ios::binary | std::ios::trunc);
-    if (!file_) fail(path, "cannot be written: " + errno_text());
-  }
-  FileBeside(const FileBeside&) = delete;
-  FileBeside& operator=(const FileBeside&) = delete;
-  ~FileBeside() {
-    if (renamed_) return;
-    std::error_code ignored;
-    std::filesystem::remove(beside_, ignored);
-  }
-
-  std::ostream& stream() { return file_; }
-
-  void finish() {
-    file_.close();  // the last bytes meet a full disk here
-    if (!file_) fail(path_, "cannot be written: " + errno_text());
-    std::error_code error;
-    std::filesystem::rename(beside_, path_, error);
-    if (error) fail(path_, "cannot be replaced: " + error.message());
-    renamed_ = true;
-  }
-
- private:
-  std::string path_;
-  std::string beside_;
-  std::ofstream file_;
-  bool renamed_ = false;
-};
 
 }  // namespace
 
@@ -100,11 +34,25 @@ void write_glb(const Scene& scene, const std::string& path) {
   const std::size_t total = kHeaderBytes + kChunkHeaderBytes + layout.json.size() +
                             (layout.byte_count > 0 ? kChunkHeaderBytes + layout.byte_count : 0);
   if (total > std::numeric_limits<std::uint32_t>::max()) {
-    fail(path, fmt::format("would have {} bytes; a GLB file has room for 4294967295", total));
+    throw Error(
+        ErrorKind::failed,
+        fmt::format("{}: would have {} bytes; a GLB file has room for 4294967295", path, total));
   }
-  FileBeside file(path);
-  write_chunks(file.stream(), layout, total);
-  file.finish();
+  std::string header, binary_header;
+  for (const std::size_t word : {std::size_t{kGlbMagic}, std::size_t{kGlbVersion}, total,
+                                 layout.json.size(), std::size_t{kJsonChunk}}) {
+    append_word(header, word);
+  }
+  std::vector<std::string_view> pieces{header, layout.json};
+  if (layout.byte_count > 0) {
+    append_word(binary_header, layout.byte_count);
+    append_word(binary_header, kBinChunk);
+    pieces.push_back(binary_header);
+  }
+  for (const auto& piece : layout.pieces) {
+    pieces.emplace_back(reinterpret_cast<const char*>(piece.data()), piece.size());
+  }
+  write_whole_file(path, pieces);
 }
 
 }  // namespace dapple

@@ -61,6 +61,15 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   return m;
 }
 
+void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
+  s.cache.used = true;
+  s.cache.objects_read = bvh.cache.objects_read;
+  s.cache.objects_written = bvh.cache.objects_written;
+  s.cache.seconds_saved = bvh.cache.seconds_saved;
+  s.seconds.cache = bvh.cache.read_seconds + bvh.cache.write_seconds;
+  if (!bvh.cache.note.empty()) s.notes.push_back("BVH cache: " + bvh.cache.note);
+}
+
 void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBuffers& buffers) {
   s.seconds.build = bvh.statistics.build_seconds;
   s.seconds.prefilter = bvh.statistics.prefilter_seconds;
@@ -89,7 +98,8 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
   statistics.device = device.info().name;
   for (std::string& note : device.context().notes()) statistics.notes.push_back(std::move(note));
 
-  const SceneBvh bvh = build_bvh(scene);
+  const SceneBvh bvh = build_bvh(scene, options.cache);
+  if (!options.cache.empty()) add_cache_statistics(statistics, bvh.statistics);
   const Stopwatch uploading;
   const DeviceScene on_device = upload(device, scene, bvh);
   statistics.seconds.upload = uploading.seconds();

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "dapple/const_array.hpp"
 #include "dapple/scene.hpp"
 #include "dapple/shared/bvh_node.h"
 #include "dapple/shared/geometry.h"
@@ -22,12 +24,19 @@ struct BvhStatistics {
   double lane_use = 0;  ///< used lanes of all triangle blocks, [0,1]
   double sah_cost = 0;  ///< expected node visits a ray through the largest object's root
   float root_opacity[3] = {0, 0, 0};  ///< of the whole scene's box, along x, y, z
+  /// Of the cache of trees. Small objects are built anew without it and count among neither.
+  struct {
+    std::size_t objects_read = 0, objects_written = 0;
+    double read_seconds = 0, write_seconds = 0;
+    double seconds_saved = 0;  ///< that building what was read once took, less read_seconds
+    std::string note;          ///< what was wrong with its files, one line; empty: nothing
+  } cache;
 };
 
 struct SceneBvh {
-  std::vector<BvhNode> nodes;  ///< all objects', then the top level's
-  std::vector<TriangleBlock> blocks;
-  std::vector<TexturedTriangle> textured;
+  ConstArray<BvhNode> nodes;  ///< all objects', then the top level's
+  ConstArray<TriangleBlock> blocks;
+  ConstArray<TexturedTriangle> textured;
   std::vector<InstanceRecord> instances;  ///< in the order of the top level's leaves
   std::uint32_t root = 0;                 ///< node to start from
   bool has_top = false;                   ///< false: `root` is the only object's, in world space
@@ -35,9 +44,15 @@ struct SceneBvh {
   BvhStatistics statistics;
 };
 
+/// Makes a folder for built trees if there is none, checks that files can be read and written
+/// there, and removes what killed runs left in it. Throws Error usage, which names --cache.
+void prepare_bvh_cache(const std::string& folder);
+
 /// Builds everything for a scene with at least one triangle that can be hit. Linear in the
-/// triangles, parallel, and the same bits whatever the thread count. Throws Error failed
-/// when the tree is too deep for the kernels' stack or too large for 32-bit indices.
-SceneBvh build_bvh(const Scene& scene);
+/// triangles, parallel, and the same bits whatever the thread count. With a `cache_folder` objects
+/// that were built before are read from there, the same bits again, and others written there;
+/// files that are damaged or of another version are replaced. Throws Error failed when the tree is
+/// too deep for the kernels' stack or too large for 32-bit indices.
+SceneBvh build_bvh(const Scene& scene, const std::string& cache_folder = "");
 
 }  // namespace dapple

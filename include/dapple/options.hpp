@@ -73,6 +73,7 @@ struct RenderOptions {
   std::string device;  ///< part of an OpenCL device's name; empty: the best one
   Company trace_with = Company::automatic;
   std::string kernel_dir;  ///< read kernels from this folder instead of the built-in ones
+  std::string cache;       ///< keep built BVHs in this folder and reuse them; empty: don't
   bool ground = false;     ///< put an opaque plane under the scene
   std::vector<std::pair<std::string, float>> opacity;  ///< material name, opacity in [0,1]
 };

@@ -17,9 +17,10 @@ namespace dapple {
 
 struct RenderStatistics {
   struct {
-    double load = 0, build = 0, prefilter = 0, upload = 0, kernel_build = 0, trace = 0,
+    double load = 0, cache = 0, build = 0, prefilter = 0, upload = 0, kernel_build = 0, trace = 0,
            checkpoint = 0, write = 0, total = 0;
-  } seconds;  ///< wall time; trace is all passes, camera rays included, checkpoints not
+  } seconds;  ///< wall time; cache is reading and writing it, trace all passes, camera rays
+              ///< included, checkpoints not
   std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
   struct {
     std::uint64_t camera = 0, ao = 0, light = 0;
@@ -31,6 +32,12 @@ struct RenderStatistics {
   /// "light.NAME"); of lights relative to their largest unoccluded irradiance.
   std::map<std::string, double> rmse;
   std::size_t triangles = 0, nodes = 0;
+  /// Of the cache of BVHs. Small objects are always built and count among neither.
+  struct {
+    bool used = false;
+    std::size_t objects_read = 0, objects_written = 0;
+    double seconds_saved = 0;  ///< building what was read once took so much longer than reading it
+  } cache;
   struct {
     std::size_t nodes = 0, triangles = 0, textures = 0, instances = 0, film = 0, queues = 0;
   } bytes;  ///< device memory by part

@@ -1,0 +1,14 @@
+// The name under which a mesh's tree is cached: a checksum of everything that the tree is a
+// function of, but of what builds it.
+#pragma once
+
+#include "dapple/scene.hpp"
+#include "file/checksum.hpp"
+
+namespace dapple {
+
+/// Of the mesh's geometry, its materials' opacities and their textures. Names, instances, lights
+/// and whatever other meshes use make no difference.
+Checksum object_key(const Scene& scene, const Mesh& mesh);
+
+}  // namespace dapple

@@ -1,0 +1,17 @@
+// Every mesh's finished object: from the cache, or built and put into it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bvh/bvh_cache.hpp"
+#include "dapple/bvh.hpp"
+
+namespace dapple {
+
+/// One for each of the scene's meshes; those that nothing can hit have no nodes. Fills what the
+/// statistics tell of times and of the cache. `cache_folder`: empty for none.
+std::vector<FinishedObject> finish_objects(const Scene& scene, const std::string& cache_folder,
+                                           BvhStatistics& statistics);
+
+}  // namespace dapple
