@@ -270,7 +270,7 @@ TEST_F(CheckpointFile, OtherSettingsAreRefusedAndNamed) {
          o.crop = PixelRect{1, 2, 3, 4};
        }},
       {"--estimator prefiltered, this", [](auto& o) { o.estimator = Estimator::exact; }},
-      {"--footprint 1, this render has --footprint 1.0000001",
+      {"--footprint 4, this render has --footprint 4.0000005",
        [](auto& o) { o.footprint = std::nextafter(1.0f, 2.0f); }},
       {"--passes ao,light, this render has --passes ao", [](auto& o) { o.light = false; }},
       {"--ao-rays 8, this render has --ao-rays 7", [](auto& o) { o.ao_rays = 7; }},

@@ -17,7 +17,7 @@ namespace {
 
 using namespace kernel_test;
 
-constexpr float kFar = 4096.0f;  // beyond, the device folds coordinates first
+constexpr float kFar = 4096.0f;  // beyond, the device takes whole tiles off first
 
 Texture noise_texture(Wrap wrap_s, Wrap wrap_t, bool nearest) {
   Texture texture;

@@ -229,7 +229,7 @@ Scene scene_of_materials(std::size_t materials) {
 
 TEST(TexturedTriangle, AMaterialTooManyIsRefusedByName) {
   const Scene most = scene_of_materials(DAPPLE_MOST_TEXTURED_MATERIALS);
-  EXPECT_EQ(unpack_textured(build_bvh(most).textured.at(0)).material,
+  EXPECT_EQ(unpack_textured(build_bvh(most).textured[0]).material,
             DAPPLE_MOST_TEXTURED_MATERIALS - 1u);
   try {
     build_bvh(scene_of_materials(DAPPLE_MOST_TEXTURED_MATERIALS + 1));

@@ -59,9 +59,10 @@ std::uint32_t alpha_code(float alpha) {
   return static_cast<std::uint32_t>(std::lround(inside * DAPPLE_ALPHA_ONE));
 }
 
-std::uint32_t frame_bits(const Steps& steps, bool has_texture) {
-  return static_cast<std::uint32_t>(steps.exponent + 127) |
-         (steps.origin > 0 ? DAPPLE_UV_FROM_MIDDLE : 0u) | (has_texture ? DAPPLE_UV_TEXTURED : 0u);
+std::uint32_t step_and_flags(const Steps& steps, bool has_texture, bool has_vertex_alpha) {
+  return static_cast<std::uint32_t>(steps.exponent + 63) |
+         (steps.origin > 0 ? DAPPLE_UV_FROM_MIDDLE : 0u) | (has_texture ? DAPPLE_HAS_TEXTURE : 0u) |
+         (has_vertex_alpha ? DAPPLE_HAS_VERTEX_ALPHA : 0u);
 }
 
 }  // namespace
@@ -70,15 +71,19 @@ TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap
   assert(corners.material < DAPPLE_MOST_TEXTURED_MATERIALS);
   const Coordinates uv = without_whole_tiles(corners, wrap_s, wrap_t);
   const Steps steps = steps_for(uv);
-  const std::uint32_t lowest_bits[3] = {corners.material & 1023u, corners.material >> 10,
-                                        frame_bits(steps, corners.has_texture)};
+  std::array<std::uint32_t, 3> alpha{};
+  std::transform(corners.alpha.begin(), corners.alpha.end(), alpha.begin(), alpha_code);
+  const bool has_vertex_alpha =
+      alpha != std::array<std::uint32_t, 3>{DAPPLE_ALPHA_ONE, DAPPLE_ALPHA_ONE, DAPPLE_ALPHA_ONE};
+  const std::uint32_t lowest_bits[3] = {
+      corners.material & 1023u, corners.material >> 10,
+      step_and_flags(steps, corners.has_texture, has_vertex_alpha)};
   TexturedTriangle triangle{};
   for (int corner = 0; corner < 3; ++corner) {
     const auto u = static_cast<std::uint32_t>(steps.code(uv[corner][0]));
     const auto v = static_cast<std::uint32_t>(steps.code(uv[corner][1]));
-    const std::uint32_t alpha = alpha_code(corners.alpha[corner]);
-    triangle.corner[corner][0] = u << 11 | alpha >> 1;
-    triangle.corner[corner][1] = v << 11 | (alpha & 1u) << 10 | lowest_bits[corner];
+    triangle.corner[corner][0] = u << 11 | alpha[corner] >> 1;
+    triangle.corner[corner][1] = v << 11 | (alpha[corner] & 1u) << 10 | lowest_bits[corner];
   }
   return triangle;
 }

@@ -29,9 +29,9 @@ __kernel void unpack_corners(__global const TexturedTriangle* textured, __global
   if (item >= count) return;
   for (uint corner = 0; corner < 3u; ++corner) {
     const float u = corner == 1u ? 1.0f : 0.0f, v = corner == 2u ? 1.0f : 0.0f;
-    const float2 uv = interpolated_uv(textured + item, u, v);
-    const float alpha = interpolated_alpha(textured + item, u, v);
-    vstore3((float3)(uv, alpha), 3u * item + corner, corners);
+    const float3 found = (float3)(interpolated_uv(textured + item, u, v),
+                                  interpolated_alpha(textured + item, u, v));
+    vstore3(found, 3u * item + corner, corners);
   }
   materials[item] = textured_material(textured + item);
   textures[item] = has_texture(textured + item) ? 1u : 0u;

@@ -12,19 +12,20 @@ namespace dapple {
 /* Two words a corner, for u and v. Each has 21 bits of its coordinate uppermost, in steps of a
    power of two that all six share. Below them the vertex alpha: upper 11 bits in the first word,
    lowest in the second; below that, of the second: bits 0 to 9 of the material (corner 0), bits
-   10 to 19 (corner 1), what DAPPLE_UV_* name (corner 2).
+   10 to 19 (corner 1), the step and three flags (corner 2).
 
    Coordinates and not edges, so that neighbours agree at the vertices they share; of 21 bits,
-   since 16 for edges beside a vertex of two floats moved cards by 1/64 of a texel: 980 of 100,000
-   rays through the game pine were off by more than 0.001 in transmittance, 22 are with floats. */
+   since 16 for edges beside a vertex of two floats moved cards by up to 1/64 of a texel: 980 of
+   100,000 rays through the game pine were off by more than 0.001 in transmittance, 22 are. */
 typedef struct TexturedTriangle {
   uint corner[3][2];
 } TexturedTriangle;
 
-#define DAPPLE_UV_CODES 0x200000     /* of a coordinate: 0 and up to below this */
-#define DAPPLE_UV_EXPONENT 0xffu     /* of a step, biased by 127 as in a float */
-#define DAPPLE_UV_FROM_MIDDLE 0x100u /* half the codes are of negative coordinates */
-#define DAPPLE_UV_TEXTURED 0x200u    /* the material's texture counts */
+#define DAPPLE_UV_CODES 0x200000       /* of a coordinate: 0 and up to below this */
+#define DAPPLE_UV_EXPONENT 0x7fu       /* of the step, biased by 63 */
+#define DAPPLE_UV_FROM_MIDDLE 0x80u    /* half the codes are of negative coordinates */
+#define DAPPLE_HAS_TEXTURE 0x100u      /* the material's counts */
+#define DAPPLE_HAS_VERTEX_ALPHA 0x200u /* alphas are not 1 all three */
 
 /* Steps of vertex alphas: those of 8-bit colours are among them, 16 apart. */
 #define DAPPLE_ALPHA_ONE 4080
@@ -37,7 +38,11 @@ DAPPLE_FUNCTION uint textured_material(DAPPLE_GLOBAL const TexturedTriangle* tri
 }
 
 DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
-  return triangle->corner[2][1] & DAPPLE_UV_TEXTURED;
+  return triangle->corner[2][1] & DAPPLE_HAS_TEXTURE;
+}
+
+DAPPLE_FUNCTION uint has_vertex_alpha(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
+  return triangle->corner[2][1] & DAPPLE_HAS_VERTEX_ALPHA;
 }
 
 /* COLOR_0.a in 1/4080: the material's factor is not in it. */
@@ -58,7 +63,7 @@ DAPPLE_FUNCTION int uv_origin(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
 }
 
 DAPPLE_FUNCTION float uv_step(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
-  return dapple_bits_to_float((triangle->corner[2][1] & DAPPLE_UV_EXPONENT) << 23);
+  return dapple_bits_to_float(((triangle->corner[2][1] & DAPPLE_UV_EXPONENT) + 64u) << 23);
 }
 
 #ifndef __OPENCL_VERSION__
