@@ -11,7 +11,7 @@
 namespace dapple {
 
 struct TexturedCorners {
-  std::array<V2f, 3> uv{};
+  std::array<V2f, 3> uv{V2f(0.0f), V2f(0.0f), V2f(0.0f)};
   std::array<float, 3> alpha{1, 1, 1};  ///< COLOR_0.a, without the material's factor, [0,1]
   std::uint32_t material = 0;           ///< index into Scene::materials
   bool has_texture = false;             ///< else `uv` means nothing
