@@ -17,7 +17,7 @@
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
 #include "file/output_file.hpp"
-#include "film/exr_threads.hpp"
+#include "film/exr_output.hpp"
 
 namespace dapple {
 namespace {
@@ -198,7 +198,7 @@ void run_render(const RenderArguments& a) {
 
   const auto writing = Clock::now();
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
-  write_exr(result.film, a.output);
+  write_exr(result.film, a.output, result.interrupted ? Durable::no : Durable::yes);
   if (!a.png.empty()) write_png(result.film, a.png);
   if (!a.png.empty() && options.visits)
     write_heat_map(result.film, visits_path(a.png), "visits.nodes");

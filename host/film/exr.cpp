@@ -27,7 +27,7 @@
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
 #include "file/output_file.hpp"
-#include "film/exr_threads.hpp"
+#include "film/exr_output.hpp"
 #include "film/film_defect.hpp"
 
 namespace dapple {
@@ -274,13 +274,15 @@ Film decode(const std::string& path) {
 
 void use_exr_threads(int count) { Imf::setGlobalThreadCount(count); }
 
-void write_exr(const Film& film, const std::string& path) {
+void write_exr(const Film& film, const std::string& path) { write_exr(film, path, Durable::yes); }
+
+void write_exr(const Film& film, const std::string& path, Durable durable) {
   PendingFile file(path);
   const std::string reason = film_defect(film);
   if (!reason.empty()) file.fail(reason);
   try {
     encode(film, file);
-    file.close();
+    file.close(durable);
     verify(film, file);
   } catch (const Error&) {
     throw;
