@@ -8,6 +8,7 @@
 
 #include "command/command.hpp"
 #include "command/option_text.hpp"
+#include "command/output_paths.hpp"
 #include "command/progress.hpp"
 #include "command/statistics_text.hpp"
 #include "dapple/error.hpp"
@@ -89,6 +90,8 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--light-radius", a.scene_options.light_radius,
                  "Radius that glTF point lights get, metres")
       ->capture_default_str();
+  app.add_flag("--allow-outside", a.scene_options.allow_outside,
+               "Let a glTF file name buffers and images outside of its folder");
   app.add_option("--opacity", a.opacity,
                  "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
@@ -120,17 +123,38 @@ void write_statistics(const RenderStatistics& statistics, const std::string& pat
   write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
 }
 
-void check_outputs(const RenderArguments& a) {
-  for (const std::string& path : {a.output, a.png, a.stats_json}) {
-    if (!path.empty()) check_output_path(path);
-  }
-}
-
 /// Where the heat map goes that accompanies a preview: tree.png, tree_visits.png.
 std::string visits_path(const std::string& png) {
   const std::filesystem::path path(png);
   return (path.parent_path() / (path.stem().string() + "_visits" + path.extension().string()))
       .string();
+}
+
+std::vector<OutputPath> outputs_of(const RenderArguments& a, const RenderOptions& options) {
+  std::vector<OutputPath> outputs{{"--output", a.output}};
+  if (!a.png.empty()) outputs.push_back({"--png", a.png});
+  if (!a.png.empty() && options.visits)
+    outputs.push_back({"--png (its heat map)", visits_path(a.png)});
+  if (!a.stats_json.empty()) outputs.push_back({"--stats-json", a.stats_json});
+  return outputs;
+}
+
+/// Before anything is read, so that a picture is never lost for want of a place, nor a file
+/// that is to be read.
+void check_files(const std::vector<OutputPath>& outputs, const RenderArguments& a) {
+  check_outputs(outputs);
+  std::vector<std::string> inputs;
+  if (!a.scene.starts_with("scene:")) inputs.push_back(a.scene);
+  if (!a.lights.empty()) inputs.push_back(a.lights);
+  check_outputs_spare(outputs, inputs);
+}
+
+/// One line each; a scene may have thousands.
+void print_notes(const std::vector<std::string>& notes) {
+  constexpr std::size_t kMost = 20;
+  for (std::size_t i = 0; i < notes.size() && i < kMost; ++i)
+    fmt::print(stderr, "note: {}\n", notes[i]);
+  if (notes.size() > kMost) fmt::print(stderr, "note: and {} more\n", notes.size() - kMost);
 }
 
 void run_render(const RenderArguments& a) {
@@ -140,9 +164,11 @@ void run_render(const RenderArguments& a) {
   };
   const auto start = Clock::now();
   const RenderOptions options = to_options(a);
-  check_outputs(a);
+  const std::vector<OutputPath> outputs = outputs_of(a, options);
+  check_files(outputs, a);
 
   Scene scene = load_scene(a.scene, a.scene_options);
+  check_outputs_spare(outputs, scene.files);
   if (!a.lights.empty()) use_lights(scene, a.lights);
   const double load_seconds = since(start);
 
@@ -161,7 +187,7 @@ void run_render(const RenderArguments& a) {
   statistics.seconds.total = since(start);
   if (!a.stats_json.empty()) write_statistics(statistics, a.stats_json);
   if (a.quiet) return;
-  for (const std::string& note : statistics.notes) fmt::print(stderr, "note: {}\n", note);
+  print_notes(statistics.notes);
   fmt::print("{}wrote {}{}\n", statistics_text(statistics), a.output,
              a.png.empty() ? "" : " and " + a.png);
 }

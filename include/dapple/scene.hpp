@@ -109,10 +109,12 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::vector<std::string> warnings;  ///< what the reader skipped, one line each
+  std::vector<std::string> files;     ///< paths of the scene, its buffers and its images
 };
 
 struct SceneOptions {
   float light_radius = 0.1f;  ///< metres: KHR point and spot lights become spheres of this radius
+  bool allow_outside = false;  ///< buffers and images may be outside of the scene file's folder
 };
 
 /// Reads a scene: a glTF 2.0 file (.gltf or .glb), or a procedural one by name,

@@ -4,6 +4,7 @@
 
 #include "dapple/scene.hpp"
 #include "scene/gltf/camera.hpp"
+#include "scene/gltf/crowding.hpp"
 #include "scene/gltf/document.hpp"
 #include "scene/gltf/hierarchy.hpp"
 #include "scene/gltf/instance.hpp"
@@ -22,13 +23,15 @@ void check_options(const SceneOptions& options) {
 }
 
 Scene read_scene(const std::string& path, const SceneOptions& options) {
-  const gltf::Document document = gltf::load_document(path);
+  const gltf::Document document = gltf::load_document(path, options.allow_outside);
   const std::vector<gltf::PlacedNode> placed = gltf::place_nodes(document);
   Scene scene;
   scene.source = path;
+  scene.files = document.files;
   const gltf::MaterialSet materials = gltf::read_materials(document, placed, scene);
   gltf::add_instances(document, placed, materials, scene);
   if (scene.instances.empty()) gltf::fail(path, "has no triangles");
+  gltf::check_crowding(scene);
   gltf::add_punctual_lights(document, placed, options, scene);
   gltf::add_cameras(document, placed, scene);
   return scene;
