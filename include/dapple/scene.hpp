@@ -117,6 +117,9 @@ struct SceneOptions {
   bool allow_outside = false;  ///< buffers and images may be outside of the scene file's folder
 };
 
+/// Throws Error usage, naming the command line's flag, when a value is out of range.
+void validate(const SceneOptions& options);
+
 /// Reads a scene: a glTF 2.0 file (.gltf or .glb), or a procedural one by name,
 /// "scene:tree?leaves=50000&opacity=0.85&seed=1". Throws Error: input.
 Scene load_scene(const std::string& spec, const SceneOptions& options = {});

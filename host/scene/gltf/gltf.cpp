@@ -15,13 +15,6 @@
 namespace dapple {
 namespace {
 
-void check_options(const SceneOptions& options) {
-  if (options.light_radius > 0) return;
-  throw Error(
-      ErrorKind::usage,
-      fmt::format("the radius of point lights is {} m; it must be above 0", options.light_radius));
-}
-
 Scene read_scene(const std::string& path, const SceneOptions& options) {
   const gltf::Document document = gltf::load_document(path, options.allow_outside);
   const std::vector<gltf::PlacedNode> placed = gltf::place_nodes(document);
@@ -40,7 +33,7 @@ Scene read_scene(const std::string& path, const SceneOptions& options) {
 }  // namespace
 
 Scene load_gltf(const std::string& path, const SceneOptions& options) {
-  check_options(options);
+  validate(options);
   try {
     return read_scene(path, options);
   } catch (const std::bad_alloc&) {

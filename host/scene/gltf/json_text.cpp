@@ -2,10 +2,9 @@
 #include "scene/gltf/json_text.hpp"
 
 #include <nlohmann/json.hpp>
-#include <set>
-#include <vector>
 
 #include "scene/gltf/message.hpp"
+#include "scene/unique_keys.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -66,34 +65,16 @@ void check_size(std::string_view json, const std::string& file) {
   }
 }
 
-/// glTF 2.0, section 2.7: keys are unique within their object. Readers differ in which of two
-/// they take.
-class UniqueKeys {
- public:
-  explicit UniqueKeys(const std::string& file) : file_(file) {}
-
-  void see(Json::parse_event_t event, const Json& parsed) {
-    if (event == Json::parse_event_t::object_start) open_.emplace_back();
-    if (event == Json::parse_event_t::object_end) open_.pop_back();
-    if (event != Json::parse_event_t::key) return;
-    const auto& key = parsed.get_ref<const std::string&>();
-    if (!open_.back().insert(key).second) {
-      fail(file_, "JSON has the key \"{}\" twice in one object", excerpt(key));
-    }
-  }
-
- private:
-  const std::string& file_;
-  std::vector<std::set<std::string>> open_;
-};
-
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& file) {
   check_size(text, file);
-  UniqueKeys keys(file);
+  UniqueKeys keys;  // glTF 2.0, section 2.7
   const auto see = [&](int, Json::parse_event_t event, Json& parsed) {
-    keys.see(event, parsed);
+    if (!keys.see(event, parsed)) {
+      fail(file, "JSON has the key \"{}\" twice in one object",
+           excerpt(parsed.get_ref<const std::string&>()));
+    }
     return true;
   };
   try {
