@@ -130,6 +130,105 @@ TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsFoundBeforeTheSceneIsRead) {
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
+TEST_F(CommandLine, AnOutputThatIsAnInputByAnyLinkIsRefusedByItsFlag) {
+  ASSERT_EQ(dapple("scene cube -o scene.glb").code, 0);
+  write_bytes(path("lights.json"), "{\"lights\": []}");
+  std::filesystem::create_symlink("scene.glb", path("soft.exr"));
+  std::filesystem::create_hard_link(path("scene.glb"), path("hard.exr"));
+  std::filesystem::create_symlink("lights.json", path("lights.exr"));
+  const std::string before = bytes_of(path("scene.glb"));
+  const std::string render = "render scene.glb --lights lights.json -o ";
+  for (const char* output : {"scene.glb", "./scene.glb", "soft.exr", "hard.exr"}) {
+    expect_failure(dapple(render + output), 2, "--output");
+    expect_failure(dapple(render + "a.exr --png " + output), 2, "--png");
+    expect_failure(dapple(render + "a.exr --stats-json " + output), 2, "--stats-json");
+  }
+  expect_failure(dapple(render + "lights.json"), 2, "--output");
+  expect_failure(dapple(render + "lights.exr"), 2, "--output");
+  EXPECT_EQ(bytes_of(path("scene.glb")), before);
+  EXPECT_EQ(files_in_folder(), 5u);
+}
+
+TEST_F(CommandLine, AnOutputThatIsABufferOrImageOfTheSceneIsRefusedByItsFlag) {
+  write_bytes(path("a.bin"), std::string(36, '\0'));
+  write_bytes(path("scene.gltf"), R"({"asset": {"version": "2.0"},
+    "buffers": [{"uri": "a.bin", "byteLength": 36}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}],
+    "images": [{"uri": "leaf.png"}]})");
+  expect_failure(dapple("render scene.gltf -o a.bin"), 2, "--output a.bin: would overwrite");
+  expect_failure(dapple("render scene.gltf -o a.exr --png leaf.png"), 2, "--png leaf.png");
+  EXPECT_EQ(bytes_of(path("a.bin")), std::string(36, '\0'));
+  EXPECT_EQ(files_in_folder(), 2u);
+}
+
+TEST_F(CommandLine, OutputsThatAreOneFileAreRefusedByTheirFlags) {
+  std::filesystem::create_directory(path("folder"));
+  std::filesystem::create_symlink("folder", path("link"));
+  write_bytes(path("old.exr"), "old");
+  std::filesystem::create_hard_link(path("old.exr"), path("same.exr"));
+  expect_failure(render("--png out.exr"), 2, "--png out.exr: is the same file as --output");
+  expect_failure(render("--png ./out.exr"), 2, "--png");
+  expect_failure(render("--png a.png --stats-json a.png"), 2, "--stats-json");
+  expect_failure(render("--png folder/a.png --stats-json link/a.png"), 2, "--stats-json");
+  expect_failure(render("--png old.exr --stats-json same.exr"), 2, "--stats-json");
+  expect_failure(render("--passes ao,visits --png a.png --stats-json a_visits.png"), 2,
+                 "--stats-json");
+  expect_failure(dapple("compare old.exr same.exr --png same.exr"), 2, "--png");
+  EXPECT_EQ(files_in_folder(), 4u);
+}
+
+TEST_F(CommandLine, AnOutputThatIsNoRegularFileIsRefusedByItsFlag) {
+  std::filesystem::create_symlink("nowhere", path("dangling.exr"));
+  std::filesystem::create_symlink("loop.exr", path("loop.exr"));
+  ASSERT_EQ(std::system(("mkfifo '" + path("fifo.exr") + "'").c_str()), 0);
+  for (const char* output : {"/dev/null", "/dev/full", "fifo.exr", "dangling.exr", "loop.exr"}) {
+    expect_failure(dapple(std::string("render scene:cube -o ") + output), 2, "--output");
+    expect_failure(render(std::string("--png ") + output), 2, "--png");
+  }
+  EXPECT_EQ(files_in_folder(), 3u);
+}
+
+TEST_F(CommandLine, AllowOutsideLetsASceneReadBesideItsFolder) {
+  std::filesystem::create_directory(path("scene"));
+  std::string triangle(36, '\0');
+  const float one = 1;
+  triangle.replace(12, 4, reinterpret_cast<const char*>(&one), 4);
+  triangle.replace(28, 4, reinterpret_cast<const char*>(&one), 4);
+  write_bytes(path("a.bin"), triangle);
+  write_bytes(path("scene/scene.gltf"), R"({"asset": {"version": "2.0"},
+    "buffers": [{"uri": "../a.bin", "byteLength": 36}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}]})");
+  expect_failure(dapple("info scene/scene.gltf"), 3, "--allow-outside");
+  EXPECT_EQ(dapple("info scene/scene.gltf --allow-outside").code, 0);
+  const std::string render = "render scene/scene.gltf --width 8 --height 8 --spp 1 -q -o ";
+  expect_failure(dapple(render + "a.exr"), 3, "buffer 0");
+  EXPECT_EQ(dapple(render + "a.exr --allow-outside").code, 0);
+  expect_failure(dapple(render + "a.bin --allow-outside"), 2, "--output a.bin: would overwrite");
+}
+
+TEST_F(CommandLine, ProceduralParametersOutOfRangeAreNamedAtOnce) {
+  for (const char* query :
+       {"leaves=1e12", "leaves=nan", "leaves=-5", "leaves=1e400", "leaves=", "leaves=1.5",
+        "leaves=5&leaves=6", "leaves", "leaves=0x10", "leaves= 5"}) {
+    expect_failure(dapple("render 'scene:tree?" + std::string(query) + "' -o out.exr"), 2,
+                   "leaves");
+  }
+  expect_failure(dapple("render 'scene:tree?height=inf' -o out.exr"), 2, "height");
+  expect_failure(dapple("render 'scene:tree?nosuch=1' -o out.exr"), 2, "nosuch");
+  expect_failure(dapple("render 'scene:tree?=1' -o out.exr"), 2, "scene:tree");
+  expect_failure(dapple("render 'scene:' -o out.exr"), 2, "scene:");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(CommandLine, APictureBeyondTheMachinesMemoryIsRefusedBeforeRendering) {
+  expect_failure(dapple("render scene:cube -o out.exr --width 65535 --height 65535"), 2, "--width");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
 TEST_F(CommandLine, InputsThatCannotBeReadAreNamed) {
   write_bytes(path("text.glb"), "this is no glTF file");
   write_bytes(path("lights.json"), "{\"lights\": [");
@@ -210,7 +309,7 @@ TEST_F(CommandLine, VisitsAreALayerAndAHeatMapBesideThePreview) {
 }
 
 TEST_F(CommandLine, OnePixelAndOneColumnArePictures) {
-  for (const auto& [width, height] : {std::pair{1, 1}, {1, 2000}, {2000, 1}}) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 8192}, {8192, 1}}) {
     const Outcome run = dapple("render 'scene:cube?divisions=1' -o out.exr -q --spp 1 --width " +
                                std::to_string(width) + " --height " + std::to_string(height));
     ASSERT_EQ(run.code, 0) << run.err;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "command/command.hpp"
+#include "command/output_paths.hpp"
 #include "compare/difference.hpp"
 #include "compare/figures_text.hpp"
 #include "compare/heat_map.hpp"
@@ -31,8 +32,11 @@ void check(const CompareArguments& a) {
   if (a.max_rmse && (!std::isfinite(*a.max_rmse) || *a.max_rmse < 0)) {
     throw Error(ErrorKind::usage, "--max-rmse must be a number, 0 or more");
   }
-  if (!a.png.empty()) check_output_path(a.png);
-  if (!a.html.empty()) check_output_path(a.html);
+  std::vector<OutputPath> outputs;
+  if (!a.png.empty()) outputs.push_back({"--png", a.png});
+  if (!a.html.empty()) outputs.push_back({"--html", a.html});
+  check_outputs(outputs);
+  check_outputs_spare(outputs, {a.a, a.b});
 }
 
 void keep_layer(LayerMatch& match, const std::string& layer) {

@@ -15,6 +15,7 @@ namespace {
 struct InfoArguments {
   std::string scene;
   std::vector<std::string> opacity;
+  SceneOptions scene_options;
   bool json = false;
 };
 
@@ -98,7 +99,7 @@ std::string report_text(const nlohmann::ordered_json& r) {
 }
 
 void run_info(const InfoArguments& a) {
-  Scene scene = load_scene(a.scene);
+  Scene scene = load_scene(a.scene, a.scene_options);
   for (const std::string& text : a.opacity) {
     const auto [material, value] = parse_opacity(text);
     override_opacity(scene, material, value);
@@ -114,6 +115,8 @@ Run add_info_command(CLI::App& app) {
   auto a = std::make_shared<InfoArguments>();
   app.add_option("SCENE", a->scene, "glTF file or procedural scene")->required();
   app.add_option("--opacity", a->opacity, "MATERIAL=VALUE, as for render");
+  app.add_flag("--allow-outside", a->scene_options.allow_outside,
+               "Let a glTF file name buffers and images outside of its folder");
   app.add_flag("--json", a->json, "Print JSON");
   app.footer("Example:\n  dapple info tree.glb --opacity leaf=0.85");
   return [a] { run_info(*a); };

@@ -12,6 +12,7 @@
 #include "command/command.hpp"
 #include "command/interruption.hpp"
 #include "command/option_text.hpp"
+#include "command/output_paths.hpp"
 #include "command/progress.hpp"
 #include "command/statistics_text.hpp"
 #include "dapple/error.hpp"
@@ -103,6 +104,8 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--light-radius", a.scene_options.light_radius,
                  "Radius that glTF point lights get, metres")
       ->capture_default_str();
+  app.add_flag("--allow-outside", a.scene_options.allow_outside,
+               "Let a glTF file name buffers and images outside of its folder");
   app.add_option("--opacity", a.opacity,
                  "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
@@ -162,18 +165,45 @@ void write_statistics(const RenderStatistics& statistics, const std::string& pat
   write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
 }
 
-void check_outputs(const RenderArguments& a) {
-  for (const std::string& path : {a.output, a.png, a.stats_json, a.checkpoint}) {
-    if (!path.empty()) check_output_path(path);
-  }
-  if (!a.options.cache.empty()) prepare_bvh_cache(a.options.cache);
-}
-
 /// Where the heat map goes that accompanies a preview: tree.png, tree_visits.png.
 std::string visits_path(const std::string& png) {
   const std::filesystem::path path(png);
   return (path.parent_path() / (path.stem().string() + "_visits" + path.extension().string()))
       .string();
+}
+
+std::vector<OutputPath> outputs_of(const RenderArguments& a, const RenderOptions& options) {
+  std::vector<OutputPath> outputs{{"--output", a.output}};
+  if (!a.png.empty()) outputs.push_back({"--png", a.png});
+  if (!a.png.empty() && options.visits)
+    outputs.push_back({"--png (its heat map)", visits_path(a.png)});
+  if (!a.stats_json.empty()) outputs.push_back({"--stats-json", a.stats_json});
+  if (!a.checkpoint.empty()) outputs.push_back({"--checkpoint", a.checkpoint});
+  return outputs;
+}
+
+/// Before anything is read, so that a picture is never lost for want of a place, nor a file
+/// that is to be read.
+void check_files(const std::vector<OutputPath>& outputs, const RenderArguments& a) {
+  check_outputs(outputs);
+  std::vector<std::string> inputs;
+  if (!a.scene.starts_with("scene:")) inputs.push_back(a.scene);
+  if (!a.lights.empty()) inputs.push_back(a.lights);
+  if (!a.dome.empty()) inputs.push_back(a.dome);
+  check_outputs_spare(outputs, inputs);
+  if (a.resume.empty()) return;
+  // A checkpoint may take the place of the one that it goes on from, nothing else may.
+  std::vector<OutputPath> others = outputs;
+  std::erase_if(others, [](const OutputPath& output) { return output.flag == "--checkpoint"; });
+  check_outputs_spare(others, {a.resume});
+}
+
+/// One line each; a scene may have thousands.
+void print_notes(const std::vector<std::string>& notes) {
+  constexpr std::size_t kMost = 20;
+  for (std::size_t i = 0; i < notes.size() && i < kMost; ++i)
+    fmt::print(stderr, "note: {}\n", notes[i]);
+  if (notes.size() > kMost) fmt::print(stderr, "note: and {} more\n", notes.size() - kMost);
 }
 
 void run_render(const RenderArguments& a) {
@@ -185,10 +215,13 @@ void run_render(const RenderArguments& a) {
   const RenderOptions options = to_options(a);
   ProgressBar progress(a.quiet);
   const RenderControl control = to_control(a, progress);
-  check_outputs(a);
+  const std::vector<OutputPath> outputs = outputs_of(a, options);
+  check_files(outputs, a);
+  if (!options.cache.empty()) prepare_bvh_cache(options.cache);
   catch_interruptions();
 
   Scene scene = load_scene(a.scene, a.scene_options);
+  check_outputs_spare(outputs, scene.files);
   if (!a.lights.empty()) use_lights(scene, a.lights);
   if (!a.dome.empty()) add_dome(scene, a);
   const double load_seconds = since(start);
@@ -210,7 +243,7 @@ void run_render(const RenderArguments& a) {
   if (!result.checkpoint_failure.empty())
     throw Error(ErrorKind::failed, result.checkpoint_failure + "; the picture is written");
   if (a.quiet) return;
-  for (const std::string& note : statistics.notes) fmt::print(stderr, "note: {}\n", note);
+  print_notes(statistics.notes);
   fmt::print("{}wrote {}{}\n", statistics_text(statistics), a.output,
              a.png.empty() ? "" : " and " + a.png);
 }

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "command/command.hpp"
+#include "command/output_paths.hpp"
 #include "dapple/error.hpp"
-#include "file/output_file.hpp"
 #include "scene/procedural.hpp"
 
 namespace dapple {
@@ -52,7 +52,7 @@ Run add_scene_command(CLI::App& app) {
   app.add_option("-o,--output", a->output, "GLB file to write")->required();
   app.footer(catalogue());
   return [a] {
-    check_output_path(a->output);
+    check_outputs({{"--output", a->output}});
     const Scene scene = make_procedural(scene_name(*a));
     write_glb(scene, a->output);
     std::size_t triangles = 0;

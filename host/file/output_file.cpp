@@ -44,6 +44,9 @@ std::string refusal(const std::string& target) {
   if (target.empty()) return "the name is empty";
   std::error_code problem;
   const fs::file_status status = fs::status(target, problem);
+  // Renaming over it would replace the link; creating what it names is not ours to do.
+  if (!fs::exists(status) && fs::is_symlink(fs::symlink_status(target, problem)))
+    return "it is a symbolic link that leads nowhere";
   if (fs::is_directory(status)) return "it is a folder";
   if (fs::exists(status) && !fs::is_regular_file(status)) return "it is not a regular file";
   if (fs::exists(status) && access(target.c_str(), W_OK) != 0) return std::strerror(errno);

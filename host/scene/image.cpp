@@ -1,13 +1,13 @@
 // Decoding images through stb_image: see image.hpp.
 #include "scene/image.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 
 #include "dapple/error.hpp"
+#include "scene/image_structure.hpp"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -39,29 +39,34 @@ void check_size(std::uint64_t width, std::uint64_t height, const std::string& wh
                    " pixels, at most " + std::to_string(kMaxImagePixels) + " in all)");
 }
 
-bool is_png(std::span<const std::uint8_t> bytes) {
-  constexpr std::array<std::uint8_t, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  return bytes.size() >= 24 && std::equal(kSignature.begin(), kSignature.end(), bytes.begin());
-}
-
 std::uint64_t big_endian(std::span<const std::uint8_t> bytes) {
   std::uint64_t value = 0;
   for (const std::uint8_t byte : bytes) value = value << 8 | byte;
   return value;
 }
 
+/// stb_image reads a PNG header too, but calls one of more than 2^30 bytes "unknown".
+void check_png_size(std::span<const std::uint8_t> bytes, const std::string& what) {
+  constexpr std::size_t kSizesEnd = 24;
+  if (bytes.size() < kSizesEnd) refuse(what, "is corrupt (its PNG header)");
+  check_size(big_endian(bytes.subspan(16, 4)), big_endian(bytes.subspan(20, 4)), what);
+}
+
 /// The header alone decides whether an image is small enough: 100 bytes of PNG can ask
-/// for gigabytes. stb_image reads a PNG header too, but calls one of more than 2^30
-/// bytes "unknown".
+/// for gigabytes.
 void check_header(std::span<const std::uint8_t> bytes, const std::string& what) {
-  const bool png = is_png(bytes);
-  if (png) check_size(big_endian(bytes.subspan(16, 4)), big_endian(bytes.subspan(20, 4)), what);
+  const ImageFormat format = image_format(bytes);
+  if (format == ImageFormat::other) refuse(what, "is neither a PNG nor a JPEG image");
+  const bool png = format == ImageFormat::png;
+  if (png) check_png_size(bytes, what);
+  const std::string defect = png ? png_defect(bytes) : jpeg_defect(bytes);
+  if (!defect.empty()) refuse(what, "is corrupt (" + defect + ")");
   int width = 0;
   int height = 0;
   int channels = 0;
   if (stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
                             &channels) == 0) {
-    refuse(what, png ? "is corrupt (its PNG header)" : "is neither a PNG nor a JPEG image");
+    refuse(what, png ? "is corrupt (its PNG header)" : "is corrupt (its JPEG header)");
   }
   check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), what);
 }

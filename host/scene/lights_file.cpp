@@ -13,7 +13,9 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/numeric_range.hpp"
 #include "scene/rect_axes.hpp"
+#include "scene/unique_keys.hpp"
 
 namespace dapple {
 namespace {
@@ -23,10 +25,12 @@ using Json = nlohmann::json;
 constexpr std::uintmax_t kMaxFileBytes = 16u << 20;
 constexpr int kMaxDepth = 16;  // the format needs 4
 constexpr double kSunDegrees = 0.533;
-constexpr std::size_t kMaxMessage = 300;  // a parse error quotes what it last read
+constexpr std::size_t kMaxMessage = 300;  // messages quote keys and what was last read
+constexpr std::size_t kMaxName = 200;
+constexpr std::size_t kMaxLights = 4096;
 
 [[noreturn]] void fail(std::string_view where, std::string_view what) {
-  std::string message = fmt::format("{}: {}", where, what);
+  std::string message = fmt::format("{}: {}", where, what.substr(0, kMaxMessage));
   // Names and keys come from the file and may hold line breaks; a message is one line.
   std::replace_if(
       message.begin(), message.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
@@ -51,17 +55,21 @@ std::string read_text(const std::string& path) {
 }
 
 Json parse_json(const std::string& path, const std::string& text) {
-  const auto limit_depth = [&](int depth, Json::parse_event_t, const Json&) {
+  UniqueKeys keys;
+  const auto check = [&](int depth, Json::parse_event_t event, const Json& parsed) {
     if (depth > kMaxDepth) fail(path, fmt::format("nests deeper than {} levels", kMaxDepth));
+    if (!keys.see(event, parsed)) {
+      fail(path, fmt::format("has the key \"{}\" twice in one object", parsed.get<std::string>()));
+    }
     return true;
   };
   try {
-    return Json::parse(text, limit_depth);
+    return Json::parse(text, check);
   } catch (const Json::exception& error) {
     // What follows "[json.exception.parse_error.101] " is for people.
     std::string_view message = error.what();
     message.remove_prefix(std::min(message.size(), message.find("] ") + 2));
-    fail(path, message.substr(0, kMaxMessage));
+    fail(path, message);
   }
 }
 
@@ -72,7 +80,7 @@ class LightFields {
       : where_(fmt::format("{}: light {}", path, number)), fields_(fields) {
     if (!fields_.is_object()) fail(where_, "is not an object");
     if (const auto name = fields_.find("name"); name != fields_.end() && name->is_string()) {
-      where_ += fmt::format(" (\"{}\")", name->get<std::string>());
+      where_ += fmt::format(" (\"{}\")", name->get<std::string>().substr(0, kMaxName));
     }
   }
 
@@ -100,17 +108,35 @@ class LightFields {
 
   [[nodiscard]] float number(const char* key) const { return to_number(get(key), key); }
 
-  [[nodiscard]] float positive(const char* key) const { return require_positive(number(key), key); }
+  /// A length that float arithmetic can square, in metres.
+  [[nodiscard]] float length(const char* key) const { return require_length(number(key), key); }
 
-  [[nodiscard]] V3f point(const char* key) const {
+  [[nodiscard]] float in_range(const char* key, double low, double high) const {
+    const float value = number(key);
+    if (!(value >= low && value <= high)) {
+      fail_at(key, fmt::format("must be from {:g} to {:g}, and is {:g}", low, high, value));
+    }
+    return value;
+  }
+
+  [[nodiscard]] V3f numbers(const char* key) const {
     const Json& value = array(key, 3);
     V3f result;
     for (int k = 0; k < 3; ++k) result[k] = to_number(value[k], element(key, k));
     return result;
   }
 
+  [[nodiscard]] V3f point(const char* key) const {
+    const V3f value = numbers(key);
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(value[k]) <= kLargestCoordinate) continue;
+      fail_at(element(key, k), fmt::format("must be within {:g} m", kLargestCoordinate));
+    }
+    return value;
+  }
+
   [[nodiscard]] V3f direction(const char* key) const {
-    const Imath::V3d value(point(key));  // squares of floats neither vanish nor overflow
+    const Imath::V3d value(numbers(key));  // squares of floats neither vanish nor overflow
     if (value.length2() == 0) fail_at(key, "has no direction: it is 0, 0, 0");
     return V3f(value.normalized());
   }
@@ -119,16 +145,17 @@ class LightFields {
     const Json& value = array(key, 2);
     V2f result;
     for (int k = 0; k < 2; ++k) {
-      result[k] = require_positive(to_number(value[k], element(key, k)), element(key, k));
+      result[k] = require_length(to_number(value[k], element(key, k)), element(key, k));
     }
     return result;
   }
 
   // A number is grey. Not negative, in W/(sr m^2) or W/m^2.
   [[nodiscard]] V3f colour(const char* key) const {
-    const V3f value = get(key).is_number() ? V3f(number(key)) : point(key);
+    const V3f value = get(key).is_number() ? V3f(number(key)) : numbers(key);
     for (int k = 0; k < 3; ++k) {
       if (value[k] < 0) fail_at(key, fmt::format("must not be negative, and is {}", value[k]));
+      if (value[k] > kLargestRadiance) fail_at(key, fmt::format("is above {:g}", kLargestRadiance));
     }
     return value;
   }
@@ -159,9 +186,11 @@ class LightFields {
     return number;
   }
 
-  [[nodiscard]] float require_positive(float value, std::string_view key) const {
+  [[nodiscard]] float require_length(float value, std::string_view key) const {
     if (!(value > 0)) fail_at(key, fmt::format("must be positive, and is {}", value));
-    return value;
+    if (value >= kSmallestLength && value <= kLargestCoordinate) return value;
+    fail_at(key, fmt::format("must be from {:g} to {:g} m, and is {:g}", kSmallestLength,
+                             kLargestCoordinate, value));
   }
 
   std::string where_;
@@ -187,7 +216,7 @@ Light read_sphere(const LightFields& fields) {
   Light light;
   light.kind = LightKind::sphere;
   light.position = fields.point("position");
-  light.radius = fields.positive("radius");
+  light.radius = fields.length("radius");
   light.radiance = fields.colour("radiance");
   return light;
 }
@@ -198,9 +227,7 @@ Light read_sun(const LightFields& fields) {
   light.kind = LightKind::sun;
   light.direction = fields.direction("direction");
   const double degrees =
-      fields.has("angle_degrees") ? fields.positive("angle_degrees") : kSunDegrees;
-  if (degrees >= 180)
-    fields.fail_at("angle_degrees", fmt::format("must be below 180, and is {}", degrees));
+      fields.has("angle_degrees") ? fields.in_range("angle_degrees", 1e-4, 179.999) : kSunDegrees;
   const double angular_radius = degrees * std::numbers::pi / 360;
   light.angular_radius = static_cast<float>(angular_radius);
   if (fields.has("radiance") == fields.has("irradiance")) {
@@ -263,6 +290,9 @@ std::vector<Light> load_lights(const std::string& path) {
   }
   for (const auto& [key, value] : file.items()) {
     if (key != "lights") fail(path, fmt::format("\"{}\" is not known here; known: lights", key));
+  }
+  if (file["lights"].size() > kMaxLights) {
+    fail(path, fmt::format("has {} lights; there may be {}", file["lights"].size(), kMaxLights));
   }
   std::vector<Light> lights;
   for (const Json& fields : file["lights"]) {

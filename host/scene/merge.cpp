@@ -9,6 +9,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/numeric_range.hpp"
 #include "scene/triangle_cleanup.hpp"
 
 namespace dapple {
@@ -167,6 +168,15 @@ void merge_chosen(Scene& scene) {
   scene.instances.insert(scene.instances.begin(), instance);
 }
 
+/// What was dropped, for the message that nothing is left.
+std::string reasons(const Scene& scene) {
+  std::string text;
+  for (const std::string& warning : scene.warnings) {
+    if (warning.starts_with("dropped")) text += (text.empty() ? " (" : "; ") + warning;
+  }
+  return text.empty() ? text : text + ")";
+}
+
 }  // namespace
 
 void merge_single_instances(Scene& scene) {
@@ -176,8 +186,10 @@ void merge_single_instances(Scene& scene) {
   drop_unused(scene);
   if (scene.instances.empty()) {
     throw Error(ErrorKind::input,
-                fmt::format("{}: there is nothing to render: no triangle is left", scene.source));
+                fmt::format("{}: there is nothing to render: no triangle is left{}", scene.source,
+                            reasons(scene)));
   }
+  check_numeric_range(scene);
 }
 
 }  // namespace dapple

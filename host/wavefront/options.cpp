@@ -15,9 +15,14 @@ void check_range(const char* flag, double value, double low, double high) {
               fmt::format("{} is {:g}; it must be from {:g} to {:g}", flag, value, low, high));
 }
 
-void check_finite(const char* flag, const V3f& v) {
-  if (std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) return;
-  throw Error(ErrorKind::usage, fmt::format("{} has a coordinate that is not finite", flag));
+void check_point(const char* flag, const V3f& v) {
+  constexpr float kLargest = 1e12f;  // metres, as of scenes
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(v[axis]) <= kLargest) continue;  // false for NaN
+    throw Error(ErrorKind::usage,
+                fmt::format("{} has the coordinate {:g}; it must be from {:g} to {:g}", flag,
+                            v[axis], -kLargest, kLargest));
+  }
 }
 
 void check_crop(const RenderOptions& options) {
@@ -102,9 +107,9 @@ void validate(const RenderOptions& options) {
   }
   if (options.fov_degrees != 0) check_range("--fov", options.fov_degrees, 0.01f, 179);
   if (options.look) {
-    check_finite("--look-from", options.look->from);
-    check_finite("--look-at", options.look->at);
-    check_finite("--up", options.look->up);
+    check_point("--look-from", options.look->from);
+    check_point("--look-at", options.look->at);
+    check_point("--up", options.look->up);
   }
   check_crop(options);
   check_sample_product("--ao-rays", options, options.ao_rays);

@@ -7,6 +7,7 @@
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
 #include "device/context.hpp"
+#include "wavefront/film_memory.hpp"
 #include "wavefront/passes.hpp"
 #include "wavefront/picture.hpp"
 #include "wavefront/resume.hpp"
@@ -25,6 +26,7 @@ View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string
     notes.emplace_back(
         "no lights in the scene: added a rect light named key; --lights F brings others");
   }
+  check_film_memory(view, options.light ? scene.lights.size() : 0);
   if (options.ground) add_ground(scene);
   merge_single_instances(scene);
   settle_domes(scene);

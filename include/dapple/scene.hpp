@@ -120,11 +120,16 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::vector<std::string> warnings;  ///< what the reader skipped, one line each
+  std::vector<std::string> files;     ///< paths of the scene, its buffers and its images
 };
 
 struct SceneOptions {
   float light_radius = 0.1f;  ///< metres: KHR point and spot lights become spheres of this radius
+  bool allow_outside = false;  ///< buffers and images may be outside of the scene file's folder
 };
+
+/// Throws Error usage, naming the command line's flag, when a value is out of range.
+void validate(const SceneOptions& options);
 
 /// Reads a scene: a glTF 2.0 file (.gltf or .glb), or a procedural one by name,
 /// "scene:tree?leaves=50000&opacity=0.85&seed=1". Throws Error: input.

@@ -25,28 +25,57 @@ std::optional<M44f> rigid(const M44d& m) {
                    m[3][0], m[3][1], m[3][2], 1));
 }
 
-void read_lens(const tinygltf::Camera& given, Camera& camera, const std::string& who,
-               const std::string& file) {
-  if (given.type == "perspective") {
-    camera.kind = Camera::Kind::perspective;
-    camera.fov_y = static_cast<float>(given.perspective.yfov);
-    if (given.perspective.yfov > 0 && given.perspective.yfov < std::numbers::pi) return;
-    fail(file, "{} has yfov {}; it must be between 0 and pi", who, given.perspective.yfov);
-  }
-  camera.kind = Camera::Kind::orthographic;
-  camera.half_height = static_cast<float>(std::abs(given.orthographic.ymag));
-  if (!(camera.half_height > 0)) fail(file, "{} has ymag 0", who);
+void check_depths(double near, double far, const std::string& who, const std::string& file) {
+  const bool unlimited = far == 0;  // tinygltf's word for an absent zfar
+  if (unlimited || far > near) return;
+  fail(file, "{} has zfar {:g} and znear {:g}; zfar must be larger", who, far, near);
 }
 
-void add_camera(const Document& document, const PlacedNode& placed, Scene& scene) {
+Camera perspective(const tinygltf::PerspectiveCamera& given, const std::string& who,
+                   const std::string& file) {
+  Camera camera;
+  camera.kind = Camera::Kind::perspective;
+  camera.fov_y = static_cast<float>(given.yfov);
+  if (!(camera.fov_y > 0 && given.yfov < std::numbers::pi)) {
+    fail(file, "{} has yfov {}; it must be between 0 and pi", who, given.yfov);
+  }
+  check_depths(given.znear, given.zfar, who, file);
+  return camera;
+}
+
+Camera orthographic(const tinygltf::OrthographicCamera& given, const std::string& who,
+                    const std::string& file) {
+  Camera camera;
+  camera.kind = Camera::Kind::orthographic;
+  camera.half_height = static_cast<float>(std::abs(given.ymag));
+  if (!(camera.half_height > 0)) fail(file, "{} has ymag 0", who);
+  if (given.xmag == 0) fail(file, "{} has xmag 0", who);
+  check_depths(given.znear, given.zfar, who, file);
+  return camera;
+}
+
+/// All of the document's, placed or not: a damaged file is refused wherever it is damaged.
+std::vector<Camera> read_lenses(const Document& document) {
+  std::vector<Camera> lenses;
+  for (std::size_t i = 0; i < document.model.cameras.size(); ++i) {
+    const auto& given = document.model.cameras[i];
+    const std::string who = element("camera", i, given.name);
+    lenses.push_back(given.type == "perspective"
+                         ? perspective(given.perspective, who, document.file)
+                         : orthographic(given.orthographic, who, document.file));
+  }
+  return lenses;
+}
+
+void add_camera(const Document& document, const PlacedNode& placed,
+                const std::vector<Camera>& lenses, Scene& scene) {
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
   const auto& given = document.model.cameras[static_cast<std::size_t>(node.camera)];
   const std::string who = element("camera", static_cast<std::size_t>(node.camera), given.name);
-  Camera camera;
+  Camera camera = lenses[static_cast<std::size_t>(node.camera)];
   camera.name = one_line(!given.name.empty()  ? given.name
                          : !node.name.empty() ? node.name
                                               : fmt::format("camera_{}", node.camera));
-  read_lens(given, camera, who, document.file);
   const std::optional<M44f> to_world = rigid(placed.to_world);
   if (!to_world) {
     scene.warnings.push_back(one_line(
@@ -60,9 +89,10 @@ void add_camera(const Document& document, const PlacedNode& placed, Scene& scene
 }  // namespace
 
 void add_cameras(const Document& document, const std::vector<PlacedNode>& placed, Scene& scene) {
+  const std::vector<Camera> lenses = read_lenses(document);
   for (const PlacedNode& at : placed) {
     if (document.model.nodes[static_cast<std::size_t>(at.node)].camera >= 0) {
-      add_camera(document, at, scene);
+      add_camera(document, at, lenses, scene);
     }
   }
 }

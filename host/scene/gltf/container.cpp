@@ -1,6 +1,7 @@
-// GLB chunks and the JSON depth scan: see container.hpp.
+// GLB's header and chunks: see container.hpp.
 #include "scene/gltf/container.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -42,6 +43,10 @@ Chunk chunk_at(std::span<const std::uint8_t> glb, std::size_t offset, const std:
     fail(file, "GLB chunk at byte {} reads past the file (needs {} bytes, has {})", grouped(offset),
          grouped(length), grouped(left - kChunkHeaderBytes));
   }
+  if (length % 4 != 0) {
+    fail(file, "GLB chunk at byte {} has {} bytes, not a multiple of 4", grouped(offset),
+         grouped(length));
+  }
   return {u32_at(glb, offset + 4), glb.subspan(offset + kChunkHeaderBytes, length)};
 }
 
@@ -54,6 +59,12 @@ std::span<const std::uint8_t> checked_glb(std::span<const std::uint8_t> bytes,
   if (length < kHeaderBytes || length > bytes.size()) {
     fail(file, "GLB header says {} bytes, but the file has {}", grouped(length),
          grouped(bytes.size()));
+  }
+  // Some file systems and archives pad; anything else means that a length is wrong.
+  const auto after = bytes.subspan(length);
+  if (std::any_of(after.begin(), after.end(), [](std::uint8_t byte) { return byte != 0; })) {
+    fail(file, "GLB header says {} bytes, but the file goes on for {} more", grouped(length),
+         grouped(after.size()));
   }
   return bytes.first(length);
 }
@@ -69,32 +80,19 @@ Container split_container(std::span<const std::uint8_t> bytes, const std::string
   Container container{as_text(json.data), {}};
   // Padding is spaces by the book and NULs from some writers.
   while (container.json.ends_with('\0')) container.json.remove_suffix(1);
-  const std::size_t next = kHeaderBytes + kChunkHeaderBytes + json.data.size();
-  if (next < glb.size()) {
-    const Chunk binary = chunk_at(glb, next, file);
-    if (binary.type == kBinChunk) container.binary = binary.data;
+  std::size_t next = kHeaderBytes + kChunkHeaderBytes + json.data.size();
+  for (int number = 1; next < glb.size(); ++number) {
+    const Chunk chunk = chunk_at(glb, next, file);
+    if (chunk.type == kJsonChunk)
+      fail(file, "GLB has a second JSON chunk at byte {}", grouped(next));
+    if (chunk.type == kBinChunk && number > 1) {
+      fail(file, "GLB has its BIN chunk at byte {}; it can only be the second chunk",
+           grouped(next));
+    }
+    if (chunk.type == kBinChunk) container.binary = chunk.data;
+    next += kChunkHeaderBytes + chunk.data.size();
   }
   return container;
-}
-
-void check_json_depth(std::string_view json, int max_depth, const std::string& file) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > max_depth) {
-        fail(file, "JSON is nested deeper than {} levels (byte {})", max_depth, grouped(i));
-      }
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
 }
 
 }  // namespace dapple::gltf

@@ -16,11 +16,8 @@ struct Container {
 };
 
 /// Splits .gltf or .glb bytes, told apart by their first four. Throws Error input when
-/// GLB's lengths do not add up.
+/// GLB's lengths do not add up
+/// or its chunks are not JSON, then BIN, then what nobody knows.
 Container split_container(std::span<const std::uint8_t> bytes, const std::string& file);
-
-/// Throws Error input when arrays and objects are nested deeper than `max_depth`. Done
-/// before parsing, since parsers and the destructors of their trees recurse.
-void check_json_depth(std::string_view json, int max_depth, const std::string& file);
 
 }  // namespace dapple::gltf

@@ -1,11 +1,16 @@
 // From a path to a Document: container, JSON, schema, buffers, tinygltf, validation.
 #include "scene/gltf/document.hpp"
 
+#include <charconv>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "scene/gltf/container.hpp"
+#include "scene/gltf/json_text.hpp"
 #include "scene/gltf/message.hpp"
+#include "scene/gltf/motion.hpp"
 #include "scene/gltf/schema.hpp"
 #include "scene/gltf/uri.hpp"
 
@@ -14,32 +19,29 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kMaxJsonDepth = 64;
+/// What a scene's files may hold together: a few bytes of JSON can name any number of them.
+constexpr std::uint64_t kMaxSceneBytes = kMaxFileBytes;
 
-/// A parsed document takes some 30 times its text: beyond this, buffers belong in files.
-constexpr std::size_t kMaxJsonBytes = std::size_t{256} << 20;
-
-Json parse_json(std::string_view text, const std::string& file) {
-  if (text.size() > kMaxJsonBytes) {
-    fail(file, "its JSON is too large ({} bytes, at most {}); keep buffers in .bin files or GLB",
-         grouped(text.size()), grouped(kMaxJsonBytes));
-  }
-  check_json_depth(text, kMaxJsonDepth, file);
-  try {
-    return Json::parse(text);
-  } catch (const Json::exception& error) {
-    const std::string what = error.what();  // "[json.exception...] parse error at line 1, ..."
-    const std::size_t bracket = what.find("] ");
-    fail(file, "is not glTF: {}", bracket == std::string::npos ? what : what.substr(bracket + 2));
-  }
+/// "2.0" as {2, 0}; nothing where it is not of that form.
+std::optional<std::pair<int, int>> parse_version(const std::string& text) {
+  std::pair<int, int> version;
+  const char* const end = text.data() + text.size();
+  const auto [dot, major_error] = std::from_chars(text.data(), end, version.first);
+  if (major_error != std::errc{} || dot == end || *dot != '.') return {};
+  const auto [stop, minor_error] = std::from_chars(dot + 1, end, version.second);
+  if (minor_error != std::errc{} || stop != end) return {};
+  return version;
 }
 
 void check_version(const Json& root, const std::string& file) {
   const Json& asset = root["asset"];
-  const auto version = asset["version"].get<std::string>();
-  if (!version.starts_with("2.")) fail(file, "is glTF {}; only 2.0 can be read", version);
+  const auto text = asset["version"].get<std::string>();
+  const auto version = parse_version(text);
+  if (!version || version->first != 2) {
+    fail(file, "is glTF {}; only 2.0 can be read", excerpt(text));
+  }
   const auto minimum = asset.value("minVersion", std::string("2.0"));
-  if (minimum != "2.0") fail(file, "needs glTF {}; only 2.0 can be read", minimum);
+  if (minimum != "2.0") fail(file, "needs glTF {}; only 2.0 can be read", excerpt(minimum));
 }
 
 /// Takes an array out of the document, so that tinygltf neither copies nor opens it.
@@ -51,20 +53,48 @@ Json take(Json& root, const char* key) {
   return taken;
 }
 
-/// What a buffer's uri or GLB's BIN chunk holds; `binary` is that chunk, if it is this
-/// buffer's.
-std::span<const std::uint8_t> buffer_bytes(Document& document, const Json& buffer,
-                                           const std::string& what,
-                                           std::optional<std::span<const std::uint8_t>> binary) {
-  const std::uint64_t length = buffer["byteLength"].get<std::uint64_t>();
-  if (!buffer.contains("uri")) return binary.value_or(std::span<const std::uint8_t>{});
-  const auto& uri = buffer["uri"].get_ref<const std::string&>();
-  document.storage.push_back(is_data_uri(uri)
-                                 ? decode_data_uri(uri, what)
-                                 : read_file(resolve_uri(document.folder, uri, what),
-                                             fmt::format("{} ({})", what, uri), length));
-  return document.storage.back();
-}
+/// The bytes of buffers, each file read once.
+class BufferReader {
+ public:
+  explicit BufferReader(Document& document) : document_(document) {}
+
+  /// `length` bytes of the buffer's uri, or fewer where there are no more.
+  std::span<const std::uint8_t> read(const std::string& uri, std::uint64_t length,
+                                     const std::string& what) {
+    if (is_data_uri(uri)) {
+      check_media_type(uri, what);
+      return keep(decode_data_uri(uri, what));
+    }
+    const std::string who = fmt::format("{} ({})", what, excerpt(uri));
+    const std::string path = resolve_uri(document_.base, uri, what).string();
+    const auto known = read_.find(path);
+    if (known != read_.end() && known->second.size() >= length) return known->second;
+    document_.bytes += length;
+    if (document_.bytes > kMaxSceneBytes) {
+      fail(who, "brings the scene to {} bytes (at most {})", grouped(document_.bytes),
+           grouped(kMaxSceneBytes));
+    }
+    document_.files.push_back(path);
+    return read_[path] = keep(read_file(path, who, length));
+  }
+
+ private:
+  std::span<const std::uint8_t> keep(Bytes bytes) {
+    document_.storage.push_back(std::move(bytes));
+    return document_.storage.back();
+  }
+
+  /// glTF 2.0, section 3.6.1.1 allows two types; whatever calls itself something else is not
+  /// a buffer that lost its name.
+  static void check_media_type(const std::string& uri, const std::string& what) {
+    const std::string_view type = data_media_type(uri);
+    if (type.empty() || type.starts_with("application/")) return;
+    fail(what, "its data: URI is \"{}\", not application/octet-stream", excerpt(type));
+  }
+
+  Document& document_;
+  std::map<std::string, std::span<const std::uint8_t>> read_;
+};
 
 bool is_compression_placeholder(const Json& buffer) {
   const auto extensions = buffer.find("extensions");
@@ -74,19 +104,21 @@ bool is_compression_placeholder(const Json& buffer) {
 
 void load_buffers(Document& document, const Json& buffers,
                   std::optional<std::span<const std::uint8_t>> binary) {
-  document.storage.reserve(document.storage.size() + buffers.size());
+  BufferReader reader(document);
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const Json& buffer = buffers[i];
     const std::string what = fmt::format("{}: buffer {}", document.file, i);
     const std::uint64_t length = buffer["byteLength"].get<std::uint64_t>();
-    const bool has_bytes = buffer.contains("uri") || (i == 0 && binary);
+    const bool has_uri = buffer.contains("uri");
+    const bool has_bytes = has_uri || (i == 0 && binary);
     if (!has_bytes && is_compression_placeholder(buffer)) {
       fail(what,
            "holds only EXT_meshopt_compression data, which dapple cannot read; export the "
            "scene uncompressed");
     }
     if (!has_bytes) fail(what, "has no uri, and the file has no binary chunk for it");
-    const auto bytes = buffer_bytes(document, buffer, what, i == 0 ? binary : std::nullopt);
+    const auto bytes =
+        has_uri ? reader.read(buffer["uri"].get_ref<const std::string&>(), length, what) : *binary;
     if (bytes.size() < length) {
       fail(what, "is too short (byteLength is {}, it has {})", grouped(length),
            grouped(bytes.size()));
@@ -95,14 +127,24 @@ void load_buffers(Document& document, const Json& buffers,
   }
 }
 
-std::vector<ImageSource> image_sources(const Json& images) {
-  std::vector<ImageSource> sources;
-  sources.reserve(images.size());
-  for (const Json& image : images) {
-    sources.push_back({image.value("name", std::string()), image.value("uri", std::string()),
-                       image.value("bufferView", -1)});
+/// Where images are. Every uri is resolved, needed or not: what leads out of the folder is
+/// refused whatever else is in the file.
+void find_images(Document& document, const Json& images) {
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const Json& image = images[i];
+    const std::string what = fmt::format("{}: image {}", document.file, i);
+    const bool has_uri = image.contains("uri");
+    if (has_uri && image.contains("bufferView")) fail(what, "has both a uri and a bufferView");
+    if (!has_uri && !image.contains("bufferView") && !image.contains("extensions")) {
+      fail(what, "has neither a uri nor a bufferView");
+    }
+    document.images.push_back({image.value("name", std::string()),
+                               image.value("uri", std::string()), image.value("bufferView", -1)});
+    const std::string& uri = document.images.back().uri;
+    if (!has_uri || is_data_uri(uri)) continue;
+    if (document.base.allow_outside && has_scheme(uri)) continue;  // refused by who needs it
+    document.files.push_back(resolve_uri(document.base, uri, what).string());
   }
-  return sources;
 }
 
 /// Takes the primitives' `indices` out, in order: tinygltf refuses those whose accessor
@@ -148,18 +190,21 @@ std::span<const std::uint8_t> view_bytes(const Document& document, int buffer_vi
                                                                          view.byteLength);
 }
 
-Document load_document(const std::string& path) {
+Document load_document(const std::string& path, bool allow_outside) {
   Document document;
   document.file = path;
-  document.folder = std::filesystem::path(path).parent_path();
+  document.base = {std::filesystem::path(path).parent_path(), allow_outside};
+  document.files.push_back(path);
   document.storage.push_back(read_file(path, path));
+  document.bytes = document.storage.front().size();
   const Container container = split_container(document.storage.front(), path);
   Json root = parse_json(container.json, path);
   check_schema(root, path);
   check_version(root, path);
   check_extensions(root.value("extensionsRequired", std::vector<std::string>()), path);
+  check_motion(root, path);
   load_buffers(document, take(root, "buffers"), container.binary);
-  document.images = image_sources(take(root, "images"));
+  find_images(document, take(root, "images"));
   parse_model(document, root);
   validate(document);
   return document;

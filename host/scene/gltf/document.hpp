@@ -4,13 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "scene/gltf/file.hpp"
 #include "scene/gltf/tinygltf.hpp"
+#include "scene/gltf/uri.hpp"
 
 namespace dapple::gltf {
 
@@ -22,16 +22,18 @@ struct ImageSource {
 };
 
 struct Document {
-  std::string file;              ///< as given, for messages
-  std::filesystem::path folder;  ///< what URIs are relative to
-  tinygltf::Model model;         ///< its buffers, images, skins and animations are empty
-  std::vector<Bytes> storage;    ///< owns what `buffers` views
+  std::string file;            ///< as given, for messages
+  UriBase base;                ///< what URIs are relative to
+  tinygltf::Model model;       ///< its buffers, images, skins and animations are empty
+  std::vector<Bytes> storage;  ///< owns what `buffers` views
   std::vector<std::span<const std::uint8_t>> buffers;  ///< byteLength bytes each
   std::vector<ImageSource> images;
+  std::vector<std::string> files;  ///< all of the scene's: itself, its buffers, its images
+  std::uint64_t bytes = 0;         ///< of the JSON and of what `storage` owns
 };
 
 /// Reads, parses and validates. Throws Error input.
-Document load_document(const std::string& path);
+Document load_document(const std::string& path, bool allow_outside = false);
 
 /// The bytes of a validated bufferView.
 std::span<const std::uint8_t> view_bytes(const Document& document, int buffer_view);
@@ -40,7 +42,7 @@ std::span<const std::uint8_t> view_bytes(const Document& document, int buffer_vi
 /// ignore without changing what occludes.
 void check_extensions(const std::vector<std::string>& required, const std::string& file);
 
-/// Throws Error input unless every index, bufferView, accessor and primitive is sound.
+/// Throws Error input unless every index, bufferView, accessor, primitive and node is sound.
 void validate(const Document& document);
 
 }  // namespace dapple::gltf

@@ -1,27 +1,60 @@
 // Reading regular files whole: see file.hpp.
 #include "scene/gltf/file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
-#include <fstream>
-#include <system_error>
+#include <cerrno>
+#include <cstring>
 
 #include "scene/gltf/message.hpp"
 
 namespace dapple::gltf {
 namespace {
 
-namespace fs = std::filesystem;
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int number() const { return number_; }
 
-/// The size of `path`, once it is known that opening it cannot block.
-std::uint64_t regular_file_size(const fs::path& path, const std::string& what) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) fail(what, "no such file");
-  if (error) fail(what, "cannot be read ({})", error.message());
-  if (fs::is_directory(status)) fail(what, "is a folder, not a file");
-  if (!fs::is_regular_file(status)) fail(what, "is not a regular file");
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) fail(what, "cannot be read ({})", error.message());
+ private:
+  int number_;
+};
+
+void check_kind(const struct stat& status, const std::string& what) {
+  if (S_ISDIR(status.st_mode)) fail(what, "is a folder, not a file");
+  if (!S_ISREG(status.st_mode)) fail(what, "is not a regular file");
+}
+
+[[noreturn]] void fail_with_errno(const std::string& what) {
+  if (errno == ENOENT) fail(what, "no such file");
+  fail(what, "cannot be read ({})", std::strerror(errno));
+}
+
+/// Looked at before it is opened, because opening a device may do something, and again after,
+/// because another program may have put something else there; O_NONBLOCK, because that may be
+/// a FIFO.
+int open_regular(const std::filesystem::path& path, const std::string& what) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) fail_with_errno(what);
+  check_kind(status, what);
+  const int number = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (number < 0) fail_with_errno(what);
+  return number;
+}
+
+std::uint64_t regular_size(const Descriptor& file, const std::string& what) {
+  struct stat status {};
+  if (::fstat(file.number(), &status) != 0) fail_with_errno(what);
+  check_kind(status, what);
+  const auto size = static_cast<std::uint64_t>(status.st_size);
   if (size > kMaxFileBytes) {
     fail(what, "is too large ({} bytes, at most {})", grouped(size), grouped(kMaxFileBytes));
   }
@@ -30,15 +63,19 @@ std::uint64_t regular_file_size(const fs::path& path, const std::string& what) {
 
 }  // namespace
 
-Bytes read_file(const fs::path& path, const std::string& what, std::uint64_t max_bytes) {
-  const std::uint64_t size = std::min(regular_file_size(path, what), max_bytes);
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) fail(what, "cannot be opened (is it readable?)");
-  Bytes bytes(size);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (static_cast<std::uint64_t>(stream.gcount()) != size) {
-    fail(what, "ends early (read {} of {} bytes)",
-         grouped(static_cast<std::uint64_t>(stream.gcount())), grouped(size));
+Bytes read_file(const std::filesystem::path& path, const std::string& what,
+                std::uint64_t max_bytes) {
+  const Descriptor file(open_regular(path, what));
+  Bytes bytes(std::min(regular_size(file, what), max_bytes));
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t step = ::read(file.number(), bytes.data() + done, bytes.size() - done);
+    if (step < 0 && errno == EINTR) continue;
+    if (step < 0) fail_with_errno(what);
+    if (step == 0) {
+      fail(what, "ends early (read {} of {} bytes)", grouped(done), grouped(bytes.size()));
+    }
+    done += static_cast<std::size_t>(step);
   }
   return bytes;
 }

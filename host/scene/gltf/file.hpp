@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,6 +18,6 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 32;
 /// beginning with `what`, when there is no such file, it is not regular, or it is
 /// larger than kMaxFileBytes.
 Bytes read_file(const std::filesystem::path& path, const std::string& what,
-                std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max());
+                std::uint64_t max_bytes = kMaxFileBytes);
 
 }  // namespace dapple::gltf

@@ -4,6 +4,7 @@
 
 #include "dapple/scene.hpp"
 #include "scene/gltf/camera.hpp"
+#include "scene/gltf/crowding.hpp"
 #include "scene/gltf/document.hpp"
 #include "scene/gltf/hierarchy.hpp"
 #include "scene/gltf/instance.hpp"
@@ -14,21 +15,16 @@
 namespace dapple {
 namespace {
 
-void check_options(const SceneOptions& options) {
-  if (options.light_radius > 0) return;
-  throw Error(
-      ErrorKind::usage,
-      fmt::format("the radius of point lights is {} m; it must be above 0", options.light_radius));
-}
-
 Scene read_scene(const std::string& path, const SceneOptions& options) {
-  const gltf::Document document = gltf::load_document(path);
+  const gltf::Document document = gltf::load_document(path, options.allow_outside);
   const std::vector<gltf::PlacedNode> placed = gltf::place_nodes(document);
   Scene scene;
   scene.source = path;
+  scene.files = document.files;
   const gltf::MaterialSet materials = gltf::read_materials(document, placed, scene);
   gltf::add_instances(document, placed, materials, scene);
   if (scene.instances.empty()) gltf::fail(path, "has no triangles");
+  gltf::check_crowding(scene);
   gltf::add_punctual_lights(document, placed, options, scene);
   gltf::add_cameras(document, placed, scene);
   return scene;
@@ -37,7 +33,7 @@ Scene read_scene(const std::string& path, const SceneOptions& options) {
 }  // namespace
 
 Scene load_gltf(const std::string& path, const SceneOptions& options) {
-  check_options(options);
+  validate(options);
   try {
     return read_scene(path, options);
   } catch (const std::bad_alloc&) {

@@ -118,11 +118,7 @@ M44d local_matrix(const Document& document, int index) {
   V4d rotation(0, 0, 0, 1);
   if (node.rotation.size() == 4) {
     rotation = V4d(node.rotation[0], node.rotation[1], node.rotation[2], node.rotation[3]);
-    const double length = rotation.length();
-    if (length < 1e-6) {
-      fail(document.file, "{} has a rotation of length zero", node_label(document, index));
-    }
-    rotation /= length;
+    rotation.normalize();
   }
   return compose(vector_or(node.translation, 0.0), rotation, vector_or(node.scale, 1.0));
 }

@@ -1,6 +1,7 @@
 // Placing meshes: see instance.hpp.
 #include "scene/gltf/instance.hpp"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 
@@ -15,8 +16,12 @@ using Imath::M44d;
 using Imath::V3d;
 using Imath::V4d;
 
-/// Nodes may share accessors of instances: this bounds what a small file can ask for.
-constexpr std::uint64_t kMaxInstances = std::uint64_t{1} << 25;
+/// Nodes may share accessors of instances: what a file can ask for is bounded by its size,
+/// above a number that is built in seconds.
+std::uint64_t most_instances(const Document& document) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 25;
+  return std::min(kMost, (std::uint64_t{1} << 22) + document.bytes);
+}
 
 /// EXT_mesh_gpu_instancing's accessors, each of which may be absent.
 struct Placements {
@@ -88,9 +93,10 @@ std::vector<M44d> node_placements(const Document& document, const PlacedNode& pl
   const std::string who = element("node", static_cast<std::size_t>(placed.node), node.name);
   const Placements placements =
       read_placements(document, instancing->second.Get("attributes"), who);
-  if (so_far + placements.count > kMaxInstances) {
-    fail(document.file, "{} brings the instances to {} (at most {})", who,
-         grouped(so_far + placements.count), grouped(kMaxInstances));
+  if (so_far + placements.count > most_instances(document)) {
+    fail(document.file, "{} brings the instances to {} (at most {} in a scene of {} bytes)", who,
+         grouped(so_far + placements.count), grouped(most_instances(document)),
+         grouped(document.bytes));
   }
   std::vector<M44d> matrices;
   matrices.reserve(placements.count);

@@ -10,16 +10,17 @@
 namespace dapple::gltf {
 namespace {
 
+/// Beyond it, products with areas and numbers of samples leave float's range.
+constexpr double kLargestIntensity = 1e20;
+
 /// intensity * color. Intensities are photometric in glTF (candela, lux); dapple takes
 /// them as radiometric, without a factor.
-V3f intensity_of(const tinygltf::Light& light, const std::string& who, const std::string& file) {
+V3f intensity_of(const tinygltf::Light& light) {
   V3f result;
   for (int channel = 0; channel < 3; ++channel) {
     const double color =
         light.color.size() == 3 ? light.color[static_cast<std::size_t>(channel)] : 1.0;
-    const double value = light.intensity * color;
-    if (value < 0) fail(file, "{} has a negative intensity", who);
-    result[channel] = static_cast<float>(std::min(value, 1e30));
+    result[channel] = static_cast<float>(std::min(light.intensity * color, kLargestIntensity));
   }
   return result;
 }
@@ -37,14 +38,15 @@ void make_sphere(Light& light, V3f intensity, float radius) {
   light.radiance = intensity / (std::numbers::pi_v<float> * radius * radius);
 }
 
-void make_cone(Light& light, const tinygltf::SpotLight& spot, const std::string& who,
-               const std::string& file) {
+void check_cone(const tinygltf::SpotLight& spot, const std::string& who, const std::string& file) {
   const bool sound = spot.innerConeAngle >= 0 && spot.innerConeAngle <= spot.outerConeAngle &&
                      spot.outerConeAngle > 0 && spot.outerConeAngle <= std::numbers::pi / 2 + 1e-4;
-  if (!sound) {
-    fail(file, "{} has cone angles {} and {}; inner must not exceed outer, nor outer pi/2", who,
-         spot.innerConeAngle, spot.outerConeAngle);
-  }
+  if (sound) return;
+  fail(file, "{} has cone angles {} and {}; inner must not exceed outer, nor outer pi/2", who,
+       spot.innerConeAngle, spot.outerConeAngle);
+}
+
+void make_cone(Light& light, const tinygltf::SpotLight& spot) {
   light.cos_inner = static_cast<float>(std::cos(spot.innerConeAngle));
   light.cos_outer = static_cast<float>(std::max(std::cos(spot.outerConeAngle), 0.0));
 }
@@ -63,7 +65,7 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
   const auto& given = document.model.lights[static_cast<std::size_t>(index)];
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
   const std::string who = element("light", static_cast<std::size_t>(index), given.name);
-  const V3f intensity = intensity_of(given, who, document.file);
+  const V3f intensity = intensity_of(given);
   Light light;
   light.name = one_line(!given.name.empty()  ? given.name
                         : !node.name.empty() ? node.name
@@ -75,11 +77,9 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
   }
   if (given.type == "directional") {
     make_sun(light, intensity);
-  } else if (given.type == "point" || given.type == "spot") {
-    make_sphere(light, intensity, options.light_radius);
-    if (given.type == "spot") make_cone(light, given.spot, who, document.file);
   } else {
-    fail(document.file, "{} has the unknown type \"{}\"", who, given.type);
+    make_sphere(light, intensity, options.light_radius);
+    if (given.type == "spot") make_cone(light, given.spot);
   }
   scene.lights.push_back(std::move(light));
 }
@@ -88,6 +88,11 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
 
 void add_punctual_lights(const Document& document, const std::vector<PlacedNode>& placed,
                          const SceneOptions& options, Scene& scene) {
+  for (std::size_t i = 0; i < document.model.lights.size(); ++i) {
+    const auto& given = document.model.lights[i];
+    if (given.type == "spot")
+      check_cone(given.spot, element("light", i, given.name), document.file);
+  }
   for (const PlacedNode& at : placed) {
     const auto& node = document.model.nodes[static_cast<std::size_t>(at.node)];
     const auto light = node.extensions.find("KHR_lights_punctual");

@@ -92,12 +92,9 @@ AlphaLookup alpha_lookup(const TextureUse& use) {
   return lookup;
 }
 
-AlphaMode alpha_mode(const tinygltf::Material& material, const std::string& file,
-                     const std::string& who) {
-  if (material.alphaMode == "OPAQUE") return AlphaMode::opaque;
+AlphaMode alpha_mode(const tinygltf::Material& material) {
   if (material.alphaMode == "MASK") return AlphaMode::mask;
-  if (material.alphaMode == "BLEND") return AlphaMode::blend;
-  fail(file, "{} has the unknown alphaMode \"{}\"", who, material.alphaMode);
+  return material.alphaMode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
 V3f emission_factor(const tinygltf::Material& material) {
@@ -157,7 +154,7 @@ MaterialSet read_materials(const Document& document, const std::vector<PlacedNod
     const BaseColor base = base_color(given[i]);
     Material material;
     material.name = given[i].name.empty() ? fmt::format("material_{}", i) : one_line(given[i].name);
-    material.alpha_mode = alpha_mode(given[i], document.file, who);
+    material.alpha_mode = alpha_mode(given[i]);
     material.alpha = static_cast<float>(std::clamp(base.alpha, 0.0, 1.0));
     material.alpha_cutoff = static_cast<float>(given[i].alphaCutoff);
     material.double_sided = given[i].doubleSided;

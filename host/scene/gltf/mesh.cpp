@@ -14,9 +14,17 @@
 namespace dapple::gltf {
 namespace {
 
-/// Primitives may share accessors, so that a small file can ask for any number of
-/// triangles; this many take some 10 GB as a Scene.
-constexpr std::uint64_t kMaxTriangles = std::uint64_t{1} << 28;
+/// Primitives may share accessors, so that a small file could ask for any number of triangles:
+/// it gets as many as are built in seconds, and no more than its bytes can hold beyond that.
+std::uint64_t most_triangles(const Document& document) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 28;
+  return std::min(kMost, (std::uint64_t{1} << 22) + document.bytes / 2);
+}
+
+/// The same for sparse values, which are read again for every primitive.
+std::uint64_t most_sparse_values(const Document& document) {
+  return (std::uint64_t{1} << 24) + 4 * document.bytes;
+}
 
 constexpr std::initializer_list<Component> kFloatOrQuantized = {
     Component::float32, Component::int8, Component::uint8, Component::int16, Component::uint16};
@@ -171,12 +179,27 @@ bool is_shown(const tinygltf::Primitive& primitive, MeshTotals& totals) {
   return true;
 }
 
-void count_triangles(const Document& document, const tinygltf::Primitive& primitive,
-                     const std::string& who, MeshTotals& totals) {
+std::uint64_t sparse_values(const Document& document, int accessor) {
+  if (accessor < 0) return 0;
+  const auto& sparse = document.model.accessors[static_cast<std::size_t>(accessor)].sparse;
+  return sparse.isSparse ? static_cast<std::uint64_t>(sparse.count) : 0;
+}
+
+void count_work(const Document& document, const tinygltf::Primitive& primitive,
+                const std::string& who, MeshTotals& totals) {
   totals.triangles += triangle_count(document, primitive, who);
-  if (totals.triangles > kMaxTriangles) {
-    fail(document.file, "has more than {} triangles (counted up to {})", grouped(kMaxTriangles),
-         who);
+  if (totals.triangles > most_triangles(document)) {
+    fail(document.file, "{} brings the triangles to {} (at most {} in a scene of {} bytes)", who,
+         grouped(totals.triangles), grouped(most_triangles(document)), grouped(document.bytes));
+  }
+  totals.sparse_values += sparse_values(document, primitive.indices);
+  for (const auto& [name, accessor] : primitive.attributes) {
+    totals.sparse_values += sparse_values(document, accessor);
+  }
+  if (totals.sparse_values > most_sparse_values(document)) {
+    fail(document.file, "{} brings the sparse values to {} (at most {} in a scene of {} bytes)",
+         who, grouped(totals.sparse_values), grouped(most_sparse_values(document)),
+         grouped(document.bytes));
   }
 }
 
@@ -206,7 +229,7 @@ std::vector<MeshPart> read_mesh(const Document& document, int index, const Mater
     if (!is_shown(primitive, totals)) continue;
     const std::string who = fmt::format("{} primitive {}", label, p);
     refuse_compressed(document, primitive, who);
-    count_triangles(document, primitive, who, totals);
+    count_work(document, primitive, who, totals);
     const std::uint32_t at = materials.index_of(primitive.material);
     const Material& material = scene.materials[at];
     Mesh& mesh = draft_for(drafts, emits(material) ? static_cast<int>(at) : -1);

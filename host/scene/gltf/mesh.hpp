@@ -19,6 +19,7 @@ struct MeshPart {
 /// What reading adds up over all meshes: for limits, and for one warning a feature.
 struct MeshTotals {
   std::uint64_t triangles = 0;
+  std::uint64_t sparse_values = 0;
   std::uint64_t lines_and_points = 0;  ///< primitives of these modes
   std::uint64_t without_position = 0;  ///< primitives
   std::uint64_t without_texcoord = 0;  ///< primitives whose alpha texture lacks its TEXCOORD

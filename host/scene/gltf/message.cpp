@@ -2,14 +2,40 @@
 #include "scene/gltf/message.hpp"
 
 namespace dapple::gltf {
+namespace {
+
+/// What a message quotes of a file, bytes: names there may be megabytes long.
+constexpr std::size_t kLongestExcerpt = 120;
+constexpr std::size_t kLongestMessage = 1200;
+
+/// The first `bytes` of `text`, less what is left of a UTF-8 character that this would cut.
+std::string shorten(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return std::string(text);
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0u) == 0x80u) --bytes;
+  return std::string(text.substr(0, bytes)) + "...";
+}
+
+bool is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
+
+/// U+0080 to U+009F, which terminals obey as they obey escape sequences.
+bool is_c1_control(std::string_view text, std::size_t at) {
+  return at + 1 < text.size() && text[at] == '\xc2' &&
+         static_cast<unsigned char>(text[at + 1]) < 0xa0;
+}
+
+}  // namespace
 
 std::string one_line(std::string_view text) {
-  std::string line(text);
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  std::string line;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool two = is_c1_control(text, i);
+    line.push_back(two || is_control(static_cast<unsigned char>(text[i])) ? ' ' : text[i]);
+    if (two) ++i;
   }
   return line;
 }
+
+std::string excerpt(std::string_view text) { return shorten(text, kLongestExcerpt); }
 
 std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
@@ -22,7 +48,11 @@ std::string grouped(std::uint64_t value) {
 
 std::string element(std::string_view kind, std::size_t index, std::string_view name) {
   if (name.empty()) return fmt::format("{} {}", kind, index);
-  return fmt::format("{} {} (\"{}\")", kind, index, name);
+  return fmt::format("{} {} (\"{}\")", kind, index, excerpt(name));
+}
+
+void fail_with(const std::string& file, const std::string& message) {
+  throw Error(ErrorKind::input, one_line(file + ": " + shorten(message, kLongestMessage)));
 }
 
 }  // namespace dapple::gltf

@@ -1,5 +1,5 @@
-// The glTF 2.0 schema, as far as dapple reads it: every property that is there has the
-// right JSON type, the right array length and a value that the parser's ints can hold.
+// The glTF 2.0 schema: every property that is there has the right JSON type, the right array
+// length and a value that it can have.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,141 +1,209 @@
-// The properties of glTF 2.0 and its extensions that dapple reads, bottom up: see
-// schema_rules.hpp.
+// The properties of glTF 2.0, and those of its extensions that dapple reads, bottom up: see
+// schema_rules.hpp. `name`, `extensions` and `extras` may be anywhere and are not listed.
 #include "scene/gltf/schema_rules.hpp"
 
 namespace dapple::gltf {
 namespace {
 
-constexpr bool kRequired = true;
+/// What tinygltf makes of one element takes some hundred bytes to kilobytes, and one element
+/// may be two characters of JSON.
+constexpr std::size_t kMany = std::size_t{1} << 22;  // nodes, accessors: up to 0.7 kB
+constexpr std::size_t kFew = std::size_t{1} << 16;   // materials: 3 kB
 
-constexpr Rule required(std::string_view key, Kind kind, Rules children = {}) {
-  return {key, kind, children, {}, 0, kRequired};
+/// How far a colour may be outside of [0, 1]: exporters round.
+constexpr double kRounding = 1e-3;
+
+constexpr Rule required(Rule rule) {
+  rule.required = true;
+  return rule;
 }
 
-constexpr Rule kAsset[] = {required("version", Kind::text), {"minVersion", Kind::text}};
+constexpr Rule number(std::string_view key, double low, double high = Rule{}.high) {
+  return {.key = key, .kind = Kind::number, .low = low, .high = high};
+}
 
-constexpr Rule kBuffer[] = {{"uri", Kind::text}, required("byteLength", Kind::count)};
+constexpr Rule numbers(std::string_view key, std::size_t length) {
+  return {.key = key, .kind = Kind::numbers, .length = length};
+}
 
-constexpr Rule kBufferView[] = {required("buffer", Kind::index),
+constexpr Rule numbers(std::string_view key, std::size_t length, double low,
+                       double high = Rule{}.high) {
+  return {.key = key, .kind = Kind::numbers, .length = length, .low = low, .high = high};
+}
+
+constexpr Rule color(std::string_view key, std::size_t length) {
+  return numbers(key, length, -kRounding, 1 + kRounding);
+}
+
+constexpr Rule word(std::string_view key, Table<std::string_view> words) {
+  return {.key = key, .kind = Kind::word, .words = words};
+}
+
+constexpr Rule code(std::string_view key, Table<int> codes) {
+  return {.key = key, .kind = Kind::code, .codes = codes};
+}
+
+constexpr Rule object(std::string_view key, Rules children) {
+  return {.key = key, .kind = Kind::object, .children = children};
+}
+
+constexpr Rule objects(std::string_view key, Rules children, std::string_view noun,
+                       std::size_t most) {
+  return {.key = key, .kind = Kind::objects, .children = children, .noun = noun, .length = most};
+}
+
+constexpr Rule kAsset[] = {required({"version", Kind::text}),
+                           {"minVersion", Kind::text},
+                           {"generator", Kind::text},
+                           {"copyright", Kind::text}};
+
+constexpr Rule kBuffer[] = {{"uri", Kind::text}, required({"byteLength", Kind::size})};
+
+constexpr int kTargets[] = {34962, 34963};
+constexpr Rule kBufferView[] = {required({"buffer", Kind::index}),
                                 {"byteOffset", Kind::count},
-                                required("byteLength", Kind::count),
+                                required({"byteLength", Kind::size}),
                                 {"byteStride", Kind::stride},
-                                {"extensions", Kind::object}};
+                                code("target", kTargets)};
 
-constexpr Rule kSparseIndices[] = {required("bufferView", Kind::index),
+constexpr int kComponentTypes[] = {5120, 5121, 5122, 5123, 5125, 5126};
+constexpr std::string_view kElementTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4",
+                                              "MAT2",   "MAT3", "MAT4"};
+constexpr Rule kSparseIndices[] = {required({"bufferView", Kind::index}),
                                    {"byteOffset", Kind::index},
-                                   required("componentType", Kind::component_type)};
-constexpr Rule kSparseValues[] = {required("bufferView", Kind::index), {"byteOffset", Kind::index}};
-constexpr Rule kSparse[] = {required("count", Kind::index),
-                            required("indices", Kind::object, kSparseIndices),
-                            required("values", Kind::object, kSparseValues)};
+                                   required(code("componentType", kComponentTypes))};
+constexpr Rule kSparseValues[] = {required({"bufferView", Kind::index}),
+                                  {"byteOffset", Kind::index}};
+constexpr Rule kSparse[] = {required({"count", Kind::index}),
+                            required(object("indices", kSparseIndices)),
+                            required(object("values", kSparseValues))};
 constexpr Rule kAccessor[] = {{"bufferView", Kind::index},
                               {"byteOffset", Kind::count},
-                              required("componentType", Kind::component_type),
-                              required("count", Kind::count),
-                              required("type", Kind::element_type),
+                              required(code("componentType", kComponentTypes)),
+                              required({"count", Kind::size}),
+                              required(word("type", kElementTypes)),
                               {"normalized", Kind::boolean},
-                              {"sparse", Kind::object, kSparse}};
+                              {"min", Kind::numbers},
+                              {"max", Kind::numbers},
+                              object("sparse", kSparse)};
 
-constexpr Rule kImage[] = {{"name", Kind::text},
-                           {"uri", Kind::text},
-                           {"bufferView", Kind::index},
-                           {"mimeType", Kind::text}};
+constexpr Rule kImage[] = {
+    {"uri", Kind::text}, {"bufferView", Kind::index}, {"mimeType", Kind::text}};
 
-constexpr Rule kSampler[] = {{"magFilter", Kind::index},
-                             {"minFilter", Kind::index},
-                             {"wrapS", Kind::index},
-                             {"wrapT", Kind::index}};
+constexpr int kMagFilters[] = {9728, 9729};
+constexpr int kMinFilters[] = {9728, 9729, 9984, 9985, 9986, 9987};
+constexpr int kWraps[] = {33071, 33648, 10497};
+constexpr Rule kSampler[] = {code("magFilter", kMagFilters), code("minFilter", kMinFilters),
+                             code("wrapS", kWraps), code("wrapT", kWraps)};
 
-constexpr Rule kTexture[] = {
-    {"sampler", Kind::index}, {"source", Kind::index}, {"extensions", Kind::object}};
+constexpr Rule kTexture[] = {{"sampler", Kind::index}, {"source", Kind::index}};
 
-constexpr Rule kTextureTransform[] = {{"offset", Kind::numbers, {}, {}, 2},
+constexpr Rule kTextureTransform[] = {numbers("offset", 2),
                                       {"rotation", Kind::number},
-                                      {"scale", Kind::numbers, {}, {}, 2},
+                                      numbers("scale", 2),
                                       {"texCoord", Kind::index}};
-constexpr Rule kTextureInfoExtensions[] = {
-    {"KHR_texture_transform", Kind::object, kTextureTransform}};
-constexpr Rule kTextureInfo[] = {required("index", Kind::index),
+constexpr Rule kTextureInfoExtensions[] = {object("KHR_texture_transform", kTextureTransform)};
+constexpr Rule kTextureInfo[] = {required({"index", Kind::index}),
                                  {"texCoord", Kind::index},
-                                 {"extensions", Kind::object, kTextureInfoExtensions}};
+                                 {"scale", Kind::number},     // of normalTexture
+                                 {"strength", Kind::number},  // of occlusionTexture
+                                 object("extensions", kTextureInfoExtensions)};
 
-constexpr Rule kMetallicRoughness[] = {{"baseColorFactor", Kind::numbers, {}, {}, 4},
-                                       {"baseColorTexture", Kind::object, kTextureInfo}};
-constexpr Rule kSpecularGlossiness[] = {{"diffuseFactor", Kind::numbers, {}, {}, 4},
-                                        {"diffuseTexture", Kind::object, kTextureInfo}};
-constexpr Rule kEmissiveStrength[] = {{"emissiveStrength", Kind::number}};
+constexpr std::string_view kAlphaModes[] = {"OPAQUE", "MASK", "BLEND"};
+constexpr Rule kMetallicRoughness[] = {color("baseColorFactor", 4),
+                                       object("baseColorTexture", kTextureInfo),
+                                       {"metallicFactor", Kind::number},
+                                       {"roughnessFactor", Kind::number},
+                                       object("metallicRoughnessTexture", kTextureInfo)};
+constexpr Rule kSpecularGlossiness[] = {color("diffuseFactor", 4),
+                                        object("diffuseTexture", kTextureInfo)};
+constexpr Rule kEmissiveStrength[] = {number("emissiveStrength", 0)};
 constexpr Rule kMaterialExtensions[] = {
-    {"KHR_materials_pbrSpecularGlossiness", Kind::object, kSpecularGlossiness},
-    {"KHR_materials_emissive_strength", Kind::object, kEmissiveStrength}};
-constexpr Rule kMaterial[] = {{"name", Kind::text},
-                              {"alphaMode", Kind::text},
-                              {"alphaCutoff", Kind::number},
-                              {"doubleSided", Kind::boolean},
-                              {"emissiveFactor", Kind::numbers, {}, {}, 3},
-                              {"emissiveTexture", Kind::object, kTextureInfo},
-                              {"pbrMetallicRoughness", Kind::object, kMetallicRoughness},
-                              {"extensions", Kind::object, kMaterialExtensions}};
+    object("KHR_materials_pbrSpecularGlossiness", kSpecularGlossiness),
+    object("KHR_materials_emissive_strength", kEmissiveStrength)};
+constexpr Rule kMaterial[] = {
+    word("alphaMode", kAlphaModes),           number("alphaCutoff", 0),
+    {"doubleSided", Kind::boolean},           numbers("emissiveFactor", 3, -kRounding),
+    object("emissiveTexture", kTextureInfo),  object("normalTexture", kTextureInfo),
+    object("occlusionTexture", kTextureInfo), object("pbrMetallicRoughness", kMetallicRoughness),
+    object("extensions", kMaterialExtensions)};
 
-constexpr Rule kPrimitive[] = {required("attributes", Kind::index_map),
+constexpr int kModes[] = {0, 1, 2, 3, 4, 5, 6};
+constexpr Rule kPrimitive[] = {required({"attributes", Kind::index_map}),
                                {"indices", Kind::index},
                                {"material", Kind::index},
-                               {"mode", Kind::index},
-                               {"targets", Kind::objects, {}, "target"},
-                               {"extensions", Kind::object}};
-constexpr Rule kMesh[] = {{"name", Kind::text},
-                          {"primitives", Kind::objects, kPrimitive, "primitive", 0, kRequired},
+                               code("mode", kModes),
+                               {"targets", Kind::index_maps}};
+constexpr Rule kMesh[] = {required(objects("primitives", kPrimitive, "primitive", kMany)),
                           {"weights", Kind::numbers}};
 
-constexpr Rule kNodeLight[] = {required("light", Kind::index)};
-constexpr Rule kGpuInstancing[] = {required("attributes", Kind::index_map)};
-constexpr Rule kNodeExtensions[] = {{"KHR_lights_punctual", Kind::object, kNodeLight},
-                                    {"EXT_mesh_gpu_instancing", Kind::object, kGpuInstancing}};
-constexpr Rule kNode[] = {{"name", Kind::text},
-                          {"mesh", Kind::index},
-                          {"camera", Kind::index},
-                          {"skin", Kind::index},
-                          {"children", Kind::indices},
-                          {"matrix", Kind::numbers, {}, {}, 16},
-                          {"translation", Kind::numbers, {}, {}, 3},
-                          {"rotation", Kind::numbers, {}, {}, 4},
-                          {"scale", Kind::numbers, {}, {}, 3},
-                          {"extensions", Kind::object, kNodeExtensions}};
+constexpr Rule kSkin[] = {{"inverseBindMatrices", Kind::index},
+                          {"skeleton", Kind::index},
+                          required({"joints", Kind::indices})};
 
-constexpr Rule kPerspective[] = {required("yfov", Kind::number), required("znear", Kind::number)};
-constexpr Rule kOrthographic[] = {required("xmag", Kind::number), required("ymag", Kind::number),
-                                  required("zfar", Kind::number), required("znear", Kind::number)};
-constexpr Rule kCamera[] = {{"name", Kind::text},
-                            required("type", Kind::camera_type),
-                            {"perspective", Kind::object, kPerspective},
-                            {"orthographic", Kind::object, kOrthographic}};
+constexpr std::string_view kPaths[] = {"translation", "rotation", "scale", "weights", "pointer"};
+constexpr std::string_view kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
+constexpr Rule kChannelTarget[] = {{"node", Kind::index}, required(word("path", kPaths))};
+constexpr Rule kChannel[] = {required({"sampler", Kind::index}),
+                             required(object("target", kChannelTarget))};
+constexpr Rule kAnimationSampler[] = {required({"input", Kind::index}),
+                                      required({"output", Kind::index}),
+                                      word("interpolation", kInterpolations)};
+constexpr Rule kAnimation[] = {required(objects("channels", kChannel, "channel", kMany)),
+                               required(objects("samplers", kAnimationSampler, "sampler", kMany))};
 
-constexpr Rule kScene[] = {{"name", Kind::text}, {"nodes", Kind::indices}};
+constexpr Rule kNodeLight[] = {required({"light", Kind::index})};
+constexpr Rule kGpuInstancing[] = {required({"attributes", Kind::index_map})};
+constexpr Rule kNodeExtensions[] = {object("KHR_lights_punctual", kNodeLight),
+                                    object("EXT_mesh_gpu_instancing", kGpuInstancing)};
+constexpr Rule kNode[] = {{"mesh", Kind::index},      {"camera", Kind::index},
+                          {"skin", Kind::index},      {"children", Kind::indices},
+                          numbers("matrix", 16),      numbers("translation", 3),
+                          numbers("rotation", 4),     numbers("scale", 3),
+                          {"weights", Kind::numbers}, object("extensions", kNodeExtensions)};
 
+constexpr std::string_view kCameraTypes[] = {"perspective", "orthographic"};
+constexpr Rule kPerspective[] = {{"aspectRatio", Kind::positive},
+                                 required({"yfov", Kind::number}),
+                                 {"zfar", Kind::positive},
+                                 required({"znear", Kind::positive})};
+constexpr Rule kOrthographic[] = {required({"xmag", Kind::number}),
+                                  required({"ymag", Kind::number}),
+                                  required({"zfar", Kind::positive}), required(number("znear", 0))};
+constexpr Rule kCamera[] = {required(word("type", kCameraTypes)),
+                            object("perspective", kPerspective),
+                            object("orthographic", kOrthographic)};
+
+constexpr Rule kScene[] = {{"nodes", Kind::indices}};
+
+constexpr std::string_view kLightTypes[] = {"directional", "point", "spot"};
 constexpr Rule kSpot[] = {{"innerConeAngle", Kind::number}, {"outerConeAngle", Kind::number}};
-constexpr Rule kLight[] = {{"name", Kind::text},
-                           required("type", Kind::text),
-                           {"color", Kind::numbers, {}, {}, 3},
-                           {"intensity", Kind::number},
-                           {"spot", Kind::object, kSpot}};
-constexpr Rule kLights[] = {{"lights", Kind::objects, kLight, "light", 0, kRequired}};
-constexpr Rule kExtensions[] = {{"KHR_lights_punctual", Kind::object, kLights}};
+constexpr Rule kLight[] = {required(word("type", kLightTypes)),
+                           numbers("color", 3, 0),
+                           number("intensity", 0),
+                           {"range", Kind::positive},
+                           object("spot", kSpot)};
+constexpr Rule kLights[] = {required(objects("lights", kLight, "light", kFew))};
+constexpr Rule kExtensions[] = {object("KHR_lights_punctual", kLights)};
 
-constexpr Rule kRoot[] = {required("asset", Kind::object, kAsset),
+constexpr Rule kRoot[] = {required(object("asset", kAsset)),
                           {"extensionsUsed", Kind::texts},
                           {"extensionsRequired", Kind::texts},
                           {"scene", Kind::index},
-                          {"buffers", Kind::objects, kBuffer, "buffer"},
-                          {"bufferViews", Kind::objects, kBufferView, "bufferView"},
-                          {"accessors", Kind::objects, kAccessor, "accessor"},
-                          {"images", Kind::objects, kImage, "image"},
-                          {"samplers", Kind::objects, kSampler, "sampler"},
-                          {"textures", Kind::objects, kTexture, "texture"},
-                          {"materials", Kind::objects, kMaterial, "material"},
-                          {"meshes", Kind::objects, kMesh, "mesh"},
-                          {"nodes", Kind::objects, kNode, "node"},
-                          {"cameras", Kind::objects, kCamera, "camera"},
-                          {"scenes", Kind::objects, kScene, "scene"},
-                          {"extensions", Kind::object, kExtensions}};
+                          objects("buffers", kBuffer, "buffer", kMany),
+                          objects("bufferViews", kBufferView, "bufferView", kMany),
+                          objects("accessors", kAccessor, "accessor", kMany),
+                          objects("images", kImage, "image", kFew),
+                          objects("samplers", kSampler, "sampler", kFew),
+                          objects("textures", kTexture, "texture", kFew),
+                          objects("materials", kMaterial, "material", kFew),
+                          objects("meshes", kMesh, "mesh", kMany),
+                          objects("nodes", kNode, "node", kMany),
+                          objects("cameras", kCamera, "camera", kFew),
+                          objects("scenes", kScene, "scene", kFew),
+                          objects("skins", kSkin, "skin", kFew),
+                          objects("animations", kAnimation, "animation", kFew),
+                          object("extensions", kExtensions)};
 
 }  // namespace
 

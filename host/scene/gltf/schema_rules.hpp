@@ -1,41 +1,48 @@
 // What the schema check knows of glTF's properties: a tree of rules, by key.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <string_view>
 
 namespace dapple::gltf {
 
 enum class Kind {
-  index,      ///< integer in [0, 2^31)
-  count,      ///< integer in [0, 2^53)
-  stride,     ///< integer in [4, 252], a multiple of 4
-  number,     ///< finite as a float
-  numbers,    ///< array of such numbers
-  indices,    ///< array of index
-  index_map,  ///< object of index
+  index,       ///< integer in [0, 2^31)
+  count,       ///< integer in [0, 2^53)
+  size,        ///< integer in [1, 2^53)
+  stride,      ///< integer in [4, 252], a multiple of 4
+  code,        ///< one of the rule's codes
+  number,      ///< finite as a float, in [low, high]
+  positive,    ///< finite as a float, above 0
+  numbers,     ///< array of numbers as of `number`
+  indices,     ///< array of index
+  index_map,   ///< object of index
+  index_maps,  ///< array of objects of index
   text,
   texts,
-  component_type,  ///< 5120 to 5123, 5125 or 5126
-  element_type,    ///< "SCALAR", "VEC2" and so on
-  camera_type,
+  word,  ///< one of the rule's words
   boolean,
   object,
-  objects,  ///< array of objects
+  objects,  ///< array of objects, at most `length`
 };
 
 struct Rule;
 
-/// A table of rules; a span would need Rule to be complete.
-struct Rules {
-  const Rule* first = nullptr;
+/// A table that a rule refers to; a span would need Rule to be complete.
+template <typename Item>
+struct Table {
+  const Item* first = nullptr;
   std::size_t count = 0;
-  constexpr Rules() = default;
+  constexpr Table() = default;
   template <std::size_t N>
-  constexpr Rules(const Rule (&rules)[N]) : first(rules), count(N) {}
-  [[nodiscard]] const Rule* begin() const;
-  [[nodiscard]] const Rule* end() const;
+  constexpr Table(const Item (&items)[N]) : first(items), count(N) {}
+  [[nodiscard]] const Item* begin() const { return first; }
+  [[nodiscard]] const Item* end() const { return first + count; }
 };
+
+using Rules = Table<Rule>;
 
 struct Rule {
   std::string_view key;
@@ -44,10 +51,11 @@ struct Rule {
   std::string_view noun = {};  ///< of objects: what a message calls one of them
   std::size_t length = 0;      ///< of numbers; 0 for any
   bool required = false;
+  double low = std::numeric_limits<double>::lowest();
+  double high = std::numeric_limits<double>::max();
+  Table<std::string_view> words = {};
+  Table<int> codes = {};
 };
-
-inline const Rule* Rules::begin() const { return first; }
-inline const Rule* Rules::end() const { return first + count; }
 
 /// The rules of a document's root.
 Rules document_rules();

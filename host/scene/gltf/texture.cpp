@@ -14,6 +14,9 @@ namespace {
 constexpr const char* kOtherFormats[] = {"KHR_texture_basisu", "EXT_texture_webp",
                                          "EXT_texture_avif", "MSFT_texture_dds"};
 
+/// Of all alpha textures together, a byte each: an image's file may be a thousandth of that.
+constexpr std::uint64_t kMaxTexels = std::uint64_t{1} << 31;
+
 struct ImageBytes {
   Bytes owned;  ///< empty when the bytes are in a buffer
   std::span<const std::uint8_t> bytes;
@@ -40,7 +43,7 @@ int image_of(const Document& document, int texture, const std::string& user) {
 
 std::string describe(const Document& document, int image, const std::string& user) {
   return one_line(fmt::format("{}: image {} ({}) of {}", document.file, image,
-                              image_name(document, image), user));
+                              excerpt(image_name(document, image)), user));
 }
 
 ImageBytes read_image(const Document& document, int image, const std::string& what) {
@@ -52,22 +55,14 @@ ImageBytes read_image(const Document& document, int image, const std::string& wh
   }
   result.owned = is_data_uri(source.uri)
                      ? decode_data_uri(source.uri, what)
-                     : read_file(resolve_uri(document.folder, source.uri, what), what);
+                     : read_file(resolve_uri(document.base, source.uri, what), what);
   result.bytes = result.owned;
   return result;
 }
 
-Wrap wrap_mode(int code, const std::string& file, int sampler) {
-  switch (code) {
-    case TINYGLTF_TEXTURE_WRAP_REPEAT:
-      return Wrap::repeat;
-    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
-      return Wrap::clamp;
-    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
-      return Wrap::mirror;
-    default:
-      fail(file, "sampler {} has the unknown wrap mode {}", sampler, code);
-  }
+Wrap wrap_mode(int code) {
+  if (code == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp;
+  return code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
 }
 
 /// A texture without pixels, with the sampler's modes.
@@ -76,8 +71,8 @@ Texture sampled(const Document& document, int texture) {
   const int index = document.model.textures[static_cast<std::size_t>(texture)].sampler;
   if (index < 0) return result;
   const auto& sampler = document.model.samplers[static_cast<std::size_t>(index)];
-  result.wrap_s = wrap_mode(sampler.wrapS, document.file, index);
-  result.wrap_t = wrap_mode(sampler.wrapT, document.file, index);
+  result.wrap_s = wrap_mode(sampler.wrapS);
+  result.wrap_t = wrap_mode(sampler.wrapT);
   result.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
   return result;
 }
@@ -91,6 +86,11 @@ int TextureReader::alpha_texture(int texture, const std::string& user) {
   if (const auto known = loaded_.find(key); known != loaded_.end()) return known->second;
   const std::string what = describe(document_, image, user);
   AlphaImage decoded = decode_alpha(read_image(document_, image, what).bytes, what);
+  texels_ += decoded.alpha.size();
+  if (texels_ > kMaxTexels) {
+    fail(what, "brings the alpha textures to {} texels (at most {})", grouped(texels_),
+         grouped(kMaxTexels));
+  }
   result.name = one_line(image_name(document_, image));
   result.width = decoded.width;
   result.height = decoded.height;

@@ -28,6 +28,7 @@ class TextureReader {
   const Document& document_;
   Scene& scene_;
   std::map<Key, int> loaded_;
+  std::uint64_t texels_ = 0;  ///< of all textures in the scene
 };
 
 }  // namespace dapple::gltf

@@ -34,7 +34,7 @@ constexpr std::array<std::int8_t, 256> kBase64 = [] {
 }();
 
 Bytes decode_base64(std::string_view text, const std::string& what) {
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
   Bytes bytes;
   bytes.reserve(text.size() / 4 * 3 + 3);
   std::uint32_t bits = 0;
@@ -52,7 +52,34 @@ Bytes decode_base64(std::string_view text, const std::string& what) {
   return bytes;
 }
 
-/// RFC 3986: a letter, then letters, digits, '+', '-', '.', before the first ':'.
+/// Linux's own limits: a longer name is one that no file can have.
+constexpr std::size_t kLongestName = 255;
+constexpr std::size_t kLongestPath = 4095;
+
+void check_length(const fs::path& file, const std::string& what) {
+  bool sound = file.native().size() <= kLongestPath;
+  for (const fs::path& name : file) sound = sound && name.native().size() <= kLongestName;
+  if (!sound)
+    fail(what, "its uri \"{}\" is longer than a file's name can be", excerpt(file.native()));
+}
+
+void check_inside(const fs::path& folder, const fs::path& file, std::string_view uri,
+                  const std::string& what) {
+  std::error_code error;
+  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
+  const fs::path whole = error ? fs::path() : fs::weakly_canonical(file, error);
+  if (error) fail(what, "its uri \"{}\" leads nowhere ({})", excerpt(uri), error.message());
+  const fs::path inside = whole.lexically_relative(root);
+  if (!inside.empty() && *inside.begin() != "..") return;
+  fail(what, "its uri \"{}\" leads out of the scene's folder; --allow-outside lets it",
+       excerpt(uri));
+}
+
+}  // namespace
+
+bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
+
+// A letter, then letters, digits, '+', '-', '.', before the first ':'.
 bool has_scheme(std::string_view uri) {
   const std::size_t colon = uri.find(':');
   if (colon == std::string_view::npos || colon == 0) return false;
@@ -61,18 +88,6 @@ bool has_scheme(std::string_view uri) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '+' || c == '-' || c == '.';
   });
 }
-
-bool leads_out(const fs::path& folder, const fs::path& file) {
-  std::error_code error;
-  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  if (error) return true;
-  const fs::path inside = fs::weakly_canonical(file, error).lexically_relative(root);
-  return error || inside.empty() || *inside.begin() == "..";
-}
-
-}  // namespace
-
-bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 
 std::string percent_decode(std::string_view text) {
   std::string decoded;
@@ -99,19 +114,23 @@ Bytes decode_data_uri(std::string_view uri, const std::string& what) {
   return Bytes(text.begin(), text.end());
 }
 
-fs::path resolve_uri(const fs::path& folder, std::string_view uri, const std::string& what) {
+std::string_view data_media_type(std::string_view uri) {
+  uri.remove_prefix(std::string_view("data:").size());
+  return uri.substr(0, uri.find_first_of(";,"));
+}
+
+fs::path resolve_uri(const UriBase& base, std::string_view uri, const std::string& what) {
   if (uri.empty()) fail(what, "has an empty uri");
   if (has_scheme(uri)) {
     fail(what, "its uri \"{}\" is not a relative path; dapple reads only local files",
-         uri.substr(0, 80));
+         excerpt(uri));
   }
   const std::string decoded = percent_decode(uri);
   if (decoded.find('\0') != std::string::npos) fail(what, "its uri holds a NUL character");
-  const fs::path file(decoded);
-  if (file.is_absolute() || leads_out(folder, folder / file)) {
-    fail(what, "its uri \"{}\" leads out of the scene's folder", uri.substr(0, 200));
-  }
-  return folder / file;
+  fs::path file = base.folder / decoded;
+  check_length(file, what);
+  if (!base.allow_outside) check_inside(base.folder, file, uri, what);
+  return file;
 }
 
 }  // namespace dapple::gltf

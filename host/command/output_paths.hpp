@@ -1,0 +1,24 @@
+// The files that a command is about to write: each can be written, and none is a file that the
+// command reads or writes as well, by whatever name or link.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace dapple {
+
+/// A file to be written, and the option that names it.
+struct OutputPath {
+  std::string flag;
+  std::string path;
+};
+
+/// Throws Error usage, naming the flag, for a path that cannot be written (not a regular file,
+/// read-only, in a folder that is missing) and for two outputs that are one file.
+void check_outputs(const std::vector<OutputPath>& outputs);
+
+/// Throws Error usage, naming the flag, when an output is one of `inputs`.
+void check_outputs_spare(const std::vector<OutputPath>& outputs,
+                         const std::vector<std::string>& inputs);
+
+}  // namespace dapple

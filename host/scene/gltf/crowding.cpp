@@ -1,0 +1,40 @@
+// Counting equal placements by hash: see crowding.hpp.
+#include "scene/gltf/crowding.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <unordered_map>
+
+#include "scene/gltf/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+constexpr std::uint32_t kMostInOnePlace = 1000;
+
+/// FNV-1a over 32-bit words. That two of some million placements differ and have the same hash
+/// is unlikely, and would have to happen a thousand times to matter.
+std::uint64_t hash(const Instance& instance) {
+  std::uint64_t value = 0xcbf29ce484222325u;
+  const auto mix = [&](std::uint32_t word) { value = (value ^ word) * 0x100000001b3u; };
+  mix(instance.mesh);
+  for (const auto& row : instance.to_world.x) {
+    for (const float entry : row) mix(std::bit_cast<std::uint32_t>(entry));
+  }
+  return value;
+}
+
+}  // namespace
+
+void check_crowding(const Scene& scene) {
+  if (scene.instances.size() <= kMostInOnePlace) return;
+  std::unordered_map<std::uint64_t, std::uint32_t> placed;
+  placed.reserve(scene.instances.size());
+  for (const Instance& instance : scene.instances) {
+    if (++placed[hash(instance)] <= kMostInOnePlace) continue;
+    fail(scene.source, "mesh \"{}\" is placed more than {} times in one place",
+         excerpt(scene.meshes[instance.mesh].name), grouped(kMostInOnePlace));
+  }
+}
+
+}  // namespace dapple::gltf

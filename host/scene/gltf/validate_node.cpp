@@ -1,0 +1,63 @@
+// Validation of nodes: what they name exists, and their transforms are ones. What they are to
+// each other is checked where they are placed (hierarchy.cpp).
+#include <cmath>
+
+#include "scene/gltf/element_check.hpp"
+#include "scene/gltf/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+/// Exporters round rotations; beyond this viewers disagree about whether they scale.
+constexpr double kRotationTolerance = 0.05;
+
+void check_rotation(const std::string& file, const std::string& who,
+                    const std::vector<double>& rotation) {
+  if (rotation.empty()) return;
+  double squares = 0;
+  for (const double part : rotation) squares += part * part;
+  const double length = std::sqrt(squares);
+  if (length < 1e-6) fail(file, "{} has a rotation of length zero", who);
+  if (std::abs(length - 1) <= kRotationTolerance) return;
+  fail(file, "{} has a rotation of length {:g}, not 1", who, length);
+}
+
+void check_transform(const std::string& file, const std::string& who, const tinygltf::Node& node) {
+  check_rotation(file, who, node.rotation);
+  const bool parts = !node.translation.empty() || !node.rotation.empty() || !node.scale.empty();
+  if (node.matrix.empty() || !parts) return;
+  fail(file, "{} has both a matrix and a translation, rotation or scale", who);
+}
+
+void check_extensions_of(const Document& document, const std::string& who,
+                         const tinygltf::Node& node, const ElementCheck& check) {
+  const auto light = node.extensions.find("KHR_lights_punctual");
+  if (light != node.extensions.end()) {
+    check.index(who, "light", light->second.Get("light").GetNumberAsInt(),
+                document.model.lights.size());
+  }
+  const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
+  if (instancing == node.extensions.end()) return;
+  const auto& attributes = instancing->second.Get("attributes");
+  for (const std::string& name : attributes.Keys()) {
+    check.index(fmt::format("{} instance {}", who, excerpt(name)), "accessor",
+                attributes.Get(name).GetNumberAsInt(), document.model.accessors.size());
+  }
+}
+
+}  // namespace
+
+void validate_nodes(const Document& document, const ElementCheck& check) {
+  const auto& model = document.model;
+  for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+    const auto& node = model.nodes[i];
+    const std::string who = element("node", i, node.name);
+    check.index(who, "mesh", node.mesh, model.meshes.size());
+    check.index(who, "camera", node.camera, model.cameras.size());
+    for (const int child : node.children) check.index(who, "node", child, model.nodes.size());
+    check_transform(document.file, who, node);
+    check_extensions_of(document, who, node, check);
+  }
+}
+
+}  // namespace dapple::gltf

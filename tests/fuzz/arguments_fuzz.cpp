@@ -1,0 +1,34 @@
+// Any text as what follows an option: an Error of kind usage, or options that are in range.
+#include <string>
+
+#include "command/option_text.hpp"
+#include "dapple/error.hpp"
+#include "scene/procedural.hpp"
+#include "scene/procedural_parameters.hpp"
+
+namespace {
+
+template <typename Parse>
+void try_parse(const Parse& parse) {
+  try {
+    parse();
+  } catch (const dapple::Error& error) {
+    if (error.kind() != dapple::ErrorKind::usage) __builtin_trap();
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  dapple::RenderOptions options;
+  try_parse([&] { dapple::parse_vector("--up", text); });
+  try_parse([&] { dapple::parse_crop(text); });
+  try_parse([&] { dapple::parse_opacity(text); });
+  try_parse([&] { dapple::parse_estimator(text); });
+  try_parse([&] { dapple::parse_passes(text, options); });
+  for (const dapple::ProceduralHelp& scene : dapple::procedural_help()) {
+    try_parse([&] { dapple::ProceduralParameters(scene, text); });
+  }
+  return 0;
+}

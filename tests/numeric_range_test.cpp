@@ -1,0 +1,114 @@
+// Scenes from the smallest to the largest numbers: each becomes a picture of finite pixels or
+// a clear error, and within the range that is promised it becomes a picture.
+#include "scene/numeric_range.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "corpus/stage.hpp"
+#include "dapple/wavefront.hpp"
+
+namespace dapple::test {
+namespace {
+
+constexpr const char* kMayBeInfinite = "Z";  // where no ray hits
+
+/// The name of a channel with a pixel that is not finite; empty when there is none.
+std::string odd_channel(const Film& film) {
+  for (const Plane& plane : film.planes) {
+    if (plane.channel == kMayBeInfinite) continue;
+    for (const float value : plane.pixels)
+      if (!std::isfinite(value)) return plane.channel;
+  }
+  return "";
+}
+
+RenderOptions small_options() {
+  RenderOptions options;
+  options.width = options.height = 8;
+  options.spp = 4;
+  return options;
+}
+
+Scene scaled_stage(float scale) {
+  GltfBuilder builder;
+  auto positions = kCardTriangles;
+  for (float& value : positions) value *= scale;
+  builder.add_mesh({{"attributes", {{"POSITION", builder.add_positions(positions)}}}});
+  return builder.load();
+}
+
+/// "picture", or the message of the Error input.
+std::string outcome(Scene scene, const RenderOptions& options = small_options()) {
+  try {
+    const RenderResult result = render(std::move(scene), options);
+    EXPECT_EQ(odd_channel(result.film), "");
+    return "picture";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+    return error.what();
+  }
+}
+
+TEST(NumericRange, ScenesOfEverySizeAreFinitePicturesOrErrors) {
+  for (int exponent = -44; exponent <= 38; ++exponent) {
+    const auto scale = static_cast<float>(std::pow(10.0, exponent));
+    const std::string result = outcome(scaled_stage(scale));
+    const bool promised = exponent >= -8 && exponent <= 11;
+    EXPECT_EQ(result == "picture", promised) << "1e" << exponent << ": " << result;
+  }
+}
+
+TEST(NumericRange, OneVertexFarAwayIsAFinitePictureOrAnError) {
+  for (const float far : {1e6f, 1e9f, 1e11f, 1e15f, 1e20f, 1e30f, 3e38f}) {
+    GltfBuilder builder;
+    auto positions = kCardTriangles;
+    positions[3] = far;
+    builder.add_mesh({{"attributes", {{"POSITION", builder.add_positions(positions)}}}});
+    const std::string result = outcome(builder.load());
+    EXPECT_EQ(result == "picture", far <= 1e12f) << far << ": " << result;
+  }
+}
+
+TEST(NumericRange, LightsAndCamerasFarAwayAreRefusedByName) {
+  GltfBuilder builder = plain_stage();
+  builder.doc["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"name", "lamp"}, {"type", "point"}}};
+  builder.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},
+                        {"translation", {0, 1e20, 0}}});
+  expect_says(outcome(builder.load()), "light \"lamp\" reaches 1e+20 m");
+  GltfBuilder camera = plain_stage();
+  camera.add(
+      "cameras",
+      {{"name", "moon"}, {"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+  camera.add("nodes", {{"camera", 0}, {"translation", {0, 0, 1e30}}});
+  expect_says(outcome(camera.load()), "camera \"moon\" reaches 1e+30 m");
+}
+
+TEST(NumericRange, LightsOfEveryStrengthAreFinitePictures) {
+  for (const double intensity : {0.0, 1e-44, 1e-20, 1.0, 1e10, 1e20, 1e38}) {
+    for (const char* type : {"point", "directional"}) {
+      GltfBuilder builder = plain_stage();
+      builder.doc["extensions"]["KHR_lights_punctual"]["lights"] = {
+          {{"type", type}, {"intensity", intensity}}};
+      builder.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},
+                            {"translation", {0, 3, 1}}});
+      EXPECT_EQ(outcome(builder.load()), "picture") << type << " " << intensity;
+    }
+  }
+}
+
+TEST(NumericRange, EmissionOfEveryStrengthIsAFinitePicture) {
+  for (const double strength : {1e-44, 1e-20, 1.0, 1e20, 3e38}) {
+    GltfBuilder builder = plain_stage();
+    builder.doc["materials"] = {
+        {{"emissiveFactor", {1, 1, 1}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", strength}}}}}}};
+    builder.doc["meshes"][1]["primitives"][0]["material"] = 0;
+    EXPECT_EQ(outcome(builder.load()), "picture") << strength;
+  }
+}
+
+}  // namespace
+}  // namespace dapple::test
