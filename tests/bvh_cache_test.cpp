@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include "bvh/builder_version.hpp"
@@ -213,11 +214,11 @@ TEST_F(BvhCache, AFileWithAnyBitFlippedIsNotRead) {
   for (const std::size_t bit : flipped) {
     note.clear();
     flip_bit(file, bit);
-    ASSERT_FALSE(read_cached_object(cache_, key, note).has_value()) << bit;
+    ASSERT_FALSE(read_cached_object(cache_, key, scene, note).has_value()) << bit;
     ASSERT_TRUE(contains(note, file + ": ")) << note;
     flip_bit(file, bit);
   }
-  EXPECT_TRUE(read_cached_object(cache_, key, note).has_value());
+  EXPECT_TRUE(read_cached_object(cache_, key, scene, note).has_value());
 }
 
 TEST_F(BvhCache, AFlippedBitIsBuiltAnewIntoTheSameTree) {
@@ -237,11 +238,13 @@ TEST_F(BvhCache, AFileCutShortAnywhereIsNotRead) {
   const Scene scene = single_object();
   const Checksum key = object_key(scene, scene.meshes[0]);
   std::string note;
-  ASSERT_TRUE(read_cached_object(cache_, key, note).has_value());
-  for (std::size_t size = fs::file_size(file); size-- > 0;) {
+  ASSERT_TRUE(read_cached_object(cache_, key, scene, note).has_value());
+  // Every length of a sealed file is tried in its own test.
+  for (std::size_t size = fs::file_size(file); size > 0;) {
+    size -= std::min<std::size_t>(size, size > 1024 ? 97 : 1);
     fs::resize_file(file, size);
     note.clear();
-    ASSERT_FALSE(read_cached_object(cache_, key, note).has_value()) << size;
+    ASSERT_FALSE(read_cached_object(cache_, key, scene, note).has_value()) << size;
     ASSERT_TRUE(contains(note, file + ": ")) << note;
   }
   expect_rebuilt(file, build_bvh(scene), "it is empty");
@@ -276,6 +279,45 @@ TEST_F(BvhCache, AFileOfAnotherVersionOrMeshIsReplaced) {
     if (path != file) fs::rename(path, file);
   }
   expect_rebuilt(file, expected, "made of another mesh");
+}
+
+/// A copy of the cached object whose arrays can be edited.
+ObjectBvh copy_of(const FinishedObject& object) {
+  ObjectBvh copy;
+  static_cast<ObjectSummary&>(copy) = object;
+  copy.nodes.assign(object.nodes.begin(), object.nodes.end());
+  copy.blocks.assign(object.blocks.begin(), object.blocks.end());
+  copy.textured.assign(object.textured.begin(), object.textured.end());
+  return copy;
+}
+
+TEST_F(BvhCache, ATreeWhoseIndicesLeaveItsArraysIsNotWalkedWhoeverSealedIt) {
+  fill_with_one();
+  const Scene scene = single_object();
+  const Checksum key = object_key(scene, scene.meshes[0]);
+  std::string note;
+  const CachedObject good = read_cached_object(cache_, key, scene, note).value();
+  const std::vector<std::function<void(ObjectBvh&)>> edits = {
+      [](ObjectBvh& o) { o.nodes.clear(); },
+      [](ObjectBvh& o) { o.nodes.pop_back(); },
+      [](ObjectBvh& o) { o.blocks.pop_back(); },
+      [](ObjectBvh& o) { o.nodes[0].child_base = 0; },
+      [](ObjectBvh& o) { o.nodes[0].child_base = 0xfffffff8u; },
+      [](ObjectBvh& o) { o.nodes.back().inner_mask = 1; },
+      [](ObjectBvh& o) { o.nodes.back().prim_base = 0xffffffffu; },
+      [](ObjectBvh& o) { o.nodes.back().leaf_end[0] = 63; },
+      [](ObjectBvh& o) { o.blocks[3].opacity[0] = -400; },
+      [](ObjectBvh& o) { o.blocks[3].opacity[0] = std::numeric_limits<float>::quiet_NaN(); },
+      [](ObjectBvh& o) { o.textured[7].texture = 2; },
+      [](ObjectBvh& o) { --o.stack; },
+  };
+  for (std::size_t e = 0; e < edits.size(); ++e) {
+    ObjectBvh bad = copy_of(good.object);
+    edits[e](bad);
+    write_cached_object(cache_, key, {FinishedObject(std::move(bad)), 0});
+    EXPECT_FALSE(read_cached_object(cache_, key, scene, note).has_value()) << "edit " << e;
+    EXPECT_TRUE(contains(note, "no tree that rays could walk")) << note;
+  }
 }
 
 TEST_F(BvhCache, AFileThatCannotBeReplacedIsANoteAndNotAnError) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "bvh/builder_version.hpp"
+#include "bvh/object_soundness.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/error.hpp"
 #include "file/sealed_file.hpp"
@@ -77,8 +78,8 @@ ObjectSummary summary_of(const ObjectRecord& record) {
   summary.translucent = record.translucent;
   summary.opacity.triangles = record.opacity_triangles;
   summary.box = box_of(record.box);
-  const std::size_t parts = std::min<std::size_t>(record.part_count, record.parts.size());
-  for (std::size_t i = 0; i < parts; ++i) summary.parts.push_back(box_of(record.parts[i]));
+  for (std::size_t i = 0; i < std::min<std::size_t>(record.part_count, DAPPLE_BVH_WIDTH); ++i)
+    summary.parts.push_back(box_of(record.parts[i]));
   summary.opacity.axes = V3f(record.axes[0], record.axes[1], record.axes[2]);
   summary.opacity.normals.sum = record.normals;
   summary.opacity.clumping = record.clumping;
@@ -96,7 +97,7 @@ bool is_there(const std::string& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
-CachedObject read_object(const std::string& path, const Checksum& key) {
+CachedObject read_object(const std::string& path, const Checksum& key, const Scene& scene) {
   const SealedFile file = open_sealed_file(path, kKind);
   const auto builder = file.values<char>(kBuilder);
   if (std::string_view(builder.data(), builder.size()) != builder_version()) {
@@ -112,6 +113,9 @@ CachedObject read_object(const std::string& path, const Checksum& key) {
   cached.object.nodes = {file.values<BvhNode>(kNodes), file.keeper()};
   cached.object.blocks = {file.values<TriangleBlock>(kBlocks), file.keeper()};
   cached.object.textured = {file.values<TexturedTriangle>(kTextured), file.keeper()};
+  if (records[0].part_count > DAPPLE_BVH_WIDTH || !is_sound(cached.object, scene)) {
+    throw Error(ErrorKind::input, path + ": no tree that rays could walk");
+  }
   return cached;
 }
 
@@ -140,11 +144,11 @@ void prepare_bvh_cache(const std::string& folder) {
 }
 
 std::optional<CachedObject> read_cached_object(const std::string& folder, const Checksum& key,
-                                               std::string& note) {
+                                               const Scene& scene, std::string& note) {
   const std::string path = file_of(folder, key);
   if (!is_there(path)) return std::nullopt;
   try {
-    return read_object(path, key);
+    return read_object(path, key, scene);
   } catch (const Error& error) {
     note = error.what();
     return std::nullopt;

@@ -26,10 +26,10 @@ struct CachedObject {
   double build_seconds = 0;  ///< that building and prefiltering took
 };
 
-/// The object's arrays are the file's, mapped into memory. Nothing when there is no file, or only
-/// one that is damaged or of another version, which `note` then says.
+/// An object of `scene` whose arrays are the file's, mapped into memory. Nothing when there is no
+/// file, or only one that is damaged or of another version, which `note` then says.
 std::optional<CachedObject> read_cached_object(const std::string& folder, const Checksum& key,
-                                               std::string& note);
+                                               const Scene& scene, std::string& note);
 
 /// Replaces whatever is there. Throws Error failed.
 void write_cached_object(const std::string& folder, const Checksum& key,

@@ -40,7 +40,7 @@ void read_from_cache(const Scene& scene, const std::string& folder, std::vector<
     work.is_cached = mesh.triangle_count() >= kLeastCachedTriangles;
     if (!work.is_cached) return;
     work.key = object_key(scene, mesh);
-    auto found = read_cached_object(folder, work.key, work.note);
+    auto found = read_cached_object(folder, work.key, scene, work.note);
     work.is_read = found.has_value();
     if (found) work.finished = std::move(*found);
   });

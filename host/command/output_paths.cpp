@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "dapple/error.hpp"
-#include "film/output_file.hpp"
+#include "file/output_file.hpp"
 
 namespace dapple {
 namespace {

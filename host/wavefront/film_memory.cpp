@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kSurfaceChannels = 18;  // RGBA, ao, bent, N, P, Z, samples
 constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
+constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if all were domes
 
 /// Sums are on the device, which on a CPU is the same memory, and read back; channels are in
 /// the film and in the file that is being written.

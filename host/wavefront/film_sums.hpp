@@ -21,7 +21,7 @@ struct LightPlaneRange {
   std::uint32_t channels = 1;
   [[nodiscard]] std::uint32_t unoccluded() const { return first + channels; }
   [[nodiscard]] std::uint32_t visits() const { return first + 2 * channels; }
-  [[nodiscard]] std::uint32_t count() const { return 2 * channels + 2; }
+  [[nodiscard]] constexpr std::uint32_t count() const { return 2 * channels + 2; }
 };
 
 /// First plane of each pass, and the powers of two by which values are scaled. A sum of
