@@ -308,7 +308,7 @@ TEST_F(BvhCache, ATreeWhoseIndicesLeaveItsArraysIsNotWalkedWhoeverSealedIt) {
       [](ObjectBvh& o) { o.nodes.back().leaf_end[0] = 63; },
       [](ObjectBvh& o) { o.blocks[3].opacity[0] = -400; },
       [](ObjectBvh& o) { o.blocks[3].opacity[0] = std::numeric_limits<float>::quiet_NaN(); },
-      [](ObjectBvh& o) { o.textured[7].texture = 2; },
+      [](ObjectBvh& o) { o.textured[7].corner[0][1] |= 1023u; },
       [](ObjectBvh& o) { --o.stack; },
   };
   for (std::size_t e = 0; e < edits.size(); ++e) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "bvh/textured_triangle.hpp"
+
 namespace dapple {
 namespace {
 
@@ -64,7 +66,11 @@ bool blocks_are_sound(const FinishedObject& object) {
 bool textured_are_sound(const FinishedObject& object, const Scene& scene) {
   return std::all_of(
       object.textured.begin(), object.textured.end(), [&](const TexturedTriangle& triangle) {
-        return triangle.texture == DAPPLE_NO_TEXTURE || triangle.texture < scene.textures.size();
+        const TexturedCorners corners = unpack_textured(triangle);
+        if (corners.material >= scene.materials.size()) return false;
+        const int texture = scene.materials[corners.material].alpha_texture;
+        return !corners.has_texture ||
+               (texture >= 0 && static_cast<std::size_t>(texture) < scene.textures.size());
       });
 }
 

@@ -1,4 +1,6 @@
 // GLB files whose header, chunks or lengths are wrong, and files that are no glTF at all.
+#include <set>
+
 #include "corpus/corpus.hpp"
 
 namespace dapple::test {
@@ -54,11 +56,27 @@ std::vector<Chunk> sound_chunks() {
 void add_cuts(MalformedCases& cases) {
   const Bytes whole = one_triangle().glb();
   const std::size_t json_end = 20 + u32_at(whole, 12);
-  for (const std::size_t size :
-       {std::size_t{1},  std::size_t{3},  std::size_t{4},    std::size_t{7},   std::size_t{8},
-        std::size_t{11}, std::size_t{12}, std::size_t{16},   std::size_t{19},  std::size_t{20},
-        std::size_t{21}, json_end - 1,    json_end,          json_end + 1,     json_end + 4,
-        json_end + 8,    json_end + 9,    whole.size() - 36, whole.size() - 4, whole.size() - 1}) {
+  const std::set<std::size_t> sizes{1,
+                                    3,
+                                    4,
+                                    7,
+                                    8,
+                                    11,
+                                    12,
+                                    16,
+                                    19,
+                                    20,
+                                    21,
+                                    json_end - 1,
+                                    json_end,
+                                    json_end + 1,
+                                    json_end + 4,
+                                    json_end + 8,
+                                    json_end + 9,
+                                    whole.size() - 36,
+                                    whole.size() - 4,
+                                    whole.size() - 1};
+  for (const std::size_t size : sizes) {
     const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     cases.push_back(bytes_case("cut_at_" + std::to_string(size), cut, "scene.glb"));
     if (size < 12) continue;
