@@ -38,7 +38,8 @@ class Pictures {
     const TracedPicture picture =
         trace_picture(device(), scene_.uploaded, view_, options, layout, 0, {});
     // Misses add nothing to the plane, exact or not: they drop out of differences.
-    const auto first = picture.sums.begin() + std::ptrdiff_t{layout.ao} * layout.pixels;
+    const auto first =
+        picture.sums.values<std::int64_t>().begin() + std::ptrdiff_t{layout.ao} * layout.pixels;
     Pixels pixels(first, first + layout.pixels);
     for (double& pixel : pixels) pixel /= double{layout.unit_scale} * options.spp;
     return pixels;

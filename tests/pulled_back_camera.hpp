@@ -103,7 +103,7 @@ class FrameTracer {
         const double share = share_inside(column, row, options.width, outline);
         if (share <= 0) continue;
         const auto plane = [&](std::size_t p) {
-          return static_cast<double>(picture.sums[p * layout.pixels + pixel]);
+          return static_cast<double>(picture.sums.values<std::int64_t>()[p * layout.pixels + pixel]);
         };
         // The order of the planes is that of kernels/film.cl: first how many samples hit.
         frame.hits += share * plane(0);

@@ -26,18 +26,19 @@ Scene furnished(const std::string& spec, const RenderOptions& options, View& vie
 class Sums {
  public:
   Sums(const TracedPicture& picture, const FilmLayout& layout)
-      : picture_(picture), layout_(layout) {}
+      : picture_(picture), sums_(picture.sums.values<std::int64_t>()), layout_(layout) {}
 
   [[nodiscard]] std::vector<double> plane(std::uint32_t plane, double scale) const {
     std::vector<double> values(layout_.pixels);
     for (std::uint32_t p = 0; p < layout_.pixels; ++p)
-      values[p] = static_cast<double>(picture_.sums[std::size_t{plane} * layout_.pixels + p]) *
-                  scale / picture_.samples[p];
+      values[p] = static_cast<double>(sums_[std::size_t{plane} * layout_.pixels + p]) * scale /
+                  picture_.samples[p];
     return values;
   }
 
  private:
   const TracedPicture& picture_;
+  std::span<const std::int64_t> sums_;
   const FilmLayout& layout_;
 };
 

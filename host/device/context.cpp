@@ -1,8 +1,11 @@
 #include "device/context.hpp"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include <chrono>
+#include <memory>
+#include <new>
 
 #include "device/kernel_cache.hpp"
 #include "device/kernel_source.hpp"
@@ -38,10 +41,36 @@ cl_int compile(const cl::Program& program, const cl::Device& device,
   return clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
 }
 
+/// Zeroed pages of the operating system.
+class Pages {
+ public:
+  explicit Pages(std::size_t bytes)
+      : data_(mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)),
+        bytes_(bytes) {
+    if (data_ == MAP_FAILED) throw std::bad_alloc();
+  }
+  Pages(const Pages&) = delete;
+  Pages& operator=(const Pages&) = delete;
+  ~Pages() { munmap(data_, bytes_); }
+  [[nodiscard]] void* data() const { return data_; }
+
+ private:
+  void* data_;
+  std::size_t bytes_;
+};
+
+/// Gives `pages` to `buffer`, which uses them until its last command is done.
+void hand_over(std::unique_ptr<Pages> pages, cl::Buffer& buffer) {
+  const auto free_pages = [](cl_mem, void* data) { delete static_cast<Pages*>(data); };
+  buffer.setDestructorCallback(free_pages, pages.get());
+  (void)pages.release();
+}
+
 }  // namespace
 
 struct Buffer::Memory {
   cl::Buffer buffer;
+  bool on_host = false;  ///< it uses the host's memory, and may be mapped
 };
 
 struct DeviceContext::State {
@@ -50,6 +79,7 @@ struct DeviceContext::State {
   std::string kernel_dir;
   Company trace_with = Company::automatic;
   cl::Device device;
+  bool shares_memory = false;  ///< with the host
   cl::Context context;
   cl::CommandQueue queue;
   std::map<std::pair<std::string, Variant>, cl::Program> programs;
@@ -115,6 +145,7 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Co
   s.device = choose_device(name);
   s.info = describe(s.device);
   in_opencl("opening " + s.info.name, [&] {
+    s.shares_memory = s.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
     s.context = cl::Context(s.device);
     s.queue = cl::CommandQueue(s.context, s.device, CL_QUEUE_PROFILING_ENABLE);
   });
@@ -146,8 +177,7 @@ Buffer DeviceContext::allocate(std::size_t bytes) {
 Buffer DeviceContext::share(const void* data, std::size_t bytes) {
   if (bytes == 0) return allocate(0);
   return in_opencl(fmt::format("uploading {} bytes to {}", bytes, state_->info.name), [&] {
-    const bool shared = state_->device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
-    const cl_mem_flags placing = shared ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    const cl_mem_flags placing = state_->shares_memory ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
     auto memory = std::make_shared<Buffer::Memory>();
     // OpenCL wants a mutable pointer but only reads through it: CL_MEM_READ_ONLY.
     memory->buffer =
@@ -156,11 +186,42 @@ Buffer DeviceContext::share(const void* data, std::size_t bytes) {
   });
 }
 
-void DeviceContext::fill_zero(const Buffer& buffer) {
-  if (buffer.bytes() == 0) return;
-  in_opencl("clearing a buffer", [&] {
-    state_->queue.enqueueFillBuffer(buffer.memory()->buffer, kZeros, 0,
-                                    whole_patterns(buffer.bytes()));
+Buffer DeviceContext::allocate_zeros(std::size_t bytes) {
+  if (!state_->shares_memory) {
+    const Buffer buffer = allocate(bytes);
+    in_opencl("clearing a buffer", [&] {
+      state_->queue.enqueueFillBuffer(buffer.memory()->buffer, kZeros, 0, whole_patterns(bytes));
+    });
+    return buffer;
+  }
+  return in_opencl(fmt::format("allocating {} bytes on {}", bytes, state_->info.name), [&] {
+    auto memory = std::make_shared<Buffer::Memory>();
+    auto pages = std::make_unique<Pages>(whole_patterns(bytes));
+    memory->buffer = cl::Buffer(state_->context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
+                                whole_patterns(bytes), pages->data());
+    hand_over(std::move(pages), memory->buffer);
+    memory->on_host = true;
+    return Buffer(std::move(memory), bytes);
+  });
+}
+
+HostView DeviceContext::view(const Buffer& buffer) {
+  if (!buffer.bytes()) return {};
+  if (!buffer.memory()->on_host) {
+    auto copy = std::make_shared<std::vector<std::byte>>(buffer.bytes());
+    read(buffer, copy->data(), copy->size());
+    return {copy, *copy};
+  }
+  return in_opencl("reading from the device", [&] {
+    const cl::Buffer& memory = buffer.memory()->buffer;
+    void* data = state_->queue.enqueueMapBuffer(memory, CL_TRUE, CL_MAP_READ, 0, buffer.bytes());
+    std::shared_ptr<const void> keeper(data, [queue = state_->queue, buffer](void* mapped) {
+      try {
+        queue.enqueueUnmapMemObject(buffer.memory()->buffer, mapped);
+      } catch (const cl::Error&) {  // the memory goes anyway
+      }
+    });
+    return HostView(std::move(keeper), {static_cast<const std::byte*>(data), buffer.bytes()});
   });
 }
 

@@ -2,6 +2,7 @@
 // host/wavefront sees of OpenCL; the OpenCL types stay in context.cpp.
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <map>
 #include <memory>
@@ -27,6 +28,23 @@ class Buffer {
  private:
   std::shared_ptr<Memory> memory_;
   std::size_t bytes_ = 0;
+};
+
+/// What a buffer holds, for the host to read: the device's own memory where both share one, else a
+/// copy. No kernel may write to the buffer while a view of it lives.
+class HostView {
+ public:
+  HostView() = default;
+  HostView(std::shared_ptr<const void> keeper, std::span<const std::byte> bytes)
+      : keeper_(std::move(keeper)), bytes_(bytes) {}
+  template <class T>
+  [[nodiscard]] std::span<const T> values() const {
+    return {reinterpret_cast<const T*>(bytes_.data()), bytes_.size() / sizeof(T)};
+  }
+
+ private:
+  std::shared_ptr<const void> keeper_;
+  std::span<const std::byte> bytes_;
 };
 
 /// A kernel argument: a buffer, or a struct or number by value.
@@ -74,10 +92,15 @@ class DeviceContext {
   /// Read-only copy of host data; on devices that share memory with the host no copy is
   /// made and the data must stay where it is.
   Buffer share(const void* data, std::size_t bytes);
-  void fill_zero(const Buffer& buffer);
+  /// Memory full of zeros. Where it is shared with the host, its pages come from the operating
+  /// system as they are first written to, by whichever thread that is.
+  Buffer allocate_zeros(std::size_t bytes);
   void write(const Buffer& buffer, const void* data, std::size_t bytes);
   /// Waits for all launches before it. `offset`: bytes into the buffer.
   void read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset = 0);
+
+  /// Waits for all launches before it.
+  HostView view(const Buffer& buffer);
 
   /// Compiles a kernel ahead of its first launch.
   void prepare(const KernelName& kernel);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include "wavefront/picture.hpp"
 
@@ -35,8 +36,7 @@ double largest_coordinate(const Box3f& box) {
 /// Sums of one pass, pixel by pixel, as reals.
 class Sums {
  public:
-  Sums(const std::vector<std::int64_t>& sums, std::uint32_t pixels)
-      : sums_(sums), pixels_(pixels) {}
+  Sums(std::span<const std::int64_t> sums, std::uint32_t pixels) : sums_(sums), pixels_(pixels) {}
   [[nodiscard]] double at(std::uint32_t plane, std::uint32_t pixel) const {
     return static_cast<double>(sums_[std::size_t{plane} * pixels_ + pixel]);
   }
@@ -47,7 +47,7 @@ class Sums {
   }
 
  private:
-  const std::vector<std::int64_t>& sums_;
+  std::span<const std::int64_t> sums_;
   std::uint32_t pixels_;
 };
 
@@ -211,7 +211,7 @@ FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box
 std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layout,
                            const RenderOptions& options, const std::vector<Light>& lights,
                            RenderStatistics& statistics) {
-  const Sums sums(picture.sums, layout.pixels);
+  const Sums sums(picture.sums.values<std::int64_t>(), layout.pixels);
   const auto spp = [&](std::uint32_t p) { return sample_count(picture, p); };
   const auto hits = [&](std::uint32_t p) { return sums.at(0, p); };
   const auto ao = [&](std::uint32_t p) {

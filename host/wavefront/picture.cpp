@@ -51,8 +51,8 @@ class PictureTracer {
       state_.slice_samples = samples_of_slice(device.info(), options, light_count_, rays);
     queues_ = make_queues(context_, state_.slice_samples, rays);
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
-    film_.sums = context_.allocate(layout.sum_bytes());
-    film_.squares = context_.allocate(layout.square_bytes());
+    film_.sums = context_.allocate_zeros(layout.sum_bytes());
+    film_.squares = context_.allocate_zeros(layout.square_bytes());
     place_sums();
     resolve_ = resolve_params(view);
   }
@@ -63,13 +63,13 @@ class PictureTracer {
     TracedPicture picture;
     while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control)))
       picture.interrupted = !trace_round(plan, control);
-    read_state(plan);
-    if (control.save) control.save(state_);
-    picture.samples = traced_samples(state_.round, state_.slice_samples, state_.samples);
+    if (control.save) save(plan, control);
+    picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
     if (plan.is_adaptive() && all_know_errors(picture.samples))
       picture.errors = standard_errors(picture.samples);
-    picture.sums = std::move(state_.sums);
-    picture.pass_seconds = std::move(state_.pass_seconds);
+    picture.sums = context_.view(film_.sums);
+    context_.finish();
+    picture.pass_seconds = pass_seconds();
     picture.queue_bytes = queues_.bytes();
     return picture;
   }
@@ -89,11 +89,7 @@ class PictureTracer {
   /// Onto the device, where from now on they are.
   void place_sums() {
     earlier_seconds_ = state_.pass_seconds;
-    if (state_.sums.empty()) {
-      context_.fill_zero(film_.sums);
-      context_.fill_zero(film_.squares);
-      return;
-    }
+    if (state_.sums.empty()) return;
     context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
     context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
     release_sums();
@@ -111,9 +107,14 @@ class PictureTracer {
     context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
     context_.finish();
     state_.samples = plan.samples();
-    state_.pass_seconds = earlier_seconds_;
-    for (const auto& [label, seconds] : context_.pass_seconds())
-      state_.pass_seconds[label] += seconds;
+    state_.pass_seconds = pass_seconds();
+  }
+
+  /// Of this run and those that it goes on from.
+  [[nodiscard]] std::map<std::string, double> pass_seconds() const {
+    std::map<std::string, double> sum = earlier_seconds_;
+    for (const auto& [label, seconds] : context_.pass_seconds()) sum[label] += seconds;
+    return sum;
   }
 
   /// False when there is no more to trace.

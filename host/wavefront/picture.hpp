@@ -10,7 +10,7 @@
 namespace dapple {
 
 struct TracedPicture {
-  std::vector<std::int64_t> sums;      ///< as FilmLayout says
+  HostView sums;                       ///< std::int64_t, as FilmLayout says
   std::vector<std::uint32_t> samples;  ///< of each pixel; 0 only where interrupted
   /// With a target, unless interrupted before they are known: standard errors by pass (AO, then the
   /// lights, these relative to their largest unoccluded irradiance) and pixel.

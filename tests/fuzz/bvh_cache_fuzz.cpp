@@ -41,6 +41,8 @@ void require(bool condition) {
 Scene scene_with_textures(std::size_t count) {
   Scene scene;
   scene.textures.resize(count);
+  scene.materials.resize(2);
+  scene.materials[1].alpha_texture = static_cast<int>(count) - 1;
   return scene;
 }
 
@@ -85,8 +87,8 @@ void walk(const FinishedObject& object, std::uint32_t index, std::size_t& visits
       if (opacity >= 0.0f) continue;
       const auto textured = static_cast<std::size_t>(-opacity - 1.0f);
       require(textured < object.textured.size());
-      const std::uint32_t texture = object.textured[textured].texture;
-      require(texture == DAPPLE_NO_TEXTURE || texture == 0);
+      require(unpack_textured(object.textured[textured]).material <
+              scene_with_textures(1).materials.size());
     }
   }
 }
