@@ -146,7 +146,9 @@ TEST_F(Interruption, ADamagedCheckpointExitsWith1AndTimesThatAreNoneWith2) {
   EXPECT_EQ(run(render(4, {}), "--resume", path("b.ckpt")), 1);
   EXPECT_TRUE(contains(bytes_of(log()), "--resume " + path("b.ckpt") + ": damaged"))
       << bytes_of(log());
-  EXPECT_EQ(run(render(4, {}), "--resume", path("out.exr")), 1);
+  write_bytes(path("c.ckpt"), bytes_of(path("out.exr")));
+  EXPECT_EQ(run(render(4, {}), "--resume", path("c.ckpt")), 1);
+  EXPECT_EQ(run(render(4, {}), "--resume", path("out.exr")), 2) << "an output is no input";
   EXPECT_EQ(run(render(3, {}), "--resume", path("a.ckpt")), 2);
   EXPECT_EQ(run(render(4, {}), "--checkpoint-every", "5s"), 2) << "without --checkpoint";
   EXPECT_EQ(run(render(4, {}), "--checkpoint", path("missing/a.ckpt")), 2);
