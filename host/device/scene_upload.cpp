@@ -1,12 +1,10 @@
 #include "device/scene_upload.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "dapple/error.hpp"
 #include "device/light_upload.hpp"
+#include "device/memory_need.hpp"
 
 namespace dapple {
 namespace {
@@ -30,12 +28,6 @@ Buffer share(DeviceContext& context, const std::vector<T>& data) {
   return context.share(data.data(), data.size() * sizeof(T));
 }
 
-void check_memory(const DeviceInfo& info, std::size_t needed) {
-  if (needed <= info.memory_bytes) return;
-  throw Error(ErrorKind::device, fmt::format("the scene needs {} bytes of device memory, {} has {}",
-                                             needed, info.name, info.memory_bytes));
-}
-
 }  // namespace
 
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh) {
@@ -48,7 +40,8 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   result.bytes = bytes(bvh.nodes) + bytes(bvh.blocks) + bytes(bvh.textured) + bytes(bvh.instances) +
                  bytes(buffers->texture_records) + bytes(buffers->texel_data) +
                  bytes(buffers->light_records) + bytes(buffers->emitter_triangles);
-  check_memory(device.info(), result.bytes);
+  check_memory(device.info(), {result.bytes, std::max(bytes(bvh.nodes), bytes(bvh.blocks))},
+               "needs");
   buffers->nodes = share(context, bvh.nodes);
   buffers->blocks = share(context, bvh.blocks);
   buffers->textured = share(context, bvh.textured);

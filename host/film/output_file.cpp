@@ -3,6 +3,7 @@
 #include "film/output_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -71,6 +72,32 @@ std::string next_temporary_name(const std::string& target) {
   return (fs::path(folder_of(target)) / name).string();
 }
 
+// The kernel lets go of locks however a process ends: who can take one finds a file that nobody
+// will finish.
+void remove_abandoned(const std::string& folder) {
+  std::error_code problem;
+  for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end;
+       entry.increment(problem)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(".dapple-") || !name.ends_with(".tmp")) continue;
+    const int file = open(entry->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) continue;
+    if (flock(file, LOCK_EX | LOCK_NB) == 0) unlink(entry->path().c_str());
+    ::close(file);
+  }
+}
+
+// Locks a new file through a descriptor of its own; -1 where another process took it for abandoned
+// before that. A file system without locks has no abandoned files either.
+int lock_new_file(int descriptor) {
+  const int lock = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  struct stat status {};
+  if (lock < 0 || flock(lock, LOCK_EX) != 0) return lock;
+  if (fstat(lock, &status) == 0 && status.st_nlink > 0) return lock;
+  ::close(lock);
+  return -1;
+}
+
 // An overwritten file keeps its permissions. Where that fails, the umask's are no worse.
 void copy_permissions(const std::string& from, int to) {
   struct stat existing {};
@@ -87,11 +114,17 @@ void check_output_path(const std::string& path) {
 PendingFile::PendingFile(const std::string& target) : name_(target), target_(follow_links(target)) {
   const std::string reason = refusal(target_);
   if (!reason.empty()) throw Error(ErrorKind::failed, cannot_write(name_, reason));
+  remove_abandoned(folder_of(target_));
   // O_EXCL: whatever already has that name, a link planted in /tmp included, is not ours.
   for (int attempt = 0; attempt < kNameAttempts && descriptor_ < 0; ++attempt) {
     temporary_ = next_temporary_name(target_);
     descriptor_ = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) break;
+    if (descriptor_ < 0) continue;
+    lock_ = lock_new_file(descriptor_);
+    if (lock_ >= 0) break;
+    ::close(descriptor_);
+    descriptor_ = -1;
   }
   if (descriptor_ < 0) {
     throw Error(ErrorKind::failed, cannot_write(name_, std::strerror(errno)));
@@ -103,6 +136,7 @@ PendingFile::PendingFile(const std::string& target) : name_(target), target_(fol
 PendingFile::~PendingFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
   if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (lock_ >= 0) ::close(lock_);
 }
 
 void PendingFile::fail(const std::string& reason) {

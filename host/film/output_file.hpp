@@ -1,6 +1,7 @@
 // Files that appear whole or not at all. A PendingFile is written beside its target, read
 // back by whoever knows what it should hold, and only then renamed over the target; without
-// commit() it vanishes and the target stays as it was. For every writer: EXR, PNG, GLB.
+// commit() it vanishes and the target stays as it was. What a killed process left unfinished goes
+// with the next file in the same folder. For every writer: EXR, PNG, GLB.
 #pragma once
 
 #include <cstddef>
@@ -50,6 +51,7 @@ class PendingFile {
   std::string buffer_;         // written after the first `flushed_` bytes
   std::uint64_t flushed_ = 0;  // file position at which `buffer_` begins
   int descriptor_ = -1;
+  int lock_ = -1;  // held as long as the unfinished file is ours
 };
 
 /// All of `bytes` as the file `path`, read back before it takes the name. Throws Error failed.

@@ -7,6 +7,7 @@
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
 #include "device/context.hpp"
+#include "device/memory_need.hpp"
 #include "wavefront/passes.hpp"
 #include "wavefront/picture.hpp"
 
@@ -118,6 +119,7 @@ RenderResult render(Scene scene, const RenderOptions& options, const Progress& p
   statistics.device = device.info().name;
   for (std::string& note : device.context().notes()) statistics.notes.push_back(std::move(note));
 
+  check_memory(device.info(), least_need(scene), "needs at least");
   const SceneBvh bvh = build_bvh(scene);
   const Stopwatch uploading;
   const DeviceScene on_device = upload(device, scene, bvh);
