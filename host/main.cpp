@@ -1,8 +1,10 @@
 // Chooses a command, and turns what goes wrong into one line and an exit code.
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <new>
 #include <utility>
 #include <vector>
@@ -55,22 +57,27 @@ int run(int argc, char** argv) {
   return dapple::interruption_code();
 }
 
+/// Not by fmt: that throws where nothing can be written. `reason`: an errno, or 0 for none.
+int say(const char* what, int reason = 0) {
+  std::fprintf(stderr, "dapple: %s%s%s\n", what, reason ? ": " : "",
+               reason ? std::strerror(reason) : "");
+  return kFailed;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a write past ulimit -f fails, and says why
   dapple::report_driver_crashes();
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    return std::fflush(stdout) == 0 ? code : say("cannot write to the standard output", errno);
   } catch (const dapple::Error& error) {
-    fmt::print(stderr, "dapple: {}\n", error.what());
+    say(error.what());
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr,
-               "dapple: out of memory; try a smaller picture, fewer rays or a smaller scene\n");
-    return kFailed;
+    return say("out of memory; try a smaller picture, fewer rays or a smaller scene");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "dapple: {}\n", error.what());
-    return kFailed;
+    return say(error.what());
   }
 }

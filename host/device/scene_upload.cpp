@@ -1,14 +1,12 @@
 #include "device/scene_upload.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "bvh/triangle_opacity.hpp"
-#include "dapple/error.hpp"
 #include "device/dome_upload.hpp"
 #include "device/light_upload.hpp"
+#include "device/memory_need.hpp"
 
 namespace dapple {
 namespace {
@@ -45,12 +43,6 @@ Buffer share(DeviceContext& context, const Array& data) {
   return context.share(data.data(), data.size() * sizeof(data[0]));
 }
 
-void check_memory(const DeviceInfo& info, std::size_t needed) {
-  if (needed <= info.memory_bytes) return;
-  throw Error(ErrorKind::device, fmt::format("the scene needs {} bytes of device memory, {} has {}",
-                                             needed, info.name, info.memory_bytes));
-}
-
 }  // namespace
 
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh) {
@@ -65,7 +57,8 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
                  bytes(buffers->material_records) + bytes(buffers->texel_data) +
                  bytes(buffers->light_records) + bytes(buffers->emitter_triangles) +
                  bytes(buffers->environment_data);
-  check_memory(device.info(), result.bytes);
+  check_memory(device.info(), {result.bytes, std::max(bytes(bvh.nodes), bytes(bvh.blocks))},
+               "needs");
   buffers->nodes = share(context, bvh.nodes);
   buffers->blocks = share(context, bvh.blocks);
   buffers->textured = share(context, bvh.textured);

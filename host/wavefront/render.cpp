@@ -7,6 +7,7 @@
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
 #include "device/context.hpp"
+#include "device/memory_need.hpp"
 #include "wavefront/film_memory.hpp"
 #include "wavefront/passes.hpp"
 #include "wavefront/picture.hpp"
@@ -100,6 +101,7 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
   statistics.device = device.info().name;
   for (std::string& note : device.context().notes()) statistics.notes.push_back(std::move(note));
 
+  check_memory(device.info(), least_need(scene), "needs at least");
   const SceneBvh bvh = build_bvh(scene, options.cache);
   if (!options.cache.empty()) add_cache_statistics(statistics, bvh.statistics);
   const Stopwatch uploading;

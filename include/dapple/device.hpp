@@ -25,6 +25,7 @@ struct DeviceInfo {
   std::string kind;  ///< "CPU", "GPU" or "accelerator"
   unsigned compute_units = 0;
   std::size_t memory_bytes = 0;
+  std::size_t largest_buffer_bytes = 0;
 };
 
 /// Every OpenCL device, best first. Throws Error device when there is no platform.

@@ -1,0 +1,35 @@
+#include "device/memory_need.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+
+MemoryNeed least_need(const Scene& scene) {
+  std::size_t triangles = 0, texels = 0;
+  for (const Mesh& mesh : scene.meshes) triangles += mesh.triangle_count();
+  for (const Texture& texture : scene.textures) texels += texture.alpha.size();
+  MemoryNeed need;
+  need.largest_buffer = (triangles + 7) / 8 * sizeof(TriangleBlock);
+  need.total = need.largest_buffer + texels + scene.instances.size() * sizeof(InstanceRecord);
+  return need;
+}
+
+void check_memory(const DeviceInfo& device, const MemoryNeed& need, const char* how) {
+  constexpr const char* kNext = "take fewer triangles, more instances, or another --device";
+  if (need.total > device.memory_bytes) {
+    throw Error(ErrorKind::device,
+                fmt::format("the scene {} {} bytes of device memory, {} has {}; {}", how,
+                            need.total, device.name, device.memory_bytes, kNext));
+  }
+  if (need.largest_buffer > device.largest_buffer_bytes) {
+    throw Error(ErrorKind::device,
+                fmt::format("the scene {} {} bytes in one piece, {} gives {} at most; {}", how,
+                            need.largest_buffer, device.name, device.largest_buffer_bytes, kNext));
+  }
+}
+
+}  // namespace dapple
