@@ -55,7 +55,7 @@ TEST(NumericRange, ScenesOfEverySizeAreFinitePicturesOrErrors) {
   for (int exponent = -44; exponent <= 38; ++exponent) {
     const auto scale = static_cast<float>(std::pow(10.0, exponent));
     const std::string result = outcome(scaled_stage(scale));
-    const bool promised = exponent >= -8 && exponent <= 11;
+    const bool promised = exponent >= -9 && exponent <= 11;
     EXPECT_EQ(result == "picture", promised) << "1e" << exponent << ": " << result;
   }
 }

@@ -18,9 +18,10 @@ namespace fs = std::filesystem;
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  const fs::path whole_a = fs::weakly_canonical(a, error);
+  // Made absolute first: weakly_canonical leaves a relative name that is not there as it is.
+  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
   if (error) return false;
-  const fs::path whole_b = fs::weakly_canonical(b, error);
+  const fs::path whole_b = fs::weakly_canonical(fs::absolute(b, error), error);
   return !error && whole_a == whole_b;
 }
 

@@ -13,9 +13,9 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/json_structure.hpp"
 #include "scene/numeric_range.hpp"
 #include "scene/rect_axes.hpp"
-#include "scene/unique_keys.hpp"
 
 namespace dapple {
 namespace {
@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uintmax_t kMaxFileBytes = 16u << 20;
-constexpr int kMaxDepth = 16;  // the format needs 4
+constexpr std::size_t kMaxDepth = 16;  // the format needs 4
 constexpr double kSunDegrees = 0.533;
 constexpr std::size_t kMaxMessage = 300;  // messages quote keys and what was last read
 constexpr std::size_t kMaxName = 200;
@@ -55,16 +55,10 @@ std::string read_text(const std::string& path) {
 }
 
 Json parse_json(const std::string& path, const std::string& text) {
-  UniqueKeys keys;
-  const auto check = [&](int depth, Json::parse_event_t event, const Json& parsed) {
-    if (depth > kMaxDepth) fail(path, fmt::format("nests deeper than {} levels", kMaxDepth));
-    if (!keys.see(event, parsed)) {
-      fail(path, fmt::format("has the key \"{}\" twice in one object", parsed.get<std::string>()));
-    }
-    return true;
-  };
+  const std::string defect = json_structure_defect(text, kMaxDepth);
+  if (!defect.empty()) fail(path, defect);
   try {
-    return Json::parse(text, check);
+    return Json::parse(text);
   } catch (const Json::exception& error) {
     // What follows "[json.exception.parse_error.101] " is for people.
     std::string_view message = error.what();

@@ -27,7 +27,8 @@ void add_topologies(TrickyCases& cases) {
   cases.push_back(indexed<std::uint16_t>("turned_corners", kUint16, {1, 2, 0, 2, 3, 0}));
   cases.push_back(indexed<std::uint16_t>("other_winding", kUint16, {0, 2, 1, 0, 3, 2}));
   cases.push_back(indexed<std::uint8_t>("strip", kUint8, {1, 2, 0, 3}, 5));
-  cases.push_back(indexed<std::uint16_t>("strip_with_stitches", kUint16, {1, 2, 0, 0, 3, 3, 2}, 5));
+  cases.push_back(
+      indexed<std::uint16_t>("strip_with_stitches", kUint16, {0, 1, 2, 2, 0, 0, 2, 3}, 5));
   cases.push_back(indexed<std::uint16_t>("fan", kUint16, {0, 1, 2, 3}, 6));
   cases.push_back(indexed<std::uint32_t>("degenerate_indices_among_others", kUint32,
                                          {0, 1, 2, 1, 1, 1, 0, 2, 3, 2, 2, 3}));

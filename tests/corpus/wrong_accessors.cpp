@@ -32,7 +32,7 @@ void add_indices(MalformedCases& cases) {
       "names vertex 2,147,483,647");
   add(cases, "float_indices", indexed<float>({0, 1, 2}, kFloat), "mesh 0 primitive 0 indices");
   add(cases, "i16_indices", indexed<std::int16_t>({0, 1, 2}, kInt16), "mesh 0 primitive 0 indices");
-  add(cases, "vector_indices", indexed<std::uint16_t>({0, 1, 2}, kUint16, "VEC3"),
+  add(cases, "vector_indices", indexed<std::uint16_t>({0, 1, 2, 0, 1, 2, 0, 1, 2}, kUint16, "VEC3"),
       "mesh 0 primitive 0 indices");
   add(cases, "four_indices", indexed<std::uint16_t>({0, 1, 2, 0}, kUint16), "whole triangles");
   GltfBuilder unknown = one_triangle();

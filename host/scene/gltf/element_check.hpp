@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "scene/gltf/document.hpp"
@@ -30,7 +31,10 @@ class ElementCheck {
 /// Meshes, their primitives and morph targets, once accessors are known to be sound.
 void validate_meshes(const Document& document, const ElementCheck& check);
 
-/// What nodes name, and their transforms.
+/// What nodes name.
 void validate_nodes(const Document& document, const ElementCheck& check);
+
+/// The transforms of a document's nodes, before tinygltf drops one of two. Throws Error input.
+void check_transforms(const nlohmann::json& nodes, const std::string& file);
 
 }  // namespace dapple::gltf

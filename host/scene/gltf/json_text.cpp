@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf/message.hpp"
-#include "scene/unique_keys.hpp"
+#include "scene/json_structure.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -69,16 +69,10 @@ void check_size(std::string_view json, const std::string& file) {
 
 Json parse_json(std::string_view text, const std::string& file) {
   check_size(text, file);
-  UniqueKeys keys;  // glTF 2.0, section 2.7
-  const auto see = [&](int, Json::parse_event_t event, Json& parsed) {
-    if (!keys.see(event, parsed)) {
-      fail(file, "JSON has the key \"{}\" twice in one object",
-           excerpt(parsed.get_ref<const std::string&>()));
-    }
-    return true;
-  };
+  const std::string defect = json_structure_defect(text, kMaxDepth);  // glTF 2.0, section 2.7
+  if (!defect.empty()) fail(file, "JSON {}", defect);
   try {
-    return Json::parse(text, see);
+    return Json::parse(text);
   } catch (const Json::exception& error) {
     const std::string what = error.what();  // "[json.exception...] parse error at line 1, ..."
     const std::size_t bracket = what.find("] ");

@@ -136,7 +136,6 @@ void append_vertices(Mesh& mesh, const Attributes& attributes, const AlphaLookup
 
 void append_triangles(Mesh& mesh, const std::vector<std::uint32_t>& corners, std::size_t base,
                       std::uint32_t material) {
-  mesh.indices.reserve(mesh.indices.size() + corners.size());
   for (const std::uint32_t corner : corners) {
     mesh.indices.push_back(static_cast<std::uint32_t>(base) + corner);
   }
@@ -203,6 +202,20 @@ void count_work(const Document& document, const tinygltf::Primitive& primitive,
   }
 }
 
+/// The primitives that are shown, all counted before the first is read.
+std::vector<std::size_t> shown_primitives(const Document& document, const tinygltf::Mesh& mesh,
+                                          const std::string& label, MeshTotals& totals) {
+  std::vector<std::size_t> shown;
+  for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+    if (!is_shown(mesh.primitives[p], totals)) continue;
+    const std::string who = fmt::format("{} primitive {}", label, p);
+    refuse_compressed(document, mesh.primitives[p], who);
+    count_work(document, mesh.primitives[p], who, totals);
+    shown.push_back(p);
+  }
+  return shown;
+}
+
 /// A part while it grows; `emitter` as in MeshPart.
 struct Draft {
   int emitter;
@@ -224,12 +237,9 @@ std::vector<MeshPart> read_mesh(const Document& document, int index, const Mater
   const auto& given = document.model.meshes[static_cast<std::size_t>(index)];
   const std::string label = element("mesh", static_cast<std::size_t>(index), given.name);
   std::vector<Draft> drafts;
-  for (std::size_t p = 0; p < given.primitives.size(); ++p) {
+  for (const std::size_t p : shown_primitives(document, given, label, totals)) {
     const tinygltf::Primitive& primitive = given.primitives[p];
-    if (!is_shown(primitive, totals)) continue;
     const std::string who = fmt::format("{} primitive {}", label, p);
-    refuse_compressed(document, primitive, who);
-    count_work(document, primitive, who, totals);
     const std::uint32_t at = materials.index_of(primitive.material);
     const Material& material = scene.materials[at];
     Mesh& mesh = draft_for(drafts, emits(material) ? static_cast<int>(at) : -1);

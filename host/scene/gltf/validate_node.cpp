@@ -1,6 +1,7 @@
 // Validation of nodes: what they name exists, and their transforms are ones. What they are to
 // each other is checked where they are placed (hierarchy.cpp).
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "scene/gltf/element_check.hpp"
 #include "scene/gltf/message.hpp"
@@ -8,25 +9,18 @@
 namespace dapple::gltf {
 namespace {
 
+using Json = nlohmann::json;
+
 /// Exporters round rotations; beyond this viewers disagree about whether they scale.
 constexpr double kRotationTolerance = 0.05;
 
-void check_rotation(const std::string& file, const std::string& who,
-                    const std::vector<double>& rotation) {
-  if (rotation.empty()) return;
+void check_rotation(const std::string& file, const std::string& who, const Json& rotation) {
   double squares = 0;
-  for (const double part : rotation) squares += part * part;
+  for (const Json& part : rotation) squares += part.get<double>() * part.get<double>();
   const double length = std::sqrt(squares);
   if (length < 1e-6) fail(file, "{} has a rotation of length zero", who);
   if (std::abs(length - 1) <= kRotationTolerance) return;
   fail(file, "{} has a rotation of length {:g}, not 1", who, length);
-}
-
-void check_transform(const std::string& file, const std::string& who, const tinygltf::Node& node) {
-  check_rotation(file, who, node.rotation);
-  const bool parts = !node.translation.empty() || !node.rotation.empty() || !node.scale.empty();
-  if (node.matrix.empty() || !parts) return;
-  fail(file, "{} has both a matrix and a translation, rotation or scale", who);
 }
 
 void check_extensions_of(const Document& document, const std::string& who,
@@ -47,6 +41,19 @@ void check_extensions_of(const Document& document, const std::string& who,
 
 }  // namespace
 
+void check_transforms(const Json& nodes, const std::string& file) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Json& node = nodes[i];
+    const std::string who = fmt::format("node {}", i);
+    if (const auto rotation = node.find("rotation"); rotation != node.end())
+      check_rotation(file, who, *rotation);
+    if (!node.contains("matrix")) continue;
+    for (const char* part : {"translation", "rotation", "scale"}) {
+      if (node.contains(part)) fail(file, "{} has both a matrix and a {}", who, part);
+    }
+  }
+}
+
 void validate_nodes(const Document& document, const ElementCheck& check) {
   const auto& model = document.model;
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
@@ -55,7 +62,6 @@ void validate_nodes(const Document& document, const ElementCheck& check) {
     check.index(who, "mesh", node.mesh, model.meshes.size());
     check.index(who, "camera", node.camera, model.cameras.size());
     for (const int child : node.children) check.index(who, "node", child, model.nodes.size());
-    check_transform(document.file, who, node);
     check_extensions_of(document, who, node, check);
   }
 }
