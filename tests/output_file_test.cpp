@@ -100,17 +100,6 @@ TEST_F(OutputFile, AnUncommittedFileVanishes) {
   EXPECT_EQ(files_in_folder(), 0U);
 }
 
-TEST_F(OutputFile, WhatAKilledProcessLeftGoesAndWhatALivingOneWritesStays) {
-  write_bytes(path(".dapple-1-0.tmp"), "unfinished");
-  PendingFile living(path("a.bin"));
-  living.write("abc", 3);
-  living.close();
-  write_whole_file(path("b.bin"), "whole");
-  EXPECT_EQ(files_in_folder(), 2U) << "b.bin and what is to be a.bin";
-  living.commit();
-  EXPECT_EQ(bytes_of(path("a.bin")), "abc");
-}
-
 TEST_F(OutputFile, PendingFileWritesWhereItWasSentTo) {
   PendingFile file(path("a.bin"));
   file.write("abcdef", 6);
