@@ -66,9 +66,7 @@ TEST(AdaptiveSampling, ThePictureIsAsFarFromTheTruthAsTheErrorLayersSay) {
   const RenderResult adaptive = draw(options);
   RenderOptions many = small_picture();
   many.spp = 4096;
-  // Footprints follow the samples asked for: the same truth needs the same footprints.
-  many.footprint =
-      options.footprint * static_cast<float>(many.spp) / static_cast<float>(options.spp);
+  many.footprint_spp = footprint_samples(options);  // the same truth needs the same footprints
   const RenderResult truth = draw(many);
   const auto &a = channel(adaptive, "ao.R"), &b = channel(truth, "ao.R"),
              &e = channel(adaptive, "error.ao");
@@ -99,7 +97,7 @@ TEST(AdaptiveSampling, ByRmseThePictureIsAsFarFromTheTruthAsWasAsked) {
   const RenderResult adaptive = draw(options);
   RenderOptions many = small_picture();
   many.spp = 4096;
-  many.footprint = static_cast<float>(many.spp) / static_cast<float>(options.spp);
+  many.footprint_spp = footprint_samples(options);
   const RenderResult truth = draw(many);
   for (const char* pass : {"ao", "light.key"}) {
     const std::string name(pass);

@@ -83,10 +83,9 @@ struct RenderOptions {
   return options.target_error > 0 || options.target_rmse > 0;
 }
 
-/// Samples a pixel whose shares footprints begin with.
-[[nodiscard]] inline int footprint_samples(const RenderOptions& options) {
-  return options.footprint_spp > 0 ? options.footprint_spp : options.spp;
-}
+/// Samples a pixel whose shares footprints begin with: `footprint_spp` if there is one; else `spp`,
+/// and with a target so many that the bias stays below about a third of it.
+[[nodiscard]] int footprint_samples(const RenderOptions& options);
 
 /// Throws Error usage, naming the command line's flag, when a value is out of range.
 void validate(const RenderOptions& options);
