@@ -138,6 +138,7 @@ TEST(AdaptiveSampling, ByRmseTheSameErrorTakesFewerSamples) {
   RenderOptions options = small_picture();
   options.spp = 8;
   options.light = false;
+  options.footprint_spp = 16;
   options.target_error = 0.02f;
   const RenderStatistics equal = draw(options).statistics;
   options.target_error = 0;

@@ -99,7 +99,7 @@ int footprint_samples(const RenderOptions& options) {
   // Of sixteen samples the bias' RMSE is 0.004 to 0.010 (README), and it falls with the root of
   // their number.
   constexpr double kDeviation = 0.08;
-  const double samples = std::ceil(kDeviation * kDeviation / (target * target));
+  const double samples = std::round(kDeviation * kDeviation / (target * target));
   return std::max(options.spp, static_cast<int>(std::min<double>(samples, options.max_spp)));
 }
 
