@@ -179,7 +179,29 @@ TEST(LightsFile, ASizeThatIsNotPositiveOrRadianceBelowZeroIsRefused) {
             "light 1: radius is too large");
   EXPECT_EQ(complaint_about(
                 R"("type": "sun", "direction": [0, 1, 0], "radiance": 1, "angle_degrees": 180)"),
-            "light 1: angle_degrees must be below 180, and is 180");
+            "light 1: angle_degrees must be from 0.0001 to 179.999, and is 180");
+}
+
+TEST(LightsFile, NumbersThatFloatCannotRenderAreRefused) {
+  const std::string rect = R"("type": "rect", "position": [0, 0, 0], "normal": [0, -1, 0], )";
+  EXPECT_EQ(complaint_about(std::string(kSphere) + ", \"radius\": 1e30"),
+            "light 1: radius must be from 1e-09 to 1e+12 m, and is 1e+30");
+  EXPECT_EQ(complaint_about(rect + R"("size": [1e-30, 1], "radiance": 1)"),
+            "light 1: size[0] must be from 1e-09 to 1e+12 m, and is 1e-30");
+  EXPECT_EQ(complaint_about(rect + R"("size": [1, 1], "radiance": 1e38)"),
+            "light 1: radiance is above 1e+30");
+  EXPECT_EQ(complaint_about(
+                R"("type": "rect", "position": [0, 1e20, 0], "normal": [0, -1, 0],
+                   "size": [1, 1], "radiance": 1)"),
+            "light 1: position[1] must be within 1e+12 m");
+}
+
+TEST(LightsFile, AKeyTwiceAndLightsByTheMillionAreRefusedAtOnce) {
+  EXPECT_EQ(complaint(R"({"lights": [{"type": "sun", "type": "rect"}]})"),
+            "has the key \"type\" twice in one object");
+  std::string many = "{\"lights\": [";
+  for (int i = 0; i < 3'000'000; ++i) many += "{},";
+  EXPECT_EQ(complaint(many + "{}]}"), "has 3000001 lights; there may be 4096");
 }
 
 TEST(LightsFile, ASunHasEitherRadianceOrIrradiance) {

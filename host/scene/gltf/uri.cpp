@@ -63,11 +63,17 @@ void check_length(const fs::path& file, const std::string& what) {
     fail(what, "its uri \"{}\" is longer than a file's name can be", excerpt(file.native()));
 }
 
+/// Absolute before canonical: of a relative name that is not there nothing else comes out.
+fs::path whole_path(const fs::path& path, std::error_code& error) {
+  const fs::path absolute = fs::absolute(path.empty() ? fs::path(".") : path, error);
+  return error ? absolute : fs::weakly_canonical(absolute, error);
+}
+
 void check_inside(const fs::path& folder, const fs::path& file, std::string_view uri,
                   const std::string& what) {
   std::error_code error;
-  const fs::path root = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  const fs::path whole = error ? fs::path() : fs::weakly_canonical(file, error);
+  const fs::path root = whole_path(folder, error);
+  const fs::path whole = error ? fs::path() : whole_path(file, error);
   if (error) fail(what, "its uri \"{}\" leads nowhere ({})", excerpt(uri), error.message());
   const fs::path inside = whole.lexically_relative(root);
   if (!inside.empty() && *inside.begin() != "..") return;
