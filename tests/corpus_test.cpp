@@ -49,6 +49,7 @@ TEST(MalformedCorpus, ContainersAreRefusedByName) { expect_refused(add_malformed
 TEST(MalformedCorpus, JsonIsRefusedByName) { expect_refused(add_malformed_json); }
 TEST(MalformedCorpus, WrongTypesAreRefusedByName) { expect_refused(add_wrong_types); }
 TEST(MalformedCorpus, WrongValuesAreRefusedByName) { expect_refused(add_wrong_values); }
+TEST(MalformedCorpus, WrongElementsAreRefusedByName) { expect_refused(add_wrong_elements); }
 TEST(MalformedCorpus, WrongAccessorsAreRefusedByName) { expect_refused(add_wrong_accessors); }
 TEST(MalformedCorpus, FilesAreRefusedByName) { expect_refused(add_malformed_files); }
 TEST(MalformedCorpus, ImagesAreRefusedByName) { expect_refused(add_malformed_images); }

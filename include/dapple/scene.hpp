@@ -124,7 +124,7 @@ struct Scene {
 };
 
 struct SceneOptions {
-  float light_radius = 0.1f;  ///< metres: KHR point and spot lights become spheres of this radius
+  float light_radius = 0.1f;   ///< metres: KHR point and spot lights become spheres of this radius
   bool allow_outside = false;  ///< buffers and images may be outside of the scene file's folder
 };
 

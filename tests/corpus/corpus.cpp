@@ -39,6 +39,7 @@ MalformedCases malformed_corpus() {
   add_malformed_json(cases);
   add_wrong_types(cases);
   add_wrong_values(cases);
+  add_wrong_elements(cases);
   add_wrong_accessors(cases);
   add_malformed_files(cases);
   add_malformed_images(cases);

@@ -50,6 +50,7 @@ void add_malformed_containers(MalformedCases& cases);
 void add_malformed_json(MalformedCases& cases);
 void add_wrong_types(MalformedCases& cases);
 void add_wrong_values(MalformedCases& cases);
+void add_wrong_elements(MalformedCases& cases);
 void add_wrong_accessors(MalformedCases& cases);
 void add_malformed_files(MalformedCases& cases);
 void add_malformed_images(MalformedCases& cases);
