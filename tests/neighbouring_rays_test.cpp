@@ -93,8 +93,30 @@ TEST_P(NeighbouringRays, FindTheSameBitsInAnyCompany) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NeighbouringRays,
-                         testing::Values("scene:tree?leaves=3000", "scene:cloud?leaves=3000&opacity=0.2",
+                         testing::Values("scene:tree?leaves=3000",
+                                         "scene:cloud?leaves=3000&opacity=0.2",
                                          "scene:forest?trees=9&leaves=500", "sheared"));
+
+TEST(Trace, RaysToDifferentLightsAreNeverHiddenByTheirOwn) {
+  Scene scene;
+  scene.materials.push_back(material_of(1));
+  Light glow;
+  glow.kind = LightKind::mesh;
+  scene.lights.push_back(glow);
+  place(scene, square_mesh(2, 1, 1, 0), {}, 0);
+  const SceneOnDevice on_device(std::move(scene));
+  std::vector<Ray> rays(32);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i].direction[1] = 1;
+    rays[i].t_max = 2;
+    rays[i].light = i / 8 % 2 == 0 ? 1u : 0u;  // eight rays a point
+  }
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    const auto found = trace(device(), on_device.uploaded, rays, estimator, 0, 8);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      EXPECT_EQ(found[i].transmittance, rays[i].light ? 1.0f : 0.0f) << i;
+  }
+}
 
 }  // namespace
 }  // namespace dapple

@@ -66,6 +66,10 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              std::size_t rays_per_point) {
   check_points(rays, rays_per_point);
   DeviceContext& context = device.context();
+  // Points traced together share a light: where there are several, each ray goes alone.
+  const bool one_light = std::all_of(rays.begin(), rays.end(),
+                                     [&](const Ray& ray) { return ray.light == rays[0].light; });
+  if (!one_light) rays_per_point = 1;
   const std::size_t slice = std::max<std::size_t>(1, kSlice / rays_per_point) * rays_per_point;
   const Queues queues = make_queues(context, std::min(slice, rays.size()), 1);
   std::vector<Occlusion> results(rays.size());
