@@ -99,7 +99,8 @@ Settings content_settings(const RenderOptions& options, const View& view, const 
 }
 
 void require_same(const std::string& path, const Settings& then, const Settings& now) {
-  for (const auto& [name, value] : now) {
+  for (const auto& asked : now) {
+    const std::string &name = asked.first, &value = asked.second;  // clang 14 captures no bindings
     const auto found = std::find_if(then.begin(), then.end(),
                                     [&](const auto& setting) { return setting.first == name; });
     const std::string before = found == then.end() ? "none" : found->second;
