@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <string_view>
 
 namespace dapple {
@@ -59,6 +60,20 @@ std::size_t after_scan(Span bytes, std::size_t at) {
   return bytes.size();
 }
 
+/// Of a DHT segment's tables: the decoder has room for 256 codes each, and does not count.
+std::string huffman_defect(Span tables) {
+  constexpr std::size_t kHead = 17;  // class and number, codes of each of 16 lengths
+  while (!tables.empty()) {
+    if (tables.size() < kHead) return "its JPEG data is cut off";
+    const Span lengths = tables.subspan(1, kHead - 1);
+    const std::size_t codes = std::accumulate(lengths.begin(), lengths.end(), std::size_t{0});
+    if (codes > 256) return "a Huffman table of its JPEG data has more than 256 codes";
+    if (tables.size() < kHead + codes) return "its JPEG data is cut off";
+    tables = tables.subspan(kHead + codes);
+  }
+  return "";
+}
+
 }  // namespace
 
 ImageFormat image_format(Span bytes) {
@@ -104,6 +119,10 @@ std::string jpeg_defect(Span bytes) {
     if (bytes.size() - at < 4) break;
     const std::uint32_t length = big_endian(bytes.subspan(at + 2, 2));
     if (length < 2 || length > bytes.size() - at - 2) break;
+    if (marker == 0xc4) {
+      const std::string defect = huffman_defect(bytes.subspan(at + 4, length - 2));
+      if (!defect.empty()) return defect;
+    }
     at += 2 + length;
     if (marker != 0xda) continue;
     if (++scans > kMaxScans) return "its JPEG data has more than 100 scans";

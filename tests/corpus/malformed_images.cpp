@@ -67,6 +67,12 @@ void add_jpeg(MalformedCases& cases) {
   add_bytes(cases, "jpeg_without_pixels", jpeg_of(0, {0xff, 0xd9}), "is corrupt");
   add_bytes(cases, "jpeg_without_an_end", jpeg_of(0, {0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 1, 2}),
             "is corrupt");
+  // Sixteen lengths of 17 codes each: 272, found by fuzzing.
+  Bytes table = {0xff, 0xc4, 0x01, 0x23, 0};
+  table.resize(table.size() + 16, 17);
+  table.resize(2 + 0x123 + 2, 1);
+  table.insert(table.end(), {0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 1, 0xff, 0xd9});
+  add_bytes(cases, "jpeg_of_272_codes", jpeg_of(0, table), "more than 256 codes");
   Bytes scans;
   for (int i = 0; i < 500; ++i) {
     const Bytes scan = {0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 1};
