@@ -60,14 +60,15 @@ std::size_t after_scan(Span bytes, std::size_t at) {
   return bytes.size();
 }
 
-/// Of a DHT segment's tables: the decoder has room for 256 codes each, and does not count.
+/// Of a DHT segment's tables: the decoder has room for 256 codes each, does not count them, and
+/// takes the last of 256 for none. Real ones have 162 at most.
 std::string huffman_defect(Span tables) {
   constexpr std::size_t kHead = 17;  // class and number, codes of each of 16 lengths
   while (!tables.empty()) {
     if (tables.size() < kHead) return "its JPEG data is cut off";
     const Span lengths = tables.subspan(1, kHead - 1);
     const std::size_t codes = std::accumulate(lengths.begin(), lengths.end(), std::size_t{0});
-    if (codes > 256) return "a Huffman table of its JPEG data has more than 256 codes";
+    if (codes > 255) return "a Huffman table of its JPEG data has more than 255 codes";
     if (tables.size() < kHead + codes) return "its JPEG data is cut off";
     tables = tables.subspan(kHead + codes);
   }

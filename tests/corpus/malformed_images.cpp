@@ -72,7 +72,7 @@ void add_jpeg(MalformedCases& cases) {
   table.resize(table.size() + 16, 17);
   table.resize(2 + 0x123 + 2, 1);
   table.insert(table.end(), {0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 1, 0xff, 0xd9});
-  add_bytes(cases, "jpeg_of_272_codes", jpeg_of(0, table), "more than 256 codes");
+  add_bytes(cases, "jpeg_of_272_codes", jpeg_of(0, table), "more than 255 codes");
   Bytes scans;
   for (int i = 0; i < 500; ++i) {
     const Bytes scan = {0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 1};
