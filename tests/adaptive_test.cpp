@@ -75,7 +75,7 @@ TEST(AdaptiveSampling, ThePictureIsAsFarFromTheTruthAsTheErrorLayersSay) {
     square += (a[p] - b[p]) * (a[p] - b[p]);
     predicted += e[p] * e[p];
   }
-  // 1,900 pixels: their sum of squares is known to 5 %; batches of 4 are stratified each, all
+  // 1,900 pixels: their sum of squares is known to 5 %; batches of 2 are stratified each, all
   // samples together more so, and errors come out smaller than the batches say.
   EXPECT_LT(square, 1.2 * predicted);
   EXPECT_GT(square, 0.2 * predicted);
