@@ -244,9 +244,7 @@ TEST(LightsFile, DeepNestingAndHugeFilesAreRefused) {
 }
 
 TEST(LightsFile, TheExampleInScenesLoads) {
-  const std::filesystem::path here(__FILE__);
-  const auto lights =
-      load_lights((here.parent_path().parent_path() / "scenes" / "studio_lights.json").string());
+  const auto lights = load_lights(DAPPLE_SCENES "/studio_lights.json");
   ASSERT_EQ(lights.size(), 3u);
   EXPECT_EQ(lights[0].name, "key");
 }

@@ -36,7 +36,7 @@ class Pictures {
     options.seed = static_cast<std::uint32_t>(seed);
     const FilmLayout layout(view_, options, scene_.bvh.bounds, {});
     const TracedPicture picture =
-        trace_picture(device(), scene_.uploaded, view_, options, layout, 0, {});
+        trace_picture(device(), scene_.uploaded, view_, options, layout, {});
     // Misses add nothing to the plane, exact or not: they drop out of differences.
     const auto first =
         picture.sums.values<std::int64_t>().begin() + std::ptrdiff_t{layout.ao} * layout.pixels;

@@ -96,14 +96,15 @@ class FrameTracer {
     options.seed = static_cast<std::uint32_t>(seed);
     const View view{camera, options.width, options.width, around(outline, options.width)};
     const FilmLayout layout(view, options, bounds_, {});
-    const TracedPicture picture = trace_picture(device_, scene_, view, options, layout, 0, {});
+    const TracedPicture picture = trace_picture(device_, scene_, view, options, layout, {});
     std::size_t pixel = 0;
     for (int row = view.crop.y0; row <= view.crop.y1; ++row) {
       for (int column = view.crop.x0; column <= view.crop.x1; ++column, ++pixel) {
         const double share = share_inside(column, row, options.width, outline);
         if (share <= 0) continue;
         const auto plane = [&](std::size_t p) {
-          return static_cast<double>(picture.sums.values<std::int64_t>()[p * layout.pixels + pixel]);
+          return static_cast<double>(
+              picture.sums.values<std::int64_t>()[p * layout.pixels + pixel]);
         };
         // The order of the planes is that of kernels/film.cl: first how many samples hit.
         frame.hits += share * plane(0);

@@ -93,8 +93,7 @@ Picture PictureScene::render(const RenderOptions& options) {
   const std::vector<Light> lights = options.light ? scene_.lights : std::vector<Light>{};
   const FilmLayout layout(view_, options, bvh_.bounds, lights);
   const auto start = std::chrono::steady_clock::now();
-  const TracedPicture traced =
-      trace_picture(*device_, on_device_, view_, options, layout, lights.size(), {});
+  const TracedPicture traced = trace_picture(*device_, on_device_, view_, options, layout, {});
   Picture picture;
   picture.trace_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
 #include "scene/radiance_hdr.hpp"
+#include "scene/side_file.hpp"
 
 namespace dapple {
 namespace {
@@ -22,24 +21,6 @@ constexpr std::uint32_t kMostWidth = 2048, kMostHeight = 1024;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw Error(ErrorKind::input, path + ": " + why);
-}
-
-std::vector<std::uint8_t> read_bytes(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) refuse(path, "there is no such dome image");
-  // A pipe or a device might never end.
-  if (!std::filesystem::is_regular_file(status)) refuse(path, "is not a regular file");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) refuse(path, error.message());
-  if (size > kMaxFileBytes) {
-    refuse(path, fmt::format("has {} bytes; a dome image may have {}", size, kMaxFileBytes));
-  }
-  std::vector<std::uint8_t> bytes(size);
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
-    refuse(path, "cannot be read");
-  return bytes;
 }
 
 bool is_exr(const std::vector<std::uint8_t>& bytes) {
@@ -121,7 +102,7 @@ void settle_dome(Light& light) {
 }  // namespace
 
 std::shared_ptr<const Environment> load_environment(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_bytes(path);
+  const std::vector<std::uint8_t> bytes = read_side_file(path, "dome image", kMaxFileBytes);
   Environment environment;
   if (is_exr(bytes)) {
     environment = environment_of(read_exr(path), path);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -16,6 +15,7 @@
 #include "scene/json_structure.hpp"
 #include "scene/numeric_range.hpp"
 #include "scene/rect_axes.hpp"
+#include "scene/side_file.hpp"
 
 namespace dapple {
 namespace {
@@ -38,20 +38,8 @@ constexpr std::size_t kMaxLights = 4096;
 }
 
 std::string read_text(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) fail(path, "there is no such lights file");
-  // A pipe or a device might never end.
-  if (!std::filesystem::is_regular_file(status)) fail(path, "is not a regular file");
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) fail(path, error.message());
-  if (size > kMaxFileBytes) {
-    fail(path, fmt::format("has {} bytes; a lights file may have {}", size, kMaxFileBytes));
-  }
-  std::string text(size, '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(text.data(), static_cast<std::streamsize>(size))) fail(path, "cannot be read");
-  return text;
+  const auto bytes = read_side_file(path, "lights file", kMaxFileBytes);
+  return {bytes.begin(), bytes.end()};
 }
 
 Json parse_json(const std::string& path, const std::string& text) {

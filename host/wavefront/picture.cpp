@@ -35,13 +35,12 @@ std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& op
 class PictureTracer {
  public:
   PictureTracer(const Device& device, const DeviceScene& scene, const View& view,
-                const RenderOptions& options, const FilmLayout& layout, std::size_t light_count,
-                TraceState state)
+                const RenderOptions& options, const FilmLayout& layout, TraceState state)
       : context_(device.context()),
         scene_(*scene.buffers),
         options_(options),
         layout_(layout),
-        light_count_(options.light ? light_count : 0),
+        light_count_(layout.lights.size()),
         width_(view.crop.width()),
         camera_(camera_params(view, options)),
         state_(std::move(state)) {
@@ -328,10 +327,8 @@ class PictureTracer {
 
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
                             const RenderOptions& options, const FilmLayout& layout,
-                            std::size_t light_count, const TraceControl& control,
-                            TraceState state) {
-  return PictureTracer(device, scene, view, options, layout, light_count, std::move(state))
-      .trace(control);
+                            const TraceControl& control, TraceState state) {
+  return PictureTracer(device, scene, view, options, layout, std::move(state)).trace(control);
 }
 
 }  // namespace dapple

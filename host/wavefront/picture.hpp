@@ -34,7 +34,6 @@ struct TraceControl {
 /// unless that is empty.
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
                             const RenderOptions& options, const FilmLayout& layout,
-                            std::size_t light_count, const TraceControl& control,
-                            TraceState state = {});
+                            const TraceControl& control, TraceState state = {});
 
 }  // namespace dapple

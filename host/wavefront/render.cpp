@@ -124,9 +124,8 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
   }
 
   const Stopwatch trace_time;
-  const TracedPicture picture =
-      trace_picture(device, on_device, view, options, layout, lights.size(), tracing,
-                    resumed ? std::move(resumed->state) : TraceState{});
+  const TracedPicture picture = trace_picture(device, on_device, view, options, layout, tracing,
+                                              resumed ? std::move(resumed->state) : TraceState{});
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   statistics.pass_seconds = picture.pass_seconds;
   statistics.bytes.film = layout.sum_bytes() + layout.square_bytes();

@@ -9,7 +9,7 @@ constexpr double kOpacity = kAlpha / 255.0;  // 0.4
 
 GltfBuilder with_material(const json& material) {
   GltfBuilder builder = plain_stage();
-  builder.doc["materials"] = {material};
+  builder.doc["materials"] = json::array({material});  // clang copies {material}
   builder.doc["meshes"][1]["primitives"][0]["material"] = 0;
   return builder;
 }
