@@ -64,7 +64,7 @@ std::vector<Corners> random_triangles(std::size_t count, float size) {
 class Walk {
  public:
   Walk(const Mesh& mesh, const ObjectBvh& object) : mesh_(mesh), object_(object) {
-    for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) places_[lane_of(t)].push_back(t);
+    for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t) places_[lane_of(t)].push_back(t);
     visits_.resize(object.nodes.size(), 0);
   }
 
@@ -187,7 +187,7 @@ class Walk {
 
 ObjectBvh expect_well_formed(const Scene& scene) {
   const ObjectBvh object = build_object(scene, scene.meshes[0]).object;
-  EXPECT_EQ(object.triangles, scene.meshes[0].triangle_count());
+  EXPECT_EQ(object.triangles, scene.meshes[0].primitive_count());
   Walk walk(scene.meshes[0], object);
   walk.run();
   EXPECT_TRUE(walk.missing().empty());

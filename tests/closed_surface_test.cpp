@@ -61,19 +61,19 @@ NodeOpacity opacity_of(const Scene& scene) {
 TEST(ClosedSurface, APrismIsOneEvenWithOpenEndsACardIsNot) {
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0.3f, 1, 0.2f}, 0.02f, 6, 4);
-  const std::size_t prism = mesh.triangle_count();
+  const std::size_t prism = mesh.primitive_count();
   add_card(mesh, {1, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0.05f});
-  const std::vector<float> opacities(mesh.triangle_count(), 1.0f);
+  const std::vector<float> opacities(mesh.primitive_count(), 1.0f);
   const std::vector<bool> closed = closed_triangles(mesh, opacities);
-  ASSERT_EQ(closed.size(), mesh.triangle_count());
+  ASSERT_EQ(closed.size(), mesh.primitive_count());
   for (std::size_t t = 0; t < closed.size(); ++t) EXPECT_EQ(closed[t], t < prism) << t;
 }
 
 TEST(ClosedSurface, WhatLightPassesIsNone) {
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0, 1, 0}, 0.02f, 6, 4);
-  EXPECT_TRUE(closed_triangles(mesh, std::vector<float>(mesh.triangle_count(), 0.9f)).empty());
-  EXPECT_TRUE(closed_triangles(mesh, std::vector<float>(mesh.triangle_count(), -1.0f)).empty());
+  EXPECT_TRUE(closed_triangles(mesh, std::vector<float>(mesh.primitive_count(), 0.9f)).empty());
+  EXPECT_TRUE(closed_triangles(mesh, std::vector<float>(mesh.primitive_count(), -1.0f)).empty());
 }
 
 TEST(ClosedSurface, AThinTwigHidesItsSilhouetteOnce) {
@@ -81,7 +81,7 @@ TEST(ClosedSurface, AThinTwigHidesItsSilhouetteOnce) {
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0.6f, 1, 0.8f}, 0.004f, 6, 12);
   V3f silhouette(0.0f);
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
     const V3f& a = mesh.positions[mesh.indices[3 * t]];
     const V3f n = (mesh.positions[mesh.indices[3 * t + 1]] - a)
                       .cross(mesh.positions[mesh.indices[3 * t + 2]] - a);

@@ -135,7 +135,7 @@ std::vector<Triangle> flatten(const Scene& scene) {
   std::vector<Triangle> triangles;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
-    for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    for (std::size_t i = 0; i < mesh.primitive_count(); ++i) {
       triangles.push_back(place(mesh, i, instance));
     }
   }

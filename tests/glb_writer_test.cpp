@@ -219,8 +219,8 @@ TEST(GlbWriter, WhatWasWrittenIsReadBack) {
   write_glb(scene, folder.file("demo.glb"));
   const Scene read = load_scene(folder.file("demo.glb"));
   std::size_t triangles = 0, read_triangles = 0;
-  for (const Instance& i : scene.instances) triangles += scene.meshes[i.mesh].triangle_count();
-  for (const Instance& i : read.instances) read_triangles += read.meshes[i.mesh].triangle_count();
+  for (const Instance& i : scene.instances) triangles += scene.meshes[i.mesh].primitive_count();
+  for (const Instance& i : read.instances) read_triangles += read.meshes[i.mesh].primitive_count();
   EXPECT_EQ(read_triangles, triangles);
   EXPECT_EQ(scene_bounds(read).min, scene_bounds(scene).min);
   EXPECT_EQ(scene_bounds(read).max, scene_bounds(scene).max);

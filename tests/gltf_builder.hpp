@@ -153,7 +153,7 @@ inline std::vector<Triangle> world_triangles(const Scene& scene) {
   std::vector<Triangle> triangles;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       Triangle triangle;
       for (std::size_t c = 0; c < 3; ++c) {
         triangle[c] = mesh.positions[mesh.indices[3 * t + c]] * instance.to_world;

@@ -99,7 +99,7 @@ TEST(GltfSharedScene, ThePinesCardsHaveAMeanAlphaOfFourTenths) {
   double triangles = 0;
   for (const Mesh& mesh : scene.meshes) {
     if (mesh.uvs.empty()) continue;
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       const std::uint32_t* corner = &mesh.indices[3 * t];
       sum += mean_alpha(scene.textures[0], mesh.uvs[corner[0]], mesh.uvs[corner[1]],
                         mesh.uvs[corner[2]]);

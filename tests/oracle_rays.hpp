@@ -18,7 +18,7 @@ inline V3d random_target(const Scene& scene, Random& random) {
   };
   const Instance& instance = scene.instances[pick(scene.instances.size())];
   const Mesh& mesh = scene.meshes[instance.mesh];
-  const std::uint32_t* corner = &mesh.indices[3 * pick(mesh.triangle_count())];
+  const std::uint32_t* corner = &mesh.indices[3 * pick(mesh.primitive_count())];
   const double root = std::sqrt(random.real()), share = random.real();
   const V3d a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]),
       c(mesh.positions[corner[2]]);

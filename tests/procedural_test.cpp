@@ -67,7 +67,7 @@ double area_of(const Mesh& mesh, std::size_t triangle) {
 
 double area_of(const Mesh& mesh, int material) {
   double area = 0;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
     if (mesh.materials[t] == static_cast<std::uint32_t>(material)) area += area_of(mesh, t);
   }
   return area;
@@ -111,7 +111,7 @@ TEST(Procedural, ATreeHasExactlyTheLeavesAskedFor) {
     const Scene scene = make_procedural("scene:tree?leaves=" + std::to_string(leaves));
     const Mesh& mesh = scene.meshes.at(0);
     EXPECT_EQ(triangles_of(mesh, material_named(scene, "leaf")), 2 * leaves);
-    EXPECT_EQ(mesh.triangle_count(),
+    EXPECT_EQ(mesh.primitive_count(),
               2 * leaves + triangles_of(mesh, material_named(scene, "bark")));
   }
 }
@@ -119,7 +119,7 @@ TEST(Procedural, ATreeHasExactlyTheLeavesAskedFor) {
 TEST(Procedural, ATreeWithoutWoodIsOnlyItsLeaves) {
   const Scene scene = make_procedural("scene:tree?leaves=500&wood=0");
   EXPECT_EQ(material_named(scene, "bark"), -1);
-  EXPECT_EQ(scene.meshes.at(0).triangle_count(), 1000u);
+  EXPECT_EQ(scene.meshes.at(0).primitive_count(), 1000u);
 }
 
 TEST(Procedural, ATreeStandsOnTheOriginAndIsAboutAsTallAsAskedFor) {
@@ -224,7 +224,7 @@ TEST(Procedural, SheetsLieWhereAStackSaysSo) {
   EXPECT_FLOAT_EQ(scene.materials.at(0).alpha, 0.4f);
   EXPECT_EQ(scene.materials.at(1).alpha_mode, AlphaMode::opaque);
   const Mesh& sheets = scene.meshes.at(0);
-  ASSERT_EQ(sheets.triangle_count(), 6u);
+  ASSERT_EQ(sheets.primitive_count(), 6u);
   for (std::size_t i = 0; i < sheets.positions.size(); ++i) {
     EXPECT_FLOAT_EQ(sheets.positions[i].y, 0.5f * static_cast<float>(i / 4 + 1));
     EXPECT_FLOAT_EQ(std::abs(sheets.positions[i].x), 1);
@@ -240,7 +240,7 @@ TEST(Procedural, ADisksAreaIsThatOfItsPolygon) {
 TEST(Procedural, ACubeIsClosedAndFacesOutward) {
   const Mesh cube = make_procedural("scene:cube?divisions=4").meshes.at(0);
   double area = 0, volume = 0;
-  for (std::size_t t = 0; t < cube.triangle_count(); ++t) {
+  for (std::size_t t = 0; t < cube.primitive_count(); ++t) {
     const std::uint32_t* const index = &cube.indices[3 * t];
     const Imath::V3d a(cube.positions[index[0]]), b(cube.positions[index[1]]),
         c(cube.positions[index[2]]);
@@ -256,8 +256,8 @@ TEST(Procedural, EveryTriangleOfEverySceneIsFiniteAndHasAnArea) {
     Scene scene = make_procedural("scene:" + help.name);
     ASSERT_FALSE(scene.instances.empty()) << help.name;
     for (const Mesh& mesh : scene.meshes) {
-      ASSERT_EQ(mesh.indices.size(), 3 * mesh.triangle_count());
-      for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+      ASSERT_EQ(mesh.indices.size(), 3 * mesh.primitive_count());
+      for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
         ASSERT_LT(mesh.materials[t], scene.materials.size());
         ASSERT_GT(area_of(mesh, t), 1e-12) << help.name;  // false for a NaN too
       }
@@ -324,7 +324,7 @@ TEST(Procedural, AValueThatIsNoNumberOrOutOfRangeIsRefused) {
 TEST(LoadScene, ASceneNameIsMadeAndRemembered) {
   const Scene scene = load_scene("scene:disk?segments=8");
   EXPECT_EQ(scene.source, "scene:disk?segments=8");
-  EXPECT_EQ(scene.meshes.at(0).triangle_count(), 8u);
+  EXPECT_EQ(scene.meshes.at(0).primitive_count(), 8u);
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ double brute_force(const Scene& scene, const Ray& ray) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     const Imath::M44d to_world(instance.to_world);
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       const auto corner = [&](int c) {
         return V3d(mesh.positions[mesh.indices[3 * t + c]]) * to_world - origin;
       };

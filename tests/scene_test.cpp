@@ -78,7 +78,7 @@ std::vector<WorldTriangle> world_triangles(const Scene& scene) {
   std::vector<WorldTriangle> triangles;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
-    for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       WorldTriangle triangle{};
       for (std::size_t k = 0; k < 3; ++k) {
         const V3f p = mesh.positions[mesh.indices[3 * t + k]] * instance.to_world;
@@ -326,7 +326,7 @@ TEST(Merge, AMeshLightStaysOnItsOwnAndItsMeshMayBeUsedElsewhere) {
                                   [](const Instance& i) { return i.light == 0; });
   ASSERT_NE(light, scene.instances.end());
   EXPECT_EQ(light->to_world, translation({0, 9, 0}));
-  EXPECT_EQ(scene.meshes[light->mesh].triangle_count(), 1u);
+  EXPECT_EQ(scene.meshes[light->mesh].primitive_count(), 1u);
 }
 
 TEST(Merge, BrokenTrianglesAreDroppedAndCountedByKind) {

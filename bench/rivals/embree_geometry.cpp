@@ -7,7 +7,7 @@ EmbreeMesh sorted_by_opacity(const Scene& scene, const Mesh& mesh) {
   EmbreeMesh sorted;
   sorted.positions = mesh.positions;
   sorted.positions.emplace_back(0.0f);
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
     const std::optional<float> constant = constant_opacity(scene, mesh, t);
     if (constant && *constant <= 0.0f) continue;
     const bool opaque = constant && *constant >= 1.0f;

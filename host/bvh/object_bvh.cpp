@@ -34,7 +34,7 @@ constexpr float kTextured = -1.0f;
 
 /// Opacity of each triangle, [0,1], or kTextured; counts their kinds.
 std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
-  std::vector<float> opacities(mesh.triangle_count());
+  std::vector<float> opacities(mesh.primitive_count());
   std::atomic<std::size_t> opaque = 0, cut_out = 0, translucent = 0;
   for_each_block(opacities.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     std::size_t here[3] = {0, 0, 0};

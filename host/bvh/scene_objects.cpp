@@ -37,7 +37,7 @@ void read_from_cache(const Scene& scene, const std::string& folder, std::vector<
                      BvhStatistics& statistics) {
   statistics.cache.read_seconds = for_each(works, [&](Work& work, std::size_t m) {
     const Mesh& mesh = scene.meshes[m];
-    work.is_cached = mesh.triangle_count() >= kLeastCachedTriangles;
+    work.is_cached = mesh.primitive_count() >= kLeastCachedTriangles;
     if (!work.is_cached) return;
     work.key = object_key(scene, mesh);
     auto found = read_cached_object(folder, work.key, scene, work.note);

@@ -56,7 +56,7 @@ Run add_scene_command(CLI::App& app) {
     const Scene scene = make_procedural(scene_name(*a));
     write_glb(scene, a->output);
     std::size_t triangles = 0;
-    for (const Mesh& mesh : scene.meshes) triangles += mesh.triangle_count();
+    for (const Mesh& mesh : scene.meshes) triangles += mesh.primitive_count();
     fmt::print("wrote {}: {} triangles, {} instances\n", a->output, triangles,
                scene.instances.size());
   };

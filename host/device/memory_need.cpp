@@ -10,7 +10,7 @@ namespace dapple {
 
 MemoryNeed least_need(const Scene& scene) {
   std::size_t triangles = 0, texels = 0;
-  for (const Mesh& mesh : scene.meshes) triangles += mesh.triangle_count();
+  for (const Mesh& mesh : scene.meshes) triangles += mesh.primitive_count();
   for (const Texture& texture : scene.textures) texels += texture.alpha.size();
   MemoryNeed need;
   need.largest_buffer = (triangles + 7) / 8 * sizeof(TriangleBlock);

@@ -84,7 +84,7 @@ Box3f finite_bounds(const Mesh& mesh) {
 std::vector<std::vector<std::uint32_t>> split_by_material(const Mesh& mesh,
                                                           std::size_t material_count) {
   std::vector<std::vector<std::uint32_t>> indices(material_count);
-  for (std::size_t triangle = 0; triangle < mesh.triangle_count(); ++triangle) {
+  for (std::size_t triangle = 0; triangle < mesh.primitive_count(); ++triangle) {
     const auto first = mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
     auto& own = indices[mesh.materials[triangle]];
     own.insert(own.end(), first, first + 3);
@@ -161,7 +161,7 @@ class Describer {
   // glTF has no empty meshes: numbers shift past them.
   void add_mesh(const Mesh& mesh) {
     mesh_numbers_.push_back(-1);
-    if (mesh.triangle_count() == 0) return;
+    if (mesh.primitive_count() == 0) return;
     Json attributes = {{"POSITION", add_positions(mesh)}};
     Json with_alpha = attributes;
     if (!mesh.vertex_alpha.empty()) with_alpha["COLOR_0"] = add_colours(mesh.vertex_alpha);

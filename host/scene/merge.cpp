@@ -63,7 +63,7 @@ std::vector<bool> choose_merged(const Scene& scene, const std::vector<Uses>& use
   std::vector<bool> merged(scene.meshes.size(), false);
   std::size_t tiny_placed = 0;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const std::size_t triangles = scene.meshes[m].triangle_count();
+    const std::size_t triangles = scene.meshes[m].primitive_count();
     const std::size_t placed = triangles * uses[m].as_geometry;
     merged[m] = uses[m].as_geometry == 1;
     if (merged[m] || triangles > kTinyTriangles || tiny_placed + placed > kMaxTinyPlaced) continue;
@@ -93,7 +93,7 @@ Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
   for (const Instance& instance : instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     totals.vertices += mesh.positions.size();
-    totals.triangles += mesh.triangle_count();
+    totals.triangles += mesh.primitive_count();
     totals.uvs |= !mesh.uvs.empty();
     totals.vertex_alpha |= !mesh.vertex_alpha.empty();
   }

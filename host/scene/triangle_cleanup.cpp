@@ -46,7 +46,7 @@ struct Faults {
 Faults count_faults(const Mesh& mesh) {
   using Range = tbb::blocked_range<std::size_t>;
   return tbb::parallel_reduce(
-      Range(0, mesh.triangle_count(), 8192), Faults{},
+      Range(0, mesh.primitive_count(), 8192), Faults{},
       [&](const Range& range, Faults faults) {
         for (std::size_t t = range.begin(); t < range.end(); ++t) {
           const Fault fault = fault_of(mesh, t);
@@ -60,7 +60,7 @@ Faults count_faults(const Mesh& mesh) {
 
 void keep_sound_triangles(Mesh& mesh) {
   std::size_t kept = 0;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
     if (fault_of(mesh, t) != Fault::none) continue;
     for (std::size_t k = 0; k < 3; ++k) mesh.indices[3 * kept + k] = mesh.indices[3 * t + k];
     mesh.materials[kept++] = mesh.materials[t];
@@ -158,7 +158,7 @@ void drop_unhittable_triangles(Scene& scene) {
 
 void drop_unused(Scene& scene) {
   std::erase_if(scene.instances, [&](const Instance& instance) {
-    return scene.meshes[instance.mesh].triangle_count() == 0;
+    return scene.meshes[instance.mesh].primitive_count() == 0;
   });
   const std::vector<std::uint32_t> new_numbers = keep_wanted(scene.meshes, find_placed(scene));
   for (Instance& instance : scene.instances) instance.mesh = new_numbers[instance.mesh];

@@ -54,16 +54,18 @@ struct Material {
   bool double_sided = false;  ///< matters to emission only: every surface occludes from both sides
 };
 
-/// An indexed triangle mesh in object space; may mix materials.
+/// Indexed primitives in object space, all triangles or all segments of strands; may mix materials.
 struct Mesh {
   std::string name;
   std::vector<V3f> positions;
-  std::vector<std::uint32_t> indices;    ///< three per triangle
-  std::vector<std::uint32_t> materials;  ///< one per triangle, index into Scene::materials
+  std::vector<std::uint32_t> indices;    ///< three per triangle, two per segment
+  std::vector<std::uint32_t> materials;  ///< one per primitive, index into Scene::materials
+  std::vector<float> radii;  ///< of strands, per vertex, metres, > 0; empty: triangles
   std::vector<V2f> uvs;  ///< per vertex, for the alpha texture, transforms applied; or empty
   std::vector<float> vertex_alpha;  ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
 
-  [[nodiscard]] std::size_t triangle_count() const { return materials.size(); }
+  [[nodiscard]] bool has_strands() const { return !radii.empty(); }
+  [[nodiscard]] std::size_t primitive_count() const { return materials.size(); }
 };
 
 /// One placement of a mesh. Imath's convention: p_world = p_object * to_world.
