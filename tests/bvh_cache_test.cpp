@@ -251,7 +251,7 @@ TEST_F(BvhCache, AFileCutShortAnywhereIsNotRead) {
 }
 
 /// The file as it would be had another builder, or another version of the format, written it.
-void rewrite(const std::string& path, SealedKind kind, std::string builder) {
+void rewrite(const std::string& path, const SealedKind& kind, const std::string& builder) {
   const SealedFile file = open_sealed_file(path, {"BVH cache", 1});
   std::vector<Section> sections;
   for (std::size_t i = 0; i < file.section_count(); ++i) sections.push_back(file.section(i));

@@ -149,6 +149,14 @@ TEST_F(CommandLine, AnOutputThatIsAnInputByAnyLinkIsRefusedByItsFlag) {
   EXPECT_EQ(files_in_folder(), 5u);
 }
 
+TEST_F(CommandLine, AnOutputThatIsTheImageOfADomeInALightsFileIsRefused) {
+  EXPECT_EQ(render("").code, 0);
+  const std::string before = bytes_of(path("out.exr"));
+  write_bytes(path("sky.json"), R"({"lights": [{"type": "dome", "image": "out.exr"}]})");
+  expect_failure(render("--lights sky.json"), 2, "would overwrite");
+  EXPECT_EQ(bytes_of(path("out.exr")), before);
+}
+
 TEST_F(CommandLine, AnOutputThatIsABufferOrImageOfTheSceneIsRefusedByItsFlag) {
   write_bytes(path("a.bin"), std::string(36, '\0'));
   write_bytes(path("scene.gltf"), R"({"asset": {"version": "2.0"},

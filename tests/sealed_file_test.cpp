@@ -31,7 +31,7 @@ class SealedFileOnDisk : public FilmFile {
     return bytes_of(path("a.bin"));
   }
 
-  std::string refusal_of(SealedKind kind = kKind) const {
+  std::string refusal_of(const SealedKind& kind = kKind) const {
     const Error error = error_of([&] { open_sealed_file(path("a.bin"), kind); });
     EXPECT_EQ(error.kind(), ErrorKind::input);
     EXPECT_TRUE(contains(error.what(), path("a.bin") + ": ")) << error.what();

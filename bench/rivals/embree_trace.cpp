@@ -16,16 +16,16 @@ template <>
 struct PacketTypes<8> {
   using Ray = RTCRay8;
   using RayHit = RTCRayHit8;
-  static constexpr auto occluded = rtcOccluded8;
-  static constexpr auto intersect = rtcIntersect8;
+  static constexpr auto kOccluded = rtcOccluded8;
+  static constexpr auto kIntersect = rtcIntersect8;
 };
 
 template <>
 struct PacketTypes<16> {
   using Ray = RTCRay16;
   using RayHit = RTCRayHit16;
-  static constexpr auto occluded = rtcOccluded16;
-  static constexpr auto intersect = rtcIntersect16;
+  static constexpr auto kOccluded = rtcOccluded16;
+  static constexpr auto kIntersect = rtcIntersect16;
 };
 
 /// What is the same for all packets of a batch.
@@ -75,7 +75,7 @@ void occlusion_packets(RTCScene scene, AlphaContext& context, const RayBatch& ra
   for (unsigned first = 0; first < rays.count; first += kWidth) {
     load<kWidth>(rays, first, packet, valid);
     forget_met(context);
-    PacketTypes<kWidth>::occluded(valid, scene, &context.embree, &packet);
+    PacketTypes<kWidth>::kOccluded(valid, scene, &context.embree, &packet);
     darken_stopped(packet.tfar, std::min(kWidth, rays.count - first), transmittance + first);
   }
 }
@@ -115,7 +115,7 @@ void intersection_packets(RTCScene scene, AlphaContext& context, const RayBatch&
     load<kWidth>(rays, first, packet.ray, valid);
     std::fill_n(packet.hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], kWidth, RTC_INVALID_GEOMETRY_ID);
-    PacketTypes<kWidth>::intersect(valid, scene, &context.embree, &packet);
+    PacketTypes<kWidth>::kIntersect(valid, scene, &context.embree, &packet);
     std::memcpy(found.u + first, packet.hit.u, kBytes);
     std::memcpy(found.v + first, packet.hit.v, kBytes);
     std::memcpy(found.primitive + first, packet.hit.primID, kBytes);
@@ -165,8 +165,10 @@ std::vector<EmbreeMethod> camera_methods(bool coherent) {
   return methods;
 }
 
-AlphaContext EmbreeTracer::context(const EmbreeMethod& method, const RayBatch& rays,
-                                   float* transmittance) {
+// The filter writes through the pointer, which clang-tidy does not see.
+AlphaContext EmbreeTracer::context(
+    const EmbreeMethod& method, const RayBatch& rays,
+    float* transmittance) {  // NOLINT(readability-non-const-parameter)
   AlphaContext context{{}, method.alpha, black_, rays.key, transmittance, nullptr};
   rtcInitIntersectContext(&context.embree);
   if (method.coherent) context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;

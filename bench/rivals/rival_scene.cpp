@@ -11,9 +11,9 @@ View view_of(const std::string& spec, const RenderOptions& options) {
 
 }  // namespace
 
-RivalScene::RivalScene(const std::string& scene_spec, const RenderOptions& render)
+RivalScene::RivalScene(const std::string& scene_spec, const RenderOptions& render_options)
     : spec(scene_spec),
-      options(render),
+      options(render_options),
       ours(spec, options),
       view(view_of(spec, options)),
       geometry(ours.scene()),

@@ -10,7 +10,7 @@ namespace dapple::bench {
 
 struct RivalScene {
   /// Builds everything; dapple's BVH first. Throws Error.
-  RivalScene(const std::string& spec, const RenderOptions& options);
+  RivalScene(const std::string& scene_spec, const RenderOptions& render_options);
   RivalScene(const RivalScene&) = delete;
   RivalScene& operator=(const RivalScene&) = delete;
 

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr SealedKind kKind{"BVH cache", 1};
 
-enum SectionIndex : std::size_t { kRecord, kBuilder, kNodes, kBlocks, kTextured };
+constexpr std::size_t kRecord = 0, kBuilder = 1, kNodes = 2, kBlocks = 3, kTextured = 4;
 
 using BoxRecord = std::array<float, 6>;
 

@@ -49,7 +49,7 @@ Steps steps_for(const Coordinates& uv) {
   const auto [least, most] =
       std::minmax({uv[0][0], uv[0][1], uv[1][0], uv[1][1], uv[2][0], uv[2][1]});
   Steps steps;
-  if (steps.code(least) < 0) steps.origin = DAPPLE_UV_CODES / 2;
+  if (steps.code(least) < 0) steps.origin = 0.5 * DAPPLE_UV_CODES;
   while (steps.code(least) < 0 || steps.code(most) >= DAPPLE_UV_CODES) ++steps.exponent;
   return steps;
 }

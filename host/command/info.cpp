@@ -16,6 +16,7 @@ struct InfoArguments {
   std::string scene;
   std::vector<std::string> opacity;
   SceneOptions scene_options;
+  std::string cache;
   bool json = false;
 };
 
@@ -105,7 +106,7 @@ void run_info(const InfoArguments& a) {
     override_opacity(scene, material, value);
   }
   merge_single_instances(scene);
-  const auto json = report(scene, build_bvh(scene));
+  const auto json = report(scene, build_bvh(scene, a.cache));
   fmt::print("{}", a.json ? json.dump(2) + "\n" : report_text(json));
 }
 
@@ -117,6 +118,7 @@ Run add_info_command(CLI::App& app) {
   app.add_option("--opacity", a->opacity, "MATERIAL=VALUE, as for render");
   app.add_flag("--allow-outside", a->scene_options.allow_outside,
                "Let a glTF file name buffers and images outside of its folder");
+  app.add_option("--cache", a->cache, "Folder of built BVHs, as for render");
   app.add_flag("--json", a->json, "Print JSON");
   app.footer("Example:\n  dapple info tree.glb --opacity leaf=0.85");
   return [a] { run_info(*a); };

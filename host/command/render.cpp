@@ -149,6 +149,9 @@ RenderOptions to_options(const RenderArguments& a) {
 void use_lights(Scene& scene, const std::string& path) {
   for (Instance& instance : scene.instances) instance.light = -1;
   scene.lights = load_lights(path);
+  for (const Light& light : scene.lights) {
+    if (light.environment) scene.files.push_back(light.environment->file);
+  }
 }
 
 void add_dome(Scene& scene, const RenderArguments& a) {
@@ -221,8 +224,8 @@ void run_render(const RenderArguments& a) {
   catch_interruptions();
 
   Scene scene = load_scene(a.scene, a.scene_options);
-  check_outputs_spare(outputs, scene.files);
   if (!a.lights.empty()) use_lights(scene, a.lights);
+  check_outputs_spare(outputs, scene.files);
   if (!a.dome.empty()) add_dome(scene, a);
   const double load_seconds = since(start);
 

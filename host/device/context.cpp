@@ -188,7 +188,7 @@ Buffer DeviceContext::share(const void* data, std::size_t bytes) {
 
 Buffer DeviceContext::allocate_zeros(std::size_t bytes) {
   if (!state_->shares_memory) {
-    const Buffer buffer = allocate(bytes);
+    Buffer buffer = allocate(bytes);
     in_opencl("clearing a buffer", [&] {
       state_->queue.enqueueFillBuffer(buffer.memory()->buffer, kZeros, 0, whole_patterns(bytes));
     });

@@ -108,7 +108,7 @@ class DeviceContext {
   std::size_t largest_group(const KernelName& kernel);
   /// Enqueues `items` work-items, rounded up to whole groups of `group`: kernels check
   /// bounds. `label` names the pass in pass_seconds().
-  void launch(const KernelName& kernel, const std::string& label, std::size_t items,
+  void launch(const KernelName& name, const std::string& label, std::size_t items,
               std::initializer_list<KernelArgument> arguments, std::size_t group = 64);
   void finish();
   /// Waits like finish(), but whatever has become of the launches.

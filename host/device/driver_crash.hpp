@@ -14,10 +14,10 @@ void report_driver_crashes();
 /// LLVM in PoCL does. Nothing where report_driver_crashes() was never called.
 void renew_crash_reports();
 
-/// While it lives, a crash in any thread is the driver's; what it was asked to do last is named.
+/// While it lives, a crash in any thread is the driver's; `what` it was asked to do last is named.
 class DriverAtWork {
  public:
-  explicit DriverAtWork(const std::string& doing);
+  explicit DriverAtWork(const std::string& what);
   ~DriverAtWork();
   DriverAtWork(const DriverAtWork&) = delete;
   DriverAtWork& operator=(const DriverAtWork&) = delete;

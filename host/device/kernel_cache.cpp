@@ -9,6 +9,7 @@
 
 #include "dapple/error.hpp"
 #include "device/sealed_folder.hpp"
+#include "file/checksum.hpp"
 
 namespace dapple {
 namespace {
@@ -50,7 +51,7 @@ std::string refusal(const fs::path& folder) {
   return fmt::format("no space left ({} bytes, compiling needs {})", bytes, kBytesNeeded);
 }
 
-std::string entry_name(const std::string& text) { return fmt::format("{:016x}", checksum(text)); }
+std::string entry_name(const std::string& text) { return hex_text(checksum(text)).substr(0, 16); }
 
 }  // namespace
 

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <sstream>
 #include <string>
+
+#include "file/checksum.hpp"
 
 namespace dapple {
 namespace {
@@ -28,11 +29,13 @@ std::optional<std::string> bytes_of(const fs::path& path) {
 
 struct SealedFile {
   fs::path path;
-  std::uint64_t sum = 0;
+  std::string sum;  ///< hex_text() of its checksum
 };
 
-std::string line_of(const fs::path& path, std::uint64_t sum) {
-  return fmt::format("{:016x} {}\n", sum, path.generic_string());
+std::string sum_of(std::string_view bytes) { return hex_text(checksum(bytes)); }
+
+std::string line_of(const fs::path& path, std::string_view bytes) {
+  return fmt::format("{} {}\n", sum_of(bytes), path.generic_string());
 }
 
 bool stays_inside(const fs::path& path) {
@@ -55,9 +58,9 @@ std::optional<std::vector<SealedFile>> read_list(const fs::path& folder) {
     SealedFile file;
     std::istringstream words(line);
     std::string path;
-    if (!(words >> std::hex >> file.sum >> path)) return std::nullopt;
+    if (!(words >> file.sum >> path)) return std::nullopt;
     if (path == kListName) {
-      if (file.sum == checksum(before) && lines.peek() == EOF) return files;
+      if (file.sum == sum_of(before) && lines.peek() == EOF) return files;
       return std::nullopt;
     }
     file.path = path;
@@ -79,28 +82,14 @@ bool place(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-std::uint64_t checksum(std::string_view bytes, std::uint64_t seed) {
-  constexpr std::uint64_t kPrime = 0x9e3779b97f4a7c15;
-  std::uint64_t sum = (seed ^ bytes.size()) * kPrime;
-  while (!bytes.empty()) {
-    std::uint64_t word = 0;
-    const std::size_t count = std::min(bytes.size(), sizeof word);
-    std::memcpy(&word, bytes.data(), count);
-    bytes.remove_prefix(count);
-    sum = (sum ^ word) * kPrime;
-    sum ^= sum >> 29;
-  }
-  return sum;
-}
-
 bool seal(const fs::path& folder, const std::vector<fs::path>& files) {
   std::string list;
   for (const fs::path& file : files) {
     const auto bytes = bytes_of(folder / file);
     if (!bytes) return false;
-    list += line_of(file, checksum(*bytes));
+    list += line_of(file, *bytes);
   }
-  list += line_of(kListName, checksum(list));
+  list += line_of(kListName, list);
   std::ofstream out(folder / kListName, std::ios::binary);
   out << list << std::flush;
   return out.good();
@@ -115,7 +104,7 @@ bool unseal(const fs::path& sealed, const fs::path& target, std::vector<fs::path
     if (!place(sealed / file.path, target / file.path)) break;
     placed.push_back(file.path);
     const auto bytes = bytes_of(target / file.path);
-    if (!bytes || checksum(*bytes) != file.sum) break;
+    if (!bytes || sum_of(*bytes) != file.sum) break;
     files.push_back(file.path);
   }
   if (files.size() == list->size()) return true;

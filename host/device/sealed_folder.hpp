@@ -2,15 +2,10 @@
 // one is noticed before anybody relies on it. Against damage, not against malice.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <string_view>
 #include <vector>
 
 namespace dapple {
-
-/// 64 bits of `bytes`, following on from `seed`.
-std::uint64_t checksum(std::string_view bytes, std::uint64_t seed = 0);
 
 /// Writes the list of `files`, paths inside `folder`. False where one cannot be read or the list
 /// not be written.

@@ -6,6 +6,15 @@
 #include <xxhash.h>
 
 namespace dapple {
+namespace {
+
+Checksum words_of(const XXH128_hash_t& hash) { return {hash.high64, hash.low64}; }
+
+}  // namespace
+
+Checksum checksum(std::string_view bytes) {
+  return words_of(XXH3_128bits(bytes.data(), bytes.size()));
+}
 
 std::string hex_text(const Checksum& checksum) {
   return fmt::format("{:016x}{:016x}", checksum[0], checksum[1]);
@@ -26,9 +35,6 @@ void ChecksumStream::add(std::span<const std::byte> bytes) {
   XXH3_128bits_update(&state_->xxh3, bytes.data(), bytes.size());
 }
 
-Checksum ChecksumStream::value() const {
-  const XXH128_hash_t hash = XXH3_128bits_digest(&state_->xxh3);
-  return {hash.high64, hash.low64};
-}
+Checksum ChecksumStream::value() const { return words_of(XXH3_128bits_digest(&state_->xxh3)); }
 
 }  // namespace dapple

@@ -1,4 +1,4 @@
-// XXH3, 128 bits, of bytes that come in pieces: for the seals of our files and the names of
+// XXH3, 128 bits, of bytes at once or in pieces: for the seals of our files and the names of
 // cached ones. Against damage, not against those who forge.
 #pragma once
 
@@ -8,11 +8,14 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 namespace dapple {
 
 using Checksum = std::array<std::uint64_t, 2>;
+
+Checksum checksum(std::string_view bytes);
 
 /// 32 hexadecimal digits.
 std::string hex_text(const Checksum& checksum);

@@ -53,17 +53,17 @@ std::uint64_t aligned(std::uint64_t bytes) {
 template <class Take>
 void for_each_piece(const Header& header, std::span<const std::uint64_t> sizes,
                     std::span<const Section> sections, const Take& take) {
-  static constexpr std::array<std::byte, kSectionAlignment> zeros{};
+  static constexpr std::array<std::byte, kSectionAlignment> kZeros{};
   const auto take_aligned = [&](Section piece) {
     take(piece);
-    take(Section(zeros).first(aligned(piece.size()) - piece.size()));
+    take(Section(kZeros).first(aligned(piece.size()) - piece.size()));
   };
   take_aligned(std::as_bytes(std::span(&header, 1)));
   take_aligned(std::as_bytes(sizes));
   for (const Section& section : sections) take_aligned(section);
 }
 
-Header sealed_header(SealedKind kind, std::span<const std::uint64_t> sizes,
+Header sealed_header(const SealedKind& kind, std::span<const std::uint64_t> sizes,
                      std::span<const Section> sections) {
   Header header;
   assert(kind.name.size() < header.kind.size() && sizes.size() <= kMostSections);
@@ -109,7 +109,7 @@ std::string text_of(const std::array<char, 16>& name) {
 }
 
 /// What the file says it is, which damage may have changed: the checksum comes later.
-Header read_header(const std::string& path, SealedKind kind, Section bytes) {
+Header read_header(const std::string& path, const SealedKind& kind, Section bytes) {
   Header header;
   const std::size_t there = std::min(bytes.size(), sizeof header);
   std::memcpy(&header, bytes.data(), there);
@@ -165,8 +165,8 @@ std::vector<Section> split(const std::string& path, const Header& header, Sectio
 
 }  // namespace
 
-void write_sealed_file(const std::string& path, SealedKind kind, std::span<const Section> sections,
-                       Durable durable) {
+void write_sealed_file(const std::string& path, const SealedKind& kind,
+                       std::span<const Section> sections, Durable durable) {
   std::vector<std::uint64_t> sizes;
   for (const Section& section : sections) sizes.push_back(section.size());
   const Header header = sealed_header(kind, sizes, sections);
@@ -183,12 +183,12 @@ void write_sealed_file(const std::string& path, SealedKind kind, std::span<const
   file.commit();
 }
 
-void write_sealed_file(const std::string& path, SealedKind kind,
+void write_sealed_file(const std::string& path, const SealedKind& kind,
                        std::initializer_list<Section> sections, Durable durable) {
   write_sealed_file(path, kind, std::span(sections.begin(), sections.size()), durable);
 }
 
-SealedFile open_sealed_file(const std::string& path, SealedKind kind) {
+SealedFile open_sealed_file(const std::string& path, const SealedKind& kind) {
   SealedFile file;
   Mapping mapping = map_file(path);
   const Header header = read_header(path, kind, mapping.bytes);

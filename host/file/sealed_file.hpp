@@ -39,9 +39,9 @@ Section as_section(const Range& values) {
 
 /// Written beside, read back and checked, renamed: the old file or the new one is there, never a
 /// part. Throws Error failed, "cannot write PATH: REASON".
-void write_sealed_file(const std::string& path, SealedKind kind, std::span<const Section> sections,
+void write_sealed_file(const std::string& path, const SealedKind& kind, std::span<const Section> sections,
                        Durable durable = Durable::yes);
-void write_sealed_file(const std::string& path, SealedKind kind,
+void write_sealed_file(const std::string& path, const SealedKind& kind,
                        std::initializer_list<Section> sections, Durable durable = Durable::yes);
 
 /// A sealed file in memory, which the copies of this share. Replacing or removing the file does
@@ -64,7 +64,7 @@ class SealedFile {
   [[nodiscard]] std::shared_ptr<const void> keeper() const { return mapping_; }
 
  private:
-  friend SealedFile open_sealed_file(const std::string& path, SealedKind kind);
+  friend SealedFile open_sealed_file(const std::string& path, const SealedKind& kind);
   [[nodiscard]] Section section_of(std::size_t index, std::size_t value_bytes) const;
 
   std::string path_;
@@ -74,6 +74,6 @@ class SealedFile {
 
 /// Opens and checks all of a sealed file. Throws Error input, "PATH: ...", when there is none, or
 /// it is of another kind or version, or damaged.
-SealedFile open_sealed_file(const std::string& path, SealedKind kind);
+SealedFile open_sealed_file(const std::string& path, const SealedKind& kind);
 
 }  // namespace dapple

@@ -57,7 +57,7 @@ void check_radiance(Environment& environment, const std::string& path) {
 /// Means over boxes of `across` x `down` texels, weighted by solid angle.
 Environment averaged(const Environment& fine, std::uint32_t across, std::uint32_t down) {
   // A rest that fills no box is part of the last one's sum.
-  Environment coarse{std::max(1u, fine.width / across), std::max(1u, fine.height / down), {}};
+  Environment coarse{std::max(1u, fine.width / across), std::max(1u, fine.height / down), {}, fine.file};
   std::vector<V3d> sums(std::size_t{coarse.width} * coarse.height, V3d(0.0));
   std::vector<double> weights(sums.size(), 0.0);
   for (std::uint32_t y = 0; y < fine.height; ++y) {
@@ -112,6 +112,7 @@ std::shared_ptr<const Environment> load_environment(const std::string& path) {
     refuse(path, "is neither an OpenEXR nor a Radiance HDR image");
   }
   check_radiance(environment, path);
+  environment.file = path;
   return std::make_shared<const Environment>(std::move(environment));
 }
 

@@ -121,7 +121,7 @@ std::string jpeg_defect(Span bytes) {
     const std::uint32_t length = big_endian(bytes.subspan(at + 2, 2));
     if (length < 2 || length > bytes.size() - at - 2) break;
     if (marker == 0xc4) {
-      const std::string defect = huffman_defect(bytes.subspan(at + 4, length - 2));
+      std::string defect = huffman_defect(bytes.subspan(at + 4, length - 2));
       if (!defect.empty()) return defect;
     }
     at += 2 + length;

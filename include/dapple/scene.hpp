@@ -82,6 +82,7 @@ enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome };
 struct Environment {
   std::uint32_t width = 0, height = 0;
   std::vector<V3f> radiance;  ///< row by row, linear RGB, finite, not negative
+  std::string file = {};      ///< that it was read from; empty: none
 };
 
 /// A light. Irradiance at a point is the integral of radiance * cosine * transmittance.

@@ -1,7 +1,10 @@
-// Writes the corpus's scenes as files for a fuzzer to begin with: seeds FOLDER.
+// Writes the corpus's scenes and images as files for fuzzers to begin with: seeds FOLDER makes
+// FOLDER/gltf and FOLDER/image.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "corpus/corpus.hpp"
 
@@ -10,13 +13,27 @@ namespace {
 /// What fits a fuzzer's runs; bombs do not.
 constexpr std::size_t kLargest = 20000;
 
-void write_seed(const std::filesystem::path& folder, const std::string& name,
-                const dapple::test::SceneFiles& files) {
-  const auto scene = files.files.find(files.scene);
-  if (scene == files.files.end() || scene->second.size() > kLargest) return;
-  std::ofstream(folder / name, std::ios::binary)
-      .write(reinterpret_cast<const char*>(scene->second.data()),
-             static_cast<std::streamsize>(scene->second.size()));
+using Bytes = std::vector<std::uint8_t>;
+
+void write_seed(const std::filesystem::path& path, const Bytes& bytes) {
+  if (bytes.size() > kLargest) return;
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
+bool is_image(const std::string& name) {
+  return name.ends_with(".png") || name.ends_with(".jpg") || name.ends_with(".jpeg");
+}
+
+/// The scene itself, and the images beside it.
+void write_seeds(const std::filesystem::path& folder, const std::string& name,
+                 const dapple::test::SceneFiles& files) {
+  for (const auto& [file, bytes] : files.files) {
+    if (file == files.scene) write_seed(folder / "gltf" / name, bytes);
+    if (is_image(file)) write_seed(folder / "image" / (name + "_" + file), bytes);
+  }
 }
 
 }  // namespace
@@ -26,8 +43,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: seeds FOLDER\n");
     return 2;
   }
-  std::filesystem::create_directories(argv[1]);
-  for (const auto& one : dapple::test::malformed_corpus()) write_seed(argv[1], one.name, one.files);
-  for (const auto& one : dapple::test::tricky_corpus()) write_seed(argv[1], one.name, one.files);
+  for (const auto& one : dapple::test::malformed_corpus()) write_seeds(argv[1], one.name, one.files);
+  for (const auto& one : dapple::test::tricky_corpus()) write_seeds(argv[1], one.name, one.files);
   return 0;
 }
