@@ -1,0 +1,56 @@
+#include "bvh/strand_coverage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dapple {
+namespace {
+
+/// Of a segment's length: ends that were one point before blocks rounded them.
+constexpr float kSamePoint = 1e-3f;
+
+bool meet(const StrandSegment& a, const StrandSegment& b) {
+  const float tolerance = kSamePoint * (b.point[1] - b.point[0]).length();
+  for (const V3f& p : a.point) {
+    for (const V3f& q : b.point) {
+      if (p.equalWithAbsError(q, tolerance)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::array<CoveringTriangle, 2> facing_strip(const StrandSegment& segment, int axis) {
+  V3f view(0.0f);
+  view[axis] = 1.0f;
+  const V3f along = segment.point[1] - segment.point[0];
+  const V3f across = view.cross(along).normalized();  // 0 where it is seen end on
+  const V3f begin = across * segment.radius[0], end = across * segment.radius[1];
+  const V3f corner = segment.point[0] - begin;
+  const V3f diagonal = segment.point[1] + end - corner;
+  return {CoveringTriangle{corner, 2.0f * begin, diagonal, segment.opacity},
+          CoveringTriangle{corner, diagonal, segment.point[1] - end - corner, segment.opacity}};
+}
+
+void add_surface(const StrandSegment& segment, NormalMoments& normals, SurfaceAreas& areas) {
+  const V3f along = segment.point[1] - segment.point[0];
+  const float width = segment.radius[0] + segment.radius[1];
+  normals.add_cylinder(along, 0.5f * width, segment.opacity);
+  V3f hidden;
+  for (int axis = 0; axis < 3; ++axis) {
+    hidden[axis] = width * std::hypot(along[column_axis(axis)], along[row_axis(axis)]);
+  }
+  areas.add(hidden, segment.opacity, false);
+}
+
+bool is_one_strand(std::span<const StrandSegment> segments) {
+  for (std::size_t s = 1; s < segments.size(); ++s) {
+    const auto before = segments.first(s);
+    const auto meets = [&](const StrandSegment& other) { return meet(other, segments[s]); };
+    if (std::none_of(before.begin(), before.end(), meets)) return false;
+  }
+  return true;
+}
+
+}  // namespace dapple
