@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace dapple {
 namespace {
@@ -13,9 +12,6 @@ constexpr float kLeastTurnCosine = 0.0f;
 
 /// Change of radius by length up to which neighbouring cones meet well enough in a plane.
 constexpr float kMostTaper = 0.5f;
-
-/// How far a cut strand reaches beyond its end point, in radii.
-constexpr float kCapReach = static_cast<float>(std::numbers::pi / 4);
 
 V3f axis_of(const Mesh& mesh, std::uint32_t index) {
   const std::uint32_t* at = &mesh.indices[2 * std::size_t{index}];
@@ -49,8 +45,8 @@ Box3f bounds(const StrandSegment& segment) {
     const V3f& plane = segment.plane[end];
     // A mitred end reaches to where the cone may have become wider.
     const float radius = segment.radius[end] / (1.0f - taper);
-    const bool across = segment.cap[end] || !(plane.dot(axis) > 0.0f);
-    const V3f reach = reach_of_cut(axis, across ? axis : plane) * radius;
+    const bool cut = !segment.cap[end] && plane.dot(axis) > 0.0f;
+    const V3f reach = (cut ? reach_of_cut(axis, plane) : V3f(1.0f)) * radius;
     box.extendBy(segment.point[end] - reach);
     box.extendBy(segment.point[end] + reach);
   }
@@ -88,11 +84,7 @@ StrandSegment StrandJoints::segment(const Mesh& mesh, std::uint32_t index) const
   for (int end = 0; end < 2; ++end) {
     const std::uint32_t other = neighbour(mesh, index, end);
     segment.cap[end] = other == kNone;
-    if (segment.cap[end]) {
-      segment.point[end] += axis * (segment.radius[end] * (end ? kCapReach : -kCapReach));
-      continue;
-    }
-    if (other == kMany || flares) continue;
+    if (segment.cap[end] || other == kMany || flares) continue;
     // Turned to go the same way along the strand, whichever end it has here.
     const bool same_way = mesh.indices[2 * std::size_t{other} + (1 - end)] == at[end];
     const V3f along = axis_of(mesh, other) * (same_way ? 1.0f : -1.0f);

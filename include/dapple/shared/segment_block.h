@@ -5,9 +5,7 @@
    planes through the end points. Where segments of a strand meet, both have the plane that halves
    the angle between them, so that they neither overlap nor gape. A ray is stopped where it enters:
    once for each crossing of the strand, as by the hits of Embree's round linear curves that face
-   it, and never by the strand it starts from. Where a strand ends, it is cut across and the cut
-   may be entered too (a cap). It reaches pi / 4 of its radius beyond the end point: seen from the
-   side it then hides as much as the half sphere of a round end. */
+   it, and never by the strand it starts from. Where a strand ends, there is half a sphere (a cap). */
 #ifndef DAPPLE_SHARED_SEGMENT_BLOCK_H
 #define DAPPLE_SHARED_SEGMENT_BLOCK_H
 
