@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr SealedKind kKind{"BVH cache", 2};
+constexpr SealedKind kKind{"BVH cache", 1};
 
 enum SectionIndex : std::size_t { kRecord, kBuilder, kNodes, kBlocks, kTextured, kSegments };
 
