@@ -15,12 +15,12 @@ double bytes(const Array& data) {
   return static_cast<double>(data.size() * sizeof(data[0]));
 }
 
-/// Triangles a second, and bytes a distinct triangle: of nodes, and of everything that a ray
-/// may touch but texels.
+/// Triangles and segments a second, and bytes a distinct one: of nodes, and of everything that a
+/// ray may touch but texels.
 void count_triangles(benchmark::State& state, const SceneBvh& bvh) {
-  const auto triangles = static_cast<double>(bvh.statistics.triangles);
-  const double all =
-      bytes(bvh.nodes) + bytes(bvh.blocks) + bytes(bvh.textured) + bytes(bvh.instances);
+  const auto triangles = static_cast<double>(bvh.statistics.triangles + bvh.statistics.segments);
+  const double all = bytes(bvh.nodes) + bytes(bvh.blocks) + bytes(bvh.segments) +
+                     bytes(bvh.textured) + bytes(bvh.instances);
   state.counters["tri"] = benchmark::Counter(triangles * static_cast<double>(state.iterations()),
                                              benchmark::Counter::kIsRate);
   state.counters["triangles"] = triangles;

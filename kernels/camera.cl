@@ -10,7 +10,10 @@ inline void store_hit(Scene scene, const CameraSamples* samples, const BeamRays*
   const float3 direction = (float3)(((const float*)&rays->direction[0])[i],
                                     ((const float*)&rays->direction[1])[i],
                                     ((const float*)&rays->direction[2])[i]);
-  store_point(scene, nearest_of_ray(nearest, i).hit, direction, area[i], point);
+  const float3 origin = (float3)(((const float*)&rays->origin[0])[i],
+                                 ((const float*)&rays->origin[1])[i],
+                                 ((const float*)&rays->origin[2])[i]);
+  store_point(scene, nearest_of_ray(nearest, i).hit, origin, direction, area[i], point);
   point->pixel = samples->pixel[i];
   point->sample = samples->sample[i];
 }
@@ -48,6 +51,7 @@ inline CameraBeam trace_beam(Scene scene, CameraParams params, __global const Pi
 
 /* Points of samples that miss are left as they are. */
 __kernel void camera_hits(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                          __global const SegmentBlock* segments,
                           __global const TexturedTriangle* textured,
                           __global const MaterialRecord* materials, __global const uchar* texels,
                           __global const InstanceRecord* instances,
@@ -57,7 +61,7 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
   const uint begin = get_global_id(0) * DAPPLE_BEAMS_PER_ITEM * DAPPLE_BEAM_RAYS;
   if (begin >= samples) return;
   const uint end = min(begin + DAPPLE_BEAMS_PER_ITEM * DAPPLE_BEAM_RAYS, samples);
-  const Scene scene = {nodes, blocks, textured, materials, texels, instances};
+  const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   BeamBounds bounds;
   bound_samples(work, params, begin, end - begin, &bounds);
   Entries entries;

@@ -4,13 +4,14 @@
 #include "surface_point.clh"
 
 __kernel void closest_hit(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                          __global const SegmentBlock* segments,
                           __global const TexturedTriangle* textured,
                           __global const MaterialRecord* materials, __global const uchar* texels,
                           __global const InstanceRecord* instances, __global const Ray* rays,
                           __global SurfacePoint* points, OcclusionParams params) {
   const uint item = get_global_id(0);
   if (item >= params.ray_count) return;
-  const Scene scene = {nodes, blocks, textured, materials, texels, instances};
+  const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   const Ray ray = rays[item];
   const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
   Nearest nearest = {no_hit(ray.t_max), 0u, 0u};
@@ -20,7 +21,8 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
   point->visits = min(nearest.visits, 65535u) | min(nearest.tests, 65535u) << 16;
   const float t = nearest.hit.t;
   if (t < ray.t_max) {
-    store_point(scene, nearest.hit, span.direction, ray.first_area + ray.solid_angle * t * t, point);
+    store_point(scene, nearest.hit, span.origin, span.direction,
+                ray.first_area + ray.solid_angle * t * t, point);
   } else {
     point->t = -1.0f;
   }

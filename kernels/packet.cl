@@ -73,6 +73,7 @@ inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray
 /* Rays lie as points * rays_per_point; each point's are cut into chunks of about the same size, of
    at most DAPPLE_PACKET_CHUNK, one an item. */
 __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                     __global const SegmentBlock* segments,
                      __global const TexturedTriangle* textured,
                      __global const MaterialRecord* materials, __global const uchar* texels,
                      __global const InstanceRecord* instances, __global const Ray* rays,
@@ -84,7 +85,7 @@ __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock
   const uint skipped = item % chunks * size;
   const uint first = item / chunks * params.rays_per_point + skipped;
   const uint count = min(size, params.rays_per_point - skipped);
-  const Scene scene = {nodes, blocks, textured, materials, texels, instances};
+  const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
   ushort order[DAPPLE_PACKET_CHUNK];
   if (count > DAPPLE_PACKET_RAYS) {

@@ -11,6 +11,7 @@
 
 #include "bvh/builder_version.hpp"
 #include "bvh/object_key.hpp"
+#include "curly_strands.hpp"
 #include "dapple/bvh.hpp"
 #include "file/sealed_file.hpp"
 #include "film_files.hpp"
@@ -68,6 +69,12 @@ Scene single_object() {
   return scene;
 }
 
+Scene strands_and_leaves() {
+  Scene scene = single_object();
+  scene_test::place(scene, scene_test::curly_strands({.strands = 40}));
+  return scene;
+}
+
 template <class Array>
 bool same_bits(const Array& a, const Array& b) {
   return a.size() == b.size() &&
@@ -77,6 +84,7 @@ bool same_bits(const Array& a, const Array& b) {
 void expect_same(const SceneBvh& a, const SceneBvh& b) {
   EXPECT_TRUE(same_bits(a.nodes, b.nodes));
   EXPECT_TRUE(same_bits(a.blocks, b.blocks));
+  EXPECT_TRUE(same_bits(a.segments, b.segments));
   EXPECT_TRUE(same_bits(a.textured, b.textured));
   EXPECT_TRUE(same_bits(a.instances, b.instances));
   EXPECT_EQ(a.root, b.root);
@@ -124,7 +132,7 @@ class BvhCache : public FilmFile {
 };
 
 TEST_F(BvhCache, ASecondBuildReadsTheSameBitsAndBuildsNothing) {
-  for (const Scene& scene : {leafy_scene(), single_object()}) {
+  for (const Scene& scene : {leafy_scene(), single_object(), strands_and_leaves()}) {
     SCOPED_TRACE(scene.meshes.size());
     fs::remove_all(cache_);
     const SceneBvh without = build_bvh(scene), first = build_bvh(scene, cache_),
@@ -287,6 +295,7 @@ ObjectBvh copy_of(const FinishedObject& object) {
   static_cast<ObjectSummary&>(copy) = object;
   copy.nodes.assign(object.nodes.begin(), object.nodes.end());
   copy.blocks.assign(object.blocks.begin(), object.blocks.end());
+  copy.segments.assign(object.segments.begin(), object.segments.end());
   copy.textured.assign(object.textured.begin(), object.textured.end());
   return copy;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
@@ -28,6 +29,15 @@ struct Triangle {
   Imath::V2d uv[3];
   double vertex_alpha[3];
   std::uint32_t material;
+};
+
+/// A segment of a strand in world space, as Embree's curves take it.
+struct Curve {
+  V3f end[2];
+  float radius[2];
+  double vertex_alpha;  ///< mean of both ends'
+  std::uint32_t material;
+  bool goes_on;  ///< the next one begins where this one ends
 };
 
 /// Barycentric weights of the three corners, where a line meets the triangle's plane.
@@ -135,11 +145,59 @@ std::vector<Triangle> flatten(const Scene& scene) {
   std::vector<Triangle> triangles;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
-    for (std::size_t i = 0; i < mesh.primitive_count(); ++i) {
+    for (std::size_t i = 0; !mesh.has_strands() && i < mesh.primitive_count(); ++i) {
       triangles.push_back(place(mesh, i, instance));
     }
   }
   return triangles;
+}
+
+/// Placements of strands must scale uniformly.
+std::vector<Curve> flatten_strands(const Scene& scene) {
+  std::vector<Curve> curves;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const Imath::M44d to_world(instance.to_world);
+    const double scale = std::cbrt(std::fabs(to_world.determinant()));
+    for (std::size_t i = 0; mesh.has_strands() && i < mesh.primitive_count(); ++i) {
+      const std::uint32_t* at = &mesh.indices[2 * i];
+      Curve curve{};
+      for (int k = 0; k < 2; ++k) {
+        curve.end[k] = V3f(V3d(mesh.positions[at[k]]) * to_world);
+        curve.radius[k] = static_cast<float>(mesh.radii[at[k]] * scale);
+        curve.vertex_alpha += mesh.vertex_alpha.empty() ? 0.5 : 0.5 * mesh.vertex_alpha[at[k]];
+      }
+      curve.material = mesh.materials[i];
+      curve.goes_on = i + 1 < mesh.primitive_count() && at[1] == at[2];
+      curves.push_back(curve);
+    }
+  }
+  return curves;
+}
+
+/// Embree sees that segments belong together where their first vertices follow each other.
+RTCGeometry strand_geometry(RTCDevice device, const std::vector<Curve>& curves) {
+  std::vector<float> vertices;
+  std::vector<unsigned> first;
+  const auto add = [&](const Curve& curve, int k) {
+    vertices.insert(vertices.end(),
+                    {curve.end[k].x, curve.end[k].y, curve.end[k].z, curve.radius[k]});
+  };
+  for (const Curve& curve : curves) {
+    first.push_back(static_cast<unsigned>(vertices.size() / 4));
+    add(curve, 0);
+    if (!curve.goes_on) add(curve, 1);
+  }
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  void* const to = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                           4 * sizeof(float), vertices.size() / 4);
+  void* const indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                                                sizeof(unsigned), first.size());
+  if (!to || !indices) throw std::runtime_error("Embree: no memory for the strands");
+  std::memcpy(to, vertices.data(), vertices.size() * sizeof(float));
+  std::memcpy(indices, first.data(), first.size() * sizeof(unsigned));
+  rtcCommitGeometry(geometry);
+  return geometry;
 }
 
 RTCRay embree_ray(const Segment& segment) {
@@ -189,6 +247,7 @@ V3d Random::direction() {
 struct EmbreeOracle::Embree {
   explicit Embree(const Scene& scene)
       : triangles(flatten(scene)),
+        curves(flatten_strands(scene)),
         materials(scene.materials),
         textures(scene.textures),
         device(rtcNewDevice(nullptr)),
@@ -197,9 +256,8 @@ struct EmbreeOracle::Embree {
     rtcSetSceneBuildQuality(rtc_scene, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneFlags(rtc_scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
                                                            RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
-    const RTCGeometry geometry = soup_geometry(device, triangles);
-    rtcAttachGeometry(rtc_scene, geometry);
-    rtcReleaseGeometry(geometry);
+    if (!triangles.empty()) attach(soup_geometry(device, triangles), kTriangles);
+    if (!curves.empty()) attach(strand_geometry(device, curves), kStrands);
     rtcCommitScene(rtc_scene);
     if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree failed");
   }
@@ -210,7 +268,21 @@ struct EmbreeOracle::Embree {
   Embree(const Embree&) = delete;
   Embree& operator=(const Embree&) = delete;
 
+  static constexpr unsigned kTriangles = 0, kStrands = 1;
+
+  void attach(RTCGeometry geometry, unsigned number) {
+    rtcAttachGeometryByID(rtc_scene, geometry, number);
+    rtcReleaseGeometry(geometry);
+  }
+
+  /// `primitive` counts all triangles, then all segments.
   [[nodiscard]] double opacity(unsigned primitive, const Segment& segment) const {
+    if (primitive >= triangles.size()) {
+      const Curve& curve = curves[primitive - triangles.size()];
+      const Material& material = materials[curve.material];
+      return opacity_of(material.alpha * (material.uses_vertex_alpha ? curve.vertex_alpha : 1.0),
+                        material);
+    }
     const Triangle& triangle = triangles[primitive];
     const Material& material = materials[triangle.material];
     const Weights weights = weights_at(triangle, V3d(segment.origin), V3d(segment.direction));
@@ -224,6 +296,7 @@ struct EmbreeOracle::Embree {
   }
 
   std::vector<Triangle> triangles;
+  std::vector<Curve> curves;
   std::vector<Material> materials;
   std::vector<Texture> textures;
   RTCDevice device;
@@ -243,25 +316,44 @@ struct EmbreeOracle::Embree {
   static Query& query_of(const RTCFilterFunctionNArguments* arguments) {
     return *reinterpret_cast<Query*>(arguments->context);
   }
-  static unsigned primitive_of(const RTCFilterFunctionNArguments* arguments) {
-    return RTCHitN_primID(arguments->hit, arguments->N, 0);
+  [[nodiscard]] unsigned primitive_of(const RTCFilterFunctionNArguments* arguments) const {
+    const unsigned number = RTCHitN_primID(arguments->hit, arguments->N, 0);
+    const bool strand = RTCHitN_geomID(arguments->hit, arguments->N, 0) == kStrands;
+    return number + (strand ? static_cast<unsigned>(triangles.size()) : 0);
+  }
+
+  /// Strands are closed, and stop what enters them.
+  static bool leaves_strand(const RTCFilterFunctionNArguments* arguments) {
+    RTCHitN* const hit = arguments->hit;
+    RTCRayN* const ray = arguments->ray;
+    if (RTCHitN_geomID(hit, 1, 0) != kStrands) return false;
+    return RTCHitN_Ng_x(hit, 1, 0) * RTCRayN_dir_x(ray, 1, 0) +
+               RTCHitN_Ng_y(hit, 1, 0) * RTCRayN_dir_y(ray, 1, 0) +
+               RTCHitN_Ng_z(hit, 1, 0) * RTCRayN_dir_z(ray, 1, 0) >=
+           0;
   }
 
   /// Embree allows itself to report a hit twice, so the triangles met are remembered.
   static void composite(const RTCFilterFunctionNArguments* arguments) {
     Query& query = query_of(arguments);
-    const unsigned primitive = primitive_of(arguments);
+    arguments->valid[0] = 0;
+    if (leaves_strand(arguments)) return;
+    const unsigned primitive = query.embree->primitive_of(arguments);
     if (std::find(query.met.begin(), query.met.end(), primitive) == query.met.end()) {
       query.met.push_back(primitive);
       query.transmittance *= 1 - query.embree->opacity(primitive, *query.segment);
     }
-    if (query.transmittance >= kBlack) arguments->valid[0] = 0;
+    if (query.transmittance < kBlack) arguments->valid[0] = -1;
   }
 
   /// A hash instead of a random stream: a triangle reported twice gets the same answer.
   static void stop_by_chance(const RTCFilterFunctionNArguments* arguments) {
     const Query& query = query_of(arguments);
-    const unsigned primitive = primitive_of(arguments);
+    const unsigned primitive = query.embree->primitive_of(arguments);
+    if (leaves_strand(arguments)) {
+      arguments->valid[0] = 0;
+      return;
+    }
     Random chance(mix(query.key + 0x632be59bd9b4e019u * (primitive + 1)));
     if (chance.real() >= query.embree->opacity(primitive, *query.segment)) arguments->valid[0] = 0;
   }
@@ -291,6 +383,11 @@ std::optional<Hit> EmbreeOracle::first_hit(const Segment& segment, std::uint64_t
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(embree_->rtc_scene, &query.context, &found);
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  if (found.hit.geomID == Embree::kStrands) {
+    const V3d normal(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
+    return Hit{V3d(segment.origin) + V3d(segment.direction) * double{found.ray.tfar},
+               normal.normalized()};
+  }
   const Triangle& triangle = embree_->triangles[found.hit.primID];
   const V3d direction(segment.direction);
   const V3d corner[3] = {V3d(triangle.corner[0]), V3d(triangle.corner[1]), V3d(triangle.corner[2])};

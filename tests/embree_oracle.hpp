@@ -1,6 +1,6 @@
 // An independent renderer's view of a scene, for tests to compare with: Embree finds the
-// triangles, all flattened into world space; opacity is looked up here, in double, without a
-// line of the product's own lookup.
+// triangles and strands, all flattened into world space; opacity is looked up here, in double,
+// without a line of the product's own lookup.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +46,8 @@ class EmbreeOracle {
   explicit EmbreeOracle(const Scene& scene);
   ~EmbreeOracle();
 
-  /// Product of (1 - opacity) over the triangles on the segment, each taken once.
+  /// Product of (1 - opacity) over the triangles on the segment, each taken once, and the segments
+  /// of strands through which it enters one.
   [[nodiscard]] double transmittance(const Segment& segment) const;
 
   /// The nearest surface that stops the segment; one of opacity a does so with probability a,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "curly_strands.hpp"
 #include "device/scene_upload.hpp"
 #include "scene_on_device.hpp"
 #include "wavefront/passes.hpp"
@@ -43,10 +44,28 @@ Scene forest_with_sheared_trees() {
   return scene;
 }
 
+/// Strands, one placement of them upside down and smaller, and leaves.
+Scene strands_and_leaves() {
+  Scene scene = make_procedural("scene:cloud?leaves=500&opacity=0.5");
+  scene.materials.push_back(material_of(0.3f));
+  const auto hair = static_cast<std::uint32_t>(scene.materials.size() - 1);
+  place(scene, curly_strands({.strands = 200, .radius = 0.004f}, hair));
+  M44f over;
+  over.scale(V3f(0.5f, -0.5f, 0.5f));
+  over.translate(V3f(0.2f, 0.3f, 0));
+  scene.instances.push_back({static_cast<std::uint32_t>(scene.meshes.size() - 1), over, -1});
+  return scene;
+}
+
+Scene scene_named(const std::string& name) {
+  if (name == "sheared") return forest_with_sheared_trees();
+  if (name == "strands") return strand_scene(curly_strands({}), 0.3f);
+  return name == "strands and leaves" ? strands_and_leaves() : make_procedural(name);
+}
+
 class NeighbouringRays : public testing::TestWithParam<const char*> {
  protected:
-  const SceneOnDevice scene_{std::string(GetParam()) == "sheared" ? forest_with_sheared_trees()
-                                                                  : make_procedural(GetParam())};
+  const SceneOnDevice scene_{scene_named(GetParam())};
   const std::vector<Ray> rays_ = make_rays();
 
  private:
@@ -95,7 +114,8 @@ TEST_P(NeighbouringRays, FindTheSameBitsInAnyCompany) {
 INSTANTIATE_TEST_SUITE_P(Scenes, NeighbouringRays,
                          testing::Values("scene:tree?leaves=3000",
                                          "scene:cloud?leaves=3000&opacity=0.2",
-                                         "scene:forest?trees=9&leaves=500", "sheared"));
+                                         "scene:forest?trees=9&leaves=500", "sheared", "strands",
+                                         "strands and leaves"));
 
 TEST(Trace, RaysToDifferentLightsAreNeverHiddenByTheirOwn) {
   Scene scene;

@@ -18,6 +18,15 @@ inline V3d random_target(const Scene& scene, Random& random) {
   };
   const Instance& instance = scene.instances[pick(scene.instances.size())];
   const Mesh& mesh = scene.meshes[instance.mesh];
+  if (mesh.has_strands()) {
+    const std::uint32_t* end = &mesh.indices[2 * pick(mesh.primitive_count())];
+    const double share = random.real();
+    const V3d point =
+        V3d(mesh.positions[end[0]]) * (1 - share) + V3d(mesh.positions[end[1]]) * share;
+    // Anywhere across it, and a little beyond.
+    return (point + random.direction() * (1.2 * random.real() * mesh.radii[end[0]])) *
+           Imath::M44d(instance.to_world);
+  }
   const std::uint32_t* corner = &mesh.indices[3 * pick(mesh.primitive_count())];
   const double root = std::sqrt(random.real()), share = random.real();
   const V3d a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]),

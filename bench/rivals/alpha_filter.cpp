@@ -26,15 +26,28 @@ unsigned valid_lanes(const int* valid, unsigned count) {
   return lanes;
 }
 
+const OpacityTable& table_of(const RTCFilterFunctionNArguments& a) {
+  return *static_cast<const OpacityTable*>(a.geometryUserPtr);
+}
+
+/// A strand stops what enters it, once.
+bool leaves_strand(const RTCFilterFunctionNArguments& a, unsigned lane) {
+  if (!table_of(a).of_strands()) return false;
+  return RTCHitN_Ng_x(a.hit, a.N, lane) * RTCRayN_dir_x(a.ray, a.N, lane) +
+             RTCHitN_Ng_y(a.hit, a.N, lane) * RTCRayN_dir_y(a.ray, a.N, lane) +
+             RTCHitN_Ng_z(a.hit, a.N, lane) * RTCRayN_dir_z(a.ray, a.N, lane) >=
+         0.0f;
+}
+
 /// One lane of a filter's arguments.
 struct LaneHit {
   LaneHit(const RTCFilterFunctionNArguments& a, unsigned lane)
       : ray(RTCRayN_id(a.ray, a.N, lane)),
         primitive(RTCHitN_primID(a.hit, a.N, lane)),
         instance(RTCHitN_instID(a.hit, a.N, lane, 0)),
-        opacity(
-            static_cast<const OpacityTable*>(a.geometryUserPtr)
-                ->opacity(primitive, RTCHitN_u(a.hit, a.N, lane), RTCHitN_v(a.hit, a.N, lane))) {}
+        opacity(leaves_strand(a, lane) ? 0.0f
+                                       : table_of(a).opacity(primitive, RTCHitN_u(a.hit, a.N, lane),
+                                                             RTCHitN_v(a.hit, a.N, lane))) {}
 
   /// The same for a triangle however often it is reported, and for no two likely to be met by
   /// one ray.
@@ -62,6 +75,10 @@ void filter_multiplicative(const RTCFilterFunctionNArguments& a, const AlphaCont
     const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
     const LaneHit hit(a, lane);
     float& transmittance = context.transmittance[hit.ray];
+    if (hit.opacity == 0.0f) {
+      a.valid[lane] = 0;
+      continue;
+    }
     if (!context.met || context.met[hit.ray % kMostLanes].add(hit.triangle()))
       transmittance *= 1.0f - hit.opacity;
     if (transmittance >= context.black) a.valid[lane] = 0;

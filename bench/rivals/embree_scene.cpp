@@ -16,6 +16,25 @@ bool count_bytes(void* counter, ssize_t bytes, bool) {
   return true;
 }
 
+void add_filters(RTCGeometry geometry, const EmbreeMesh& mesh) {
+  rtcSetGeometryUserData(geometry, const_cast<OpacityTable*>(&mesh.opacity));
+  rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
+  rtcSetGeometryIntersectFilterFunction(geometry, filter_intersected);
+}
+
+RTCGeometry curve_geometry(RTCDevice device, const EmbreeMesh& mesh, unsigned number) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                             mesh.curve_vertices.data(), 0, 4 * sizeof(float),
+                             mesh.curve_vertices.size() / 4);
+  const std::vector<unsigned>& first = mesh.curves[number];
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, first.data(), 0,
+                             sizeof(unsigned), first.size());
+  if (number == kTranslucentGeometry) add_filters(geometry, mesh);
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
 RTCGeometry triangle_geometry(RTCDevice device, const EmbreeMesh& mesh, unsigned number) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -23,11 +42,7 @@ RTCGeometry triangle_geometry(RTCDevice device, const EmbreeMesh& mesh, unsigned
   const std::vector<unsigned>& indices = mesh.triangles[number];
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices.data(),
                              0, 3 * sizeof(unsigned), indices.size() / 3);
-  if (number == kTranslucentGeometry) {
-    rtcSetGeometryUserData(geometry, const_cast<OpacityTable*>(&mesh.opacity));
-    rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
-    rtcSetGeometryIntersectFilterFunction(geometry, filter_intersected);
-  }
+  if (number == kTranslucentGeometry) add_filters(geometry, mesh);
   rtcCommitGeometry(geometry);
   return geometry;
 }
@@ -71,8 +86,9 @@ RTCScene EmbreeScene::new_scene() {
 
 void EmbreeScene::attach_meshes(RTCScene scene, const EmbreeMesh& mesh) {
   for (const unsigned number : {kOpaqueGeometry, kTranslucentGeometry}) {
-    if (mesh.triangles[number].empty()) continue;
-    const RTCGeometry geometry = triangle_geometry(device_, mesh, number);
+    if (mesh.triangles[number].empty() && mesh.curves[number].empty()) continue;
+    const RTCGeometry geometry = mesh.has_strands() ? curve_geometry(device_, mesh, number)
+                                                    : triangle_geometry(device_, mesh, number);
     rtcAttachGeometryByID(scene, geometry, number);
     rtcReleaseGeometry(geometry);
   }

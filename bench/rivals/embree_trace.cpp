@@ -116,6 +116,7 @@ void intersection_packets(RTCScene scene, AlphaContext& context, const RayBatch&
     std::fill_n(packet.hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet.hit.instID[0], kWidth, RTC_INVALID_GEOMETRY_ID);
     PacketTypes<kWidth>::kIntersect(valid, scene, &context.embree, &packet);
+    std::memcpy(found.t + first, packet.ray.tfar, kBytes);
     std::memcpy(found.u + first, packet.hit.u, kBytes);
     std::memcpy(found.v + first, packet.hit.v, kBytes);
     std::memcpy(found.primitive + first, packet.hit.primID, kBytes);
@@ -130,6 +131,7 @@ void intersection_singles(RTCScene scene, AlphaContext& context, const RayBatch&
     RTCRayHit query{single_ray(rays, i), {}};
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &context.embree, &query);
+    found.t[i] = query.ray.tfar;
     found.u[i] = query.hit.u;
     found.v[i] = query.hit.v;
     found.primitive[i] = query.hit.primID;

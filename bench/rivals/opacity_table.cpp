@@ -88,6 +88,17 @@ std::optional<float> constant_opacity(const Scene& scene, const Mesh& mesh, std:
   return thresholded(alphas[0], cutoff_of(material));
 }
 
+float segment_opacity(const Scene& scene, const Mesh& mesh, std::size_t segment) {
+  const Material& material = scene.materials[mesh.materials[segment]];
+  if (material.alpha_mode == AlphaMode::opaque) return 1.0f;
+  float alpha = material.alpha;
+  if (material.uses_vertex_alpha && !mesh.vertex_alpha.empty()) {
+    alpha *= 0.5f * (mesh.vertex_alpha[mesh.indices[2 * segment]] +
+                     mesh.vertex_alpha[mesh.indices[2 * segment + 1]]);
+  }
+  return thresholded(alpha, cutoff_of(material));
+}
+
 void OpacityTable::append(const Scene& scene, const Mesh& mesh, std::size_t triangle) {
   if (const auto constant = constant_opacity(scene, mesh, triangle)) {
     codes_.push_back(*constant);

@@ -16,8 +16,16 @@ namespace dapple::bench {
 /// The triangle's opacity in [0,1] if it is the same all over, else nothing.
 std::optional<float> constant_opacity(const Scene& scene, const Mesh& mesh, std::size_t triangle);
 
+/// Of a segment of a strand: its ends' mean.
+float segment_opacity(const Scene& scene, const Mesh& mesh, std::size_t segment);
+
 class OpacityTable {
  public:
+  /// It is of curves: what leaves a strand is not stopped.
+  void set_strands() { strands_ = true; }
+  [[nodiscard]] bool of_strands() const { return strands_; }
+  void append(float opacity) { codes_.push_back(opacity); }
+
   /// Appends `triangle` of `mesh`; opacities are then asked for by the order of appending. The
   /// scene's textures must stay where they are.
   void append(const Scene& scene, const Mesh& mesh, std::size_t triangle);
@@ -47,6 +55,7 @@ class OpacityTable {
 
   std::vector<float> codes_;  ///< an opacity, or kVarying | index as its bits
   std::vector<Varying> varying_;
+  bool strands_ = false;
 };
 
 }  // namespace dapple::bench

@@ -27,6 +27,7 @@ struct TransmittanceBatch {
 /// What a batch of camera rays met. Where `geometry` is RTC_INVALID_GEOMETRY_ID: nothing.
 struct HitBatch {
   alignas(64) float u[kBatchCapacity], v[kBatchCapacity];  ///< Embree's barycentrics
+  alignas(64) float t[kBatchCapacity];                     ///< metres
   alignas(64) std::uint32_t primitive[kBatchCapacity], geometry[kBatchCapacity];
   alignas(64) std::uint32_t instance[kBatchCapacity];  ///< RTC_INVALID_GEOMETRY_ID in flat scenes
 };

@@ -12,7 +12,7 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-/// Bytes a distinct triangle of everything, and of the acceleration structure alone.
+/// Bytes a distinct triangle, or segment, of everything, and of the acceleration structure alone.
 struct Bytes {
   double structure, all;
 };
@@ -25,9 +25,10 @@ Bytes embree_bytes(const RivalScene& scene, const EmbreeScene& built) {
 }
 
 Bytes our_bytes(const SceneBvh& bvh) {
-  const auto triangles = static_cast<double>(bvh.statistics.triangles);
+  const auto triangles = static_cast<double>(bvh.statistics.triangles + bvh.statistics.segments);
   const auto nodes = static_cast<double>(bvh.nodes.size() * sizeof(BvhNode));
   const auto rest = static_cast<double>(bvh.blocks.size() * sizeof(TriangleBlock) +
+                                        bvh.segments.size() * sizeof(SegmentBlock) +
                                         bvh.textured.size() * sizeof(TexturedTriangle) +
                                         bvh.instances.size() * sizeof(InstanceRecord));
   return {nodes / triangles, (nodes + rest) / triangles};
@@ -85,8 +86,9 @@ std::string building_text(const RivalScene& scene) {
        fmt::format("{:.1f}", bytes.structure), fmt::format("{:.1f}", bytes.all)});
   const unsigned units = scene.device.info().compute_units;
   return fmt::format(
-      "{}, {} triangles, {} placed; Embree {} with {} threads; {} with {} units{}\n{}", scene.spec,
-      ours.triangles, ours.instanced_triangles, RTC_VERSION_STRING, thread_count(),
+      "{}, {} triangles and segments, {} placed; Embree {} with {} threads; {} with {} units{}\n{}",
+      scene.spec, ours.triangles + ours.segments,
+      ours.instanced_triangles + ours.instanced_segments, RTC_VERSION_STRING, thread_count(),
       scene.device.info().name, units,
       scene.device.info().kind == "CPU" && units != thread_count()
           ? "\nwarning: the two sides have different numbers of threads"
@@ -107,6 +109,7 @@ nlohmann::json building_json(const RivalScene& scene) {
           {"opacity", scene.options.opacity},
           {"triangles", ours.triangles},
           {"instanced_triangles", ours.instanced_triangles},
+          {"segments", ours.segments},
           {"threads", thread_count()},
           {"device", scene.device.info().name},
           {"embree_medium", embree(scene.embree.medium)},

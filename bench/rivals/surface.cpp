@@ -5,22 +5,49 @@
 
 namespace dapple::bench {
 
+namespace {
+
+/// In object space, the place nearest to `met` on the segment's side.
+Surface place_on_segment(const EmbreeMesh& mesh, unsigned geometry, unsigned segment, float u,
+                         const V3f& met) {
+  const float* a = mesh.curve_end(geometry, segment, 0);
+  const float* b = mesh.curve_end(geometry, segment, 1);
+  const V3f begin(a[0], a[1], a[2]), axis = V3f(b[0], b[1], b[2]) - begin;
+  const V3f middle = begin + axis * u;
+  const V3f normal = (met - middle).normalized();
+  return {middle + normal * (a[3] + u * (b[3] - a[3])), normal};
+}
+
+Surface place_on_triangle(const EmbreeMesh& mesh, const HitBatch& hits, unsigned i) {
+  const auto corner = [&](unsigned k) {
+    return mesh.corner(hits.geometry[i], hits.primitive[i], k);
+  };
+  const V3f edge1 = corner(1) - corner(0), edge2 = corner(2) - corner(0);
+  return {corner(0) + edge1 * hits.u[i] + edge2 * hits.v[i], edge1.cross(edge2)};
+}
+
+}  // namespace
+
 Surface surface_of(const EmbreeGeometry& geometry, const RayBatch& rays, const HitBatch& hits,
                    unsigned i) {
   const std::size_t placed = geometry.flat ? 0 : hits.instance[i];
   const EmbreePlacement& placement = geometry.placements[placed];
   const EmbreeMesh& mesh = geometry.meshes[placement.mesh];
-  const auto corner = [&](unsigned k) {
-    return mesh.corner(hits.geometry[i], hits.primitive[i], k);
-  };
-  const V3f edge1 = corner(1) - corner(0), edge2 = corner(2) - corner(0);
-  Surface surface{corner(0) + edge1 * hits.u[i] + edge2 * hits.v[i], edge1.cross(edge2)};
+  const V3f direction(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
+  Surface surface;
+  if (mesh.has_strands()) {
+    const V3f origin(rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]);
+    const V3f met = origin + direction * hits.t[i];
+    surface = place_on_segment(mesh, hits.geometry[i], hits.primitive[i], hits.u[i],
+                               geometry.flat ? met : met * placement.to_world.inverse());
+  } else {
+    surface = place_on_triangle(mesh, hits, i);
+  }
   if (!geometry.flat) {
     surface.position = surface.position * placement.to_world;
     placement.normal_matrix.multDirMatrix(V3f(surface.normal), surface.normal);
   }
   surface.normal.normalize();
-  const V3f direction(rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]);
   if (surface.normal.dot(direction) > 0) surface.normal = -surface.normal;
   return surface;
 }

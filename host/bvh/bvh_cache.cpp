@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr SealedKind kKind{"BVH cache", 1};
 
-constexpr std::size_t kRecord = 0, kBuilder = 1, kNodes = 2, kBlocks = 3, kTextured = 4;
+constexpr std::size_t kRecord = 0, kBuilder = 1, kNodes = 2, kBlocks = 3, kTextured = 4,
+                      kSegments = 5;
 
 using BoxRecord = std::array<float, 6>;
 
@@ -112,6 +113,7 @@ CachedObject read_object(const std::string& path, const Checksum& key, const Sce
   cached.build_seconds = records[0].build_seconds;
   cached.object.nodes = {file.values<BvhNode>(kNodes), file.keeper()};
   cached.object.blocks = {file.values<TriangleBlock>(kBlocks), file.keeper()};
+  cached.object.segments = {file.values<SegmentBlock>(kSegments), file.keeper()};
   cached.object.textured = {file.values<TexturedTriangle>(kTextured), file.keeper()};
   if (records[0].part_count > DAPPLE_BVH_WIDTH || !is_sound(cached.object, scene)) {
     throw Error(ErrorKind::input, path + ": no tree that rays could walk");
@@ -129,6 +131,7 @@ FinishedObject::FinishedObject(ObjectBvh&& object)
     : ObjectSummary(std::move(object)),
       nodes(std::move(object.nodes)),
       blocks(std::move(object.blocks)),
+      segments(std::move(object.segments)),
       textured(std::move(object.textured)) {}
 
 void prepare_bvh_cache(const std::string& folder) {
@@ -164,7 +167,7 @@ void write_cached_object(const std::string& folder, const Checksum& key,
   write_sealed_file(
       file_of(folder, key), kKind,
       {as_section(std::span(&record, 1)), as_section(builder), as_section(object.nodes),
-       as_section(object.blocks), as_section(object.textured)},
+       as_section(object.blocks), as_section(object.textured), as_section(object.segments)},
       Durable::no);
 }
 

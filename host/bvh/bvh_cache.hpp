@@ -17,6 +17,7 @@ struct FinishedObject : ObjectSummary {
   explicit FinishedObject(ObjectBvh&& object);
   ConstArray<BvhNode> nodes;
   ConstArray<TriangleBlock> blocks;
+  ConstArray<SegmentBlock> segments;
   ConstArray<TexturedTriangle> textured;
 };
 

@@ -53,11 +53,14 @@ struct CoveringTriangle {
   bool closed = false;  ///< part of a closed surface, opaque: closed_triangles()
 };
 
+/// What is drawn along each axis. Triangles are the same along all, strips face their axis.
+using Covering = std::array<std::span<const CoveringTriangle>, 3>;
+
 /// Multiplies triangles inside `box` into the map, keeping their projected areas. Those
 /// that meet along an edge lie side by side and add up, and so does each side of closed
 /// surfaces, one of which hides the other; others overlap as if independent.
 template <class OpacityAt>
-void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
+void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
            const OpacityAt& opacity_at);
 
 /// A projected triangle in units of map cells, and the cells it may touch.
@@ -114,8 +117,7 @@ class NodeCoverage {
   void add(const CoverageMap& child, const Box3f& child_box, const SurfaceAreas& areas = {});
 
   /// Puts in a leaf's triangles, a single layer as is_single_layer() says, of uniform opacities.
-  void add_layer(std::span<const CoveringTriangle> triangles, const Box3f& child_box,
-                 const SurfaceAreas& areas);
+  void add_layer(const Covering& covering, const Box3f& child_box, const SurfaceAreas& areas);
 
   [[nodiscard]] const CoverageMap& map() const { return map_; }
   [[nodiscard]] const SurfaceAreas& areas() const { return areas_; }
@@ -173,11 +175,12 @@ std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> tr
                           CellCoverage& coverage, HiddenCells& cells, HiddenCells& back);
 
 template <class OpacityAt>
-void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
+void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
            const OpacityAt& opacity_at) {
   CellCoverage coverage;
   HiddenCells cells, back;
   for (int axis = 0; axis < 3; ++axis) {
+    const std::span<const CoveringTriangle> triangles = covering[axis];
     std::uint64_t done = draw_closed(box, triangles, axis, coverage, cells, back);
     cells.flush(map.transmittance[axis]);
     for (std::size_t first = 0; first < triangles.size(); ++first) {
@@ -205,6 +208,12 @@ void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle>
       cells.flush(map.transmittance[axis]);
     }
   }
+}
+
+template <class OpacityAt>
+void cover(CoverageMap& map, const Box3f& box, std::span<const CoveringTriangle> triangles,
+           const OpacityAt& opacity_at) {
+  cover(map, box, Covering{triangles, triangles, triangles}, opacity_at);
 }
 
 }  // namespace dapple

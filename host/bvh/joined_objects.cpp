@@ -9,7 +9,7 @@ namespace {
 
 void shift(BvhNode& node, const ObjectOffsets& by) {
   node.child_base += by.node;
-  node.prim_base += by.block;
+  node.prim_base += node.prim_base & DAPPLE_SEGMENTS ? by.segments : by.block;
 }
 
 void shift(TriangleBlock& block, const ObjectOffsets& by) {
@@ -18,6 +18,7 @@ void shift(TriangleBlock& block, const ObjectOffsets& by) {
   }
 }
 
+void shift(SegmentBlock&, const ObjectOffsets&) {}
 void shift(TexturedTriangle&, const ObjectOffsets&) {}
 
 /// Each part's values shifted by its offsets. The first that are not empty have offsets 0, so that
@@ -48,20 +49,24 @@ ConstArray<T> joined(std::span<ConstArray<T>* const> parts,
 std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
                                    const std::string& source) {
   std::vector<ObjectOffsets> offsets;
-  std::size_t nodes = 0, blocks = 0, textured = 0;
+  std::size_t nodes = 0, blocks = 0, segments = 0, textured = 0;
   const auto push = [&] {
-    // The stack's top bit marks instances; a textured triangle's index must fit a float.
-    if (nodes > 0x7fffffffu || blocks > 0xffffffffu || textured >= 1u << 24) {
+    // The stack's top bit marks instances, that of a primitive's number, eight to a block, marks
+    // segments; a textured triangle's index must fit a float.
+    constexpr std::uint32_t kMostBlocks = DAPPLE_SEGMENTS / 8;
+    if (nodes >= DAPPLE_SEGMENTS || blocks > kMostBlocks || segments > kMostBlocks ||
+        textured >= 1u << 24) {
       throw Error(ErrorKind::failed,
                   fmt::format("{}: too many triangles for the BVH's indices", source));
     }
     offsets.push_back({static_cast<std::uint32_t>(nodes), static_cast<std::uint32_t>(blocks),
-                       static_cast<std::uint32_t>(textured)});
+                       static_cast<std::uint32_t>(segments), static_cast<std::uint32_t>(textured)});
   };
   push();
   for (const FinishedObject& object : objects) {
     nodes += object.nodes.size();
     blocks += object.blocks.size();
+    segments += object.segments.size();
     textured += object.textured.size();
     push();
   }
@@ -73,10 +78,12 @@ void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
   ConstArray<BvhNode> top_nodes(std::move(top));
   std::vector<ConstArray<BvhNode>*> nodes;
   std::vector<ConstArray<TriangleBlock>*> blocks;
+  std::vector<ConstArray<SegmentBlock>*> segments;
   std::vector<ConstArray<TexturedTriangle>*> textured;
   for (FinishedObject& object : objects) {
     nodes.push_back(&object.nodes);
     blocks.push_back(&object.blocks);
+    segments.push_back(&object.segments);
     textured.push_back(&object.textured);
   }
   nodes.push_back(&top_nodes);
@@ -84,6 +91,7 @@ void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
   node_offsets.back() = {};  // the top level's indices already count so
   bvh.nodes = joined<BvhNode>(nodes, node_offsets);
   bvh.blocks = joined<TriangleBlock>(blocks, offsets);
+  bvh.segments = joined<SegmentBlock>(segments, offsets);
   bvh.textured = joined<TexturedTriangle>(textured, offsets);
 }
 

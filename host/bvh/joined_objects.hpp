@@ -1,5 +1,5 @@
 // Objects' arrays one after the other, as kernels take them, with indices that count from the
-// scene's first node, block and textured triangle.
+// scene's first node, block of either kind and textured triangle.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace dapple {
 
 /// What comes before an object in each of the scene's arrays.
 struct ObjectOffsets {
-  std::uint32_t node = 0, block = 0, textured = 0;
+  std::uint32_t node = 0, block = 0, segments = 0, textured = 0;
 };
 
 /// One for each object, and one more for what comes after them all. Throws Error failed when there

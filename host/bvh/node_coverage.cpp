@@ -220,13 +220,13 @@ void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
   children_[child_count_++] = ranges;
 }
 
-void NodeCoverage::add_layer(std::span<const CoveringTriangle> triangles, const Box3f& child_box,
+void NodeCoverage::add_layer(const Covering& covering, const Box3f& child_box,
                              const SurfaceAreas& areas) {
   const CellRanges ranges = cell_ranges(child_box);
   CellCoverage coverage;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(face_area(box_, axis) > 0.0f)) continue;
-    for (const CoveringTriangle& triangle : triangles) {
+    for (const CoveringTriangle& triangle : covering[axis]) {
       CellTriangle projected;
       if (!project(triangle, box_, axis, projected)) continue;
       rasterize(projected, coverage);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "dapple/shared/opacity.h"
 
@@ -14,6 +15,17 @@ void NormalMoments::add(const V3f& normal, float opacity) {
   const float terms[6] = {n.x * normal.x, n.y * normal.y, n.z * normal.z,
                           n.x * normal.y, n.y * normal.z, n.z * normal.x};
   for (int i = 0; i < 6; ++i) sum[i] += terms[i];
+}
+
+void NormalMoments::add_cylinder(const V3f& axis, float radius, float opacity) {
+  const float length = axis.length();
+  if (!(length > 0.0f)) return;
+  const V3f t = axis / length;
+  // The mean of n n^T around the axis is (1 - t t^T) / 2; half of the side is pi r l.
+  const float weight = 0.5f * static_cast<float>(std::numbers::pi) * radius * length * opacity;
+  const float terms[6] = {1.0f - t.x * t.x, 1.0f - t.y * t.y, 1.0f - t.z * t.z,
+                          -t.x * t.y,       -t.y * t.z,       -t.z * t.x};
+  for (int i = 0; i < 6; ++i) sum[i] += weight * terms[i];
 }
 
 void NormalMoments::add(const NormalMoments& other) {

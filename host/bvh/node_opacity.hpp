@@ -16,6 +16,8 @@ struct NormalMoments {
 
   /// A surface with area vector `normal` (its length is any multiple of the area).
   void add(const V3f& normal, float opacity);
+  /// The side of a cylinder around `axis`, half of it: what is seen from anywhere.
+  void add_cylinder(const V3f& axis, float radius, float opacity);
   void add(const NormalMoments& other);
   /// The moments after the surfaces are placed: area vectors turn by the matrix' cofactors.
   [[nodiscard]] NormalMoments placed(const M44f& to_world) const;

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <span>
 
+#include "bvh/packed_strands.hpp"
 #include "bvh/quantize.hpp"
 
 namespace dapple {
@@ -32,7 +33,7 @@ void for_each_block(std::size_t count, const Body& body) {
 /// Stands for a textured triangle until it has its index.
 constexpr float kTextured = -1.0f;
 
-/// Opacity of each triangle, [0,1], or kTextured; counts their kinds.
+/// Opacity of each primitive, [0,1], or kTextured; counts their kinds.
 std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
   std::vector<float> opacities(mesh.primitive_count());
   std::atomic<std::size_t> opaque = 0, cut_out = 0, translucent = 0;
@@ -40,8 +41,9 @@ std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, Objec
     std::size_t here[3] = {0, 0, 0};
     for (std::size_t t = begin; t < end; ++t) {
       const bool mask = scene.materials[mesh.materials[t]].alpha_mode == AlphaMode::mask;
-      opacities[t] =
-          uniform_opacity(scene, mesh, static_cast<std::uint32_t>(t)).value_or(kTextured);
+      const auto index = static_cast<std::uint32_t>(t);
+      opacities[t] = mesh.has_strands() ? segment_opacity(scene, mesh, index)
+                                        : uniform_opacity(scene, mesh, index).value_or(kTextured);
       if (opacities[t] != 0.0f) ++here[mask ? 1 : opacities[t] >= 1.0f ? 0 : 2];
     }
     opaque += here[0];
@@ -74,9 +76,10 @@ Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
   return box;
 }
 
-/// Of the triangles that can be seen, in their order. Fills `boxes`, one for each.
-void fill_boxes(const Mesh& mesh, const std::vector<float>& opacities,
-                std::span<PrimitiveBox> boxes) {
+/// Of the primitives that can be seen, in their order. Fills `boxes`, one for each.
+template <class BoxOf>
+void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> boxes,
+                const BoxOf& box_of) {
   std::vector<std::size_t> next((opacities.size() + kGrain - 1) / kGrain + 1, 0);
   for_each_block(opacities.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
     const auto transparent = std::count(&opacities[begin], opacities.data() + end, 0.0f);
@@ -87,7 +90,8 @@ void fill_boxes(const Mesh& mesh, const std::vector<float>& opacities,
     std::size_t to = next[block];
     for (std::size_t t = begin; t < end; ++t) {
       if (opacities[t] == 0.0f) continue;
-      boxes[to++] = primitive_box(triangle_box(mesh, t), static_cast<std::uint32_t>(t));
+      const auto index = static_cast<std::uint32_t>(t);
+      boxes[to++] = primitive_box(box_of(index), index);
     }
   });
 }
@@ -104,8 +108,6 @@ void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32
   }
   block.opacity[lane] = opacity;
 }
-
-std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
 
 std::size_t count_blocks(const WideTree& tree) {
   std::size_t blocks = 0;
@@ -178,6 +180,45 @@ std::vector<BvhNode> pack_nodes(const WideTree& tree) {
   return nodes;
 }
 
+namespace {
+
+/// What is known of an object once its tree stands.
+void summarize(BuiltObject& built) {
+  ObjectBvh& object = built.object;
+  const WideTree& tree = built.tree;
+  object.box = tree.nodes[0].box;
+  for (const WideChild& child : tree.children_of(tree.nodes[0])) object.parts.push_back(child.box);
+  tbb::parallel_invoke([&] { object.nodes = pack_nodes(tree); },
+                       [&] { object.stack = stack_needed(tree); },
+                       [&] { object.sah_cost = expected_visits(tree); });
+}
+
+void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
+                     std::span<PrimitiveBox> boxes, BuiltObject& built) {
+  fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
+  std::vector<bool> closed;
+  tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
+                       [&] { closed = closed_triangles(mesh, opacities); });
+  tbb::parallel_invoke([&] { built.object.blocks.resize(count_blocks(built.tree)); },
+                       [&] { summarize(built); });
+  pack_triangles(built, boxes, mesh, opacities, closed);
+}
+
+void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
+                   std::span<PrimitiveBox> boxes, BuiltObject& built) {
+  const StrandJoints joints(mesh);
+  fill_boxes(opacities, boxes, [&](std::uint32_t s) { return bounds(joints.segment(mesh, s)); });
+  built.tree = build_wide_tree(boxes, kLeafSize);
+  PackedStrands packed = pack_strands(built.tree, boxes, mesh, joints, opacities);
+  built.object.segments = std::move(packed.blocks);
+  summarize(built);
+  for (std::size_t n = 0; n < built.object.nodes.size(); ++n) {
+    built.object.nodes[n].prim_base = DAPPLE_SEGMENTS | packed.first_block[n];
+  }
+}
+
+}  // namespace
+
 BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   BuiltObject built;
   ObjectBvh& object = built.object;
@@ -186,17 +227,7 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   // Not cleared, so that the threads that write the pages also get them from the system.
   const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);
   const std::span boxes(storage.get(), object.triangles);
-  fill_boxes(mesh, opacities, boxes);
-  std::vector<bool> closed;
-  tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
-                       [&] { closed = closed_triangles(mesh, opacities); });
-  const WideTree& tree = built.tree;
-  object.box = tree.nodes[0].box;
-  for (const WideChild& child : tree.children_of(tree.nodes[0])) object.parts.push_back(child.box);
-  tbb::parallel_invoke(
-      [&] { object.blocks.resize(count_blocks(tree)); }, [&] { object.nodes = pack_nodes(tree); },
-      [&] { object.stack = stack_needed(tree); }, [&] { object.sah_cost = expected_visits(tree); });
-  pack_triangles(built, boxes, mesh, opacities, closed);
+  (mesh.has_strands() ? build_strands : build_triangles)(mesh, opacities, boxes, built);
   return built;
 }
 

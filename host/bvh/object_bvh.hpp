@@ -1,4 +1,5 @@
-// One mesh's BVH, and the steps that make it: build, pack, prefilter.
+// One mesh's BVH, of triangles or of segments of strands, and the steps that make it: build, pack,
+// prefilter.
 #pragma once
 
 #include <vector>
@@ -18,14 +19,16 @@ struct ObjectSummary {
   NodeOpacity opacity;       ///< of `box`
   std::uint32_t stack = 0;   ///< traversal stack entries needed
   double sah_cost = 0;       ///< expected node visits of a ray through `box`
+  /// Triangles, or segments, that are not fully transparent.
   std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
 };
 
 /// Indices inside (child_base, prim_base, textured codes) count from this object's own
-/// first node, block and textured triangle.
+/// first node, block and textured triangle. Either `blocks` or `segments` is empty.
 struct ObjectBvh : ObjectSummary {
   std::vector<BvhNode> nodes;
   std::vector<TriangleBlock> blocks;
+  std::vector<SegmentBlock> segments;
   std::vector<TexturedTriangle> textured;
 };
 
@@ -36,7 +39,7 @@ struct BuiltObject {
   std::vector<std::uint8_t> closed;  ///< by block: bit l for lane l, closed_triangles(); or empty
 };
 
-/// Builds and packs the triangles of `mesh` that are not fully transparent. Empty (no
+/// Builds and packs the triangles or segments of `mesh` that are not fully transparent. Empty (no
 /// nodes) when there are none.
 BuiltObject build_object(const Scene& scene, const Mesh& mesh);
 

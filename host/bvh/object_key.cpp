@@ -37,6 +37,7 @@ Checksum object_key(const Scene& scene, const Mesh& mesh) {
   key.add_range(mesh.positions);
   key.add_range(mesh.indices);
   key.add_range(mesh.materials);
+  key.add_range(mesh.radii);
   key.add_range(mesh.uvs);
   key.add_range(mesh.vertex_alpha);
   const std::vector<bool> used = used_materials(scene, mesh);

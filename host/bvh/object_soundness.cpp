@@ -11,12 +11,14 @@
 namespace dapple {
 namespace {
 
-bool leaves_are_sound(const BvhNode& node, std::size_t blocks) {
+bool leaves_are_sound(const BvhNode& node, const FinishedObject& object) {
   for (uint slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
     if (bvh_leaf_begin(node.leaf_end, slot) > bvh_leaf_end(node.leaf_end, slot)) return false;
   }
   const std::uint32_t primitives = bvh_leaf_end(node.leaf_end, DAPPLE_BVH_WIDTH - 1);
-  return std::uint64_t{node.prim_base} + (primitives + 7u) / 8u <= blocks;
+  const std::size_t blocks =
+      node.prim_base & DAPPLE_SEGMENTS ? object.segments.size() : object.blocks.size();
+  return std::uint64_t{bvh_block_index(node.prim_base)} + (primitives + 7u) / 8u <= blocks;
 }
 
 std::uint32_t children_of(const BvhNode& node) {
@@ -36,7 +38,7 @@ bool nodes_are_sound(const FinishedObject& object) {
     const std::uint64_t first = node.child_base;
     const auto inner = static_cast<std::uint64_t>(std::popcount(node.inner_mask));
     if (inner > 0 && (first <= n || first + inner > needed.size())) return false;
-    if (!leaves_are_sound(node, object.blocks.size())) return false;
+    if (!leaves_are_sound(node, object)) return false;
     std::uint32_t deepest = 1;
     for (std::uint64_t c = 0; c < inner; ++c) deepest = std::max(deepest, needed[first + c]);
     const std::uint32_t children = children_of(node);
@@ -63,6 +65,13 @@ bool blocks_are_sound(const FinishedObject& object) {
       [](bool a, bool b) { return a && b; });
 }
 
+/// Radii and opacities that planes and codes of any value can be taken from.
+bool segments_are_sound(const FinishedObject& object) {
+  return std::all_of(object.segments.begin(), object.segments.end(), [](const SegmentBlock& block) {
+    return block.opacity >= 0.0f && block.opacity <= 1.0f && block.radius >= 0.0f;
+  });
+}
+
 bool textured_are_sound(const FinishedObject& object, const Scene& scene) {
   return std::all_of(
       object.textured.begin(), object.textured.end(), [&](const TexturedTriangle& triangle) {
@@ -77,7 +86,8 @@ bool textured_are_sound(const FinishedObject& object, const Scene& scene) {
 }  // namespace
 
 bool is_sound(const FinishedObject& object, const Scene& scene) {
-  return nodes_are_sound(object) && blocks_are_sound(object) && textured_are_sound(object, scene);
+  return nodes_are_sound(object) && blocks_are_sound(object) && segments_are_sound(object) &&
+         textured_are_sound(object, scene);
 }
 
 }  // namespace dapple

@@ -6,6 +6,8 @@
 
 #include "bvh/object_bvh.hpp"
 #include "bvh/quantize.hpp"
+#include "bvh/segment_block.hpp"
+#include "bvh/strand_coverage.hpp"
 #include "dapple/shared/opacity.h"
 
 namespace dapple {
@@ -28,16 +30,24 @@ struct Summary {
   SurfaceAreas areas;
 };
 
-/// A leaf's triangles and what adds up over them.
+/// Primitives that a leaf holds at most.
+constexpr std::size_t kMostInLeaf = 8;
+
+/// A leaf's primitives, as what they hide, and what adds up over them.
 struct Leaf {
-  std::array<CoveringTriangle, 8> storage;
-  std::size_t count = 0;
+  /// Triangles once for all axes; or along each the strips of segments, two triangles each.
+  std::array<CoveringTriangle, 3 * 2 * kMostInLeaf> storage;
+  std::size_t count = 0;  ///< primitives
+  std::size_t drawn = 0;  ///< triangles along an axis
+  bool facing = false;    ///< each axis has its own
   bool textured = false;
+  bool single_layer = false;
   NormalMoments normals;
   SurfaceAreas areas;
-  [[nodiscard]] std::span<const CoveringTriangle> triangles() const {
-    return {storage.data(), count};
+  [[nodiscard]] std::span<const CoveringTriangle> along(int axis) const {
+    return {storage.data() + (facing ? static_cast<std::size_t>(axis) * drawn : 0), drawn};
   }
+  [[nodiscard]] Covering covering() const { return {along(0), along(1), along(2)}; }
 };
 
 /// Mean over the triangle, seen along `axis`, of the squared distance from the box's centre in
@@ -63,7 +73,7 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
     const float face = face_area(box, axis);
     if (!(face > 0.0f)) continue;
     float hidden = 0, square = 0;
-    for (const CoveringTriangle& t : leaf.triangles()) {
+    for (const CoveringTriangle& t : leaf.along(axis)) {
       const float share = 0.5f * std::fabs(t.edge1.cross(t.edge2)[axis]) / face;
       hidden += t.opacity * share;
       square += t.opacity * t.opacity * share;
@@ -118,17 +128,17 @@ class Prefilter {
   /// Sets the leaf's opacity and puts it into its node's coverage; returns its normals.
   NormalMoments add_leaf(BvhNode& node, unsigned slot, const Box3f& box,
                          NodeCoverage& coverage) const {
-    const Leaf leaf = load_leaf(node, slot);
-    if (!leaf.textured && is_single_layer(leaf.triangles())) {
-      coverage.add_layer(leaf.triangles(), box, leaf.areas);
+    const Leaf leaf =
+        node.prim_base & DAPPLE_SEGMENTS ? load_strands(node, slot) : load_triangles(node, slot);
+    if (leaf.single_layer) {
+      coverage.add_layer(leaf.covering(), box, leaf.areas);
       set_child_opacity(node, slot, layer_opacity(leaf, box), box);
       return leaf.normals;
     }
     CoverageMap map;
-    cover(map, box, leaf.triangles(),
-          [&](const CoveringTriangle& t, float u, float v, float share) {
-            return mean_opacity(t, u, v, share);
-          });
+    cover(map, box, leaf.covering(), [&](const CoveringTriangle& t, float u, float v, float share) {
+      return mean_opacity(t, u, v, share);
+    });
     coverage.add(map, box, leaf.areas);
     NodeOpacity opacity = map_opacity(map, leaf.normals, box);
     opacity.triangles = leaf.count;
@@ -136,7 +146,29 @@ class Prefilter {
     return leaf.normals;
   }
 
-  Leaf load_leaf(const BvhNode& node, unsigned slot) const {
+  Leaf load_strands(const BvhNode& node, unsigned slot) const {
+    Leaf leaf;
+    std::array<StrandSegment, kMostInLeaf> segments;
+    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
+         i < bvh_leaf_end(node.leaf_end, slot); ++i) {
+      const std::uint32_t block = bvh_block_index(node.prim_base) + i / 8;
+      segments[leaf.count] = unpack_segment(object_.segments[block], i % 8);
+      add_surface(segments[leaf.count++], leaf.normals, leaf.areas);
+    }
+    const std::span all(segments.data(), leaf.count);
+    leaf.facing = true;
+    leaf.drawn = 2 * leaf.count;
+    auto to = leaf.storage.begin();
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const StrandSegment& segment : all) {
+        for (const CoveringTriangle& half : facing_strip(segment, axis)) *to++ = half;
+      }
+    }
+    leaf.single_layer = is_one_strand(all);
+    return leaf;
+  }
+
+  Leaf load_triangles(const BvhNode& node, unsigned slot) const {
     Leaf leaf;
     for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
          i < bvh_leaf_end(node.leaf_end, slot); ++i) {
@@ -156,6 +188,8 @@ class Prefilter {
       leaf.areas.add(area, opacity, triangle.closed);
       leaf.storage[leaf.count++] = triangle;
     }
+    leaf.drawn = leaf.count;
+    leaf.single_layer = !leaf.textured && is_single_layer(leaf.along(0));
     return leaf;
   }
 

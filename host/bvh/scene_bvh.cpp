@@ -66,7 +66,7 @@ NodeOpacity instance_opacity(const ObjectSummary& object, const M44f& to_world,
 void add_statistics(BvhStatistics& s, const std::vector<FinishedObject>& objects) {
   std::size_t largest = 0;
   for (const FinishedObject& object : objects) {
-    s.triangles += object.triangles;
+    (object.segments.empty() ? s.triangles : s.segments) += object.triangles;
     s.opaque += object.opaque;
     s.cut_out += object.cut_out;
     s.translucent += object.translucent;
@@ -176,13 +176,14 @@ SceneBvh build_bvh(const Scene& scene, const std::string& cache_folder) {
     if (object.box.isEmpty()) continue;
     placed.push_back(place(instance, object, offsets[instance.mesh].node));
     bvh.bounds.extendBy(placed.back().box);
-    bvh.statistics.instanced_triangles += object.triangles;
+    BvhStatistics& s = bvh.statistics;
+    (object.segments.empty() ? s.instanced_triangles : s.instanced_segments) += object.triangles;
     object_stack = std::max(object_stack, object.stack);
   }
   if (placed.empty()) {
-    throw Error(
-        ErrorKind::input,
-        fmt::format("{}: nothing to hit: every triangle is fully transparent", scene.source));
+    throw Error(ErrorKind::input,
+                fmt::format("{}: nothing to hit: every triangle and segment is fully transparent",
+                            scene.source));
   }
   bvh.statistics.instances = placed.size();
   const Instance& first = scene.instances.front();
@@ -197,8 +198,9 @@ SceneBvh build_bvh(const Scene& scene, const std::string& cache_folder) {
   }
   check_stack(top.stack + object_stack, scene.source);
   join(bvh, objects, offsets, std::move(top.nodes));
-  bvh.statistics.lane_use = static_cast<double>(bvh.statistics.triangles) /
-                            (8.0 * static_cast<double>(bvh.blocks.size()));
+  bvh.statistics.lane_use =
+      static_cast<double>(bvh.statistics.triangles + bvh.statistics.segments) /
+      (8.0 * static_cast<double>(bvh.blocks.size() + bvh.segments.size()));
   return bvh;
 }
 

@@ -74,6 +74,17 @@ std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::
   return std::nullopt;
 }
 
+float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment) {
+  const Material& material = scene.materials[mesh.materials[segment]];
+  if (material.alpha_mode == AlphaMode::opaque) return 1.0f;
+  float alpha = material.alpha;
+  if (material.uses_vertex_alpha && !mesh.vertex_alpha.empty()) {
+    const std::uint32_t* at = &mesh.indices[2 * std::size_t{segment}];
+    alpha *= 0.5f * (mesh.vertex_alpha[at[0]] + mesh.vertex_alpha[at[1]]);
+  }
+  return thresholded(alpha, cutoff_of(material));
+}
+
 TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
   const Material& material = scene.materials[mesh.materials[triangle]];
   TexturedCorners corners;

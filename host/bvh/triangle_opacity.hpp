@@ -16,6 +16,9 @@ namespace dapple {
 /// The triangle's opacity in [0,1] if it is the same all over, else nothing.
 std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
 
+/// Of a segment of a strand, [0,1]: its ends' mean alpha, by the material. No textures.
+float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment);
+
 /// The alpha from which on a masked material is opaque, or -1 where alpha is opacity.
 float cutoff_of(const Material& material);
 

@@ -35,6 +35,9 @@ struct WideTree {
   }
 };
 
+/// Blocks of eight that the primitives of a node's leaves take.
+inline std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
+
 /// Builds in O(n log n), in parallel, the same tree whatever the thread count. `boxes` is not
 /// empty and has finite boxes; it is reordered so that leaves, of at most `leaf_size`
 /// primitives, are ranges.

@@ -22,8 +22,9 @@ struct InfoArguments {
 
 nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   const BvhStatistics& s = bvh.statistics;
-  const auto per_triangle = [&](std::size_t bytes) {
-    return static_cast<double>(bytes) / static_cast<double>(std::max<std::size_t>(1, s.triangles));
+  const auto primitives = std::max<std::size_t>(1, s.triangles + s.segments);
+  const auto per_primitive = [&](std::size_t bytes) {
+    return static_cast<double>(bytes) / static_cast<double>(primitives);
   };
   std::size_t textures = 0;
   if (!bvh.textured.empty()) {
@@ -33,6 +34,7 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   const std::size_t nodes = bvh.nodes.size() * sizeof(BvhNode);
   const std::size_t triangles =
       bvh.blocks.size() * sizeof(TriangleBlock) + bvh.textured.size() * sizeof(TexturedTriangle);
+  const std::size_t segments = bvh.segments.size() * sizeof(SegmentBlock);
   const std::size_t instances = bvh.instances.size() * sizeof(InstanceRecord);
   nlohmann::ordered_json json;
   json["scene"] = scene.source;
@@ -41,6 +43,7 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
                        {"cut_out", s.cut_out},
                        {"translucent", s.translucent},
                        {"instanced", s.instanced_triangles}};
+  json["segments"] = {{"total", s.segments}, {"instanced", s.instanced_segments}};
   json["instances"] = s.instances;
   json["materials"] = nlohmann::ordered_json::array();
   for (const Material& material : scene.materials) json["materials"].push_back(material.name);
@@ -49,11 +52,16 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   json["bounds"] = {{"min", {bvh.bounds.min.x, bvh.bounds.min.y, bvh.bounds.min.z}},
                     {"max", {bvh.bounds.max.x, bvh.bounds.max.y, bvh.bounds.max.z}}};
   json["nodes"] = bvh.nodes.size();
-  json["bytes"] = {
-      {"nodes", nodes}, {"triangles", triangles}, {"textures", textures}, {"instances", instances}};
-  json["bytes_per_triangle"] = {{"nodes", per_triangle(nodes)},
-                                {"triangles", per_triangle(triangles)},
-                                {"all", per_triangle(nodes + triangles + textures + instances)}};
+  json["bytes"] = {{"nodes", nodes},
+                   {"triangles", triangles},
+                   {"segments", segments},
+                   {"textures", textures},
+                   {"instances", instances}};
+  // A segment counts as a triangle here.
+  json["bytes_per_triangle"] = {
+      {"nodes", per_primitive(nodes)},
+      {"triangles", per_primitive(triangles + segments)},
+      {"all", per_primitive(nodes + triangles + segments + textures + instances)}};
   json["seconds"] = {{"build", s.build_seconds}, {"prefilter", s.prefilter_seconds}};
   json["sah_node_visits"] = s.sah_cost;
   json["lane_use"] = s.lane_use;
@@ -70,6 +78,10 @@ std::string report_text(const nlohmann::ordered_json& r) {
       "instances\n",
       number("triangles", "total"), number("triangles", "opaque"), number("triangles", "cut_out"),
       number("triangles", "translucent"), number("triangles", "instanced"));
+  if (r["segments"]["total"] != 0) {
+    text += fmt::format("  segments    {:.0f} of strands, {:.0f} with instances\n",
+                        number("segments", "total"), number("segments", "instanced"));
+  }
   std::string materials;
   for (const auto& name : r["materials"])
     materials += (materials.empty() ? "" : ", ") + name.get<std::string>();
@@ -79,14 +91,16 @@ std::string report_text(const nlohmann::ordered_json& r) {
   text += fmt::format("  bounds      {} to {} m\n", r["bounds"]["min"].dump(),
                       r["bounds"]["max"].dump());
   text += fmt::format(
-      "  nodes       {}, SAH {:.1f} node visits a ray, {:.0f} % of triangle lanes used\n",
+      "  nodes       {}, SAH {:.1f} node visits a ray, {:.0f} % of block lanes used\n",
       r["nodes"].dump(), r["sah_node_visits"].get<double>(), 100 * r["lane_use"].get<double>());
-  text += fmt::format(
-      "  memory      nodes {}, triangles {}, textures {}, instances {}\n",
-      bytes_text(number("bytes", "nodes")), bytes_text(number("bytes", "triangles")),
-      bytes_text(number("bytes", "textures")), bytes_text(number("bytes", "instances")));
   text +=
-      fmt::format("  a triangle  {:.1f} bytes of nodes, {:.1f} of triangles, {:.1f} all in\n",
+      fmt::format("  memory      nodes {}, triangles {}, segments {}, textures {}, instances {}\n",
+                  bytes_text(number("bytes", "nodes")), bytes_text(number("bytes", "triangles")),
+                  bytes_text(number("bytes", "segments")), bytes_text(number("bytes", "textures")),
+                  bytes_text(number("bytes", "instances")));
+  text +=
+      fmt::format("  {}  {:.1f} bytes of nodes, {:.1f} of blocks, {:.1f} all in\n",
+                  r["segments"]["total"] == 0 ? "a triangle" : "each of all",
                   number("bytes_per_triangle", "nodes"), number("bytes_per_triangle", "triangles"),
                   number("bytes_per_triangle", "all"));
   text += fmt::format("  seconds     build {:.3f}, prefilter {:.3f}\n", number("seconds", "build"),

@@ -71,6 +71,7 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
       {"camera", s.camera.tests}, {"ao", s.ao.tests}, {"light", s.light.tests}};
   if (!s.rmse.empty()) json["estimated_rmse"] = s.rmse;
   json["triangles"] = s.triangles;
+  json["segments"] = s.segments;
   json["nodes"] = s.nodes;
   json["bvh"] = bvh_source(s);
   if (s.cache.used) {
@@ -78,9 +79,10 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
                      {"objects_written", s.cache.objects_written},
                      {"seconds_saved", s.cache.seconds_saved}};
   }
-  json["bytes"] = {{"nodes", s.bytes.nodes},       {"triangles", s.bytes.triangles},
-                   {"textures", s.bytes.textures}, {"instances", s.bytes.instances},
-                   {"film", s.bytes.film},         {"queues", s.bytes.queues}};
+  json["bytes"] = {{"nodes", s.bytes.nodes},         {"triangles", s.bytes.triangles},
+                   {"segments", s.bytes.segments},   {"textures", s.bytes.textures},
+                   {"instances", s.bytes.instances}, {"film", s.bytes.film},
+                   {"queues", s.bytes.queues}};
   json["device"] = s.device;
   json["estimator"] = s.estimator;
   json["notes"] = s.notes;
@@ -88,8 +90,9 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
 }
 
 std::string statistics_text(const RenderStatistics& s) {
-  std::string text = fmt::format("{} on {}: {} triangles, {} nodes\n", s.estimator, s.device,
-                                 s.triangles, s.nodes);
+  const std::string segments = s.segments ? fmt::format("{} segments, ", s.segments) : "";
+  std::string text = fmt::format("{} on {}: {} triangles, {}{} nodes\n", s.estimator, s.device,
+                                 s.triangles, segments, s.nodes);
   text += rays_line("camera", s.rays.camera, pass_seconds(s, "closest hit"), s.camera.visits,
                     s.camera.tests);
   text += rays_line("ao", s.rays.ao, pass_seconds(s, "ao occlusion"), s.ao.visits, s.ao.tests);
@@ -109,8 +112,9 @@ std::string statistics_text(const RenderStatistics& s) {
   text += fmt::format("  device seconds: {}\n", passes);
   const auto& b = s.bytes;
   text += fmt::format(
-      "  memory: nodes {}, triangles {}, textures {}, instances {}, film {}, queues {}\n",
+      "  memory: nodes {}, triangles {}, {}textures {}, instances {}, film {}, queues {}\n",
       bytes_text(static_cast<double>(b.nodes)), bytes_text(static_cast<double>(b.triangles)),
+      s.segments ? fmt::format("segments {}, ", bytes_text(static_cast<double>(b.segments))) : "",
       bytes_text(static_cast<double>(b.textures)), bytes_text(static_cast<double>(b.instances)),
       bytes_text(static_cast<double>(b.film)), bytes_text(static_cast<double>(b.queues)));
   return text;

@@ -17,6 +17,7 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
   for (const Instance& instance : scene.instances) {
     if (instance.light != light) continue;
     const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.has_strands()) continue;
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       const auto corner = [&](int c) {
         return mesh.positions[mesh.indices[3 * t + c]] * instance.to_world;

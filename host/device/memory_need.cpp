@@ -9,12 +9,15 @@
 namespace dapple {
 
 MemoryNeed least_need(const Scene& scene) {
-  std::size_t triangles = 0, texels = 0;
-  for (const Mesh& mesh : scene.meshes) triangles += mesh.primitive_count();
+  std::size_t triangles = 0, segments = 0, texels = 0;
+  for (const Mesh& mesh : scene.meshes)
+    (mesh.has_strands() ? segments : triangles) += mesh.primitive_count();
   for (const Texture& texture : scene.textures) texels += texture.alpha.size();
   MemoryNeed need;
-  need.largest_buffer = (triangles + 7) / 8 * sizeof(TriangleBlock);
-  need.total = need.largest_buffer + texels + scene.instances.size() * sizeof(InstanceRecord);
+  const std::size_t blocks = (triangles + 7) / 8 * sizeof(TriangleBlock);
+  const std::size_t segment_blocks = (segments + 7) / 8 * sizeof(SegmentBlock);
+  need.largest_buffer = std::max(blocks, segment_blocks);
+  need.total = blocks + segment_blocks + texels + scene.instances.size() * sizeof(InstanceRecord);
   return need;
 }
 

@@ -53,14 +53,16 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   DeviceContext& context = device.context();
   const auto bytes = [](const auto& data) { return data.size() * sizeof(data[0]); };
   DeviceScene result;
-  result.bytes = bytes(bvh.nodes) + bytes(bvh.blocks) + bytes(bvh.textured) + bytes(bvh.instances) +
-                 bytes(buffers->material_records) + bytes(buffers->texel_data) +
-                 bytes(buffers->light_records) + bytes(buffers->emitter_triangles) +
-                 bytes(buffers->environment_data);
-  check_memory(device.info(), {result.bytes, std::max(bytes(bvh.nodes), bytes(bvh.blocks))},
+  result.bytes = bytes(bvh.nodes) + bytes(bvh.blocks) + bytes(bvh.segments) + bytes(bvh.textured) +
+                 bytes(bvh.instances) + bytes(buffers->material_records) +
+                 bytes(buffers->texel_data) + bytes(buffers->light_records) +
+                 bytes(buffers->emitter_triangles) + bytes(buffers->environment_data);
+  check_memory(device.info(),
+               {result.bytes, std::max({bytes(bvh.nodes), bytes(bvh.blocks), bytes(bvh.segments)})},
                "needs");
   buffers->nodes = share(context, bvh.nodes);
   buffers->blocks = share(context, bvh.blocks);
+  buffers->segments = share(context, bvh.segments);
   buffers->textured = share(context, bvh.textured);
   buffers->instances = share(context, bvh.instances);
   buffers->materials = share(context, buffers->material_records);

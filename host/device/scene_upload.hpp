@@ -14,7 +14,7 @@ struct DeviceBuffers {
   DeviceBuffers(const DeviceBuffers&) = delete;
   DeviceBuffers& operator=(const DeviceBuffers&) = delete;
   Device device;
-  Buffer nodes, blocks, textured, materials, texels, instances;
+  Buffer nodes, blocks, segments, textured, materials, texels, instances;
   Buffer lights, emitters, environments;
   SceneParams params{};
   // What `share` may point into where memory is shared.

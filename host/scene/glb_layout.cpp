@@ -162,6 +162,11 @@ class Describer {
   void add_mesh(const Mesh& mesh) {
     mesh_numbers_.push_back(-1);
     if (mesh.primitive_count() == 0) return;
+    if (mesh.has_strands()) {
+      throw Error(ErrorKind::usage,
+                  fmt::format("\"{:.100}\": glTF has no strands; render {} without writing it",
+                              mesh.name, scene_.source));
+    }
     Json attributes = {{"POSITION", add_positions(mesh)}};
     Json with_alpha = attributes;
     if (!mesh.vertex_alpha.empty()) with_alpha["COLOR_0"] = add_colours(mesh.vertex_alpha);

@@ -1,5 +1,5 @@
-// Puts everything that is placed once into one world-space mesh and drops what no ray could
-// hit. In: a scene as it was read; out: the same triangles, fewer meshes, warnings.
+// Puts all triangles that are placed once into one world-space mesh, all strands into another, and
+// drops what no ray could hit. In: a scene as it was read; out: the same, fewer meshes, warnings.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kTinyTriangles = 256;
 constexpr std::size_t kMaxTinyPlaced = 4'000'000;  // triangles, all copies of tiny meshes
+constexpr float kEqualScales = 1e-4f;              // of squares
 constexpr std::size_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
 
 bool is_finite(const M44f& matrix) {
@@ -44,9 +45,23 @@ void drop_singular_instances(Scene& scene) {
   }
 }
 
+// By what the matrix scales lengths, or 0 where that depends on their direction.
+float uniform_scale(const M44f& matrix) {
+  const V3f rows[3] = {{matrix[0][0], matrix[0][1], matrix[0][2]},
+                       {matrix[1][0], matrix[1][1], matrix[1][2]},
+                       {matrix[2][0], matrix[2][1], matrix[2][2]}};
+  const float square = rows[0].length2();
+  for (int i = 0; i < 3; ++i) {
+    const bool as_long = std::fabs(rows[i].length2() - square) <= kEqualScales * square;
+    if (!as_long || std::fabs(rows[i].dot(rows[(i + 1) % 3])) > kEqualScales * square) return 0;
+  }
+  return std::sqrt(square);
+}
+
 struct Uses {
   std::size_t as_geometry = 0;
   std::size_t as_light = 0;
+  bool fixed = false;  // strands that a placement would make other than round
 };
 
 std::vector<Uses> count_uses(const Scene& scene) {
@@ -54,6 +69,8 @@ std::vector<Uses> count_uses(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     Uses& of_mesh = uses[instance.mesh];
     ++(instance.light < 0 ? of_mesh.as_geometry : of_mesh.as_light);
+    of_mesh.fixed |=
+        scene.meshes[instance.mesh].has_strands() && uniform_scale(instance.to_world) == 0;
   }
   return uses;
 }
@@ -65,6 +82,7 @@ std::vector<bool> choose_merged(const Scene& scene, const std::vector<Uses>& use
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const std::size_t triangles = scene.meshes[m].primitive_count();
     const std::size_t placed = triangles * uses[m].as_geometry;
+    if (uses[m].fixed) continue;
     merged[m] = uses[m].as_geometry == 1;
     if (merged[m] || triangles > kTinyTriangles || tiny_placed + placed > kMaxTinyPlaced) continue;
     merged[m] = uses[m].as_geometry > 1;
@@ -85,7 +103,7 @@ std::vector<Instance> take_merged_instances(Scene& scene, const std::vector<bool
 
 struct Totals {
   std::size_t vertices = 0, triangles = 0;
-  bool uvs = false, vertex_alpha = false;
+  bool uvs = false, vertex_alpha = false, radii = false;
 };
 
 Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
@@ -96,6 +114,7 @@ Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
     totals.triangles += mesh.primitive_count();
     totals.uvs |= !mesh.uvs.empty();
     totals.vertex_alpha |= !mesh.vertex_alpha.empty();
+    totals.radii |= mesh.has_strands();
   }
   if (totals.vertices > kMaxVertices || totals.triangles > kMaxVertices / 3) {
     throw Error(ErrorKind::input,
@@ -105,10 +124,14 @@ Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
   return totals;
 }
 
-void transform_positions(std::vector<V3f>& positions, std::size_t first, const M44f& to_world) {
+// Vertices from `first` on.
+void transform_vertices(Mesh& mesh, std::size_t first, const M44f& to_world) {
   if (to_world == M44f{}) return;
-  tbb::parallel_for(first, positions.size(),
-                    [&](std::size_t i) { positions[i] = positions[i] * to_world; });
+  const float scale = mesh.has_strands() ? uniform_scale(to_world) : 1;
+  tbb::parallel_for(first, mesh.positions.size(), [&](std::size_t i) {
+    mesh.positions[i] = mesh.positions[i] * to_world;
+    if (mesh.has_strands()) mesh.radii[i] *= scale;
+  });
 }
 
 // A mirroring matrix turns windings over. They are left so: every surface occludes from both
@@ -116,7 +139,10 @@ void transform_positions(std::vector<V3f>& positions, std::size_t first, const M
 void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const Totals& totals) {
   const std::size_t first = merged.positions.size();
   merged.positions.insert(merged.positions.end(), mesh.positions.begin(), mesh.positions.end());
-  transform_positions(merged.positions, first, to_world);
+  if (totals.radii) {
+    merged.radii.insert(merged.radii.end(), mesh.radii.begin(), mesh.radii.end());
+  }
+  transform_vertices(merged, first, to_world);
   const auto offset = static_cast<std::uint32_t>(first);
   for (const std::uint32_t index : mesh.indices) merged.indices.push_back(index + offset);
   merged.materials.insert(merged.materials.end(), mesh.materials.begin(), mesh.materials.end());
@@ -148,24 +174,45 @@ Mesh build_merged(Scene& scene, const std::vector<Instance>& instances,
     const bool last_use = --left[instance.mesh] == 0;
     if (last_use && instances.size() == 1) {
       merged = std::move(mesh);
-      transform_positions(merged.positions, 0, instance.to_world);
+      transform_vertices(merged, 0, instance.to_world);
       return merged;
     }
     append_placed(merged, mesh, instance.to_world, totals);
     if (last_use) mesh = Mesh{};
   }
-  merged.name = "merged";
+  merged.name = totals.radii ? "merged strands" : "merged";
   return merged;
 }
 
 void merge_chosen(Scene& scene) {
   const std::vector<Uses> uses = count_uses(scene);
-  const std::vector<Instance> taken = take_merged_instances(scene, choose_merged(scene, uses));
-  if (taken.empty()) return;
-  Instance instance;
-  instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
-  scene.meshes.push_back(build_merged(scene, taken, uses));
-  scene.instances.insert(scene.instances.begin(), instance);
+  std::vector<Instance> taken = take_merged_instances(scene, choose_merged(scene, uses));
+  const auto strands = std::stable_partition(taken.begin(), taken.end(), [&](const Instance& i) {
+    return !scene.meshes[i.mesh].has_strands();
+  });
+  for (const std::vector<Instance>& of_a_kind : {std::vector<Instance>(strands, taken.end()),
+                                                 std::vector<Instance>(taken.begin(), strands)}) {
+    if (of_a_kind.empty()) continue;
+    Instance instance;
+    instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(build_merged(scene, of_a_kind, uses));
+    scene.instances.insert(scene.instances.begin(), instance);
+  }
+}
+
+// Their lights have no triangle then, and are dropped.
+void put_out_strands(Scene& scene) {
+  std::size_t count = 0;
+  for (Instance& instance : scene.instances) {
+    if (instance.light < 0 || !scene.meshes[instance.mesh].has_strands()) continue;
+    instance.light = -1;
+    ++count;
+  }
+  if (count > 0) {
+    scene.warnings.push_back(
+        fmt::format("{} instance{} of strands should emit light, which only triangles do", count,
+                    count == 1 ? "" : "s"));
+  }
 }
 
 /// What was dropped, for the message that nothing is left.
@@ -181,13 +228,14 @@ std::string reasons(const Scene& scene) {
 
 void merge_single_instances(Scene& scene) {
   drop_singular_instances(scene);
+  put_out_strands(scene);
   merge_chosen(scene);
   drop_unhittable_triangles(scene);
   drop_unused(scene);
   if (scene.instances.empty()) {
     throw Error(ErrorKind::input,
-                fmt::format("{}: there is nothing to render: no triangle is left{}", scene.source,
-                            reasons(scene)));
+                fmt::format("{}: there is nothing to render: no triangle or strand is left{}",
+                            scene.source, reasons(scene)));
   }
   check_numeric_range(scene);
 }

@@ -1,18 +1,33 @@
 // World-space bounds of a scene. In: meshes and instances; out: a box. Only vertices that a
-// triangle uses count.
+// triangle or a segment of a strand uses count.
 #include <Imath/ImathBoxAlgo.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "dapple/scene.hpp"
 
 namespace dapple {
 namespace {
 
+/// What strands reach at most beyond their vertices, once placed.
+float strand_reach(const Mesh& mesh, const M44f& transform) {
+  if (!mesh.has_strands()) return 0;
+  float radius = 0;
+  for (const std::uint32_t index : mesh.indices) radius = std::max(radius, mesh.radii[index]);
+  float square = 0;
+  for (int row = 0; row < 3; ++row) {
+    square += V3f(transform[row][0], transform[row][1], transform[row][2]).length2();
+  }
+  return radius * std::sqrt(square / 3);
+}
+
 // Minima and maxima come out the same in any order, so threads may share the work.
 Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
   using Range = tbb::blocked_range<std::size_t>;
-  return tbb::parallel_reduce(
+  Box3f bounds = tbb::parallel_reduce(
       Range(0, mesh.indices.size(), 16384), Box3f{},
       [&](const Range& range, Box3f box) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
@@ -24,6 +39,11 @@ Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
         a.extendBy(b);
         return a;
       });
+  if (bounds.isEmpty()) return bounds;
+  const V3f reach(strand_reach(mesh, transform));
+  bounds.min -= reach;
+  bounds.max += reach;
+  return bounds;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Filters triangles and renumbers what refers to them. Numbers change only where something
-// was dropped.
+// Filters triangles and segments of strands and renumbers what refers to them. Numbers change only
+// where something was dropped.
 #include "scene/triangle_cleanup.hpp"
 
 #include <fmt/format.h>
@@ -7,7 +7,9 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace dapple {
 namespace {
@@ -17,9 +19,23 @@ constexpr std::uint32_t kUnused = 0xffffffffu;
 // a triangle of a nanometre's sides is larger.
 constexpr double kLeastDoubleArea = 1e-19;
 
-enum class Fault : std::uint8_t { none, not_finite, no_area };
+// Of segments, in metres.
+constexpr double kLeastLength = 1e-15;
+
+enum class Fault : std::uint8_t { none, not_finite, no_area, no_length, no_radius };
+
+Fault fault_of_segment(const Mesh& mesh, std::size_t segment) {
+  const std::uint32_t begin = mesh.indices[2 * segment], end = mesh.indices[2 * segment + 1];
+  const Imath::V3d a(mesh.positions[begin]), b(mesh.positions[end]), sum = a + b;
+  const double radii = double{mesh.radii[begin]} + mesh.radii[end];
+  if (!std::isfinite(sum.x + sum.y + sum.z + radii)) return Fault::not_finite;
+  // Strands may come to a point.
+  if (mesh.radii[begin] < 0 || mesh.radii[end] < 0 || radii <= 0) return Fault::no_radius;
+  return (b - a).length() > kLeastLength ? Fault::none : Fault::no_length;
+}
 
 Fault fault_of(const Mesh& mesh, std::size_t triangle) {
+  if (mesh.has_strands()) return fault_of_segment(mesh, triangle);
   Imath::V3d corner[3];
   for (std::size_t k = 0; k < 3; ++k) {
     corner[k] = Imath::V3d(mesh.positions[mesh.indices[3 * triangle + k]]);
@@ -32,15 +48,17 @@ Fault fault_of(const Mesh& mesh, std::size_t triangle) {
 }
 
 struct Faults {
-  std::size_t not_finite = 0;
-  std::size_t no_area = 0;
+  std::array<std::size_t, 5> count{};  // by Fault
 
+  [[nodiscard]] std::size_t of(Fault fault) const { return count[static_cast<std::size_t>(fault)]; }
+  void add(Fault fault) { ++count[static_cast<std::size_t>(fault)]; }
   Faults& operator+=(const Faults& other) {
-    not_finite += other.not_finite;
-    no_area += other.no_area;
+    for (std::size_t i = 0; i < count.size(); ++i) count[i] += other.count[i];
     return *this;
   }
-  [[nodiscard]] bool any() const { return not_finite + no_area > 0; }
+  [[nodiscard]] bool any() const {
+    return std::accumulate(count.begin() + 1, count.end(), std::size_t{0}) > 0;
+  }
 };
 
 Faults count_faults(const Mesh& mesh) {
@@ -49,23 +67,34 @@ Faults count_faults(const Mesh& mesh) {
       Range(0, mesh.primitive_count(), 8192), Faults{},
       [&](const Range& range, Faults faults) {
         for (std::size_t t = range.begin(); t < range.end(); ++t) {
-          const Fault fault = fault_of(mesh, t);
-          faults.not_finite += fault == Fault::not_finite;
-          faults.no_area += fault == Fault::no_area;
+          faults.add(fault_of(mesh, t));
         }
         return faults;
       },
       [](Faults a, const Faults& b) { return a += b; });
 }
 
-void keep_sound_triangles(Mesh& mesh) {
+// A strand goes on across a segment without length: both its ends become one vertex.
+void join_ends(Mesh& mesh) {
+  std::vector<std::uint32_t> same(mesh.positions.size());
+  std::iota(same.begin(), same.end(), 0u);
+  for (std::size_t s = 0; s < mesh.primitive_count(); ++s) {
+    if (fault_of(mesh, s) != Fault::no_length) continue;
+    same[mesh.indices[2 * s + 1]] = same[mesh.indices[2 * s]];
+  }
+  for (std::uint32_t& index : mesh.indices) index = same[index];
+}
+
+void keep_sound_primitives(Mesh& mesh) {
+  if (mesh.has_strands()) join_ends(mesh);
+  const std::size_t corners = mesh.has_strands() ? 2 : 3;
   std::size_t kept = 0;
   for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
     if (fault_of(mesh, t) != Fault::none) continue;
-    for (std::size_t k = 0; k < 3; ++k) mesh.indices[3 * kept + k] = mesh.indices[3 * t + k];
+    std::copy_n(&mesh.indices[corners * t], corners, &mesh.indices[corners * kept]);
     mesh.materials[kept++] = mesh.materials[t];
   }
-  mesh.indices.resize(3 * kept);
+  mesh.indices.resize(corners * kept);
   mesh.materials.resize(kept);
 }
 
@@ -89,14 +118,15 @@ void keep_used_vertices(Mesh& mesh) {
   }
   for (std::uint32_t& index : mesh.indices) index = new_numbers[index];
   keep_at(mesh.positions, new_numbers, kept);
+  keep_at(mesh.radii, new_numbers, kept);
   keep_at(mesh.uvs, new_numbers, kept);
   keep_at(mesh.vertex_alpha, new_numbers, kept);
 }
 
-void warn_dropped(Scene& scene, std::size_t count, const char* what) {
+void warn_dropped(Scene& scene, std::size_t count, const char* primitive, const char* what) {
   if (count == 0) return;
   scene.warnings.push_back(
-      fmt::format("dropped {} triangle{} {}", count, count == 1 ? "" : "s", what));
+      fmt::format("dropped {} {}{} {}", count, primitive, count == 1 ? "" : "s", what));
 }
 
 std::vector<bool> find_placed(const Scene& scene) {
@@ -143,17 +173,21 @@ void drop_dark_mesh_lights(Scene& scene) {
 
 void drop_unhittable_triangles(Scene& scene) {
   const std::vector<bool> placed = find_placed(scene);
-  Faults total;
+  Faults triangles, segments;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (!placed[m]) continue;
     const Faults faults = count_faults(scene.meshes[m]);
     if (!faults.any()) continue;
-    keep_sound_triangles(scene.meshes[m]);
+    (scene.meshes[m].has_strands() ? segments : triangles) += faults;
+    keep_sound_primitives(scene.meshes[m]);
     keep_used_vertices(scene.meshes[m]);
-    total += faults;
   }
-  warn_dropped(scene, total.not_finite, "with non-finite vertices");
-  warn_dropped(scene, total.no_area, "without an area");
+  warn_dropped(scene, triangles.of(Fault::not_finite), "triangle", "with non-finite vertices");
+  warn_dropped(scene, triangles.of(Fault::no_area), "triangle", "without an area");
+  constexpr const char* kSegment = "segment";
+  warn_dropped(scene, segments.of(Fault::not_finite), kSegment, "with non-finite ends or radii");
+  warn_dropped(scene, segments.of(Fault::no_radius), kSegment, "without a radius");
+  warn_dropped(scene, segments.of(Fault::no_length), kSegment, "without a length");
 }
 
 void drop_unused(Scene& scene) {

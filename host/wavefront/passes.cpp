@@ -84,8 +84,8 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   CameraParams camera = params;
   camera.scene = scene.params;
   context.launch(kCameraHits, "camera", (beams_of(samples) + kBeamsPerItem - 1) / kBeamsPerItem,
-                 {scene.nodes, scene.blocks, scene.textured, scene.materials, scene.texels,
-                  scene.instances, queues.work, queues.points, queues.beams, camera},
+                 {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials,
+                  scene.texels, scene.instances, queues.work, queues.points, queues.beams, camera},
                  kBeamGroup);
 }
 
@@ -95,8 +95,8 @@ void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const 
   params.scene = scene.params;
   params.ray_count = static_cast<uint>(rays);
   context.launch(kClosestHit, "closest hit", rays,
-                 {scene.nodes, scene.blocks, scene.textured, scene.materials, scene.texels,
-                  scene.instances, queues.rays, queues.points, params});
+                 {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials,
+                  scene.texels, scene.instances, queues.rays, queues.points, params});
 }
 
 std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples) {
@@ -136,8 +136,8 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
     group = with == Company::point ? kPacketGroup : 1;
   }
   context.launch(occlusion_kernel(estimator, with), label, items,
-                 {scene.nodes, scene.blocks, scene.textured, scene.materials, scene.texels,
-                  scene.instances, queues.rays, queues.occlusions, launched},
+                 {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials,
+                  scene.texels, scene.instances, queues.rays, queues.occlusions, launched},
                  group);
 }
 

@@ -77,9 +77,11 @@ void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBu
   s.seconds.build = bvh.statistics.build_seconds;
   s.seconds.prefilter = bvh.statistics.prefilter_seconds;
   s.triangles = bvh.statistics.triangles;
+  s.segments = bvh.statistics.segments;
   s.nodes = bvh.nodes.size();
   s.bytes.nodes = buffers.nodes.bytes();
   s.bytes.triangles = buffers.blocks.bytes() + buffers.textured.bytes();
+  s.bytes.segments = buffers.segments.bytes();
   s.bytes.textures = buffers.texels.bytes() + buffers.materials.bytes();
   s.bytes.instances = buffers.instances.bytes();
 }

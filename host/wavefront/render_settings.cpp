@@ -32,6 +32,7 @@ std::string scene_checksum(const SceneBvh& bvh, const DeviceBuffers& scene) {
   ChecksumStream stream;
   stream.add_range(bvh.nodes);
   stream.add_range(bvh.blocks);
+  stream.add_range(bvh.segments);
   stream.add_range(bvh.textured);
   stream.add_range(bvh.instances);
   stream.add_range(scene.material_records);

@@ -18,10 +18,11 @@ struct BvhStatistics {
   double build_seconds = 0;                              ///< SAH build, collapse, quantization
   double prefilter_seconds = 0;                          ///< directional opacity
   std::size_t triangles = 0;                             ///< distinct, before instancing
-  std::size_t opaque = 0, cut_out = 0, translucent = 0;  ///< of `triangles`
-  std::size_t instanced_triangles = 0;
+  std::size_t segments = 0;                              ///< of strands, likewise
+  std::size_t opaque = 0, cut_out = 0, translucent = 0;  ///< of both
+  std::size_t instanced_triangles = 0, instanced_segments = 0;
   std::size_t instances = 0;
-  double lane_use = 0;  ///< used lanes of all triangle blocks, [0,1]
+  double lane_use = 0;  ///< used lanes of all blocks, [0,1]
   double sah_cost = 0;  ///< expected node visits a ray through the largest object's root
   float root_opacity[3] = {0, 0, 0};  ///< of the whole scene's box, along x, y, z
   /// Of the cache of trees. Small objects are built anew without it and count among neither.
@@ -36,6 +37,7 @@ struct BvhStatistics {
 struct SceneBvh {
   ConstArray<BvhNode> nodes;  ///< all objects', then the top level's
   ConstArray<TriangleBlock> blocks;
+  ConstArray<SegmentBlock> segments;
   ConstArray<TexturedTriangle> textured;
   std::vector<InstanceRecord> instances;  ///< in the order of the top level's leaves
   std::uint32_t root = 0;                 ///< node to start from

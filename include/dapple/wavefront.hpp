@@ -31,7 +31,7 @@ struct RenderStatistics {
   /// With a target: estimated root mean square of the pixels' errors, by layer ("ao",
   /// "light.NAME"); of lights relative to their largest unoccluded irradiance.
   std::map<std::string, double> rmse;
-  std::size_t triangles = 0, nodes = 0;
+  std::size_t triangles = 0, segments = 0, nodes = 0;
   /// Of the cache of BVHs. Small objects are always built and count among neither.
   struct {
     bool used = false;
@@ -39,7 +39,8 @@ struct RenderStatistics {
     double seconds_saved = 0;  ///< building what was read once took so much longer than reading it
   } cache;
   struct {
-    std::size_t nodes = 0, triangles = 0, textures = 0, instances = 0, film = 0, queues = 0;
+    std::size_t nodes = 0, triangles = 0, segments = 0, textures = 0, instances = 0, film = 0,
+                queues = 0;
   } bytes;  ///< device memory by part
   std::string device;
   std::string estimator;

@@ -12,6 +12,13 @@
   STRUCT(TriangleBlock)                                                                      \
   MEMBER(TriangleBlock, vertex) MEMBER(TriangleBlock, edge1) MEMBER(TriangleBlock, edge2)    \
   MEMBER(TriangleBlock, opacity)                                                             \
+  STRUCT(SegmentBlock)                                                                       \
+  MEMBER(SegmentBlock, origin) MEMBER(SegmentBlock, exponent)                                \
+  MEMBER(SegmentBlock, begin_caps) MEMBER(SegmentBlock, end_caps)                            \
+  MEMBER(SegmentBlock, spare) MEMBER(SegmentBlock, radius) MEMBER(SegmentBlock, opacity)     \
+  MEMBER(SegmentBlock, begin) MEMBER(SegmentBlock, end) MEMBER(SegmentBlock, begin_plane)    \
+  MEMBER(SegmentBlock, end_plane) MEMBER(SegmentBlock, begin_radius)                         \
+  MEMBER(SegmentBlock, end_radius) MEMBER(SegmentBlock, opacity_code)                        \
   STRUCT(TexturedTriangle)                                                                   \
   MEMBER(TexturedTriangle, corner)                                                           \
   STRUCT(TextureRecord)                                                                      \

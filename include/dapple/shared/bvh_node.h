@@ -1,5 +1,5 @@
 /* The 8-wide BVH node, two cache lines, and how its quantized boxes are decoded. Object
-   BVHs (leaves: triangles) and the top-level BVH (leaves: instances) use the same node. */
+   BVHs (leaves: triangles, or segments of strands) and the top-level BVH (leaves: instances) use the same node. */
 #ifndef DAPPLE_SHARED_BVH_NODE_H
 #define DAPPLE_SHARED_BVH_NODE_H
 
@@ -23,13 +23,19 @@ typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   uchar exponent[3];     /* biased by 127, as in a float: scale = 2^(exponent - 127) */
   uchar inner_mask;      /* bit c: child c is a node */
   uint child_base;       /* index of the first inner child's node */
-  uint prim_base;        /* first triangle block (objects) or first instance (top level) */
+  uint prim_base;        /* first block, see below (objects), or first instance (top level) */
   uchar lower[3][8];
   uchar upper[3][8];
   uchar depth[3][8];       /* optical depth of child c's quantized box along each axis */
   uchar leaf_end[8];       /* bits 0 to 5: where its primitives end; 6 and 7: concentration */
   schar correlation[3][8]; /* of its normals' components xy, yz, zx; codes: opacity.h */
 } BvhNode;
+
+/* A node's prim_base with this bit counts segment blocks, all of an object's nodes having it, else
+   triangle blocks. So it does in a block's index, and in the number of a segment that was hit. */
+#define DAPPLE_SEGMENTS 0x80000000u
+
+DAPPLE_FUNCTION uint bvh_block_index(uint block) { return block & ~DAPPLE_SEGMENTS; }
 
 DAPPLE_FUNCTION float bvh_scale(uchar exponent) {
   return dapple_bits_to_float((uint)exponent << 23);

@@ -1,9 +1,10 @@
-/* What the leaves and the top level point to: triangle blocks, opacity textures, materials of
-   textured triangles, instances. */
+/* What the leaves and the top level point to: triangle blocks (segments of strands:
+   segment_block.h), opacity textures, materials of textured triangles, instances. */
 #ifndef DAPPLE_SHARED_GEOMETRY_H
 #define DAPPLE_SHARED_GEOMETRY_H
 
 #include "language.h"
+#include "segment_block.h"
 #include "textured_triangle.h"
 
 #ifndef __OPENCL_VERSION__

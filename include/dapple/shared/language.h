@@ -21,6 +21,7 @@ typedef char schar; /* signed in OpenCL C */
 namespace dapple {
 using schar = std::int8_t;
 using uchar = std::uint8_t;
+using ushort = std::uint16_t;
 using uint = std::uint32_t;
 }  // namespace dapple
 #define DAPPLE_GLOBAL
