@@ -66,14 +66,6 @@ std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, Obje
   return opacities;
 }
 
-Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
-  Box3f box;
-  for (int corner = 0; corner < 3; ++corner) {
-    box.extendBy(mesh.positions[mesh.indices[3 * triangle + corner]]);
-  }
-  return box;
-}
-
 /// Of the triangles that can be seen, in their order. Fills `boxes`, one for each.
 void fill_boxes(const Mesh& mesh, const std::vector<float>& opacities,
                 std::span<PrimitiveBox> boxes) {
@@ -92,6 +84,63 @@ void fill_boxes(const Mesh& mesh, const std::vector<float>& opacities,
   });
 }
 
+std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
+
+std::size_t count_blocks(const WideTree& tree) {
+  std::size_t blocks = 0;
+  for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
+  return blocks;
+}
+
+/// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
+void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
+                    const std::vector<float>& opacities, const std::vector<bool>& closed,
+                    bool keep_triangles) {
+  ObjectBvh& object = built.object;
+  const WideTree& wide = built.tree;
+  std::uint32_t blocks = 0;
+  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
+    object.nodes[n].prim_base = blocks;
+    blocks += blocks_of(wide.nodes[n]);
+  }
+  if (!closed.empty()) built.closed.assign(blocks, 0);
+  if (keep_triangles) built.triangles.assign(8 * std::size_t{blocks}, 0);
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
+        for (std::size_t n = range.begin(); n < range.end(); ++n) {
+          std::uint32_t next = 0;
+          for (const WideChild& child : wide.children_of(wide.nodes[n])) {
+            for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
+              const std::uint32_t triangle = boxes[child.first + i].primitive;
+              const std::uint32_t block = object.nodes[n].prim_base + next / 8;
+              set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
+              if (keep_triangles) built.triangles[8 * std::size_t{block} + next % 8] = triangle;
+              if (!closed.empty() && closed[triangle]) {
+                built.closed[block] |= static_cast<std::uint8_t>(1u << next % 8);
+              }
+            }
+          }
+        }
+      });
+}
+
+/// Expected node visits of a random ray through the root's box, by surface areas.
+double expected_visits(const WideTree& tree) {
+  double sum = 0;
+  for (const WideNode& node : tree.nodes) sum += half_area(node.box);
+  return dapple::expected_visits(sum, tree.nodes[0].box);
+}
+
+}  // namespace
+
+Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
+  Box3f box;
+  for (int corner = 0; corner < 3; ++corner) {
+    box.extendBy(mesh.positions[mesh.indices[3 * triangle + corner]]);
+  }
+  return box;
+}
+
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
               float opacity) {
   const std::uint32_t* index = &mesh.indices[3 * std::size_t{triangle}];
@@ -105,53 +154,10 @@ void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32
   block.opacity[lane] = opacity;
 }
 
-std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
-
-std::size_t count_blocks(const WideTree& tree) {
-  std::size_t blocks = 0;
-  for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
-  return blocks;
+double expected_visits(double half_areas, const Box3f& root) {
+  const double area = half_area(root);
+  return area > 0 ? half_areas / area : 1;
 }
-
-/// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
-void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
-                    const std::vector<float>& opacities, const std::vector<bool>& closed) {
-  ObjectBvh& object = built.object;
-  const WideTree& wide = built.tree;
-  std::uint32_t blocks = 0;
-  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
-    object.nodes[n].prim_base = blocks;
-    blocks += blocks_of(wide.nodes[n]);
-  }
-  if (!closed.empty()) built.closed.assign(blocks, 0);
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
-        for (std::size_t n = range.begin(); n < range.end(); ++n) {
-          std::uint32_t next = 0;
-          for (const WideChild& child : wide.children_of(wide.nodes[n])) {
-            for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
-              const std::uint32_t triangle = boxes[child.first + i].primitive;
-              const std::uint32_t block = object.nodes[n].prim_base + next / 8;
-              set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
-              if (!closed.empty() && closed[triangle]) {
-                built.closed[block] |= static_cast<std::uint8_t>(1u << next % 8);
-              }
-            }
-          }
-        }
-      });
-}
-
-/// Expected node visits of a random ray through the root's box, by surface areas.
-double expected_visits(const WideTree& tree) {
-  const double root = half_area(tree.nodes[0].box);
-  if (root <= 0) return 1;
-  double sum = 0;
-  for (const WideNode& node : tree.nodes) sum += half_area(node.box);
-  return sum / root;
-}
-
-}  // namespace
 
 std::vector<BvhNode> pack_nodes(const WideTree& tree) {
   std::vector<BvhNode> nodes(tree.nodes.size());
@@ -178,7 +184,7 @@ std::vector<BvhNode> pack_nodes(const WideTree& tree) {
   return nodes;
 }
 
-BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
+BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangles) {
   BuiltObject built;
   ObjectBvh& object = built.object;
   const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
@@ -196,7 +202,7 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   tbb::parallel_invoke(
       [&] { object.blocks.resize(count_blocks(tree)); }, [&] { object.nodes = pack_nodes(tree); },
       [&] { object.stack = stack_needed(tree); }, [&] { object.sah_cost = expected_visits(tree); });
-  pack_triangles(built, boxes, mesh, opacities, closed);
+  pack_triangles(built, boxes, mesh, opacities, closed, keep_triangles);
   return built;
 }
 
