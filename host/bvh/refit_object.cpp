@@ -85,7 +85,8 @@ class ObjectRefit : public Stumps {
   }
 
   void move_subtrees() {
-    for_each_subtree([&](std::size_t s) { moved_[s] = subtree_.node(record_.subtrees[s].node); });
+    for_each_subtree(
+        [&](std::size_t s) { moved_[s] = subtree_.subtree(record_.subtrees[s].node); });
   }
 
   void move_upper_leaves() {

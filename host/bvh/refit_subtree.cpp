@@ -71,6 +71,38 @@ MovedPart SubtreeRefit::leaf(const BvhNode& node, unsigned slot) const {
   return moved;
 }
 
+MovedPart SubtreeRefit::subtree(std::uint32_t root) const {
+  prefetch(root);
+  return node(root);
+}
+
+// Triangles of a subtree lie anywhere in the mesh: fetched one after the other, they would be
+// waited for half of the time.
+void SubtreeRefit::prefetch(std::uint32_t root) const {
+  std::array<std::uint32_t, kRigidPrimitives> triangles;
+  std::size_t count = 0;
+  find_triangles(root, triangles, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t* index = &mesh_.indices[3 * std::size_t{triangles[i]}];
+    for (int corner = 0; corner < 3; ++corner) __builtin_prefetch(&mesh_.positions[index[corner]]);
+  }
+}
+
+void SubtreeRefit::find_triangles(std::uint32_t index,
+                                  std::array<std::uint32_t, kRigidPrimitives>& triangles,
+                                  std::size_t& count) const {
+  const BvhNode& node = object_.nodes[index];
+  const std::uint32_t own = bvh_leaf_end(node.leaf_end, DAPPLE_BVH_WIDTH - 1);
+  for (std::uint32_t i = 0; i < own; ++i) {
+    const std::uint32_t triangle = record_.triangles[lane_of(node, object_, i)];
+    __builtin_prefetch(&mesh_.indices[3 * std::size_t{triangle}]);
+    triangles[count++] = triangle;
+  }
+  std::uint32_t inner = first_inner(node, object_);
+  for (unsigned mask = node.inner_mask; mask; mask &= mask - 1)
+    find_triangles(inner++, triangles, count);
+}
+
 MovedPart SubtreeRefit::node(std::uint32_t index) const {
   BvhNode& node = object_.nodes[index];
   std::array<MovedPart, DAPPLE_BVH_WIDTH> children;

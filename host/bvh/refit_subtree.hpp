@@ -1,6 +1,9 @@
 // The lower parts of a tree after their triangles moved.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "bvh/prefilter.hpp"
 
 namespace dapple {
@@ -18,13 +21,19 @@ class SubtreeRefit {
   SubtreeRefit(const Mesh& mesh, const ObjectArrays& object, const RefitRecord& record)
       : mesh_(mesh), object_(object), record_(record) {}
 
-  /// Rewrites the triangles, boxes and opacities of the object's `node` and all below.
-  MovedPart node(std::uint32_t node) const;
+  /// Rewrites the triangles, boxes and opacities of the object's node `root`, which has at most
+  /// kRigidPrimitives, and all below.
+  MovedPart subtree(std::uint32_t root) const;
 
   /// Rewrites the triangles of a leaf.
   MovedPart leaf(const BvhNode& node, unsigned slot) const;
 
  private:
+  MovedPart node(std::uint32_t node) const;
+  void prefetch(std::uint32_t root) const;
+  void find_triangles(std::uint32_t node, std::array<std::uint32_t, kRigidPrimitives>& triangles,
+                      std::size_t& count) const;
+
   const Mesh& mesh_;
   const ObjectArrays& object_;
   const RefitRecord& record_;
