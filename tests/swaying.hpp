@@ -31,8 +31,7 @@ inline V3f displacement(const V3f& p, const V3f& foot, float height, float wind,
   const V3f q = (p - foot) / height;
   const float bend = wind * 0.06f * height * q.y * q.y;
   const float swing = wind * 0.012f * height * q.y;
-  return V3f(bend * (1 + std::sin(1.7f * time)) +
-                 swing * std::sin(4.1f * time + 9 * q.z + 5 * q.y),
+  return V3f(bend * (1 + std::sin(1.7f * time)) + swing * std::sin(4.1f * time + 9 * q.z + 5 * q.y),
              -swing * std::sin(3.3f * time + 7 * q.x + 3 * q.z),
              0.4f * bend * std::sin(1.1f * time) + swing * std::sin(3.7f * time + 8 * q.x));
 }

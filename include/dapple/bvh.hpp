@@ -38,10 +38,10 @@ struct SceneBvh {
   ConstArray<BvhNode> nodes;  ///< all objects', then the top level's
   ConstArray<TriangleBlock> blocks;
   ConstArray<TexturedTriangle> textured;
-  std::vector<InstanceRecord> instances;  ///< in the order of the top level's leaves
-  std::uint32_t root = 0;                 ///< node to start from
-  bool has_top = false;                   ///< false: `root` is the only object's, in world space
-  Box3f bounds;                           ///< world space
+  ConstArray<InstanceRecord> instances;  ///< in the order of the top level's leaves
+  std::uint32_t root = 0;                ///< node to start from
+  bool has_top = false;                  ///< false: `root` is the only object's, in world space
+  Box3f bounds;                          ///< world space
   BvhStatistics statistics;
 };
 
