@@ -114,6 +114,7 @@ CachedObject read_object(const std::string& path, const Checksum& key, const Sce
   cached.object.nodes = {file.values<BvhNode>(kNodes), file.keeper()};
   cached.object.blocks = {file.values<TriangleBlock>(kBlocks), file.keeper()};
   cached.object.segments = {file.values<SegmentBlock>(kSegments), file.keeper()};
+  cached.object.has_strands = !cached.object.segments.empty();
   cached.object.textured = {file.values<TexturedTriangle>(kTextured), file.keeper()};
   if (records[0].part_count > DAPPLE_BVH_WIDTH || !is_sound(cached.object, scene)) {
     throw Error(ErrorKind::input, path + ": no tree that rays could walk");

@@ -2,6 +2,7 @@
 // scene's first node, block of either kind and textured triangle.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,5 +25,19 @@ std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
 /// A single object's are taken as they are, still mapped from its file when they came from one.
 void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
           const std::vector<ObjectOffsets>& offsets, std::vector<BvhNode> top);
+
+/// Arrays of a SceneBvh by another name, under which they may be written to.
+struct ChangeableArrays {
+  std::span<BvhNode> nodes;
+  std::span<TriangleBlock> blocks;
+};
+
+/// As join(), into arrays that may change later, with `spare` nodes after all objects'.
+ChangeableArrays join_changeable(SceneBvh& bvh, std::vector<FinishedObject>& objects,
+                                 const std::vector<ObjectOffsets>& offsets, std::size_t spare);
+
+/// A copy of the object that lies from `first` up to `end`, with indices of its own again.
+FinishedObject separate(const SceneBvh& bvh, const ObjectSummary& summary,
+                        const ObjectOffsets& first, const ObjectOffsets& end);
 
 }  // namespace dapple

@@ -68,14 +68,6 @@ std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, Obje
   return opacities;
 }
 
-Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
-  Box3f box;
-  for (int corner = 0; corner < 3; ++corner) {
-    box.extendBy(mesh.positions[mesh.indices[3 * triangle + corner]]);
-  }
-  return box;
-}
-
 /// Of the primitives that can be seen, in their order. Fills `boxes`, one for each.
 template <class BoxOf>
 void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> boxes,
@@ -96,6 +88,63 @@ void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> box
   });
 }
 
+std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
+
+std::size_t count_blocks(const WideTree& tree) {
+  std::size_t blocks = 0;
+  for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
+  return blocks;
+}
+
+/// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
+void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
+                    const std::vector<float>& opacities, const std::vector<bool>& closed,
+                    bool keep_triangles) {
+  ObjectBvh& object = built.object;
+  const WideTree& wide = built.tree;
+  std::uint32_t blocks = 0;
+  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
+    object.nodes[n].prim_base = blocks;
+    blocks += blocks_of(wide.nodes[n]);
+  }
+  if (!closed.empty()) built.closed.assign(blocks, 0);
+  if (keep_triangles) built.triangles.assign(8 * std::size_t{blocks}, 0);
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
+        for (std::size_t n = range.begin(); n < range.end(); ++n) {
+          std::uint32_t next = 0;
+          for (const WideChild& child : wide.children_of(wide.nodes[n])) {
+            for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
+              const std::uint32_t triangle = boxes[child.first + i].primitive;
+              const std::uint32_t block = object.nodes[n].prim_base + next / 8;
+              set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
+              if (keep_triangles) built.triangles[8 * std::size_t{block} + next % 8] = triangle;
+              if (!closed.empty() && closed[triangle]) {
+                built.closed[block] |= static_cast<std::uint8_t>(1u << next % 8);
+              }
+            }
+          }
+        }
+      });
+}
+
+/// Expected node visits of a random ray through the root's box, by surface areas.
+double expected_visits(const WideTree& tree) {
+  double sum = 0;
+  for (const WideNode& node : tree.nodes) sum += half_area(node.box);
+  return dapple::expected_visits(sum, tree.nodes[0].box);
+}
+
+}  // namespace
+
+Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
+  Box3f box;
+  for (int corner = 0; corner < 3; ++corner) {
+    box.extendBy(mesh.positions[mesh.indices[3 * triangle + corner]]);
+  }
+  return box;
+}
+
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
               float opacity) {
   const std::uint32_t* index = &mesh.indices[3 * std::size_t{triangle}];
@@ -109,51 +158,16 @@ void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32
   block.opacity[lane] = opacity;
 }
 
+double expected_visits(double half_areas, const Box3f& root) {
+  const double area = half_area(root);
+  return area > 0 ? half_areas / area : 1;
+}
+
 std::size_t count_blocks(const WideTree& tree) {
   std::size_t blocks = 0;
   for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
   return blocks;
 }
-
-/// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
-void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
-                    const std::vector<float>& opacities, const std::vector<bool>& closed) {
-  ObjectBvh& object = built.object;
-  const WideTree& wide = built.tree;
-  std::uint32_t blocks = 0;
-  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
-    object.nodes[n].prim_base = blocks;
-    blocks += blocks_of(wide.nodes[n]);
-  }
-  if (!closed.empty()) built.closed.assign(blocks, 0);
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
-        for (std::size_t n = range.begin(); n < range.end(); ++n) {
-          std::uint32_t next = 0;
-          for (const WideChild& child : wide.children_of(wide.nodes[n])) {
-            for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
-              const std::uint32_t triangle = boxes[child.first + i].primitive;
-              const std::uint32_t block = object.nodes[n].prim_base + next / 8;
-              set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
-              if (!closed.empty() && closed[triangle]) {
-                built.closed[block] |= static_cast<std::uint8_t>(1u << next % 8);
-              }
-            }
-          }
-        }
-      });
-}
-
-/// Expected node visits of a random ray through the root's box, by surface areas.
-double expected_visits(const WideTree& tree) {
-  const double root = half_area(tree.nodes[0].box);
-  if (root <= 0) return 1;
-  double sum = 0;
-  for (const WideNode& node : tree.nodes) sum += half_area(node.box);
-  return sum / root;
-}
-
-}  // namespace
 
 std::vector<BvhNode> pack_nodes(const WideTree& tree) {
   std::vector<BvhNode> nodes(tree.nodes.size());
@@ -194,14 +208,14 @@ void summarize(BuiltObject& built) {
 }
 
 void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
-                     std::span<PrimitiveBox> boxes, BuiltObject& built) {
+                     std::span<PrimitiveBox> boxes, bool keep_triangles, BuiltObject& built) {
   fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
   std::vector<bool> closed;
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
                        [&] { closed = closed_triangles(mesh, opacities); });
   tbb::parallel_invoke([&] { built.object.blocks.resize(count_blocks(built.tree)); },
                        [&] { summarize(built); });
-  pack_triangles(built, boxes, mesh, opacities, closed);
+  pack_triangles(built, boxes, mesh, opacities, closed, keep_triangles);
 }
 
 void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
@@ -219,15 +233,19 @@ void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
 
 }  // namespace
 
-BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
+BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangles) {
   BuiltObject built;
   ObjectBvh& object = built.object;
+  object.has_strands = mesh.has_strands();
   const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
   if (object.triangles == 0) return built;
   // Not cleared, so that the threads that write the pages also get them from the system.
   const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);
   const std::span boxes(storage.get(), object.triangles);
-  (mesh.has_strands() ? build_strands : build_triangles)(mesh, opacities, boxes, built);
+  if (mesh.has_strands())
+    build_strands(mesh, opacities, boxes, built);
+  else
+    build_triangles(mesh, opacities, boxes, keep_triangles, built);
   return built;
 }
 

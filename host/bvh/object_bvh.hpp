@@ -12,6 +12,8 @@
 
 namespace dapple {
 
+struct RefitRecord;  // bvh/refit_record.hpp
+
 /// What the top level and statistics need to know of an object.
 struct ObjectSummary {
   Box3f box;
@@ -19,6 +21,7 @@ struct ObjectSummary {
   NodeOpacity opacity;       ///< of `box`
   std::uint32_t stack = 0;   ///< traversal stack entries needed
   double sah_cost = 0;       ///< expected node visits of a ray through `box`
+  bool has_strands = false;
   /// Triangles, or segments, that are not fully transparent.
   std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
 };
@@ -37,15 +40,18 @@ struct BuiltObject {
   ObjectBvh object;
   WideTree tree;                     ///< the object was packed from
   std::vector<std::uint8_t> closed;  ///< by block: bit l for lane l, closed_triangles(); or empty
+  std::vector<std::uint32_t> triangles;  ///< by lane of the blocks: index in the mesh; or empty
 };
 
 /// Builds and packs the triangles or segments of `mesh` that are not fully transparent. Empty (no
-/// nodes) when there are none.
-BuiltObject build_object(const Scene& scene, const Mesh& mesh);
+/// nodes) when there are none. `keep_triangles`: fill BuiltObject::triangles.
+BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangles = false);
 
 /// Fills the nodes' opacities and `opacity` of a packed object, bottom-up, in parallel and in
-/// time linear in the triangles.
-void prefilter(BuiltObject& built, const TextureIntegrals& integrals);
+/// time linear in the triangles; and the `record` for refitting, if any, for which
+/// BuiltObject::triangles must be there.
+void prefilter(BuiltObject& built, const TextureIntegrals& integrals,
+               RefitRecord* record = nullptr);
 
 /// Packs a wide tree's boxes and layout into nodes; opacities stay 0, `prim_base` is set
 /// by the caller.
@@ -55,7 +61,17 @@ std::vector<BvhNode> pack_nodes(const WideTree& tree);
 NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box);
 
 /// Stores the opacity of child `slot`, whose exact box had `opacity`, as that of its grown box.
-void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
-                       const Box3f& exact);
+/// Returns its clumping_factor().
+float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
+                        const Box3f& exact);
+
+/// A triangle of the mesh into a lane; `opacity` in [0,1], or the code of a textured one.
+void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
+              float opacity);
+
+Box3f triangle_box(const Mesh& mesh, std::size_t triangle);
+
+/// Expected node visits of a random ray through the root's box, by the nodes' half_area() summed.
+double expected_visits(double half_areas, const Box3f& root);
 
 }  // namespace dapple

@@ -30,11 +30,8 @@ void add_material(ChecksumStream& key, const Scene& scene, const Material& mater
   if (material.alpha_texture >= 0) add_texture(key, scene.textures[material.alpha_texture]);
 }
 
-}  // namespace
-
-Checksum object_key(const Scene& scene, const Mesh& mesh) {
-  ChecksumStream key;
-  key.add_range(mesh.positions);
+/// All but positions.
+void add_form(ChecksumStream& key, const Scene& scene, const Mesh& mesh) {
   key.add_range(mesh.indices);
   key.add_range(mesh.materials);
   key.add_range(mesh.radii);
@@ -46,6 +43,27 @@ Checksum object_key(const Scene& scene, const Mesh& mesh) {
     key.add_value(static_cast<std::uint64_t>(m));
     add_material(key, scene, scene.materials[m]);
   }
+}
+
+}  // namespace
+
+Checksum object_key(const Scene& scene, const Mesh& mesh) {
+  ChecksumStream key;
+  key.add_range(mesh.positions);
+  add_form(key, scene, mesh);
+  return key.value();
+}
+
+Checksum form_key(const Scene& scene, const Mesh& mesh) {
+  ChecksumStream key;
+  key.add_value(static_cast<std::uint64_t>(mesh.positions.size()));
+  add_form(key, scene, mesh);
+  return key.value();
+}
+
+Checksum position_key(const Mesh& mesh) {
+  ChecksumStream key;
+  key.add_range(mesh.positions);
   return key.value();
 }
 

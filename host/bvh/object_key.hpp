@@ -11,4 +11,8 @@ namespace dapple {
 /// and whatever other meshes use make no difference.
 Checksum object_key(const Scene& scene, const Mesh& mesh);
 
+/// Of all that but where the vertices are, which position_key() tells.
+Checksum form_key(const Scene& scene, const Mesh& mesh);
+Checksum position_key(const Mesh& mesh);
+
 }  // namespace dapple

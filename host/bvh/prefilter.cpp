@@ -1,10 +1,11 @@
 // Directional opacity, bottom-up: leaves are drawn into coverage maps of their own, and
 // each node puts its children's maps into one that it hands to its parent.
+#include "bvh/prefilter.hpp"
+
 #include <tbb/parallel_for.h>
 
 #include <cmath>
 
-#include "bvh/object_bvh.hpp"
 #include "bvh/quantize.hpp"
 #include "bvh/segment_block.hpp"
 #include "bvh/strand_coverage.hpp"
@@ -22,13 +23,6 @@ constexpr float kNearlySolid = 0.9f;
 uchar encode_depth(float depth) {
   return static_cast<uchar>(std::lround(std::sqrt(depth / DAPPLE_GREATEST_DEPTH) * 255.0f));
 }
-
-/// What a subtree hands to its parent.
-struct Summary {
-  CoverageMap map;
-  NormalMoments normals;
-  SurfaceAreas areas;
-};
 
 /// Primitives that a leaf holds at most.
 constexpr std::size_t kMostInLeaf = 8;
@@ -91,20 +85,20 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
 
 class Prefilter {
  public:
-  Prefilter(BuiltObject& built, const TextureIntegrals& integrals)
-      : object_(built.object), tree_(built.tree), closed_(built.closed), integrals_(integrals) {}
+  Prefilter(const PrefilterTask& task, const TextureIntegrals& integrals)
+      : task_(task), object_(task.object), tree_(task.tree), integrals_(integrals) {}
 
   Summary node(std::uint32_t index) {
     const WideNode& wide = tree_.nodes[index];
+    if (wide.child_count == 0) return task_.stumps->summary(index);
+    const std::uint32_t own = task_.node_of.empty() ? index : task_.node_of[index];
     const auto children = tree_.children_of(wide);
     NodeCoverage coverage(wide.box);
     NormalMoments normals;
     const auto add_inner = [&](unsigned slot, const Summary& below) {
       coverage.add(below.map, children[slot].box, below.areas);
       normals.add(below.normals);
-      NodeOpacity opacity = map_opacity(below.map, below.normals, children[slot].box);
-      opacity.triangles = tree_.nodes[children[slot].first].primitives;
-      set_child_opacity(object_.nodes[index], slot, opacity, children[slot].box);
+      set_inner_opacity(own, slot, children[slot], below, wide.primitives);
     };
     const bool parallel = wide.primitives > kTaskPrimitives;
     std::vector<Summary> below(parallel ? wide.child_count : 0);
@@ -116,7 +110,7 @@ class Prefilter {
     // By slot, so that the bits don't depend on which task came first.
     for (unsigned slot = 0; slot < wide.child_count; ++slot) {
       if (children[slot].count) {
-        normals.add(add_leaf(object_.nodes[index], slot, children[slot].box, coverage));
+        normals.add(add_leaf(own, slot, children[slot].box, coverage));
       } else {
         add_inner(slot, parallel ? below[slot] : node(children[slot].first));
       }
@@ -125,14 +119,44 @@ class Prefilter {
   }
 
  private:
+  /// Of child `slot` of the object's node `own`; of those that have children, by what is in them.
+  void set_inner_opacity(std::uint32_t own, unsigned slot, const WideChild& child,
+                         const Summary& below, std::uint32_t primitives) const {
+    const WideNode& wide = tree_.nodes[child.first];
+    const NodeOpacity* measured = nullptr;
+    if (wide.child_count == 0) {
+      measured = task_.stumps->measured(child.first);
+      if (!measured) {
+        set_kept_opacity(object_.nodes[own], slot, task_.record->nodes[own], below.areas,
+                         below.normals, child.box);
+        return;
+      }
+    }
+    NodeOpacity opacity = measured ? *measured : map_opacity(below.map, below.normals, child.box);
+    opacity.triangles = wide.primitives;
+    set_opacity(own, slot, opacity, child.box, below.areas);
+    if (task_.record && !measured && wide.primitives <= kRigidPrimitives &&
+        (primitives > kRigidPrimitives || own == 0)) {
+      task_.record->subtrees[task_.record->subtree_at(child.first)].keep(below.map, below.areas,
+                                                                         child.box);
+    }
+  }
+
+  void set_opacity(std::uint32_t own, unsigned slot, const NodeOpacity& opacity, const Box3f& box,
+                   const SurfaceAreas& areas) const {
+    const float factor = set_child_opacity(object_.nodes[own], slot, opacity, box);
+    if (task_.record) task_.record->nodes[own].keep(slot, opacity.axes, areas, box, factor);
+  }
+
   /// Sets the leaf's opacity and puts it into its node's coverage; returns its normals.
-  NormalMoments add_leaf(BvhNode& node, unsigned slot, const Box3f& box,
+  NormalMoments add_leaf(std::uint32_t own, unsigned slot, const Box3f& box,
                          NodeCoverage& coverage) const {
+    const BvhNode& node = object_.nodes[own];
     const Leaf leaf =
         node.prim_base & DAPPLE_SEGMENTS ? load_strands(node, slot) : load_triangles(node, slot);
     if (leaf.single_layer) {
       coverage.add_layer(leaf.covering(), box, leaf.areas);
-      set_child_opacity(node, slot, layer_opacity(leaf, box), box);
+      set_opacity(own, slot, layer_opacity(leaf, box), box, leaf.areas);
       return leaf.normals;
     }
     CoverageMap map;
@@ -142,7 +166,7 @@ class Prefilter {
     coverage.add(map, box, leaf.areas);
     NodeOpacity opacity = map_opacity(map, leaf.normals, box);
     opacity.triangles = leaf.count;
-    set_child_opacity(node, slot, opacity, box);
+    set_opacity(own, slot, opacity, box, leaf.areas);
     return leaf.normals;
   }
 
@@ -194,7 +218,8 @@ class Prefilter {
   }
 
   bool is_closed(std::uint32_t block, unsigned lane) const {
-    return !closed_.empty() && (closed_[block] >> lane & 1u) != 0;
+    const std::size_t own = block - object_.first_block;
+    return !object_.closed.empty() && (object_.closed[own] >> lane & 1u) != 0;
   }
 
   float mean_opacity(const CoveringTriangle& triangle, float u, float v, float share) const {
@@ -202,9 +227,9 @@ class Prefilter {
     return integrals_.mean(object_.textured[textured], u, v, share);
   }
 
-  ObjectBvh& object_;
+  const PrefilterTask& task_;
+  const ObjectArrays& object_;
   const WideTree& tree_;
-  const std::vector<std::uint8_t>& closed_;
   const TextureIntegrals& integrals_;
 };
 
@@ -222,33 +247,79 @@ NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, co
   return opacity;
 }
 
-void set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
-                       const Box3f& exact) {
-  const Box3f box = child_box(node, slot);
-  NodeOpacity grown = opacity;
+namespace {
+
+/// Of the grown box of a child, whose exact one had the opacities `axes`.
+V3f grown_opacity(const V3f& axes, const Box3f& exact, const Box3f& box) {
+  V3f grown;
   for (int axis = 0; axis < 3; ++axis) {
     const float area = face_area(box, axis);
     const float share = area > 0.0f ? std::min(face_area(exact, axis) / area, 1.0f) : 0.0f;
     // A solid part of a wall must not leak where its box grew: its neighbours are there.
-    const float solid =
-        std::clamp((opacity.axes[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
-    grown.axes[axis] *= share + solid * (1.0f - share);
+    const float solid = std::clamp((axes[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
+    grown[axis] = axes[axis] * (share + solid * (1.0f - share));
   }
-  const float factor = clumping_factor(grown, box.max - box.min);
-  const V3f correlation = opacity.normals.correlation();
-  for (int axis = 0; axis < 3; ++axis) {
-    node.depth[axis][slot] =
-        encode_depth(std::min(factor * depth_of(grown.axes[axis]), DAPPLE_GREATEST_DEPTH));
-    node.correlation[axis][slot] = static_cast<schar>(std::lround(127.0f * correlation[axis]));
-  }
-  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.concentration));
-  node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
+  return grown;
 }
 
-void prefilter(BuiltObject& built, const TextureIntegrals& integrals) {
-  const Summary all = Prefilter(built, integrals).node(0);
-  built.object.opacity = map_opacity(all.map, all.normals, built.object.box);
-  built.object.opacity.triangles = built.object.triangles;
+void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
+                  const V3f& correlation) {
+  for (int axis = 0; axis < 3; ++axis) {
+    node.depth[axis][slot] =
+        encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_GREATEST_DEPTH));
+    node.correlation[axis][slot] = static_cast<schar>(std::lround(127.0f * correlation[axis]));
+  }
+}
+
+}  // namespace
+
+float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
+                        const Box3f& exact) {
+  const Box3f box = child_box(node, slot);
+  NodeOpacity grown = opacity;
+  grown.axes = grown_opacity(opacity.axes, exact, box);
+  const float factor = clumping_factor(grown, box.max - box.min);
+  store_depths(node, slot, grown.axes, factor, opacity.normals.correlation());
+  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.concentration));
+  node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
+  return factor;
+}
+
+void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
+                      const SurfaceAreas& areas, const NormalMoments& normals, const Box3f& exact) {
+  V3f axes = layers_in(areas, exact);
+  for (int axis = 0; axis < 3; ++axis)
+    axes[axis] = std::min(1.0f, axes[axis] * kept.share(axis, slot));
+  store_depths(node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
+               normals.correlation());
+}
+
+namespace {
+
+void start_record(BuiltObject& built, const TextureIntegrals& integrals, RefitRecord& record) {
+  record = {};
+  record.triangles = std::move(built.triangles);
+  record.closed = built.closed;
+  for (const TexturedTriangle& triangle : built.object.textured)
+    record.textured_opacity.push_back(integrals.mean(triangle, 1.0f / 3, 1.0f / 3, 1.0f));
+  record.nodes.resize(built.object.nodes.size());
+  cut_subtrees(built.tree, record);
+}
+
+}  // namespace
+
+Summary prefilter(const PrefilterTask& task, const TextureIntegrals& integrals) {
+  return Prefilter(task, integrals).node(0);
+}
+
+void prefilter(BuiltObject& built, const TextureIntegrals& integrals, RefitRecord* record) {
+  ObjectBvh& object = built.object;
+  if (record) start_record(built, integrals, *record);
+  const ObjectArrays arrays{object.nodes,   object.blocks, object.textured, built.closed, 0, 0, 0,
+                            object.segments};
+  const Summary all = prefilter({arrays, built.tree, {}, record, nullptr}, integrals);
+  object.opacity = map_opacity(all.map, all.normals, object.box);
+  object.opacity.triangles = object.triangles;
 }
 
 }  // namespace dapple

@@ -46,14 +46,22 @@ void read_from_cache(const Scene& scene, const std::string& folder, std::vector<
   });
 }
 
-void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& statistics) {
+/// Fills `records`, of every mesh, too, where it is not nullptr.
+void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& statistics,
+                   std::vector<RefitRecord>* records) {
   statistics.build_seconds = for_each(works, [&](Work& work, std::size_t m) {
-    if (!work.is_read) work.built = build_object(scene, scene.meshes[m]);
+    if (work.is_read) return;
+    if (records) (*records)[m] = {};
+    const Mesh& mesh = scene.meshes[m];
+    work.built = build_object(scene, mesh, records && !mesh.has_strands());
   });
-  statistics.prefilter_seconds = for_each(works, [&](Work& work, std::size_t) {
+  statistics.prefilter_seconds = for_each(works, [&](Work& work, std::size_t m) {
     if (work.is_read) return;
     ObjectBvh& object = work.built.object;
-    if (!object.nodes.empty()) prefilter(work.built, TextureIntegrals(scene, object.textured));
+    if (!object.nodes.empty()) {
+      prefilter(work.built, TextureIntegrals(scene, object.textured),
+                records && !object.has_strands ? &(*records)[m] : nullptr);
+    }
     work.finished.object = FinishedObject(std::move(object));
     work.built = {};
   });
@@ -111,21 +119,39 @@ void add_cache_statistics(const std::vector<Work>& works, BvhStatistics& statist
   statistics.cache.seconds_saved -= statistics.cache.read_seconds;
 }
 
+std::vector<FinishedObject> finished_of(std::vector<Work>& works) {
+  std::vector<FinishedObject> objects;
+  for (Work& work : works) objects.push_back(std::move(work.finished.object));
+  return objects;
+}
+
 }  // namespace
 
 std::vector<FinishedObject> finish_objects(const Scene& scene, const std::string& cache_folder,
                                            BvhStatistics& statistics) {
   std::vector<Work> works(scene.meshes.size());
   if (!cache_folder.empty()) read_from_cache(scene, cache_folder, works, statistics);
-  build_missing(scene, works, statistics);
+  build_missing(scene, works, statistics, nullptr);
   if (!cache_folder.empty()) {
     share_out_seconds(works, statistics);
     write_to_cache(cache_folder, works, statistics);
     add_cache_statistics(works, statistics);
   }
-  std::vector<FinishedObject> objects;
-  for (Work& work : works) objects.push_back(std::move(work.finished.object));
-  return objects;
+  return finished_of(works);
+}
+
+std::vector<FinishedObject> build_refittable(const Scene& scene, std::vector<FinishedObject> kept,
+                                             const std::vector<bool>& is_kept,
+                                             std::vector<RefitRecord>& records,
+                                             BvhStatistics& statistics) {
+  std::vector<Work> works(scene.meshes.size());
+  for (std::size_t m = 0; m < works.size(); ++m) {
+    works[m].is_read = is_kept[m];
+    if (is_kept[m]) works[m].finished.object = std::move(kept[m]);
+  }
+  records.resize(works.size());
+  build_missing(scene, works, statistics, &records);
+  return finished_of(works);
 }
 
 }  // namespace dapple

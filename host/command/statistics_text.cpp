@@ -29,6 +29,7 @@ std::string rays_line(const char* kind, std::uint64_t rays, double seconds, doub
 
 /// Where the trees came from, in a word or two; small objects don't count.
 const char* bvh_source(const RenderStatistics& s) {
+  if (s.refit.used) return s.refit.objects_rebuilt > 0 ? "rebuilt" : "refitted";
   const bool read = s.cache.objects_read > 0;
   if (read && s.cache.objects_written > 0) return "partly from cache";
   return read ? "from cache" : "built";
@@ -38,6 +39,15 @@ std::string cache_line(const RenderStatistics& s) {
   if (!s.cache.used) return {};
   return fmt::format("  bvh: {} (objects read {}, written {}), {:.2f} s saved\n", bvh_source(s),
                      s.cache.objects_read, s.cache.objects_written, s.cache.seconds_saved);
+}
+
+std::string refit_line(const RenderStatistics& s) {
+  if (!s.refit.used) return {};
+  return fmt::format(
+      "  bvh: objects kept {}, refitted {}, rebuilt {} in {:.2f} s; SAH cost up to {:.2f} of the "
+      "built trees'\n",
+      s.refit.objects_kept, s.refit.objects_refitted, s.refit.objects_rebuilt, s.seconds.refit,
+      s.refit.cost_ratio);
 }
 
 std::string errors_line(const std::map<std::string, double>& rmse) {
@@ -58,11 +68,17 @@ std::string bytes_text(double bytes) {
 
 nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
   nlohmann::ordered_json json;
-  json["seconds"] = {{"load", s.seconds.load},     {"cache", s.seconds.cache},
-                     {"build", s.seconds.build},   {"prefilter", s.seconds.prefilter},
-                     {"upload", s.seconds.upload}, {"kernel_build", s.seconds.kernel_build},
-                     {"trace", s.seconds.trace},   {"checkpoint", s.seconds.checkpoint},
-                     {"write", s.seconds.write},   {"total", s.seconds.total}};
+  json["seconds"] = {{"load", s.seconds.load},
+                     {"cache", s.seconds.cache},
+                     {"build", s.seconds.build},
+                     {"prefilter", s.seconds.prefilter},
+                     {"refit", s.seconds.refit},
+                     {"upload", s.seconds.upload},
+                     {"kernel_build", s.seconds.kernel_build},
+                     {"trace", s.seconds.trace},
+                     {"checkpoint", s.seconds.checkpoint},
+                     {"write", s.seconds.write},
+                     {"total", s.seconds.total}};
   json["pass_seconds"] = s.pass_seconds;
   json["rays"] = {{"camera", s.rays.camera}, {"ao", s.rays.ao}, {"light", s.rays.light}};
   json["node_visits_per_ray"] = {
@@ -78,6 +94,12 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
     json["cache"] = {{"objects_read", s.cache.objects_read},
                      {"objects_written", s.cache.objects_written},
                      {"seconds_saved", s.cache.seconds_saved}};
+  }
+  if (s.refit.used) {
+    json["refit"] = {{"objects_kept", s.refit.objects_kept},
+                     {"objects_refitted", s.refit.objects_refitted},
+                     {"objects_rebuilt", s.refit.objects_rebuilt},
+                     {"cost_ratio", s.refit.cost_ratio}};
   }
   json["bytes"] = {{"nodes", s.bytes.nodes},         {"triangles", s.bytes.triangles},
                    {"segments", s.bytes.segments},   {"textures", s.bytes.textures},
@@ -100,6 +122,7 @@ std::string statistics_text(const RenderStatistics& s) {
                     s.light.tests);
   text += errors_line(s.rmse);
   text += cache_line(s);
+  text += refit_line(s);
   const auto& t = s.seconds;
   text += fmt::format(
       "  seconds: load {:.2f}, cache {:.2f}, build {:.2f}, prefilter {:.2f}, upload {:.2f}, "

@@ -158,6 +158,8 @@ DeviceContext::~DeviceContext() {
 
 const DeviceInfo& DeviceContext::info() const { return state_->info; }
 
+bool DeviceContext::shares_memory() const { return state_->shares_memory; }
+
 Company DeviceContext::trace_with() const { return state_->trace_with; }
 
 std::vector<std::string> DeviceContext::notes() const {
@@ -182,6 +184,7 @@ Buffer DeviceContext::share(const void* data, std::size_t bytes) {
     // OpenCL wants a mutable pointer but only reads through it: CL_MEM_READ_ONLY.
     memory->buffer =
         cl::Buffer(state_->context, CL_MEM_READ_ONLY | placing, bytes, const_cast<void*>(data));
+    memory->on_host = state_->shares_memory;
     return Buffer(std::move(memory), bytes);
   });
 }
@@ -205,6 +208,18 @@ Buffer DeviceContext::allocate_zeros(std::size_t bytes) {
   });
 }
 
+std::shared_ptr<void> DeviceContext::map(const Buffer& buffer, bool writes) {
+  const cl::Buffer& memory = buffer.memory()->buffer;
+  const cl_map_flags access = writes ? CL_MAP_READ | CL_MAP_WRITE : CL_MAP_READ;
+  void* data = state_->queue.enqueueMapBuffer(memory, CL_TRUE, access, 0, buffer.bytes());
+  return {data, [queue = state_->queue, buffer](void* mapped) {
+            try {
+              queue.enqueueUnmapMemObject(buffer.memory()->buffer, mapped);
+            } catch (const cl::Error&) {  // the memory goes anyway
+            }
+          }};
+}
+
 HostView DeviceContext::view(const Buffer& buffer) {
   if (!buffer.bytes()) return {};
   if (!buffer.memory()->on_host) {
@@ -213,22 +228,21 @@ HostView DeviceContext::view(const Buffer& buffer) {
     return {copy, *copy};
   }
   return in_opencl("reading from the device", [&] {
-    const cl::Buffer& memory = buffer.memory()->buffer;
-    void* data = state_->queue.enqueueMapBuffer(memory, CL_TRUE, CL_MAP_READ, 0, buffer.bytes());
-    std::shared_ptr<const void> keeper(data, [queue = state_->queue, buffer](void* mapped) {
-      try {
-        queue.enqueueUnmapMemObject(buffer.memory()->buffer, mapped);
-      } catch (const cl::Error&) {  // the memory goes anyway
-      }
-    });
-    return HostView(std::move(keeper), {static_cast<const std::byte*>(data), buffer.bytes()});
+    const std::shared_ptr<void> mapped = map(buffer, false);
+    return HostView(mapped, {static_cast<const std::byte*>(mapped.get()), buffer.bytes()});
   });
 }
 
-void DeviceContext::write(const Buffer& buffer, const void* data, std::size_t bytes) {
+std::shared_ptr<void> DeviceContext::lend(const Buffer& buffer) {
+  if (!buffer.bytes() || !buffer.memory()->on_host) return nullptr;
+  return in_opencl("writing to shared memory", [&] { return map(buffer, true); });
+}
+
+void DeviceContext::write(const Buffer& buffer, const void* data, std::size_t bytes,
+                          std::size_t offset) {
   if (bytes == 0) return;
   in_opencl("writing to the device", [&] {
-    state_->queue.enqueueWriteBuffer(buffer.memory()->buffer, CL_TRUE, 0, bytes, data);
+    state_->queue.enqueueWriteBuffer(buffer.memory()->buffer, CL_TRUE, offset, bytes, data);
   });
 }
 

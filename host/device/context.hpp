@@ -82,6 +82,8 @@ class DeviceContext {
   DeviceContext& operator=(const DeviceContext&) = delete;
 
   [[nodiscard]] const DeviceInfo& info() const;
+  /// With the host: share() makes no copies.
+  [[nodiscard]] bool shares_memory() const;
   /// Whom whoever opened the device wants rays to be traced with.
   [[nodiscard]] Company trace_with() const;
   /// What users should know of how it works here: "compiled kernels are not kept: ...".
@@ -95,12 +97,17 @@ class DeviceContext {
   /// Memory full of zeros. Where it is shared with the host, its pages come from the operating
   /// system as they are first written to, by whichever thread that is.
   Buffer allocate_zeros(std::size_t bytes);
-  void write(const Buffer& buffer, const void* data, std::size_t bytes);
+  /// `offset`: bytes into the buffer.
+  void write(const Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset = 0);
   /// Waits for all launches before it. `offset`: bytes into the buffer.
   void read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset = 0);
 
   /// Waits for all launches before it.
   HostView view(const Buffer& buffer);
+
+  /// While what it returns lives, the host may write to what it shares with the device by this
+  /// buffer, and no kernel may read it; nothing where it shares none. Waits for all launches.
+  std::shared_ptr<void> lend(const Buffer& buffer);
 
   /// Compiles a kernel ahead of its first launch.
   void prepare(const KernelName& kernel);
@@ -121,6 +128,9 @@ class DeviceContext {
 
  private:
   struct State;
+  /// The buffer's memory, which must be on the host; unmapped with the last copy.
+  std::shared_ptr<void> map(const Buffer& buffer, bool writes);
+
   std::unique_ptr<State> state_;
 };
 

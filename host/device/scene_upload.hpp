@@ -18,6 +18,11 @@ struct DeviceBuffers {
   Buffer lights, emitters, environments;
   SceneParams params{};
   // What `share` may point into where memory is shared.
+  ConstArray<BvhNode> node_values;
+  ConstArray<TriangleBlock> block_values;
+  ConstArray<SegmentBlock> segment_values;
+  ConstArray<TexturedTriangle> textured_values;
+  ConstArray<InstanceRecord> instance_records;
   std::vector<MaterialRecord> material_records;
   std::vector<uchar> texel_data;
   std::vector<LightRecord> light_records;

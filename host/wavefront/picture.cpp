@@ -88,6 +88,7 @@ class PictureTracer {
   /// Onto the device, where from now on they are.
   void place_sums() {
     earlier_seconds_ = state_.pass_seconds;
+    for (const auto& [label, seconds] : context_.pass_seconds()) earlier_seconds_[label] -= seconds;
     if (state_.sums.empty()) return;
     context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
     context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
@@ -109,10 +110,11 @@ class PictureTracer {
     state_.pass_seconds = pass_seconds();
   }
 
-  /// Of this run and those that it goes on from.
+  /// Of this picture, in this run and those that it goes on from.
   [[nodiscard]] std::map<std::string, double> pass_seconds() const {
     std::map<std::string, double> sum = earlier_seconds_;
     for (const auto& [label, seconds] : context_.pass_seconds()) sum[label] += seconds;
+    std::erase_if(sum, [](const auto& pass) { return pass.second == 0; });  // of other pictures
     return sum;
   }
 

@@ -2,7 +2,10 @@
 // what dapple does.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <optional>
+#include <utility>
 
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
@@ -73,9 +76,19 @@ void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
   if (!bvh.cache.note.empty()) s.notes.push_back("BVH cache: " + bvh.cache.note);
 }
 
+void add_build_seconds(RenderStatistics& s, const BvhStatistics& bvh) {
+  s.seconds.build = bvh.build_seconds;
+  s.seconds.prefilter = bvh.prefilter_seconds;
+}
+
+void add_update_statistics(RenderStatistics& s, const BvhUpdate& update, const BvhStatistics& bvh) {
+  if (update.objects_rebuilt > 0) add_build_seconds(s, bvh);
+  s.seconds.refit = std::max(0.0, update.seconds - s.seconds.build - s.seconds.prefilter);
+  s.refit = {true, update.objects_kept, update.objects_refitted, update.objects_rebuilt,
+             update.cost_ratio};
+}
+
 void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBuffers& buffers) {
-  s.seconds.build = bvh.statistics.build_seconds;
-  s.seconds.prefilter = bvh.statistics.prefilter_seconds;
   s.triangles = bvh.statistics.triangles;
   s.segments = bvh.statistics.segments;
   s.nodes = bvh.nodes.size();
@@ -86,9 +99,58 @@ void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBu
   s.bytes.instances = buffers.instances.bytes();
 }
 
+/// What a device was opened with.
+std::array<std::string, 3> device_key(const RenderOptions& options) {
+  return {options.device, options.kernel_dir, name_of(options.trace_with)};
+}
+
 }  // namespace
 
-RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl& control) {
+struct Renderer::Kept {
+  std::array<std::string, 3> device_key;
+  std::optional<Device> device;
+  std::optional<UpdatableBvh> bvh;
+  DeviceScene on_device;
+
+  void open(const RenderOptions& options);
+  void bring(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
+};
+
+void Renderer::Kept::open(const RenderOptions& options) {
+  const auto key = dapple::device_key(options);
+  if (device && key == device_key) return;
+  *this = {};
+  device_key = key;
+  device.emplace(options.device, options.kernel_dir, options.trace_with);
+}
+
+/// The scene to the device, by the BVH that there is.
+void Renderer::Kept::bring(const Scene& scene, const RenderOptions& options,
+                           RenderStatistics& statistics) {
+  const Stopwatch bringing;
+  if (bvh) {
+    const BvhUpdate changes = update(*device, on_device, *bvh, scene);
+    add_update_statistics(statistics, changes, bvh->bvh().statistics);
+    statistics.seconds.upload = bringing.seconds() - changes.seconds;
+  } else {
+    bvh.emplace(scene, UpdatableBvh::Motion::maybe, options.cache);
+    const BvhStatistics& built = bvh->bvh().statistics;
+    add_build_seconds(statistics, built);
+    if (!options.cache.empty()) add_cache_statistics(statistics, built);
+    const Stopwatch uploading;
+    on_device = upload(*device, scene, bvh->bvh());
+    statistics.seconds.upload = uploading.seconds();
+  }
+  add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
+}
+
+Renderer::Renderer() : kept_(std::make_unique<Kept>()) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+RenderResult Renderer::render(Scene scene, const RenderOptions& asked,
+                              const RenderControl& control) {
   const Stopwatch total;
   validate(asked);
   RenderOptions options = asked;
@@ -99,20 +161,21 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
   const View view = furnish(scene, options, statistics.notes);
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);
-  const Device device(options.device, options.kernel_dir, options.trace_with);
+  // Here until all went well: after an error nothing of it is of use.
+  Kept kept = std::exchange(*kept_, {});
+  kept.open(options);
+  const Device& device = *kept.device;
   statistics.device = device.info().name;
   for (std::string& note : device.context().notes()) statistics.notes.push_back(std::move(note));
 
   check_memory(device.info(), least_need(scene), "needs at least");
-  const SceneBvh bvh = build_bvh(scene, options.cache);
-  if (!options.cache.empty()) add_cache_statistics(statistics, bvh.statistics);
-  const Stopwatch uploading;
-  const DeviceScene on_device = upload(device, scene, bvh);
-  statistics.seconds.upload = uploading.seconds();
-  add_bvh_statistics(statistics, bvh, *on_device.buffers);
+  kept.bring(scene, options, statistics);
+  const SceneBvh& bvh = kept.bvh->bvh();
+  const DeviceScene& on_device = kept.on_device;
 
+  const double compiled_before = device.context().kernel_build_seconds();
   prepare_kernels(device.context(), options, scene.lights);
-  statistics.seconds.kernel_build = device.context().kernel_build_seconds();
+  statistics.seconds.kernel_build = device.context().kernel_build_seconds() - compiled_before;
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
   const FilmLayout layout(view, options, bvh.bounds, lights);
@@ -145,8 +208,13 @@ RenderResult render(Scene scene, const RenderOptions& asked, const RenderControl
     film.metadata.settings.emplace_back("interrupted", "yes");
     statistics.notes.push_back(interruption_note(picture, control));
   }
+  *kept_ = std::move(kept);
   statistics.seconds.total = total.seconds();
   return result;
+}
+
+RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control) {
+  return Renderer().render(std::move(scene), options, control);
 }
 
 RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress) {

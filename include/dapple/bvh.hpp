@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,10 @@ struct SceneBvh {
   ConstArray<TriangleBlock> blocks;
   ConstArray<SegmentBlock> segments;
   ConstArray<TexturedTriangle> textured;
-  std::vector<InstanceRecord> instances;  ///< in the order of the top level's leaves
-  std::uint32_t root = 0;                 ///< node to start from
-  bool has_top = false;                   ///< false: `root` is the only object's, in world space
-  Box3f bounds;                           ///< world space
+  ConstArray<InstanceRecord> instances;  ///< in the order of the top level's leaves
+  std::uint32_t root = 0;                ///< node to start from
+  bool has_top = false;                  ///< false: `root` is the only object's, in world space
+  Box3f bounds;                          ///< world space
   BvhStatistics statistics;
 };
 
@@ -56,5 +57,52 @@ void prepare_bvh_cache(const std::string& folder);
 /// files that are damaged or of another version are replaced. Throws Error failed when the tree is
 /// too deep for the kernels' stack or too large for 32-bit indices.
 SceneBvh build_bvh(const Scene& scene, const std::string& cache_folder = "");
+
+/// From one value of an array up to another.
+struct IndexRange {
+  std::size_t begin = 0, end = 0;
+};
+
+/// What an update of an UpdatableBvh did.
+struct BvhUpdate {
+  std::size_t objects_kept = 0;      ///< they had not moved
+  std::size_t objects_refitted = 0;  ///< over the trees that they had
+  std::size_t objects_rebuilt = 0;   ///< for want of a record, by another form, or by cost_ratio
+  double seconds = 0;                ///< wall time
+  double cost_ratio = 1;  ///< SAH cost after refitting over that when built, of the worst object
+  bool is_new = false;    ///< every array is another one
+  /// Else these parts of the nodes and triangle blocks changed.
+  std::vector<IndexRange> nodes, blocks;
+  bool placement = false;  ///< and the instances, root and bounds
+};
+
+/// A SceneBvh that follows its scene as things move.
+class UpdatableBvh {
+ public:
+  enum class Motion {
+    maybe,     ///< objects are built anew when they first move; until then nothing more is kept
+    expected,  ///< what refitting needs is kept from the start, some 20 bytes a triangle
+  };
+
+  /// Builds as build_bvh(); `cache_folder` is of use when motion is not expected.
+  explicit UpdatableBvh(const Scene& scene, Motion motion = Motion::expected,
+                        const std::string& cache_folder = "");
+  ~UpdatableBvh();
+  UpdatableBvh(UpdatableBvh&&) noexcept;
+  UpdatableBvh& operator=(UpdatableBvh&&) noexcept;
+
+  /// Makes it the BVH of `moved`. Objects whose vertices moved are refitted, in time linear in
+  /// their triangles and with the same bits whatever the thread count, and rebuilt when their trees
+  /// have become too costly; the top level is made anew. Meshes that are not what they were in more
+  /// than positions are rebuilt, and all when there is another number of meshes. Arrays change in
+  /// place: no device may be using them (HostAccess). Throws as build_bvh().
+  BvhUpdate update(const Scene& moved);
+
+  [[nodiscard]] const SceneBvh& bvh() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace dapple

@@ -57,7 +57,12 @@ struct DeviceScene {
 };
 
 /// Copies what the kernels need. On devices that share the host's memory nothing is
-/// copied and `bvh` must outlive the DeviceScene. Throws Error device when it cannot fit.
+/// copied. Throws Error device when it cannot fit.
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh);
+
+/// Makes `bvh`, which `on_device` is of, that of `moved`, and brings over what changed: on devices
+/// that share the host's memory nothing but lights. Throws as UpdatableBvh::update() and upload().
+BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
+                 const Scene& moved);
 
 }  // namespace dapple

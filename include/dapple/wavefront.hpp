@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,10 +18,10 @@ namespace dapple {
 
 struct RenderStatistics {
   struct {
-    double load = 0, cache = 0, build = 0, prefilter = 0, upload = 0, kernel_build = 0, trace = 0,
-           checkpoint = 0, write = 0, total = 0;
-  } seconds;  ///< wall time; cache is reading and writing it, trace all passes, camera rays
-              ///< included, checkpoints not
+    double load = 0, cache = 0, build = 0, prefilter = 0, refit = 0, upload = 0, kernel_build = 0,
+           trace = 0, checkpoint = 0, write = 0, total = 0;
+  } seconds;  ///< wall time; cache is reading and writing it, refit is finding what moved and
+              ///< refitting it, trace all passes, camera rays included, checkpoints not
   std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
   struct {
     std::uint64_t camera = 0, ao = 0, light = 0;
@@ -38,6 +39,12 @@ struct RenderStatistics {
     std::size_t objects_read = 0, objects_written = 0;
     double seconds_saved = 0;  ///< building what was read once took so much longer than reading it
   } cache;
+  /// Of a Renderer's renders after its first: what became of the BVHs that it had.
+  struct {
+    bool used = false;
+    std::size_t objects_kept = 0, objects_refitted = 0, objects_rebuilt = 0;
+    double cost_ratio = 1;  ///< BvhUpdate::cost_ratio
+  } refit;
   struct {
     std::size_t nodes = 0, triangles = 0, segments = 0, textures = 0, instances = 0, film = 0,
                 queues = 0;
@@ -76,8 +83,26 @@ struct RenderControl {
   std::string resume;
 };
 
-/// Renders `scene` as `options` say: applies overrides, ground, lights and camera, builds,
-/// uploads, traces. Throws Error usage, input, device or failed.
+/// Renders pictures one after the other, as of a scene that moves. Keeps the device with its
+/// kernels and the scene's BVH from one to the next, so that only what moved is refitted and
+/// brought to the device (UpdatableBvh: built once more when things first move).
+class Renderer {
+ public:
+  Renderer();
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// Renders `scene` as `options` say: applies overrides, ground, lights and camera, builds or
+  /// refits, uploads, traces. Throws Error usage, input, device or failed, and keeps nothing then.
+  RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control = {});
+
+ private:
+  struct Kept;
+  std::unique_ptr<Kept> kept_;
+};
+
+/// A Renderer used once.
 RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control);
 RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress = {});
 

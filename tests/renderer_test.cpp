@@ -1,0 +1,154 @@
+// A Renderer's pictures of a tree in the wind, one after the other, against those of fresh renders;
+// the memory that a thousand of them take.
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <cmath>
+#include <fstream>
+#include <numeric>
+
+#include "dapple/error.hpp"
+#include "dapple/wavefront.hpp"
+#include "swaying.hpp"
+
+namespace dapple {
+namespace {
+
+using motion::swayed;
+
+RenderOptions small_picture(Estimator estimator, int size = 48, int spp = 8) {
+  RenderOptions options;
+  options.width = options.height = size;
+  options.spp = spp;
+  options.estimator = estimator;
+  options.look = LookAt{V3f(0, 6, 24), V3f(0, 5, 0), V3f(0, 1, 0)};
+  return options;
+}
+
+double mean_of(const RenderResult& result, const std::string& channel) {
+  const Plane* plane = result.film.find(channel);
+  if (!plane) throw Error(ErrorKind::failed, "no channel " + channel);
+  return std::accumulate(plane->pixels.begin(), plane->pixels.end(), 0.0) /
+         static_cast<double>(plane->pixels.size());
+}
+
+double mean_ao(const RenderResult& result) { return mean_of(result, "ao.R"); }
+
+Scene tree(int leaves) { return make_procedural("scene:tree?leaves=" + std::to_string(leaves)); }
+
+TEST(Renderer, PicturesOfAMovingTreeAreThoseOfFreshBvhs) {
+  const Scene still = tree(20000);
+  for (const auto& [estimator, tolerance] :
+       {std::pair(Estimator::exact, 0.0005), std::pair(Estimator::prefiltered, 0.003)}) {
+    const RenderOptions options = small_picture(estimator);
+    Renderer renderer;
+    renderer.render(still, options);
+    renderer.render(swayed(still, 0.1f), options);
+    for (const float time : {0.5f, 1.5f, 3.1f}) {
+      const Scene moved = swayed(still, time);
+      const RenderResult refitted = renderer.render(moved, options), fresh = render(moved, options);
+      EXPECT_TRUE(refitted.statistics.refit.used);
+      EXPECT_EQ(refitted.statistics.refit.objects_refitted, 1u);
+      EXPECT_EQ(refitted.statistics.refit.objects_rebuilt, 0u);
+      std::printf("%s at %.1f s: AO %.5f, fresh %.5f\n", name_of(estimator).c_str(), time,
+                  mean_ao(refitted), mean_ao(fresh));
+      EXPECT_NEAR(mean_ao(refitted), mean_ao(fresh), tolerance);
+      EXPECT_NEAR(mean_of(refitted, "light.key.R"), mean_of(fresh, "light.key.R"), 0.01);
+    }
+  }
+}
+
+TEST(Renderer, TheSamePictureTwiceIsTheSameBits) {
+  const Scene still = tree(500);
+  const RenderOptions options = small_picture(Estimator::prefiltered);
+  Renderer renderer;
+  const RenderResult first = renderer.render(still, options),
+                     second = renderer.render(still, options), fresh = render(still, options);
+  EXPECT_EQ(second.statistics.refit.objects_kept, 1u);
+  for (std::size_t p = 0; p < first.film.planes.size(); ++p) {
+    EXPECT_EQ(first.film.planes[p].pixels, second.film.planes[p].pixels);
+    EXPECT_EQ(first.film.planes[p].pixels, fresh.film.planes[p].pixels);
+  }
+}
+
+TEST(Renderer, GoesOnAfterAnError) {
+  const Scene still = tree(500);
+  const RenderOptions options = small_picture(Estimator::prefiltered);
+  RenderOptions wrong = options;
+  wrong.camera = "none of that name";
+  Renderer renderer;
+  const double before = mean_ao(renderer.render(still, options));
+  EXPECT_THROW(renderer.render(still, wrong), Error);
+  EXPECT_EQ(mean_ao(renderer.render(still, options)), before);
+}
+
+TEST(Renderer, AnotherSceneIsAnotherPicture) {
+  const RenderOptions options = small_picture(Estimator::prefiltered);
+  Renderer renderer;
+  renderer.render(tree(500), options);
+  const Scene cloud = make_procedural("scene:cloud?leaves=500");
+  EXPECT_EQ(mean_ao(renderer.render(cloud, options)), mean_ao(render(cloud, options)));
+}
+
+/// A film's rate: the fastest leaves turn by some 5 degrees from one frame to the next.
+constexpr float kFrameSeconds = 1.0f / 24;
+
+// Exact pictures of the same samples tell how much of a step is motion and noise.
+TEST(Renderer, AHundredFramesOfASwayingTreeDontPop) {
+  const Scene still = tree(5000);
+  Renderer exact, prefiltered;
+  double last_exact = 0, last = 0, most = 0, most_exact = 0, most_beyond = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    const Scene moved = swayed(still, kFrameSeconds * static_cast<float>(frame));
+    const double e = mean_ao(exact.render(moved, small_picture(Estimator::exact, 32, 4)));
+    const double p =
+        mean_ao(prefiltered.render(moved, small_picture(Estimator::prefiltered, 32, 4)));
+    if (frame > 0) {
+      most = std::max(most, std::fabs(p - last));
+      most_exact = std::max(most_exact, std::fabs(e - last_exact));
+      most_beyond = std::max(most_beyond, std::fabs((p - last) - (e - last_exact)));
+    }
+    last_exact = e;
+    last = p;
+  }
+  std::printf("largest step of mean AO exact %.5f, prefiltered %.5f, apart %.5f\n", most_exact,
+              most, most_beyond);
+  EXPECT_LT(most_beyond, 0.003);
+}
+
+std::size_t resident_bytes() {
+  malloc_trim(0);
+  std::ifstream statm("/proc/self/statm");
+  std::size_t size = 0, resident = 0;
+  statm >> size >> resident;
+  return resident * 4096;
+}
+
+/// Runs `frame` a hundred times, then 1,000 more: memory may grow by a hundredth.
+template <class Frame>
+void expect_flat_memory(const Frame& frame) {
+  for (int i = 0; i < 100; ++i) frame(i);
+  const auto before = static_cast<double>(resident_bytes());
+  for (int i = 100; i < 1100; ++i) frame(i);
+  const auto after = static_cast<double>(resident_bytes());
+  std::printf("%.1f MB before, %.1f MB after 1,000\n", before * 1e-6, after * 1e-6);
+  EXPECT_LT(after, 1.01 * before);
+}
+
+TEST(FlatMemory, AThousandFramesOfOneRenderer) {
+  const Scene still = tree(300);
+  const RenderOptions options = small_picture(Estimator::prefiltered, 8, 1);
+  Renderer renderer;
+  expect_flat_memory([&](int i) {
+    renderer.render(swayed(still, kFrameSeconds * static_cast<float>(i)), options);
+  });
+}
+
+TEST(FlatMemory, AThousandRendersOfOneProcess) {
+  const Scene still = tree(300);
+  const RenderOptions options = small_picture(Estimator::prefiltered, 8, 1);
+  expect_flat_memory([&](int) { render(still, options); });
+}
+
+}  // namespace
+}  // namespace dapple
