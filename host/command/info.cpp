@@ -47,6 +47,9 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   json["instances"] = s.instances;
   json["materials"] = nlohmann::ordered_json::array();
   for (const Material& material : scene.materials) json["materials"].push_back(material.name);
+  json["animations"] = nlohmann::ordered_json::array();
+  for (const Animation& animation : scene.animations)
+    json["animations"].push_back({{"name", animation.name}, {"seconds", animation.seconds}});
   json["lights"] = scene.lights.size();
   json["cameras"] = scene.cameras.size();
   json["bounds"] = {{"min", {bvh.bounds.min.x, bvh.bounds.min.y, bvh.bounds.min.z}},
@@ -88,6 +91,13 @@ std::string report_text(const nlohmann::ordered_json& r) {
   text += fmt::format("  instances   {}, lights {}, cameras {}\n", r["instances"].dump(),
                       r["lights"].dump(), r["cameras"].dump());
   text += fmt::format("  materials   {}\n", materials);
+  std::string animations;
+  for (const auto& animation : r["animations"]) {
+    animations +=
+        fmt::format("{}{} ({:.2f} s)", animations.empty() ? "" : ", ",
+                    animation["name"].get<std::string>(), animation["seconds"].get<double>());
+  }
+  if (!animations.empty()) text += fmt::format("  animations  {}\n", animations);
   text += fmt::format("  bounds      {} to {} m\n", r["bounds"]["min"].dump(),
                       r["bounds"]["max"].dump());
   text += fmt::format(
@@ -128,8 +138,12 @@ void run_info(const InfoArguments& a) {
 
 Run add_info_command(CLI::App& app) {
   auto a = std::make_shared<InfoArguments>();
-  app.add_option("SCENE", a->scene, "glTF file or procedural scene")->required();
+  app.add_option("SCENE", a->scene, "glTF file, .hair file or procedural scene")->required();
   app.add_option("--opacity", a->opacity, "MATERIAL=VALUE, as for render");
+  app.add_option("--frame", a->scene_options.time, "Seconds, as for render");
+  app.add_option("--animation", a->scene_options.animation, "As for render");
+  app.add_option("--line-radius", a->scene_options.line_radius,
+                 "Radius of a glTF file's lines, metres, as for render");
   app.add_flag("--allow-outside", a->scene_options.allow_outside,
                "Let a glTF file name buffers and images outside of its folder");
   app.add_option("--cache", a->cache, "Folder of built BVHs, as for render");

@@ -64,6 +64,25 @@ std::pair<std::string, float> parse_opacity(const std::string& text) {
           parse_number<float>("--opacity " + text.substr(0, at), text.substr(at + 1))};
 }
 
+FrameRange parse_frames(const std::string& text) {
+  constexpr std::int64_t kMostFrames = 100'000, kLargestNumber = 1'000'000'000;
+  const auto fail = [&](const char* expected) {
+    throw Error(ErrorKind::usage, fmt::format("--frames {}: expected {}", text, expected));
+  };
+  const auto parts = split(text, ':');
+  const auto ends = split(parts[0], '-');
+  if (parts.size() > 2 || ends.size() > 2) fail("A-B or A-B:STEP, as in 1-24 or 0-100:10");
+  FrameRange range;
+  range.first = parse_number<std::int64_t>("--frames", ends.front());
+  range.last = parse_number<std::int64_t>("--frames", ends.back());
+  if (parts.size() == 2) range.step = parse_number<std::int64_t>("--frames", parts[1]);
+  if (range.last < range.first) fail("the first frame before the last");
+  if (range.last > kLargestNumber || range.step < 1 || range.step > kLargestNumber)
+    fail("numbers up to 1000000000, and a step of 1 or more");
+  if (range.count() > kMostFrames) fail("at most 100000 frames");
+  return range;
+}
+
 Estimator parse_estimator(const std::string& text) {
   if (text == "exact") return Estimator::exact;
   if (text == "prefiltered") return Estimator::prefiltered;

@@ -1,6 +1,7 @@
 // Option values as typed, to what they mean. All throw Error usage naming the flag.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -20,6 +21,16 @@ Estimator parse_estimator(const std::string& text);
 Company parse_company(const std::string& text);
 /// "ao", "light", "ao,light"
 void parse_passes(const std::string& text, RenderOptions& options);
+
+/// Frames by number: first, first + step, ... up to last.
+struct FrameRange {
+  std::int64_t first = 0, last = 0, step = 1;
+
+  [[nodiscard]] std::int64_t count() const { return (last - first) / step + 1; }
+};
+
+/// "1-24", "1-100:10", "7": not negative, at most 100,000 of them
+FrameRange parse_frames(const std::string& text);
 
 /// "30", "30s", "5m", "1h" to seconds, above 0
 double parse_seconds(const std::string& flag, const std::string& text);

@@ -31,6 +31,18 @@ bool is_same_file(const std::string& a, const std::string& b) {
 
 }  // namespace
 
+bool has_frame_digits(const std::string& path) {
+  return fs::path(path).filename().string().find('#') != std::string::npos;
+}
+
+std::string frame_path(const std::string& pattern, std::int64_t number) {
+  const std::size_t last = pattern.find_last_of('#');
+  const std::size_t before = pattern.find_last_not_of('#', last);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  return fmt::format("{}{:0{}}{}", pattern.substr(0, first), number, last - first + 1,
+                     pattern.substr(last + 1));
+}
+
 void check_outputs(const std::vector<OutputPath>& outputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     try {

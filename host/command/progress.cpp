@@ -46,14 +46,20 @@ void ProgressBar::show(double done) {
   const std::string left =
       done > begun_ ? duration_text(elapsed * (1 - done) / (done - begun_)) + " left" : "starting";
   if (!terminal_) {
-    fmt::print(stderr, "rendering: {:.0f} %, {}\n", 100 * done, left);
+    fmt::print(stderr, "rendering{}{}: {:.0f} %, {}\n", what_.empty() ? "" : " ", what_, 100 * done,
+               left);
     return;
   }
   const int full = static_cast<int>(done * kWidth);
-  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}", std::string(full, '#'),
-             std::string(kWidth - full, '.'), 100 * done, left);
+  fmt::print(stderr, "\r\033[K{}{}[{}{}] {:3.0f} %  {}", what_, what_.empty() ? "" : " ",
+             std::string(full, '#'), std::string(kWidth - full, '.'), 100 * done, left);
   std::fflush(stderr);
   drawn_ = true;
+}
+
+void ProgressBar::begin(const std::string& what) {
+  what_ = what;
+  begun_ = -1;
 }
 
 void ProgressBar::clear() {

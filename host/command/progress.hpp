@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 
 #include "dapple/wavefront.hpp"
 
@@ -16,6 +17,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(double done);
+  /// Begins anew with the next of several renders, of which the bar says `what` it is.
+  void begin(const std::string& what);
   /// Erases the bar, so that other text can follow.
   void clear();
   [[nodiscard]] Progress callback() {
@@ -24,6 +27,7 @@ class ProgressBar {
 
  private:
   bool quiet_, terminal_, drawn_ = false;
+  std::string what_;
   double begun_ = -1;  ///< what was done when it was first told
   std::chrono::steady_clock::time_point start_, last_;
 };

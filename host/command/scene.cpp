@@ -55,10 +55,11 @@ Run add_scene_command(CLI::App& app) {
     check_outputs({{"--output", a->output}});
     const Scene scene = make_procedural(scene_name(*a));
     write_glb(scene, a->output);
-    std::size_t triangles = 0;
-    for (const Mesh& mesh : scene.meshes) triangles += mesh.primitive_count();
-    fmt::print("wrote {}: {} triangles, {} instances\n", a->output, triangles,
-               scene.instances.size());
+    std::size_t triangles = 0, segments = 0;
+    for (const Mesh& mesh : scene.meshes)
+      (mesh.has_strands() ? segments : triangles) += mesh.primitive_count();
+    fmt::print("wrote {}: {} triangles, {}{} instances\n", a->output, triangles,
+               segments > 0 ? fmt::format("{} segments, ", segments) : "", scene.instances.size());
   };
 }
 

@@ -1,21 +1,35 @@
 // Chooses the reader of a scene by its name. In: a file's path or "scene:..."; out: a Scene.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/hair_file.hpp"
 
 namespace dapple {
+namespace {
+
+void check_radius(const char* flag, float radius, const char* otherwise) {
+  constexpr float kLeast = 1e-6f, kMost = 1e6f;
+  if (radius >= kLeast && radius <= kMost) return;
+  throw Error(ErrorKind::usage, fmt::format("{} is {:g}; it must be {}from {:g} to {:g}", flag,
+                                            radius, otherwise, kLeast, kMost));
+}
+
+}  // namespace
 
 void validate(const SceneOptions& options) {
-  constexpr float kLeast = 1e-6f, kMost = 1e6f;
-  if (options.light_radius >= kLeast && options.light_radius <= kMost) return;
-  throw Error(ErrorKind::usage, fmt::format("--light-radius is {:g}; it must be from {:g} to {:g}",
-                                            options.light_radius, kLeast, kMost));
+  check_radius("--light-radius", options.light_radius, "");
+  if (options.line_radius != 0) check_radius("--line-radius", options.line_radius, "0 or ");
+  if (options.time && !std::isfinite(*options.time))
+    throw Error(ErrorKind::usage, "--frame must be a finite number of seconds");
 }
 
 Scene load_scene(const std::string& spec, const SceneOptions& options) {
   validate(options);
-  return spec.starts_with("scene:") ? make_procedural(spec) : load_gltf(spec, options);
+  if (spec.starts_with("scene:")) return make_procedural(spec, options.time);
+  return is_hair_name(spec) ? load_hair(spec) : load_gltf(spec, options);
 }
 
 }  // namespace dapple

@@ -45,7 +45,8 @@ std::vector<Recipe> make_recipes() {
          leaf_size(),
          seed(),
          {"height", 8, 0.5, 100, false, "height in metres"},
-         {"wood", 1, 0, 1, true, "1: with trunk and branches, 0: leaves only"}}},
+         {"wood", 1, 0, 1, true, "1: with trunk and branches, 0: leaves only"},
+         {"wind", 0, 0, 3, false, "strength of the wind that sways it with the time; 0: calm"}}},
        make_tree_scene},
       {{"cloud",
         "leaves turned at random in a ball of radius 2 m, 2.5 m above the origin",
@@ -60,6 +61,15 @@ std::vector<Recipe> make_recipes() {
          {"spacing", 6, 0.5, 100, false, "mean distance between trees in metres"},
          seed()}},
        make_forest_scene},
+      {{"hair",
+        "a head of curly hair looking along +Z: materials \"hair\" and \"skin\"",
+        {{"strands", 20000, 1, 2'000'000, true, "number of strands"},
+         {"segments", 16, 1, 256, true, "segments of each strand"},
+         {"radius", 0, 0, 0.01, false, "metres at the root; 0: thinner the more strands"},
+         {"curl", 0.5, 0, 1, false, "0: straight, 1: tight curls"},
+         opacity_of("hair", 0.3),
+         {"seed", 1, 0, 4294967295.0, true, "another seed, another hairdo"}}},
+       make_hair_scene},
       {{"stack",
         "square sheets of 2 m, one above the other, over a ground: material \"sheet\"",
         {{"layers", 4, 1, 10000, true, "number of sheets"},
@@ -109,14 +119,14 @@ std::vector<ProceduralHelp> procedural_help() {
   return help;
 }
 
-Scene make_procedural(const std::string& name) {
+Scene make_procedural(const std::string& name, std::optional<double> time) {
   std::string_view rest = name;
   if (rest.starts_with("scene:")) rest.remove_prefix(6);
   const std::size_t mark = rest.find('?');
   const Recipe& recipe = find_recipe(rest.substr(0, mark));
   const std::string_view query =
       mark == std::string_view::npos ? std::string_view{} : rest.substr(mark + 1);
-  Scene scene = recipe.make(ProceduralParameters(recipe.help, query));
+  Scene scene = recipe.make(ProceduralParameters(recipe.help, query, time));
   scene.source = fmt::format("scene:{}", rest);
   return scene;
 }

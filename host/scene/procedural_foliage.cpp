@@ -103,6 +103,7 @@ Scene make_tree_scene(const ProceduralParameters& parameters) {
   shape.height_m = parameters.real("height");
   shape.leaf_length_m = given_leaf_length(parameters);
   shape.wood = parameters.whole("wood") == 1;
+  if (parameters.time()) shape.wind = {double{parameters.real("wind")}, *parameters.time()};
   Scene scene;
   add_tree_materials(scene, parameters.real("opacity"), shape.wood);
   place(scene, make_tree(shape, {kLeafMaterial, kBarkMaterial}));

@@ -44,10 +44,12 @@ std::string list_names(const std::vector<ProceduralParameter>& table) {
 
 }  // namespace
 
-ProceduralParameters::ProceduralParameters(const ProceduralHelp& scene, std::string_view query)
+ProceduralParameters::ProceduralParameters(const ProceduralHelp& scene, std::string_view query,
+                                           std::optional<double> time)
     : scene_("scene:" + scene.name),
       table_(scene.parameters),
-      given_(scene.parameters.size(), false) {
+      given_(scene.parameters.size(), false),
+      time_(time) {
   for (const ProceduralParameter& parameter : table_) values_.push_back(parameter.default_value);
   while (!query.empty()) {
     const std::size_t end = query.find('&');

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,11 +16,14 @@ class ProceduralParameters {
  public:
   /// `query` is what follows the '?', or empty. Throws Error usage naming the scene, the key
   /// and what is allowed.
-  ProceduralParameters(const ProceduralHelp& scene, std::string_view query);
+  ProceduralParameters(const ProceduralHelp& scene, std::string_view query,
+                       std::optional<double> time = {});
 
   /// The value of a parameter of the scene's table.
   [[nodiscard]] float real(std::string_view name) const;
   [[nodiscard]] std::uint32_t whole(std::string_view name) const;
+  /// Seconds, of what moves; none: at rest.
+  [[nodiscard]] std::optional<double> time() const { return time_; }
 
  private:
   void assign(std::string_view pair);
@@ -30,6 +34,7 @@ class ProceduralParameters {
   std::vector<ProceduralParameter> table_;
   std::vector<double> values_;
   std::vector<bool> given_;
+  std::optional<double> time_;
 };
 
 }  // namespace dapple

@@ -13,6 +13,9 @@ Scene make_cloud_scene(const ProceduralParameters& parameters);
 Scene make_forest_scene(const ProceduralParameters& parameters);
 Scene make_demo_scene(const ProceduralParameters& parameters);
 
+// Strands (procedural_hair.cpp).
+Scene make_hair_scene(const ProceduralParameters& parameters);
+
 // Shapes whose occlusion is known in closed form (procedural_solids.cpp).
 Scene make_stack_scene(const ProceduralParameters& parameters);
 Scene make_disk_scene(const ProceduralParameters& parameters);

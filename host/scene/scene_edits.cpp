@@ -6,6 +6,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/ground.hpp"
 #include "scene/mesh_shapes.hpp"
 
 namespace dapple {
@@ -41,8 +42,9 @@ void override_opacity(Scene& scene, const std::string& name, float value) {
   }
 }
 
-void add_ground(Scene& scene) {
-  const Box3f bounds = scene_bounds(scene);
+void add_ground(Scene& scene) { add_ground(scene, scene_bounds(scene)); }
+
+void add_ground(Scene& scene, const Box3f& bounds) {
   if (bounds.isEmpty()) {
     throw Error(ErrorKind::input,
                 fmt::format("{}: there is nothing to put a ground under", scene.source));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "scene/mesh_shapes.hpp"
 #include "scene/pcg32.hpp"
@@ -41,23 +42,39 @@ int sides_of(float radius, float trunk_radius) {
   return share > 0.5f ? 12 : share > 0.25f ? 7 : share > 0.12f ? 5 : 3;
 }
 
+/// Carries the tube that begins at vertex `first`, whose rings are around `nodes`, from rest.
+void sway_tube(Mesh& mesh, std::size_t first, const std::vector<std::uint32_t>& nodes, int sides,
+               const SwayingSkeleton& swaying) {
+  for (std::size_t v = first; v < mesh.positions.size(); ++v) {
+    const std::size_t ring = (v - first) / static_cast<std::size_t>(sides);
+    mesh.positions[v] = swaying.moved(nodes[ring], mesh.positions[v]);
+  }
+}
+
 // Every branch is a tube from its parent's axis to its tip, with as many sides as its
 // thickness deserves.
-void append_wood(Mesh& mesh, const TreeSkeleton& tree, std::uint32_t material) {
+void append_wood(Mesh& mesh, const TreeSkeleton& tree, const SwayingSkeleton* swaying,
+                 std::uint32_t material) {
   const std::vector<std::uint32_t> leaders = find_leaders(tree);
+  std::vector<std::uint32_t> nodes;
   std::vector<V3f> points;
   std::vector<float> radii;
   for (std::uint32_t first = 1; first < tree.size(); ++first) {
     const std::uint32_t parent = tree.parents[first];
     const bool is_trunk = parent == 0 && leaders[0] == first;
     if (!is_trunk && leaders[parent] == first) continue;
+    nodes = {parent};
     points = {tree.positions[parent]};
     radii = {tree.radii[is_trunk ? parent : first]};
     for (std::uint32_t node = first; node != 0; node = leaders[node]) {
+      nodes.push_back(node);
       points.push_back(tree.positions[node]);
       radii.push_back(tree.radii[node]);
     }
-    append_tube(mesh, points, radii, sides_of(radii[0], tree.radii[0]), material);
+    const std::size_t first_vertex = mesh.positions.size();
+    const int sides = sides_of(radii[0], tree.radii[0]);
+    append_tube(mesh, points, radii, sides, material);
+    if (swaying != nullptr) sway_tube(mesh, first_vertex, nodes, sides, *swaying);
   }
 }
 
@@ -80,8 +97,15 @@ Blade grow_leaf(Pcg32& rng, V3f twig, V3f twig_foot, float reach, float length) 
   return blade;
 }
 
-void append_leaves(Mesh& mesh, const TreeSkeleton& tree, const TreeShape& shape,
-                   std::uint32_t material) {
+Blade carry_leaf(Blade leaf, const SwayingSkeleton& swaying, std::uint32_t twig) {
+  leaf.base = swaying.moved(twig, leaf.base);
+  leaf.axis = swaying.turned(twig, leaf.axis);
+  leaf.normal = swaying.turned(twig, leaf.normal);
+  return leaf;
+}
+
+void append_leaves(Mesh& mesh, const TreeSkeleton& tree, const SwayingSkeleton* swaying,
+                   const TreeShape& shape, std::uint32_t material) {
   BladeRange blades(mesh, shape.leaves, material);
   const float length = leaf_length(shape);
   const float reach = 0.034f * shape.height_m;
@@ -91,8 +115,11 @@ void append_leaves(Mesh& mesh, const TreeSkeleton& tree, const TreeShape& shape,
       const std::uint64_t twig_count = tree.twigs.size();
       const std::uint32_t twig = tree.twigs[leaf * twig_count / shape.leaves];
       Pcg32 rng(shape.seed, leaf);
-      blades.set(leaf, grow_leaf(rng, tree.positions[twig], tree.positions[tree.parents[twig]],
-                                 reach, length));
+      Blade blade =
+          grow_leaf(rng, tree.positions[twig], tree.positions[tree.parents[twig]], reach, length);
+      if (swaying != nullptr)
+        blade = flutter(carry_leaf(blade, *swaying, twig), shape.wind, shape.seed, leaf);
+      blades.set(leaf, blade);
     }
   };
   tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, shape.leaves, 4096), grow);
@@ -102,10 +129,13 @@ void append_leaves(Mesh& mesh, const TreeSkeleton& tree, const TreeShape& shape,
 
 Mesh make_tree(const TreeShape& shape, const TreeMaterials& materials) {
   const TreeSkeleton skeleton = grow_skeleton(shape.seed, shape.height_m);
+  std::optional<SwayingSkeleton> swaying;
+  if (shape.wind.blows()) swaying.emplace(skeleton, shape.height_m, shape.wind);
+  const SwayingSkeleton* const sway = swaying ? &*swaying : nullptr;
   Mesh mesh;
   mesh.name = "tree";
-  if (shape.wood) append_wood(mesh, skeleton, materials.bark);
-  append_leaves(mesh, skeleton, shape, materials.leaf);
+  if (shape.wood) append_wood(mesh, skeleton, sway, materials.bark);
+  append_leaves(mesh, skeleton, sway, shape, materials.leaf);
   return mesh;
 }
 

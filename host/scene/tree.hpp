@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "dapple/scene.hpp"
+#include "scene/tree_sway.hpp"
 
 namespace dapple {
 
@@ -14,6 +15,7 @@ struct TreeShape {
   float height_m = 8;
   float leaf_length_m = 0;  ///< 0: so that the leaf area index is a real crown's
   bool wood = true;
+  Wind wind;  ///< that sways it
 };
 
 struct TreeMaterials {
@@ -22,7 +24,7 @@ struct TreeMaterials {
 };
 
 /// Y up, the trunk's foot at the origin. The same bits for the same shape, on any machine and
-/// any number of threads.
+/// any number of threads; the same vertices and triangles, in number and order, in any wind.
 Mesh make_tree(const TreeShape& shape, const TreeMaterials& materials);
 
 }  // namespace dapple

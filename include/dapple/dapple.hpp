@@ -5,6 +5,7 @@
 #include "dapple/device.hpp"
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
+#include "dapple/moving_scene.hpp"
 #include "dapple/options.hpp"
 #include "dapple/scene.hpp"
 #include "dapple/wavefront.hpp"

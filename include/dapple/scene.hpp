@@ -114,6 +114,12 @@ struct Camera {
   float half_height = 1;  ///< orthographic: ymag, metres
 };
 
+/// Motion that a scene's file brings.
+struct Animation {
+  std::string name;
+  double seconds = 0;  ///< when its last keyframe is
+};
+
 struct Scene {
   std::string source;  ///< file or scene: name, for messages and metadata
   std::vector<Texture> textures;
@@ -122,27 +128,33 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
+  std::vector<Animation> animations;  ///< SceneOptions::animation chooses one
   std::vector<std::string> warnings;  ///< what the reader skipped, one line each
   std::vector<std::string> files;     ///< paths of the scene, its buffers and its images
 };
 
 struct SceneOptions {
   float light_radius = 0.1f;   ///< metres: KHR point and spot lights become spheres of this radius
+  float line_radius = 0;       ///< metres: glTF's lines become strands of this radius; 0: left out
   bool allow_outside = false;  ///< buffers and images may be outside of the scene file's folder
+  std::optional<double> time;  ///< seconds: what moves is as it is then; none: at rest
+  std::string animation;       ///< the glTF animation that plays, "*" for all; empty: the first
 };
 
 /// Throws Error usage, naming the command line's flag, when a value is out of range.
 void validate(const SceneOptions& options);
 
-/// Reads a scene: a glTF 2.0 file (.gltf or .glb), or a procedural one by name,
-/// "scene:tree?leaves=50000&opacity=0.85&seed=1". Throws Error: input.
+/// Reads a scene: a glTF 2.0 file (.gltf or .glb), strands in a file of Cem Yuksel's HAIR format
+/// (.hair), or a procedural one by name, "scene:tree?leaves=50000&opacity=0.85&seed=1". What moves
+/// is read once and posed for many times by MovingScene. Throws Error: input.
 Scene load_scene(const std::string& spec, const SceneOptions& options = {});
 
 /// Reads only glTF; `load_scene` calls it. Throws Error: input.
 Scene load_gltf(const std::string& path, const SceneOptions& options = {});
 
-/// Makes only procedural scenes; `name` as "scene:NAME?key=value&...". Throws Error: usage.
-Scene make_procedural(const std::string& name);
+/// Makes only procedural scenes; `name` as "scene:NAME?key=value&...", `time` in seconds as in
+/// SceneOptions. Throws Error: usage.
+Scene make_procedural(const std::string& name, std::optional<double> time = {});
 
 /// Reads a JSON file of lights (README, "Lights"). Throws Error: input.
 std::vector<Light> load_lights(const std::string& path);

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -72,6 +72,12 @@ void require_type(const Document& document, int accessor, const std::string& who
   if (fits) return;
   fail(document.file, "{} is accessor {}, which is {}: not a type that it can have", who, accessor,
        type_name(given));
+}
+
+std::uint64_t sparse_count(const Document& document, int accessor) {
+  if (accessor < 0) return 0;
+  const auto& sparse = document.model.accessors[static_cast<std::size_t>(accessor)].sparse;
+  return sparse.isSparse ? static_cast<std::uint64_t>(sparse.count) : 0;
 }
 
 AccessorReader::AccessorReader(const Document& document, int index) {
@@ -141,6 +147,15 @@ float AccessorReader::number_of(const std::uint8_t* element, std::uint64_t compo
       return load<float>(bytes);
   }
   return 0.0f;
+}
+
+Imath::M44d AccessorReader::matrix(std::uint64_t i) const {
+  Imath::M44d matrix;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column)
+      matrix[row][column] = double{number(i, static_cast<std::uint64_t>(4 * row + column))};
+  }
+  return matrix;
 }
 
 Imath::V2f AccessorReader::vec2(std::uint64_t i) const {

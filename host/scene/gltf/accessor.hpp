@@ -2,6 +2,7 @@
 // comes a validated document, out come numbers.
 #pragma once
 
+#include <Imath/ImathMatrix.h>
 #include <Imath/ImathVec.h>
 
 #include <cstdint>
@@ -37,6 +38,10 @@ std::string type_name(const tinygltf::Accessor& accessor);
 void require_type(const Document& document, int accessor, const std::string& who,
                   std::initializer_list<int> types, std::initializer_list<Component> components);
 
+/// How many values a sparse accessor replaces, each of which a reader looks at; 0 for others and
+/// where `accessor` is -1.
+std::uint64_t sparse_count(const Document& document, int accessor);
+
 class AccessorReader {
  public:
   /// Throws Error input when sparse indices do not increase or exceed the count.
@@ -54,6 +59,8 @@ class AccessorReader {
   [[nodiscard]] float normalized(std::uint64_t i, std::uint64_t component) const {
     return number_of(element(i), component, true);
   }
+  /// Row by row for p' = p M, as glTF stores the columns of its transpose.
+  [[nodiscard]] Imath::M44d matrix(std::uint64_t i) const;
   [[nodiscard]] Imath::V2f vec2(std::uint64_t i) const;
   [[nodiscard]] Imath::V3f vec3(std::uint64_t i) const;
   /// An unsigned integer, for accessors of indices.

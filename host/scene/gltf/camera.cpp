@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 static_assert(std::endian::native == std::endian::little, "glTF's bytes are read in place");
 

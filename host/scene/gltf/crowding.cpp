@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

@@ -10,10 +10,9 @@
 #include "scene/gltf/container.hpp"
 #include "scene/gltf/element_check.hpp"
 #include "scene/gltf/json_text.hpp"
-#include "scene/gltf/message.hpp"
-#include "scene/gltf/motion.hpp"
 #include "scene/gltf/schema.hpp"
 #include "scene/gltf/uri.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -203,7 +202,7 @@ Document load_document(const std::string& path, bool allow_outside) {
   check_schema(root, path);
   check_version(root, path);
   check_extensions(root.value("extensionsRequired", std::vector<std::string>()), path);
-  check_motion(root, path);
+  document.motion = read_motion(root, path);
   if (root.contains("nodes")) check_transforms(root["nodes"], path);
   load_buffers(document, take(root, "buffers"), container.binary);
   find_images(document, take(root, "images"));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/gltf/file.hpp"
+#include "scene/gltf/motion.hpp"
 #include "scene/gltf/tinygltf.hpp"
 #include "scene/gltf/uri.hpp"
 
@@ -28,6 +29,7 @@ struct Document {
   std::vector<Bytes> storage;  ///< owns what `buffers` views
   std::vector<std::span<const std::uint8_t>> buffers;  ///< byteLength bytes each
   std::vector<ImageSource> images;
+  Motion motion;
   std::vector<std::string> files;  ///< all of the scene's: itself, its buffers, its images
   std::uint64_t bytes = 0;         ///< of the JSON and of what `storage` owns
 };
@@ -37,6 +39,9 @@ Document load_document(const std::string& path, bool allow_outside = false);
 
 /// The bytes of a validated bufferView.
 std::span<const std::uint8_t> view_bytes(const Document& document, int buffer_view);
+
+/// How many morph targets a mesh has: as many as its primitive of the most.
+std::uint64_t morph_target_count(const Document& document, int mesh);
 
 /// Throws Error input when a required extension is not one that dapple reads or can
 /// ignore without changing what occludes.

@@ -31,6 +31,9 @@ class ElementCheck {
 /// Meshes, their primitives and morph targets, once accessors are known to be sound.
 void validate_meshes(const Document& document, const ElementCheck& check);
 
+/// Skins and animations, once accessors and what nodes name are known to be sound.
+void validate_motion(const Document& document);
+
 /// What nodes name.
 void validate_nodes(const Document& document, const ElementCheck& check);
 

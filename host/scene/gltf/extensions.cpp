@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "scene/gltf/document.hpp"
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

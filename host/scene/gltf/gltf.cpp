@@ -1,44 +1,64 @@
-// load_gltf: from a path to a Scene, step by step. Each step is a file of this folder;
+// From a path to a Scene, step by step, at rest or at a time. Each step is a file of this folder;
 // only this folder knows tinygltf.
 #include <new>
+#include <utility>
 
 #include "dapple/scene.hpp"
 #include "scene/gltf/camera.hpp"
 #include "scene/gltf/crowding.hpp"
-#include "scene/gltf/document.hpp"
 #include "scene/gltf/hierarchy.hpp"
 #include "scene/gltf/instance.hpp"
 #include "scene/gltf/light.hpp"
-#include "scene/gltf/material.hpp"
-#include "scene/gltf/message.hpp"
+#include "scene/gltf/moving_gltf.hpp"
+#include "scene/message.hpp"
 
 namespace dapple {
 namespace {
 
-Scene read_scene(const std::string& path, const SceneOptions& options) {
-  const gltf::Document document = gltf::load_document(path, options.allow_outside);
-  const std::vector<gltf::PlacedNode> placed = gltf::place_nodes(document);
-  Scene scene;
-  scene.source = path;
-  scene.files = document.files;
-  const gltf::MaterialSet materials = gltf::read_materials(document, placed, scene);
-  gltf::add_instances(document, placed, materials, scene);
-  if (scene.instances.empty()) gltf::fail(path, "has no triangles");
-  gltf::check_crowding(scene);
-  gltf::add_punctual_lights(document, placed, options, scene);
-  gltf::add_cameras(document, placed, scene);
-  return scene;
+template <typename Work>
+auto within_memory(const std::string& path, const Work& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::failed, path + ": there is not enough memory to read it");
+  }
 }
 
 }  // namespace
 
+namespace gltf {
+
+MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, bool plays)
+    : options_(options), document_(load_document(path, options.allow_outside)) {
+  if (plays) player_.emplace(document_, options.animation);
+  furnished_.source = path;
+  furnished_.files = document_.files;
+  furnished_.animations = list_animations(document_);
+  // Which materials and images are needed does not depend on where nodes stand.
+  materials_ =
+      read_materials(document_, place_nodes(document_), options.line_radius > 0, furnished_);
+}
+
+Scene MovingGltf::at(std::optional<double> seconds) const {
+  const Pose pose = seconds && player_ ? player_->at(*seconds) : Pose{};
+  const std::vector<PlacedNode> placed = place_nodes(document_, pose);
+  Scene scene = furnished_;
+  add_instances(document_, placed, materials_, pose, options_, scene);
+  check_crowding(scene);
+  add_punctual_lights(document_, placed, options_, scene);
+  add_cameras(document_, placed, scene);
+  if (seconds && document_.motion.clips.empty())
+    scene.warnings.push_back(one_line(document_.file + ": has no animations, and stays at rest"));
+  return scene;
+}
+
+}  // namespace gltf
+
 Scene load_gltf(const std::string& path, const SceneOptions& options) {
   validate(options);
-  try {
-    return read_scene(path, options);
-  } catch (const std::bad_alloc&) {
-    throw Error(ErrorKind::failed, path + ": there is not enough memory to read it");
-  }
+  const bool plays = options.time || !options.animation.empty();
+  return within_memory(path,
+                       [&] { return gltf::MovingGltf(path, options, plays).at(options.time); });
 }
 
 }  // namespace dapple

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -112,15 +112,20 @@ V3d vector_or(const std::vector<double>& given, double value) {
   return given.size() == 3 ? V3d(given[0], given[1], given[2]) : V3d(value);
 }
 
-M44d local_matrix(const Document& document, int index) {
+V4d rotation_of(const tinygltf::Node& node) {
+  if (node.rotation.size() != 4) return {0, 0, 0, 1};
+  return V4d(node.rotation[0], node.rotation[1], node.rotation[2], node.rotation[3]).normalized();
+}
+
+M44d local_matrix(const Document& document, int index, const Pose& pose) {
+  static const NodePose kAtRest;
   const auto& node = document.model.nodes[static_cast<std::size_t>(index)];
+  const auto moved = pose.find(index);
+  const NodePose& now = moved == pose.end() ? kAtRest : moved->second;
   if (node.matrix.size() == 16) return given_matrix(document, index, node.matrix);
-  V4d rotation(0, 0, 0, 1);
-  if (node.rotation.size() == 4) {
-    rotation = V4d(node.rotation[0], node.rotation[1], node.rotation[2], node.rotation[3]);
-    rotation.normalize();
-  }
-  return compose(vector_or(node.translation, 0.0), rotation, vector_or(node.scale, 1.0));
+  return compose(now.translation.value_or(vector_or(node.translation, 0.0)),
+                 now.rotation.value_or(rotation_of(node)),
+                 now.scale.value_or(vector_or(node.scale, 1.0)));
 }
 
 void check_finite(const Document& document, const PlacedNode& placed) {
@@ -132,6 +137,26 @@ void check_finite(const Document& document, const PlacedNode& placed) {
            node_label(document, placed.node));
     }
   }
+}
+
+/// The nodes at and below `roots`, depth first.
+std::vector<PlacedNode> place_below(const Document& document, const std::vector<int>& roots,
+                                    const Pose& pose) {
+  std::vector<PlacedNode> open;
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, M44d()});
+  std::vector<PlacedNode> placed;
+  while (!open.empty()) {
+    PlacedNode at = open.back();  // to_world is still the parent's
+    open.pop_back();
+    at.to_world = local_matrix(document, at.node, pose) * at.to_world;
+    check_finite(document, at);
+    const auto& children = document.model.nodes[static_cast<std::size_t>(at.node)].children;
+    for (auto child = children.rbegin(); child != children.rend(); ++child) {
+      open.push_back({*child, at.to_world});
+    }
+    placed.push_back(at);
+  }
+  return placed;
 }
 
 }  // namespace
@@ -146,25 +171,22 @@ M44d compose(const V3d& translation, const V4d& rotation, const V3d& scale) {
   return matrix;
 }
 
-std::vector<PlacedNode> place_nodes(const Document& document) {
+std::vector<PlacedNode> place_nodes(const Document& document, const Pose& pose) {
   const std::vector<int> parents = find_parents(document);
   check_tree(document, parents);
-  std::vector<PlacedNode> open;
-  const std::vector<int> roots = scene_roots(document, parents);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, M44d()});
-  std::vector<PlacedNode> placed;
-  while (!open.empty()) {
-    PlacedNode at = open.back();  // to_world is still the parent's
-    open.pop_back();
-    at.to_world = local_matrix(document, at.node) * at.to_world;
-    check_finite(document, at);
-    const auto& children = document.model.nodes[static_cast<std::size_t>(at.node)].children;
-    for (auto child = children.rbegin(); child != children.rend(); ++child) {
-      open.push_back({*child, at.to_world});
-    }
-    placed.push_back(at);
+  return place_below(document, scene_roots(document, parents), pose);
+}
+
+std::vector<M44d> world_matrices(const Document& document, const Pose& pose) {
+  const std::vector<int> parents = find_parents(document);
+  std::vector<int> roots;
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    if (parents[i] < 0) roots.push_back(static_cast<int>(i));
   }
-  return placed;
+  std::vector<M44d> matrices(parents.size());
+  for (const PlacedNode& placed : place_below(document, roots, pose))
+    matrices[static_cast<std::size_t>(placed.node)] = placed.to_world;
+  return matrices;
 }
 
 }  // namespace dapple::gltf

@@ -6,8 +6,9 @@
 #include <optional>
 
 #include "scene/gltf/accessor.hpp"
+#include "scene/gltf/deformation.hpp"
 #include "scene/gltf/mesh.hpp"
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -137,41 +138,73 @@ void warn(const std::string& file, std::uint64_t count, const char* what, Scene&
       one_line(fmt::format("{}: {} ({} of them)", file, what, grouped(count))));
 }
 
-void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint64_t skinned,
+void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint64_t unbound,
                     Scene& scene) {
-  warn(file, totals.lines_and_points, "line and point primitives are left out", scene);
+  warn(file, totals.thin_lines,
+       "line primitives are left out: --line-radius R makes strands of them", scene);
+  warn(file, totals.points, "point primitives are left out", scene);
+  warn(file, totals.textured_lines,
+       "line primitives have a texture, which is ignored: their factor alone is their opacity",
+       scene);
+  warn(file, totals.shining_lines, "line primitives emit, which is ignored", scene);
   warn(file, totals.without_position, "primitives without POSITION are left out", scene);
   warn(file, totals.without_texcoord,
        "primitives lack the TEXCOORD of their alpha texture and use its corner", scene);
-  warn(file, totals.morphed, "morph targets are ignored: primitives keep their base shape", scene);
-  warn(file, skinned, "skins are ignored: skinned meshes keep their unskinned shape", scene);
+  warn(file, unbound, "skinned nodes have meshes without JOINTS_0 and WEIGHTS_0, which stay rigid",
+       scene);
 }
+
+/// The matrices of skins' joints at a pose, worked out when they are first asked for.
+class Skeletons {
+ public:
+  Skeletons(const Document& document, const Pose& pose) : document_(document), pose_(pose) {}
+
+  /// Null for the skin -1.
+  const std::vector<M44d>* joints(int skin) {
+    if (skin < 0) return nullptr;
+    if (world_.empty()) world_ = world_matrices(document_, pose_);
+    const auto known = joints_.find(skin);
+    if (known != joints_.end()) return &known->second;
+    return &joints_.emplace(skin, joint_matrices(document_, skin, world_)).first->second;
+  }
+
+ private:
+  const Document& document_;
+  const Pose& pose_;
+  std::vector<M44d> world_;
+  std::map<int, std::vector<M44d>> joints_;
+};
 
 }  // namespace
 
 void add_instances(const Document& document, const std::vector<PlacedNode>& placed,
-                   const MaterialSet& materials, Scene& scene) {
-  std::map<int, std::vector<MeshPart>> parts_of_mesh;
+                   const MaterialSet& materials, const Pose& pose, const SceneOptions& options,
+                   Scene& scene) {
+  std::map<MeshUse, std::vector<MeshPart>> parts_of_use;
+  Skeletons skeletons(document, pose);
   MeshTotals totals;
-  std::uint64_t skinned = 0;
+  std::uint64_t unbound = 0;
   for (const PlacedNode& at : placed) {
     const auto& node = document.model.nodes[static_cast<std::size_t>(at.node)];
     if (node.mesh < 0) continue;
-    // A skinned mesh is placed by its joints, and glTF has its node's matrix ignored. We
-    // do not move vertices by joints, so the matrix stays: files whose unskinned shape
-    // makes sense at all mean it to stand where its node does.
-    if (node.skin >= 0) ++skinned;
-    auto known = parts_of_mesh.find(node.mesh);
-    if (known == parts_of_mesh.end()) {
-      auto parts = read_mesh(document, node.mesh, materials, scene, totals);
-      known = parts_of_mesh.emplace(node.mesh, std::move(parts)).first;
+    const MeshUse use = use_of(document, at, pose, options);
+    if (node.skin >= 0 && use.skin < 0) ++unbound;
+    auto known = parts_of_use.find(use);
+    if (known == parts_of_use.end()) {
+      auto parts = read_mesh(document, use, skeletons.joints(use.skin), materials, scene, totals);
+      known = parts_of_use.emplace(use, std::move(parts)).first;
     }
     if (known->second.empty()) continue;
-    for (const M44d& to_world : node_placements(document, at, scene.instances.size())) {
+    // A skinned mesh is placed by its joints; glTF has its node's matrix ignored.
+    const PlacedNode stands{at.node, use.skin >= 0 ? M44d() : at.to_world};
+    for (const M44d& to_world : node_placements(document, stands, scene.instances.size())) {
       add_placement(known->second, to_world, node.name, scene);
     }
   }
-  warn_of_totals(document.file, totals, skinned, scene);
+  warn_of_totals(document.file, totals, unbound, scene);
+  if (!scene.instances.empty()) return;
+  fail(document.file, "has no triangles{}",
+       totals.thin_lines > 0 ? "; --line-radius R makes strands of its lines" : "");
 }
 
 }  // namespace dapple::gltf

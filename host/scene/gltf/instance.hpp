@@ -12,8 +12,10 @@
 namespace dapple::gltf {
 
 /// Fills Scene::meshes (only those that a placed node shows), instances and mesh lights,
-/// and warns of features left out. Throws Error input.
+/// at a pose, and warns of features left out. Throws Error input, also when there is nothing to
+/// show.
 void add_instances(const Document& document, const std::vector<PlacedNode>& placed,
-                   const MaterialSet& materials, Scene& scene);
+                   const MaterialSet& materials, const Pose& pose, const SceneOptions& options,
+                   Scene& scene);
 
 }  // namespace dapple::gltf

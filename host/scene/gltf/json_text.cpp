@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scene/gltf/message.hpp"
 #include "scene/json_structure.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

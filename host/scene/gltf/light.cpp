@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/gltf/message.hpp"
 #include "scene/gltf/texture.hpp"
+#include "scene/gltf/topology.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -77,6 +78,7 @@ BaseColor base_color(const tinygltf::Material& material) {
 /// (KhronosGroup/glTF issue 1563).
 AlphaLookup alpha_lookup(const TextureUse& use) {
   AlphaLookup lookup;
+  lookup.has_texture = use.texture >= 0;
   lookup.texcoord = use.texcoord;
   if (use.transform == nullptr) return lookup;
   if (const Value* texcoord = find(use.transform, "texCoord"); texcoord != nullptr) {
@@ -120,18 +122,27 @@ void apply_emissive_texture(TextureReader& textures, int texture, const std::str
   }
 }
 
-/// True at i for glTF material i, and at the end for "none", where a placed triangle
-/// primitive has it.
-std::vector<bool> shown_materials(const Document& document, const std::vector<PlacedNode>& placed) {
+/// What placed primitives use.
+struct ShownMaterials {
+  std::vector<bool> by_triangles;  ///< glTF's materials
+  bool none = false;               ///< some primitive that is shown has no material
+};
+
+ShownMaterials shown_materials(const Document& document, const std::vector<PlacedNode>& placed,
+                               bool with_lines) {
   const auto& model = document.model;
-  std::vector<bool> shown(model.materials.size() + 1, false);
+  ShownMaterials shown{std::vector<bool>(model.materials.size(), false), false};
   for (const PlacedNode& at : placed) {
     const int mesh = model.nodes[static_cast<std::size_t>(at.node)].mesh;
     if (mesh < 0) continue;
     for (const auto& primitive : model.meshes[static_cast<std::size_t>(mesh)].primitives) {
-      if (primitive.mode < TINYGLTF_MODE_TRIANGLES) continue;
-      const bool named = primitive.material >= 0;
-      shown[named ? static_cast<std::size_t>(primitive.material) : model.materials.size()] = true;
+      const bool triangles = primitive.mode >= TINYGLTF_MODE_TRIANGLES;
+      if (!triangles && !(with_lines && is_of_lines(primitive))) continue;
+      if (primitive.material < 0) {
+        shown.none = true;
+      } else if (triangles) {
+        shown.by_triangles[static_cast<std::size_t>(primitive.material)] = true;
+      }
     }
   }
   return shown;
@@ -144,9 +155,9 @@ bool emits(const Material& material) {
 }
 
 MaterialSet read_materials(const Document& document, const std::vector<PlacedNode>& placed,
-                           Scene& scene) {
+                           bool with_lines, Scene& scene) {
   const auto& given = document.model.materials;
-  const std::vector<bool> shown = shown_materials(document, placed);
+  const ShownMaterials shown = shown_materials(document, placed, with_lines);
   TextureReader textures(document, scene);
   MaterialSet set;
   for (std::size_t i = 0; i < given.size(); ++i) {
@@ -159,7 +170,7 @@ MaterialSet read_materials(const Document& document, const std::vector<PlacedNod
     material.alpha_cutoff = static_cast<float>(given[i].alphaCutoff);
     material.double_sided = given[i].doubleSided;
     material.emission = emission_factor(given[i]);
-    if (shown[i]) {
+    if (shown.by_triangles[i]) {
       apply_emissive_texture(textures, given[i].emissiveTexture.index, who, material, scene);
       if (material.alpha_mode != AlphaMode::opaque && base.texture.texture >= 0) {
         material.alpha_texture = textures.alpha_texture(base.texture.texture, who);
@@ -169,7 +180,7 @@ MaterialSet read_materials(const Document& document, const std::vector<PlacedNod
     set.lookups.push_back(alpha_lookup(base.texture));
   }
   set.default_material = static_cast<std::uint32_t>(given.size());
-  if (shown.back()) {
+  if (shown.none) {
     Material none;
     none.name = "default";
     scene.materials.push_back(std::move(none));

@@ -17,6 +17,7 @@ struct AlphaLookup {
   V2f du{1, 0};  ///< change of the result along u
   V2f dv{0, 1};  ///< change of the result along v
   V2f offset{0, 0};
+  bool has_texture = false;  ///< the material has one, read or not
 
   [[nodiscard]] V2f apply(V2f uv) const { return uv.x * du + uv.y * dv + offset; }
 };
@@ -32,10 +33,11 @@ struct MaterialSet {
   }
 };
 
-/// Reads images only for materials that a triangle primitive of `placed` uses. Throws
-/// Error input when an image whose alpha matters cannot be read.
+/// Reads images only for materials that a triangle primitive of `placed` uses; `with_lines` says
+/// whether lines are shown too. Throws Error input when an image whose alpha matters cannot be
+/// read.
 MaterialSet read_materials(const Document& document, const std::vector<PlacedNode>& placed,
-                           Scene& scene);
+                           bool with_lines, Scene& scene);
 
 bool emits(const Material& material);
 

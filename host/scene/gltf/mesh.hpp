@@ -1,13 +1,15 @@
-// Geometry: a glTF mesh becomes one dapple::Mesh, and one more for each material of it
-// that emits, since a mesh light is a mesh of its own.
+// Geometry: a glTF mesh becomes one dapple::Mesh of its triangles and one of its lines, and one
+// more for each material of it that emits, since a mesh light is a mesh of its own.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "dapple/scene.hpp"
+#include "scene/gltf/deformation.hpp"
 #include "scene/gltf/document.hpp"
 #include "scene/gltf/material.hpp"
+#include "scene/gltf/mesh_use.hpp"
 
 namespace dapple::gltf {
 
@@ -18,17 +20,21 @@ struct MeshPart {
 
 /// What reading adds up over all meshes: for limits, and for one warning a feature.
 struct MeshTotals {
-  std::uint64_t triangles = 0;
+  std::uint64_t elements = 0;  ///< triangles and segments
   std::uint64_t sparse_values = 0;
-  std::uint64_t lines_and_points = 0;  ///< primitives of these modes
+  std::uint64_t deformed = 0;          ///< numbers that deform vertices
+  std::uint64_t thin_lines = 0;        ///< primitives of lines without a radius
+  std::uint64_t points = 0;            ///< primitives
+  std::uint64_t textured_lines = 0;    ///< primitives of lines whose opacity has a texture
+  std::uint64_t shining_lines = 0;     ///< primitives of lines that emit
   std::uint64_t without_position = 0;  ///< primitives
   std::uint64_t without_texcoord = 0;  ///< primitives whose alpha texture lacks its TEXCOORD
-  std::uint64_t morphed = 0;           ///< primitives with targets
 };
 
-/// Appends the parts of a glTF mesh to Scene::meshes; parts without triangles are left
-/// out. Throws Error input naming mesh and primitive.
-std::vector<MeshPart> read_mesh(const Document& document, int mesh, const MaterialSet& materials,
-                                Scene& scene, MeshTotals& totals);
+/// Appends the parts of a glTF mesh to Scene::meshes, carried by `joints` unless that is null;
+/// parts without primitives are left out. Throws Error input naming mesh and primitive.
+std::vector<MeshPart> read_mesh(const Document& document, const MeshUse& use,
+                                const std::vector<Imath::M44d>* joints,
+                                const MaterialSet& materials, Scene& scene, MeshTotals& totals);
 
 }  // namespace dapple::gltf

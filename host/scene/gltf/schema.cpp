@@ -6,8 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "scene/gltf/message.hpp"
 #include "scene/gltf/schema_rules.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "scene/gltf/message.hpp"
 #include "scene/gltf/uri.hpp"
 #include "scene/image.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <system_error>
 
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

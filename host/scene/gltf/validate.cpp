@@ -5,7 +5,7 @@
 
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/element_check.hpp"
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -33,6 +33,7 @@ class Validator {
     for (std::size_t i = 0; i < model_.materials.size(); ++i) check_material(i);
     validate_meshes(document_, check_);
     validate_nodes(document_, check_);
+    validate_motion(document_);
     for (std::size_t i = 0; i < model_.scenes.size(); ++i) {
       for (const int node : model_.scenes[i].nodes) {
         check_.index(fmt::format("scene {}", i), "node", node, model_.nodes.size());

@@ -5,7 +5,7 @@
 
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/element_check.hpp"
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

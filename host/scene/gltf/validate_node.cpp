@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf/element_check.hpp"
-#include "scene/gltf/message.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {

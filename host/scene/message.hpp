@@ -1,4 +1,4 @@
-// How the glTF reader reports what is wrong: one line, `file: element: figures`. In come
+// How the readers of scenes report what is wrong: one line, `file: element: figures`. In come
 // a file name and a fmt format string; out goes a dapple::Error of kind input.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 #include "dapple/error.hpp"
 
-namespace dapple::gltf {
+namespace dapple {
 
 /// `text` with control characters replaced: names in a file may hold line breaks.
 std::string one_line(std::string_view text);
@@ -32,4 +32,4 @@ template <typename... Args>
   fail_with(file, fmt::format(format, std::forward<Args>(args)...));
 }
 
-}  // namespace dapple::gltf
+}  // namespace dapple

@@ -1,7 +1,7 @@
-// Wording of the glTF reader's messages: see message.hpp.
-#include "scene/gltf/message.hpp"
+// Wording of the messages of the readers of scenes: see message.hpp.
+#include "scene/message.hpp"
 
-namespace dapple::gltf {
+namespace dapple {
 namespace {
 
 /// What a message quotes of a file, bytes: names there may be megabytes long.
@@ -55,4 +55,4 @@ void fail_with(const std::string& file, const std::string& message) {
   throw Error(ErrorKind::input, one_line(file + ": " + shorten(message, kLongestMessage)));
 }
 
-}  // namespace dapple::gltf
+}  // namespace dapple

@@ -1,0 +1,143 @@
+// Morphing and skinning: see deformation.hpp.
+#include "scene/gltf/deformation.hpp"
+
+#include <algorithm>
+
+#include "scene/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+using Imath::M44d;
+using Imath::V3d;
+using Imath::V3f;
+
+int find(const std::map<std::string, int>& attributes, const std::string& name) {
+  const auto found = attributes.find(name);
+  return found == attributes.end() ? -1 : found->second;
+}
+
+/// How many sets of four joints a vertex has: JOINTS_0 and WEIGHTS_0, then 1...
+int influence_sets(const tinygltf::Primitive& primitive) {
+  const auto& attributes = primitive.attributes;
+  int sets = 0;
+  while (find(attributes, fmt::format("JOINTS_{}", sets)) >= 0 &&
+         find(attributes, fmt::format("WEIGHTS_{}", sets)) >= 0)
+    ++sets;
+  return sets;
+}
+
+/// The targets that change a primitive: their weight and the accessor of their positions.
+std::vector<std::pair<double, int>> active_targets(const tinygltf::Primitive& primitive,
+                                                   const std::vector<double>& weights) {
+  std::vector<std::pair<double, int>> active;
+  for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
+    const int positions = find(primitive.targets[t], "POSITION");
+    if (weights[t] != 0 && positions >= 0) active.emplace_back(weights[t], positions);
+  }
+  return active;
+}
+
+/// p M for a matrix that is affine.
+V3d moved(const V3d& p, const M44d& m) {
+  V3d result;
+  for (int k = 0; k < 3; ++k) result[k] = p.x * m[0][k] + p.y * m[1][k] + p.z * m[2][k] + m[3][k];
+  return result;
+}
+
+}  // namespace
+
+bool has_joints(const tinygltf::Primitive& primitive) { return influence_sets(primitive) > 0; }
+
+std::uint64_t deformation_cost(const Document& document, const tinygltf::Primitive& primitive,
+                               const Deformation& deformation) {
+  const int position = primitive.attributes.at("POSITION");
+  const std::uint64_t vertices = document.model.accessors[static_cast<std::size_t>(position)].count;
+  std::uint64_t cost = 0;
+  for (const auto& [weight, accessor] : active_targets(primitive, deformation.weights))
+    cost += vertices + sparse_count(document, accessor);
+  if (deformation.joints != nullptr)
+    cost += vertices * 4 * static_cast<std::uint64_t>(influence_sets(primitive));
+  return cost;
+}
+
+VertexDeformer::VertexDeformer(const Document& document, const tinygltf::Primitive& primitive,
+                               const Deformation& deformation, const std::string& who)
+    : deformation_(deformation), file_(document.file), who_(who) {
+  read_targets(document, primitive);
+  if (deformation.joints != nullptr) read_influences(document, primitive);
+}
+
+void VertexDeformer::read_targets(const Document& document, const tinygltf::Primitive& primitive) {
+  for (const auto& [weight, accessor] : active_targets(primitive, deformation_.weights)) {
+    require_type(document, accessor, who_ + " target POSITION", {TINYGLTF_TYPE_VEC3},
+                 {Component::float32, Component::int8, Component::uint8, Component::int16,
+                  Component::uint16});
+    targets_.emplace_back(weight, AccessorReader(document, accessor));
+  }
+}
+
+void VertexDeformer::read_influences(const Document& document,
+                                     const tinygltf::Primitive& primitive) {
+  for (int set = 0; set < influence_sets(primitive); ++set) {
+    const std::string joints = fmt::format("JOINTS_{}", set);
+    const std::string weights = fmt::format("WEIGHTS_{}", set);
+    const int joint_accessor = find(primitive.attributes, joints);
+    const int weight_accessor = find(primitive.attributes, weights);
+    require_type(document, joint_accessor, who_ + " " + joints, {TINYGLTF_TYPE_VEC4},
+                 {Component::uint8, Component::uint16});
+    require_type(document, weight_accessor, who_ + " " + weights, {TINYGLTF_TYPE_VEC4},
+                 {Component::float32, Component::uint8, Component::uint16});
+    influences_.push_back(
+        {AccessorReader(document, joint_accessor), AccessorReader(document, weight_accessor)});
+  }
+}
+
+V3f VertexDeformer::position(V3f base, std::uint64_t i) const {
+  if (targets_.empty() && influences_.empty()) return base;
+  V3d position(base);
+  for (const auto& [weight, target] : targets_) position += V3d(target.vec3(i)) * weight;
+  return V3f(influences_.empty() ? position : carried(position, i));
+}
+
+/// Weights are taken relative to their sum, which exporters round; a vertex without any goes with
+/// its first joint.
+V3d VertexDeformer::carried(const V3d& position, std::uint64_t i) const {
+  V3d sum(0.0);
+  double total = 0;
+  for (const Influences& set : influences_) {
+    for (std::uint64_t k = 0; k < 4; ++k) {
+      const double weight = double{set.weights.normalized(i, k)};
+      if (weight == 0) continue;  // the joint of one that is unused may be anything
+      sum += moved(position, joint(set, i, k)) * weight;
+      total += weight;
+    }
+  }
+  return total != 0 ? sum / total : moved(position, joint(influences_.front(), i, 0));
+}
+
+const M44d& VertexDeformer::joint(const Influences& set, std::uint64_t i, std::uint64_t k) const {
+  const auto number = static_cast<std::size_t>(set.joints.number(i, k));
+  if (number < deformation_.joints->size()) return (*deformation_.joints)[number];
+  fail(file_, "{}: vertex {} names joint {}, but its skin has {}", who_, grouped(i), number,
+       grouped(deformation_.joints->size()));
+}
+
+std::vector<M44d> joint_matrices(const Document& document, int skin,
+                                 const std::vector<M44d>& world) {
+  const Skin& given = document.motion.skins[static_cast<std::size_t>(skin)];
+  std::vector<M44d> matrices;
+  matrices.reserve(given.joints.size());
+  for (const int joint : given.joints) matrices.push_back(world[static_cast<std::size_t>(joint)]);
+  if (given.inverse_matrices < 0) return matrices;
+  const AccessorReader inverse(document, given.inverse_matrices);
+  for (std::size_t j = 0; j < matrices.size(); ++j) {
+    M44d bind = inverse.matrix(j);
+    // Their last column is 0, 0, 0, 1; what exporters round there is no part of it.
+    for (int row = 0; row < 4; ++row) bind[row][3] = row == 3 ? 1 : 0;
+    matrices[j] = bind * matrices[j];
+  }
+  return matrices;
+}
+
+}  // namespace dapple::gltf

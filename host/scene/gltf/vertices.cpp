@@ -1,0 +1,103 @@
+// Reading vertices: see vertices.hpp.
+#include "scene/gltf/vertices.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+constexpr std::initializer_list<Component> kFloatOrQuantized = {
+    Component::float32, Component::int8, Component::uint8, Component::int16, Component::uint16};
+
+AccessorReader read_positions(const Document& document, const tinygltf::Primitive& primitive,
+                              const std::string& who) {
+  const int accessor = attribute(primitive, "POSITION");
+  require_type(document, accessor, who + " POSITION", {TINYGLTF_TYPE_VEC3}, kFloatOrQuantized);
+  return {document, accessor};
+}
+
+std::optional<AccessorReader> read_uvs(const Document& document,
+                                       const tinygltf::Primitive& primitive,
+                                       const AlphaLookup& lookup, const std::string& who) {
+  const std::string name = fmt::format("TEXCOORD_{}", lookup.texcoord);
+  const int accessor = attribute(primitive, name);
+  if (accessor < 0) return {};
+  require_type(document, accessor, who + " " + name, {TINYGLTF_TYPE_VEC2}, kFloatOrQuantized);
+  return AccessorReader(document, accessor);
+}
+
+/// COLOR_0 where it has an alpha.
+std::optional<AccessorReader> read_colors(const Document& document,
+                                          const tinygltf::Primitive& primitive,
+                                          const std::string& who) {
+  const int accessor = attribute(primitive, "COLOR_0");
+  if (accessor < 0) return {};
+  require_type(document, accessor, who + " COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4},
+               {Component::float32, Component::uint8, Component::uint16});
+  AccessorReader colors(document, accessor);
+  if (colors.components() < 4) return {};
+  return colors;
+}
+
+V2f finite_or_zero(V2f uv) { return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : V2f(0, 0); }
+
+/// NaN becomes 0.
+float clamp_alpha(float alpha) { return alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f; }
+
+}  // namespace
+
+int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
+  const auto found = primitive.attributes.find(name);
+  return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+Attributes read_attributes(const Document& document, const tinygltf::Primitive& primitive,
+                           const AttributeNeeds& needs, const AlphaLookup& lookup,
+                           const std::string& who) {
+  Attributes attributes{read_positions(document, primitive, who), {}, {}};
+  if (needs.uvs) attributes.uvs = read_uvs(document, primitive, lookup, who);
+  if (needs.colors) attributes.colors = read_colors(document, primitive, who);
+  return attributes;
+}
+
+std::optional<std::vector<std::uint32_t>> compact(std::vector<std::uint32_t>& corners,
+                                                  std::uint64_t vertices) {
+  if (corners.size() >= vertices) return {};
+  std::vector<std::uint32_t> used = corners;
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  for (std::uint32_t& corner : corners) {
+    corner = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), corner) -
+                                        used.begin());
+  }
+  return used;
+}
+
+void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDeformer& deformer,
+                     const AlphaLookup& lookup,
+                     const std::optional<std::vector<std::uint32_t>>& used) {
+  const std::size_t base = mesh.positions.size();
+  const std::size_t count = used ? used->size() : attributes.positions.count();
+  const auto source = [&](std::size_t i) -> std::uint64_t { return used ? (*used)[i] : i; };
+  mesh.positions.resize(base + count);
+  for (std::size_t i = 0; i < count; ++i) {
+    mesh.positions[base + i] = deformer.position(attributes.positions.vec3(source(i)), source(i));
+  }
+  if (attributes.uvs || !mesh.uvs.empty()) mesh.uvs.resize(base + count, V2f(0, 0));
+  if (attributes.uvs) {
+    for (std::size_t i = 0; i < count; ++i) {
+      mesh.uvs[base + i] = finite_or_zero(lookup.apply(attributes.uvs->vec2(source(i))));
+    }
+  }
+  if (attributes.colors || !mesh.vertex_alpha.empty()) mesh.vertex_alpha.resize(base + count, 1.0f);
+  if (attributes.colors) {
+    for (std::size_t i = 0; i < count; ++i) {
+      mesh.vertex_alpha[base + i] = clamp_alpha(attributes.colors->normalized(source(i), 3));
+    }
+  }
+}
+
+}  // namespace dapple::gltf

@@ -1,0 +1,74 @@
+// The sources of moving scenes: glTF files, procedural scenes, and what does not move.
+#include "dapple/moving_scene.hpp"
+
+#include <new>
+#include <utility>
+
+#include "dapple/error.hpp"
+#include "scene/gltf/moving_gltf.hpp"
+#include "scene/hair_file.hpp"
+
+namespace dapple {
+
+class MovingScene::Source {
+ public:
+  virtual ~Source() = default;
+  [[nodiscard]] virtual Scene at(std::optional<double> seconds) const = 0;
+};
+
+namespace {
+
+class GltfSource : public MovingScene::Source {
+ public:
+  GltfSource(const std::string& path, const SceneOptions& options) : file_(path, options, true) {}
+  [[nodiscard]] Scene at(std::optional<double> seconds) const override { return file_.at(seconds); }
+
+ private:
+  gltf::MovingGltf file_;
+};
+
+class ProceduralSource : public MovingScene::Source {
+ public:
+  explicit ProceduralSource(std::string name) : name_(std::move(name)) {}
+  [[nodiscard]] Scene at(std::optional<double> seconds) const override {
+    return make_procedural(name_, seconds);
+  }
+
+ private:
+  std::string name_;
+};
+
+class FixedSource : public MovingScene::Source {
+ public:
+  explicit FixedSource(Scene scene) : scene_(std::move(scene)) {}
+  [[nodiscard]] Scene at(std::optional<double> /*seconds*/) const override { return scene_; }
+
+ private:
+  Scene scene_;
+};
+
+std::unique_ptr<const MovingScene::Source> open(const std::string& spec,
+                                                const SceneOptions& options) {
+  if (spec.starts_with("scene:")) return std::make_unique<ProceduralSource>(spec);
+  if (is_hair_name(spec)) return std::make_unique<FixedSource>(load_hair(spec));
+  return std::make_unique<GltfSource>(spec, options);
+}
+
+}  // namespace
+
+MovingScene::MovingScene(const std::string& spec, const SceneOptions& options) {
+  validate(options);
+  try {
+    source_ = open(spec, options);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::failed, spec + ": there is not enough memory to read it");
+  }
+}
+
+MovingScene::~MovingScene() = default;
+MovingScene::MovingScene(MovingScene&&) noexcept = default;
+MovingScene& MovingScene::operator=(MovingScene&&) noexcept = default;
+
+Scene MovingScene::at(std::optional<double> seconds) const { return source_->at(seconds); }
+
+}  // namespace dapple
