@@ -88,14 +88,6 @@ void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> box
   });
 }
 
-std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
-
-std::size_t count_blocks(const WideTree& tree) {
-  std::size_t blocks = 0;
-  for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
-  return blocks;
-}
-
 /// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
 void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
                     const std::vector<float>& opacities, const std::vector<bool>& closed,
