@@ -46,13 +46,13 @@ BoxRay ray_through(const Box3f& box, const V3f& direction, oracle::Random& rando
   return {{origin, direction}, length / mean_length, away.length2()};
 }
 
-SampledOpacity sample_opacity(const oracle::EmbreeOracle& subtree, const Box3f& box,
-                              const V3f& direction, int rays, oracle::Random& random) {
+SampledOpacity sample_opacity(const Truth& subtree, const Box3f& box, const V3f& direction,
+                              int rays, oracle::Random& random) {
   SampledOpacity sampled{{}, 0, 0};
   double sum = 0, squares = 0;
   for (int i = 0; i < rays; ++i) {
     sampled.rays.push_back(ray_through(box, direction, random));
-    const double opacity = 1 - subtree.transmittance(sampled.rays.back().segment);
+    const double opacity = 1 - subtree(sampled.rays.back().segment);
     sum += opacity;
     squares += opacity * opacity;
   }

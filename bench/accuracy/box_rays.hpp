@@ -2,6 +2,7 @@
 // subtree is to them.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "accuracy/subtree.hpp"
@@ -25,13 +26,16 @@ V3f facing_areas(const V3f& size, const V3f& direction);
 BoxRay ray_through(const Box3f& box, const V3f& direction, oracle::Random& random);
 
 /// Rays of one direction and the mean opacity they met.
+/// Transmittance of what a box holds along a ray.
+using Truth = std::function<double(const oracle::Segment&)>;
+
 struct SampledOpacity {
   std::vector<BoxRay> rays;
   double opacity;
   double variance;  ///< of `opacity`, estimated from the rays' spread
 };
 
-SampledOpacity sample_opacity(const oracle::EmbreeOracle& subtree, const Box3f& box,
-                              const V3f& direction, int rays, oracle::Random& random);
+SampledOpacity sample_opacity(const Truth& subtree, const Box3f& box, const V3f& direction,
+                              int rays, oracle::Random& random);
 
 }  // namespace dapple::bench

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bvh/quantize.hpp"
+#include "bvh/strand_coverage.hpp"
 #include "bvh/triangle_opacity.hpp"
 
 namespace dapple::bench {
@@ -85,6 +86,7 @@ class Composer {
 
   Composition leaf(const BvhNode& node, unsigned slot) const {
     Composition made;
+    if (node.prim_base & DAPPLE_SEGMENTS) return strand_leaf(node, slot);
     const Box3f box = child_box(node, slot);
     V3f transmittance(1.0f);
     for (const LeafTriangle& triangle : leaf_triangles(bvh_, node, slot)) {
@@ -96,6 +98,23 @@ class Composer {
       }
       add_moments(made, V3d(across), opacity);
     }
+    made.rectangles = V3f(1.0f) - transmittance;
+    return made;
+  }
+
+  Composition strand_leaf(const BvhNode& node, unsigned slot) const {
+    Composition made;
+    const Box3f box = child_box(node, slot);
+    V3f transmittance(1.0f);
+    NormalMoments normals;
+    for (const StrandSegment& segment : leaf_segments(bvh_, node, slot)) {
+      SurfaceAreas hidden;
+      add_surface(segment, normals, hidden);
+      for (int axis = 0; axis < 3; ++axis) {
+        transmittance[axis] *= 1.0f - std::min(1.0f, hidden.other[axis] / face(box, axis));
+      }
+    }
+    for (std::size_t k = 0; k < 6; ++k) made.moments[k] = normals.sum[k];
     made.rectangles = V3f(1.0f) - transmittance;
     return made;
   }

@@ -6,6 +6,7 @@
 #include "accuracy/box_rays.hpp"
 #include "accuracy/composition.hpp"
 #include "accuracy/opacity_models.hpp"
+#include "accuracy/strand_truth.hpp"
 #include "bvh/quantize.hpp"
 #include "dapple/shared/opacity.h"
 
@@ -57,8 +58,10 @@ V3f unit_axis(int axis) {
   return direction;
 }
 
-Box3f bounds_of(const std::vector<LeafTriangle>& triangles) {
+Box3f bounds_of(const std::vector<LeafTriangle>& triangles,
+                const std::vector<StrandSegment>& segments) {
   Box3f box;
+  for (const StrandSegment& segment : segments) box.extendBy(bounds(segment));
   for (const LeafTriangle& triangle : triangles) {
     box.extendBy(triangle.vertex);
     box.extendBy(triangle.vertex + triangle.edge1);
@@ -147,9 +150,21 @@ class NodeJudge {
  private:
   void judge_one(const Subtree& subtree, ErrorSums& sums) {
     const BvhNode& node = bvh_.nodes[subtree.node];
-    const auto triangles = triangles_below(bvh_, node, subtree.slot);
-    const oracle::EmbreeOracle truth(scene_of(triangles, bvh_, scene_));
-    const JudgedNode judged = describe(subtree, triangles, truth);
+    if (node.prim_base & DAPPLE_SEGMENTS) {
+      const auto segments = segments_below(bvh_, node, subtree.slot);
+      const StrandTruth truth(segments);
+      judge_by([&](const auto& ray) { return truth.transmittance(ray); }, bounds_of({}, segments),
+               subtree, sums);
+    } else {
+      const auto triangles = triangles_below(bvh_, node, subtree.slot);
+      const oracle::EmbreeOracle truth(scene_of(triangles, bvh_, scene_));
+      judge_by([&](const auto& ray) { return truth.transmittance(ray); }, bounds_of(triangles, {}),
+               subtree, sums);
+    }
+  }
+
+  void judge_by(const Truth& truth, const Box3f& exact, const Subtree& subtree, ErrorSums& sums) {
+    const JudgedNode judged = describe(subtree, exact, truth);
     for (int d = 0; d < options_.directions; ++d) {
       const V3f direction(random_.direction());
       sums.add(judged, direction,
@@ -157,8 +172,7 @@ class NodeJudge {
     }
   }
 
-  JudgedNode describe(const Subtree& subtree, const std::vector<LeafTriangle>& triangles,
-                      const oracle::EmbreeOracle& truth) {
+  JudgedNode describe(const Subtree& subtree, const Box3f& exact, const Truth& truth) {
     const BvhNode& node = bvh_.nodes[subtree.node];
     const Composition& composition = compositions_[subtree.node][subtree.slot];
     JudgedNode judged;
@@ -173,8 +187,7 @@ class NodeJudge {
           sample_opacity(truth, judged.box, unit_axis(axis), kAxisRays * options_.rays, random_)
               .opacity);
     }
-    judged.exact_box =
-        before_growing(judged.stored.opacity, judged.stored.size, bounds_of(triangles).size());
+    judged.exact_box = before_growing(judged.stored.opacity, judged.stored.size, exact.size());
     return judged;
   }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "bvh/segment_block.hpp"
 #include "bvh/textured_triangle.hpp"
 
 namespace dapple::bench {
@@ -25,15 +26,16 @@ std::size_t add_subtrees(const SceneBvh& bvh, std::uint32_t index, std::vector<S
   return total;
 }
 
-void append_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot,
-                  std::vector<LeafTriangle>& out) {
+template <class Primitive, class OfLeaf>
+void append_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot, const OfLeaf& of_leaf,
+                  std::vector<Primitive>& out) {
   if (!is_inner(node, slot)) {
-    const auto leaf = leaf_triangles(bvh, node, slot);
+    const auto leaf = of_leaf(bvh, node, slot);
     out.insert(out.end(), leaf.begin(), leaf.end());
     return;
   }
   const BvhNode& child = bvh.nodes[child_node(node, slot)];
-  for (unsigned s = 0; s < DAPPLE_BVH_WIDTH; ++s) append_below(bvh, child, s, out);
+  for (unsigned s = 0; s < DAPPLE_BVH_WIDTH; ++s) append_below(bvh, child, s, of_leaf, out);
 }
 
 /// Materials of a rebuilt scene: uniform triangles carry their opacity as vertex alpha, varying
@@ -118,8 +120,24 @@ std::vector<LeafTriangle> leaf_triangles(const SceneBvh& bvh, const BvhNode& nod
 
 std::vector<LeafTriangle> triangles_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot) {
   std::vector<LeafTriangle> triangles;
-  append_below(bvh, node, slot, triangles);
+  append_below(bvh, node, slot, leaf_triangles, triangles);
   return triangles;
+}
+
+std::vector<StrandSegment> leaf_segments(const SceneBvh& bvh, const BvhNode& node, unsigned slot) {
+  std::vector<StrandSegment> segments;
+  for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < bvh_leaf_end(node.leaf_end, slot);
+       ++i) {
+    const SegmentBlock& block = bvh.segments[bvh_block_index(node.prim_base) + i / 8];
+    segments.push_back(unpack_segment(block, i % 8));
+  }
+  return segments;
+}
+
+std::vector<StrandSegment> segments_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot) {
+  std::vector<StrandSegment> segments;
+  append_below(bvh, node, slot, leaf_segments, segments);
+  return segments;
 }
 
 Scene scene_of(const std::vector<LeafTriangle>& triangles, const SceneBvh& bvh,

@@ -7,11 +7,12 @@
 #include <functional>
 #include <vector>
 
+#include "bvh/strand_segment.hpp"
 #include "dapple/bvh.hpp"
 
 namespace dapple::bench {
 
-/// Child `slot` of node `node` and the triangles below it.
+/// Child `slot` of node `node` and the triangles, or segments, below it.
 struct Subtree {
   std::uint32_t node;
   unsigned slot;
@@ -39,6 +40,12 @@ struct LeafTriangle {
 
 /// Triangles of leaf child `slot` of the node.
 std::vector<LeafTriangle> leaf_triangles(const SceneBvh& bvh, const BvhNode& node, unsigned slot);
+
+/// Segments of leaf child `slot` of the node.
+std::vector<StrandSegment> leaf_segments(const SceneBvh& bvh, const BvhNode& node, unsigned slot);
+
+/// All segments below the child, leaf by leaf.
+std::vector<StrandSegment> segments_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot);
 
 /// All triangles below the child, leaf by leaf.
 std::vector<LeafTriangle> triangles_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot);
