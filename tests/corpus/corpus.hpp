@@ -54,6 +54,7 @@ void add_wrong_elements(MalformedCases& cases);
 void add_wrong_accessors(MalformedCases& cases);
 void add_malformed_files(MalformedCases& cases);
 void add_malformed_images(MalformedCases& cases);
+void add_wrong_motion(MalformedCases& cases);
 void add_malformed_hair(MalformedCases& cases);
 void add_bombs(MalformedCases& cases);
 void add_tricky_geometry(TrickyCases& cases);

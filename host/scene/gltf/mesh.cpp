@@ -95,7 +95,8 @@ constexpr std::uint64_t kMostDeformed = std::uint64_t{1} << 30;
 
 void count_work(const Document& document, const tinygltf::Primitive& primitive,
                 const Deformation& deformation, const std::string& who, MeshTotals& totals) {
-  totals.elements += element_count(document, primitive, who);
+  const std::uint64_t elements = element_count(document, primitive, who);
+  totals.elements += elements;
   if (totals.elements > most_elements(document)) {
     fail(document.file,
          "{} brings the triangles and segments to {} (at most {} in a scene of {} bytes)", who,
@@ -105,7 +106,11 @@ void count_work(const Document& document, const tinygltf::Primitive& primitive,
   for (const auto& [name, accessor] : primitive.attributes) {
     totals.sparse_values += sparse_count(document, accessor);
   }
-  totals.deformed += deformation_cost(document, primitive, deformation);
+  // No more vertices are read than corners need.
+  const std::uint64_t vertices = std::min<std::uint64_t>(
+      3 * elements,
+      document.model.accessors[static_cast<std::size_t>(attribute(primitive, "POSITION"))].count);
+  totals.deformed += deformation_cost(document, primitive, deformation, vertices);
   if (totals.deformed > kMostDeformed) {
     fail(document.file, "{} brings the numbers that deform vertices to {} (at most {})", who,
          grouped(totals.deformed), grouped(kMostDeformed));
