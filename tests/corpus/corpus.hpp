@@ -1,5 +1,5 @@
-// The corpus of bad and of unusual input: small glTF and HAIR files, made here, each in a folder of its
-// own. Malformed ones must be refused by name, quickly and leaving nothing behind; tricky ones
+// The corpus of bad and of unusual input: small glTF and HAIR files, made here, each in a folder of
+// its own. Malformed ones must be refused by name, quickly and leaving nothing behind; tricky ones
 // are valid, and must render like a plain twin.
 #pragma once
 
