@@ -54,10 +54,20 @@ void append_elements(Mesh& mesh, const std::vector<std::uint32_t>& corners, std:
   mesh.materials.insert(mesh.materials.end(), corners.size() / corners_each, material);
 }
 
-void append_primitive(const Document& document, const tinygltf::Primitive& primitive,
-                      std::uint32_t material_index, const Material& material,
-                      const AlphaLookup& lookup, float line_radius, const Deformation& deformation,
-                      const std::string& who, Mesh& mesh, MeshTotals& totals) {
+/// A primitive on its way into a mesh.
+struct PrimitiveSource {
+  const tinygltf::Primitive& primitive;
+  std::uint32_t material_index;  ///< into Scene::materials
+  const Material& material;
+  const AlphaLookup& lookup;
+  float line_radius;
+  const Deformation& deformation;
+  const std::string& who;  ///< for messages
+};
+
+void append_primitive(const Document& document, const PrimitiveSource& source, Mesh& mesh,
+                      MeshTotals& totals) {
+  const auto& [primitive, material_index, material, lookup, line_radius, deformation, who] = source;
   const bool lines = is_of_lines(primitive);
   const AttributeNeeds needs = needs_of(material, lookup, lines, totals);
   const Attributes attributes = read_attributes(document, primitive, needs, lookup, who);
@@ -182,8 +192,10 @@ std::vector<MeshPart> read_mesh(const Document& document, const MeshUse& use,
     const std::uint32_t at = materials.index_of(primitive.material);
     const Material& material = scene.materials[at];
     Mesh& mesh = draft_for(drafts, emitter_of(material, at, lines, totals), lines);
-    append_primitive(document, primitive, at, material, materials.lookups[at], use.line_radius,
-                     deformation, who, mesh, totals);
+    append_primitive(
+        document,
+        {primitive, at, material, materials.lookups[at], use.line_radius, deformation, who}, mesh,
+        totals);
   }
   const std::string name =
       given.name.empty() ? fmt::format("mesh_{}", use.mesh) : one_line(given.name);
