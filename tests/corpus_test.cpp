@@ -53,6 +53,7 @@ TEST(MalformedCorpus, WrongElementsAreRefusedByName) { expect_refused(add_wrong_
 TEST(MalformedCorpus, WrongAccessorsAreRefusedByName) { expect_refused(add_wrong_accessors); }
 TEST(MalformedCorpus, FilesAreRefusedByName) { expect_refused(add_malformed_files); }
 TEST(MalformedCorpus, ImagesAreRefusedByName) { expect_refused(add_malformed_images); }
+TEST(MalformedCorpus, MotionIsRefusedByName) { expect_refused(add_wrong_motion); }
 TEST(MalformedCorpus, HairIsRefusedByName) { expect_refused(add_malformed_hair); }
 TEST(MalformedCorpus, BombsAreRefusedByName) { expect_refused(add_bombs); }
 

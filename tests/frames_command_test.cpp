@@ -106,6 +106,12 @@ TEST_F(FramesCommand, CameraLightAndGroundOfASequenceStandStill) {
   EXPECT_EQ(notes, 1u) << run.err;
 }
 
+TEST_F(FramesCommand, InfoListsAnimationsWithTheirLengths) {
+  write_climb();
+  const Outcome run = dapple("info climb.glb");
+  EXPECT_TRUE(contains(run.out, "animations  climb (1.00 s)")) << run.out << run.err;
+}
+
 TEST_F(FramesCommand, AWindyTreeMovesFromFrameToFrame) {
   const Outcome run = dapple(
       "render 'scene:tree?leaves=300&wind=1' --frames 0-1 --fps 2 -o a.#.exr --width 16 --height "

@@ -56,14 +56,14 @@ TEST(HairFile, ArraysTakeThePlaceOfDefaults) {
   builder.default_segments = 77;
   builder.default_thickness = kNan;
   builder.default_transparency = 0.5f;
-  builder.thickness = {2, 4, 6, 8, 10, 0};
+  builder.thickness = {0.25f, 0.5f, 0.75f, 1, 1.25f, 0};
   builder.transparency = {0, 0.25f, 0.5f, 1, 1.5f, -1};
   builder.colors.assign(18, kNan);
   const Scene scene = read(builder);
   const Mesh& mesh = scene.meshes[0];
   EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 3, 4, 4, 5}));
   ASSERT_EQ(mesh.radii.size(), 6u);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(mesh.radii[i], static_cast<float>(i + 1));
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(mesh.radii[i], 0.125f * static_cast<float>(i + 1));
   EXPECT_GT(mesh.radii[5], 0.0f);  // a tip of no thickness
   EXPECT_LT(mesh.radii[5], 1e-8f);
   EXPECT_EQ(mesh.vertex_alpha, (std::vector<float>{1, 0.75f, 0.5f, 0, 0, 1}));
@@ -101,8 +101,18 @@ TEST(HairFile, SegmentsWithoutLengthAreDroppedWithoutAGap) {
   EXPECT_EQ(mesh.positions[0], V3f(5, 0, 0));
   EXPECT_EQ(mesh.positions[1], V3f(5, 1, 0));
   ASSERT_EQ(scene.warnings.size(), 2u);
-  expect_says(scene.warnings[0], "dropped 5 segments without length");
-  expect_says(scene.warnings[1], "dropped 1 strands that have no segment");
+  expect_says(scene.warnings[0], "dropped 2 segments without length");
+  expect_says(scene.warnings[1], "dropped 1 strands that are no longer than thick");
+}
+
+TEST(HairFile, StrandsNoLongerThanThickAreDroppedWithACount) {
+  HairBuilder builder = two_strands();
+  builder.thickness = {2, 2, 2, 1.75f, 1.75f, 1.75f};  // both are 2 long
+  const Scene scene = read(builder);
+  EXPECT_EQ(scene.meshes[0].primitive_count(), 2u);
+  EXPECT_EQ(scene.meshes[0].positions[0], V3f(1, 0, 0));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  expect_says(scene.warnings[0], "a.hair: dropped 1 strands that are no longer than thick");
 }
 
 TEST(HairFile, APointThatIsNotFiniteCutsItsStrand) {
@@ -163,13 +173,13 @@ TEST(HairFile, ThicknessesAndTransparenciesThatAreNoneAreRefusedByPoint) {
   expect_says(refusal(builder), "point 4 has a thickness of nan");
 }
 
-TEST(HairFile, AFileWithoutASegmentOfAnyLengthIsRefused) {
+TEST(HairFile, AFileWithoutAStrandOfAnyLengthIsRefused) {
   HairBuilder builder = two_strands();
   builder.points.assign(18, 1.0f);
-  expect_says(refusal(builder), "has no strand of any length");
+  expect_says(refusal(builder), "has no strand that is longer than thick");
   builder.points = {0, 0, 0, 1, 1, 1};
   builder.default_segments = 0;
-  expect_says(refusal(builder), "has no strand of any length");
+  expect_says(refusal(builder), "has no strand that is longer than thick");
 }
 
 TEST(HairFile, OnlyRegularFilesAreRead) {
@@ -183,13 +193,14 @@ TEST(HairFile, OnlyRegularFilesAreRead) {
   expect_says(refusal_of(fifo), "pipe.hair: is not a regular file");
 }
 
-TEST(HairFile, RealHairStandsUprightAndLosesOnlySegmentsWithoutLength) {
+TEST(HairFile, RealHairStandsUprightAndLosesOnlyItsSpecks) {
   const std::string path = std::string(DAPPLE_SHARED_SCENES) + "/mohawk.hair";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
   const Scene scene = load_scene(path);
   const Mesh& mesh = scene.meshes.at(0);
-  EXPECT_LE(mesh.primitive_count(), 2228u * 31u);
-  EXPECT_GE(mesh.primitive_count(), 2220u * 31u);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  expect_says(scene.warnings[0], "dropped 11 strands that are no longer than thick");
+  EXPECT_EQ(mesh.primitive_count(), 2217u * 31u);
   EXPECT_NEAR(mesh.radii.at(0), 0.00165363 / 2, 1e-8);
   const Box3f bounds = scene_bounds(scene);
   EXPECT_NEAR(bounds.min.y, 0.21, 0.01);

@@ -103,6 +103,9 @@ void run_render(const RenderArguments& a) {
     if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
 
     const auto writing = Clock::now();
+    if (frame.seconds)
+      result.film.metadata.settings.emplace_back("frame_seconds",
+                                                 fmt::format("{}", *frame.seconds));
     write_pictures(result, frame);
     statistics.seconds.load = load_seconds;
     statistics.seconds.write = since(writing);

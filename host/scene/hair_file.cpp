@@ -173,6 +173,10 @@ class StrandWriter {
   /// The strand that begins at the file's point `first`. A point that repeats the one before is
   /// left out and the next segment begins at the latter, so that no gap opens.
   void add(std::uint64_t first, std::uint64_t count) {
+    if (is_speck(first, count)) {
+      ++specks_;
+      return;
+    }
     std::uint64_t last = kNoPoint;  // that the next segment begins at
     bool written = false;           // it is the mesh's last vertex
     bool has_segment = false;
@@ -205,6 +209,7 @@ class StrandWriter {
     };
     warn(not_finite_, "points that are not finite");
     warn(without_length_, "segments without length");
+    warn(specks_, "strands that are no longer than thick");
     warn(empty_strands_, "strands that have no segment");
     return lines;
   }
@@ -217,11 +222,28 @@ class StrandWriter {
     return {load<float>(at), load<float>(at + 4), load<float>(at + 8)};
   }
 
+  [[nodiscard]] float radius(std::uint64_t i) const {
+    return arrays_.thickness == nullptr
+               ? default_radius_
+               : radius_of(load<float>(arrays_.thickness + 4 * i), i, path_);
+  }
+
+  /// Whether all of a strand's segments together are no longer than the strand is thick: dozens of
+  /// them in one place would be a dot of many layers, and no hair.
+  [[nodiscard]] bool is_speck(std::uint64_t first, std::uint64_t count) const {
+    double length = 0;
+    float thickest = 0;
+    for (std::uint64_t i = first; i + 1 < first + count; ++i) {
+      if (!is_finite(point(i)) || !is_finite(point(i + 1))) return false;
+      length += (Imath::V3d(point(i + 1)) - Imath::V3d(point(i))).length();
+      thickest = std::max({thickest, radius(i), radius(i + 1)});
+    }
+    return count > 1 && length <= 2 * double{thickest};
+  }
+
   void add_vertex(std::uint64_t i) {
     mesh_.positions.push_back(point(i));
-    mesh_.radii.push_back(arrays_.thickness == nullptr
-                              ? default_radius_
-                              : radius_of(load<float>(arrays_.thickness + 4 * i), i, path_));
+    mesh_.radii.push_back(radius(i));
     if (arrays_.transparency == nullptr) return;
     mesh_.vertex_alpha.push_back(opacity_of(load<float>(arrays_.transparency + 4 * i), i, path_));
   }
@@ -236,7 +258,7 @@ class StrandWriter {
   const std::string& path_;
   Mesh mesh_;
   float default_radius_ = 0;
-  std::uint64_t not_finite_ = 0, without_length_ = 0, empty_strands_ = 0;
+  std::uint64_t not_finite_ = 0, without_length_ = 0, specks_ = 0, empty_strands_ = 0;
 };
 
 Scene scene_of(const Header& header, const Arrays& arrays, const std::string& path) {
@@ -259,7 +281,7 @@ Scene scene_of(const Header& header, const Arrays& arrays, const std::string& pa
   scene.materials.push_back(std::move(hair));
   scene.meshes.push_back(writer.take());
   scene.instances.emplace_back();
-  if (scene.meshes[0].materials.empty()) fail(path, "has no strand of any length");
+  if (scene.meshes[0].materials.empty()) fail(path, "has no strand that is longer than thick");
   return scene;
 }
 

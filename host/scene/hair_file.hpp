@@ -4,7 +4,8 @@
 // Coordinates are taken as metres and as they are, whichever way is up: the format says neither,
 // files are found with Y and with Z up. Thickness is a diameter, as are the widths of curves that
 // exporters write there. Transparency t is opacity 1 - t of each crossing of a strand. Colours are
-// left out: nothing here needs them.
+// left out: nothing here needs them. Strands that are no longer than thick are dropped, and
+// counted.
 #pragma once
 
 #include <cstdint>

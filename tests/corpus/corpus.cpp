@@ -43,6 +43,7 @@ MalformedCases malformed_corpus() {
   add_wrong_accessors(cases);
   add_malformed_files(cases);
   add_malformed_images(cases);
+  add_wrong_motion(cases);
   add_malformed_hair(cases);
   add_bombs(cases);
   return cases;

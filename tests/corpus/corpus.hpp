@@ -1,5 +1,5 @@
-// The corpus of bad and of unusual input: small glTF and HAIR files, made here, each in a folder of its
-// own. Malformed ones must be refused by name, quickly and leaving nothing behind; tricky ones
+// The corpus of bad and of unusual input: small glTF and HAIR files, made here, each in a folder of
+// its own. Malformed ones must be refused by name, quickly and leaving nothing behind; tricky ones
 // are valid, and must render like a plain twin.
 #pragma once
 
@@ -54,6 +54,7 @@ void add_wrong_elements(MalformedCases& cases);
 void add_wrong_accessors(MalformedCases& cases);
 void add_malformed_files(MalformedCases& cases);
 void add_malformed_images(MalformedCases& cases);
+void add_wrong_motion(MalformedCases& cases);
 void add_malformed_hair(MalformedCases& cases);
 void add_bombs(MalformedCases& cases);
 void add_tricky_geometry(TrickyCases& cases);

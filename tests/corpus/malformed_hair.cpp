@@ -57,9 +57,9 @@ void add_values(MalformedCases& cases) {
   add(cases, "of_no_transparency", builder.bytes(), "point 0 has a transparency of nan");
   builder.transparency.clear();
   builder.points.assign(18, std::numeric_limits<float>::quiet_NaN());
-  add(cases, "of_no_finite_point", builder.bytes(), "has no strand of any length");
+  add(cases, "of_no_finite_point", builder.bytes(), "has no strand that is longer than thick");
   builder.points.assign(18, 3.0f);
-  add(cases, "without_length", builder.bytes(), "has no strand of any length");
+  add(cases, "without_length", builder.bytes(), "has no strand that is longer than thick");
 }
 
 }  // namespace

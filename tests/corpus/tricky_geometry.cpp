@@ -214,7 +214,26 @@ void add_faulty_triangles(TrickyCases& cases) {
   }));
 }
 
-void add_motion(TrickyCases& cases) {
+/// The card, carried by a joint that stands where it was bound.
+int add_skinned_card(GltfBuilder& b, const std::vector<float>& positions) {
+  const std::size_t vertices = positions.size() / 3;
+  std::vector<float> weights;
+  for (std::size_t i = 0; i < vertices; ++i) weights.insert(weights.end(), {0.75f, 0.25f, 0, 0});
+  const int joints = b.add_accessor(std::vector<std::uint16_t>(4 * vertices, 0), kUint16, "VEC4");
+  const int node = b.add_mesh({{"attributes",
+                                {{"POSITION", b.add_positions(positions)},
+                                 {"JOINTS_0", joints},
+                                 {"WEIGHTS_0", b.add_accessor(weights, kFloat, "VEC4")}}}});
+  b.doc["nodes"][node]["skin"] = 0;
+  return node;
+}
+
+std::vector<float> raised(std::vector<float> positions, float height) {
+  for (std::size_t i = 1; i < positions.size(); i += 3) positions[i] += height;
+  return positions;
+}
+
+void add_morphs(TrickyCases& cases) {
   cases.push_back(twisted("morph_target_of_weight_zero", [](GltfBuilder& b) {
     b.doc["meshes"][1]["primitives"][0]["targets"] = {
         {{"POSITION", b.add_positions(std::vector<float>(18, 5))}}};
@@ -223,6 +242,52 @@ void add_motion(TrickyCases& cases) {
   cases.push_back(twisted("morph_target_without_weights", [](GltfBuilder& b) {
     b.doc["meshes"][1]["primitives"][0]["targets"] = {
         {{"POSITION", b.add_positions(std::vector<float>(18, 5))}}};
+  }));
+  cases.push_back(card("morph_targets_that_make_the_card", [](GltfBuilder& b) {
+    b.add_mesh({{"attributes", {{"POSITION", b.add_positions(std::vector<float>(18, 0))}}},
+                {"targets", json::array({{{"POSITION", b.add_positions(kCardTriangles)}},
+                                         {{"NORMAL", b.add_positions(kCardTriangles)}}})}});
+    b.doc["meshes"][1]["weights"] = {0.5, 3};
+    b.doc["nodes"][1]["weights"] = {1, 0};
+  }));
+}
+
+void add_skins(TrickyCases& cases) {
+  cases.push_back(card("skin_in_its_bind_pose", [](GltfBuilder& b) {
+    const int node = add_skinned_card(b, raised(kCardTriangles, -3));
+    b.doc["nodes"][node]["translation"] = {50, 60, 70};  // is ignored
+    b.add("nodes", {{"translation", {0, 3, 0}}});
+    b.add("skins", {{"joints", {node + 1}}});
+  }));
+  cases.push_back(card("skin_with_inverse_matrices", [](GltfBuilder& b) {
+    const int node = add_skinned_card(b, kCardTriangles);
+    b.add("nodes", {{"translation", {0, 3, 0}}});
+    const int view = b.add_view(pack<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -3, 0, 1}));
+    const int inverse =
+        b.add("accessors",
+              {{"bufferView", view}, {"componentType", kFloat}, {"count", 1}, {"type", "MAT4"}});
+    b.add("skins", {{"joints", {node + 1}}, {"inverseBindMatrices", inverse}});
+  }));
+  cases.push_back(twisted("skin_of_a_mesh_without_joints", [](GltfBuilder& b) {
+    b.add("skins", {{"joints", {0}}});
+    b.doc["nodes"][1]["skin"] = 0;
+  }));
+  cases.push_back(card("skin_whose_joint_is_in_no_scene", [](GltfBuilder& b) {
+    const int node = add_skinned_card(b, kCardTriangles);
+    b.add("nodes", json::object());
+    b.add("skins", {{"joints", {node + 1}}});
+    b.add("scenes", {{"nodes", {0, node}}});
+  }));
+}
+
+void add_animations(TrickyCases& cases) {
+  cases.push_back(twisted("animation_at_rest", [](GltfBuilder& b) {
+    const int times = b.add_accessor(std::vector<float>{3, 1}, kFloat, "SCALAR");  // nobody looks
+    const int places = b.add_positions({9, 9, 9, 9, 9, 9});
+    b.add("animations", {{"samplers", {{{"input", times}, {"output", places}}}},
+                         {"channels",
+                          {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}},
+                           {{"sampler", 0}, {"target", {{"path", "pointer"}}}}}}});
   }));
 }
 
@@ -234,7 +299,9 @@ void add_tricky_geometry(TrickyCases& cases) {
   add_sparse(cases);
   add_quantized(cases);
   add_faulty_triangles(cases);
-  add_motion(cases);
+  add_morphs(cases);
+  add_skins(cases);
+  add_animations(cases);
 }
 
 }  // namespace dapple::test

@@ -25,6 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try_parse([&] { dapple::parse_vector("--up", text); });
   try_parse([&] { dapple::parse_crop(text); });
   try_parse([&] { dapple::parse_opacity(text); });
+  try_parse([&] { dapple::parse_frames(text); });
   try_parse([&] { dapple::parse_estimator(text); });
   try_parse([&] { dapple::parse_passes(text, options); });
   for (const dapple::ProceduralHelp& scene : dapple::procedural_help()) {

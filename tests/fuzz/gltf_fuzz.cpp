@@ -1,15 +1,24 @@
-// Any bytes as a scene: an Error of kind input, or triangles that a BVH can be built over.
+// Any bytes as a scene, at rest and moving: an Error of kind input, or triangles and segments that
+// a BVH can be built over.
+#include <optional>
+
 #include "dapple/error.hpp"
-#include "dapple/scene.hpp"
+#include "dapple/moving_scene.hpp"
 #include "fuzz/input_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const dapple::fuzz::InputFile file("scene.glb");
-  try {
-    dapple::Scene scene = dapple::load_scene(file.fill(data, size));
-    dapple::merge_single_instances(scene);
-  } catch (const dapple::Error& error) {
-    if (error.kind() != dapple::ErrorKind::input) __builtin_trap();
+  dapple::SceneOptions options;
+  options.line_radius = 0.01f;
+  const std::string& path = file.fill(data, size);
+  for (const std::optional<double> seconds : {std::optional<double>(), std::optional(0.3)}) {
+    options.time = seconds;
+    try {
+      dapple::Scene scene = dapple::load_scene(path, options);
+      dapple::merge_single_instances(scene);
+    } catch (const dapple::Error& error) {
+      if (error.kind() != dapple::ErrorKind::input) __builtin_trap();
+    }
   }
   return 0;
 }

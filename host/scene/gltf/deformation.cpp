@@ -50,9 +50,7 @@ V3d moved(const V3d& p, const M44d& m) {
 bool has_joints(const tinygltf::Primitive& primitive) { return influence_sets(primitive) > 0; }
 
 std::uint64_t deformation_cost(const Document& document, const tinygltf::Primitive& primitive,
-                               const Deformation& deformation) {
-  const int position = primitive.attributes.at("POSITION");
-  const std::uint64_t vertices = document.model.accessors[static_cast<std::size_t>(position)].count;
+                               const Deformation& deformation, std::uint64_t vertices) {
   std::uint64_t cost = 0;
   for (const auto& [weight, accessor] : active_targets(primitive, deformation.weights))
     cost += vertices + sparse_count(document, accessor);

@@ -23,9 +23,9 @@ struct Deformation {
 /// Whether a primitive says which joints carry its vertices.
 bool has_joints(const tinygltf::Primitive& primitive);
 
-/// What deforming a primitive takes, in numbers read; needs no byte of geometry.
+/// What deforming `vertices` of a primitive takes, in numbers read; needs no byte of geometry.
 std::uint64_t deformation_cost(const Document& document, const tinygltf::Primitive& primitive,
-                               const Deformation& deformation);
+                               const Deformation& deformation, std::uint64_t vertices);
 
 class VertexDeformer {
  public:

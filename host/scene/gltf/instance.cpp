@@ -175,6 +175,11 @@ class Skeletons {
   std::map<int, std::vector<M44d>> joints_;
 };
 
+/// The accessor of a skin's inverse matrices, -1 for none.
+int inverse_of(const Document& document, const MeshUse& use) {
+  return document.motion.skins[static_cast<std::size_t>(use.skin)].inverse_matrices;
+}
+
 }  // namespace
 
 void add_instances(const Document& document, const std::vector<PlacedNode>& placed,
@@ -191,6 +196,7 @@ void add_instances(const Document& document, const std::vector<PlacedNode>& plac
     if (node.skin >= 0 && use.skin < 0) ++unbound;
     auto known = parts_of_use.find(use);
     if (known == parts_of_use.end()) {
+      if (use.skin >= 0) totals.sparse_values += sparse_count(document, inverse_of(document, use));
       auto parts = read_mesh(document, use, skeletons.joints(use.skin), materials, scene, totals);
       known = parts_of_use.emplace(use, std::move(parts)).first;
     }

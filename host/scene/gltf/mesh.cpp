@@ -54,10 +54,20 @@ void append_elements(Mesh& mesh, const std::vector<std::uint32_t>& corners, std:
   mesh.materials.insert(mesh.materials.end(), corners.size() / corners_each, material);
 }
 
-void append_primitive(const Document& document, const tinygltf::Primitive& primitive,
-                      std::uint32_t material_index, const Material& material,
-                      const AlphaLookup& lookup, float line_radius, const Deformation& deformation,
-                      const std::string& who, Mesh& mesh, MeshTotals& totals) {
+/// A primitive on its way into a mesh.
+struct PrimitiveSource {
+  const tinygltf::Primitive& primitive;
+  std::uint32_t material_index;  ///< into Scene::materials
+  const Material& material;
+  const AlphaLookup& lookup;
+  float line_radius;
+  const Deformation& deformation;
+  const std::string& who;  ///< for messages
+};
+
+void append_primitive(const Document& document, const PrimitiveSource& source, Mesh& mesh,
+                      MeshTotals& totals) {
+  const auto& [primitive, material_index, material, lookup, line_radius, deformation, who] = source;
   const bool lines = is_of_lines(primitive);
   const AttributeNeeds needs = needs_of(material, lookup, lines, totals);
   const Attributes attributes = read_attributes(document, primitive, needs, lookup, who);
@@ -95,7 +105,8 @@ constexpr std::uint64_t kMostDeformed = std::uint64_t{1} << 30;
 
 void count_work(const Document& document, const tinygltf::Primitive& primitive,
                 const Deformation& deformation, const std::string& who, MeshTotals& totals) {
-  totals.elements += element_count(document, primitive, who);
+  const std::uint64_t elements = element_count(document, primitive, who);
+  totals.elements += elements;
   if (totals.elements > most_elements(document)) {
     fail(document.file,
          "{} brings the triangles and segments to {} (at most {} in a scene of {} bytes)", who,
@@ -105,7 +116,11 @@ void count_work(const Document& document, const tinygltf::Primitive& primitive,
   for (const auto& [name, accessor] : primitive.attributes) {
     totals.sparse_values += sparse_count(document, accessor);
   }
-  totals.deformed += deformation_cost(document, primitive, deformation);
+  // No more vertices are read than corners need.
+  const std::uint64_t vertices = std::min<std::uint64_t>(
+      3 * elements,
+      document.model.accessors[static_cast<std::size_t>(attribute(primitive, "POSITION"))].count);
+  totals.deformed += deformation_cost(document, primitive, deformation, vertices);
   if (totals.deformed > kMostDeformed) {
     fail(document.file, "{} brings the numbers that deform vertices to {} (at most {})", who,
          grouped(totals.deformed), grouped(kMostDeformed));
@@ -177,8 +192,10 @@ std::vector<MeshPart> read_mesh(const Document& document, const MeshUse& use,
     const std::uint32_t at = materials.index_of(primitive.material);
     const Material& material = scene.materials[at];
     Mesh& mesh = draft_for(drafts, emitter_of(material, at, lines, totals), lines);
-    append_primitive(document, primitive, at, material, materials.lookups[at], use.line_radius,
-                     deformation, who, mesh, totals);
+    append_primitive(
+        document,
+        {primitive, at, material, materials.lookups[at], use.line_radius, deformation, who}, mesh,
+        totals);
   }
   const std::string name =
       given.name.empty() ? fmt::format("mesh_{}", use.mesh) : one_line(given.name);
