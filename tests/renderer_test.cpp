@@ -164,18 +164,33 @@ TEST(SwayingTree, OcclusionInARefittedBvhIsThatInAFreshOne) {
   }
 }
 
-// Nothing moves rigidly here: all opacities are found anew.
-TEST(SwayingTree, OcclusionInASquashedTreeIsThatInAFreshBvh) {
-  const Scene still = tree(10000);
+/// Occlusion by a refitted BVH against that by a fresh one.
+void expect_same_occlusion(const Scene& still, const Scene& moved) {
   UpdatableBvh updatable(still);
-  Scene moved = still;
-  for (V3f& p : moved.meshes[0].positions) p.y *= 0.4f;
   ASSERT_EQ(updatable.update(moved).objects_refitted, 1u);
   const scene_test::SceneOnDevice fresh(moved);
   const CrownOcclusion crown(fresh.bvh.bounds);
   const DeviceScene on_device = upload(scene_test::device(), moved, updatable.bvh());
   EXPECT_NEAR(crown.mean(on_device, Estimator::prefiltered),
               crown.mean(fresh.uploaded, Estimator::prefiltered), 0.003);
+}
+
+// Nothing moves rigidly here: all opacities are found anew.
+TEST(SwayingTree, OcclusionInASquashedTreeIsThatInAFreshBvh) {
+  const Scene still = tree(10000);
+  Scene moved = still;
+  for (V3f& p : moved.meshes[0].positions) p.y *= 0.4f;
+  expect_same_occlusion(still, moved);
+}
+
+// All moves rigidly, but the axes are others: level leaves become upright ones.
+TEST(SwayingTree, OcclusionInAFallenTreeIsThatInAFreshBvh) {
+  const Scene still = tree(10000);
+  for (const float angle : {0.4f, 0.8f, 1.57f}) {
+    Scene moved = still;
+    for (V3f& p : moved.meshes[0].positions) p = motion::turned(p, V3f(0, 0, 1), angle);
+    expect_same_occlusion(still, moved);
+  }
 }
 
 std::size_t resident_bytes() {
