@@ -11,5 +11,8 @@ namespace dapple::bench {
 void register_tracing(BenchScene& scene);
 /// Build: all of build_bvh(). Prefilter: the part of it that makes opacities.
 void register_building(BenchScene& scene);
+/// Refit: UpdatableBvh::update() of trees of 40 k to 4 M triangles, each frame of which is built
+/// too.
+void register_refitting();
 
 }  // namespace dapple::bench

@@ -118,6 +118,7 @@ int run(int argc, char** argv) {
   }
   for (const auto& scene : scenes) register_tracing(*scene);
   for (const auto& scene : scenes) register_building(*scene);
+  register_refitting();
   int rest = static_cast<int>(arguments.rest.size());
   benchmark::Initialize(&rest, arguments.rest.data());
   if (benchmark::ReportUnrecognizedArguments(rest, arguments.rest.data())) return 2;

@@ -15,7 +15,8 @@ namespace {
 std::atomic<int> call_count{0}, allocation_count{0}, living{0};
 std::atomic<int> failing_call{0}, failing_allocation{0};
 std::atomic<const char*> failed{nullptr};
-std::atomic<std::size_t> pretended_global{0}, pretended_allocation{0};
+std::atomic<std::size_t> pretended_global{0}, pretended_allocation{0}, written{0};
+std::atomic<bool> has_own_memory{false};
 
 bool fails(const char* name, bool allocates = false) {
   const bool by_call = ++call_count == failing_call;
@@ -77,6 +78,10 @@ void pretend_memory(std::size_t global_bytes, std::size_t allocation_bytes) {
   pretended_allocation = allocation_bytes;
 }
 
+void pretend_own_memory(bool own) { has_own_memory = own; }
+
+std::size_t written_bytes() { return written; }
+
 }  // namespace dapple::opencl_test
 
 using namespace dapple::opencl_test;
@@ -90,6 +95,9 @@ cl_int clGetDeviceInfo(cl_device_id a, cl_device_info b, size_t c, void* d, size
   if (b == CL_DEVICE_GLOBAL_MEM_SIZE) pretended = pretended_global;
   if (b == CL_DEVICE_MAX_MEM_ALLOC_SIZE) pretended = pretended_allocation;
   if (pretended != 0 && d != nullptr) std::memcpy(d, &pretended, sizeof pretended);
+  const cl_bool shared = CL_FALSE;
+  if (b == CL_DEVICE_HOST_UNIFIED_MEMORY && has_own_memory && d != nullptr)
+    std::memcpy(d, &shared, sizeof shared);
   return status;
 }
 
@@ -146,6 +154,7 @@ cl_int clEnqueueReadBuffer(cl_command_queue a, cl_mem b, cl_bool c, size_t d, si
 cl_int clEnqueueWriteBuffer(cl_command_queue a, cl_mem b, cl_bool c, size_t d, size_t e,
                             const void* f, cl_uint g, const cl_event* h, cl_event* i) {
   if (fails("clEnqueueWriteBuffer")) return CL_OUT_OF_RESOURCES;
+  written += e;
   return count_event(next(&clEnqueueWriteBuffer, "clEnqueueWriteBuffer")(a, b, c, d, e, f, g, h, i),
                      i);
 }

@@ -1,5 +1,5 @@
 // OpenCL between dapple and the driver, in the test program only: counts calls and living objects,
-// fails the call it is told to, and makes a device look smaller than it is.
+// fails the call it is told to, and makes a device look smaller or farther than it is.
 #pragma once
 
 #include <cstddef>
@@ -22,5 +22,11 @@ int living_objects();
 
 /// What every device says of its memory from now on; 0: the truth.
 void pretend_memory(std::size_t global_bytes, std::size_t allocation_bytes);
+
+/// Whether devices say from now on that they share no memory with the host.
+void pretend_own_memory(bool own);
+
+/// By all clEnqueueWriteBuffer() so far.
+std::size_t written_bytes();
 
 }  // namespace dapple::opencl_test

@@ -5,7 +5,9 @@
 
 #include <cstring>
 
+#include "bvh/prefilter.hpp"
 #include "bvh/quantize.hpp"
+#include "failing_opencl.hpp"
 #include "scene_on_device.hpp"
 #include "swaying.hpp"
 
@@ -102,6 +104,31 @@ TEST(Refit, EveryRayMeetsInExactModeWhatItMeetsInAFreshBvh) {
     for (std::size_t i = 0; i < rays.size(); ++i)
       ASSERT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5f) << "ray " << i;
   }
+}
+
+// On a device with memory of its own.
+TEST(Refit, OnlyWhatMovedIsUploaded) {
+  opencl_test::pretend_own_memory(true);
+  const Device device;
+  opencl_test::pretend_own_memory(false);
+  Scene still = tree(20000);
+  place(still, square_mesh(3, 1, 12, 0), M44f().setTranslation(V3f(9, 0, 0)));
+  UpdatableBvh updatable(still);
+  DeviceScene on_device = upload(device, still, updatable.bvh());
+  Scene moved = still;
+  for (V3f& p : moved.meshes[1].positions) p.y += 0.2f * p.x;
+  const std::size_t before = opencl_test::written_bytes();
+  const BvhUpdate changes = update(device, on_device, updatable, moved);
+  const std::size_t written = opencl_test::written_bytes() - before;
+  EXPECT_EQ(changes.objects_refitted, 1u);
+  EXPECT_GT(written, 288u * 40);
+  EXPECT_LT(written, on_device.bytes / 20);
+  const scene_test::SceneOnDevice fresh(moved);
+  const auto rays = scene_test::rays_through(fresh.bvh.bounds, 5000, 30, 0, 7);
+  const auto found = trace(device, on_device, rays, Estimator::exact);
+  const auto expected = fresh.trace(rays, Estimator::exact);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    ASSERT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5f) << "ray " << i;
 }
 
 // The opacities that are kept and not found again must be those that building finds.
@@ -316,6 +343,25 @@ TEST(Refit, TexturedTrianglesKeepTheirTexture) {
   std::printf("transmittance exact %.4f, prefiltered and refitted %.4f, fresh %.4f\n", exact,
               refitted, built);
   EXPECT_NEAR(refitted, built, 0.01);
+}
+
+template <class T>
+double bytes_in(const std::vector<T>& values) {
+  return static_cast<double>(values.size() * sizeof(T));
+}
+
+TEST(Refit, WhatItNeedsTakesUnderTwentyBytesATriangle) {
+  const Scene scene = tree(50000);
+  BuiltObject built = build_object(scene, scene.meshes[0], true);
+  RefitRecord record;
+  prefilter(built, TextureIntegrals(scene, built.object.textured), &record);
+  const double bytes = bytes_in(record.triangles) + bytes_in(record.closed) +
+                       bytes_in(record.textured_opacity) + bytes_in(record.nodes) +
+                       bytes_in(record.subtrees) + bytes_in(record.upper.nodes) +
+                       bytes_in(record.upper.children) + bytes_in(record.upper_nodes);
+  const double each = bytes / static_cast<double>(built.object.triangles);
+  std::printf("%.1f bytes a triangle\n", each);
+  EXPECT_LT(each, 20);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "dapple/error.hpp"
-#include "dapple/wavefront.hpp"
+#include "scene_on_device.hpp"
 #include "swaying.hpp"
 
 namespace dapple {
@@ -75,7 +75,7 @@ TEST(Renderer, GoesOnAfterAnError) {
   const Scene still = tree(500);
   const RenderOptions options = small_picture(Estimator::prefiltered);
   RenderOptions wrong = options;
-  wrong.camera = "none of that name";
+  wrong.device = "none of that name";
   Renderer renderer;
   const double before = mean_ao(renderer.render(still, options));
   EXPECT_THROW(renderer.render(still, wrong), Error);
@@ -93,27 +93,104 @@ TEST(Renderer, AnotherSceneIsAnotherPicture) {
 /// A film's rate: the fastest leaves turn by some 5 degrees from one frame to the next.
 constexpr float kFrameSeconds = 1.0f / 24;
 
-// Exact pictures of the same samples tell how much of a step is motion and noise.
-TEST(Renderer, AHundredFramesOfASwayingTreeDontPop) {
+/// Mean occlusion of points all over the tree's box, looking up and down.
+class CrownOcclusion {
+ public:
+  explicit CrownOcclusion(const Box3f& box) {
+    scene_test::Points points(1);
+    for (int i = 0; i < 512; ++i) {
+      points_.push_back(box.center() + points.in_cube(0.4f) * (box.max - box.min));
+      normals_.emplace_back(0.0f, i % 2 ? 1.0f : -1.0f, 0.0f);
+    }
+  }
+  [[nodiscard]] double mean(const DeviceScene& scene, Estimator estimator) const {
+    OcclusionOptions options;
+    options.rays = 128;
+    options.estimator = estimator;
+    const auto values = occlusion(scene_test::device(), scene, points_, normals_, options);
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  }
+
+ private:
+  std::vector<V3f> points_, normals_;
+};
+
+// Exact occlusion of the same rays tells how much of a step is the leaves' own: prefiltered, fewer
+// rays go from one side of a leaf to the other.
+TEST(SwayingTree, AHundredFramesDontPop) {
   const Scene still = tree(5000);
-  Renderer exact, prefiltered;
-  double last_exact = 0, last = 0, most = 0, most_exact = 0, most_beyond = 0;
+  UpdatableBvh updatable(still);
+  const CrownOcclusion crown(updatable.bvh().bounds);
+  DeviceScene on_device = upload(scene_test::device(), still, updatable.bvh());
+  double last_exact = 0, last = 0, most = 0, most_exact = 0, most_bias = 0;
   for (int frame = 0; frame < 100; ++frame) {
     const Scene moved = swayed(still, kFrameSeconds * static_cast<float>(frame));
-    const double e = mean_ao(exact.render(moved, small_picture(Estimator::exact, 32, 4)));
-    const double p =
-        mean_ao(prefiltered.render(moved, small_picture(Estimator::prefiltered, 32, 4)));
+    update(scene_test::device(), on_device, updatable, moved);
+    const double exact = crown.mean(on_device, Estimator::exact);
+    const double prefiltered = crown.mean(on_device, Estimator::prefiltered);
     if (frame > 0) {
-      most = std::max(most, std::fabs(p - last));
-      most_exact = std::max(most_exact, std::fabs(e - last_exact));
-      most_beyond = std::max(most_beyond, std::fabs((p - last) - (e - last_exact)));
+      most = std::max(most, std::fabs(prefiltered - last));
+      most_exact = std::max(most_exact, std::fabs(exact - last_exact));
     }
-    last_exact = e;
-    last = p;
+    most_bias = std::max(most_bias, std::fabs(prefiltered - exact));
+    last_exact = exact;
+    last = prefiltered;
   }
-  std::printf("largest step of mean AO exact %.5f, prefiltered %.5f, apart %.5f\n", most_exact,
-              most, most_beyond);
-  EXPECT_LT(most_beyond, 0.003);
+  std::printf("largest step of mean AO exact %.5f, prefiltered %.5f; largest bias %.5f\n",
+              most_exact, most, most_bias);
+  EXPECT_LT(most, most_exact + 0.001);
+  EXPECT_LT(most_bias, 0.01);
+}
+
+TEST(SwayingTree, OcclusionInARefittedBvhIsThatInAFreshOne) {
+  for (const char* spec : {"scene:tree", "scene:tree?opacity=0.3", "scene:cloud"}) {
+    const Scene still = make_procedural(spec);
+    UpdatableBvh updatable(still);
+    for (const float time : {0.5f, 2.0f}) {
+      const Scene moved = swayed(still, time);
+      updatable.update(moved);
+      const scene_test::SceneOnDevice fresh(moved);
+      const CrownOcclusion crown(fresh.bvh.bounds);
+      const DeviceScene on_device = upload(scene_test::device(), moved, updatable.bvh());
+      const double exact = crown.mean(fresh.uploaded, Estimator::exact),
+                   exact_refitted = crown.mean(on_device, Estimator::exact),
+                   built = crown.mean(fresh.uploaded, Estimator::prefiltered),
+                   refitted = crown.mean(on_device, Estimator::prefiltered);
+      std::printf("%s at %.1f s: AO exact %.5f, prefiltered fresh %+.5f, refitted %+.5f\n", spec,
+                  time, exact, built - exact, refitted - exact);
+      EXPECT_NEAR(exact_refitted, exact, 0.0005);
+      EXPECT_NEAR(refitted, built, 0.003);
+    }
+  }
+}
+
+/// Occlusion by a refitted BVH against that by a fresh one.
+void expect_same_occlusion(const Scene& still, const Scene& moved) {
+  UpdatableBvh updatable(still);
+  ASSERT_EQ(updatable.update(moved).objects_refitted, 1u);
+  const scene_test::SceneOnDevice fresh(moved);
+  const CrownOcclusion crown(fresh.bvh.bounds);
+  const DeviceScene on_device = upload(scene_test::device(), moved, updatable.bvh());
+  EXPECT_NEAR(crown.mean(on_device, Estimator::prefiltered),
+              crown.mean(fresh.uploaded, Estimator::prefiltered), 0.003);
+}
+
+// Nothing moves rigidly here: all opacities are found anew.
+TEST(SwayingTree, OcclusionInASquashedTreeIsThatInAFreshBvh) {
+  const Scene still = tree(10000);
+  Scene moved = still;
+  for (V3f& p : moved.meshes[0].positions) p.y *= 0.4f;
+  expect_same_occlusion(still, moved);
+}
+
+// All moves rigidly, but the axes are others: level leaves become upright ones.
+TEST(SwayingTree, OcclusionInAFallenTreeIsThatInAFreshBvh) {
+  const Scene still = tree(10000);
+  for (const float angle : {0.4f, 0.8f, 1.57f}) {
+    Scene moved = still;
+    for (V3f& p : moved.meshes[0].positions) p = motion::turned(p, V3f(0, 0, 1), angle);
+    expect_same_occlusion(still, moved);
+  }
 }
 
 std::size_t resident_bytes() {
@@ -144,10 +221,12 @@ TEST(FlatMemory, AThousandFramesOfOneRenderer) {
   });
 }
 
-TEST(FlatMemory, AThousandRendersOfOneProcess) {
-  const Scene still = tree(300);
+// Built anew each time: no scene is the one before.
+TEST(FlatMemory, AThousandScenesOfOneRenderer) {
+  const Scene scenes[] = {tree(300), make_procedural("scene:cloud?leaves=300"), tree(200)};
   const RenderOptions options = small_picture(Estimator::prefiltered, 8, 1);
-  expect_flat_memory([&](int) { render(still, options); });
+  Renderer renderer;
+  expect_flat_memory([&](int i) { renderer.render(scenes[i % 3], options); });
 }
 
 }  // namespace

@@ -129,10 +129,15 @@ double expected_visits(const WideTree& tree) {
 
 }  // namespace
 
+// Minima and maxima without branches, which Imath's extendBy() would take at random.
 Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
+  const std::uint32_t* index = &mesh.indices[3 * triangle];
+  const V3f &a = mesh.positions[index[0]], &b = mesh.positions[index[1]],
+            &c = mesh.positions[index[2]];
   Box3f box;
-  for (int corner = 0; corner < 3; ++corner) {
-    box.extendBy(mesh.positions[mesh.indices[3 * triangle + corner]]);
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = std::min(std::min(a[axis], b[axis]), c[axis]);
+    box.max[axis] = std::max(std::max(a[axis], b[axis]), c[axis]);
   }
   return box;
 }

@@ -1,5 +1,6 @@
 #include "bvh/refit_subtree.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "bvh/quantize.hpp"
@@ -23,8 +24,16 @@ std::size_t lane_of(const BvhNode& node, const ObjectArrays& object, std::uint32
   return 8 * std::size_t{node.prim_base - object.first_block} + i;
 }
 
+/// Box3f::extendBy() without its branches, which go either way.
+void join(Box3f& box, const Box3f& other) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = std::min(box.min[axis], other.min[axis]);
+    box.max[axis] = std::max(box.max[axis], other.max[axis]);
+  }
+}
+
 void add(MovedPart& to, const MovedPart& part) {
-  to.box.extendBy(part.box);
+  join(to.box, part.box);
   to.areas.add(part.areas);
   to.normals.add(part.normals);
   to.half_areas += part.half_areas;
@@ -54,7 +63,7 @@ MovedPart SubtreeRefit::leaf(const BvhNode& node, unsigned slot) const {
     TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
     float opacity = block.opacity[i % 8];
     set_lane(block, i % 8, mesh_, triangle, opacity);
-    moved.box.extendBy(triangle_box(mesh_, triangle));
+    join(moved.box, triangle_box(mesh_, triangle));
     if (opacity < 0.0f) {
       opacity =
           record_

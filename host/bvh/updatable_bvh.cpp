@@ -16,7 +16,8 @@
 namespace dapple {
 namespace {
 
-/// From here on rays are slowed down for longer than building takes (bench Refit).
+/// From here on exact rays visit half as many nodes again as in a fresh tree and take about a third
+/// longer, in scattered leaves; prefiltered ones take no longer by far beyond.
 constexpr double kWorstCost = 1.5;
 
 /// What a mesh was when its object was made.

@@ -1,0 +1,62 @@
+// Refitting a tree in the wind against building it, of growing size: both in turn, by wall time.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <string>
+
+#include "benchmarks.hpp"
+#include "swaying.hpp"
+
+namespace dapple::bench {
+namespace {
+
+constexpr int kRepetitions = 5;
+
+template <class Work>
+double seconds_of(const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Frames a film's frame apart. The time is the refit's; beside it what building the same took.
+void measure_refit(benchmark::State& state, const std::string& spec) {
+  Scene still = make_procedural(spec);
+  merge_single_instances(still);
+  UpdatableBvh updatable(still);
+  updatable.update(motion::swayed(still, 0.9f));
+  double refit = 0, build = 0;
+  int frame = 0;
+  for (auto _ : state) {
+    const Scene moved = motion::swayed(still, 1 + static_cast<float>(frame++) / 24);
+    const double seconds = seconds_of([&] { updatable.update(moved); });
+    state.SetIterationTime(seconds);
+    refit += seconds;
+    build += seconds_of([&] { benchmark::DoNotOptimize(build_bvh(moved)); });
+  }
+  const auto triangles = static_cast<double>(updatable.bvh().statistics.triangles);
+  const double frames = static_cast<double>(frame);
+  state.counters["triangles"] = triangles;
+  state.counters["build_ms"] = build / frames * 1e3;
+  state.counters["refit/build"] = refit / build;
+  state.counters["ns/tri"] = refit / frames / triangles * 1e9;
+}
+
+}  // namespace
+
+void register_refitting() {
+  for (const auto& [name, leaves] :
+       {std::pair("40k", 16200), std::pair("200k", 96200), std::pair("1M", 496200),
+        std::pair("2M", 996200), std::pair("4M", 1996200)}) {
+    const std::string spec = "scene:tree?leaves=" + std::to_string(leaves);
+    benchmark::RegisterBenchmark((std::string("Refit/tree-") + name).c_str(),
+                                 [spec](benchmark::State& state) { measure_refit(state, spec); })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(3)
+        ->Repetitions(kRepetitions)
+        ->DisplayAggregatesOnly();
+  }
+}
+
+}  // namespace dapple::bench
