@@ -66,10 +66,14 @@ NodeOpacity instance_opacity(const ObjectSummary& object, const M44f& to_world,
 void add_statistics(BvhStatistics& s, const std::vector<FinishedObject>& objects) {
   std::size_t largest = 0;
   for (const FinishedObject& object : objects) {
-    (object.segments.empty() ? s.triangles : s.segments) += object.triangles;
-    s.opaque += object.opaque;
-    s.cut_out += object.cut_out;
-    s.translucent += object.translucent;
+    if (object.segments.empty()) {
+      s.triangles += object.triangles;
+      s.opaque += object.opaque;
+      s.cut_out += object.cut_out;
+      s.translucent += object.translucent;
+    } else {
+      s.segments += object.triangles;
+    }
     if (object.triangles > largest) {
       largest = object.triangles;
       s.sah_cost = object.sah_cost;
