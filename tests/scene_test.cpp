@@ -379,7 +379,8 @@ TEST(Merge, AMeshLightWithoutATriangleIsDroppedAndTheOthersKeepTheirInstances) {
 TEST(Merge, ASceneOfWhichNothingIsLeftIsRefused) {
   Scene scene = scene_of({triangle_mesh("line", {0, 0, 0}, {1, 1, 1}, {2, 2, 2})}, {placed(0)});
   EXPECT_EQ(complaint(ErrorKind::input, [&] { merge_single_instances(scene); }),
-            "test.glb: there is nothing to render: no triangle is left (dropped 1 triangle without "
+            "test.glb: there is nothing to render: no triangle or strand is left (dropped 1 "
+            "triangle without "
             "an area)");
   Scene empty;
   EXPECT_THROW(merge_single_instances(empty), Error);
