@@ -329,6 +329,27 @@ TEST_F(BvhCache, ATreeWhoseIndicesLeaveItsArraysIsNotWalkedWhoeverSealedIt) {
   }
 }
 
+TEST_F(BvhCache, StrandsOfOpacitiesOrIndicesThatCannotBeAreNotWalked) {
+  Scene scene = single_object();
+  scene.meshes = {scene_test::curly_strands({.strands = 40}, 1)};
+  build_bvh(scene, cache_);
+  const Checksum key = object_key(scene, scene.meshes[0]);
+  std::string note;
+  const CachedObject good = read_cached_object(cache_, key, scene, note).value();
+  const std::vector<std::function<void(ObjectBvh&)>> edits = {
+      [](ObjectBvh& o) { o.segments.pop_back(); },
+      [](ObjectBvh& o) { o.nodes.back().prim_base &= ~DAPPLE_SEGMENTS; },
+      [](ObjectBvh& o) { o.segments[3].opacity = 1.5f; },
+      [](ObjectBvh& o) { o.segments[3].radius = std::numeric_limits<float>::quiet_NaN(); },
+  };
+  for (std::size_t e = 0; e < edits.size(); ++e) {
+    ObjectBvh bad = copy_of(good.object);
+    edits[e](bad);
+    write_cached_object(cache_, key, {FinishedObject(std::move(bad)), 0});
+    EXPECT_FALSE(read_cached_object(cache_, key, scene, note).has_value()) << "edit " << e;
+  }
+}
+
 TEST_F(BvhCache, AFileThatCannotBeReplacedIsANoteAndNotAnError) {
   const std::string file = fill_with_one();
   fs::remove(file);

@@ -198,10 +198,14 @@ void describe_objects(BvhStatistics& s, const std::vector<ObjectSummary>& object
   s.triangles = s.segments = s.opaque = s.cut_out = s.translucent = 0;
   std::size_t largest = 0;
   for (const ObjectSummary& object : objects) {
-    (object.has_strands ? s.segments : s.triangles) += object.triangles;
-    s.opaque += object.opaque;
-    s.cut_out += object.cut_out;
-    s.translucent += object.translucent;
+    if (object.has_strands) {
+      s.segments += object.triangles;
+    } else {
+      s.triangles += object.triangles;
+      s.opaque += object.opaque;
+      s.cut_out += object.cut_out;
+      s.translucent += object.translucent;
+    }
     if (object.triangles > largest) {
       largest = object.triangles;
       s.sah_cost = object.sah_cost;

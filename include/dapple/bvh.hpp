@@ -20,7 +20,7 @@ struct BvhStatistics {
   double prefilter_seconds = 0;                          ///< directional opacity
   std::size_t triangles = 0;                             ///< distinct, before instancing
   std::size_t segments = 0;                              ///< of strands, likewise
-  std::size_t opaque = 0, cut_out = 0, translucent = 0;  ///< of both
+  std::size_t opaque = 0, cut_out = 0, translucent = 0;  ///< of `triangles`
   std::size_t instanced_triangles = 0, instanced_segments = 0;
   std::size_t instances = 0;
   double lane_use = 0;  ///< used lanes of all blocks, [0,1]

@@ -81,6 +81,12 @@ void walk(const FinishedObject& object, std::uint32_t index, std::size_t& visits
     }
     for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
          i < bvh_leaf_end(node.leaf_end, slot); ++i) {
+      if (node.prim_base & DAPPLE_SEGMENTS) {
+        const std::size_t block = std::size_t{bvh_block_index(node.prim_base)} + i / 8;
+        require(block < object.segments.size());
+        require(object.segments[block].opacity <= 1.0f);
+        continue;
+      }
       require(node.prim_base + std::size_t{i / 8} < object.blocks.size());
       const float opacity = object.blocks[node.prim_base + i / 8].opacity[i % 8];
       require(opacity <= 1.0f);
