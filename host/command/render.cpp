@@ -72,9 +72,11 @@ void print_summary(const RenderStatistics& s, const Frame& frame) {
     fmt::print("{}wrote {}\n", statistics_text(s), files);
     return;
   }
-  fmt::print("{}, at {:.3f} s: load {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s; wrote {}\n",
-             frame.title, *frame.seconds, s.seconds.load, s.seconds.build + s.seconds.prefilter,
-             s.seconds.trace, s.seconds.total, files);
+  fmt::print(
+      "{}, at {:.3f} s: load {:.2f}, build {:.2f}, refit {:.2f}, trace {:.2f}, total {:.2f} s; "
+      "wrote {}\n",
+      frame.title, *frame.seconds, s.seconds.load, s.seconds.build + s.seconds.prefilter,
+      s.seconds.refit, s.seconds.trace, s.seconds.total, files);
   std::fflush(stdout);
 }
 
