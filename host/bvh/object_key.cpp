@@ -34,6 +34,7 @@ void add_material(ChecksumStream& key, const Scene& scene, const Material& mater
 void add_form(ChecksumStream& key, const Scene& scene, const Mesh& mesh) {
   key.add_range(mesh.indices);
   key.add_range(mesh.materials);
+  key.add_range(mesh.radii);
   key.add_range(mesh.uvs);
   key.add_range(mesh.vertex_alpha);
   const std::vector<bool> used = used_materials(scene, mesh);
