@@ -53,7 +53,7 @@ void register_refitting() {
                                  [spec](benchmark::State& state) { measure_refit(state, spec); })
         ->UseManualTime()
         ->Unit(benchmark::kMillisecond)
-        ->Iterations(3)
+        ->Iterations(1)
         ->Repetitions(kRepetitions)
         ->DisplayAggregatesOnly();
   }

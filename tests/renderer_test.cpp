@@ -90,6 +90,22 @@ TEST(Renderer, AnotherSceneIsAnotherPicture) {
   EXPECT_EQ(mean_ao(renderer.render(cloud, options)), mean_ao(render(cloud, options)));
 }
 
+// Triangles without an area are dropped before trees are built: the tree of the others is another.
+TEST(Renderer, ALeafThatLosesItsAreaHasItsObjectBuiltAnew) {
+  const Scene still = tree(500);
+  const RenderOptions options = small_picture(Estimator::exact, 16, 4);
+  Renderer renderer;
+  renderer.render(still, options);
+  renderer.render(swayed(still, 0.1f), options);
+  Scene moved = swayed(still, 0.2f);
+  std::vector<V3f>& positions = moved.meshes[0].positions;
+  for (std::size_t v = positions.size() - 4; v < positions.size(); ++v)
+    positions[v] = positions.back();
+  const RenderResult dropped = renderer.render(moved, options);
+  EXPECT_EQ(dropped.statistics.refit.objects_rebuilt, 1u);
+  EXPECT_EQ(mean_ao(dropped), mean_ao(render(moved, options)));
+}
+
 /// A film's rate: the fastest leaves turn by some 5 degrees from one frame to the next.
 constexpr float kFrameSeconds = 1.0f / 24;
 
