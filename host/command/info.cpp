@@ -6,6 +6,7 @@
 
 #include "command/command.hpp"
 #include "command/option_text.hpp"
+#include "command/shot.hpp"
 #include "command/statistics_text.hpp"
 #include "dapple/bvh.hpp"
 
@@ -16,9 +17,25 @@ struct InfoArguments {
   std::string scene;
   std::vector<std::string> opacity;
   SceneOptions scene_options;
-  std::string cache;
+  std::string cache, lights;
   bool json = false;
 };
+
+const char* name_of(LightKind kind) {
+  switch (kind) {
+    case LightKind::rect:
+      return "rect";
+    case LightKind::sphere:
+      return "sphere";
+    case LightKind::sun:
+      return "sun";
+    case LightKind::mesh:
+      return "mesh";
+    case LightKind::dome:
+      return "dome";
+  }
+  return "";
+}
 
 nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   const BvhStatistics& s = bvh.statistics;
@@ -50,7 +67,9 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   json["animations"] = nlohmann::ordered_json::array();
   for (const Animation& animation : scene.animations)
     json["animations"].push_back({{"name", animation.name}, {"seconds", animation.seconds}});
-  json["lights"] = scene.lights.size();
+  json["lights"] = nlohmann::ordered_json::array();
+  for (const Light& light : scene.lights)
+    json["lights"].push_back({{"name", light.name}, {"kind", name_of(light.kind)}});
   json["cameras"] = scene.cameras.size();
   json["bounds"] = {{"min", {bvh.bounds.min.x, bvh.bounds.min.y, bvh.bounds.min.z}},
                     {"max", {bvh.bounds.max.x, bvh.bounds.max.y, bvh.bounds.max.z}}};
@@ -88,9 +107,14 @@ std::string report_text(const nlohmann::ordered_json& r) {
   std::string materials;
   for (const auto& name : r["materials"])
     materials += (materials.empty() ? "" : ", ") + name.get<std::string>();
-  text += fmt::format("  instances   {}, lights {}, cameras {}\n", r["instances"].dump(),
-                      r["lights"].dump(), r["cameras"].dump());
+  text += fmt::format("  instances   {}, cameras {}\n", r["instances"].dump(), r["cameras"].dump());
   text += fmt::format("  materials   {}\n", materials);
+  std::string lights;
+  for (const auto& light : r["lights"]) {
+    lights += fmt::format("{}{} ({})", lights.empty() ? "" : ", ", light["name"].get<std::string>(),
+                          light["kind"].get<std::string>());
+  }
+  if (!lights.empty()) text += fmt::format("  lights      {}\n", lights);
   std::string animations;
   for (const auto& animation : r["animations"]) {
     animations +=
@@ -129,6 +153,7 @@ void run_info(const InfoArguments& a) {
     const auto [material, value] = parse_opacity(text);
     override_opacity(scene, material, value);
   }
+  if (!a.lights.empty()) use_lights(scene, load_lights(a.lights));
   merge_single_instances(scene);
   const auto json = report(scene, build_bvh(scene, a.cache));
   fmt::print("{}", a.json ? json.dump(2) + "\n" : report_text(json));
@@ -140,6 +165,8 @@ Run add_info_command(CLI::App& app) {
   auto a = std::make_shared<InfoArguments>();
   app.add_option("SCENE", a->scene, "glTF file, .hair file or procedural scene")->required();
   app.add_option("--opacity", a->opacity, "MATERIAL=VALUE, as for render");
+  app.add_option("--lights", a->lights,
+                 "JSON file of lights in place of the scene's, as for render");
   app.add_option("--frame", a->scene_options.time, "Seconds, as for render");
   app.add_option("--animation", a->scene_options.animation, "As for render");
   app.add_option("--line-radius", a->scene_options.line_radius,

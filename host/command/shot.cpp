@@ -23,6 +23,13 @@ Light read_dome(const RenderArguments& a) {
 
 }  // namespace
 
+void use_lights(Scene& scene, const std::vector<Light>& lights) {
+  for (Instance& instance : scene.instances) instance.light = -1;
+  scene.lights = lights;
+  for (const Light& light : lights)
+    if (light.environment) scene.files.push_back(light.environment->file);
+}
+
 Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), options_(options) {
   if (!a.lights.empty()) lights_ = load_lights(a.lights);
   if (!a.dome.empty()) dome_ = read_dome(a);
@@ -35,12 +42,7 @@ Scene Shot::frame(std::optional<double> seconds) {
   SceneOptions scene_options = arguments_.scene_options;
   scene_options.time = seconds;
   Scene scene = moving_ ? moving_->at(seconds) : load_scene(arguments_.scene, scene_options);
-  if (lights_) {
-    for (Instance& instance : scene.instances) instance.light = -1;
-    scene.lights = *lights_;
-    for (const Light& light : scene.lights)
-      if (light.environment) scene.files.push_back(light.environment->file);
-  }
+  if (lights_) use_lights(scene, *lights_);
   if (dome_) scene.lights.push_back(*dome_);
   if (!moving_) return scene;
   if (!set_) set_ = settle(scene);

@@ -11,6 +11,9 @@
 
 namespace dapple {
 
+/// Puts `lights` in place of the scene's.
+void use_lights(Scene& scene, const std::vector<Light>& lights);
+
 class Shot {
  public:
   /// Reads the files. `options` are the render's; of a sequence `options.ground` is done here, and
