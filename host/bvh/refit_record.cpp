@@ -103,7 +103,7 @@ void cut_subtrees(const WideTree& tree, RefitRecord& record) {
     if (!upper[n]) continue;
     new_index[n] = static_cast<std::uint32_t>(record.upper_nodes.size());
     record.upper_nodes.push_back(n);
-    if (is_cut_off(tree, n)) record.subtrees.push_back({n, {}, {}});
+    if (is_cut_off(tree, n)) record.subtrees.push_back({n, {}});
   }
   for (const std::uint32_t n : record.upper_nodes) {
     WideNode node = tree.nodes[n];
