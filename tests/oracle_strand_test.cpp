@@ -1,11 +1,11 @@
 // Strands against Embree's round linear curves, ray by ray: transmittances, and what is met first.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "curly_strands.hpp"
-#include "hair_file.hpp"
 #include "oracle_rays.hpp"
 #include "oracle_scenes.hpp"
 
@@ -74,7 +74,10 @@ TEST(OracleStrands, RealHairLetsThroughWhatEmbreeSays) {
   const std::string path = shared_scene("mohawk.hair");
   DAPPLE_SKIP_WITHOUT(path);
   // In metres, some 100 times its size: in scenes of millimetres Embree's curves lose their digits.
-  Scene scene = strand_scene(hair_test::read_hair(path, 0.08f, 100), 0.3f);
+  Mesh mesh = load_scene(path).meshes.at(0);
+  for (V3f& position : mesh.positions) position *= 100.0f;
+  std::fill(mesh.radii.begin(), mesh.radii.end(), 0.08f);
+  Scene scene = strand_scene(std::move(mesh), 0.3f);
   merge_single_instances(scene);
   expect_equal(scene, "mohawk");
 }
