@@ -50,13 +50,31 @@ SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, CameraPa
   return rays;
 }
 
+/// A dome brighter upwards, with a sun of a few texels.
+Light sky() {
+  Environment image{1024, 512, {}};
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      const bool sun = y >= 128 && y < 132 && x >= 256 && x < 260;
+      const float above = 1.0f - static_cast<float>(y) / static_cast<float>(image.height);
+      image.radiance.emplace_back(sun ? 1e4f : above);
+    }
+  }
+  Light dome;
+  dome.name = "sky";
+  dome.kind = LightKind::dome;
+  dome.environment = std::make_shared<const Environment>(std::move(image));
+  return dome;
+}
+
 }  // namespace
 
 std::vector<SceneRecipe> named_scenes() {
   return {{"tree", "scene:tree?leaves=50000", {}},
           {"tree-thin", "scene:tree?leaves=50000&opacity=0.2", {}},
           {"cloud", "scene:cloud?leaves=50000", {}},
-          {"forest", "scene:forest?trees=100&leaves=20000", {}}};
+          {"forest", "scene:forest?trees=100&leaves=20000", {}},
+          {"hair", "scene:hair", {}}};
 }
 
 const Scene& BenchScene::scene() {
@@ -68,6 +86,8 @@ const Scene& BenchScene::scene() {
   // As render() does, the camera is chosen before merging touches the scene.
   camera_ = camera_params(choose_view(scene, options, notes), options);
   merge_single_instances(scene);
+  scene.lights = {sky()};
+  settle_domes(scene);
   return scene_.emplace(std::move(scene));
 }
 

@@ -24,7 +24,7 @@ struct SceneRecipe {
   std::vector<std::pair<std::string, float>> opacity;  ///< material name, opacity in [0,1]
 };
 
-/// tree, tree-thin, cloud and forest, in the order of the README's table.
+/// tree, tree-thin, cloud, forest and hair, in the order of the README's table.
 std::vector<SceneRecipe> named_scenes();
 
 /// The rays the renderer itself would shoot at one sample a pixel, in its order, resident
@@ -61,7 +61,7 @@ class BenchScene {
   BenchScene& operator=(const BenchScene&) = delete;
 
   [[nodiscard]] const std::string& name() const { return recipe_.name; }
-  /// Ready for build_bvh(): meshes that are placed once are merged.
+  /// Ready for build_bvh(): meshes that are placed once are merged. A dome is its only light.
   const Scene& scene();
   const SceneBvh& bvh();
   const Device& device() { return device_.open(); }

@@ -90,6 +90,21 @@ void measure_camera(benchmark::State& state, BenchScene& scene, uint samples) {
   report_work(state, visits, tests, static_cast<double>(rays.camera_count * samples));
 }
 
+/// A ray to the scene's dome from every point that the camera sees.
+void measure_dome_rays(benchmark::State& state, BenchScene& scene) {
+  const SceneRays& rays = scene.rays();
+  const DeviceBuffers& buffers = *scene.on_device().buffers;
+  DeviceContext& context = scene.device().context();
+  LightParams params{};
+  params.point_count = static_cast<uint>(rays.ao_count / kRaysPerPoint);
+  params.rays = 1;
+  params.inverse_count = 1;
+  time_launches(state, context, [&] { light_ray_pass(context, buffers, rays.camera, params); });
+  state.counters["rays"] = benchmark::Counter(
+      static_cast<double>(params.point_count) * static_cast<double>(state.iterations()),
+      benchmark::Counter::kIsRate);
+}
+
 template <class Measure>
 void add(const std::string& name, const Measure& measure) {
   benchmark::RegisterBenchmark(name.c_str(), measure)
@@ -116,6 +131,9 @@ void register_tracing(BenchScene& scene) {
     add_occlusion("OcclusionTogether", 1, RayOrder::by_pixel);
     add_occlusion("OcclusionOfPoints", kRaysPerPoint, RayOrder::any);
   }
+  // Before camera passes, which find other points.
+  add("DomeRays/" + scene.name(),
+      [&scene](benchmark::State& state) { measure_dome_rays(state, scene); });
   for (const uint samples : {1u, 16u}) {
     add("Camera/" + std::to_string(samples) + "/" + scene.name(),
         [&scene, samples](benchmark::State& state) { measure_camera(state, scene, samples); });

@@ -8,7 +8,7 @@ namespace dapple {
 namespace {
 
 std::uint8_t byte_of(float value) {
-  return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 255.0f)));
 }
 
 bool is_cut_off(const WideTree& tree, std::uint32_t node) {

@@ -29,9 +29,9 @@ class SubtreeRefit {
   MovedPart leaf(const BvhNode& node, unsigned slot) const;
 
  private:
-  MovedPart node(std::uint32_t node) const;
+  MovedPart node(std::uint32_t index) const;
   void prefetch(std::uint32_t root) const;
-  void find_triangles(std::uint32_t node, std::array<std::uint32_t, kRigidPrimitives>& triangles,
+  void find_triangles(std::uint32_t index, std::array<std::uint32_t, kRigidPrimitives>& triangles,
                       std::size_t& count) const;
 
   const Mesh& mesh_;
@@ -42,9 +42,9 @@ class SubtreeRefit {
 /// Boxes of inner children and of nodes with children, from those of leaves and of nodes without.
 void pass_up_boxes(WideTree& tree);
 
-/// The object's `node` and all below as a tree of its own, with the boxes of moved triangles;
+/// The object's node `root` and all below as a tree of its own, with the boxes of moved triangles;
 /// `node_of` gets the object's nodes that its own are.
 WideTree wide_subtree(const Mesh& mesh, const ObjectArrays& object, const RefitRecord& record,
-                      std::uint32_t node, std::vector<std::uint32_t>& node_of);
+                      std::uint32_t root, std::vector<std::uint32_t>& node_of);
 
 }  // namespace dapple

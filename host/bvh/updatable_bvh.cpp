@@ -117,7 +117,7 @@ void UpdatableBvh::State::place(const Scene& scene, BvhUpdate& update) {
   describe_objects(bvh.statistics, objects);
   const std::vector<BvhNode> top = place_instances(bvh, scene, objects, offsets);
   const std::size_t first = offsets.back().node;
-  std::copy(top.begin(), top.end(), arrays.nodes.begin() + first);
+  std::copy(top.begin(), top.end(), arrays.nodes.subspan(first).begin());
   if (!top.empty()) update.nodes.push_back({first, first + top.size()});
   update.placement = true;
 }
@@ -201,19 +201,19 @@ UpdatableBvh& UpdatableBvh::operator=(UpdatableBvh&&) noexcept = default;
 
 const SceneBvh& UpdatableBvh::bvh() const { return state_->bvh; }
 
-BvhUpdate UpdatableBvh::update(const Scene& scene) {
+BvhUpdate UpdatableBvh::update(const Scene& moved) {
   const auto start = std::chrono::steady_clock::now();
   BvhUpdate update;
-  std::vector<MeshKey> keys = keys_of(scene);
+  std::vector<MeshKey> keys = keys_of(moved);
   if (keys.size() == state_->keys.size()) {
-    state_->update(scene, keys, update);
+    state_->update(moved, keys, update);
   } else {
-    state_->build(scene, Motion::expected, "");
+    state_->build(moved, Motion::expected, "");
     update.objects_rebuilt = keys.size();
     update.is_new = true;
   }
   state_->keys = std::move(keys);
-  state_->instances = scene.instances;
+  state_->instances = moved.instances;
   update.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return update;
 }

@@ -45,7 +45,7 @@ std::uint64_t sparse_count(const Document& document, int accessor);
 class AccessorReader {
  public:
   /// Throws Error input when sparse indices do not increase or exceed the count.
-  AccessorReader(const Document& document, int accessor);
+  AccessorReader(const Document& document, int index);
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] std::uint64_t components() const { return components_; }

@@ -25,9 +25,9 @@ int hex_digit(char c) {
 constexpr std::array<std::int8_t, 256> kBase64 = [] {
   std::array<std::int8_t, 256> table{};
   table.fill(-1);
-  for (int i = 0; i < 26; ++i) table[std::size_t('A' + i)] = static_cast<std::int8_t>(i);
-  for (int i = 0; i < 26; ++i) table[std::size_t('a' + i)] = static_cast<std::int8_t>(26 + i);
-  for (int i = 0; i < 10; ++i) table[std::size_t('0' + i)] = static_cast<std::int8_t>(52 + i);
+  for (std::size_t i = 0; i < 26; ++i) table['A' + i] = static_cast<std::int8_t>(i);
+  for (std::size_t i = 0; i < 26; ++i) table['a' + i] = static_cast<std::int8_t>(26 + i);
+  for (std::size_t i = 0; i < 10; ++i) table['0' + i] = static_cast<std::int8_t>(52 + i);
   table['+'] = table['-'] = 62;
   table['/'] = table['_'] = 63;
   return table;
@@ -40,7 +40,7 @@ Bytes decode_base64(std::string_view text, const std::string& what) {
   std::uint32_t bits = 0;
   int bit_count = 0;
   for (const char c : text) {
-    const int value = kBase64[static_cast<unsigned char>(c)];
+    const std::int8_t value = kBase64[static_cast<unsigned char>(c)];
     if (value < 0) fail(what, "its data: URI holds a character that is not base64");
     bits = (bits << 6) | static_cast<std::uint32_t>(value);
     bit_count += 6;
