@@ -107,6 +107,37 @@ TEST(Dome, RotationTurnsWhatLiesAlongPlusZTowardsPlusX) {
   EXPECT_NEAR(lit(16, -quarter, {0, 1, 1}), 0, 0.01);
 }
 
+double rmse(const Film& a, const Film& b, const char* plane) {
+  const std::vector<float>&of_a = a.find(plane)->pixels, &of_b = b.find(plane)->pixels;
+  double sum = 0;
+  for (std::size_t p = 0; p < of_a.size(); ++p) sum += std::pow(of_a[p] - of_b[p], 2);
+  return std::sqrt(sum / static_cast<double>(of_a.size()));
+}
+
+// The samples are the same, so that noise is for the most part, too.
+TEST(Dome, PicturesOfATreeComeNearerToExactAsTheFootprintShrinks) {
+  Scene scene = make_procedural("scene:tree?leaves=2000");
+  auto image = std::make_shared<Environment>(Environment{16, 8, {}});
+  for (int texel = 0; texel < 16 * 8; ++texel)
+    image->radiance.emplace_back(texel < 64 ? 1.0f + static_cast<float>(texel % 3) : 0.2f);
+  scene.lights = {dome(image)};
+  RenderOptions options;
+  options.width = options.height = 48;
+  options.spp = 16;
+  options.ao = false;
+  options.estimator = Estimator::exact;
+  const Film exact = render(scene, options).film;
+  options.estimator = Estimator::prefiltered;
+  double last = 1e9;
+  for (const float footprint : {16.0f, 1.0f, 1.0f / 16, 1.0f / 256}) {
+    options.footprint = footprint;
+    const double now = rmse(render(scene, options).film, exact, "light.dome.G");
+    EXPECT_LT(now, 0.9 * last) << footprint;
+    last = now;
+  }
+  EXPECT_LT(last, 0.02);
+}
+
 TEST(Dome, SettlingKeepsIrradianceAndMakesTheMeanLuminanceOne) {
   Scene scene = point_on_ground();
   auto image = std::make_shared<Environment>(Environment{6000, 3, {}});
