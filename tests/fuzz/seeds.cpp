@@ -1,12 +1,16 @@
-// Writes the corpus's scenes and images as files for fuzzers to begin with: seeds FOLDER makes
-// FOLDER/gltf and FOLDER/image.
+// Writes the corpus's scenes, and small images, as files for fuzzers to begin with: seeds FOLDER
+// makes FOLDER/gltf and FOLDER/image.
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "corpus/corpus.hpp"
+#include "gltf_builder.hpp"
 
 namespace {
 
@@ -23,16 +27,24 @@ void write_seed(const std::filesystem::path& path, const Bytes& bytes) {
              static_cast<std::streamsize>(bytes.size()));
 }
 
-bool is_image(const std::string& name) {
-  return name.ends_with(".png") || name.ends_with(".jpg") || name.ends_with(".jpeg");
+void write_scene(const std::filesystem::path& folder, const std::string& name,
+                 const dapple::test::SceneFiles& files) {
+  const auto scene = files.files.find(files.scene);
+  if (scene != files.files.end()) write_seed(folder / name, scene->second);
 }
 
-/// The scene itself, and the images beside it.
-void write_seeds(const std::filesystem::path& folder, const std::string& name,
-                 const dapple::test::SceneFiles& files) {
-  for (const auto& [file, bytes] : files.files) {
-    if (file == files.scene) write_seed(folder / "gltf" / name, bytes);
-    if (is_image(file)) write_seed(folder / "image" / (name + "_" + file), bytes);
+/// A small PNG of each colour type and depth.
+void write_images(const std::filesystem::path& folder) {
+  constexpr std::size_t kSize = 5;
+  for (const auto& [color_type, channels] : {std::pair(0, 1), {2, 3}, {4, 2}, {6, 4}}) {
+    for (const std::size_t bytes : {1u, 2u}) {
+      Bytes samples(kSize * kSize * static_cast<std::size_t>(channels) * bytes);
+      for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i] = static_cast<std::uint8_t>(7 * i);
+      write_seed(folder / fmt::format("type_{}_{}.png", color_type, 8 * bytes),
+                 dapple::test::png::encode(kSize, kSize, static_cast<std::uint8_t>(8 * bytes),
+                                           static_cast<std::uint8_t>(color_type), samples));
+    }
   }
 }
 
@@ -43,7 +55,11 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: seeds FOLDER\n");
     return 2;
   }
-  for (const auto& one : dapple::test::malformed_corpus()) write_seeds(argv[1], one.name, one.files);
-  for (const auto& one : dapple::test::tricky_corpus()) write_seeds(argv[1], one.name, one.files);
+  const std::filesystem::path folder(argv[1]);
+  for (const auto& one : dapple::test::malformed_corpus())
+    write_scene(folder / "gltf", one.name, one.files);
+  for (const auto& one : dapple::test::tricky_corpus())
+    write_scene(folder / "gltf", one.name, one.files);
+  write_images(folder / "image");
   return 0;
 }
