@@ -78,13 +78,13 @@ void measure_camera(benchmark::State& state, BenchScene& scene, uint samples) {
     }
   };
   time_launches(state, context, [&] { for_each_slice([] {}); });
-  std::vector<CameraBeam> beams(rays.camera_count / DAPPLE_BEAM_RAYS);
+  std::vector<SampleHits> met(rays.camera_count / DAPPLE_HIT_BITS);
   double visits = 0, tests = 0;
   for_each_slice([&] {
-    context.read(rays.camera.beams, beams.data(), beams.size() * sizeof(CameraBeam));
-    for (const CameraBeam& beam : beams) {
-      visits += beam.visits;
-      tests += double{DAPPLE_BEAM_RAYS} * beam.tests;
+    context.read(rays.camera.met, met.data(), met.size() * sizeof(SampleHits));
+    for (const SampleHits& record : met) {
+      visits += record.visits;
+      tests += double{DAPPLE_HIT_BITS} * record.tests;
     }
   });
   report_work(state, visits, tests, static_cast<double>(rays.camera_count * samples));

@@ -3,8 +3,8 @@
 #include "camera.clh"
 #include "surface_point.clh"
 
-/* Stores what sample i of the beam met. */
-inline void store_hit(Scene scene, const CameraSamples* samples, const BeamRays* rays,
+/* Stores what ray i of a beam met; `sample` is its place among those of `chosen`. */
+inline void store_hit(Scene scene, const CameraSamples* chosen, uint sample, const BeamRays* rays,
                       const float* area, const BeamNearest* nearest, uint i,
                       __global SurfacePoint* point) {
   const float3 direction = (float3)(((const float*)&rays->direction[0])[i],
@@ -14,40 +14,49 @@ inline void store_hit(Scene scene, const CameraSamples* samples, const BeamRays*
                                  ((const float*)&rays->origin[1])[i],
                                  ((const float*)&rays->origin[2])[i]);
   store_point(scene, nearest_of_ray(nearest, i).hit, origin, direction, area[i], point);
-  point->pixel = samples->pixel[i];
-  point->sample = samples->sample[i];
+  point->pixel = chosen->pixel[sample];
+  point->sample = chosen->sample[sample];
 }
 
-/* Where the rays of one beam meet the scene: `count` samples of the slice, from `first` on. */
-inline CameraBeam trace_beam(Scene scene, CameraParams params, __global const PixelWork* work,
-                             const Entries* entries, uint first, uint count,
-                             __global SurfacePoint* points) {
-  CameraSamples chosen;
-  choose_samples(work, params, first, count, &chosen);
+#define DAPPLE_ITEM_RECORDS (DAPPLE_ITEM_SAMPLES / DAPPLE_HIT_BITS)
+
+/* What an item found: its samples that hit, by place, and for each SampleHits the sums over its
+   samples of what their beams cost. */
+typedef struct ItemHits {
+  ulong hits;
+  uint visits[DAPPLE_ITEM_RECORDS], tests[DAPPLE_ITEM_RECORDS];
+} ItemHits;
+
+/* Where the rays of one beam meet the scene: the samples of `chosen` from `first` on, but for those
+   that are not among the item's `count`. `points` are those of the item. */
+inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* chosen,
+                       const Entries* entries, uint first, uint count,
+                       __global SurfacePoint* points, ItemHits* found) {
   BeamRays rays;
   float16 solid_angle, first_area;
-  aim(params, &chosen, &rays, &solid_angle, &first_area);
+  aim(params, chosen->x + first, chosen->y + first, &rays, &solid_angle, &first_area);
   BeamNearest nearest;
-  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) nearest.t.f[i] = i < count ? INFINITY : 0.0f;
+  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i)
+    nearest.t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
   nearest.u.v = nearest.v.v = (float16)(0.0f);
   nearest.triangle.v = nearest.instance.v = (int16)(0);
   nearest.farthest = INFINITY;
   nearest.visits = nearest.tests = 0u;
-  find_nearest(scene, params.scene, entries, &rays, chosen.key, &nearest);
-  const uint hits = bits_of_rays((nearest.t.v > 0.0f) & (nearest.t.v < INFINITY));
+  find_nearest(scene, params.scene, entries, &rays, chosen->key + first, &nearest);
   BeamFloats area;
   area.v = first_area + solid_angle * nearest.t.v * nearest.t.v;
-  for (uint left = hits; left; left &= left - 1u) {
-    const uint i = popcount((left & -left) - 1u);
-    store_hit(scene, &chosen, &rays, area.f, &nearest, i, points + first + i);
+  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
+    const uint record = chosen->place[first + i] / DAPPLE_HIT_BITS;
+    found->visits[record] += nearest.visits;
+    found->tests[record] += nearest.tests;
   }
-  const CameraBeam found = {hits, 0u, nearest.visits, nearest.tests};
-  return found;
+  for (uint left = bits_of_rays((nearest.t.v > 0.0f) & (nearest.t.v < INFINITY)); left;
+       left &= left - 1u) {
+    const uint i = popcount((left & -left) - 1u), place = chosen->place[first + i];
+    found->hits |= 1UL << place;
+    store_hit(scene, chosen, first + i, &rays, area.f, &nearest, i, points + place);
+  }
 }
-
-/* Beams an item, which set out from the nodes that they meet together; kBeamsPerItem in
-   host/wavefront/passes.cpp. */
-#define DAPPLE_BEAMS_PER_ITEM 4u
 
 /* Points of samples that miss are left as they are. */
 __kernel void camera_hits(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
@@ -56,23 +65,30 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
                           __global const MaterialRecord* materials, __global const uchar* texels,
                           __global const InstanceRecord* instances,
                           __global const PixelWork* work, __global SurfacePoint* points,
-                          __global CameraBeam* beams, CameraParams params) {
+                          __global SampleHits* met, CameraParams params) {
   const uint samples = params.slice.pixel_count * params.slice.sample_count;
-  const uint begin = get_global_id(0) * DAPPLE_BEAMS_PER_ITEM * DAPPLE_BEAM_RAYS;
+  const uint begin = get_global_id(0) * DAPPLE_ITEM_SAMPLES;
   if (begin >= samples) return;
-  const uint end = min(begin + DAPPLE_BEAMS_PER_ITEM * DAPPLE_BEAM_RAYS, samples);
+  const uint count = min(samples - begin, DAPPLE_ITEM_SAMPLES);
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   BeamBounds bounds;
-  bound_samples(work, params, begin, end - begin, &bounds);
+  bound_samples(work, params, begin, count, &bounds);
   Entries entries;
   find_entries(scene, params.scene, &bounds, &entries);
-  for (uint first = begin; first < end; first += DAPPLE_BEAM_RAYS) {
-    CameraBeam found = {0u, 0u, 0u, 0u};
-    if (entries.count) {
-      const uint count = min(end - first, DAPPLE_BEAM_RAYS);
-      found = trace_beam(scene, params, work, &entries, first, count, points);
+  ItemHits found = {0UL, {0u, 0u, 0u, 0u}, {0u, 0u, 0u, 0u}};
+  if (entries.count) {
+    CameraSamples chosen, sorted;
+    choose_samples(work, params, begin, count, &chosen);
+    sort_samples(&chosen, &sorted);
+    for (uint first = 0; first < DAPPLE_ITEM_SAMPLES; first += DAPPLE_BEAM_RAYS) {
+      trace_beam(scene, params, &sorted, &entries, first, count, points + begin, &found);
     }
-    found.visits += first == begin ? entries.visits : 0u;
-    beams[first / DAPPLE_BEAM_RAYS] = found;
+  }
+  found.visits[0] += entries.visits * DAPPLE_HIT_BITS;
+  for (uint record = 0; record * DAPPLE_HIT_BITS < count; ++record) {
+    const SampleHits of_samples = {(uint)(found.hits >> record * DAPPLE_HIT_BITS) & 65535u, 0u,
+                                   found.visits[record] / DAPPLE_HIT_BITS,
+                                   found.tests[record] / DAPPLE_HIT_BITS};
+    met[begin / DAPPLE_HIT_BITS + record] = of_samples;
   }
 }

@@ -1,13 +1,13 @@
 /* Lists the samples that hit a surface, in order: a prefix sum by one work-group, since a
    slice is small and atomics would shuffle the order from run to run. */
-#include "camera_beams.clh"
+#include "sample_hits.clh"
 
 #define DAPPLE_SCAN_ITEMS 256
 
-/* Sets the beams' first_slot, and active_list[slot] = sample for every sample that hit;
+/* Sets the records' first_slot, and active_list[slot] = sample for every sample that hit;
    *active_count of them. */
 __kernel __attribute__((reqd_work_group_size(DAPPLE_SCAN_ITEMS, 1, 1)))
-void compact_hits(__global CameraBeam* beams, __global uint* active_list,
+void compact_hits(__global SampleHits* met, __global uint* active_list,
                   __global uint* active_count, uint count) {
   __local uint sums[DAPPLE_SCAN_ITEMS];
   const uint item = get_local_id(0);
@@ -15,7 +15,7 @@ void compact_hits(__global CameraBeam* beams, __global uint* active_list,
   const uint begin = min(item * share, count);
   const uint end = min(begin + share, count);
   uint hits = 0;
-  for (uint i = begin; i < end; ++i) hits += popcount(beams[i].hits);
+  for (uint i = begin; i < end; ++i) hits += popcount(met[i].hits);
   sums[item] = hits;
   barrier(CLK_LOCAL_MEM_FENCE);
   for (uint step = 1; step < DAPPLE_SCAN_ITEMS; step *= 2) {
@@ -26,9 +26,9 @@ void compact_hits(__global CameraBeam* beams, __global uint* active_list,
   }
   uint next = sums[item] - hits;
   for (uint i = begin; i < end; ++i) {
-    beams[i].first_slot = next;
-    for (uint left = beams[i].hits; left; left &= left - 1u) {
-      active_list[next++] = i * DAPPLE_BEAM_RAYS + popcount((left & -left) - 1u);
+    met[i].first_slot = next;
+    for (uint left = met[i].hits; left; left &= left - 1u) {
+      active_list[next++] = i * DAPPLE_HIT_BITS + popcount((left & -left) - 1u);
     }
   }
   if (item == DAPPLE_SCAN_ITEMS - 1u) *active_count = sums[item];

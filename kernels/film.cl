@@ -18,10 +18,10 @@ inline void add_point(SurfaceSums* sums, ResolveParams params, __global const Su
   sums->depth += fixed_point(along, params.depth_scale);
 }
 
-/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. A beam's visits count in full for
-   each of its samples. */
+/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles
+   each sample is given those of its whole beam. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
-                              __global const CameraBeam* beams, __global long* film,
+                              __global const SampleHits* met, __global long* film,
                               ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
@@ -29,13 +29,13 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
   long visits = 0, tests = 0;
   const uint begin = local_pixel * params.slice.sample_count;
   const uint end = begin + params.slice.sample_count;
-  for (uint b = begin / DAPPLE_BEAM_RAYS; b * DAPPLE_BEAM_RAYS < end; ++b) {
-    const CameraBeam beam = beams[b];
-    const uint range = beam_range(b, begin, end);
-    visits += (long)beam.visits * popcount(range);
-    tests += (long)beam.tests * popcount(range);
-    for (uint left = beam.hits & range; left; left &= left - 1u) {
-      add_point(&sums, params, points + b * DAPPLE_BEAM_RAYS + popcount((left & -left) - 1u));
+  for (uint r = begin / DAPPLE_HIT_BITS; r * DAPPLE_HIT_BITS < end; ++r) {
+    const SampleHits record = met[r];
+    const uint range = range_of_samples(r, begin, end);
+    visits += (long)record.visits * popcount(range);
+    tests += (long)record.tests * popcount(range);
+    for (uint left = record.hits & range; left; left &= left - 1u) {
+      add_point(&sums, params, points + r * DAPPLE_HIT_BITS + popcount((left & -left) - 1u));
     }
   }
   const uint pixel = pixel_of(work, params, local_pixel);
@@ -52,21 +52,21 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
 
 /* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
    is 0 where samples missed. */
-__kernel void resolve_ao(__global const PixelWork* work, __global const CameraBeam* beams,
+__kernel void resolve_ao(__global const PixelWork* work, __global const SampleHits* met,
                          __global const Ray* rays,
                          __global const Occlusion* occlusions, __global long* film,
                          __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   const uint begin = local_pixel * params.slice.sample_count;
-  if (!any_sample_hit(beams, begin, begin + params.slice.sample_count)) return;
+  if (!any_sample_hit(met, begin, begin + params.slice.sample_count)) return;
   long sum = 0, visits = 0, tests = 0;
   long bent[3] = {0, 0, 0};
   Batches batches = {0.0f, 0.0f};
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const bool hit = sample_hit(beams, begin + s);
-    const uint first = hit ? sample_slot(beams, begin + s) * params.rays : 0u;
+    const bool hit = sample_hit(met, begin + s);
+    const uint first = hit ? sample_slot(met, begin + s) * params.rays : 0u;
     float value = 0.0f;
     for (uint r = 0; hit && r < params.rays; ++r) {
       const uint item = first + r;
@@ -90,20 +90,20 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const CameraBe
 }
 
 /* Planes: irradiance at radiance 1, the same unoccluded, visits, tests. */
-__kernel void resolve_light(__global const PixelWork* work, __global const CameraBeam* beams,
+__kernel void resolve_light(__global const PixelWork* work, __global const SampleHits* met,
                             __global const Ray* rays,
                             __global const Occlusion* occlusions, __global long* film,
                             __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   const uint begin = local_pixel * params.slice.sample_count;
-  if (!any_sample_hit(beams, begin, begin + params.slice.sample_count)) return;
+  if (!any_sample_hit(met, begin, begin + params.slice.sample_count)) return;
   long shadowed = 0, unoccluded = 0, visits = 0, tests = 0;
   Batches batches = {0.0f, 0.0f};
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const bool hit = sample_hit(beams, begin + s);
-    const uint first = hit ? sample_slot(beams, begin + s) * params.rays : 0u;
+    const bool hit = sample_hit(met, begin + s);
+    const uint first = hit ? sample_slot(met, begin + s) * params.rays : 0u;
     float value = 0.0f;
     for (uint r = 0; hit && r < params.rays; ++r) {
       const uint item = first + r;

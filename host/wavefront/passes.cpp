@@ -25,11 +25,12 @@ constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 4;
 /// Rays that one item of the AO ray kernel makes; DAPPLE_AO_LANES in kernels/ao.cl.
 constexpr std::size_t kAoLanes = 16;
 
-/// Beams that one item of the camera kernel traces; DAPPLE_BEAMS_PER_ITEM in kernels/camera.cl.
-constexpr std::size_t kBeamsPerItem = 4;
+/// Samples that one item of the camera kernel takes; DAPPLE_ITEM_SAMPLES in
+/// kernels/camera_samples.clh.
+constexpr std::size_t kItemSamples = 64;
 
-std::size_t beams_of(std::size_t samples) {
-  return (samples + DAPPLE_BEAM_RAYS - 1) / DAPPLE_BEAM_RAYS;
+std::size_t hit_records(std::size_t samples) {
+  return (samples + DAPPLE_HIT_BITS - 1) / DAPPLE_HIT_BITS;
 }
 
 /// Never a question of how many rays there are in all: kernels differ in roundings, and a crop must
@@ -63,7 +64,7 @@ const KernelName kResolveDome{"resolve_dome", "dome", {}};
 }  // namespace
 
 std::size_t Queues::bytes() const {
-  return work.bytes() + rays.bytes() + points.bytes() + beams.bytes() + active.bytes() +
+  return work.bytes() + rays.bytes() + points.bytes() + met.bytes() + active.bytes() +
          active_count.bytes() + occlusions.bytes();
 }
 
@@ -71,7 +72,7 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
   Queues queues;
   queues.rays = context.allocate(samples * rays_per_sample * sizeof(Ray));
   queues.points = context.allocate(samples * sizeof(SurfacePoint));
-  queues.beams = context.allocate(beams_of(samples) * sizeof(CameraBeam));
+  queues.met = context.allocate(hit_records(samples) * sizeof(SampleHits));
   queues.active = context.allocate(samples * sizeof(uint));
   queues.active_count = context.allocate(sizeof(uint));
   queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
@@ -83,9 +84,9 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
   CameraParams camera = params;
   camera.scene = scene.params;
-  context.launch(kCameraHits, "camera", (beams_of(samples) + kBeamsPerItem - 1) / kBeamsPerItem,
+  context.launch(kCameraHits, "camera", (samples + kItemSamples - 1) / kItemSamples,
                  {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials,
-                  scene.texels, scene.instances, queues.work, queues.points, queues.beams, camera},
+                  scene.texels, scene.instances, queues.work, queues.points, queues.met, camera},
                  kBeamGroup);
 }
 
@@ -102,7 +103,7 @@ void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const 
 std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples) {
   context.launch(
       kCompactHits, "compact", kScanItems,
-      {queues.beams, queues.active, queues.active_count, static_cast<uint>(beams_of(samples))},
+      {queues.met, queues.active, queues.active_count, static_cast<uint>(hit_records(samples))},
       kScanItems);
   std::uint32_t count = 0;
   context.read(queues.active_count, &count, sizeof count);
@@ -144,21 +145,21 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
 void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                           const ResolveParams& params) {
   context.launch(kResolveSurface, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.points, queues.beams, film.sums, params});
+                 {queues.work, queues.points, queues.met, film.sums, params});
 }
 
 void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                      const ResolveParams& params) {
   context.launch(
       kResolveAo, "resolve", params.slice.pixel_count,
-      {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums, film.squares, params});
+      {queues.work, queues.met, queues.rays, queues.occlusions, film.sums, film.squares, params});
 }
 
 void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params) {
   context.launch(
       kResolveLight, "resolve", params.slice.pixel_count,
-      {queues.work, queues.beams, queues.rays, queues.occlusions, film.sums, film.squares, params});
+      {queues.work, queues.met, queues.rays, queues.occlusions, film.sums, film.squares, params});
 }
 
 std::vector<KernelShape> every_kernel() {
@@ -182,7 +183,7 @@ Company company_in_picture(const DeviceContext& context, Estimator estimator, in
 void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                        const FilmBuffers& film, const ResolveParams& params, uint light) {
   context.launch(kResolveDome, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.beams, queues.rays, queues.occlusions, scene.lights,
+                 {queues.work, queues.met, queues.rays, queues.occlusions, scene.lights,
                   scene.environments, film.sums, film.squares, params, light});
 }
 

@@ -36,9 +36,9 @@
   MEMBER(Ray, first_area) MEMBER(Ray, light) MEMBER(Ray, weight) MEMBER(Ray, key)            \
   STRUCT(Occlusion)                                                                          \
   MEMBER(Occlusion, transmittance) MEMBER(Occlusion, visits)                                 \
-  STRUCT(CameraBeam)                                                                         \
-  MEMBER(CameraBeam, hits) MEMBER(CameraBeam, first_slot)                                    \
-  MEMBER(CameraBeam, visits) MEMBER(CameraBeam, tests)                                       \
+  STRUCT(SampleHits)                                                                         \
+  MEMBER(SampleHits, hits) MEMBER(SampleHits, first_slot)                                    \
+  MEMBER(SampleHits, visits) MEMBER(SampleHits, tests)                                       \
   STRUCT(SurfacePoint)                                                                       \
   MEMBER(SurfacePoint, position) MEMBER(SurfacePoint, t) MEMBER(SurfacePoint, normal)        \
   MEMBER(SurfacePoint, offset) MEMBER(SurfacePoint, area) MEMBER(SurfacePoint, pixel)        \

@@ -34,15 +34,19 @@ typedef struct Occlusion {
   uint visits;          /* nodes visited | triangles tested << 16, each clamped to 65535 */
 } Occlusion;
 
-/* Camera rays of consecutive samples of a slice that are traced together. */
+/* Camera rays that are traced together. */
 #define DAPPLE_BEAM_RAYS 16u
 
-typedef struct CameraBeam {
-  uint hits;        /* bit i: sample i of the beam met a surface */
-  uint first_slot;  /* place of its first hit among all hits of the slice */
-  uint visits;      /* nodes, for all its rays */
-  uint tests;       /* triangles, each against all its rays */
-} CameraBeam;
+#define DAPPLE_HIT_BITS 16u
+
+/* What became of DAPPLE_HIT_BITS samples in a row of a slice. */
+typedef struct SampleHits {
+  uint hits;        /* bit i: sample i of these met a surface */
+  uint first_slot;  /* place of the first hit among all hits of the slice */
+  /* Of the beams that the samples were in, a sample's mean: nodes, for all rays; triangles, each
+     against all rays. */
+  uint visits, tests;
+} SampleHits;
 
 /* Where a camera ray met a surface; t < 0: it met none. */
 typedef struct SurfacePoint {
@@ -59,7 +63,7 @@ typedef struct SurfacePoint {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(Ray) == 48);
 static_assert(sizeof(Occlusion) == 8);
-static_assert(sizeof(CameraBeam) == 16);
+static_assert(sizeof(SampleHits) == 16);
 static_assert(sizeof(SurfacePoint) == 48);
 }  // namespace dapple
 #endif
