@@ -32,11 +32,15 @@ std::vector<float> rising_variances(std::size_t pixels) {
   return variances;
 }
 
+std::vector<float> equal_costs(const std::vector<float>& variances) {
+  return std::vector<float>(variances.size(), 7.0f);
+}
+
 TEST(WantRmse, GivesInProportionToTheDeviationAndReachesTheTarget) {
   const std::vector<float> variances = rising_variances(500);
   const BatchCounts have(variances.size(), 2);
   BatchCounts wanted = have;
-  want_rmse(variances, 0.01f, have, kFree, wanted);
+  want_rmse(variances, equal_costs(variances), 0.01f, have, kFree, wanted);
   EXPECT_LE(rmse(variances, wanted), 0.01);
   EXPECT_GT(rmse(variances, wanted), 0.00999);
   const double density = wanted.back() / std::sqrt(double{variances.back()});
@@ -48,7 +52,7 @@ TEST(WantRmse, TakesFewerThanEqualErrorsDoByWhatDeviationsDiffer) {
   const std::vector<float> variances = rising_variances(500);
   const BatchCounts have(variances.size(), 2);
   BatchCounts by_rmse = have, by_error = have;
-  want_rmse(variances, 0.01f, have, kFree, by_rmse);
+  want_rmse(variances, equal_costs(variances), 0.01f, have, kFree, by_rmse);
   want_error(variances, 0.01f, have, kFree, by_error);
   double samples = 0, equal = 0, deviation = 0, variance = 0;
   for (std::size_t p = 0; p < variances.size(); ++p) {
@@ -60,15 +64,28 @@ TEST(WantRmse, TakesFewerThanEqualErrorsDoByWhatDeviationsDiffer) {
   EXPECT_NEAR(equal / samples, variance / (deviation * deviation), 0.01);
 }
 
+TEST(WantRmse, GivesFewerWhereSamplesCostMore) {
+  const std::vector<float> variances(400, 0.25f);
+  std::vector<float> costs(variances.size(), 1.0f);
+  for (std::size_t p = 0; p < costs.size(); p += 4) costs[p] = 16.0f;
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts wanted = have;
+  want_rmse(variances, costs, 0.01f, have, kFree, wanted);
+  EXPECT_LE(rmse(variances, wanted), 0.01);
+  EXPECT_GT(rmse(variances, wanted), 0.00999);
+  for (std::size_t p = 0; p < wanted.size(); ++p)
+    EXPECT_NEAR(wanted[p], wanted[0] * (p % 4 ? 4.0 : 1.0), 4.0) << p;
+}
+
 TEST(WantRmse, WhatAnotherPassWantsCounts) {
   const std::vector<float> variances = rising_variances(100);
   const BatchCounts have(variances.size(), 2);
   BatchCounts once = have;
-  want_rmse(variances, 0.02f, have, kFree, once);
+  want_rmse(variances, equal_costs(variances), 0.02f, have, kFree, once);
   BatchCounts again = once;
-  want_rmse(variances, 0.02f, have, kFree, again);
+  want_rmse(variances, equal_costs(variances), 0.02f, have, kFree, again);
   EXPECT_EQ(again, once);
-  want_rmse(variances, 0.03f, have, kFree, again);
+  want_rmse(variances, equal_costs(variances), 0.03f, have, kFree, again);
   EXPECT_EQ(again, once) << "an easier target is reached already";
 }
 
@@ -77,7 +94,7 @@ TEST(WantRmse, OutOfReachEveryPixelThatVariesWantsTheMost) {
   variances[7] = 0;
   const BatchCounts have(variances.size(), 2);
   BatchCounts wanted = have;
-  want_rmse(variances, 1e-4f, have, {4, 100}, wanted);
+  want_rmse(variances, equal_costs(variances), 1e-4f, have, {4, 100}, wanted);
   for (std::size_t p = 0; p < wanted.size(); ++p) EXPECT_EQ(wanted[p], p == 7 ? 2u : 100u) << p;
 }
 
@@ -145,11 +162,12 @@ struct Drawn {
 Drawn draw(int width, int height, const RenderOptions& options) {
   const std::size_t count = static_cast<std::size_t>(width) * height;
   GaussianPixels pixels(rising_variances(count));
+  const std::vector<float> costs(count, 1.0f);
   SamplePlan plan(width, height, options);
   for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) pixels.trace(first.at(0));
   Drawn drawn;
   for (; drawn.rounds < 30; ++drawn.rounds) {
-    const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)});
+    const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)}, costs);
     if (groups.empty()) break;
     for (const WorkGroup& group : groups) pixels.trace(group);
   }
@@ -180,18 +198,30 @@ TEST(SamplePlan, EveryPixelHasTheLeastAndNoneMoreThanTheMost) {
   EXPECT_EQ(drawn.samples.back(), 200u);
 }
 
-TEST(SamplePlan, NoPixelMoreThanQuadruplesAndAllEndAtTheMost) {
+TEST(SamplePlan, PixelsOfABlockGetTheSame) {
+  const int width = 11, height = 7;  // blocks at the right and below are cut
+  const Drawn drawn = draw(width, height, by_rmse(0.05f));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t corner = static_cast<std::size_t>(y / 2 * 2) * width + x / 2 * 2;
+      EXPECT_EQ(drawn.samples[static_cast<std::size_t>(y) * width + x], drawn.samples[corner]);
+    }
+  }
+}
+
+TEST(SamplePlan, NoPixelGetsMoreThanEightTimesWhatItHasAndAllEndAtTheMost) {
   RenderOptions options;
   options.target_error = 0.01f;
   options.max_spp = 200;
   SamplePlan plan(5, 2, options);
   EXPECT_EQ(plan.least().at(0).samples, 16u);
   const std::vector<std::vector<float>> variances{std::vector<float>(10, 1.0f)};
+  const std::vector<float> costs(10, 1.0f);
   for (int round = 0; round < 20; ++round) {
     const std::vector<std::uint32_t> before = plan.samples();
-    if (plan.next(variances).empty()) break;
+    if (plan.next(variances, costs).empty()) break;
     for (std::size_t p = 0; p < before.size(); ++p) {
-      EXPECT_LE(plan.samples()[p], 4 * before[p]);
+      EXPECT_LE(plan.samples()[p], 9 * before[p]);
       EXPECT_GT(plan.samples()[p], before[p]);
     }
   }

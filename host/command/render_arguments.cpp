@@ -25,9 +25,9 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option(
          "--target-rmse", o.target_rmse,
-         "Sample where that lowers the picture's error most, until the estimated root mean square "
-         "of its pixels' errors is below this in every pass; 0: don't. Fewer samples than "
-         "--target-error takes to the same mean, but pixels' errors differ")
+         "Sample where time lowers the picture's error most, until the estimated root mean square "
+         "of its pixels' errors is below this in every pass; 0: don't. Sooner there than by "
+         "--target-error to the same mean, but pixels' errors differ")
       ->capture_default_str();
   app.add_option("--max-spp", o.max_spp, "With a target the most samples a pixel")
       ->capture_default_str();

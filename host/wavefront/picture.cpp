@@ -9,6 +9,7 @@
 #include "scene/environment.hpp"
 #include "wavefront/passes.hpp"
 #include "wavefront/pixel_error.hpp"
+#include "wavefront/sample_cost.hpp"
 #include "wavefront/sample_plan.hpp"
 
 namespace dapple {
@@ -123,7 +124,7 @@ class PictureTracer {
     // Errors depend on the order, by roundings: with a target it is always the same.
     state_.round = {plan.least(plan.is_adaptive() ? SampleOrder::pixels : control.order)};
     if (state_.round.is_done() && plan.is_adaptive()) {
-      state_.round = {plan.next(variances(plan.samples()))};
+      state_.round = {plan.next(variances(plan.samples()), costs(plan.samples()))};
       if (control.progress) control.progress(plan.fraction_done());
     }
     return !state_.round.is_done();
@@ -217,6 +218,22 @@ class PictureTracer {
           samples, width_));
     }
     return out;
+  }
+
+  /// What one kind of rays did: `rays` of it, and its planes of visits and tests.
+  PassWork work_of(std::vector<double> rays, uint visits) {
+    return {std::move(rays), read_plane(visits, 1.0), read_plane(visits + 1, 1.0)};
+  }
+
+  /// sample_costs() so far.
+  std::vector<float> costs(const std::vector<std::uint32_t>& samples) {
+    const PassWork camera = work_of(std::vector<double>(samples.begin(), samples.end()), 8);
+    std::vector<PassWork> others;
+    if (options_.ao)
+      others.push_back(work_of(read_plane(0, 1.0 / options_.ao_rays), layout_.ao + 4));
+    for (const LightPlaneRange& planes : layout_.lights)
+      others.push_back(work_of(read_plane(0, 1.0 / options_.light_rays), planes.visits()));
+    return sample_costs(camera, others, samples, width_);
   }
 
   std::vector<std::vector<float>> standard_errors(const std::vector<std::uint32_t>& samples) {

@@ -28,28 +28,30 @@ std::uint32_t in_units(double batches, std::uint32_t have, double rounding,
   return all < limits.most ? static_cast<std::uint32_t>(all) : limits.most;
 }
 
-/// One pass, whose pixels are given batches by the density: so many for a deviation of 1.
+/// One pass, whose pixels are given batches by the density: so many for a deviation of 1 at a cost
+/// of 1.
 class ByDeviation {
  public:
-  ByDeviation(const std::vector<float>& variances, const BatchCounts& have,
-              const AllocationLimits& limits, const BatchCounts& wanted)
-      : have_(have), limits_(limits), wanted_(wanted), deviations_(variances.size()) {
-    std::transform(variances.begin(), variances.end(), deviations_.begin(),
-                   [](float variance) { return std::sqrt(variance); });
+  ByDeviation(const std::vector<float>& variances, const std::vector<float>& costs,
+              const BatchCounts& have, const AllocationLimits& limits, const BatchCounts& wanted)
+      : variances_(variances), have_(have), limits_(limits), wanted_(wanted) {
+    shares_.resize(variances.size());
+    std::transform(variances.begin(), variances.end(), costs.begin(), shares_.begin(),
+                   [](float variance, float cost) { return std::sqrt(variance / cost); });
   }
 
   [[nodiscard]] std::uint32_t batches(std::size_t pixel, double density) const {
-    return std::max(wanted_[pixel],
-                    in_units(density * deviations_[pixel], have_[pixel], 0.5, limits_));
+    return std::max(wanted_[pixel], in_units(density * shares_[pixel], have_[pixel], 0.5, limits_));
   }
   [[nodiscard]] double squared_error_sum(double density) const {
-    return sum([&](std::size_t pixel) {
-      const double deviation = deviations_[pixel];
-      return deviation * deviation / batches(pixel, density);
-    });
+    return sum(
+        [&](std::size_t pixel) { return double{variances_[pixel]} / batches(pixel, density); });
   }
-  [[nodiscard]] double deviation_sum() const {
-    return sum([&](std::size_t pixel) { return double{deviations_[pixel]}; });
+  /// The squared errors' sum, times the density, if every pixel began at none and had no most.
+  [[nodiscard]] double free_error_sum() const {
+    return sum([&](std::size_t pixel) {
+      return shares_[pixel] > 0 ? double{variances_[pixel]} / shares_[pixel] : 0.0;
+    });
   }
 
  private:
@@ -57,7 +59,7 @@ class ByDeviation {
   [[nodiscard]] double sum(const Value& value) const {
     using Range = tbb::blocked_range<std::size_t>;
     return tbb::parallel_deterministic_reduce(
-        Range(0, deviations_.size(), kSumGrain), 0.0,
+        Range(0, shares_.size(), kSumGrain), 0.0,
         [&](const Range& range, double partial) {
           for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel)
             partial += value(pixel);
@@ -66,16 +68,16 @@ class ByDeviation {
         std::plus<>());
   }
 
+  const std::vector<float>& variances_;
   const BatchCounts& have_;
   const AllocationLimits& limits_;
   const BatchCounts& wanted_;
-  std::vector<float> deviations_;
+  std::vector<float> shares_;
 };
 
 /// The least density whose squared errors add up to no more than `enough`.
 double least_density(const ByDeviation& pass, double enough) {
-  // What it would be if every pixel began at none and had no most.
-  double high = pass.deviation_sum() / enough, low = 0;
+  double high = pass.free_error_sum() / enough, low = 0;
   for (int i = 0; i < kDoublings && pass.squared_error_sum(high) > enough; ++i) {
     low = high;
     high *= 2;
@@ -99,9 +101,9 @@ void want_error(const std::vector<float>& variances, float target, const BatchCo
   }
 }
 
-void want_rmse(const std::vector<float>& variances, float target, const BatchCounts& have,
-               const AllocationLimits& limits, BatchCounts& wanted) {
-  const ByDeviation pass(variances, have, limits, wanted);
+void want_rmse(const std::vector<float>& variances, const std::vector<float>& costs, float target,
+               const BatchCounts& have, const AllocationLimits& limits, BatchCounts& wanted) {
+  const ByDeviation pass(variances, costs, have, limits, wanted);
   const double enough = double{target} * target * static_cast<double>(wanted.size());
   if (pass.squared_error_sum(0) <= enough) return;
   const double density = least_density(pass, enough);

@@ -21,11 +21,12 @@ void want_error(const std::vector<float>& variances, float target, const BatchCo
                 const AllocationLimits& limits, BatchCounts& wanted);
 
 /// Raises `wanted`, from `have` up, until the root of the pixels' mean squared error is below
-/// `target`, with the fewest samples: those of a pixel in proportion to its standard deviation
-/// (Neyman, "On the Two Different Aspects of the Representative Method", 1934, section III).
-/// What is wanted already, for another pass, counts. Where `most` is in the way of the target,
-/// all pixels that vary want that.
-void want_rmse(const std::vector<float>& variances, float target, const BatchCounts& have,
-               const AllocationLimits& limits, BatchCounts& wanted);
+/// `target`, at the least cost: samples of a pixel in proportion to its standard deviation over
+/// the root of what one costs (Neyman, "On the Two Different Aspects of the Representative
+/// Method", 1934, section III; with costs Cochran, "Sampling Techniques", 1977, section 5.5).
+/// `costs`: of a sample, by pixel, above 0, in any unit. What is wanted already, for another pass,
+/// counts. Where `most` is in the way of the target, all pixels that vary want that.
+void want_rmse(const std::vector<float>& variances, const std::vector<float>& costs, float target,
+               const BatchCounts& have, const AllocationLimits& limits, BatchCounts& wanted);
 
 }  // namespace dapple

@@ -28,10 +28,12 @@ class SamplePlan {
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
   /// With a target: what is missing for it, in eights but for the most. `variances`: of a batch's
-  /// mean, by pass and pixel, batch_variances(). No pixel gets more than 8, or three times what it
-  /// has, so that the next decision rests on more; empty when all are done. A pixel may be in
-  /// several groups, to be traced in their order.
-  std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances);
+  /// mean, by pass and pixel, batch_variances(); `costs`: sample_costs(). No pixel gets more than
+  /// eight times what it has, so that the next decision rests on more, and blocks of 2x2 pixels get
+  /// the same; empty when all are done. A pixel may be in several groups, to be traced in their
+  /// order.
+  std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances,
+                              const std::vector<float>& costs);
 
   /// Samples of each pixel once all work given out is done.
   [[nodiscard]] const std::vector<std::uint32_t>& samples() const { return samples_; }
@@ -40,9 +42,11 @@ class SamplePlan {
 
  private:
   /// Batches that every pixel should have in all.
-  [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances) const;
+  [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances,
+                                   const std::vector<float>& costs) const;
 
-  std::vector<std::uint32_t> order_;  ///< pixels, tile by tile
+  int width_;
+  std::vector<std::uint32_t> order_;  ///< pixels, tile by tile and in these block by block
   std::vector<std::uint32_t> samples_;
   std::uint32_t least_, most_;
   float target_error_, target_rmse_;
