@@ -119,11 +119,10 @@ void add(const std::string& name, const Measure& measure) {
 }  // namespace
 
 void register_tracing(BenchScene& scene) {
-  for (const auto& [name, estimator] :
-       {std::pair("exact", Estimator::exact), {"prefiltered", Estimator::prefiltered}}) {
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     const auto add_occlusion = [&](const std::string& kind, uint rays_per_point, RayOrder order) {
-      add(kind + "/" + name + "/" + scene.name(),
-          [&scene, estimator = estimator, rays_per_point, order](benchmark::State& state) {
+      add(kind + "/" + name_of(estimator) + "/" + scene.name(),
+          [&scene, estimator, rays_per_point, order](benchmark::State& state) {
             measure_occlusion(state, scene, estimator, rays_per_point, order);
           });
     };

@@ -30,8 +30,8 @@ Contestant by_embree(const RivalScene& scene, std::span<const Surface> points,
   return {"Embree " + method.name(), true, true, {}, run};
 }
 
-Contestant by_dapple(const RivalScene& scene, const std::shared_ptr<BakedPoints>& points, const char* name,
-                     Estimator estimator) {
+Contestant by_dapple(const RivalScene& scene, const std::shared_ptr<BakedPoints>& points,
+                     const char* name, Estimator estimator) {
   const auto run = [&scene, points, estimator](double rays, std::uint32_t seed) {
     OcclusionOptions options;
     options.rays = static_cast<int>(rays);

@@ -133,8 +133,8 @@ std::string report_text(const nlohmann::ordered_json& r) {
                   bytes_text(number("bytes", "segments")), bytes_text(number("bytes", "textures")),
                   bytes_text(number("bytes", "instances")));
   text +=
-      fmt::format("  {}  {:.1f} bytes of nodes, {:.1f} of blocks, {:.1f} all in\n",
-                  r["segments"]["total"] == 0 ? "a triangle" : "each of all",
+      fmt::format("  {:<12}{:.1f} bytes of nodes, {:.1f} of blocks, {:.1f} all in\n",
+                  r["segments"]["total"] == 0 ? "a triangle" : "a primitive",
                   number("bytes_per_triangle", "nodes"), number("bytes_per_triangle", "triangles"),
                   number("bytes_per_triangle", "all"));
   text += fmt::format("  seconds     build {:.3f}, prefilter {:.3f}\n", number("seconds", "build"),

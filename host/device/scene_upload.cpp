@@ -131,7 +131,7 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   return result;
 }
 
-BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& updatable,
+BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
                  const Scene& moved) {
   DeviceContext& context = device.context();
   DeviceBuffers& buffers = *on_device.buffers;
@@ -139,19 +139,19 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& upd
   {
     const std::shared_ptr<void> nodes = context.lend(buffers.nodes),
                                 blocks = context.lend(buffers.blocks);
-    changes = updatable.update(moved);
+    changes = bvh.update(moved);
   }
-  const SceneBvh& bvh = updatable.bvh();
+  const SceneBvh& now = bvh.bvh();
   if (changes.is_new) {
     on_device = {};
-    on_device = upload(device, moved, bvh);
+    on_device = upload(device, moved, now);
     return changes;
   }
   if (!context.shares_memory()) {
-    write_ranges(context, buffers.nodes, bvh.nodes, changes.nodes);
-    write_ranges(context, buffers.blocks, bvh.blocks, changes.blocks);
+    write_ranges(context, buffers.nodes, now.nodes, changes.nodes);
+    write_ranges(context, buffers.blocks, now.blocks, changes.blocks);
   }
-  if (changes.placement) share_placement(context, bvh, buffers);
+  if (changes.placement) share_placement(context, now, buffers);
   share_lights(context, moved, buffers);
   context.finish();
   on_device.bytes = bytes_of_all(buffers);

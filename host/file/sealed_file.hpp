@@ -39,8 +39,8 @@ Section as_section(const Range& values) {
 
 /// Written beside, read back and checked, renamed: the old file or the new one is there, never a
 /// part. Throws Error failed, "cannot write PATH: REASON".
-void write_sealed_file(const std::string& path, const SealedKind& kind, std::span<const Section> sections,
-                       Durable durable = Durable::yes);
+void write_sealed_file(const std::string& path, const SealedKind& kind,
+                       std::span<const Section> sections, Durable durable = Durable::yes);
 void write_sealed_file(const std::string& path, const SealedKind& kind,
                        std::initializer_list<Section> sections, Durable durable = Durable::yes);
 

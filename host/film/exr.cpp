@@ -1,6 +1,6 @@
-// Films as OpenEXR files; no other file knows OpenEXR. In: a Film, or any single-part
-// scanline or tiled EXR. Out: a verified file, or a Film. OpenEXR's threads are a setting of the
-// whole process: the program's to make, use_exr_threads(), and otherwise the caller's.
+// Films as OpenEXR files. In: a Film, or any EXR that host/exr reads. Out: a verified file, or a
+// Film. OpenEXR's threads are a setting of the whole process: the program's to make,
+// use_exr_threads(), and otherwise the caller's.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -9,23 +9,19 @@
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
-#include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
-#include <ImfTileDescriptionAttribute.h>
-#include <ImfVersion.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <new>
 #include <string_view>
 
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
+#include "exr/exr_reader.hpp"
 #include "file/output_file.hpp"
 #include "film/exr_output.hpp"
 #include "film/film_defect.hpp"
@@ -36,45 +32,10 @@ namespace {
 using Imath::Box2i;
 using Imath::V2i;
 
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
-constexpr int kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
 constexpr std::size_t kLongestAttributeName = 255;
 constexpr std::string_view kPrefix = "dapple:";
 
-std::int64_t area(const Box2i& window) {
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  return width * (std::int64_t{window.max.y} - window.min.y + 1);
-}
-
 Box2i window_of(const PixelRect& rect) { return {V2i(rect.x0, rect.y0), V2i(rect.x1, rect.y1)}; }
-
-using Rows = std::vector<std::vector<float>>;  // one vector a channel
-
-void read_rows(Imf::InputFile& file, const std::vector<std::string>& channels, const Box2i& strip,
-               Rows& rows) {
-  Imf::FrameBuffer buffer;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    rows[i].resize(static_cast<std::size_t>(area(strip)));
-    buffer.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, rows[i].data(), strip));
-  }
-  file.setFrameBuffer(buffer);
-  file.readPixels(strip.min.y, strip.max.y);
-}
-
-// Calls `visit(first_pixel, rows)` from the top strip to the bottom one.
-template <typename Visit>
-void for_each_strip(Imf::InputFile& file, const std::vector<std::string>& channels, Visit visit) {
-  const Box2i window = file.header().dataWindow();
-  std::size_t first_pixel = 0;
-  Rows rows(channels.size());  // one memory for all strips: new pages take longer than unzipping
-  for (std::int64_t y = window.min.y; y <= window.max.y; y += kStripRows) {
-    const int last = static_cast<int>(std::min<std::int64_t>(y + kStripRows - 1, window.max.y));
-    const Box2i strip(V2i(window.min.x, static_cast<int>(y)), V2i(window.max.x, last));
-    read_rows(file, channels, strip, rows);
-    visit(first_pixel, rows);
-    first_pixel += static_cast<std::size_t>(area(strip));
-  }
-}
 
 std::string attribute_name(const std::string& name) {
   return (std::string(kPrefix) + name).substr(0, kLongestAttributeName);
@@ -149,7 +110,7 @@ void verify(const Film& film, PendingFile& file) {
   }
   std::vector<std::string> channels;
   for (const Plane& plane : film.planes) channels.push_back(plane.channel);
-  for_each_strip(in, channels, [&](std::size_t first_pixel, const Rows& rows) {
+  for_each_strip(in, channels, [&](std::size_t first_pixel, const ExrRows& rows) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const float* meant = film.planes[i].pixels.data() + first_pixel;
       if (std::memcmp(rows[i].data(), meant, rows[i].size() * sizeof(float)) != 0) {
@@ -157,56 +118,6 @@ void verify(const Film& film, PendingFile& file) {
       }
     }
   });
-}
-
-// The header alone, before OpenEXR allocates anything of the size that it claims.
-Imf::Header peek_header(const std::string& path) {
-  Imf::StdIFStream stream(path.c_str());
-  std::array<char, 8> opening{};
-  stream.read(opening.data(), static_cast<int>(opening.size()));
-  if (!Imf::isImfMagic(opening.data())) throw std::runtime_error("it is not an EXR file");
-  int version = 0;
-  for (std::size_t i = 4; i < 8; ++i) {
-    version |= static_cast<unsigned char>(opening[i]) << (8 * (i - 4));
-  }
-  Imf::Header header;
-  header.readFrom(stream, version);
-  return header;
-}
-
-void check_size(const Imf::Header& header) {
-  const Box2i& window = header.dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width < 1 || height < 1) throw std::runtime_error("its data window is empty");
-  const auto too_large = [](std::int64_t w, std::int64_t h) {
-    return w > kMaxPixels || h > kMaxPixels || w * h > kMaxPixels;
-  };
-  if (too_large(width, height)) {
-    throw std::runtime_error("its data window of " + std::to_string(width) + " x " +
-                             std::to_string(height) + " pixels is over the limit of " +
-                             std::to_string(kMaxPixels));
-  }
-  if (!header.hasTileDescription()) return;
-  // OpenEXR keeps one row of tiles for scanline access.
-  const Imf::TileDescription& tile = header.tileDescription();
-  if (too_large(tile.xSize, tile.ySize) || too_large(width, tile.ySize)) {
-    throw std::runtime_error("its tiles of " + std::to_string(tile.xSize) + " x " +
-                             std::to_string(tile.ySize) + " pixels are too large");
-  }
-}
-
-std::vector<std::string> channel_names(const Imf::Header& header) {
-  std::vector<std::string> names;
-  const Imf::ChannelList& channels = header.channels();
-  for (auto it = channels.begin(); it != channels.end(); ++it) {
-    if (it.channel().xSampling != 1 || it.channel().ySampling != 1) {
-      throw std::runtime_error(std::string("channel ") + it.name() + " is subsampled");
-    }
-    names.emplace_back(it.name());
-  }
-  if (names.empty()) throw std::runtime_error("it has no channels");
-  return names;
 }
 
 std::string take(std::vector<std::pair<std::string, std::string>>& texts, const std::string& name) {
@@ -251,25 +162,6 @@ Film film_without_pixels(const Imf::Header& header) {
   return film;
 }
 
-Film decode(const std::string& path) {
-  check_size(peek_header(path));
-  Imf::InputFile file(path.c_str(), 0);
-  Film film = film_without_pixels(file.header());
-  const std::vector<std::string> channels = channel_names(file.header());
-  for (const std::string& channel : channels) film.planes.push_back({channel, {}});
-  // Reserved memory costs nothing until it is filled: a short file that claims a large
-  // picture fails before it has used any.
-  for (Plane& plane : film.planes) {
-    plane.pixels.reserve(static_cast<std::size_t>(area(file.header().dataWindow())));
-  }
-  for_each_strip(file, channels, [&](std::size_t, const Rows& rows) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      film.planes[i].pixels.insert(film.planes[i].pixels.end(), rows[i].begin(), rows[i].end());
-    }
-  });
-  return film;
-}
-
 }  // namespace
 
 void use_exr_threads(int count) { Imf::setGlobalThreadCount(count); }
@@ -293,19 +185,12 @@ void write_exr(const Film& film, const std::string& path, Durable durable) {
 }
 
 Film read_exr(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    throw Error(ErrorKind::input,
-                path + (std::filesystem::exists(path, ignored) ? ": it is not a regular file"
-                                                               : ": there is no such file"));
-  }
-  try {
-    return decode(path);
-  } catch (const std::bad_alloc&) {
-    throw Error(ErrorKind::input, path + ": there is not enough memory for its picture");
-  } catch (const std::exception& problem) {
-    throw Error(ErrorKind::input, path + ": " + problem.what());
-  }
+  Film film;
+  ExrImage image =
+      read_exr_image(path, [&](const Imf::Header& header) { film = film_without_pixels(header); });
+  for (auto& [channel, pixels] : image.channels)
+    film.planes.push_back({channel, std::move(pixels)});
+  return film;
 }
 
 }  // namespace dapple

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "dapple/error.hpp"
-#include "dapple/film.hpp"
+#include "exr/exr_reader.hpp"
 #include "scene/radiance_hdr.hpp"
 #include "scene/side_file.hpp"
 
@@ -28,15 +28,17 @@ bool is_exr(const std::vector<std::uint8_t>& bytes) {
   return bytes.size() >= 4 && std::equal(std::begin(kMagic), std::end(kMagic), bytes.begin());
 }
 
-Environment environment_of(const Film& film, const std::string& path) {
-  const Plane *r = film.find("R"), *g = film.find("G"), *b = film.find("B");
-  if (const Plane* y = film.find("Y"); y && !r && !g && !b) r = g = b = y;
+Environment environment_of(const ExrImage& image, const std::string& path) {
+  const auto find = [&](const char* channel) {
+    const auto found = image.channels.find(channel);
+    return found == image.channels.end() ? nullptr : &found->second;
+  };
+  const std::vector<float>*r = find("R"), *g = find("G"), *b = find("B");
+  if (const auto* y = find("Y"); y && !r && !g && !b) r = g = b = y;
   if (!r || !g || !b) refuse(path, "has neither channels R, G and B nor Y");
-  Environment environment;
-  environment.width = static_cast<std::uint32_t>(film.data_window.width());
-  environment.height = static_cast<std::uint32_t>(film.data_window.height());
-  for (std::size_t i = 0; i < r->pixels.size(); ++i)
-    environment.radiance.emplace_back(r->pixels[i], g->pixels[i], b->pixels[i]);
+  Environment environment{image.width, image.height, {}};
+  for (std::size_t i = 0; i < r->size(); ++i)
+    environment.radiance.emplace_back((*r)[i], (*g)[i], (*b)[i]);
   return environment;
 }
 
@@ -57,7 +59,8 @@ void check_radiance(Environment& environment, const std::string& path) {
 /// Means over boxes of `across` x `down` texels, weighted by solid angle.
 Environment averaged(const Environment& fine, std::uint32_t across, std::uint32_t down) {
   // A rest that fills no box is part of the last one's sum.
-  Environment coarse{std::max(1u, fine.width / across), std::max(1u, fine.height / down), {}, fine.file};
+  Environment coarse{
+      std::max(1u, fine.width / across), std::max(1u, fine.height / down), {}, fine.file};
   std::vector<V3d> sums(std::size_t{coarse.width} * coarse.height, V3d(0.0));
   std::vector<double> weights(sums.size(), 0.0);
   for (std::uint32_t y = 0; y < fine.height; ++y) {
@@ -105,7 +108,7 @@ std::shared_ptr<const Environment> load_environment(const std::string& path) {
   const std::vector<std::uint8_t> bytes = read_side_file(path, "dome image", kMaxFileBytes);
   Environment environment;
   if (is_exr(bytes)) {
-    environment = environment_of(read_exr(path), path);
+    environment = environment_of(read_exr_image(path), path);
   } else if (is_radiance_hdr(bytes)) {
     environment = decode_radiance_hdr(bytes, path);
   } else {

@@ -19,14 +19,13 @@ constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 32;
 constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
 constexpr std::uint64_t kHeaderBytes = 128;
 
-enum Array : std::uint32_t {
-  kSegments = 1,
-  kPoints = 2,
-  kThickness = 4,
-  kTransparency = 8,
-  kColors = 16,
-  kAllArrays = 31,
-};
+// Bits of the arrays that a file has, in the order in which these follow each other.
+constexpr std::uint32_t kSegments = 1;
+constexpr std::uint32_t kPoints = 2;
+constexpr std::uint32_t kThickness = 4;
+constexpr std::uint32_t kTransparency = 8;
+constexpr std::uint32_t kColors = 16;
+constexpr std::uint32_t kAllArrays = 31;
 
 struct Header {
   std::uint32_t strands, points, arrays, segments;
@@ -49,7 +48,7 @@ Header read_header(std::span<const std::uint8_t> bytes, const std::string& path)
   Header header{};
   static_assert(sizeof header == 24);
   std::memcpy(&header, bytes.data() + 4, sizeof header);
-  if ((header.arrays & ~std::uint32_t{kAllArrays}) != 0)
+  if ((header.arrays & ~kAllArrays) != 0)
     fail(path, "has arrays that the format does not know (its bits are {:#x})", header.arrays);
   if ((header.arrays & kPoints) == 0) fail(path, "has no array of points");
   if (header.points > kMaxPoints)
@@ -68,7 +67,7 @@ struct Arrays {
 Arrays find_arrays(const Header& header, std::span<const std::uint8_t> bytes,
                    const std::string& path) {
   std::uint64_t end = kHeaderBytes;
-  const auto next = [&](Array array, std::uint64_t count,
+  const auto next = [&](std::uint32_t array, std::uint64_t count,
                         std::uint64_t element) -> const std::uint8_t* {
     if ((header.arrays & array) == 0) return nullptr;
     const std::uint64_t begin = end;

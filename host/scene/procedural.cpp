@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <utility>
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
@@ -33,8 +34,9 @@ Parameter leaf_size() {
 
 Parameter seed() { return {"seed", 1, 0, 4294967295.0, true, "another seed, another plant"}; }
 
-std::vector<Recipe> make_recipes() {
-  const char* const kTwoTriangles = "number of leaves, of two triangles each";
+constexpr const char* kTwoTriangles = "number of leaves, of two triangles each";
+
+std::vector<Recipe> plant_recipes() {
   return {
       {{"demo", "a tree on a ground, a rect light named \"key\" and a camera", {}},
        make_demo_scene},
@@ -61,15 +63,23 @@ std::vector<Recipe> make_recipes() {
          {"spacing", 6, 0.5, 100, false, "mean distance between trees in metres"},
          seed()}},
        make_forest_scene},
-      {{"hair",
-        "a head of curly hair looking along +Z: materials \"hair\" and \"skin\"",
-        {{"strands", 20000, 1, 2'000'000, true, "number of strands"},
-         {"segments", 16, 1, 256, true, "segments of each strand"},
-         {"radius", 0, 0, 0.01, false, "metres at the root; 0: thinner the more strands"},
-         {"curl", 0.5, 0, 1, false, "0: straight, 1: tight curls"},
-         opacity_of("hair", 0.3),
-         {"seed", 1, 0, 4294967295.0, true, "another seed, another hairdo"}}},
-       make_hair_scene},
+  };
+}
+
+Recipe hair_recipe() {
+  return {{"hair",
+           "a head of curly hair looking along +Z: materials \"hair\" and \"skin\"",
+           {{"strands", 20000, 1, 2'000'000, true, "number of strands"},
+            {"segments", 16, 1, 256, true, "segments of each strand"},
+            {"radius", 0, 0, 0.01, false, "metres at the root; 0: thinner the more strands"},
+            {"curl", 0.5, 0, 1, false, "0: straight, 1: tight curls"},
+            opacity_of("hair", 0.3),
+            {"seed", 1, 0, 4294967295.0, true, "another seed, another hairdo"}}},
+          make_hair_scene};
+}
+
+std::vector<Recipe> sheet_and_solid_recipes() {
+  return {
       {{"stack",
         "square sheets of 2 m, one above the other, over a ground: material \"sheet\"",
         {{"layers", 4, 1, 10000, true, "number of sheets"},
@@ -94,6 +104,14 @@ std::vector<Recipe> make_recipes() {
           "metres between sheets, and from the ground to the first"}}},
        make_greys_scene},
   };
+}
+
+/// In the order in which `dapple scene` shows them.
+std::vector<Recipe> make_recipes() {
+  std::vector<Recipe> all = plant_recipes();
+  all.push_back(hair_recipe());
+  for (Recipe& recipe : sheet_and_solid_recipes()) all.push_back(std::move(recipe));
+  return all;
 }
 
 const std::vector<Recipe>& recipes() {

@@ -1,3 +1,5 @@
+// Radiance HDR images by stb_image, which trusts files: what they hold is counted before it reads
+// them.
 #include "scene/radiance_hdr.hpp"
 
 #include <algorithm>
@@ -33,8 +35,9 @@ struct StbiFree {
 std::size_t end_of_header(std::span<const std::uint8_t> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::size_t empty = text.find("\n\n");
-  const std::size_t end = empty == text.npos ? text.npos : text.find('\n', empty + 2);
-  return end == text.npos ? bytes.size() : end + 1;
+  if (empty == std::string_view::npos) return bytes.size();
+  const std::size_t end = text.find('\n', empty + 2);
+  return end == std::string_view::npos ? bytes.size() : end + 1;
 }
 
 /// One of a run-length encoded scanline's four channels; false when it does not fill `width`.

@@ -20,7 +20,10 @@ constexpr float kNeighbourhoodWeight = 16.0f;
 std::vector<float> batch_variances(const BatchMoments& moments,
                                    const std::vector<std::uint32_t>& samples, int width) {
   std::vector<float> own(samples.size());
-  const auto batches = [&](std::size_t p) { return static_cast<float>(samples[p] / DAPPLE_BATCH); };
+  const auto batches = [&](std::size_t p) {
+    const std::uint32_t whole = samples[p] / DAPPLE_BATCH;
+    return static_cast<float>(whole);
+  };
   for (std::size_t p = 0; p < own.size(); ++p) {
     const float square = batches(p) * moments.mean[p] * moments.mean[p];
     own[p] = std::max(0.0f, (moments.squares[p] - square) / (batches(p) - 1.0f));

@@ -99,6 +99,13 @@ void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBu
   s.bytes.instances = buffers.instances.bytes();
 }
 
+void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
+                          const FilmLayout& layout) {
+  s.pass_seconds = picture.pass_seconds;
+  s.bytes.film = layout.sum_bytes() + layout.square_bytes();
+  s.bytes.queues = picture.queue_bytes;
+}
+
 /// What a device was opened with.
 std::array<std::string, 3> device_key(const RenderOptions& options) {
   return {options.device, options.kernel_dir, name_of(options.trace_with)};
@@ -112,16 +119,21 @@ struct Renderer::Kept {
   std::optional<UpdatableBvh> bvh;
   DeviceScene on_device;
 
-  void open(const RenderOptions& options);
+  void open(const RenderOptions& options, RenderStatistics& statistics);
   void bring(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
+  void compile(const Scene& scene, const RenderOptions& options,
+               RenderStatistics& statistics) const;
 };
 
-void Renderer::Kept::open(const RenderOptions& options) {
+void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statistics) {
   const auto key = dapple::device_key(options);
-  if (device && key == device_key) return;
-  *this = {};
-  device_key = key;
-  device.emplace(options.device, options.kernel_dir, options.trace_with);
+  if (!device || key != device_key) {
+    *this = {};
+    device_key = key;
+    device.emplace(options.device, options.kernel_dir, options.trace_with);
+  }
+  statistics.device = device->info().name;
+  for (std::string& note : device->context().notes()) statistics.notes.push_back(std::move(note));
 }
 
 /// The scene to the device, by the BVH that there is.
@@ -144,16 +156,22 @@ void Renderer::Kept::bring(const Scene& scene, const RenderOptions& options,
   add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
 }
 
+void Renderer::Kept::compile(const Scene& scene, const RenderOptions& options,
+                             RenderStatistics& statistics) const {
+  DeviceContext& context = device->context();
+  const double compiled_before = context.kernel_build_seconds();
+  prepare_kernels(context, options, scene.lights);
+  statistics.seconds.kernel_build = context.kernel_build_seconds() - compiled_before;
+}
+
 Renderer::Renderer() : kept_(std::make_unique<Kept>()) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-RenderResult Renderer::render(Scene scene, const RenderOptions& asked,
-                              const RenderControl& control) {
+RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderControl& control) {
   const Stopwatch total;
-  validate(asked);
-  RenderOptions options = asked;
+  validate(options);
   RenderResult result;
   RenderStatistics& statistics = result.statistics;
   statistics.estimator = name_of(options.estimator);
@@ -163,19 +181,13 @@ RenderResult Renderer::render(Scene scene, const RenderOptions& asked,
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);
   // Here until all went well: after an error nothing of it is of use.
   Kept kept = std::exchange(*kept_, {});
-  kept.open(options);
+  kept.open(options, statistics);
   const Device& device = *kept.device;
-  statistics.device = device.info().name;
-  for (std::string& note : device.context().notes()) statistics.notes.push_back(std::move(note));
-
   check_memory(device.info(), least_need(scene), "needs at least");
   kept.bring(scene, options, statistics);
+  kept.compile(scene, options, statistics);
   const SceneBvh& bvh = kept.bvh->bvh();
   const DeviceScene& on_device = kept.on_device;
-
-  const double compiled_before = device.context().kernel_build_seconds();
-  prepare_kernels(device.context(), options, scene.lights);
-  statistics.seconds.kernel_build = device.context().kernel_build_seconds() - compiled_before;
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
   const FilmLayout layout(view, options, bvh.bounds, lights);
@@ -192,20 +204,15 @@ RenderResult Renderer::render(Scene scene, const RenderOptions& asked,
   const TracedPicture picture = trace_picture(device, on_device, view, options, layout, tracing,
                                               resumed ? std::move(resumed->state) : TraceState{});
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
-  statistics.pass_seconds = picture.pass_seconds;
-  statistics.bytes.film = layout.sum_bytes() + layout.square_bytes();
-  statistics.bytes.queues = picture.queue_bytes;
+  add_trace_statistics(statistics, picture, layout);
 
-  Film& film = result.film;
-  film.width = view.width;
-  film.height = view.height;
-  film.data_window = view.crop;
-  film.planes = develop(picture, layout, options, lights, statistics);
-  film.metadata = metadata(scene, view, options, device.info());
+  result.film = {view.width, view.height, view.crop,
+                 develop(picture, layout, options, lights, statistics),
+                 metadata(scene, view, options, device.info())};
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   result.interrupted = picture.interrupted;
   if (result.interrupted) {
-    film.metadata.settings.emplace_back("interrupted", "yes");
+    result.film.metadata.settings.emplace_back("interrupted", "yes");
     statistics.notes.push_back(interruption_note(picture, control));
   }
   *kept_ = std::move(kept);

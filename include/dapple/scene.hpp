@@ -9,8 +9,8 @@
 
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,7 +60,7 @@ struct Mesh {
   std::vector<V3f> positions;
   std::vector<std::uint32_t> indices;    ///< three per triangle, two per segment
   std::vector<std::uint32_t> materials;  ///< one per primitive, index into Scene::materials
-  std::vector<float> radii;  ///< of strands, per vertex, metres, > 0; empty: triangles
+  std::vector<float> radii;              ///< of strands, per vertex, metres, > 0; empty: triangles
   std::vector<V2f> uvs;  ///< per vertex, for the alpha texture, transforms applied; or empty
   std::vector<float> vertex_alpha;  ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
 
@@ -77,8 +77,8 @@ struct Instance {
 
 enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome };
 
-/// Radiance from all around: a latitude-longitude image as OpenEXR defines it (ImfEnvmap.h). The top
-/// row looks up +Y, the middle column along +Z, the one a quarter from the left along +X.
+/// Radiance from all around: a latitude-longitude image as OpenEXR defines it (ImfEnvmap.h). The
+/// top row looks up +Y, the middle column along +Z, the one a quarter from the left along +X.
 struct Environment {
   std::uint32_t width = 0, height = 0;
   std::vector<V3f> radiance;  ///< row by row, linear RGB, finite, not negative

@@ -95,7 +95,7 @@ class Renderer {
 
   /// Renders `scene` as `options` say: applies overrides, ground, lights and camera, builds or
   /// refits, uploads, traces. Throws Error usage, input, device or failed, and keeps nothing then.
-  RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control = {});
+  RenderResult render(Scene scene, RenderOptions options, const RenderControl& control = {});
 
  private:
   struct Kept;

@@ -151,9 +151,10 @@ float AccessorReader::number_of(const std::uint8_t* element, std::uint64_t compo
 
 Imath::M44d AccessorReader::matrix(std::uint64_t i) const {
   Imath::M44d matrix;
+  std::uint64_t component = 0;
   for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column)
-      matrix[row][column] = double{number(i, static_cast<std::uint64_t>(4 * row + column))};
+    for (int column = 0; column < 4; ++column, ++component)
+      matrix[row][column] = double{number(i, component)};
   }
   return matrix;
 }
