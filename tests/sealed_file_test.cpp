@@ -9,6 +9,7 @@
 #include <array>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <random>
 
 #include "film_files.hpp"
@@ -61,6 +62,19 @@ TEST_F(SealedFileOnDisk, SectionsComeBackAlignedWhateverTheirSizes) {
 TEST_F(SealedFileOnDisk, AFileWithoutSectionsIsAFile) {
   write_sealed_file(path("a.bin"), kKind, std::initializer_list<Section>{});
   EXPECT_EQ(open_sealed_file(path("a.bin"), kKind).section_count(), 0u);
+}
+
+TEST_F(SealedFileOnDisk, TooManySectionsAreRefusedBeforeAnythingIsWritten) {
+  const std::vector<Section> sections(kMostSections + 1);
+  try {
+    write_sealed_file(path("a.bin"), kKind, sections);
+    FAIL() << "written";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("1025 sections"), std::string::npos) << error.what();
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("a.bin")));
+  write_sealed_file(path("a.bin"), kKind, std::span(sections).first(kMostSections));
+  EXPECT_EQ(open_sealed_file(path("a.bin"), kKind).section_count(), kMostSections);
 }
 
 TEST_F(SealedFileOnDisk, AnyFlippedBitIsRefusedByName) {

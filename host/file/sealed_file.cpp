@@ -25,7 +25,6 @@ namespace {
 constexpr std::array<char, 8> kMagic = {'\x89', 'D', 'A', 'P', '\r', '\n', '\x1a', '\n'};
 constexpr std::uint32_t kLayoutVersion = 1;
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kMostSections = 1024;
 
 struct Header {
   std::array<char, 8> magic = kMagic;
@@ -66,7 +65,7 @@ void for_each_piece(const Header& header, std::span<const std::uint64_t> sizes,
 Header sealed_header(const SealedKind& kind, std::span<const std::uint64_t> sizes,
                      std::span<const Section> sections) {
   Header header;
-  assert(kind.name.size() < header.kind.size() && sizes.size() <= kMostSections);
+  assert(kind.name.size() < header.kind.size());
   std::copy(kind.name.begin(), kind.name.end(), header.kind.begin());
   header.version = kind.version;
   header.section_count = static_cast<std::uint32_t>(sizes.size());
@@ -167,6 +166,10 @@ std::vector<Section> split(const std::string& path, const Header& header, Sectio
 
 void write_sealed_file(const std::string& path, const SealedKind& kind,
                        std::span<const Section> sections, Durable durable) {
+  if (sections.size() > kMostSections) {
+    throw Error(ErrorKind::failed, fmt::format("cannot write {}: {} sections, and at most {} fit",
+                                               path, sections.size(), kMostSections));
+  }
   std::vector<std::uint64_t> sizes;
   for (const Section& section : sections) sizes.push_back(section.size());
   const Header header = sealed_header(kind, sizes, sections);

@@ -26,6 +26,9 @@ struct SealedKind {
 /// A section of a sealed file: plain data in this machine's byte order.
 using Section = std::span<const std::byte>;
 
+/// Sections of a file at most.
+inline constexpr std::size_t kMostSections = 1024;
+
 /// Sections begin at multiples of this many bytes.
 inline constexpr std::size_t kSectionAlignment = 128;
 
@@ -38,7 +41,8 @@ Section as_section(const Range& values) {
 }
 
 /// Written beside, read back and checked, renamed: the old file or the new one is there, never a
-/// part. Throws Error failed, "cannot write PATH: REASON".
+/// part. Throws Error failed, "cannot write PATH: REASON"; before it writes when there are too many
+/// sections.
 void write_sealed_file(const std::string& path, const SealedKind& kind,
                        std::span<const Section> sections, Durable durable = Durable::yes);
 void write_sealed_file(const std::string& path, const SealedKind& kind,

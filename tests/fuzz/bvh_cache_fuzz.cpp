@@ -143,7 +143,8 @@ void write_edited(FuzzedDataProvider& data) {
 
 void write_any_sections(FuzzedDataProvider& data) {
   std::vector<std::string> contents;
-  while (data.remaining_bytes() > 0) contents.push_back(data.ConsumeRandomLengthString());
+  while (data.remaining_bytes() > 0 && contents.size() < kMostSections)
+    contents.push_back(data.ConsumeRandomLengthString());
   if (contents.size() > 1 && data.ConsumeBool()) contents[1] = std::string(builder_version());
   std::vector<Section> sections;
   for (const std::string& bytes : contents) sections.push_back(as_section(bytes));
