@@ -2,23 +2,12 @@
 #include "dome.clh"
 #include "film.clh"
 
-/* Of one pixel, in fixed point. */
-typedef struct DomeSums {
-  long shadowed[3], unoccluded[3];
-  long visits, tests;
-} DomeSums;
-
-/* `weight` is the ray's, times the luminance from its direction. */
-inline void add_dome_ray(DomeSums* sums, const Dome* dome, __global const Ray* ray,
-                         Occlusion found, float scale) {
-  const float3 light = ray->weight * dome_colour(dome, load3(ray->direction));
-  const float channels[3] = {light.x, light.y, light.z};
-  for (uint c = 0; c < 3u; ++c) {
-    sums->shadowed[c] += fixed_point(channels[c] * found.transmittance, scale);
-    sums->unoccluded[c] += fixed_point(channels[c], scale);
-  }
-  sums->visits += found.visits & 65535u;
-  sums->tests += found.visits >> 16;
+/* Irradiance, and the same unoccluded, that one ray brings; visits and tests. */
+inline long8 dome_sums(const Dome* dome, __global const Ray* ray, Occlusion found, float scale) {
+  const float3 light = ray->weight * dome_colour(dome, load3(ray->direction)) * scale;
+  const float3 seen = light * found.transmittance;
+  return fixed_points((float8)(seen.x, seen.y, seen.z, light.x, light.y, light.z,
+                               found.visits & 65535u, found.visits >> 16));
 }
 
 /* Planes: irradiance (3) at radiance 1, the same unoccluded (3), visits, tests. Squares: of its
@@ -33,24 +22,20 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
   const uint begin = local_pixel * params.slice.sample_count;
   if (!any_sample_hit(met, begin, begin + params.slice.sample_count)) return;
   const Dome dome = dome_of(lights + light, environments);
-  DomeSums sums = {{0, 0, 0}, {0, 0, 0}, 0, 0};
+  PlaneSums sums;
+  sums.v = (long8)(0);
   Batches batches = {0.0f, 0.0f};
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     const bool hit = sample_hit(met, begin + s);
     const uint first = hit ? sample_slot(met, begin + s) * params.rays : 0u;
     float value = 0.0f;
     for (uint r = first; hit && r < first + params.rays; ++r) {
-      add_dome_ray(&sums, &dome, rays + r, occlusions[r], params.scale);
+      sums.v += dome_sums(&dome, rays + r, occlusions[r], params.scale);
       value += rays[r].weight * occlusions[r].transmittance / params.rays;
     }
     add_to_batch(&batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
-  for (uint c = 0; c < 3u; ++c) {
-    add_to_plane(film, params, c, pixel, sums.shadowed[c]);
-    add_to_plane(film, params, 3u + c, pixel, sums.unoccluded[c]);
-  }
-  add_to_plane(film, params, 6, pixel, sums.visits);
-  add_to_plane(film, params, 7, pixel, sums.tests);
+  add_to_planes(film, params, 8u, pixel, &sums);
 }

@@ -2,20 +2,16 @@
 #include "film.clh"
 #include "scene.clh"
 
-typedef struct SurfaceSums {
-  long hits, depth;
-  long normal[3], position[3];
-} SurfaceSums;
-
-inline void add_point(SurfaceSums* sums, ResolveParams params, __global const SurfacePoint* point) {
+/* Hits, normal (3), position (3), depth: the order of their planes. */
+inline long8 surface_sums(ResolveParams params, __global const SurfacePoint* point) {
   float along = 0.0f;
-  ++sums->hits;
   for (uint axis = 0; axis < 3; ++axis) {
-    sums->normal[axis] += fixed_point(point->normal[axis], params.scale);
-    sums->position[axis] += fixed_point(point->position[axis], params.position_scale);
     along += (point->position[axis] - params.eye[axis]) * params.axis[axis];
   }
-  sums->depth += fixed_point(along, params.depth_scale);
+  const float n = params.scale, p = params.position_scale;
+  const float8 values = (float8)(1.0f, point->normal[0], point->normal[1], point->normal[2],
+                                 point->position[0], point->position[1], point->position[2], along);
+  return fixed_points(values * (float8)(1.0f, n, n, n, p, p, p, params.depth_scale));
 }
 
 /* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles
@@ -25,7 +21,8 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
                               ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
-  SurfaceSums sums = {0, 0, {0, 0, 0}, {0, 0, 0}};
+  PlaneSums sums;
+  sums.v = (long8)(0);
   long visits = 0, tests = 0;
   const uint begin = local_pixel * params.slice.sample_count;
   const uint end = begin + params.slice.sample_count;
@@ -35,19 +32,14 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
     visits += (long)record.visits * popcount(range);
     tests += (long)record.tests * popcount(range);
     for (uint left = record.hits & range; left; left &= left - 1u) {
-      add_point(&sums, params, points + r * DAPPLE_HIT_BITS + popcount((left & -left) - 1u));
+      sums.v += surface_sums(params, points + r * DAPPLE_HIT_BITS + popcount((left & -left) - 1u));
     }
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   add_to_plane(film, params, 8, pixel, visits);
   add_to_plane(film, params, 9, pixel, tests);
-  if (!sums.hits) return;
-  add_to_plane(film, params, 0, pixel, sums.hits);
-  for (uint axis = 0; axis < 3; ++axis) {
-    add_to_plane(film, params, 1 + axis, pixel, sums.normal[axis]);
-    add_to_plane(film, params, 4 + axis, pixel, sums.position[axis]);
-  }
-  add_to_plane(film, params, 7, pixel, sums.depth);
+  if (!sums.plane[0]) return;
+  add_to_planes(film, params, 8u, pixel, &sums);
 }
 
 /* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
@@ -60,8 +52,9 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
   if (local_pixel >= params.slice.pixel_count) return;
   const uint begin = local_pixel * params.slice.sample_count;
   if (!any_sample_hit(met, begin, begin + params.slice.sample_count)) return;
-  long sum = 0, visits = 0, tests = 0;
-  long bent[3] = {0, 0, 0};
+  PlaneSums sums;
+  sums.v = (long8)(0);
+  long visits = 0, tests = 0;
   Batches batches = {0.0f, 0.0f};
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
@@ -72,10 +65,10 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
       const uint item = first + r;
       const Occlusion found = occlusions[item];
       value += (1.0f - found.transmittance) * inverse_rays;
-      sum += fixed_point(found.transmittance, params.scale);
-      for (uint axis = 0; axis < 3; ++axis) {
-        bent[axis] += fixed_point(found.transmittance * rays[item].direction[axis], params.scale);
-      }
+      __global const float* direction = rays[item].direction;
+      const float4 seen =
+          found.transmittance * (float4)(1.0f, direction[0], direction[1], direction[2]);
+      sums.v += fixed_points((float8)(seen * params.scale, (float4)(0.0f)));
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
@@ -83,8 +76,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
-  add_to_plane(film, params, 0, pixel, sum);
-  for (uint axis = 0; axis < 3; ++axis) add_to_plane(film, params, 1 + axis, pixel, bent[axis]);
+  add_to_planes(film, params, 4u, pixel, &sums);
   add_to_plane(film, params, 4, pixel, visits);
   add_to_plane(film, params, 5, pixel, tests);
 }
@@ -98,7 +90,9 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
   if (local_pixel >= params.slice.pixel_count) return;
   const uint begin = local_pixel * params.slice.sample_count;
   if (!any_sample_hit(met, begin, begin + params.slice.sample_count)) return;
-  long shadowed = 0, unoccluded = 0, visits = 0, tests = 0;
+  PlaneSums sums;
+  sums.v = (long8)(0);
+  long visits = 0, tests = 0;
   Batches batches = {0.0f, 0.0f};
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
@@ -110,8 +104,8 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
       const Occlusion found = occlusions[item];
       const float weight = rays[item].weight;
       value += weight * found.transmittance * inverse_rays;
-      shadowed += fixed_point(weight * found.transmittance, params.scale);
-      unoccluded += fixed_point(weight, params.scale);
+      const float2 seen = weight * (float2)(found.transmittance, 1.0f);
+      sums.v += fixed_points((float8)(seen * params.scale, (float2)(0.0f), (float4)(0.0f)));
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
@@ -119,8 +113,7 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
-  add_to_plane(film, params, 0, pixel, shadowed);
-  add_to_plane(film, params, 1, pixel, unoccluded);
+  add_to_planes(film, params, 2u, pixel, &sums);
   add_to_plane(film, params, 2, pixel, visits);
   add_to_plane(film, params, 3, pixel, tests);
 }
