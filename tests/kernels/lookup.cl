@@ -6,8 +6,13 @@ __kernel void look_up(__global const TextureRecord* textures, __global const uch
                       __global const float* uvs, __global float* alphas, uint texture, uint count) {
   const uint item = get_global_id(0);
   if (item >= count) return;
-  const Scene scene = {0, 0, 0, 0, 0, texels, 0};
-  alphas[item] = read_texels(scene, find_texels(textures[texture], vload2(item, uvs)));
+  const TextureRecord record = textures[texture];
+  const TextureShapes shapes = {record.width, record.height, record.flags};
+  const TexelPlaces places = find_texels(&shapes, uvs[2u * item], uvs[2u * item + 1u]);
+  __global const uchar* first = texels + (ulong)record.offset * 16u;
+  float16 texel[4];
+  for (uint k = 0; k < 4u; ++k) texel[k] = first[places.index[k].s0];
+  alphas[item] = mix_texels(texel, &places).s0;
 }
 
 /* Barycentrics in, opacity of textured triangle `triangle` out. */
@@ -18,8 +23,17 @@ __kernel void look_up_triangle(__global const TexturedTriangle* textured,
   const uint item = get_global_id(0);
   if (item >= count) return;
   const Scene scene = {0, 0, 0, textured, materials, texels, 0};
-  const float2 at = vload2(item, barycentrics);
-  opacities[item] = textured_opacity(scene, -1.0f - (float)triangle, at.x, at.y);
+  TexturedHits hits;
+  hits.count = 0u;
+  /* Others before it and after it must not matter. */
+  const uint place = item % DAPPLE_LOOKUPS;
+  for (uint i = 0; i <= place; ++i) {
+    const float2 at = vload2(item - place + i, barycentrics);
+    add_hit(&hits, -1.0f - (float)triangle, at.x, at.y);
+  }
+  float opacity[DAPPLE_LOOKUPS];
+  vstore16(look_up_opacities(scene, &hits), 0, opacity);
+  opacities[item] = opacity[place];
 }
 
 /* Textured triangles in; u, v and alpha out as they are interpolated at each corner. */
@@ -29,8 +43,12 @@ __kernel void unpack_corners(__global const TexturedTriangle* textured, __global
   if (item >= count) return;
   for (uint corner = 0; corner < 3u; ++corner) {
     const float u = corner == 1u ? 1.0f : 0.0f, v = corner == 2u ? 1.0f : 0.0f;
-    const float3 found = (float3)(interpolated_uv(textured + item, u, v),
-                                  interpolated_alpha(textured + item, u, v));
+    TexturedWords words;
+    for (uint word = 0; word < 6u; ++word)
+      words.word[word / 2u][word % 2u] = textured[item].corner[word / 2u][word % 2u];
+    const float3 found =
+        (float3)(interpolated_uv(&words, 0u, u, v).s0, interpolated_uv(&words, 1u, u, v).s0,
+                 interpolated_alpha(&words, u, v).s0);
     vstore3(found, 3u * item + corner, corners);
   }
   materials[item] = textured_material(textured + item);

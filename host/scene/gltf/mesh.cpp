@@ -101,7 +101,7 @@ bool is_shown(const tinygltf::Primitive& primitive, float line_radius, MeshTotal
 }
 
 /// And for what deforms vertices, which may be shared by primitives and nodes.
-constexpr std::uint64_t kMostDeformed = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMostDeformed = std::uint64_t{1} << 28;
 
 void count_work(const Document& document, const tinygltf::Primitive& primitive,
                 const Deformation& deformation, const std::string& who, MeshTotals& totals) {
