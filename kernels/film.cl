@@ -5,7 +5,7 @@
 /* Hits, normal (3), position (3), depth: the order of their planes. */
 inline long8 surface_sums(ResolveParams params, __global const SurfacePoint* point) {
   float along = 0.0f;
-  for (uint axis = 0; axis < 3; ++axis) {
+  DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
     along += (point->position[axis] - params.eye[axis]) * params.axis[axis];
   }
   const float n = params.scale, p = params.position_scale;
