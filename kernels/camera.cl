@@ -46,9 +46,9 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
   BeamFloats area;
   area.v = first_area + solid_angle * nearest.t.v * nearest.t.v;
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
-    const uint record = chosen->place[first + i] / DAPPLE_HIT_BITS;
-    found->visits[record] += nearest.visits;
-    found->tests[record] += nearest.tests;
+    const uint place = chosen->place[first + i], record = place / DAPPLE_HIT_BITS;
+    found->visits[record] += place < count ? nearest.visits : 0u;
+    found->tests[record] += place < count ? nearest.tests : 0u;
   }
   for (uint left = bits_of_rays((nearest.t.v > 0.0f) & (nearest.t.v < INFINITY)); left;
        left &= left - 1u) {
@@ -75,7 +75,10 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
   bound_samples(work, params, begin, count, &bounds);
   Entries entries;
   find_entries(scene, params.scene, &bounds, &entries);
-  ItemHits found = {0UL, {0u, 0u, 0u, 0u}, {0u, 0u, 0u, 0u}};
+  ItemHits found;
+  found.hits = 0UL;
+  for (uint record = 0; record < DAPPLE_ITEM_RECORDS; ++record)
+    found.visits[record] = found.tests[record] = 0u;
   if (entries.count) {
     CameraSamples chosen, sorted;
     choose_samples(work, params, begin, count, &chosen);
@@ -84,11 +87,13 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
       trace_beam(scene, params, &sorted, &entries, first, count, points + begin, &found);
     }
   }
-  found.visits[0] += entries.visits * DAPPLE_HIT_BITS;
   for (uint record = 0; record * DAPPLE_HIT_BITS < count; ++record) {
+    const uint of_record = min(count - record * DAPPLE_HIT_BITS, DAPPLE_HIT_BITS);
+    /* Nodes that all beams visited together are shared out. */
+    const uint of_entries = (entries.visits + DAPPLE_ITEM_RECORDS - 1u - record) / DAPPLE_ITEM_RECORDS;
     const SampleHits of_samples = {(uint)(found.hits >> record * DAPPLE_HIT_BITS) & 65535u, 0u,
-                                   found.visits[record] / DAPPLE_HIT_BITS,
-                                   found.tests[record] / DAPPLE_HIT_BITS};
+                                   found.visits[record] / of_record + of_entries,
+                                   found.tests[record] / of_record};
     met[begin / DAPPLE_HIT_BITS + record] = of_samples;
   }
 }

@@ -15,7 +15,7 @@ inline long8 surface_sums(ResolveParams params, __global const SurfacePoint* poi
 }
 
 /* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles
-   each sample is given those of its whole beam. */
+   each sample is given a whole beam's: the mean over its record. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
                               __global const SampleHits* met, __global long* film,
                               ResolveParams params) {

@@ -115,7 +115,7 @@ std::string statistics_text(const RenderStatistics& s) {
   const std::string segments = s.segments ? fmt::format("{} segments, ", s.segments) : "";
   std::string text = fmt::format("{} on {}: {} triangles, {}{} nodes\n", s.estimator, s.device,
                                  s.triangles, segments, s.nodes);
-  text += rays_line("camera", s.rays.camera, pass_seconds(s, "closest hit"), s.camera.visits,
+  text += rays_line("camera", s.rays.camera, pass_seconds(s, "camera"), s.camera.visits,
                     s.camera.tests);
   text += rays_line("ao", s.rays.ao, pass_seconds(s, "ao occlusion"), s.ao.visits, s.ao.tests);
   text += rays_line("light", s.rays.light, pass_seconds(s, "light occlusion"), s.light.visits,

@@ -154,12 +154,12 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
                   const RenderOptions& options, std::size_t lights, RenderStatistics& s) {
   const double hits = sums.total(0);
   s.rays.camera = std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0});
-  s.camera = {per_ray(sums.total(8) / DAPPLE_BEAM_RAYS, s.rays.camera),
-              per_ray(sums.total(9), s.rays.camera)};
+  s.camera = {per_ray(sums.total(kCameraVisits) / DAPPLE_BEAM_RAYS, s.rays.camera),
+              per_ray(sums.total(kCameraVisits + 1), s.rays.camera)};
   if (options.ao) {
     s.rays.ao = static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.ao_rays);
-    s.ao = {per_ray(sums.total(layout.ao + 4), s.rays.ao),
-            per_ray(sums.total(layout.ao + 5), s.rays.ao)};
+    s.ao = {per_ray(sums.total(layout.ao_visits()), s.rays.ao),
+            per_ray(sums.total(layout.ao_visits() + 1), s.rays.ao)};
   }
   s.rays.light =
       static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.light_rays) * lights;
@@ -175,8 +175,8 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
 void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
                 const FilmLayout& layout, const RenderOptions& options) {
   const auto total = [&](std::uint32_t p, std::uint32_t which) {
-    double sum = sums.at(8 + which, p) / (which == 0 ? DAPPLE_BEAM_RAYS : 1u);
-    if (options.ao) sum += sums.at(layout.ao + 4 + which, p);
+    double sum = sums.at(kCameraVisits + which, p) / (which == 0 ? DAPPLE_BEAM_RAYS : 1u);
+    if (options.ao) sum += sums.at(layout.ao_visits() + which, p);
     for (const LightPlaneRange& light : layout.lights) sum += sums.at(light.visits() + which, p);
     return sum / sample_count(picture, p);
   };

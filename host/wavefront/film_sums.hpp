@@ -14,6 +14,9 @@ namespace dapple {
 inline constexpr std::uint32_t kSurfacePlanes = 10;
 inline constexpr std::uint32_t kAoPlanes = 6;
 
+/// The plane of camera rays' visits; that of their tests is next, as everywhere.
+inline constexpr std::uint32_t kCameraVisits = 8;
+
 /// A light's planes: irradiance and the same unoccluded, each of 1 channel, of a dome 3; then
 /// visits and tests.
 struct LightPlaneRange {
@@ -39,6 +42,7 @@ struct FilmLayout {
 
   FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
              const std::vector<Light>& lights);
+  [[nodiscard]] std::uint32_t ao_visits() const { return ao + 4; }
   /// Plane of squares of a light; AO's is 0.
   [[nodiscard]] std::uint32_t light_squares(std::size_t light) const {
     return static_cast<std::uint32_t>(light) + (ao ? 1u : 0u);

@@ -25,10 +25,6 @@ constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 4;
 /// Rays that one item of the AO ray kernel makes; DAPPLE_AO_LANES in kernels/ao.cl.
 constexpr std::size_t kAoLanes = 16;
 
-/// Samples that one item of the camera kernel takes; DAPPLE_ITEM_SAMPLES in
-/// kernels/camera_samples.clh.
-constexpr std::size_t kItemSamples = 64;
-
 std::size_t hit_records(std::size_t samples) {
   return (samples + DAPPLE_HIT_BITS - 1) / DAPPLE_HIT_BITS;
 }
@@ -84,7 +80,7 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
   CameraParams camera = params;
   camera.scene = scene.params;
-  context.launch(kCameraHits, "camera", (samples + kItemSamples - 1) / kItemSamples,
+  context.launch(kCameraHits, "camera", (samples + DAPPLE_ITEM_SAMPLES - 1) / DAPPLE_ITEM_SAMPLES,
                  {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials,
                   scene.texels, scene.instances, queues.work, queues.points, queues.met, camera},
                  kBeamGroup);

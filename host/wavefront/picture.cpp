@@ -124,7 +124,9 @@ class PictureTracer {
     // Errors depend on the order, by roundings: with a target it is always the same.
     state_.round = {plan.least(plan.is_adaptive() ? SampleOrder::pixels : control.order)};
     if (state_.round.is_done() && plan.is_adaptive()) {
-      state_.round = {plan.next(variances(plan.samples()), costs(plan.samples()))};
+      const std::vector<std::uint32_t>& samples = plan.samples();
+      state_.round = {plan.next(variances(samples),
+                                options_.target_rmse > 0 ? costs(samples) : std::vector<float>())};
       if (control.progress) control.progress(plan.fraction_done());
     }
     return !state_.round.is_done();
@@ -220,20 +222,22 @@ class PictureTracer {
     return out;
   }
 
-  /// What one kind of rays did: `rays` of it, and its planes of visits and tests.
-  PassWork work_of(std::vector<double> rays, uint visits) {
-    return {std::move(rays), read_plane(visits, 1.0), read_plane(visits + 1, 1.0)};
+  /// What `rays` of each hit did, which have planes of visits and tests.
+  PassWork work_of(const std::vector<double>& hits, int rays, uint visits) {
+    PassWork work{hits, read_plane(visits, 1.0), read_plane(visits + 1, 1.0)};
+    for (double& count : work.rays) count *= rays;
+    return work;
   }
 
   /// sample_costs() so far.
   std::vector<float> costs(const std::vector<std::uint32_t>& samples) {
-    const PassWork camera = work_of(std::vector<double>(samples.begin(), samples.end()), 8);
+    const std::vector<double> hits = read_plane(0, 1.0);
     std::vector<PassWork> others;
-    if (options_.ao)
-      others.push_back(work_of(read_plane(0, 1.0 / options_.ao_rays), layout_.ao + 4));
+    if (options_.ao) others.push_back(work_of(hits, options_.ao_rays, layout_.ao_visits()));
     for (const LightPlaneRange& planes : layout_.lights)
-      others.push_back(work_of(read_plane(0, 1.0 / options_.light_rays), planes.visits()));
-    return sample_costs(camera, others, samples, width_);
+      others.push_back(work_of(hits, options_.light_rays, planes.visits()));
+    const std::vector<double> camera_rays(samples.begin(), samples.end());
+    return sample_costs(work_of(camera_rays, 1, kCameraVisits), others, samples, width_);
   }
 
   std::vector<std::vector<float>> standard_errors(const std::vector<std::uint32_t>& samples) {

@@ -15,11 +15,11 @@ struct Price {
   double ray, visit, test;
 };
 
-/// Visits are of whole beams.
+/// Nodes are those of a whole beam; a test is one triangle against all its rays.
 constexpr Price kCameraPrice{8.0, 25.0 / DAPPLE_BEAM_RAYS, 1.0};
 constexpr Price kRayPrice{20.0, 30.0, 4.0};
 
-double price(const PassWork& work, const Price& price, std::size_t pixel) {
+double nanoseconds(const PassWork& work, const Price& price, std::size_t pixel) {
   return work.rays[pixel] * price.ray + work.visits[pixel] * price.visit +
          work.tests[pixel] * price.test;
 }
@@ -30,8 +30,8 @@ std::vector<float> sample_costs(const PassWork& camera, const std::vector<PassWo
                                 const std::vector<std::uint32_t>& samples, int width) {
   std::vector<double> spent(samples.size());
   for (std::size_t p = 0; p < spent.size(); ++p) {
-    spent[p] = price(camera, kCameraPrice, p);
-    for (const PassWork& work : others) spent[p] += price(work, kRayPrice, p);
+    spent[p] = nanoseconds(camera, kCameraPrice, p);
+    for (const PassWork& work : others) spent[p] += nanoseconds(work, kRayPrice, p);
   }
   std::vector<float> costs(samples.size());
   const int height = static_cast<int>(samples.size()) / width;

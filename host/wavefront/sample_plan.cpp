@@ -23,8 +23,9 @@ constexpr std::uint32_t kMostMore = 8;
 /// to 10 % more time.
 constexpr std::uint32_t kUnit = 4;
 
-/// Samples that in passes every pixel has before any has more: a beam's, traced together.
-constexpr std::uint32_t kFirst = 16;
+/// Samples that in passes every pixel has before any has more, and times what it has that it then
+/// gets more.
+constexpr std::uint32_t kFirst = 16, kPassGrowth = 3;
 
 std::uint32_t whole_batches(int samples) {
   return (static_cast<std::uint32_t>(samples) + DAPPLE_BATCH - 1) / DAPPLE_BATCH * DAPPLE_BATCH;
@@ -110,7 +111,7 @@ std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
     std::uint32_t& has = samples_[pixel];
     if (has >= least_) continue;
     std::uint32_t more = least_ - has;
-    if (order == SampleOrder::passes) more = std::min(more, std::max(kMostMore * has, kFirst));
+    if (order == SampleOrder::passes) more = std::min(more, std::max(kPassGrowth * has, kFirst));
     WorkGroup& group = groups[more];
     group.samples = more;
     group.work.push_back({pixel, has});
@@ -125,7 +126,8 @@ BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
   for (std::uint32_t& batches : have) batches /= DAPPLE_BATCH;
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
-  const std::vector<float> block_costs = block_means(costs, width_);
+  const std::vector<float> block_costs =
+      target_rmse_ > 0 ? block_means(costs, width_) : std::vector<float>();
   for (const std::vector<float>& pass : variances) {
     if (target_rmse_ > 0)
       want_rmse(block_means(pass, width_), block_costs, target_rmse_, have, limits, wanted);
@@ -144,7 +146,7 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
     const std::uint32_t has = samples_[pixel] / DAPPLE_BATCH;
     done += has;
     missing += all[pixel] - has;
-    const std::uint32_t most_more = std::max(kMostMore * has / kUnit, 1u) * kUnit;
+    const std::uint32_t most_more = kMostMore * has / kUnit * kUnit;
     const std::uint32_t more = std::min(all[pixel] - has, most_more);
     // By powers of two: few groups, whatever pixels want.
     for (std::uint32_t batches = 1; batches <= more; batches *= 2) {

@@ -17,7 +17,8 @@ enum class SampleOrder {
   passes,
 };
 
-/// What is decided depends on the pixels' values alone, never on slices or threads.
+/// What is decided depends on the pixels' values, with target_rmse also on what samples cost (which
+/// hangs on slices and on whom rays are traced with), never on threads.
 class SamplePlan {
  public:
   /// `samples`: of each pixel, what an earlier plan gave it; empty: none.
@@ -28,10 +29,10 @@ class SamplePlan {
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
   /// With a target: what is missing for it, in eights but for the most. `variances`: of a batch's
-  /// mean, by pass and pixel, batch_variances(); `costs`: sample_costs(). No pixel gets more than
-  /// eight times what it has, so that the next decision rests on more, and blocks of 2x2 pixels get
-  /// the same; empty when all are done. A pixel may be in several groups, to be traced in their
-  /// order.
+  /// mean, by pass and pixel, batch_variances(); `costs`: sample_costs(), for an RMSE. No pixel
+  /// gets more than eight times what it has, so that the next decision rests on more, and blocks of
+  /// 2x2 pixels get the same; empty when all are done. A pixel may be in several groups, to be
+  /// traced in their order.
   std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances,
                               const std::vector<float>& costs);
 

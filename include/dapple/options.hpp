@@ -45,11 +45,11 @@ struct LookAt {
 struct RenderOptions {
   int width = 960;   ///< pixels, [1, 65535]
   int height = 540;  ///< pixels, [1, 65535]
-  int spp = 16;      ///< primary samples a pixel, [1, 2^20]; with a target the least, 8 or more
+  int spp = 16;      ///< primary samples a pixel, [1, 2^20]; with a target the least, 4 or more
   /// Sample each pixel until its estimated standard error is below this, [0, 1]; 0: don't. Of AO,
   /// and of lights relative to their largest unoccluded irradiance.
   float target_error = 0;
-  /// Sample where that lowers the picture's error most, until the estimated root mean square of its
+  /// Sample where time lowers the picture's error most, until the estimated root mean square of its
   /// pixels' errors is below this in every pass, [0, 1]; 0: don't. Not together with target_error.
   float target_rmse = 0;
   /// Samples a pixel that footprints are made for, [1, 2^20]; 0: spp. A render that goes on from a

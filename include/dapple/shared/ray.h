@@ -37,6 +37,10 @@ typedef struct Occlusion {
 /* Camera rays that are traced together. */
 #define DAPPLE_BEAM_RAYS 16u
 
+/* Samples that one item of the camera pass takes: whole beams, and a bit of a ulong each. */
+#define DAPPLE_ITEM_SAMPLES 64u
+
+/* Samples of a SampleHits. */
 #define DAPPLE_HIT_BITS 16u
 
 /* What became of DAPPLE_HIT_BITS samples in a row of a slice. */
