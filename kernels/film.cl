@@ -66,9 +66,10 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
       const Occlusion found = occlusions[item];
       value += (1.0f - found.transmittance) * inverse_rays;
       __global const float* direction = rays[item].direction;
-      const float4 seen =
-          found.transmittance * (float4)(1.0f, direction[0], direction[1], direction[2]);
-      sums.v += fixed_points((float8)(seen * params.scale, (float4)(0.0f)));
+      const float seen = found.transmittance;
+      sums.v += fixed_points((float8)(seen, seen * direction[0], seen * direction[1],
+                                      seen * direction[2], 0.0f, 0.0f, 0.0f, 0.0f) *
+                             params.scale);
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
@@ -104,8 +105,9 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
       const Occlusion found = occlusions[item];
       const float weight = rays[item].weight;
       value += weight * found.transmittance * inverse_rays;
-      const float2 seen = weight * (float2)(found.transmittance, 1.0f);
-      sums.v += fixed_points((float8)(seen * params.scale, (float2)(0.0f), (float4)(0.0f)));
+      sums.v += fixed_points((float8)(weight * found.transmittance, weight, 0.0f, 0.0f, 0.0f, 0.0f,
+                                      0.0f, 0.0f) *
+                             params.scale);
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
