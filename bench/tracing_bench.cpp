@@ -78,11 +78,12 @@ void measure_camera(benchmark::State& state, BenchScene& scene, uint samples) {
     }
   };
   time_launches(state, context, [&] { for_each_slice([] {}); });
-  std::vector<SampleHits> met(rays.camera_count / DAPPLE_HIT_BITS);
+  std::vector<SampleHits> sample_hits(rays.camera_count / DAPPLE_HIT_BITS);
   double visits = 0, tests = 0;
   for_each_slice([&] {
-    context.read(rays.camera.met, met.data(), met.size() * sizeof(SampleHits));
-    for (const SampleHits& record : met) {
+    context.read(rays.camera.sample_hits, sample_hits.data(),
+                 sample_hits.size() * sizeof(SampleHits));
+    for (const SampleHits& record : sample_hits) {
       visits += record.visits;
       tests += double{DAPPLE_HIT_BITS} * record.tests;
     }

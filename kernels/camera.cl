@@ -65,7 +65,7 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
                           __global const MaterialRecord* materials, __global const uchar* texels,
                           __global const InstanceRecord* instances,
                           __global const PixelWork* work, __global SurfacePoint* points,
-                          __global SampleHits* met, CameraParams params) {
+                          __global SampleHits* sample_hits, CameraParams params) {
   const uint samples = params.slice.pixel_count * params.slice.sample_count;
   const uint begin = get_global_id(0) * DAPPLE_ITEM_SAMPLES;
   if (begin >= samples) return;
@@ -94,6 +94,6 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
     const SampleHits of_samples = {(uint)(found.hits >> record * DAPPLE_HIT_BITS) & 65535u, 0u,
                                    found.visits[record] / of_record + of_entries,
                                    found.tests[record] / of_record};
-    met[begin / DAPPLE_HIT_BITS + record] = of_samples;
+    sample_hits[begin / DAPPLE_HIT_BITS + record] = of_samples;
   }
 }

@@ -7,7 +7,7 @@
 /* Sets the records' first_slot, and active_list[slot] = sample for every sample that hit;
    *active_count of them. */
 __kernel __attribute__((reqd_work_group_size(DAPPLE_SCAN_ITEMS, 1, 1)))
-void compact_hits(__global SampleHits* met, __global uint* active_list,
+void compact_hits(__global SampleHits* sample_hits, __global uint* active_list,
                   __global uint* active_count, uint count) {
   __local uint sums[DAPPLE_SCAN_ITEMS];
   const uint item = get_local_id(0);
@@ -15,7 +15,7 @@ void compact_hits(__global SampleHits* met, __global uint* active_list,
   const uint begin = min(item * share, count);
   const uint end = min(begin + share, count);
   uint hits = 0;
-  for (uint i = begin; i < end; ++i) hits += popcount(met[i].hits);
+  for (uint i = begin; i < end; ++i) hits += popcount(sample_hits[i].hits);
   sums[item] = hits;
   barrier(CLK_LOCAL_MEM_FENCE);
   for (uint step = 1; step < DAPPLE_SCAN_ITEMS; step *= 2) {
@@ -26,8 +26,8 @@ void compact_hits(__global SampleHits* met, __global uint* active_list,
   }
   uint next = sums[item] - hits;
   for (uint i = begin; i < end; ++i) {
-    met[i].first_slot = next;
-    for (uint left = met[i].hits; left; left &= left - 1u) {
+    sample_hits[i].first_slot = next;
+    for (uint left = sample_hits[i].hits; left; left &= left - 1u) {
       active_list[next++] = i * DAPPLE_HIT_BITS + popcount((left & -left) - 1u);
     }
   }

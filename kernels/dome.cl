@@ -12,7 +12,7 @@ inline long8 dome_sums(const Dome* dome, __global const Ray* ray, Occlusion foun
 
 /* Planes: irradiance (3) at radiance 1, the same unoccluded (3), visits, tests. Squares: of its
    luminance. */
-__kernel void resolve_dome(__global const PixelWork* work, __global const SampleHits* met,
+__kernel void resolve_dome(__global const PixelWork* work, __global const SampleHits* sample_hits,
                            __global const Ray* rays, __global const Occlusion* occlusions,
                            __global const LightRecord* lights, __global const float* environments,
                            __global long* film, __global float* squares, ResolveParams params,
@@ -20,14 +20,14 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   const uint begin = local_pixel * params.slice.sample_count;
-  if (!any_sample_hit(met, begin, begin + params.slice.sample_count)) return;
+  if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
   const Dome dome = dome_of(lights + light, environments);
   PlaneSums sums;
   sums.v = (long8)(0);
   Batches batches = {0.0f, 0.0f};
   for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const bool hit = sample_hit(met, begin + s);
-    const uint first = hit ? sample_slot(met, begin + s) * params.rays : 0u;
+    const bool hit = sample_hit(sample_hits, begin + s);
+    const uint first = hit ? sample_slot(sample_hits, begin + s) * params.rays : 0u;
     float value = 0.0f;
     for (uint r = first; hit && r < first + params.rays; ++r) {
       sums.v += dome_sums(&dome, rays + r, occlusions[r], params.scale);

@@ -17,7 +17,7 @@ inline long8 surface_sums(ResolveParams params, __global const SurfacePoint* poi
 /* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles
    each sample is given a whole beam's: the mean over its record. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
-                              __global const SampleHits* met, __global long* film,
+                              __global const SampleHits* sample_hits, __global long* film,
                               ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
@@ -27,7 +27,7 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
   const uint begin = local_pixel * params.slice.sample_count;
   const uint end = begin + params.slice.sample_count;
   for (uint r = begin / DAPPLE_HIT_BITS; r * DAPPLE_HIT_BITS < end; ++r) {
-    const SampleHits record = met[r];
+    const SampleHits record = sample_hits[r];
     const uint range = range_of_samples(r, begin, end);
     visits += (long)record.visits * popcount(range);
     tests += (long)record.tests * popcount(range);
@@ -44,22 +44,22 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
 
 /* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
    is 0 where samples missed. */
-__kernel void resolve_ao(__global const PixelWork* work, __global const SampleHits* met,
+__kernel void resolve_ao(__global const PixelWork* work, __global const SampleHits* sample_hits,
                          __global const Ray* rays,
                          __global const Occlusion* occlusions, __global long* film,
                          __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   const uint begin = local_pixel * params.slice.sample_count;
-  if (!any_sample_hit(met, begin, begin + params.slice.sample_count)) return;
+  if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
   PlaneSums sums;
   sums.v = (long8)(0);
   long visits = 0, tests = 0;
   Batches batches = {0.0f, 0.0f};
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const bool hit = sample_hit(met, begin + s);
-    const uint first = hit ? sample_slot(met, begin + s) * params.rays : 0u;
+    const bool hit = sample_hit(sample_hits, begin + s);
+    const uint first = hit ? sample_slot(sample_hits, begin + s) * params.rays : 0u;
     float value = 0.0f;
     for (uint r = 0; hit && r < params.rays; ++r) {
       const uint item = first + r;
@@ -83,22 +83,22 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
 }
 
 /* Planes: irradiance at radiance 1, the same unoccluded, visits, tests. */
-__kernel void resolve_light(__global const PixelWork* work, __global const SampleHits* met,
+__kernel void resolve_light(__global const PixelWork* work, __global const SampleHits* sample_hits,
                             __global const Ray* rays,
                             __global const Occlusion* occlusions, __global long* film,
                             __global float* squares, ResolveParams params) {
   const uint local_pixel = get_global_id(0);
   if (local_pixel >= params.slice.pixel_count) return;
   const uint begin = local_pixel * params.slice.sample_count;
-  if (!any_sample_hit(met, begin, begin + params.slice.sample_count)) return;
+  if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
   PlaneSums sums;
   sums.v = (long8)(0);
   long visits = 0, tests = 0;
   Batches batches = {0.0f, 0.0f};
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const bool hit = sample_hit(met, begin + s);
-    const uint first = hit ? sample_slot(met, begin + s) * params.rays : 0u;
+    const bool hit = sample_hit(sample_hits, begin + s);
+    const uint first = hit ? sample_slot(sample_hits, begin + s) * params.rays : 0u;
     float value = 0.0f;
     for (uint r = 0; hit && r < params.rays; ++r) {
       const uint item = first + r;

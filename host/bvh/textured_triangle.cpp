@@ -90,14 +90,17 @@ TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap
 
 TexturedCorners unpack_textured(const TexturedTriangle& triangle) {
   TexturedCorners corners;
-  const auto coordinate = [&](uint corner, uint axis) {
-    return uv_step(&triangle) *
-           static_cast<float>(uv_code(&triangle, corner, axis) - uv_origin(&triangle));
+  const uint last = triangle.corner[2][1];
+  const float step = dapple_bits_to_float(DAPPLE_UV_STEP_BITS(last));
+  const auto coordinate = [&](uint word) {
+    const auto from_origin = static_cast<int>(DAPPLE_UV_CODE(word) - DAPPLE_UV_ORIGIN(last));
+    return step * static_cast<float>(from_origin);
   };
   for (uint corner = 0; corner < 3; ++corner) {
-    corners.uv[corner] = V2f(coordinate(corner, 0), coordinate(corner, 1));
+    const auto& [first, second] = triangle.corner[corner];
+    corners.uv[corner] = V2f(coordinate(first), coordinate(second));
     corners.alpha[corner] =
-        static_cast<float>(vertex_alpha(&triangle, corner)) * (1.0f / DAPPLE_ALPHA_ONE);
+        static_cast<float>(DAPPLE_VERTEX_ALPHA(first, second)) * (1.0f / DAPPLE_ALPHA_ONE);
   }
   corners.material = textured_material(&triangle);
   corners.has_texture = has_texture(&triangle) != 0;

@@ -60,7 +60,7 @@ const KernelName kResolveDome{"resolve_dome", "dome", {}};
 }  // namespace
 
 std::size_t Queues::bytes() const {
-  return work.bytes() + rays.bytes() + points.bytes() + met.bytes() + active.bytes() +
+  return work.bytes() + rays.bytes() + points.bytes() + sample_hits.bytes() + active.bytes() +
          active_count.bytes() + occlusions.bytes();
 }
 
@@ -68,7 +68,7 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
   Queues queues;
   queues.rays = context.allocate(samples * rays_per_sample * sizeof(Ray));
   queues.points = context.allocate(samples * sizeof(SurfacePoint));
-  queues.met = context.allocate(hit_records(samples) * sizeof(SampleHits));
+  queues.sample_hits = context.allocate(hit_records(samples) * sizeof(SampleHits));
   queues.active = context.allocate(samples * sizeof(uint));
   queues.active_count = context.allocate(sizeof(uint));
   queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
@@ -80,10 +80,11 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
   CameraParams camera = params;
   camera.scene = scene.params;
-  context.launch(kCameraHits, "camera", (samples + DAPPLE_ITEM_SAMPLES - 1) / DAPPLE_ITEM_SAMPLES,
-                 {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials,
-                  scene.texels, scene.instances, queues.work, queues.points, queues.met, camera},
-                 kBeamGroup);
+  context.launch(
+      kCameraHits, "camera", (samples + DAPPLE_ITEM_SAMPLES - 1) / DAPPLE_ITEM_SAMPLES,
+      {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
+       scene.instances, queues.work, queues.points, queues.sample_hits, camera},
+      kBeamGroup);
 }
 
 void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -97,10 +98,10 @@ void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const 
 }
 
 std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples) {
-  context.launch(
-      kCompactHits, "compact", kScanItems,
-      {queues.met, queues.active, queues.active_count, static_cast<uint>(hit_records(samples))},
-      kScanItems);
+  context.launch(kCompactHits, "compact", kScanItems,
+                 {queues.sample_hits, queues.active, queues.active_count,
+                  static_cast<uint>(hit_records(samples))},
+                 kScanItems);
   std::uint32_t count = 0;
   context.read(queues.active_count, &count, sizeof count);
   return count;
@@ -141,21 +142,21 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
 void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                           const ResolveParams& params) {
   context.launch(kResolveSurface, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.points, queues.met, film.sums, params});
+                 {queues.work, queues.points, queues.sample_hits, film.sums, params});
 }
 
 void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                      const ResolveParams& params) {
-  context.launch(
-      kResolveAo, "resolve", params.slice.pixel_count,
-      {queues.work, queues.met, queues.rays, queues.occlusions, film.sums, film.squares, params});
+  context.launch(kResolveAo, "resolve", params.slice.pixel_count,
+                 {queues.work, queues.sample_hits, queues.rays, queues.occlusions, film.sums,
+                  film.squares, params});
 }
 
 void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params) {
-  context.launch(
-      kResolveLight, "resolve", params.slice.pixel_count,
-      {queues.work, queues.met, queues.rays, queues.occlusions, film.sums, film.squares, params});
+  context.launch(kResolveLight, "resolve", params.slice.pixel_count,
+                 {queues.work, queues.sample_hits, queues.rays, queues.occlusions, film.sums,
+                  film.squares, params});
 }
 
 std::vector<KernelShape> every_kernel() {
@@ -179,7 +180,7 @@ Company company_in_picture(const DeviceContext& context, Estimator estimator, in
 void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                        const FilmBuffers& film, const ResolveParams& params, uint light) {
   context.launch(kResolveDome, "resolve", params.slice.pixel_count,
-                 {queues.work, queues.met, queues.rays, queues.occlusions, scene.lights,
+                 {queues.work, queues.sample_hits, queues.rays, queues.occlusions, scene.lights,
                   scene.environments, film.sums, film.squares, params, light});
 }
 

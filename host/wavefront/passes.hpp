@@ -19,7 +19,7 @@ struct Queues {
   Buffer work;          ///< PixelWork of camera_pass(), allocated by who makes pictures
   Buffer rays;          ///< Ray
   Buffer points;        ///< SurfacePoint, one a camera sample
-  Buffer met;           ///< SampleHits, one for DAPPLE_HIT_BITS samples
+  Buffer sample_hits;   ///< SampleHits, one for DAPPLE_HIT_BITS samples
   Buffer active;        ///< uint: samples that hit, in order
   Buffer active_count;  ///< uint
   Buffer occlusions;    ///< Occlusion, one a ray
@@ -34,7 +34,7 @@ struct FilmBuffers {
   Buffer squares;  ///< float planes, FilmLayout::squares: means of batches, squared and summed
 };
 
-/// First surfaces of the slice's camera rays into `points` and `met`.
+/// First surfaces of the slice's camera rays into `points` and `sample_hits`.
 void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                  const CameraParams& params);
 
@@ -42,7 +42,8 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
 void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                       std::size_t rays);
 
-/// Fills `active` and places hits in `met`; returns how many samples hit. Waits for the device.
+/// Fills `active` and places hits in `sample_hits`; returns how many samples hit. Waits for the
+/// device.
 std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples);
 
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params);

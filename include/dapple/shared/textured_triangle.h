@@ -41,30 +41,21 @@ DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle)
   return triangle->corner[2][1] & DAPPLE_HAS_TEXTURE;
 }
 
-DAPPLE_FUNCTION uint has_vertex_alpha(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
-  return triangle->corner[2][1] & DAPPLE_HAS_VERTEX_ALPHA;
-}
+/* Of words, or of vectors of them: `first` and `second` are a corner's, `last` is the second word
+   of corner 2. */
 
 /* COLOR_0.a in 1/4080: the material's factor is not in it. */
-DAPPLE_FUNCTION int vertex_alpha(DAPPLE_GLOBAL const TexturedTriangle* triangle, uint corner) {
-  return (int)((triangle->corner[corner][0] & 2047u) << 1 |
-               (triangle->corner[corner][1] >> 10 & 1u));
-}
+#define DAPPLE_VERTEX_ALPHA(first, second) (((first) & 2047u) << 1 | ((second) >> 10 & 1u))
 
-/* Coordinate `axis`, 0 for u, 1 for v, in steps from the lowest that could be encoded. */
-DAPPLE_FUNCTION int uv_code(DAPPLE_GLOBAL const TexturedTriangle* triangle, uint corner,
-                            uint axis) {
-  return (int)(triangle->corner[corner][axis] >> 11);
-}
+/* A word's coordinate, in steps from the lowest that could be encoded. */
+#define DAPPLE_UV_CODE(word) ((word) >> 11)
 
 /* The code of 0. */
-DAPPLE_FUNCTION int uv_origin(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
-  return triangle->corner[2][1] & DAPPLE_UV_FROM_MIDDLE ? DAPPLE_UV_CODES / 2 : 0;
-}
+#define DAPPLE_UV_ORIGIN(last) (((last) & DAPPLE_UV_FROM_MIDDLE) * \
+                                (DAPPLE_UV_CODES / 2 / DAPPLE_UV_FROM_MIDDLE))
 
-DAPPLE_FUNCTION float uv_step(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
-  return dapple_bits_to_float(((triangle->corner[2][1] & DAPPLE_UV_EXPONENT) + 64u) << 23);
-}
+/* The step, as the bits of a float. */
+#define DAPPLE_UV_STEP_BITS(last) ((((last) & DAPPLE_UV_EXPONENT) + 64u) << 23)
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(TexturedTriangle) == 24);
