@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "dapple/error.hpp"
-#include "wavefront/view.hpp"
+#include "wavefront/sample_plan.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -27,14 +27,16 @@ RenderOptions picture_options() {
 
 /// Runs the renderer's own passes up to the occlusion pass. Camera and AO rays go to queues
 /// of their own, so that either pass can be run again.
-SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, CameraParams camera) {
+SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, const View& view) {
   SceneRays rays;
   rays.camera = make_queues(context, kPixels, 1);
   rays.camera_count = kPixels;
-  std::vector<PixelWork> work;
-  for (uint pixel = 0; pixel < kPixels; ++pixel) work.push_back({pixel, 0});
+  const RenderOptions options = picture_options();
+  const std::vector<PixelWork> work =
+      SamplePlan(view.width, view.height, options).least().front().work;
   rays.camera.work = context.allocate(work.size() * sizeof(PixelWork));
   context.write(rays.camera.work, work.data(), work.size() * sizeof(PixelWork));
+  CameraParams camera = camera_params(view, options, scene.bounds);
   camera.slice = {0, static_cast<uint>(kPixels), 0, 1};
   camera_pass(context, scene, rays.camera, camera);
   const std::uint32_t hits = compact_pass(context, rays.camera, kPixels);
@@ -84,7 +86,7 @@ const Scene& BenchScene::scene() {
   const RenderOptions options = picture_options();
   std::vector<std::string> notes;
   // As render() does, the camera is chosen before merging touches the scene.
-  camera_ = camera_params(choose_view(scene, options, notes), options);
+  view_ = choose_view(scene, options, notes);
   merge_single_instances(scene);
   scene.lights = {sky()};
   settle_domes(scene);
@@ -101,8 +103,12 @@ const DeviceScene& BenchScene::on_device() {
   return *on_device_;
 }
 
+CameraParams BenchScene::camera() {
+  return camera_params(view_, picture_options(), on_device().buffers->bounds);
+}
+
 const SceneRays& BenchScene::rays() {
-  if (!rays_) rays_ = make_rays(device().context(), *on_device().buffers, *camera_);
+  if (!rays_) rays_ = make_rays(device().context(), *on_device().buffers, view_);
   return *rays_;
 }
 

@@ -11,6 +11,7 @@
 #include "dapple/device.hpp"
 #include "dapple/shared/pass_params.h"
 #include "wavefront/passes.hpp"
+#include "wavefront/view.hpp"
 
 namespace dapple::bench {
 
@@ -67,14 +68,14 @@ class BenchScene {
   const Device& device() { return device_.open(); }
   const DeviceScene& on_device();
   const SceneRays& rays();
-  /// That of the picture; set once scene() is made.
-  const CameraParams& camera() const { return *camera_; }
+  /// That of the picture.
+  CameraParams camera();
 
  private:
   SceneRecipe recipe_;
   BenchDevice& device_;
   std::optional<Scene> scene_;
-  std::optional<CameraParams> camera_;
+  View view_;  ///< set by scene()
   std::optional<SceneBvh> bvh_;
   std::optional<DeviceScene> on_device_;
   std::optional<SceneRays> rays_;

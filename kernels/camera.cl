@@ -71,10 +71,14 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
   if (begin >= samples) return;
   const uint count = min(samples - begin, DAPPLE_ITEM_SAMPLES);
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
-  BeamBounds bounds;
-  bound_samples(work, params, begin, count, &bounds);
   Entries entries;
-  find_entries(scene, params.scene, &bounds, &entries);
+  entries.count = entries.visits = 0u;
+  const PixelBounds pixels = pixels_of_samples(work, params, begin, count);
+  if (may_see_scene(params, pixels)) {
+    BeamBounds bounds;
+    bound_pixels(params, pixels, &bounds);
+    find_entries(scene, params.scene, &bounds, &entries);
+  }
   ItemHits found;
   found.hits = 0UL;
   for (uint record = 0; record < DAPPLE_ITEM_RECORDS; ++record)

@@ -36,8 +36,10 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
     }
   }
   const uint pixel = pixel_of(work, params, local_pixel);
-  add_to_plane(film, params, 8, pixel, visits);
-  add_to_plane(film, params, 9, pixel, tests);
+  if (visits | tests) {
+    add_to_plane(film, params, 8, pixel, visits);
+    add_to_plane(film, params, 9, pixel, tests);
+  }
   if (!sums.plane[0]) return;
   add_to_planes(film, params, 8u, pixel, &sums);
 }

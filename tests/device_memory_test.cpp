@@ -1,8 +1,15 @@
-// Scenes that do not fit a device: said with needed and available bytes, before they are built.
+// Scenes that do not fit a device: said with needed and available bytes, before they are built; and
+// memory that is used again.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 #include "dapple/error.hpp"
+#include "device/context.hpp"
 #include "device/memory_need.hpp"
+#include "device/page_pool.hpp"
 #include "failing_opencl.hpp"
 #include "film_files.hpp"
 #include "scene_on_device.hpp"
@@ -50,6 +57,32 @@ TEST_F(DeviceMemory, TheLeastNeedIsNeverMoreThanWhatIsUploaded) {
     EXPECT_LE(least_need(scene).total, on_device.uploaded.bytes) << name;
     EXPECT_GT(least_need(scene).total * 4, on_device.uploaded.bytes) << name;
   }
+}
+
+// Pages that were used come back as zeros, whoever wrote to them, and as the same pages.
+TEST(DeviceBuffers, ZerosAreZerosAlsoWhereMemoryIsUsedAgain) {
+  DeviceContext& context = scene_test::device().context();
+  constexpr std::size_t kCount = 1'000'003;
+  const std::vector<std::uint32_t> ones(kCount, ~0u);
+  for (int round = 0; round < 4; ++round) {
+    const Buffer zeros = context.allocate_zeros(kCount * sizeof(std::uint32_t));
+    std::vector<std::uint32_t> found(kCount, 1u);
+    context.read(zeros, found.data(), kCount * sizeof(std::uint32_t));
+    EXPECT_EQ(std::count(found.begin(), found.end(), 0u), static_cast<std::ptrdiff_t>(kCount));
+    context.write(zeros, ones.data(), kCount * sizeof(std::uint32_t));
+  }
+}
+
+TEST(PagePool, TwoTakersNeverHaveTheSamePagesAndWhatIsGivenBackIsTakenAgain) {
+  PagePool pool;
+  std::unique_ptr<Pages> first = pool.take(4096);
+  const void* const place = first->data();
+  const std::unique_ptr<Pages> second = pool.take(4096);
+  EXPECT_NE(second->data(), place);
+  pool.give_back(std::move(first));
+  EXPECT_NE(pool.take(8192)->data(), place) << "of another size";
+  const std::unique_ptr<Pages> again = pool.take(4096);
+  EXPECT_EQ(again->data(), place);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace dapple {
 namespace {
@@ -76,7 +77,7 @@ TEST(View, CameraParametersAreTheSameCameraAndCountEverySample) {
   options.seed = 5;
   View view = view_from(look_at({1, 2, 3}, {5, 2, 3}, {0, 1, 0}, 0.8f));
   view.crop = {10, 20, 59, 79};
-  const CameraParams p = camera_params(view, options);
+  const CameraParams p = camera_params(view, options, Box3f(V3f(-1), V3f(1)));
   // Rows for column vectors: the last column is the eye, the third the camera's back.
   EXPECT_FLOAT_EQ(p.to_world[3], 1);
   EXPECT_FLOAT_EQ(p.to_world[7], 2);
@@ -90,6 +91,40 @@ TEST(View, CameraParametersAreTheSameCameraAndCountEverySample) {
   EXPECT_EQ(p.crop_width, 50u);
   EXPECT_EQ(p.seed, 5u);
   EXPECT_FLOAT_EQ(p.inverse_spp, 0.125f);
+}
+
+void expect_seen(const View& view, const Box3f& bounds, uint left, uint above, uint right,
+                 uint below) {
+  const CameraParams p = camera_params(view, {}, bounds);
+  EXPECT_EQ(p.seen_left, left);
+  EXPECT_EQ(p.seen_above, above);
+  EXPECT_EQ(p.seen_right, right);
+  EXPECT_EQ(p.seen_below, below);
+}
+
+TEST(View, TheSceneIsSeenInThePixelsOfItsBoundsAndOneAround) {
+  // At distance 10 the picture is 40 m wide and 20 m high: 5 pixels a metre.
+  const View view = view_from(camera_at({0, 0, 10}));
+  const float nearest = -1e-3f;  // so that no corner is on a pixel's edge
+  expect_seen(view, {{-2.1f, 1.1f, -50}, {3.1f, 4.1f, nearest}}, 88, 28, 117, 51);
+  Camera orthographic = camera_at({0, 0, 10});
+  orthographic.kind = Camera::Kind::orthographic;
+  orthographic.half_height = 10;
+  expect_seen(view_from(orthographic), {{-2.1f, 1.1f, -50}, {3.1f, 4.1f, 50}}, 88, 28, 117, 46);
+  // Beside the picture, above it, and around the camera.
+  expect_seen(view, {{100, 1.1f, -1}, {101, 2.1f, 0}}, 200, 38, 200, 47);
+  expect_seen(view, {{0, 100, -1}, {1, 101, 0}}, 98, 0, 107, 0);
+  expect_seen(view, {{-1, -1, 9}, {1, 1, 11}}, 0, 0, 200, 100);
+}
+
+TEST(View, NothingIsLeftOutWhereNumbersEnd) {
+  const View view = view_from(camera_at({0, 0, 10}));
+  expect_seen(view, {V3f(-1e30f), V3f(1e30f)}, 0, 0, 200, 100);
+  expect_seen(view, {{1e6f, 0, 9.99f}, {1e6f, 1, 9.99f}}, 0, 0, 200, 100);
+  expect_seen(view, {V3f(std::numeric_limits<float>::infinity()), V3f(0)}, 0, 0, 200, 100);
+  View flat = view;
+  flat.camera.to_world[0][0] = 0;
+  expect_seen(flat, {V3f(-1), V3f(1)}, 0, 0, 200, 100);
 }
 
 }  // namespace

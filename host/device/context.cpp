@@ -1,7 +1,6 @@
 #include "device/context.hpp"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 
 #include <chrono>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "device/kernel_cache.hpp"
 #include "device/kernel_source.hpp"
 #include "device/opencl.hpp"
+#include "device/page_pool.hpp"
 #include "device/platforms.hpp"
 
 namespace dapple {
@@ -41,29 +41,21 @@ cl_int compile(const cl::Program& program, const cl::Device& device,
   return clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
 }
 
-/// Zeroed pages of the operating system.
-class Pages {
- public:
-  explicit Pages(std::size_t bytes)
-      : data_(mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)),
-        bytes_(bytes) {
-    if (data_ == MAP_FAILED) throw std::bad_alloc();
-  }
-  Pages(const Pages&) = delete;
-  Pages& operator=(const Pages&) = delete;
-  ~Pages() { munmap(data_, bytes_); }
-  [[nodiscard]] void* data() const { return data_; }
-
- private:
-  void* data_;
-  std::size_t bytes_;
-};
-
-/// Gives `pages` to `buffer`, which uses them until its last command is done.
-void hand_over(std::unique_ptr<Pages> pages, cl::Buffer& buffer) {
-  const auto free_pages = [](cl_mem, void* data) { delete static_cast<Pages*>(data); };
-  buffer.setDestructorCallback(free_pages, pages.get());
-  (void)pages.release();
+/// Gives `pages` to `buffer`, which uses them until its last command is done; then the pool has
+/// them.
+void hand_over(std::unique_ptr<Pages> pages, cl::Buffer& buffer,
+               const std::shared_ptr<PagePool>& pool) {
+  struct Loan {
+    std::unique_ptr<Pages> pages;
+    std::shared_ptr<PagePool> pool;
+  };
+  auto loan = std::make_unique<Loan>(Loan{std::move(pages), pool});
+  const auto end_loan = [](cl_mem, void* data) {
+    const std::unique_ptr<Loan> ended(static_cast<Loan*>(data));
+    ended->pool->give_back(std::move(ended->pages));
+  };
+  buffer.setDestructorCallback(end_loan, loan.get());
+  (void)loan.release();
 }
 
 }  // namespace
@@ -80,6 +72,7 @@ struct DeviceContext::State {
   Company trace_with = Company::automatic;
   cl::Device device;
   bool shares_memory = false;  ///< with the host
+  std::shared_ptr<PagePool> page_pool = std::make_shared<PagePool>();
   cl::Context context;
   cl::CommandQueue queue;
   std::map<std::pair<std::string, Variant>, cl::Program> programs;
@@ -168,10 +161,21 @@ std::vector<std::string> DeviceContext::notes() const {
   return {"compiled kernels are not kept: " + refusals};
 }
 
+Buffer DeviceContext::on_pages(std::unique_ptr<Pages> pages, std::size_t bytes) {
+  auto memory = std::make_shared<Buffer::Memory>();
+  memory->buffer = cl::Buffer(state_->context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
+                              pages->bytes(), pages->data());
+  hand_over(std::move(pages), memory->buffer, state_->page_pool);
+  memory->on_host = true;
+  return Buffer(std::move(memory), bytes);
+}
+
 Buffer DeviceContext::allocate(std::size_t bytes) {
   return in_opencl(fmt::format("allocating {} bytes on {}", bytes, state_->info.name), [&] {
+    const std::size_t size = whole_patterns(bytes);
+    if (state_->shares_memory) return on_pages(state_->page_pool->take(size), bytes);
     auto memory = std::make_shared<Buffer::Memory>();
-    memory->buffer = cl::Buffer(state_->context, CL_MEM_READ_WRITE, whole_patterns(bytes));
+    memory->buffer = cl::Buffer(state_->context, CL_MEM_READ_WRITE, size);
     return Buffer(std::move(memory), bytes);
   });
 }
@@ -198,13 +202,7 @@ Buffer DeviceContext::allocate_zeros(std::size_t bytes) {
     return buffer;
   }
   return in_opencl(fmt::format("allocating {} bytes on {}", bytes, state_->info.name), [&] {
-    auto memory = std::make_shared<Buffer::Memory>();
-    auto pages = std::make_unique<Pages>(whole_patterns(bytes));
-    memory->buffer = cl::Buffer(state_->context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR,
-                                whole_patterns(bytes), pages->data());
-    hand_over(std::move(pages), memory->buffer);
-    memory->on_host = true;
-    return Buffer(std::move(memory), bytes);
+    return on_pages(state_->page_pool->take_zeros(whole_patterns(bytes)), bytes);
   });
 }
 

@@ -15,6 +15,8 @@
 
 namespace dapple {
 
+class Pages;
+
 /// Device memory; freed with the last copy.
 class Buffer {
  public:
@@ -89,7 +91,8 @@ class DeviceContext {
   /// What users should know of how it works here: "compiled kernels are not kept: ...".
   [[nodiscard]] std::vector<std::string> notes() const;
 
-  /// Uninitialized memory, rounded up to whole cache lines. Throws Error device.
+  /// Uninitialized memory, rounded up to whole cache lines. Throws Error device. Where it is shared
+  /// with the host, its pages are kept for later buffers of that size.
   Buffer allocate(std::size_t bytes);
   /// Read-only copy of host data; on devices that share memory with the host no copy is
   /// made and the data must stay where it is.
@@ -128,6 +131,8 @@ class DeviceContext {
 
  private:
   struct State;
+  /// A buffer of `bytes` on pages of at least as many.
+  Buffer on_pages(std::unique_ptr<Pages> pages, std::size_t bytes);
   /// The buffer's memory, which must be on the host; unmapped with the last copy.
   std::shared_ptr<void> map(const Buffer& buffer, bool writes);
 

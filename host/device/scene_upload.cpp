@@ -121,6 +121,7 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   buffers->segments = share(context, bvh.segments);
   buffers->textured = share(context, bvh.textured);
   share_placement(context, bvh, *buffers);
+  buffers->bounds = bvh.bounds;
   buffers->materials = share(context, buffers->material_records);
   buffers->texels = share(context, buffers->texel_data);
   buffers->lights = share(context, buffers->light_records);
@@ -151,6 +152,7 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
     write_ranges(context, buffers.nodes, now.nodes, changes.nodes);
     write_ranges(context, buffers.blocks, now.blocks, changes.blocks);
   }
+  buffers.bounds = now.bounds;
   if (changes.placement) share_placement(context, now, buffers);
   share_lights(context, moved, buffers);
   context.finish();

@@ -17,6 +17,7 @@ struct DeviceBuffers {
   Buffer nodes, blocks, segments, textured, materials, texels, instances;
   Buffer lights, emitters, environments;
   SceneParams params{};
+  Box3f bounds;  ///< world space
   // What `share` may point into where memory is shared.
   ConstArray<BvhNode> node_values;
   ConstArray<TriangleBlock> block_values;

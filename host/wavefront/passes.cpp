@@ -20,7 +20,7 @@ constexpr uint kLeastOfPoint = 32;
 constexpr uint kPacketChunk = 512;
 
 /// Items a work-group: of packets and beams few, so that small slices keep all threads busy.
-constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 4;
+constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 1;
 
 /// Rays that one item of the AO ray kernel makes; DAPPLE_AO_LANES in kernels/ao.cl.
 constexpr std::size_t kAoLanes = 16;

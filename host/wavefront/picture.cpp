@@ -15,9 +15,9 @@
 namespace dapple {
 namespace {
 
-/// Rays in flight: on a CPU few enough for the queues to stay in its caches, on a GPU
-/// enough to fill it.
-constexpr std::size_t kCpuSlice = 1u << 16;
+/// Rays in flight: on a CPU few enough for the queues to stay in its caches, and as many as that
+/// waiting for the last ray of a pass takes little; on a GPU enough to fill it.
+constexpr std::size_t kCpuSlice = 1u << 17;
 constexpr std::size_t kGpuSlice = 1u << 19;
 
 /// Rays of all kinds that a slice may trace, as a multiple of those in flight: with many lights it
@@ -43,7 +43,7 @@ class PictureTracer {
         layout_(layout),
         light_count_(layout.lights.size()),
         width_(view.crop.width()),
-        camera_(camera_params(view, options)),
+        camera_(camera_params(view, options, scene_.bounds)),
         state_(std::move(state)) {
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));

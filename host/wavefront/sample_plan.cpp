@@ -31,20 +31,29 @@ std::uint32_t whole_batches(int samples) {
   return (static_cast<std::uint32_t>(samples) + DAPPLE_BATCH - 1) / DAPPLE_BATCH * DAPPLE_BATCH;
 }
 
-void add_block(int left, int top, int width, int height, std::vector<std::uint32_t>& pixels) {
+/// `take` each pixel of a block.
+template <class Take>
+void for_block(int left, int top, int width, int height, const Take& take) {
   for (int y = top; y < std::min(top + kBlock, height); ++y)
     for (int x = left; x < std::min(left + kBlock, width); ++x)
-      pixels.push_back(static_cast<std::uint32_t>(y * width + x));
+      take(static_cast<std::uint32_t>(y * width + x));
+}
+
+/// The pixels of the tiles whose rows begin at `top`, into `next`.
+void list_tiles(int top, int width, int height, std::uint32_t* next) {
+  const int bottom = std::min(top + kTile, height);
+  for (int left = 0; left < width; left += kTile)
+    for (int y = top; y < bottom; y += kBlock)
+      for (int x = left; x < std::min(left + kTile, width); x += kBlock)
+        for_block(x, y, width, height, [&](std::uint32_t pixel) { *next++ = pixel; });
 }
 
 std::vector<std::uint32_t> tile_order(int width, int height) {
-  std::vector<std::uint32_t> order;
-  order.reserve(static_cast<std::size_t>(width) * height);
-  for (int tile_y = 0; tile_y < height; tile_y += kTile)
-    for (int tile_x = 0; tile_x < width; tile_x += kTile)
-      for (int y = tile_y; y < std::min(tile_y + kTile, height); y += kBlock)
-        for (int x = tile_x; x < std::min(tile_x + kTile, width); x += kBlock)
-          add_block(x, y, width, height, order);
+  std::vector<std::uint32_t> order(static_cast<std::size_t>(width) * height);
+  tbb::parallel_for(0, (height + kTile - 1) / kTile, [&](int row) {
+    const int top = row * kTile;
+    list_tiles(top, width, height, order.data() + static_cast<std::size_t>(top) * width);
+  });
   return order;
 }
 
@@ -57,7 +66,8 @@ std::vector<T> by_block(const std::vector<T>& values, int width, const Join& joi
     std::vector<std::uint32_t> block;
     for (int x = 0; x < width; x += kBlock) {
       block.clear();
-      add_block(x, row * kBlock, width, height, block);
+      for_block(x, row * kBlock, width, height,
+                [&](std::uint32_t pixel) { block.push_back(pixel); });
       const T value = join(values, block);
       for (const std::uint32_t pixel : block) joined[pixel] = value;
     }
@@ -79,6 +89,10 @@ BatchCounts block_most(const BatchCounts& counts, int width) {
     for (const std::uint32_t pixel : block) most = std::max(most, v[pixel]);
     return most;
   });
+}
+
+bool all_equal(const std::vector<std::uint32_t>& values) {
+  return std::all_of(values.begin(), values.end(), [&](auto v) { return v == values.front(); });
 }
 
 std::vector<WorkGroup> in_order(std::map<std::uint32_t, WorkGroup>&& groups) {
@@ -106,18 +120,36 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
 }
 
 std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
+  if (all_equal(samples_)) return least_of_all(order);
   std::map<std::uint32_t, WorkGroup> groups;
   for (const std::uint32_t pixel : order_) {
     std::uint32_t& has = samples_[pixel];
-    if (has >= least_) continue;
-    std::uint32_t more = least_ - has;
-    if (order == SampleOrder::passes) more = std::min(more, std::max(kPassGrowth * has, kFirst));
+    const std::uint32_t more = lacks(has, order);
+    if (more == 0) continue;
     WorkGroup& group = groups[more];
     group.samples = more;
     group.work.push_back({pixel, has});
     has += more;
   }
   return in_order(std::move(groups));
+}
+
+std::uint32_t SamplePlan::lacks(std::uint32_t has, SampleOrder order) const {
+  const std::uint32_t more = least_ - std::min(has, least_);
+  return order == SampleOrder::passes ? std::min(more, std::max(kPassGrowth * has, kFirst)) : more;
+}
+
+std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
+  const std::uint32_t has = samples_.front(), more = lacks(has, order);
+  if (more == 0) return {};
+  std::vector<WorkGroup> groups(1);
+  WorkGroup& all = groups.front();
+  all.samples = more;
+  all.work.resize(order_.size());
+  tbb::parallel_for(std::size_t{0}, order_.size(),
+                    [&](std::size_t i) { all.work[i] = {order_[i], has}; });
+  std::fill(samples_.begin(), samples_.end(), has + more);
+  return groups;
 }
 
 BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,

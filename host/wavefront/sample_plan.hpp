@@ -42,6 +42,10 @@ class SamplePlan {
   [[nodiscard]] double fraction_done() const { return fraction_done_; }
 
  private:
+  /// Samples more that least() gives a pixel.
+  [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
+  /// least() where all pixels have the same.
+  std::vector<WorkGroup> least_of_all(SampleOrder order);
   /// Batches that every pixel should have in all.
   [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances,
                                    const std::vector<float>& costs) const;

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "dapple/error.hpp"
@@ -51,6 +53,56 @@ V2f half_extent(const View& view) {
   return {half * aspect, half};
 }
 
+/// Relative to the largest coordinate: what rounding may move a surface by, and more.
+constexpr double kBoundsMargin = 1e-5;
+
+/// Where the corners of the scene's bounds are in the picture, in pixels from its top left; infinite
+/// where one is not before the camera.
+Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
+  const Imath::Box2d everywhere(Imath::V2d(-std::numeric_limits<double>::infinity()),
+                                Imath::V2d(std::numeric_limits<double>::infinity()));
+  const Imath::M44d to_world(view.camera.to_world);
+  if (!(std::fabs(to_world.determinant()) > 0)) return everywhere;
+  const Imath::M44d to_camera = to_world.inverse();
+  const Imath::V2d half(half_extent(view));
+  const V3d low(bounds.min), high(bounds.max);
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max({largest, std::fabs(low[axis]), std::fabs(high[axis]),
+                        std::fabs(to_world[3][axis])});
+  }
+  const double margin = kBoundsMargin * largest;
+  Imath::Box2d seen;
+  for (int corner = 0; corner < 8; ++corner) {
+    V3d at;
+    for (int axis = 0; axis < 3; ++axis)
+      at[axis] = corner >> axis & 1 ? high[axis] + margin : low[axis] - margin;
+    at *= to_camera;
+    if (view.camera.kind == Camera::Kind::perspective) {
+      if (!(-at.z > margin)) return everywhere;
+      at /= -at.z;
+    }
+    const Imath::V2d pixel((at.x / half.x + 1) / 2 * view.width, (1 - at.y / half.y) / 2 * view.height);
+    if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y)) return everywhere;
+    seen.extendBy(pixel);
+  }
+  return seen;
+}
+
+/// The whole pixel that `at` is in or next to, of `count`.
+uint pixel_at(double at, int count) {
+  return static_cast<uint>(std::clamp(at, 0.0, static_cast<double>(count)));
+}
+
+/// A pixel more on each side than the scene's bounds.
+void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
+  const Imath::Box2d seen = picture_bounds(view, bounds);
+  params.seen_left = pixel_at(seen.min.x - 1, view.width);
+  params.seen_above = pixel_at(seen.min.y - 1, view.height);
+  params.seen_right = pixel_at(seen.max.x + 2, view.width);
+  params.seen_below = pixel_at(seen.max.y + 2, view.height);
+}
+
 }  // namespace
 
 View choose_view(const Scene& scene, const RenderOptions& options,
@@ -63,7 +115,7 @@ View choose_view(const Scene& scene, const RenderOptions& options,
   return view;
 }
 
-CameraParams camera_params(const View& view, const RenderOptions& options) {
+CameraParams camera_params(const View& view, const RenderOptions& options, const Box3f& bounds) {
   CameraParams params{};
   const M44f& m = view.camera.to_world;
   for (int row = 0; row < 3; ++row) {
@@ -80,6 +132,7 @@ CameraParams camera_params(const View& view, const RenderOptions& options) {
   params.crop_width = static_cast<uint>(view.crop.width());
   params.seed = options.seed;
   params.inverse_spp = 1.0f / static_cast<float>(footprint_samples(options));
+  set_seen(view, bounds, params);
   return params;
 }
 

@@ -23,8 +23,8 @@ struct View {
 /// Error usage when a named camera is not in the scene, listing those that are.
 View choose_view(const Scene& scene, const RenderOptions& options, std::vector<std::string>& notes);
 
-/// What the camera kernel needs, but for the slice.
-CameraParams camera_params(const View& view, const RenderOptions& options);
+/// What the camera kernel needs, but for the slice and the scene; `bounds` are the scene's.
+CameraParams camera_params(const View& view, const RenderOptions& options, const Box3f& bounds);
 
 /// World to EXR's camera space: left-handed, x right, y up, +Z forward; row vectors.
 M44f world_to_exr_camera(const Camera& camera);

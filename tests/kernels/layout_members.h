@@ -72,7 +72,9 @@
   MEMBER(CameraParams, orthographic) MEMBER(CameraParams, width)                             \
   MEMBER(CameraParams, height) MEMBER(CameraParams, crop_x) MEMBER(CameraParams, crop_y)     \
   MEMBER(CameraParams, crop_width) MEMBER(CameraParams, seed)                                \
-  MEMBER(CameraParams, inverse_spp)                                                          \
+  MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, seen_left)                          \
+  MEMBER(CameraParams, seen_above) MEMBER(CameraParams, seen_right)                          \
+  MEMBER(CameraParams, seen_below)                                                           \
   STRUCT(AoParams)                                                                           \
   MEMBER(AoParams, point_count) MEMBER(AoParams, rays) MEMBER(AoParams, inverse_count)       \
   MEMBER(AoParams, t_max) MEMBER(AoParams, seed)                                             \
