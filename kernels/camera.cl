@@ -1,6 +1,7 @@
 /* The camera pass: where the slice's camera rays meet the scene, a beam of them an item. */
 #include "beam_nearest.clh"
 #include "camera.clh"
+#include "deal.clh"
 #include "surface_point.clh"
 
 /* Stores what ray i of a beam met; `sample` is its place among those of `chosen`. */
@@ -67,7 +68,8 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
                           __global const PixelWork* work, __global SurfacePoint* points,
                           __global SampleHits* sample_hits, CameraParams params) {
   const uint samples = params.slice.pixel_count * params.slice.sample_count;
-  const uint begin = get_global_id(0) * DAPPLE_ITEM_SAMPLES;
+  const uint items = (samples + DAPPLE_ITEM_SAMPLES - 1u) / DAPPLE_ITEM_SAMPLES;
+  const uint begin = deal_runs(get_global_id(0), items, DAPPLE_RUN_ITEMS) * DAPPLE_ITEM_SAMPLES;
   if (begin >= samples) return;
   const uint count = min(samples - begin, DAPPLE_ITEM_SAMPLES);
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};

@@ -1,5 +1,6 @@
 /* The occlusion pass for packets: one group of a point's rays an item, with results as
    those of occlusion.cl. */
+#include "deal.clh"
 #include "packet.clh"
 
 /* A count shared over a packet's rays without remainder. */
@@ -82,7 +83,7 @@ __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock
   const uint item = get_global_id(0);
   if (item >= params.ray_count / params.rays_per_point * chunks) return;
   const uint size = (params.rays_per_point + chunks - 1u) / chunks;
-  const uint skipped = item % chunks * size;
+  const uint skipped = deal(item % chunks, chunks) * size;
   const uint first = item / chunks * params.rays_per_point + skipped;
   const uint count = min(size, params.rays_per_point - skipped);
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};

@@ -80,8 +80,9 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
   CameraParams camera = params;
   camera.scene = scene.params;
+  constexpr std::size_t kRun = std::size_t{DAPPLE_ITEM_SAMPLES} * DAPPLE_RUN_ITEMS;
   context.launch(
-      kCameraHits, "camera", (samples + DAPPLE_ITEM_SAMPLES - 1) / DAPPLE_ITEM_SAMPLES,
+      kCameraHits, "camera", (samples + kRun - 1) / kRun * DAPPLE_RUN_ITEMS,
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.work, queues.points, queues.sample_hits, camera},
       kBeamGroup);

@@ -40,6 +40,9 @@ typedef struct Occlusion {
 /* Samples that one item of the camera pass takes: whole beams, and a bit of a ulong each. */
 #define DAPPLE_ITEM_SAMPLES 64u
 
+/* Items of the camera pass in a row that see much the same; whole runs are launched. */
+#define DAPPLE_RUN_ITEMS 16u
+
 /* Samples of a SampleHits. */
 #define DAPPLE_HIT_BITS 16u
 
