@@ -6,9 +6,9 @@
 namespace dapple {
 namespace {
 
-PassWork work(std::size_t pixels, double rays, double visits, double tests) {
-  return {std::vector<double>(pixels, rays), std::vector<double>(pixels, visits),
-          std::vector<double>(pixels, tests)};
+PassWork work(std::size_t pixels, float rays, float visits, float tests) {
+  return {std::vector<float>(pixels, rays), std::vector<float>(pixels, visits),
+          std::vector<float>(pixels, tests)};
 }
 
 TEST(SampleCosts, AreASamplesWhateverTheirNumber) {

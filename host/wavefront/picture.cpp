@@ -6,10 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "scene/environment.hpp"
+#include "wavefront/film_moments.hpp"
 #include "wavefront/passes.hpp"
-#include "wavefront/pixel_error.hpp"
-#include "wavefront/sample_cost.hpp"
 #include "wavefront/sample_plan.hpp"
 
 namespace dapple {
@@ -125,8 +123,10 @@ class PictureTracer {
     state_.round = {plan.least(plan.is_adaptive() ? SampleOrder::pixels : control.order)};
     if (state_.round.is_done() && plan.is_adaptive()) {
       const std::vector<std::uint32_t>& samples = plan.samples();
-      state_.round = {plan.next(variances(samples),
-                                options_.target_rmse > 0 ? costs(samples) : std::vector<float>())};
+      const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
+      const FilmMoments moments(sums, squares, layout_, options_, samples, width_);
+      state_.round = {plan.next(moments.variances(),
+                                options_.target_rmse > 0 ? moments.costs() : std::vector<float>())};
       if (control.progress) control.progress(plan.fraction_done());
     }
     return !state_.round.is_done();
@@ -160,88 +160,10 @@ class PictureTracer {
     saved_ = Clock::now();
   }
 
-  /// Sums of one plane as reals.
-  std::vector<double> read_plane(uint plane, double scale) {
-    std::vector<std::int64_t> sums(layout_.pixels);
-    const std::size_t bytes = sums.size() * sizeof(std::int64_t);
-    context_.read(film_.sums, sums.data(), bytes, plane * bytes);
-    std::vector<double> values(sums.size());
-    for (std::size_t p = 0; p < sums.size(); ++p) values[p] = static_cast<double>(sums[p]) / scale;
-    return values;
-  }
-
-  /// Of one channel itself, of three their luminance.
-  std::vector<double> read_luminance(uint first, uint channels, double scale) {
-    if (channels == 1) return read_plane(first, scale);
-    std::vector<double> values = read_plane(first, scale);
-    const std::vector<double> green = read_plane(first + 1, scale);
-    const std::vector<double> blue = read_plane(first + 2, scale);
-    for (std::size_t p = 0; p < values.size(); ++p)
-      values[p] = luminance(V3d(values[p], green[p], blue[p]));
-    return values;
-  }
-
-  /// Moments of a pass whose samples' values, divided by `divisor`, add up to `values`.
-  BatchMoments moments(const std::vector<double>& values, uint squares_plane, double divisor,
-                       const std::vector<std::uint32_t>& samples) {
-    BatchMoments moments;
-    moments.mean.resize(layout_.pixels);
-    moments.squares.resize(layout_.pixels);
-    const std::size_t bytes = layout_.pixels * sizeof(float);
-    context_.read(film_.squares, moments.squares.data(), bytes, squares_plane * bytes);
-    for (std::size_t p = 0; p < values.size(); ++p) {
-      moments.mean[p] = static_cast<float>(values[p] / (samples[p] * divisor));
-      moments.squares[p] = static_cast<float>(moments.squares[p] / (divisor * divisor));
-    }
-    return moments;
-  }
-
-  /// batch_variances() of every pass, lights relative to their largest unoccluded irradiance.
-  std::vector<std::vector<float>> variances(const std::vector<std::uint32_t>& samples) {
-    std::vector<std::vector<float>> out;
-    if (options_.ao) {
-      const std::vector<double> hits = read_plane(0, 1.0);
-      std::vector<double> ao =  // from here on, occlusion
-          read_plane(layout_.ao, double{layout_.unit_scale} * options_.ao_rays);
-      std::transform(hits.begin(), hits.end(), ao.begin(), ao.begin(), std::minus<>());
-      out.push_back(batch_variances(moments(ao, 0, 1.0, samples), samples, width_));
-    }
-    const double scale = double{layout_.light_scale} * options_.light_rays;
-    for (std::size_t light = 0; light < light_count_; ++light) {
-      const LightPlaneRange& planes = layout_.lights[light];
-      const std::vector<double> unoccluded =
-          read_luminance(planes.unoccluded(), planes.channels, scale);
-      double largest = 0;
-      for (std::size_t p = 0; p < unoccluded.size(); ++p)
-        largest = std::max(largest, unoccluded[p] / samples[p]);
-      out.push_back(batch_variances(
-          moments(read_luminance(planes.first, planes.channels, scale),
-                  layout_.light_squares(light), largest > 0 ? largest : 1.0, samples),
-          samples, width_));
-    }
-    return out;
-  }
-
-  /// What `rays` of each hit did, which have planes of visits and tests.
-  PassWork work_of(const std::vector<double>& hits, int rays, uint visits) {
-    PassWork work{hits, read_plane(visits, 1.0), read_plane(visits + 1, 1.0)};
-    for (double& count : work.rays) count *= rays;
-    return work;
-  }
-
-  /// sample_costs() so far.
-  std::vector<float> costs(const std::vector<std::uint32_t>& samples) {
-    const std::vector<double> hits = read_plane(0, 1.0);
-    std::vector<PassWork> others;
-    if (options_.ao) others.push_back(work_of(hits, options_.ao_rays, layout_.ao_visits()));
-    for (const LightPlaneRange& planes : layout_.lights)
-      others.push_back(work_of(hits, options_.light_rays, planes.visits()));
-    const std::vector<double> camera_rays(samples.begin(), samples.end());
-    return sample_costs(work_of(camera_rays, 1, kCameraVisits), others, samples, width_);
-  }
-
   std::vector<std::vector<float>> standard_errors(const std::vector<std::uint32_t>& samples) {
-    std::vector<std::vector<float>> errors = variances(samples);
+    const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
+    std::vector<std::vector<float>> errors =
+        FilmMoments(sums, squares, layout_, options_, samples, width_).variances();
     for (std::vector<float>& pass : errors) {
       for (std::size_t p = 0; p < pass.size(); ++p)
         pass[p] = std::sqrt(pass[p] * DAPPLE_BATCH / static_cast<float>(samples[p]));

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "dapple/shared/pass_params.h"
+#include "wavefront/pixel_neighbourhood.hpp"
 
 namespace dapple {
 namespace {
@@ -19,29 +20,27 @@ constexpr float kNeighbourhoodWeight = 16.0f;
 
 std::vector<float> batch_variances(const BatchMoments& moments,
                                    const std::vector<std::uint32_t>& samples, int width) {
-  std::vector<float> own(samples.size());
-  const auto batches = [&](std::size_t p) {
+  const auto freedom = [&](std::size_t p) {
     const std::uint32_t whole = samples[p] / DAPPLE_BATCH;
-    return static_cast<float>(whole);
+    return static_cast<float>(whole) - 1.0f;
   };
-  for (std::size_t p = 0; p < own.size(); ++p) {
-    const float square = batches(p) * moments.mean[p] * moments.mean[p];
-    own[p] = std::max(0.0f, (moments.squares[p] - square) / (batches(p) - 1.0f));
-  }
-  std::vector<float> variances(own.size());
-  const int height = static_cast<int>(own.size()) / width;
+  const int height = static_cast<int>(samples.size()) / width;
+  std::vector<float> own(samples.size());
   tbb::parallel_for(0, height, [&](int y) {
+    const std::size_t end = static_cast<std::size_t>(y + 1) * width;
+    for (std::size_t p = end - width; p < end; ++p) {
+      const float square = (freedom(p) + 1.0f) * moments.mean[p] * moments.mean[p];
+      own[p] = std::max(0.0f, (moments.squares[p] - square) / freedom(p));
+    }
+  });
+  std::vector<float> variances = neighbourhood_sums(own, width);
+  tbb::parallel_for(0, height, [&](int y) {
+    const int rows = 1 + (y > 0) + (y + 1 < height);
     for (int x = 0; x < width; ++x) {
-      float sum = 0;
-      int count = 0;
-      for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v) {
-        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u, ++count)
-          sum += own[static_cast<std::size_t>(v) * width + u];
-      }
+      const int count = rows * (1 + (x > 0) + (x + 1 < width));
       const std::size_t p = static_cast<std::size_t>(y) * width + x;
-      const float freedom = batches(p) - 1.0f;
-      variances[p] = (own[p] * freedom + sum / static_cast<float>(count) * kNeighbourhoodWeight) /
-                     (freedom + kNeighbourhoodWeight);
+      const float around = variances[p] / static_cast<float>(count) * kNeighbourhoodWeight;
+      variances[p] = (own[p] * freedom(p) + around) / (freedom(p) + kNeighbourhoodWeight);
     }
   });
   return variances;

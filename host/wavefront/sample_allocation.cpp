@@ -28,6 +28,20 @@ std::uint32_t in_units(double batches, std::uint32_t have, double rounding,
   return all < limits.most ? static_cast<std::uint32_t>(all) : limits.most;
 }
 
+/// Of values of pixels, in an order that does not depend on threads.
+template <class Value>
+double sum_over(std::size_t pixels, const Value& value) {
+  using Range = tbb::blocked_range<std::size_t>;
+  return tbb::parallel_deterministic_reduce(
+      Range(0, pixels, kSumGrain), 0.0,
+      [&](const Range& range, double partial) {
+        for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel)
+          partial += value(pixel);
+        return partial;
+      },
+      std::plus<>());
+}
+
 /// One pass, whose pixels are given batches by the density: so many for a deviation of 1 at a cost
 /// of 1.
 class ByDeviation {
@@ -44,30 +58,18 @@ class ByDeviation {
     return std::max(wanted_[pixel], in_units(density * shares_[pixel], have_[pixel], 0.5, limits_));
   }
   [[nodiscard]] double squared_error_sum(double density) const {
-    return sum(
-        [&](std::size_t pixel) { return double{variances_[pixel]} / batches(pixel, density); });
+    return sum_over(shares_.size(), [&](std::size_t pixel) {
+      return double{variances_[pixel]} / batches(pixel, density);
+    });
   }
   /// The squared errors' sum, times the density, if every pixel began at none and had no most.
   [[nodiscard]] double free_error_sum() const {
-    return sum([&](std::size_t pixel) {
+    return sum_over(shares_.size(), [&](std::size_t pixel) {
       return shares_[pixel] > 0 ? double{variances_[pixel]} / shares_[pixel] : 0.0;
     });
   }
 
  private:
-  template <class Value>
-  [[nodiscard]] double sum(const Value& value) const {
-    using Range = tbb::blocked_range<std::size_t>;
-    return tbb::parallel_deterministic_reduce(
-        Range(0, shares_.size(), kSumGrain), 0.0,
-        [&](const Range& range, double partial) {
-          for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel)
-            partial += value(pixel);
-          return partial;
-        },
-        std::plus<>());
-  }
-
   const std::vector<float>& variances_;
   const BatchCounts& have_;
   const AllocationLimits& limits_;
@@ -101,11 +103,15 @@ void want_error(const std::vector<float>& variances, float target, const BatchCo
   }
 }
 
-void want_rmse(const std::vector<float>& variances, const std::vector<float>& costs, float target,
+double squared_errors(const std::vector<float>& variances, const BatchCounts& batches) {
+  return sum_over(variances.size(),
+                  [&](std::size_t pixel) { return double{variances[pixel]} / batches[pixel]; });
+}
+
+void want_rmse(const std::vector<float>& variances, const std::vector<float>& costs, double enough,
                const BatchCounts& have, const AllocationLimits& limits, BatchCounts& wanted) {
+  if (squared_errors(variances, wanted) <= enough) return;
   const ByDeviation pass(variances, costs, have, limits, wanted);
-  const double enough = double{target} * target * static_cast<double>(wanted.size());
-  if (pass.squared_error_sum(0) <= enough) return;
   const double density = least_density(pass, enough);
   BatchCounts raised(wanted.size());
   for (std::size_t pixel = 0; pixel < raised.size(); ++pixel)

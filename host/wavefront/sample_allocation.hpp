@@ -6,7 +6,7 @@
 
 namespace dapple {
 
-/// Batches of DAPPLE_BATCH samples that each pixel has, or should have.
+/// Batches of DAPPLE_BATCH samples that each pixel, or block of pixels, has or should have.
 using BatchCounts = std::vector<std::uint32_t>;
 
 /// What allocations keep to.
@@ -20,13 +20,16 @@ struct AllocationLimits {
 void want_error(const std::vector<float>& variances, float target, const BatchCounts& have,
                 const AllocationLimits& limits, BatchCounts& wanted);
 
-/// Raises `wanted`, from `have` up, until the root of the pixels' mean squared error is below
-/// `target`, at the least cost: samples of a pixel in proportion to its standard deviation over
-/// the root of what one costs (Neyman, "On the Two Different Aspects of the Representative
-/// Method", 1934, section III; with costs Cochran, "Sampling Techniques", 1977, section 5.5).
-/// `costs`: of a sample, by pixel, above 0, in any unit. What is wanted already, for another pass,
-/// counts. Where `most` is in the way of the target, all pixels that vary want that.
-void want_rmse(const std::vector<float>& variances, const std::vector<float>& costs, float target,
+/// The sum of squared standard errors at so many batches a pixel.
+double squared_errors(const std::vector<float>& variances, const BatchCounts& batches);
+
+/// Raises `wanted`, from `have` up, until squared_errors() are at most `enough`, at the least cost:
+/// samples of a pixel in proportion to its standard deviation over the root of what one costs
+/// (Neyman, "On the Two Different Aspects of the Representative Method", 1934, section III; with
+/// costs Cochran, "Sampling Techniques", 1977, section 5.5). `costs`: of a sample, by pixel, above
+/// 0, in any unit. What is wanted already, for another pass, counts. Where `most` is in the way,
+/// all pixels that vary want that.
+void want_rmse(const std::vector<float>& variances, const std::vector<float>& costs, double enough,
                const BatchCounts& have, const AllocationLimits& limits, BatchCounts& wanted);
 
 }  // namespace dapple

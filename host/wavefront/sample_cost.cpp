@@ -1,10 +1,13 @@
 #include "wavefront/sample_cost.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "dapple/shared/ray.h"
+#include "wavefront/pixel_neighbourhood.hpp"
 
 namespace dapple {
 namespace {
@@ -28,26 +31,19 @@ double nanoseconds(const PassWork& work, const Price& price, std::size_t pixel) 
 
 std::vector<float> sample_costs(const PassWork& camera, const std::vector<PassWork>& others,
                                 const std::vector<std::uint32_t>& samples, int width) {
-  std::vector<double> spent(samples.size());
-  for (std::size_t p = 0; p < spent.size(); ++p) {
-    spent[p] = nanoseconds(camera, kCameraPrice, p);
-    for (const PassWork& work : others) spent[p] += nanoseconds(work, kRayPrice, p);
-  }
-  std::vector<float> costs(samples.size());
-  const int height = static_cast<int>(samples.size()) / width;
-  tbb::parallel_for(0, height, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      double sum = 0, count = 0;
-      for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v) {
-        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
-          const std::size_t p = static_cast<std::size_t>(v) * width + u;
-          sum += spent[p];
-          count += samples[p];
-        }
-      }
-      costs[static_cast<std::size_t>(y) * width + x] = static_cast<float>(sum / count);
+  std::vector<float> spent(samples.size()), counts(samples.size());
+  using Range = tbb::blocked_range<std::size_t>;
+  tbb::parallel_for(Range(0, spent.size(), static_cast<std::size_t>(width)), [&](const Range& r) {
+    for (std::size_t p = r.begin(); p < r.end(); ++p) {
+      double sum = nanoseconds(camera, kCameraPrice, p);
+      for (const PassWork& work : others) sum += nanoseconds(work, kRayPrice, p);
+      spent[p] = static_cast<float>(sum);
+      counts[p] = static_cast<float>(samples[p]);
     }
   });
+  std::vector<float> costs = neighbourhood_sums(spent, width);
+  counts = neighbourhood_sums(counts, width);
+  std::transform(costs.begin(), costs.end(), counts.begin(), costs.begin(), std::divides<>());
   return costs;
 }
 

@@ -9,7 +9,7 @@ namespace dapple {
 
 /// What the rays of one kind did for each pixel, sums over its samples.
 struct PassWork {
-  std::vector<double> rays, visits, tests;
+  std::vector<float> rays, visits, tests;
 };
 
 /// Nanoseconds of a sample, by pixel, a mean over each pixel's neighbourhood (one sample's cost

@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
+#include <functional>
 #include <map>
 
 namespace dapple {
@@ -22,6 +24,10 @@ constexpr std::uint32_t kMostMore = 8;
 /// Batches that a pixel gets more at a time. Half of it fits each pixel's wants better, and takes 3
 /// to 10 % more time.
 constexpr std::uint32_t kUnit = 4;
+
+/// Part of the squared error asked for that is aimed at: estimates move as samples come, and a
+/// round for a few more takes as long as a tenth of the picture.
+constexpr double kAim = 0.95;
 
 /// Samples that in passes every pixel has before any has more, and times what it has that it then
 /// gets more.
@@ -57,38 +63,38 @@ std::vector<std::uint32_t> tile_order(int width, int height) {
   return order;
 }
 
-/// The same for the pixels of each block: their mean, or the greatest.
-template <class T, class Join>
-std::vector<T> by_block(const std::vector<T>& values, int width, const Join& join) {
-  std::vector<T> joined(values.size());
-  const int height = static_cast<int>(values.size()) / width;
+/// Calls `visit` with each block's number and each of its pixels.
+template <class Visit>
+void visit_blocks(int width, std::size_t pixels, const Visit& visit) {
+  const int height = static_cast<int>(pixels) / width, columns = (width + kBlock - 1) / kBlock;
   tbb::parallel_for(0, (height + kBlock - 1) / kBlock, [&](int row) {
-    std::vector<std::uint32_t> block;
-    for (int x = 0; x < width; x += kBlock) {
-      block.clear();
-      for_block(x, row * kBlock, width, height,
-                [&](std::uint32_t pixel) { block.push_back(pixel); });
-      const T value = join(values, block);
-      for (const std::uint32_t pixel : block) joined[pixel] = value;
+    for (int column = 0; column < columns; ++column) {
+      const std::size_t block = static_cast<std::size_t>(row) * columns + column;
+      for_block(column * kBlock, row * kBlock, width, height,
+                [&](std::uint32_t pixel) { visit(block, pixel); });
     }
+  });
+}
+
+/// Values of a block's pixels put together, `none` being those of no pixel.
+template <class T, class Join>
+std::vector<T> by_block(const std::vector<T>& values, int width, T none, const Join& join) {
+  const std::size_t columns = (width + kBlock - 1) / kBlock;
+  const std::size_t rows = (values.size() / width + kBlock - 1) / kBlock;
+  std::vector<T> joined(columns * rows, none);
+  visit_blocks(width, values.size(), [&](std::size_t block, std::uint32_t pixel) {
+    joined[block] = join(joined[block], values[pixel]);
   });
   return joined;
 }
 
-std::vector<float> block_means(const std::vector<float>& values, int width) {
-  return by_block(values, width, [](const auto& v, const auto& block) {
-    float sum = 0;
-    for (const std::uint32_t pixel : block) sum += v[pixel];
-    return sum / static_cast<float>(block.size());
-  });
+std::vector<float> block_sums(const std::vector<float>& values, int width) {
+  return by_block(values, width, 0.0f, std::plus<>());
 }
 
-BatchCounts block_most(const BatchCounts& counts, int width) {
-  return by_block(counts, width, [](const auto& v, const auto& block) {
-    std::uint32_t most = 0;
-    for (const std::uint32_t pixel : block) most = std::max(most, v[pixel]);
-    return most;
-  });
+template <class T>
+std::vector<T> block_most(const std::vector<T>& values, int width) {
+  return by_block(values, width, T{0}, [](T a, T b) { return std::max(a, b); });
 }
 
 bool all_equal(const std::vector<std::uint32_t>& values) {
@@ -146,51 +152,62 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
   WorkGroup& all = groups.front();
   all.samples = more;
   all.work.resize(order_.size());
-  tbb::parallel_for(std::size_t{0}, order_.size(),
-                    [&](std::size_t i) { all.work[i] = {order_[i], has}; });
+  tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t i) {
+    all.work[i] = {order_[i], has};
+  });
   std::fill(samples_.begin(), samples_.end(), has + more);
   return groups;
 }
 
+// Of blocks. Sums of their pixels' variances and costs stand in the ratio of the means, and their
+// errors add up to those of the picture.
 BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
                                const std::vector<float>& costs) const {
-  BatchCounts have(samples_);
+  BatchCounts have = block_most(samples_, width_);
   for (std::uint32_t& batches : have) batches /= DAPPLE_BATCH;
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
-  const std::vector<float> block_costs =
-      target_rmse_ > 0 ? block_means(costs, width_) : std::vector<float>();
-  for (const std::vector<float>& pass : variances) {
-    if (target_rmse_ > 0)
-      want_rmse(block_means(pass, width_), block_costs, target_rmse_, have, limits, wanted);
-    else
-      want_error(pass, target_error_, have, limits, wanted);
+  if (target_rmse_ > 0) {
+    const double enough =
+        double{target_rmse_} * target_rmse_ * static_cast<double>(samples_.size());
+    const std::vector<float> block_costs = block_sums(costs, width_);
+    for (const std::vector<float>& pass : variances) {
+      const std::vector<float> of_blocks = block_sums(pass, width_);
+      if (squared_errors(of_blocks, have) > enough)
+        want_rmse(of_blocks, block_costs, kAim * enough, have, limits, wanted);
+    }
+  } else {
+    for (const std::vector<float>& pass : variances)
+      want_error(block_most(pass, width_), target_error_, have, limits, wanted);
   }
-  return block_most(wanted, width_);
+  return wanted;
 }
 
 std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances,
                                         const std::vector<float>& costs) {
-  const BatchCounts all = wanted(variances, costs);
-  std::map<std::uint32_t, WorkGroup> groups;
+  const BatchCounts of_blocks = wanted(variances, costs);
+  BatchCounts all(samples_.size());
+  visit_blocks(width_, all.size(),
+               [&](std::size_t block, std::uint32_t pixel) { all[pixel] = of_blocks[block]; });
+  // By powers of two: few groups, whatever pixels want.
+  std::vector<WorkGroup> by_power(32);
   double done = 0, missing = 0;
   for (const std::uint32_t pixel : order_) {
     const std::uint32_t has = samples_[pixel] / DAPPLE_BATCH;
     done += has;
     missing += all[pixel] - has;
     const std::uint32_t most_more = kMostMore * has / kUnit * kUnit;
-    const std::uint32_t more = std::min(all[pixel] - has, most_more);
-    // By powers of two: few groups, whatever pixels want.
-    for (std::uint32_t batches = 1; batches <= more; batches *= 2) {
-      if (!(more & batches)) continue;
-      WorkGroup& group = groups[batches];
-      group.samples = batches * DAPPLE_BATCH;
+    for (std::uint32_t left = std::min(all[pixel] - has, most_more); left; left &= left - 1) {
+      const int power = std::countr_zero(left);
+      WorkGroup& group = by_power[power];
+      group.samples = DAPPLE_BATCH << power;
       group.work.push_back({pixel, samples_[pixel]});
       samples_[pixel] += group.samples;
     }
   }
   fraction_done_ = std::max(fraction_done_, done / (done + missing));
-  return in_order(std::move(groups));
+  std::erase_if(by_power, [](const WorkGroup& group) { return group.work.empty(); });
+  return by_power;
 }
 
 }  // namespace dapple

@@ -46,7 +46,7 @@ class SamplePlan {
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() where all pixels have the same.
   std::vector<WorkGroup> least_of_all(SampleOrder order);
-  /// Batches that every pixel should have in all.
+  /// Batches that the pixels of every block should have in all.
   [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances,
                                    const std::vector<float>& costs) const;
 

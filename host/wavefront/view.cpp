@@ -56,8 +56,8 @@ V2f half_extent(const View& view) {
 /// Relative to the largest coordinate: what rounding may move a surface by, and more.
 constexpr double kBoundsMargin = 1e-5;
 
-/// Where the corners of the scene's bounds are in the picture, in pixels from its top left; infinite
-/// where one is not before the camera.
+/// Where the corners of the scene's bounds are in the picture, in pixels from its top left;
+/// infinite where one is not before the camera.
 Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
   const Imath::Box2d everywhere(Imath::V2d(-std::numeric_limits<double>::infinity()),
                                 Imath::V2d(std::numeric_limits<double>::infinity()));
@@ -68,8 +68,8 @@ Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
   const V3d low(bounds.min), high(bounds.max);
   double largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::fabs(low[axis]), std::fabs(high[axis]),
-                        std::fabs(to_world[3][axis])});
+    largest = std::max(
+        {largest, std::fabs(low[axis]), std::fabs(high[axis]), std::fabs(to_world[3][axis])});
   }
   const double margin = kBoundsMargin * largest;
   Imath::Box2d seen;
@@ -82,7 +82,8 @@ Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
       if (!(-at.z > margin)) return everywhere;
       at /= -at.z;
     }
-    const Imath::V2d pixel((at.x / half.x + 1) / 2 * view.width, (1 - at.y / half.y) / 2 * view.height);
+    const Imath::V2d pixel((at.x / half.x + 1) / 2 * view.width,
+                           (1 - at.y / half.y) / 2 * view.height);
     if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y)) return everywhere;
     seen.extendBy(pixel);
   }

@@ -1,0 +1,99 @@
+#include "wavefront/film_moments.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "scene/environment.hpp"
+#include "wavefront/pixel_error.hpp"
+
+namespace dapple {
+namespace {
+
+/// Pixels that a thread goes through in one go.
+constexpr std::uint32_t kPixelGrain = 4096;
+
+template <class OfPixel>
+std::vector<float> of_pixels(std::uint32_t pixels, const OfPixel& value) {
+  std::vector<float> out(pixels);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, pixels, kPixelGrain),
+                    [&](const tbb::blocked_range<std::uint32_t>& range) {
+                      for (std::uint32_t p = range.begin(); p < range.end(); ++p)
+                        out[p] = static_cast<float>(value(p));
+                    });
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::vector<float>> FilmMoments::variances() const {
+  std::vector<std::vector<float>> out;
+  if (options_.ao) out.push_back(ao_variances());
+  for (std::size_t light = 0; light < layout_.lights.size(); ++light)
+    out.push_back(light_variances(light));
+  return out;
+}
+
+double FilmMoments::luminance_sum(std::uint32_t first, std::uint32_t channels,
+                                  std::uint32_t pixel) const {
+  if (channels == 1) return sum(first, pixel);
+  return luminance(V3d(sum(first, pixel), sum(first + 1, pixel), sum(first + 2, pixel)));
+}
+
+// Of occlusion, which is 0 where samples missed.
+std::vector<float> FilmMoments::ao_variances() const {
+  const double scale = 1.0 / (double{layout_.unit_scale} * options_.ao_rays);
+  return variances_of(of_pixels(layout_.pixels,
+                                [&](std::uint32_t p) {
+                                  return (sum(0, p) - sum(layout_.ao, p) * scale) / samples_[p];
+                                }),
+                      0, 1.0);
+}
+
+std::vector<float> FilmMoments::light_variances(std::size_t light) const {
+  const LightPlaneRange& planes = layout_.lights[light];
+  const double scale = 1.0 / (double{layout_.light_scale} * options_.light_rays);
+  const auto means_from = [&](std::uint32_t first) {
+    return [&, first](std::uint32_t p) {
+      return luminance_sum(first, planes.channels, p) * scale / samples_[p];
+    };
+  };
+  const std::vector<float> unoccluded = of_pixels(layout_.pixels, means_from(planes.unoccluded()));
+  const float largest = *std::max_element(unoccluded.begin(), unoccluded.end());
+  return variances_of(of_pixels(layout_.pixels, means_from(planes.first)),
+                      layout_.light_squares(light), largest > 0 ? largest : 1.0);
+}
+
+std::vector<float> FilmMoments::variances_of(std::vector<float> means, std::uint32_t squares_plane,
+                                             double divisor) const {
+  const std::span<const float> squares =
+      squares_.subspan(std::size_t{squares_plane} * layout_.pixels, layout_.pixels);
+  BatchMoments moments;
+  moments.mean = std::move(means);
+  moments.squares = of_pixels(layout_.pixels, [&](std::uint32_t p) {
+    moments.mean[p] = static_cast<float>(moments.mean[p] / divisor);
+    return squares[p] / (divisor * divisor);
+  });
+  return batch_variances(moments, samples_, width_);
+}
+
+PassWork FilmMoments::work_of(int rays, std::uint32_t visits) const {
+  const auto plane = [&](std::uint32_t which, double factor) {
+    return of_pixels(layout_.pixels,
+                     [&, which, factor](std::uint32_t p) { return sum(which, p) * factor; });
+  };
+  return {plane(0, rays), plane(visits, 1.0), plane(visits + 1, 1.0)};
+}
+
+std::vector<float> FilmMoments::costs() const {
+  PassWork camera = work_of(1, kCameraVisits);
+  camera.rays.assign(samples_.begin(), samples_.end());
+  std::vector<PassWork> others;
+  if (options_.ao) others.push_back(work_of(options_.ao_rays, layout_.ao_visits()));
+  for (const LightPlaneRange& planes : layout_.lights)
+    others.push_back(work_of(options_.light_rays, planes.visits()));
+  return sample_costs(camera, others, samples_, width_);
+}
+
+}  // namespace dapple

@@ -1,0 +1,56 @@
+// What adaptive sampling reads off the sums of a picture that is being traced: how far pixels'
+// samples lie apart, and what they cost.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dapple/options.hpp"
+#include "device/context.hpp"
+#include "wavefront/film_sums.hpp"
+#include "wavefront/sample_cost.hpp"
+
+namespace dapple {
+
+/// Each pixel has two batches or more, `width` pixels a row. What it is made from must outlive it.
+class FilmMoments {
+ public:
+  FilmMoments(const HostView& sums, const HostView& squares, const FilmLayout& layout,
+              const RenderOptions& options, const std::vector<std::uint32_t>& samples, int width)
+      : sums_(sums.values<std::int64_t>()),
+        squares_(squares.values<float>()),
+        layout_(layout),
+        options_(options),
+        samples_(samples),
+        width_(width) {}
+
+  /// batch_variances() of every pass, lights relative to their largest unoccluded irradiance.
+  [[nodiscard]] std::vector<std::vector<float>> variances() const;
+  /// sample_costs() so far.
+  [[nodiscard]] std::vector<float> costs() const;
+
+ private:
+  [[nodiscard]] double sum(std::uint32_t plane, std::uint32_t pixel) const {
+    return static_cast<double>(sums_[std::size_t{plane} * layout_.pixels + pixel]);
+  }
+  /// Of one channel itself, of three their luminance.
+  [[nodiscard]] double luminance_sum(std::uint32_t first, std::uint32_t channels,
+                                     std::uint32_t pixel) const;
+  [[nodiscard]] std::vector<float> ao_variances() const;
+  [[nodiscard]] std::vector<float> light_variances(std::size_t light) const;
+  /// batch_variances() of a pass whose samples' values, divided by `divisor`, have the `means`.
+  [[nodiscard]] std::vector<float> variances_of(std::vector<float> means,
+                                                std::uint32_t squares_plane, double divisor) const;
+  /// What `rays` of each hit did, which have planes of visits and tests.
+  [[nodiscard]] PassWork work_of(int rays, std::uint32_t visits) const;
+
+  std::span<const std::int64_t> sums_;
+  std::span<const float> squares_;
+  const FilmLayout& layout_;
+  const RenderOptions& options_;
+  const std::vector<std::uint32_t>& samples_;
+  int width_;
+};
+
+}  // namespace dapple
