@@ -87,7 +87,9 @@ __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock
   const uint first = item / chunks * params.rays_per_point + skipped;
   const uint count = min(size, params.rays_per_point - skipped);
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
-  prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
+  /* Those that the thread takes next. */
+  const uint next = chunks > 1u ? deal(min(item % chunks + 1u, chunks - 1u), chunks) * size : count;
+  prefetch_rays(rays + first - skipped + next, min(count, DAPPLE_PACKET_RAYS));
   ushort order[DAPPLE_PACKET_CHUNK];
   if (count > DAPPLE_PACKET_RAYS) {
     sort_by_octant(rays + first, count, order);

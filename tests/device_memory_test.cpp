@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <vector>
 
 #include "dapple/error.hpp"
@@ -59,7 +61,6 @@ TEST_F(DeviceMemory, TheLeastNeedIsNeverMoreThanWhatIsUploaded) {
   }
 }
 
-// Pages that were used come back as zeros, whoever wrote to them, and as the same pages.
 TEST(DeviceBuffers, ZerosAreZerosAlsoWhereMemoryIsUsedAgain) {
   DeviceContext& context = scene_test::device().context();
   constexpr std::size_t kCount = 1'000'003;
@@ -75,14 +76,43 @@ TEST(DeviceBuffers, ZerosAreZerosAlsoWhereMemoryIsUsedAgain) {
 
 TEST(PagePool, TwoTakersNeverHaveTheSamePagesAndWhatIsGivenBackIsTakenAgain) {
   PagePool pool;
-  std::unique_ptr<Pages> first = pool.take(4096);
+  std::unique_ptr<Pages> first = pool.take(40'000);
   const void* const place = first->data();
-  const std::unique_ptr<Pages> second = pool.take(4096);
+  std::memset(first->data(), 255, first->bytes());
+  const std::unique_ptr<Pages> second = pool.take(40'000);
   EXPECT_NE(second->data(), place);
   pool.give_back(std::move(first));
-  EXPECT_NE(pool.take(8192)->data(), place) << "of another size";
-  const std::unique_ptr<Pages> again = pool.take(4096);
-  EXPECT_EQ(again->data(), place);
+  EXPECT_NE(pool.take(80'000)->data(), place) << "of another size";
+  const std::unique_ptr<Pages> again = pool.take_zeros(39'999);
+  ASSERT_EQ(again->data(), place);
+  const auto* bytes = static_cast<const unsigned char*>(again->data());
+  EXPECT_EQ(std::count(bytes, bytes + again->bytes(), 0),
+            static_cast<std::ptrdiff_t>(again->bytes()));
+}
+
+// Pages that were kept hold what was written to them, new ones zeros.
+TEST(PagePool, WhatWasGivenBackFirstGoesFirst) {
+  PagePool pool;
+  const auto mark_of = [](const Pages& pages) { return *static_cast<const char*>(pages.data()); };
+  std::unique_ptr<Pages> marked = pool.take(4096);
+  std::memset(marked->data(), 7, marked->bytes());
+  pool.give_back(std::move(marked));
+  constexpr std::size_t kHalf = PagePool::kMostKept / 2 - (std::size_t{1} << 20);
+  pool.give_back(std::make_unique<Pages>(kHalf));  // not written to: no memory yet
+  pool.give_back(std::make_unique<Pages>(kHalf));
+  marked = pool.take(4096);
+  EXPECT_EQ(mark_of(*marked), 7) << "there was room";
+  pool.give_back(std::move(marked));
+  for (int i = 0; i < 3; ++i) pool.give_back(std::make_unique<Pages>(kHalf));
+  EXPECT_EQ(mark_of(*pool.take(4096)), 0) << "there was not";
+}
+
+// More address space than there is.
+TEST(PagePool, WhatCannotBeHadIsAnErrorOfTheDevice) {
+  PagePool pool;
+  const Error error = error_of([&] { static_cast<void>(pool.take(std::size_t{1} << 60)); });
+  EXPECT_EQ(error.kind(), ErrorKind::device);
+  EXPECT_TRUE(contains(error.what(), "allocating 1152921504606846976 bytes")) << error.what();
 }
 
 }  // namespace

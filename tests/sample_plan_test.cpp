@@ -84,6 +84,18 @@ TEST(WantRmse, GivesFewerWhereSamplesCostMore) {
     EXPECT_NEAR(wanted[p], wanted[0] * (p % 4 ? 4.0 : 1.0), 4.0) << p;
 }
 
+// What little it could save an allocation loses by estimates that are off.
+TEST(WantRmse, NearlyEqualDeviationsGetTheSame) {
+  std::vector<float> variances(300);
+  for (std::size_t p = 0; p < variances.size(); ++p)
+    variances[p] = p % 3 ? 0.2f + 0.001f * static_cast<float>(p) : 0.0f;
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts wanted = have;
+  want_mean(variances, equal_costs(variances), 0.01, have, kFree, wanted);
+  EXPECT_LE(rmse(variances, wanted), 0.01);
+  for (std::size_t p = 0; p < wanted.size(); ++p) EXPECT_EQ(wanted[p], p % 3 ? wanted[1] : 2u) << p;
+}
+
 TEST(WantRmse, WhatAnotherPassWantsCounts) {
   const std::vector<float> variances = rising_variances(100);
   const BatchCounts have(variances.size(), 2);

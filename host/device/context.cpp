@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
-#include <new>
 
 #include "device/kernel_cache.hpp"
 #include "device/kernel_source.hpp"
@@ -50,7 +50,7 @@ void hand_over(std::unique_ptr<Pages> pages, cl::Buffer& buffer,
     std::shared_ptr<PagePool> pool;
   };
   auto loan = std::make_unique<Loan>(Loan{std::move(pages), pool});
-  const auto end_loan = [](cl_mem, void* data) {
+  const auto end_loan = [](cl_mem, void* data) noexcept {
     const std::unique_ptr<Loan> ended(static_cast<Loan*>(data));
     ended->pool->give_back(std::move(ended->pages));
   };

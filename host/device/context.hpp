@@ -94,12 +94,11 @@ class DeviceContext {
   /// Uninitialized memory, rounded up to whole cache lines. Throws Error device. Where it is shared
   /// with the host, its pages are kept for later buffers of that size.
   Buffer allocate(std::size_t bytes);
+  /// The same, full of zeros.
+  Buffer allocate_zeros(std::size_t bytes);
   /// Read-only copy of host data; on devices that share memory with the host no copy is
   /// made and the data must stay where it is.
   Buffer share(const void* data, std::size_t bytes);
-  /// Memory full of zeros. Where it is shared with the host, its pages come from the operating
-  /// system as they are first written to, by whichever thread that is.
-  Buffer allocate_zeros(std::size_t bytes);
   /// `offset`: bytes into the buffer.
   void write(const Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset = 0);
   /// Waits for all launches before it. `offset`: bytes into the buffer.

@@ -1,18 +1,27 @@
 #include "device/page_pool.hpp"
 
+#include <fmt/format.h>
 #include <sys/mman.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <new>
+
+#include "dapple/error.hpp"
 
 namespace dapple {
 namespace {
 
-/// Bytes kept: two megapixels of film with a light.
-constexpr std::size_t kMostKept = std::size_t{512} << 20;
+constexpr std::size_t kPage = 4096;
+
+/// Whole pages, in steps of an eighth of a power of two or less, so that sizes come again.
+std::size_t rounded(std::size_t bytes) {
+  const std::size_t step = std::max(kPage, std::bit_ceil(bytes) / 16);
+  return (bytes + step - 1) / step * step;
+}
 
 /// Bytes that a thread clears in one go.
 constexpr std::size_t kClearedTogether = std::size_t{1} << 18;
@@ -46,23 +55,46 @@ std::unique_ptr<Pages> PagePool::find(std::size_t bytes) {
   return pages;
 }
 
+std::unique_ptr<Pages> PagePool::make(std::size_t bytes) {
+  try {
+    return std::make_unique<Pages>(bytes);
+  } catch (const std::bad_alloc&) {
+    const std::lock_guard lock(mutex_);
+    kept_.clear();
+    kept_bytes_ = 0;
+  }
+  try {
+    return std::make_unique<Pages>(bytes);
+  } catch (const std::bad_alloc&) {
+    throw Error(
+        ErrorKind::device,
+        fmt::format("allocating {} bytes that host and device share: out of memory", bytes));
+  }
+}
+
 std::unique_ptr<Pages> PagePool::take(std::size_t bytes) {
-  std::unique_ptr<Pages> pages = find(bytes);
-  return pages ? std::move(pages) : std::make_unique<Pages>(bytes);
+  std::unique_ptr<Pages> pages = find(rounded(bytes));
+  return pages ? std::move(pages) : make(rounded(bytes));
 }
 
 std::unique_ptr<Pages> PagePool::take_zeros(std::size_t bytes) {
-  std::unique_ptr<Pages> pages = find(bytes);
-  if (!pages) return std::make_unique<Pages>(bytes);
+  std::unique_ptr<Pages> pages = find(rounded(bytes));
+  if (!pages) return make(rounded(bytes));
   clear(*pages);
   return pages;
 }
 
-void PagePool::give_back(std::unique_ptr<Pages> pages) {
+// Called by OpenCL's threads, through whose C nothing may be thrown.
+void PagePool::give_back(std::unique_ptr<Pages> pages) noexcept {
+  const std::size_t bytes = pages->bytes();
   const std::lock_guard lock(mutex_);
-  if (kept_bytes_ + pages->bytes() > kMostKept) return;
-  kept_bytes_ += pages->bytes();
-  kept_.push_back(std::move(pages));
+  try {
+    kept_.push_back(std::move(pages));
+  } catch (const std::bad_alloc&) {
+    return;
+  }
+  for (kept_bytes_ += bytes; kept_bytes_ > kMostKept; kept_.pop_front())
+    kept_bytes_ -= kept_.front()->bytes();
 }
 
 }  // namespace dapple

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <mutex>
-#include <vector>
 
 namespace dapple {
 
@@ -28,19 +28,23 @@ class Pages {
 /// May be used by several threads.
 class PagePool {
  public:
-  /// Pages that were given back, or new ones.
+  /// Bytes kept at most; beyond, those kept longest go.
+  static constexpr std::size_t kMostKept = std::size_t{512} << 20;
+
+  /// `bytes` or up to an eighth more: pages that were given back, or new ones. Throws Error device.
   std::unique_ptr<Pages> take(std::size_t bytes);
   /// The same, full of zeros.
   std::unique_ptr<Pages> take_zeros(std::size_t bytes);
-  /// Keeps them, unless there is much already.
-  void give_back(std::unique_ptr<Pages> pages);
+  void give_back(std::unique_ptr<Pages> pages) noexcept;
 
  private:
   /// Kept ones of that size; null if there are none.
   std::unique_ptr<Pages> find(std::size_t bytes);
+  /// New ones, if need be in place of all that are kept.
+  std::unique_ptr<Pages> make(std::size_t bytes);
 
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Pages>> kept_;
+  std::deque<std::unique_ptr<Pages>> kept_;  ///< the last given back at the end
   std::size_t kept_bytes_ = 0;
 };
 

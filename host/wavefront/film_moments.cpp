@@ -44,51 +44,48 @@ double FilmMoments::luminance_sum(std::uint32_t first, std::uint32_t channels,
 // Of occlusion, which is 0 where samples missed.
 std::vector<float> FilmMoments::ao_variances() const {
   const double scale = 1.0 / (double{layout_.unit_scale} * options_.ao_rays);
-  return variances_of(of_pixels(layout_.pixels,
-                                [&](std::uint32_t p) {
-                                  return (sum(0, p) - sum(layout_.ao, p) * scale) / samples_[p];
-                                }),
-                      0, 1.0);
+  return variances_of(
+      [&](std::uint32_t p) { return (sum(0, p) - sum(layout_.ao, p) * scale) / samples_[p]; }, 0,
+      1.0);
 }
 
 std::vector<float> FilmMoments::light_variances(std::size_t light) const {
   const LightPlaneRange& planes = layout_.lights[light];
   const double scale = 1.0 / (double{layout_.light_scale} * options_.light_rays);
-  const auto means_from = [&](std::uint32_t first) {
+  const auto mean_from = [&](std::uint32_t first) {
     return [&, first](std::uint32_t p) {
       return luminance_sum(first, planes.channels, p) * scale / samples_[p];
     };
   };
-  const std::vector<float> unoccluded = of_pixels(layout_.pixels, means_from(planes.unoccluded()));
+  const std::vector<float> unoccluded = of_pixels(layout_.pixels, mean_from(planes.unoccluded()));
   const float largest = *std::max_element(unoccluded.begin(), unoccluded.end());
-  return variances_of(of_pixels(layout_.pixels, means_from(planes.first)),
-                      layout_.light_squares(light), largest > 0 ? largest : 1.0);
+  return variances_of(mean_from(planes.first), layout_.light_squares(light),
+                      largest > 0 ? largest : 1.0);
 }
 
-std::vector<float> FilmMoments::variances_of(std::vector<float> means, std::uint32_t squares_plane,
+template <class Mean>
+std::vector<float> FilmMoments::variances_of(const Mean& mean, std::uint32_t squares_plane,
                                              double divisor) const {
   const std::span<const float> squares =
       squares_.subspan(std::size_t{squares_plane} * layout_.pixels, layout_.pixels);
-  BatchMoments moments;
-  moments.mean = std::move(means);
-  moments.squares = of_pixels(layout_.pixels, [&](std::uint32_t p) {
-    moments.mean[p] = static_cast<float>(moments.mean[p] / divisor);
-    return squares[p] / (divisor * divisor);
-  });
-  return batch_variances(moments, samples_, width_);
+  const double inverse = 1.0 / divisor;
+  return batch_variances(
+      {of_pixels(layout_.pixels, [&](std::uint32_t p) { return mean(p) * inverse; }),
+       of_pixels(layout_.pixels, [&](std::uint32_t p) { return squares[p] * inverse * inverse; })},
+      samples_, width_);
+}
+
+std::vector<float> FilmMoments::plane(std::uint32_t number, double factor) const {
+  return of_pixels(layout_.pixels, [&](std::uint32_t p) { return sum(number, p) * factor; });
 }
 
 PassWork FilmMoments::work_of(int rays, std::uint32_t visits) const {
-  const auto plane = [&](std::uint32_t which, double factor) {
-    return of_pixels(layout_.pixels,
-                     [&, which, factor](std::uint32_t p) { return sum(which, p) * factor; });
-  };
   return {plane(0, rays), plane(visits, 1.0), plane(visits + 1, 1.0)};
 }
 
 std::vector<float> FilmMoments::costs() const {
-  PassWork camera = work_of(1, kCameraVisits);
-  camera.rays.assign(samples_.begin(), samples_.end());
+  const PassWork camera{
+      {samples_.begin(), samples_.end()}, plane(kCameraVisits, 1.0), plane(kCameraVisits + 1, 1.0)};
   std::vector<PassWork> others;
   if (options_.ao) others.push_back(work_of(options_.ao_rays, layout_.ao_visits()));
   for (const LightPlaneRange& planes : layout_.lights)

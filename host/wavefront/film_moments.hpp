@@ -39,9 +39,11 @@ class FilmMoments {
                                      std::uint32_t pixel) const;
   [[nodiscard]] std::vector<float> ao_variances() const;
   [[nodiscard]] std::vector<float> light_variances(std::size_t light) const;
-  /// batch_variances() of a pass whose samples' values, divided by `divisor`, have the `means`.
-  [[nodiscard]] std::vector<float> variances_of(std::vector<float> means,
-                                                std::uint32_t squares_plane, double divisor) const;
+  /// batch_variances() of a pass whose samples' values have a pixel's `mean`, divided by `divisor`.
+  template <class Mean>
+  [[nodiscard]] std::vector<float> variances_of(const Mean& mean, std::uint32_t squares_plane,
+                                                double divisor) const;
+  [[nodiscard]] std::vector<float> plane(std::uint32_t number, double factor) const;
   /// What `rays` of each hit did, which have planes of visits and tests.
   [[nodiscard]] PassWork work_of(int rays, std::uint32_t visits) const;
 

@@ -80,9 +80,10 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
   CameraParams camera = params;
   camera.scene = scene.params;
-  constexpr std::size_t kRun = std::size_t{DAPPLE_ITEM_SAMPLES} * DAPPLE_RUN_ITEMS;
+  constexpr std::size_t kRunSamples = std::size_t{DAPPLE_ITEM_SAMPLES} * DAPPLE_RUN_ITEMS;
+  static_assert(DAPPLE_RUN_ITEMS % kBeamGroup == 0, "whole runs are launched, and no more");
   context.launch(
-      kCameraHits, "camera", (samples + kRun - 1) / kRun * DAPPLE_RUN_ITEMS,
+      kCameraHits, "camera", (samples + kRunSamples - 1) / kRunSamples * DAPPLE_RUN_ITEMS,
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.work, queues.points, queues.sample_hits, camera},
       kBeamGroup);

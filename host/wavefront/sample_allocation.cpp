@@ -16,6 +16,12 @@ constexpr std::size_t kSumGrain = 4096;
 /// Halvings of the interval in which the density is looked for: to a thousandth of itself.
 constexpr int kHalvings = 10;
 
+/// Over the batches that pixels have: the part of the cost of equal samples that an allocation by
+/// deviations must save to be taken. It goes by estimates of these, and what is off in them costs.
+/// Of pictures with two batches a pixel those for which 0.06 to 0.14 was promised took 3 to 25 %
+/// more samples than with equal ones, those for which 0.17 to 0.5, 3 to 10 % fewer.
+constexpr double kLeastSaved = 0.34;
+
 /// Doublings after which all that vary want the most.
 constexpr int kDoublings = 60;
 
@@ -91,6 +97,55 @@ double least_density(const ByDeviation& pass, double enough) {
   return high;
 }
 
+BatchCounts wanted_by_deviation(const std::vector<float>& variances,
+                                const std::vector<float>& costs, double enough,
+                                const BatchCounts& have, const AllocationLimits& limits,
+                                const BatchCounts& wanted) {
+  const ByDeviation pass(variances, costs, have, limits, wanted);
+  const double density = least_density(pass, enough);
+  BatchCounts raised(wanted.size());
+  for (std::size_t pixel = 0; pixel < raised.size(); ++pixel)
+    raised[pixel] = pass.batches(pixel, density);
+  return raised;
+}
+
+/// Batches for all that vary alike, not rounded.
+double batches_alike(const std::vector<float>& variances, double enough,
+                     const AllocationLimits& limits) {
+  const double sum =
+      sum_over(variances.size(), [&](std::size_t p) { return double{variances[p]}; });
+  return std::min(sum / enough, static_cast<double>(limits.most));
+}
+
+BatchCounts wanted_alike(const std::vector<float>& variances, double batches,
+                         const BatchCounts& wanted) {
+  BatchCounts raised = wanted;
+  for (std::size_t pixel = 0; pixel < raised.size(); ++pixel) {
+    if (variances[pixel] > 0)
+      raised[pixel] = std::max(raised[pixel], static_cast<std::uint32_t>(std::ceil(batches)));
+  }
+  return raised;
+}
+
+/// The part of the cost of so many batches for all that vary which `counts` save, both beyond
+/// what is wanted already.
+double saved_by(const BatchCounts& counts, double batches, const std::vector<float>& variances,
+                const std::vector<float>& costs, const BatchCounts& wanted) {
+  const double cost = sum_over(
+      counts.size(), [&](std::size_t p) { return double{costs[p]} * (counts[p] - wanted[p]); });
+  const double alike = sum_over(counts.size(), [&](std::size_t p) {
+    return variances[p] > 0 ? costs[p] * std::max(0.0, batches - wanted[p]) : 0.0;
+  });
+  return 1.0 - cost / alike;
+}
+
+/// The mean of those that pixels have which vary.
+double batches_where_varied(const std::vector<float>& variances, const BatchCounts& have) {
+  const auto varies = [&](std::size_t p) { return variances[p] > 0 ? 1.0 : 0.0; };
+  return sum_over(have.size(), [&](std::size_t p) { return varies(p) * have[p]; }) /
+         sum_over(have.size(), varies);
+}
+
 }  // namespace
 
 void want_error(const std::vector<float>& variances, float target, const BatchCounts& have,
@@ -111,12 +166,13 @@ double squared_errors(const std::vector<float>& variances, const BatchCounts& ba
 void want_rmse(const std::vector<float>& variances, const std::vector<float>& costs, double enough,
                const BatchCounts& have, const AllocationLimits& limits, BatchCounts& wanted) {
   if (squared_errors(variances, wanted) <= enough) return;
-  const ByDeviation pass(variances, costs, have, limits, wanted);
-  const double density = least_density(pass, enough);
-  BatchCounts raised(wanted.size());
-  for (std::size_t pixel = 0; pixel < raised.size(); ++pixel)
-    raised[pixel] = pass.batches(pixel, density);
-  wanted = std::move(raised);
+  BatchCounts by_deviation = wanted_by_deviation(variances, costs, enough, have, limits, wanted);
+  const double batches = batches_alike(variances, enough, limits);
+  const double saved = saved_by(by_deviation, batches, variances, costs, wanted);
+  if (saved * batches_where_varied(variances, have) >= kLeastSaved)
+    wanted = std::move(by_deviation);
+  else
+    wanted = wanted_alike(variances, batches, wanted);
 }
 
 }  // namespace dapple

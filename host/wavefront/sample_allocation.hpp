@@ -28,7 +28,7 @@ double squared_errors(const std::vector<float>& variances, const BatchCounts& ba
 /// (Neyman, "On the Two Different Aspects of the Representative Method", 1934, section III; with
 /// costs Cochran, "Sampling Techniques", 1977, section 5.5). `costs`: of a sample, by pixel, above
 /// 0, in any unit. What is wanted already, for another pass, counts. Where `most` is in the way,
-/// all pixels that vary want that.
+/// all pixels that vary want that. Where this would save little, all that vary get the same.
 void want_rmse(const std::vector<float>& variances, const std::vector<float>& costs, double enough,
                const BatchCounts& have, const AllocationLimits& limits, BatchCounts& wanted);
 

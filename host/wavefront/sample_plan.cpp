@@ -3,9 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <functional>
 #include <map>
+#include <set>
 
 namespace dapple {
 namespace {
@@ -28,6 +28,9 @@ constexpr std::uint32_t kUnit = 4;
 /// Part of the squared error asked for that is aimed at: estimates move as samples come, and a
 /// round for a few more takes as long as a tenth of the picture.
 constexpr double kAim = 0.95;
+
+/// Groups that get all their samples at once; of more, what is small is better traced together.
+constexpr std::size_t kMostGroups = 4;
 
 /// Samples that in passes every pixel has before any has more, and times what it has that it then
 /// gets more.
@@ -97,6 +100,17 @@ std::vector<T> block_most(const std::vector<T>& values, int width) {
   return by_block(values, width, T{0}, [](T a, T b) { return std::max(a, b); });
 }
 
+/// Different values but 0.
+std::size_t count_values(const std::vector<std::uint32_t>& values) {
+  std::set<std::uint32_t> different;
+  std::uint32_t last = 0;
+  for (const std::uint32_t value : values) {
+    if (value != last && value != 0) different.insert(value);
+    last = value;
+  }
+  return different.size();
+}
+
 bool all_equal(const std::vector<std::uint32_t>& values) {
   return std::all_of(values.begin(), values.end(), [&](auto v) { return v == values.front(); });
 }
@@ -163,8 +177,10 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
 // errors add up to those of the picture.
 BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
                                const std::vector<float>& costs) const {
-  BatchCounts have = block_most(samples_, width_);
-  for (std::uint32_t& batches : have) batches /= DAPPLE_BATCH;
+  const std::vector<std::uint32_t> samples = block_most(samples_, width_);
+  BatchCounts have(samples.size());
+  std::transform(samples.begin(), samples.end(), have.begin(),
+                 [](std::uint32_t of_block) { return of_block / DAPPLE_BATCH; });
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
   if (target_rmse_ > 0) {
@@ -189,25 +205,28 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
   BatchCounts all(samples_.size());
   visit_blocks(width_, all.size(),
                [&](std::size_t block, std::uint32_t pixel) { all[pixel] = of_blocks[block]; });
-  // By powers of two: few groups, whatever pixels want.
-  std::vector<WorkGroup> by_power(32);
+  std::vector<std::uint32_t> more(all.size());
   double done = 0, missing = 0;
-  for (const std::uint32_t pixel : order_) {
+  for (std::size_t pixel = 0; pixel < more.size(); ++pixel) {
     const std::uint32_t has = samples_[pixel] / DAPPLE_BATCH;
     done += has;
     missing += all[pixel] - has;
-    const std::uint32_t most_more = kMostMore * has / kUnit * kUnit;
-    for (std::uint32_t left = std::min(all[pixel] - has, most_more); left; left &= left - 1) {
-      const int power = std::countr_zero(left);
-      WorkGroup& group = by_power[power];
-      group.samples = DAPPLE_BATCH << power;
+    more[pixel] = std::min(all[pixel] - has, kMostMore * has / kUnit * kUnit);
+  }
+  std::map<std::uint32_t, WorkGroup> groups;
+  const bool whole = count_values(more) <= kMostGroups;
+  for (const std::uint32_t pixel : order_) {
+    // In parts of powers of two there are few groups whatever pixels want.
+    for (std::uint32_t left = more[pixel], part = 0; left; left -= part) {
+      part = whole ? left : left & -left;
+      WorkGroup& group = groups[part];
+      group.samples = part * DAPPLE_BATCH;
       group.work.push_back({pixel, samples_[pixel]});
       samples_[pixel] += group.samples;
     }
   }
   fraction_done_ = std::max(fraction_done_, done / (done + missing));
-  std::erase_if(by_power, [](const WorkGroup& group) { return group.work.empty(); });
-  return by_power;
+  return in_order(std::move(groups));
 }
 
 }  // namespace dapple

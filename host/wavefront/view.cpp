@@ -90,7 +90,7 @@ Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
   return seen;
 }
 
-/// The whole pixel that `at` is in or next to, of `count`.
+/// The pixel that `at` is in, of `count`; `count` itself if it is beyond them.
 uint pixel_at(double at, int count) {
   return static_cast<uint>(std::clamp(at, 0.0, static_cast<double>(count)));
 }

@@ -54,8 +54,8 @@ typedef struct CameraParams {
   uint crop_width;
   uint seed;
   float inverse_spp;    /* 1 / samples a pixel that were asked for */
-  uint seen_left, seen_above, seen_right, seen_below;  /* pixels in which the scene may be, up to
-                                                          before the last two */
+  /* Pixels in which the scene may be: columns [left, right), rows [above, below). */
+  uint seen_left, seen_above, seen_right, seen_below;
 } CameraParams;
 
 /* Rays a point for AO; also for points that no camera made. */
