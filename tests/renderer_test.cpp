@@ -71,6 +71,25 @@ TEST(Renderer, TheSamePictureTwiceIsTheSameBits) {
   }
 }
 
+// Camera rays are only traced where the scene's bounds are: these move too, with one object that is
+// refitted and with placements.
+TEST(Renderer, WhatMovesAcrossThePictureIsSeenWhereItIs) {
+  const RenderOptions options = small_picture(Estimator::exact, 64, 1);
+  for (const char* name : {"scene:tree?leaves=300", "scene:forest?trees=4&leaves=50"}) {
+    const Scene still = make_procedural(name);
+    Renderer renderer;
+    renderer.render(still, options);
+    for (const float aside : {8.0f, -8.0f}) {
+      Scene moved = still;
+      for (Instance& instance : moved.instances) instance.to_world[3][0] += aside;
+      const RenderResult seen = renderer.render(moved, options), fresh = render(moved, options);
+      EXPECT_GT(mean_of(fresh, "A"), 0.01) << name << " is in the picture";
+      for (const char* channel : {"A", "P.X", "ao.R"})
+        EXPECT_EQ(mean_of(seen, channel), mean_of(fresh, channel)) << name << ": " << channel;
+    }
+  }
+}
+
 TEST(Renderer, GoesOnAfterAnError) {
   const Scene still = tree(500);
   const RenderOptions options = small_picture(Estimator::prefiltered);
