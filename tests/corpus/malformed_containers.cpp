@@ -123,7 +123,7 @@ void add_wrong_chunks(MalformedCases& cases) {
   add("empty_json", {{kJsonChunk, {}}, sound[1]}, "is not glTF");
   add("binary_json", {{kJsonChunk, Bytes(64, 0xfe)}, sound[1]}, "is not glTF");
   Bytes cut_third = glb_of({sound[0], sound[1], other});
-  cut_third.resize(cut_third.size() - 4);
+  cut_third.erase(cut_third.end() - 4, cut_third.end());  // resize() has g++ 12 see overflows here
   set_u32(cut_third, 8, static_cast<std::uint32_t>(cut_third.size()));
   cases.push_back(bytes_case("third_chunk_cut", cut_third, "reads past the file"));
   Bytes followed = one_triangle().glb();
