@@ -6,7 +6,7 @@
 
 /* Stores what ray i of a beam met; `sample` is its place among those of `chosen`. */
 inline void store_hit(Scene scene, const CameraSamples* chosen, uint sample, const BeamRays* rays,
-                      const float* area, const BeamNearest* nearest, uint i,
+                      const float* area, BeamNearest* nearest, uint i,
                       __global SurfacePoint* point) {
   const float3 direction = (float3)(((const float*)&rays->direction[0])[i],
                                     ((const float*)&rays->direction[1])[i],
@@ -39,11 +39,11 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
   BeamNearest nearest;
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i)
     nearest.t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
-  nearest.u.v = nearest.v.v = (float16)(0.0f);
-  nearest.triangle.v = nearest.instance.v = (int16)(0);
+  clear_layers(vload16(0, chosen->threshold + first), &nearest.layers);
+  nearest.primitive.v = nearest.instance.v = (int16)(0);
   nearest.farthest = INFINITY;
   nearest.visits = nearest.tests = 0u;
-  find_nearest(scene, params.scene, entries, &rays, chosen->key + first, &nearest);
+  find_nearest(scene, params.scene, entries, &rays, &nearest);
   BeamFloats area;
   area.v = first_area + solid_angle * nearest.t.v * nearest.t.v;
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {

@@ -3,6 +3,16 @@
 #include "pass_params.h"
 #include "surface_point.clh"
 
+/* Rays of the same key have unrelated ones all the same, if they are not the same rays. */
+inline float threshold_of(__global const Ray* ray) {
+  uint bits = ray->key;
+  for (uint axis = 0; axis < 3u; ++axis) {
+    bits = hash_pair(as_uint(ray->origin[axis]), bits);
+    bits = hash_pair(as_uint(ray->direction[axis]), bits);
+  }
+  return unit_float(bits);
+}
+
 __kernel void closest_hit(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                           __global const SegmentBlock* segments,
                           __global const TexturedTriangle* textured,
@@ -14,8 +24,10 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   const Ray ray = rays[item];
   const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
-  Nearest nearest = {no_hit(ray.t_max), 0u, 0u};
-  find_closest(scene, params.scene.root, params.scene.has_top != 0u, DAPPLE_WORLD, span, ray.key,
+  Layers layers; /* only the first ray's are used */
+  clear_layers((float16)(threshold_of(rays + item)), &layers);
+  Nearest nearest = {no_hit(ray.t_max), &layers, 0u, 0u, 0u};
+  find_closest(scene, params.scene.root, params.scene.has_top != 0u, DAPPLE_WORLD, span,
                &nearest);
   __global SurfacePoint* point = points + item;
   point->visits = min(nearest.visits, 65535u) | min(nearest.tests, 65535u) << 16;

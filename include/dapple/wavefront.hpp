@@ -136,8 +136,8 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              std::span<const Ray> rays, Estimator estimator,
                              float footprint = kDefaultFootprint, std::size_t rays_per_point = 1);
 
-/// First surface met by each ray; a surface of opacity a is met with probability a,
-/// chosen by hashing Ray::key with primitive and instance. Where t < 0 none was met.
+/// The surface that stops each ray: of the rays that come to a surface of opacity a, the share a.
+/// Which these are is hashed from the ray and its key (kernels/layers.clh). Where t < 0 there is none.
 std::vector<SurfacePoint> closest_hits(const Device& device, const DeviceScene& scene,
                                        std::span<const Ray> rays);
 

@@ -11,7 +11,8 @@ __kernel void camera_order(__global const float* x, __global const float* y,
     samples.x[i] = x[i];
     samples.y[i] = y[i];
     samples.place[i] = i;
-    samples.pixel[i] = samples.sample[i] = samples.key[i] = 0u;
+    samples.pixel[i] = samples.sample[i] = 0u;
+    samples.threshold[i] = 0.0f;
   }
   sort_samples(&samples, &sorted);
   for (uint i = 0; i < DAPPLE_ITEM_SAMPLES; ++i) order[i] = sorted.place[i];
