@@ -39,7 +39,7 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
   BeamNearest nearest;
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i)
     nearest.t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
-  clear_layers(vload16(0, chosen->threshold + first), &nearest.layers);
+  start_layers(vload16(0, chosen->threshold + first), &nearest.layers);
   nearest.primitive.v = nearest.instance.v = (int16)(0);
   nearest.farthest = INFINITY;
   nearest.visits = nearest.tests = 0u;

@@ -1,9 +1,9 @@
-/* The nearest surface along each ray of a queue. */
+/* What stops each ray of a queue. */
 #include "nearest_ray.clh"
 #include "pass_params.h"
 #include "surface_point.clh"
 
-/* Rays of the same key have unrelated ones all the same, if they are not the same rays. */
+/* Different rays have unrelated thresholds even where their keys are equal. */
 inline float threshold_of(__global const Ray* ray) {
   uint bits = ray->key;
   for (uint axis = 0; axis < 3u; ++axis) {
@@ -25,10 +25,13 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
   const Ray ray = rays[item];
   const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
   Layers layers; /* only the first ray's are used */
-  clear_layers((float16)(threshold_of(rays + item)), &layers);
+  start_layers((float16)(threshold_of(rays + item)), &layers);
   Nearest nearest = {no_hit(ray.t_max), &layers, 0u, 0u, 0u};
-  find_closest(scene, params.scene.root, params.scene.has_top != 0u, DAPPLE_WORLD, span,
-               &nearest);
+  do {
+    nearest.hit = no_hit(ray.t_max);
+    find_closest(scene, params.scene.root, params.scene.has_top != 0u, DAPPLE_WORLD, span,
+                 &nearest);
+  } while (pass_layers(&layers, (float16)(nearest.hit.t)).s0);
   __global SurfacePoint* point = points + item;
   point->visits = min(nearest.visits, 65535u) | min(nearest.tests, 65535u) << 16;
   const float t = nearest.hit.t;

@@ -23,8 +23,10 @@ constexpr int kLargestSpp = 256;
 /// Samples that the adaptive contestant gives every pixel.
 constexpr int kAdaptiveSpp = 4;
 
-/// AO rays a camera sample: Embree's, each of which is a contestant, and the packet contestant's.
+/// AO rays a camera sample with which Embree takes part: with either of them.
 constexpr std::uint32_t kEmbreeRays[] = {1, 2};
+
+/// AO rays a camera sample of the packet contestant.
 constexpr int kPacketRays = 16;
 
 double seconds_of(const std::function<void()>& work) {
@@ -127,7 +129,7 @@ std::vector<Contestant> ImageStudy::contestants() {
   changes.estimator = Estimator::prefiltered;
   contestants.push_back(by_dapple("prefiltered", changes));
   if (pass_ == Pass::ao) {
-    // With one ray a sample packets are single rays: this trades camera rays for AO rays.
+    // With few rays a sample there is little to share: this trades camera rays for AO rays.
     changes.estimator = Estimator::packet;
     changes.ao_rays = kPacketRays;
     contestants.push_back(by_dapple("packet, 16 rays a sample", changes));

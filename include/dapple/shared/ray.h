@@ -18,7 +18,7 @@ typedef struct Ray {
   float first_area;   /* square metres */
   uint light;         /* 1 + the mesh light this ray is aimed at; 0: none */
   float weight;       /* what the ray's transmittance is multiplied by in its pass */
-  uint key;           /* random bits of its own: stochastic opacity, footprint_spread() */
+  uint key;           /* random bits of its own: closest_hit.cl, footprint_spread() */
 } Ray;
 
 /* Each ray's footprint is scaled by a random number from 1/2 to 2, so that nodes come to be
