@@ -21,7 +21,7 @@ class ImageStudy {
   /// Embree, exact, at the reference's samples, from the cache where it is there.
   Truth truth();
 
-  /// Embree's best of each alpha, found by trying all at a sample a pixel, in AO with one ray a
+  /// Embree's best of each alpha, found by trying all at a sample a pixel, for AO with one ray a
   /// sample and with two; dapple's exact and prefiltered; AO also by packets.
   std::vector<Contestant> contestants();
 
