@@ -60,7 +60,7 @@ constexpr double kBoundsMargin = 1e-5;
 /// infinite where one is not before the camera.
 Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
   Imath::Box2d everywhere(Imath::V2d(-std::numeric_limits<double>::infinity()),
-                                Imath::V2d(std::numeric_limits<double>::infinity()));
+                          Imath::V2d(std::numeric_limits<double>::infinity()));
   const Imath::M44d to_world(view.camera.to_world);
   if (!(std::fabs(to_world.determinant()) > 0)) return everywhere;
   const Imath::M44d to_camera = to_world.inverse();
