@@ -14,7 +14,7 @@ inline void store_hit(Scene scene, const CameraSamples* chosen, uint sample, con
   const float3 origin = (float3)(((const float*)&rays->origin[0])[i],
                                  ((const float*)&rays->origin[1])[i],
                                  ((const float*)&rays->origin[2])[i]);
-  store_point(scene, nearest_of_ray(nearest, i).hit, origin, direction, area[i], point);
+  store_point(scene, hit_of_ray(nearest, i), origin, direction, area[i], point);
   point->pixel = chosen->pixel[sample];
   point->sample = chosen->sample[sample];
 }
@@ -53,7 +53,7 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
   }
   for (uint left = bits_of_rays((nearest.t.v > 0.0f) & (nearest.t.v < INFINITY)); left;
        left &= left - 1u) {
-    const uint i = popcount((left & -left) - 1u), place = chosen->place[first + i];
+    const uint i = lowest_bit(left), place = chosen->place[first + i];
     found->hits |= 1UL << place;
     store_hit(scene, chosen, first + i, &rays, area.f, &nearest, i, points + place);
   }

@@ -24,19 +24,23 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   const Ray ray = rays[item];
   const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
-  Layers layers; /* only the first ray's are used */
-  start_layers((float16)(threshold_of(rays + item)), &layers);
-  Nearest nearest = {no_hit(ray.t_max), &layers, 0u, 0u, 0u};
+  BeamNearest nearest; /* only the first ray's is used */
+  LoneRay lone;
+  start_layers((float16)(threshold_of(rays + item)), &nearest.layers);
+  nearest.visits = nearest.tests = 0u;
   do {
-    nearest.hit = no_hit(ray.t_max);
-    find_closest(scene, params.scene.root, params.scene.has_top != 0u, DAPPLE_WORLD, span,
-                 &nearest);
-  } while (pass_layers(&layers, (float16)(nearest.hit.t)).s0);
+    nearest.t.v = (float16)(ray.t_max);
+    nearest.primitive.v = nearest.instance.v = (int16)(-1);
+    start_lone(span, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
+    ask_for_entry(scene, params.scene.root, 0.0f, &lone);
+    while (go_down(scene, &lone, &nearest)) {
+    }
+  } while (pass_layers(&nearest.layers, nearest.t.v).s0);
   __global SurfacePoint* point = points + item;
   point->visits = min(nearest.visits, 65535u) | min(nearest.tests, 65535u) << 16;
-  const float t = nearest.hit.t;
+  const float t = nearest.t.f[0];
   if (t < ray.t_max) {
-    store_point(scene, nearest.hit, span.origin, span.direction,
+    store_point(scene, hit_of_ray(&nearest, 0u), span.origin, span.direction,
                 ray.first_area + ray.solid_angle * t * t, point);
   } else {
     point->t = -1.0f;

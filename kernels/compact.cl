@@ -1,5 +1,6 @@
 /* Lists the samples that hit a surface, in order: a prefix sum by one work-group, since a
    slice is small and atomics would shuffle the order from run to run. */
+#include "lanes.clh"
 #include "sample_hits.clh"
 
 #define DAPPLE_SCAN_ITEMS 256
@@ -28,7 +29,7 @@ void compact_hits(__global SampleHits* sample_hits, __global uint* active_list,
   for (uint i = begin; i < end; ++i) {
     sample_hits[i].first_slot = next;
     for (uint left = sample_hits[i].hits; left; left &= left - 1u) {
-      active_list[next++] = i * DAPPLE_HIT_BITS + popcount((left & -left) - 1u);
+      active_list[next++] = i * DAPPLE_HIT_BITS + lowest_bit(left);
     }
   }
   if (item == DAPPLE_SCAN_ITEMS - 1u) *active_count = sums[item];

@@ -1,5 +1,6 @@
 /* The passes that add up camera samples, AO and lights: see film.clh. */
 #include "film.clh"
+#include "lanes.clh"
 #include "scene.clh"
 
 /* Hits, normal (3), position (3), depth: the order of their planes. */
@@ -32,7 +33,7 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
     visits += (long)record.visits * popcount(range);
     tests += (long)record.tests * popcount(range);
     for (uint left = record.hits & range; left; left &= left - 1u) {
-      sums.v += surface_sums(params, points + r * DAPPLE_HIT_BITS + popcount((left & -left) - 1u));
+      sums.v += surface_sums(params, points + r * DAPPLE_HIT_BITS + lowest_bit(left));
     }
   }
   const uint pixel = pixel_of(work, params, local_pixel);
