@@ -4,58 +4,71 @@
 #include "deal.clh"
 #include "surface_point.clh"
 
-/* Stores what ray i of a beam met; `sample` is its place among those of `chosen`. */
-inline void store_hit(Scene scene, const CameraSamples* chosen, uint sample, const BeamRays* rays,
-                      const float* area, BeamNearest* nearest, uint i,
-                      __global SurfacePoint* point) {
-  const float3 direction = (float3)(((const float*)&rays->direction[0])[i],
-                                    ((const float*)&rays->direction[1])[i],
-                                    ((const float*)&rays->direction[2])[i]);
-  const float3 origin = (float3)(((const float*)&rays->origin[0])[i],
-                                 ((const float*)&rays->origin[1])[i],
-                                 ((const float*)&rays->origin[2])[i]);
-  store_point(scene, hit_of_ray(nearest, i), origin, direction, area[i], point);
-  point->pixel = chosen->pixel[sample];
-  point->sample = chosen->sample[sample];
-}
+#define DAPPLE_MOST_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MOST_DEPTHS / DAPPLE_HIT_BITS)
 
-#define DAPPLE_ITEM_RECORDS (DAPPLE_ITEM_SAMPLES / DAPPLE_HIT_BITS)
-
-/* What an item found: its samples that hit, by place, and for each SampleHits the sums over its
-   samples of what their beams cost. */
+/* What an item found, by SampleHits: bits of the samples that hit, and sums over the rays of what
+   their beams cost. */
 typedef struct ItemHits {
-  ulong hits;
-  uint visits[DAPPLE_ITEM_RECORDS], tests[DAPPLE_ITEM_RECORDS];
+  uint hits[DAPPLE_MOST_RECORDS], visits[DAPPLE_MOST_RECORDS], tests[DAPPLE_MOST_RECORDS];
 } ItemHits;
 
-/* Where the rays of one beam meet the scene: the samples of `chosen` from `first` on, but for those
-   that are not among the item's `count`. `points` are those of the item. */
+/* Where a ray of a beam stopped, sample by sample: `of_item` is the ray's place in `chosen`, of_beam
+   that in `rays`; `points` are those of the item. */
+inline void store_stops(Scene scene, const CameraSamples* chosen, uint of_item, const BeamRays* rays,
+                        uint of_beam, float first_area, float solid_angle, const Stops* stops,
+                        __global SurfacePoint* points, ItemHits* found) {
+  const Span span = span_of(rays, of_beam);
+  for (uint d = 0; d < stops->count; ++d) {
+    const SurfaceHit hit = {stops->t[d].f[of_beam], (uint)stops->primitive[d].i[of_beam],
+                            (uint)stops->instance[d].i[of_beam]};
+    if (!(hit.t < INFINITY)) continue;
+    const uint place = chosen->place[of_item] * stops->count + d;
+    __global SurfacePoint* point = points + place;
+    store_point(scene, hit, span.origin, span.direction, first_area + solid_angle * hit.t * hit.t,
+                point);
+    point->pixel = chosen->pixel[of_item];
+    point->sample = chosen->sample[of_item] + d;
+    found->hits[place / DAPPLE_HIT_BITS] |= 1u << place % DAPPLE_HIT_BITS;
+  }
+}
+
+/* Where the rays of one beam meet the scene: those of `chosen` from `first` on, but for the ones
+   that are not among the item's `count`. */
 inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* chosen,
                        const Entries* entries, uint first, uint count,
                        __global SurfacePoint* points, ItemHits* found) {
   BeamRays rays;
-  float16 solid_angle, first_area;
-  aim(params, chosen->x + first, chosen->y + first, &rays, &solid_angle, &first_area);
+  BeamFloats solid_angle, first_area;
+  aim(params, chosen->x + first, chosen->y + first, &rays, &solid_angle.v, &first_area.v);
   BeamNearest nearest;
+  Stops stops;
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i)
     nearest.t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
-  start_layers(vload16(0, chosen->threshold + first), &nearest.layers);
+  stops.count = 1u << params.depth_bits;
+  float16 least = (float16)(1.0f);
+  for (uint d = 0; d < stops.count; ++d) {
+    stops.threshold[d] = vload16(0, chosen->threshold[d] + first);
+    stops.t[d].v = (float16)(INFINITY);
+    least = min(least, stops.threshold[d]);
+  }
+  start_layers(least, &nearest.layers);
   nearest.primitive.v = nearest.instance.v = (int16)(0);
   nearest.farthest = INFINITY;
   nearest.visits = nearest.tests = 0u;
-  find_nearest(scene, params.scene, entries, &rays, &nearest);
-  BeamFloats area;
-  area.v = first_area + solid_angle * nearest.t.v * nearest.t.v;
+  find_nearest(scene, params.scene, entries, &rays, &nearest, &stops);
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
-    const uint place = chosen->place[first + i], record = place / DAPPLE_HIT_BITS;
+    const uint place = chosen->place[first + i];
+    const uint record = (place << params.depth_bits) / DAPPLE_HIT_BITS;
     found->visits[record] += place < count ? nearest.visits : 0u;
     found->tests[record] += place < count ? nearest.tests : 0u;
   }
-  for (uint left = bits_of_rays((nearest.t.v > 0.0f) & (nearest.t.v < INFINITY)); left;
-       left &= left - 1u) {
-    const uint i = lowest_bit(left), place = chosen->place[first + i];
-    found->hits |= 1UL << place;
-    store_hit(scene, chosen, first + i, &rays, area.f, &nearest, i, points + place);
+  /* Whoever stops anywhere stops for the greatest threshold. */
+  float16 nearest_stop = stops.t[0].v;
+  for (uint d = 1; d < stops.count; ++d) nearest_stop = min(nearest_stop, stops.t[d].v);
+  for (uint left = bits_of_rays(nearest_stop < INFINITY); left; left &= left - 1u) {
+    const uint i = lowest_bit(left);
+    store_stops(scene, chosen, first + i, &rays, i, first_area.f[i], solid_angle.f[i], &stops,
+                points, found);
   }
 }
 
@@ -67,39 +80,41 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
                           __global const InstanceRecord* instances,
                           __global const PixelWork* work, __global SurfacePoint* points,
                           __global SampleHits* sample_hits, CameraParams params) {
-  const uint samples = params.slice.pixel_count * params.slice.sample_count;
-  const uint items = (samples + DAPPLE_ITEM_SAMPLES - 1u) / DAPPLE_ITEM_SAMPLES;
-  const uint begin = deal_runs(get_global_id(0), items, DAPPLE_RUN_ITEMS) * DAPPLE_ITEM_SAMPLES;
-  if (begin >= samples) return;
-  const uint count = min(samples - begin, DAPPLE_ITEM_SAMPLES);
+  const uint rays = params.slice.pixel_count * rays_of_pixel(params);
+  const uint items = (rays + DAPPLE_ITEM_RAYS - 1u) / DAPPLE_ITEM_RAYS;
+  const uint begin = deal_runs(get_global_id(0), items, DAPPLE_RUN_ITEMS) * DAPPLE_ITEM_RAYS;
+  if (begin >= rays) return;
+  const uint count = min(rays - begin, DAPPLE_ITEM_RAYS);
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   Entries entries;
   entries.count = entries.visits = 0u;
-  const PixelBounds pixels = pixels_of_samples(work, params, begin, count);
+  const PixelBounds pixels = pixels_of_rays(work, params, begin, count);
   if (may_see_scene(params, pixels)) {
     BeamBounds bounds;
     bound_pixels(params, pixels, &bounds);
     find_entries(scene, params.scene, &bounds, &entries);
   }
+  const uint first_sample = begin << params.depth_bits;
+  const uint rays_of_record = DAPPLE_HIT_BITS >> params.depth_bits;
+  const uint records = (count + rays_of_record - 1u) / rays_of_record;
   ItemHits found;
-  found.hits = 0UL;
-  for (uint record = 0; record < DAPPLE_ITEM_RECORDS; ++record)
-    found.visits[record] = found.tests[record] = 0u;
+  for (uint record = 0; record < DAPPLE_MOST_RECORDS; ++record)
+    found.hits[record] = found.visits[record] = found.tests[record] = 0u;
   if (entries.count) {
     CameraSamples chosen, sorted;
     choose_samples(work, params, begin, count, &chosen);
-    sort_samples(&chosen, &sorted);
-    for (uint first = 0; first < DAPPLE_ITEM_SAMPLES; first += DAPPLE_BEAM_RAYS) {
-      trace_beam(scene, params, &sorted, &entries, first, count, points + begin, &found);
+    sort_samples(&chosen, 1u << params.depth_bits, &sorted);
+    for (uint first = 0; first < DAPPLE_ITEM_RAYS; first += DAPPLE_BEAM_RAYS) {
+      trace_beam(scene, params, &sorted, &entries, first, count, points + first_sample, &found);
     }
   }
-  for (uint record = 0; record * DAPPLE_HIT_BITS < count; ++record) {
-    const uint of_record = min(count - record * DAPPLE_HIT_BITS, DAPPLE_HIT_BITS);
+  for (uint record = 0; record < records; ++record) {
+    const uint of_record = min(count - record * rays_of_record, rays_of_record);
     /* Nodes that all beams visited together are shared out. */
-    const uint of_entries = (entries.visits + DAPPLE_ITEM_RECORDS - 1u - record) / DAPPLE_ITEM_RECORDS;
-    const SampleHits of_samples = {(uint)(found.hits >> record * DAPPLE_HIT_BITS) & 65535u, 0u,
+    const uint of_entries = (entries.visits + records - 1u - record) / records;
+    const SampleHits of_samples = {found.hits[record], 0u,
                                    found.visits[record] / of_record + of_entries,
                                    found.tests[record] / of_record};
-    sample_hits[begin / DAPPLE_HIT_BITS + record] = of_samples;
+    sample_hits[first_sample / DAPPLE_HIT_BITS + record] = of_samples;
   }
 }

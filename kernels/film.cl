@@ -16,7 +16,7 @@ inline long8 surface_sums(ResolveParams params, __global const SurfacePoint* poi
 }
 
 /* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles
-   each sample is given a whole beam's: the mean over its record. */
+   each ray is given a whole beam's: the mean over its record. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
                               __global const SampleHits* sample_hits, __global long* film,
                               ResolveParams params) {
@@ -30,8 +30,9 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
   for (uint r = begin / DAPPLE_HIT_BITS; r * DAPPLE_HIT_BITS < end; ++r) {
     const SampleHits record = sample_hits[r];
     const uint range = range_of_samples(r, begin, end);
-    visits += (long)record.visits * popcount(range);
-    tests += (long)record.tests * popcount(range);
+    const uint rays = popcount(range) >> params.depth_bits;
+    visits += (long)record.visits * rays;
+    tests += (long)record.tests * rays;
     for (uint left = record.hits & range; left; left &= left - 1u) {
       sums.v += surface_sums(params, points + r * DAPPLE_HIT_BITS + lowest_bit(left));
     }
@@ -76,7 +77,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
-    add_to_batch(&batches, s, value);
+    add_to_batch(params, &batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
@@ -114,7 +115,7 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
-    add_to_batch(&batches, s, value);
+    add_to_batch(params, &batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;

@@ -97,8 +97,10 @@ class Resume : public FilmFile {};
 
 TEST_F(Resume, ARenderLeftAfterAnySliceGoesOnToTheSameBits) {
   const SceneOnDevice tree(lit_tree());
+  RenderOptions deep = with(&RenderOptions::target_error, 0.04f);
+  deep.depths = 4;
   for (const RenderOptions& options : {small_picture(), with(&RenderOptions::target_error, 0.05f),
-                                       with(&RenderOptions::target_rmse, 0.02f)}) {
+                                       with(&RenderOptions::target_rmse, 0.02f), deep}) {
     const Tracing tracing(tree, options);
     int slices = 0;
     TraceControl count;

@@ -6,6 +6,7 @@
 
 #include "dapple/error.hpp"
 #include "device/context.hpp"
+#include "wavefront/depths.hpp"
 #include "wavefront/passes.hpp"
 #include "wavefront/picture.hpp"
 
@@ -87,7 +88,8 @@ std::string PictureScene::device_name() {
   return device_->info().name;
 }
 
-Picture PictureScene::render(const RenderOptions& options) {
+Picture PictureScene::render(const RenderOptions& asked) {
+  const RenderOptions options = by_sample(asked, scene_);
   open();
   prepare_kernels(device_->context(), options, scene_.lights);
   const std::vector<Light> lights = options.light ? scene_.lights : std::vector<Light>{};

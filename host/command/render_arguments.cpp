@@ -31,7 +31,12 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option("--max-spp", o.max_spp, "With a target the most samples a pixel")
       ->capture_default_str();
-  app.add_option("--ao-rays", o.ao_rays, "AO rays a camera sample")->capture_default_str();
+  app.add_option("--depths", o.depths,
+                 "Surfaces at which a camera sample is shaded, 1, 2 or 4, each chosen among those "
+                 "that it slips through; 0: by the scene's opacities, more for thin leaves")
+      ->capture_default_str();
+  app.add_option("--ao-rays", o.ao_rays, "AO rays a camera sample, at least one a depth")
+      ->capture_default_str();
   app.add_option("--light-rays", o.light_rays, "Rays a light and camera sample")
       ->capture_default_str();
   app.add_option(

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dapple/error.hpp"
+#include "dapple/shared/ray.h"
 #include "file/compression.hpp"
 #include "file/sealed_file.hpp"
 
@@ -20,7 +21,7 @@ constexpr SealedKind kKind{"checkpoint", 1};
 constexpr std::size_t kFirstGroup = 4;  ///< its section
 
 /// Nothing asks for more than 2^20 samples a pixel, and no device takes larger slices.
-constexpr std::uint32_t kMostSamples = 1u << 20;
+constexpr std::uint32_t kMostSamples = DAPPLE_MOST_DEPTHS << 20;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
   throw Error(ErrorKind::failed, fmt::format("--resume {}: {}", path, reason));
@@ -144,7 +145,7 @@ void check_state(const std::string& path, const TraceState& state, const StateSh
   }
   const bool too_many = std::any_of(state.samples.begin(), state.samples.end(),
                                     [](std::uint32_t samples) { return samples > kMostSamples; });
-  if (too_many || state.slice_samples < DAPPLE_BATCH || state.slice_samples > kMostSamples ||
+  if (too_many || state.slice_samples < DAPPLE_MOST_DEPTHS || state.slice_samples > kMostSamples ||
       !fits(state.round, state.slice_samples, shape.pixels)) {
     refuse(path, "damaged: its list of work is not of this picture");
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scene/environment.hpp"
+#include "wavefront/depths.hpp"
 #include "wavefront/pixel_error.hpp"
 
 namespace dapple {
@@ -71,7 +72,8 @@ std::vector<float> FilmMoments::variances_of(const Mean& mean, std::uint32_t squ
   const double inverse = 1.0 / divisor;
   return batch_variances(
       {of_pixels(layout_.pixels, [&](std::uint32_t p) { return mean(p) * inverse; }),
-       of_pixels(layout_.pixels, [&](std::uint32_t p) { return squares[p] * inverse * inverse; })},
+       of_pixels(layout_.pixels, [&](std::uint32_t p) { return squares[p] * inverse * inverse; }),
+       batch_samples(options_)},
       samples_, width_);
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 
+#include "wavefront/depths.hpp"
 #include "wavefront/picture.hpp"
 
 namespace dapple {
@@ -153,7 +154,9 @@ double root_mean_square(const std::vector<float>& values) {
 void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
                   const RenderOptions& options, std::size_t lights, RenderStatistics& s) {
   const double hits = sums.total(0);
-  s.rays.camera = std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0});
+  s.rays.camera =
+      std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0}) /
+      depth_count(options);
   s.camera = {per_ray(sums.total(kCameraVisits) / DAPPLE_BEAM_RAYS, s.rays.camera),
               per_ray(sums.total(kCameraVisits + 1), s.rays.camera)};
   if (options.ao) {
@@ -178,7 +181,7 @@ void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
     double sum = sums.at(kCameraVisits + which, p) / (which == 0 ? DAPPLE_BEAM_RAYS : 1u);
     if (options.ao) sum += sums.at(layout.ao_visits() + which, p);
     for (const LightPlaneRange& light : layout.lights) sum += sums.at(light.visits() + which, p);
-    return sum / sample_count(picture, p);
+    return sum * depth_count(options) / sample_count(picture, p);
   };
   planes.add("visits.nodes", [&](std::uint32_t p) { return total(p, 0); });
   planes.add("visits.triangles", [&](std::uint32_t p) { return total(p, 1); });
@@ -255,7 +258,7 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
     return hits(p) > 0 ? sums.at(7, p) / (double{layout.depth_scale} * hits(p))
                        : std::numeric_limits<double>::infinity();
   });
-  planes.add("samples", [&](std::uint32_t p) { return picture.samples[p]; });
+  planes.add("samples", [&](std::uint32_t p) { return picture.samples[p] / depth_count(options); });
   if (options.visits) add_visits(planes, sums, picture, layout, options);
   for (std::size_t pass = 0; pass < picture.errors.size(); ++pass) {
     const bool is_ao = options.ao && pass == 0;

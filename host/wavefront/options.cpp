@@ -39,14 +39,21 @@ void check_crop(const RenderOptions& options) {
           c.x0, c.y0, c.x1, c.y1, options.width, options.height));
 }
 
-/// Sums are kept in 64-bit fixed point with 24 bits to spare for samples.
+/// `rays`: of one kind, of a camera sample.
 void check_sample_product(const char* flag, const RenderOptions& options, int rays) {
   const bool adaptive = is_adaptive(options);
   const int spp = adaptive ? options.max_spp : options.spp;
-  if (static_cast<double>(spp) * rays <= (1 << 24)) return;
+  if (static_cast<double>(spp) * rays <= kMostRaysOfPixel) return;
   throw Error(ErrorKind::usage,
               fmt::format("{} {} times {} {} is more than {} rays a pixel",
-                          adaptive ? "--max-spp" : "--spp", spp, flag, rays, 1 << 24));
+                          adaptive ? "--max-spp" : "--spp", spp, flag, rays, kMostRaysOfPixel));
+}
+
+void check_depths(int depths) {
+  if (depths == 0 || depths == 1 || depths == 2 || depths == 4) return;
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("--depths is {}; it must be 1, 2 or 4, or 0 for what suits the scene", depths));
 }
 
 void check_targets(const RenderOptions& options) {
@@ -109,6 +116,7 @@ void validate(const RenderOptions& options) {
   check_range("--spp", options.spp, 1, 1 << 20);
   check_range("footprint_spp", options.footprint_spp, 0, 1 << 20);
   check_targets(options);
+  check_depths(options.depths);
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);
   check_range("--footprint", options.footprint, 0, 1e6);
@@ -124,8 +132,9 @@ void validate(const RenderOptions& options) {
     check_point("--up", options.look->up);
   }
   check_crop(options);
-  check_sample_product("--ao-rays", options, options.ao_rays);
-  check_sample_product("--light-rays", options, options.light_rays);
+  const int depths = std::max(1, options.depths);
+  check_sample_product("--ao-rays", options, std::max(options.ao_rays, depths));
+  check_sample_product("--light-rays", options, options.light_rays * depths);
 }
 
 }  // namespace dapple

@@ -77,13 +77,14 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
 
 void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                  const CameraParams& params) {
-  const std::size_t samples = std::size_t{params.slice.pixel_count} * params.slice.sample_count;
+  const std::size_t rays =
+      std::size_t{params.slice.pixel_count} * (params.slice.sample_count >> params.depth_bits);
   CameraParams camera = params;
   camera.scene = scene.params;
-  constexpr std::size_t kRunSamples = std::size_t{DAPPLE_ITEM_SAMPLES} * DAPPLE_RUN_ITEMS;
+  constexpr std::size_t kRunRays = std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_RUN_ITEMS;
   static_assert(DAPPLE_RUN_ITEMS % kBeamGroup == 0, "whole runs are launched, and no more");
   context.launch(
-      kCameraHits, "camera", (samples + kRunSamples - 1) / kRunSamples * DAPPLE_RUN_ITEMS,
+      kCameraHits, "camera", (rays + kRunRays - 1) / kRunRays * DAPPLE_RUN_ITEMS,
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.work, queues.points, queues.sample_hits, camera},
       kBeamGroup);

@@ -11,6 +11,7 @@
 #include "dapple/wavefront.hpp"
 #include "device/context.hpp"
 #include "device/memory_need.hpp"
+#include "wavefront/depths.hpp"
 #include "wavefront/film_memory.hpp"
 #include "wavefront/passes.hpp"
 #include "wavefront/picture.hpp"
@@ -38,7 +39,7 @@ View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string
 }
 
 FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions& options,
-                      const DeviceInfo& device) {
+                      const RenderOptions& traced, const DeviceInfo& device) {
   FilmMetadata m;
   m.world_to_camera = world_to_exr_camera(view.camera);
   m.world_to_ndc = world_to_ndc(view);
@@ -56,8 +57,10 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
-  if (footprint_samples(options) != options.spp) set("footprint_spp", footprint_samples(options));
-  set("ao_rays", options.ao_rays);
+  if (footprint_samples(traced) != traced.spp)
+    set("footprint_spp", footprint_samples(traced) / traced.depths);
+  set("depths", traced.depths);
+  set("ao_rays", traced.ao_rays * traced.depths);
   set("light_rays", options.light_rays);
   set("ao_distance", options.ao_distance);
   set("ao_falloff", options.ao_falloff);
@@ -176,7 +179,9 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   RenderStatistics& statistics = result.statistics;
   statistics.estimator = name_of(options.estimator);
 
+  const RenderOptions asked = options;
   const View view = furnish(scene, options, statistics.notes);
+  options = by_sample(asked, scene);
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);
   // Here until all went well: after an error nothing of it is of use.
@@ -208,12 +213,12 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
 
   result.film = {view.width, view.height, view.crop,
                  develop(picture, layout, options, lights, statistics),
-                 metadata(scene, view, options, device.info())};
+                 metadata(scene, view, asked, options, device.info())};
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   result.interrupted = picture.interrupted;
   if (result.interrupted) {
     result.film.metadata.settings.emplace_back("interrupted", "yes");
-    statistics.notes.push_back(interruption_note(picture, control));
+    statistics.notes.push_back(interruption_note(picture, options, control));
   }
   *kept_ = std::move(kept);
   statistics.seconds.total = total.seconds();

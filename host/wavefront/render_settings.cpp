@@ -80,6 +80,7 @@ Settings option_settings(const RenderOptions& options, const View& view) {
       {"--trace-with", name_of(options.trace_with)},
       {"--footprint", number(options.footprint)},
       {"--passes", passes_text(options)},
+      {"--depths", number(options.depths)},
       {"--ao-rays", number(options.ao_rays)},
       {"--light-rays", number(options.light_rays)},
       {"--ao-distance", number(options.ao_distance)},

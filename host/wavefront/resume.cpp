@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "dapple/error.hpp"
+#include "wavefront/depths.hpp"
 #include "wavefront/stopwatch.hpp"
 
 namespace dapple {
@@ -21,7 +22,8 @@ void require_enough_samples(const std::string& path, const TraceState& state,
   if (most <= static_cast<std::uint32_t>(asked)) return;
   throw Error(ErrorKind::usage,
               fmt::format("--resume {}: has {} samples a pixel already, {} {} asks for fewer", path,
-                          most, adaptive ? "--max-spp" : "--spp", asked));
+                          most / depth_count(options), adaptive ? "--max-spp" : "--spp",
+                          asked / options.depths));
 }
 
 }  // namespace
@@ -33,7 +35,8 @@ Checkpoint resume(const std::string& path, const View& view, RenderOptions& opti
   if (options.footprint_spp > 0 && options.footprint_spp != checkpoint.footprint_spp) {
     throw Error(ErrorKind::usage,
                 fmt::format("--resume {}: was made with footprint_spp {}, this render has {}", path,
-                            checkpoint.footprint_spp, options.footprint_spp));
+                            checkpoint.footprint_spp / options.depths,
+                            options.footprint_spp / options.depths));
   }
   options.footprint_spp = checkpoint.footprint_spp;
   return checkpoint;
@@ -70,9 +73,10 @@ void write_checkpoints(TraceControl& tracing, const RenderControl& control, Chec
   };
 }
 
-std::string interruption_note(const TracedPicture& picture, const RenderControl& control) {
+std::string interruption_note(const TracedPicture& picture, const RenderOptions& options,
+                              const RenderControl& control) {
   const double samples = std::accumulate(picture.samples.begin(), picture.samples.end(), 0.0) /
-                         static_cast<double>(picture.samples.size());
+                         static_cast<double>(picture.samples.size() * depth_count(options));
   const std::string next = control.checkpoint.empty()
                                ? "with --checkpoint F it could go on"
                                : "--resume " + control.checkpoint + " goes on";

@@ -22,6 +22,7 @@ void write_checkpoints(TraceControl& tracing, const RenderControl& control, Chec
                        RenderResult& result);
 
 /// How far it came, and how to go on.
-std::string interruption_note(const TracedPicture& picture, const RenderControl& control);
+std::string interruption_note(const TracedPicture& picture, const RenderOptions& options,
+                              const RenderControl& control);
 
 }  // namespace dapple

@@ -3,14 +3,15 @@
 #include <algorithm>
 
 #include "dapple/error.hpp"
+#include "dapple/shared/ray.h"
 
 namespace dapple {
 namespace {
 
-/// Samples a pixel and slice: all if they fit, else whole batches.
+/// Samples a pixel and slice: all if they fit, else whole batches, however large these are.
 std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
   return group.samples <= slice_samples ? group.samples
-                                        : slice_samples / DAPPLE_BATCH * DAPPLE_BATCH;
+                                        : slice_samples / DAPPLE_MOST_DEPTHS * DAPPLE_MOST_DEPTHS;
 }
 
 std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {

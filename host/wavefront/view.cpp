@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "dapple/error.hpp"
+#include "wavefront/depths.hpp"
 
 namespace dapple {
 namespace {
@@ -133,6 +135,7 @@ CameraParams camera_params(const View& view, const RenderOptions& options, const
   params.crop_width = static_cast<uint>(view.crop.width());
   params.seed = options.seed;
   params.inverse_spp = 1.0f / static_cast<float>(footprint_samples(options));
+  params.depth_bits = static_cast<uint>(std::countr_zero(depth_count(options)));
   set_seen(view, bounds, params);
   return params;
 }

@@ -7,15 +7,15 @@ __kernel void camera_order(__global const float* x, __global const float* y,
                            __global uint* order) {
   if (get_global_id(0) > 0) return;
   CameraSamples samples, sorted;
-  for (uint i = 0; i < DAPPLE_ITEM_SAMPLES; ++i) {
+  for (uint i = 0; i < DAPPLE_ITEM_RAYS; ++i) {
     samples.x[i] = x[i];
     samples.y[i] = y[i];
     samples.place[i] = i;
     samples.pixel[i] = samples.sample[i] = 0u;
-    samples.threshold[i] = 0.0f;
+    samples.threshold[0][i] = 0.0f;
   }
-  sort_samples(&samples, &sorted);
-  for (uint i = 0; i < DAPPLE_ITEM_SAMPLES; ++i) order[i] = sorted.place[i];
+  sort_samples(&samples, 1u, &sorted);
+  for (uint i = 0; i < DAPPLE_ITEM_RAYS; ++i) order[i] = sorted.place[i];
 }
 
 /* Eight values an item, scaled already. */

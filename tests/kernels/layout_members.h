@@ -72,7 +72,8 @@
   MEMBER(CameraParams, orthographic) MEMBER(CameraParams, width)                             \
   MEMBER(CameraParams, height) MEMBER(CameraParams, crop_x) MEMBER(CameraParams, crop_y)     \
   MEMBER(CameraParams, crop_width) MEMBER(CameraParams, seed)                                \
-  MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, seen_left)                          \
+  MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, depth_bits)                         \
+  MEMBER(CameraParams, seen_left)                                                            \
   MEMBER(CameraParams, seen_above) MEMBER(CameraParams, seen_right)                          \
   MEMBER(CameraParams, seen_below)                                                           \
   STRUCT(AoParams)                                                                           \
@@ -84,6 +85,7 @@
   STRUCT(ResolveParams)                                                                      \
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \
+  MEMBER(ResolveParams, batch) MEMBER(ResolveParams, depth_bits)                             \
   MEMBER(ResolveParams, scale)                                                               \
   MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
   MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)

@@ -23,8 +23,9 @@ typedef struct OcclusionParams {
   uint rays_per_point;        /* packets: rays in a row that share their origin */
 } OcclusionParams;
 
-/* Samples of a pixel whose mean counts once in the sum of squares that errors come from. */
-#define DAPPLE_BATCH 2u
+/* Samples of a pixel whose mean counts once in the sum of squares that errors come from: so many, or
+   those of one camera ray if these are more. */
+#define DAPPLE_LEAST_BATCH 2u
 
 /* A pixel of the crop (row-major) that is to be sampled, and how many samples it has. */
 typedef struct PixelWork {
@@ -33,8 +34,8 @@ typedef struct PixelWork {
 } PixelWork;
 
 /* A slice: `pixel_count` entries of the work list from `first_work`, and of each the samples
-   from first_sample on, counted from its own; item = entry * sample_count + sample. Slices
-   that don't end their pixels' samples are whole batches. */
+   from first_sample on, counted from its own; item = entry * sample_count + sample. Samples are
+   those of whole camera rays; slices that don't end their pixels' samples are whole batches. */
 typedef struct SliceParams {
   uint first_work;
   uint pixel_count;
@@ -54,6 +55,7 @@ typedef struct CameraParams {
   uint crop_width;
   uint seed;
   float inverse_spp;    /* 1 / samples a pixel that were asked for */
+  uint depth_bits;      /* two to these samples in a row share a camera ray */
   /* Pixels in which the scene may be: columns [left, right), rows [above, below). */
   uint seen_left, seen_above, seen_right, seen_below;
 } CameraParams;
@@ -83,6 +85,8 @@ typedef struct ResolveParams {
   uint plane;           /* first plane to add to */
   uint rays;            /* rays a sample */
   uint squares;         /* plane of squares to add to */
+  uint batch;           /* samples of a batch */
+  uint depth_bits;      /* as in CameraParams */
   float scale;          /* of unit-range values */
   float position_scale;
   float depth_scale;

@@ -37,8 +37,11 @@ typedef struct Occlusion {
 /* Camera rays that are traced together. */
 #define DAPPLE_BEAM_RAYS 16u
 
-/* Samples that one item of the camera pass takes: whole beams, and a bit of a ulong each. */
-#define DAPPLE_ITEM_SAMPLES 64u
+/* Camera rays that one item of the camera pass takes: whole beams. */
+#define DAPPLE_ITEM_RAYS 64u
+
+/* Samples at most that share a camera ray: powers of two. */
+#define DAPPLE_MOST_DEPTHS 4u
 
 /* Items of the camera pass in a row that see much the same; whole runs are launched. */
 #define DAPPLE_RUN_ITEMS 16u

@@ -1,0 +1,86 @@
+#include "wavefront/depths.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "dapple/shared/pass_params.h"
+#include "dapple/shared/ray.h"
+
+namespace dapple {
+namespace {
+
+/// Opacities up to which that part of all surfaces must be for so many samples a camera ray (figures
+/// in bench/README). More than suit cost up to a fifth; fewer, up to twice the time.
+constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.7f;
+constexpr double kPart = 0.25;
+
+/// 1 where a texture says: it mostly lets all through or nothing.
+float opacity_of(const Material& material, float vertex_alpha) {
+  if (material.alpha_mode != AlphaMode::blend || material.alpha_texture >= 0) return 1.0f;
+  return material.alpha * (material.uses_vertex_alpha ? vertex_alpha : 1.0f);
+}
+
+float mean_vertex_alpha(const Mesh& mesh) {
+  if (mesh.vertex_alpha.empty()) return 1.0f;
+  return std::accumulate(mesh.vertex_alpha.begin(), mesh.vertex_alpha.end(), 0.0f) /
+         static_cast<float>(mesh.vertex_alpha.size());
+}
+
+/// Of all primitives, and of those that are no more opaque than four and two samples are for.
+struct Counts {
+  double all = 0, for_two = 0, for_four = 0;
+};
+
+Counts count_primitives(const Scene& scene) {
+  std::vector<double> placed(scene.meshes.size(), 0.0);
+  for (const Instance& instance : scene.instances) placed[instance.mesh] += 1;
+  Counts counts;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (placed[m] == 0) continue;
+    const Mesh& mesh = scene.meshes[m];
+    std::vector<std::size_t> of_material(scene.materials.size(), 0);
+    for (const std::uint32_t material : mesh.materials) ++of_material[material];
+    const float vertex_alpha = mean_vertex_alpha(mesh);
+    for (std::size_t i = 0; i < of_material.size(); ++i) {
+      const double primitives = placed[m] * static_cast<double>(of_material[i]);
+      const float opacity = opacity_of(scene.materials[i], vertex_alpha);
+      counts.all += primitives;
+      if (opacity <= kOpacityOfTwo) counts.for_two += primitives;
+      if (opacity <= kOpacityOfFour) counts.for_four += primitives;
+    }
+  }
+  return counts;
+}
+
+/// Samples of a pixel that it may have, whatever of them share a camera ray.
+double most_samples(const RenderOptions& options) {
+  return double{kMostRaysOfPixel} / std::max(options.ao_rays, options.light_rays);
+}
+
+}  // namespace
+
+int choose_depths(const RenderOptions& options, const Scene& scene) {
+  if (options.depths > 0) return options.depths;
+  const Counts counts = count_primitives(scene);
+  const double enough = kPart * counts.all;
+  int depths = counts.for_four > enough ? 4 : counts.for_two > enough ? 2 : 1;
+  const double rays = is_adaptive(options) ? options.max_spp : options.spp;
+  while (depths > 1 && rays * depths > most_samples(options)) depths /= 2;
+  return depths;
+}
+
+RenderOptions by_sample(const RenderOptions& options, const Scene& scene) {
+  RenderOptions out = options;
+  out.depths = choose_depths(options, scene);
+  out.spp *= out.depths;
+  out.max_spp *= out.depths;
+  out.footprint_spp *= out.depths;
+  out.ao_rays = (options.ao_rays + out.depths - 1) / out.depths;
+  return out;
+}
+
+std::uint32_t batch_samples(const RenderOptions& options) {
+  return std::max(DAPPLE_LEAST_BATCH, depth_count(options));
+}
+
+}  // namespace dapple
