@@ -89,7 +89,9 @@ std::string PictureScene::device_name() {
 }
 
 Picture PictureScene::render(const RenderOptions& asked) {
-  const RenderOptions options = by_sample(asked, scene_);
+  RenderOptions chosen = asked;
+  chosen.depths = choose_depths(asked, scene_);
+  const RenderOptions options = by_sample(chosen);
   open();
   prepare_kernels(device_->context(), options, scene_.lights);
   const std::vector<Light> lights = options.light ? scene_.lights : std::vector<Light>{};

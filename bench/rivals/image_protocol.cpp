@@ -20,8 +20,8 @@ constexpr int kCalibrationRounds = 5;
 /// Samples a pixel from which the largest unoccluded irradiance is known well enough.
 constexpr int kLargestSpp = 256;
 
-/// Samples that the adaptive contestant gives every pixel.
-constexpr int kAdaptiveSpp = 4;
+/// Samples that the adaptive contestant gives every pixel, if it were not for batches.
+constexpr int kAdaptiveSpp = 1;
 
 /// AO rays a camera sample with which Embree takes part: with either of them.
 constexpr std::uint32_t kEmbreeRays[] = {1, 2};

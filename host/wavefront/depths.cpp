@@ -9,8 +9,8 @@
 namespace dapple {
 namespace {
 
-/// Opacities up to which that part of all surfaces must be for so many samples a camera ray (figures
-/// in bench/README). More than suit cost up to a fifth; fewer, up to twice the time.
+/// Opacities up to which that part of all surfaces must be for so many samples a camera ray
+/// (figures in bench/README). More than suit cost up to a fifth; fewer, up to twice the time.
 constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.7f;
 constexpr double kPart = 0.25;
 
@@ -69,12 +69,12 @@ int choose_depths(const RenderOptions& options, const Scene& scene) {
   return depths;
 }
 
-RenderOptions by_sample(const RenderOptions& options, const Scene& scene) {
+RenderOptions by_sample(const RenderOptions& options) {
   RenderOptions out = options;
-  out.depths = choose_depths(options, scene);
   out.spp *= out.depths;
   out.max_spp *= out.depths;
-  out.footprint_spp *= out.depths;
+  out.footprint_spp = footprint_samples(options);
+  out.footprint_ao_rays = footprint_ao_rays(options);
   out.ao_rays = (options.ao_rays + out.depths - 1) / out.depths;
   return out;
 }

@@ -12,9 +12,10 @@ namespace dapple {
 /// `options.depths`, or where that is 0 what suits the scene's opacities.
 int choose_depths(const RenderOptions& options, const Scene& scene);
 
-/// What tracing takes: `spp` and the like count samples, of which each camera ray has `depths`, and
-/// `ao_rays` those of one sample.
-RenderOptions by_sample(const RenderOptions& options, const Scene& scene);
+/// What tracing takes: `spp` and `max_spp` count samples, of which each camera ray has `depths`,
+/// which must be chosen, and `ao_rays` those of one sample. Footprints stay what they are without
+/// depths.
+RenderOptions by_sample(const RenderOptions& options);
 
 /// Samples of a camera ray, of options by_sample(); of others 1.
 inline std::uint32_t depth_count(const RenderOptions& options) {

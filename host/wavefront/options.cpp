@@ -115,6 +115,7 @@ void validate(const RenderOptions& options) {
   check_range("--height", options.height, 1, 65535);
   check_range("--spp", options.spp, 1, 1 << 20);
   check_range("footprint_spp", options.footprint_spp, 0, 1 << 20);
+  check_range("footprint_ao_rays", options.footprint_ao_rays, 0, 4096);
   check_targets(options);
   check_depths(options.depths);
   check_range("--ao-rays", options.ao_rays, 1, 4096);

@@ -207,7 +207,7 @@ class PictureTracer {
     ao.point_count = hits;
     ao.rays = static_cast<uint>(options_.ao_rays);
     ao.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
-                               static_cast<float>(options_.ao_rays));
+                               static_cast<float>(footprint_ao_rays(options_)));
     ao.t_max =
         options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
     ao.seed = options_.seed;

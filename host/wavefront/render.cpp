@@ -39,7 +39,7 @@ View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string
 }
 
 FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions& options,
-                      const RenderOptions& traced, const DeviceInfo& device) {
+                      const DeviceInfo& device) {
   FilmMetadata m;
   m.world_to_camera = world_to_exr_camera(view.camera);
   m.world_to_ndc = world_to_ndc(view);
@@ -57,10 +57,9 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
-  if (footprint_samples(traced) != traced.spp)
-    set("footprint_spp", footprint_samples(traced) / traced.depths);
-  set("depths", traced.depths);
-  set("ao_rays", traced.ao_rays * traced.depths);
+  if (footprint_samples(options) != options.spp) set("footprint_spp", footprint_samples(options));
+  set("depths", options.depths);
+  set("ao_rays", options.ao_rays);
   set("light_rays", options.light_rays);
   set("ao_distance", options.ao_distance);
   set("ao_falloff", options.ao_falloff);
@@ -179,23 +178,23 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   RenderStatistics& statistics = result.statistics;
   statistics.estimator = name_of(options.estimator);
 
-  const RenderOptions asked = options;
   const View view = furnish(scene, options, statistics.notes);
-  options = by_sample(asked, scene);
+  options.depths = choose_depths(options, scene);
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);
+  const RenderOptions sampled = by_sample(options);
   // Here until all went well: after an error nothing of it is of use.
   Kept kept = std::exchange(*kept_, {});
   kept.open(options, statistics);
   const Device& device = *kept.device;
   check_memory(device.info(), least_need(scene), "needs at least");
   kept.bring(scene, options, statistics);
-  kept.compile(scene, options, statistics);
+  kept.compile(scene, sampled, statistics);
   const SceneBvh& bvh = kept.bvh->bvh();
   const DeviceScene& on_device = kept.on_device;
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
-  const FilmLayout layout(view, options, bvh.bounds, lights);
+  const FilmLayout layout(view, sampled, bvh.bounds, lights);
   TraceControl tracing{control.progress, control.stop, {}, 0, SampleOrder::pixels};
   if (resumed || !control.checkpoint.empty()) {
     Checkpoint about{option_settings(options, view),
@@ -206,19 +205,19 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   }
 
   const Stopwatch trace_time;
-  const TracedPicture picture = trace_picture(device, on_device, view, options, layout, tracing,
+  const TracedPicture picture = trace_picture(device, on_device, view, sampled, layout, tracing,
                                               resumed ? std::move(resumed->state) : TraceState{});
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   add_trace_statistics(statistics, picture, layout);
 
   result.film = {view.width, view.height, view.crop,
-                 develop(picture, layout, options, lights, statistics),
-                 metadata(scene, view, asked, options, device.info())};
+                 develop(picture, layout, sampled, lights, statistics),
+                 metadata(scene, view, options, device.info())};
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   result.interrupted = picture.interrupted;
   if (result.interrupted) {
     result.film.metadata.settings.emplace_back("interrupted", "yes");
-    statistics.notes.push_back(interruption_note(picture, options, control));
+    statistics.notes.push_back(interruption_note(picture, sampled, control));
   }
   *kept_ = std::move(kept);
   statistics.seconds.total = total.seconds();

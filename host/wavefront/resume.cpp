@@ -18,12 +18,12 @@ void require_enough_samples(const std::string& path, const TraceState& state,
   const bool adaptive = is_adaptive(options);
   const int asked = adaptive ? options.max_spp : options.spp;
   const auto most =
-      state.samples.empty() ? 0u : *std::max_element(state.samples.begin(), state.samples.end());
+      (state.samples.empty() ? 0u : *std::max_element(state.samples.begin(), state.samples.end())) /
+      depth_count(options);
   if (most <= static_cast<std::uint32_t>(asked)) return;
   throw Error(ErrorKind::usage,
               fmt::format("--resume {}: has {} samples a pixel already, {} {} asks for fewer", path,
-                          most / depth_count(options), adaptive ? "--max-spp" : "--spp",
-                          asked / options.depths));
+                          most, adaptive ? "--max-spp" : "--spp", asked));
 }
 
 }  // namespace
@@ -35,8 +35,7 @@ Checkpoint resume(const std::string& path, const View& view, RenderOptions& opti
   if (options.footprint_spp > 0 && options.footprint_spp != checkpoint.footprint_spp) {
     throw Error(ErrorKind::usage,
                 fmt::format("--resume {}: was made with footprint_spp {}, this render has {}", path,
-                            checkpoint.footprint_spp / options.depths,
-                            options.footprint_spp / options.depths));
+                            checkpoint.footprint_spp, options.footprint_spp));
   }
   options.footprint_spp = checkpoint.footprint_spp;
   return checkpoint;

@@ -59,7 +59,8 @@ struct RenderOptions {
   /// Samples a pixel that footprints are made for, [1, 2^20]; 0: spp. A render that goes on from a
   /// checkpoint keeps those of its beginning, so that more samples estimate the same picture.
   int footprint_spp = 0;
-  int max_spp = 4096;  ///< with a target the most samples a pixel, [spp, 2^20]
+  int footprint_ao_rays = 0;  ///< the same of AO rays a primary sample, [1, 4096]; 0: ao_rays
+  int max_spp = 4096;         ///< with a target the most samples a pixel, [spp, 2^20]
   /// Samples that share a camera ray, 1, 2 or 4: each is shaded at a surface of its own, as what
   /// the ray slips through is decided for each. More suit thin leaves and hair, which a ray crosses
   /// many of; 0: by the scene's opacities. `spp` and `max_spp` count camera rays.
@@ -96,6 +97,11 @@ struct RenderOptions {
 /// Samples a pixel whose shares footprints begin with: `footprint_spp` if there is one; else `spp`,
 /// and with a target so many that the bias stays below about a third of it.
 [[nodiscard]] int footprint_samples(const RenderOptions& options);
+
+/// AO rays a primary sample among which footprints share the hemisphere.
+[[nodiscard]] inline int footprint_ao_rays(const RenderOptions& options) {
+  return options.footprint_ao_rays > 0 ? options.footprint_ao_rays : options.ao_rays;
+}
 
 /// Throws Error usage, naming the command line's flag, when a value is out of range.
 void validate(const RenderOptions& options);
