@@ -33,7 +33,7 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
       sums.v += dome_sums(&dome, rays + r, occlusions[r], params.scale);
       value += rays[r].weight * occlusions[r].transmittance / params.rays;
     }
-    add_to_batch(params, &batches, s, value);
+    add_to_batch(&batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;

@@ -77,7 +77,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
-    add_to_batch(params, &batches, s, value);
+    add_to_batch(&batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
@@ -115,7 +115,7 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
       visits += found.visits & 65535u;
       tests += found.visits >> 16;
     }
-    add_to_batch(params, &batches, s, value);
+    add_to_batch(&batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;

@@ -48,7 +48,7 @@ TEST(AdaptiveSampling, EveryPixelEndsBelowTheTargetOrAtTheMost) {
   std::uint64_t total = 0;
   float least = 1e9f, most = 0;
   for (std::size_t p = 0; p < samples.size(); ++p) {
-    EXPECT_EQ(std::fmod(samples[p], static_cast<float>(DAPPLE_LEAST_BATCH)), 0) << p;
+    EXPECT_EQ(std::fmod(samples[p], static_cast<float>(DAPPLE_BATCH)), 0) << p;
     EXPECT_TRUE(samples[p] >= 512 || (ao[p] <= 0.0301f && light[p] <= 0.0301f)) << p;
     least = std::min(least, samples[p]);
     most = std::max(most, samples[p]);
@@ -198,18 +198,16 @@ TEST(AdaptiveSampling, OptionsThatCannotBeAreRefused) {
 
 TEST(BatchVariances, OfKnownBatchesAreTheirSampleVariance) {
   // Sixty-four pixels alike, of two batches with means 0.2 and 0.6: variance 0.08.
-  const std::vector<std::uint32_t> samples(64, 2 * DAPPLE_LEAST_BATCH);
-  const BatchMoments moments{std::vector<float>(64, 0.4f), std::vector<float>(64, 0.4f),
-                             DAPPLE_LEAST_BATCH};
+  const std::vector<std::uint32_t> samples(64, 2 * DAPPLE_BATCH);
+  const BatchMoments moments{std::vector<float>(64, 0.4f), std::vector<float>(64, 0.4f)};
   for (const float variance : batch_variances(moments, samples, 8)) {
     EXPECT_NEAR(variance, 0.08f, 1e-6f);
   }
 }
 
 TEST(BatchVariances, NeighboursStandInWhereAPixelKnowsLittle) {
-  const std::vector<std::uint32_t> samples(9, 2 * DAPPLE_LEAST_BATCH);
-  BatchMoments moments{std::vector<float>(9, 0.5f), std::vector<float>(9, 0.5f),
-                       DAPPLE_LEAST_BATCH};
+  const std::vector<std::uint32_t> samples(9, 2 * DAPPLE_BATCH);
+  BatchMoments moments{std::vector<float>(9, 0.5f), std::vector<float>(9, 0.5f)};
   // The middle pixel alone saw its batches differ: 0 and 1.
   moments.squares[4] = 1.0f;
   const std::vector<float> variances = batch_variances(moments, samples, 3);

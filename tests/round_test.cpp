@@ -42,7 +42,7 @@ TEST(Round, EverySampleIsTracedOnceInOrderAndCountedWhereverItIsLeft) {
         EXPECT_GT(slice.pixel_count * slice.sample_count, 0u);
         const WorkGroup& group = round.groups[round.group];
         const bool ends = slice.first_sample + slice.sample_count == group.samples;
-        EXPECT_TRUE(ends || slice.sample_count % DAPPLE_LEAST_BATCH == 0) << "whole batches";
+        EXPECT_TRUE(ends || slice.sample_count % DAPPLE_BATCH == 0) << "whole batches";
         for (std::uint32_t i = 0; i < slice.pixel_count; ++i) {
           const PixelWork& work = group.work[slice.first_work + i];
           EXPECT_EQ(traced[work.pixel], work.first_sample + slice.first_sample);

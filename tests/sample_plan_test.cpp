@@ -136,8 +136,8 @@ class GaussianPixels {
 
   void trace(const WorkGroup& group) {
     for (const PixelWork& work : group.work) {
-      EXPECT_EQ(work.first_sample, batches_[work.pixel] * DAPPLE_LEAST_BATCH);
-      for (std::uint32_t s = 0; s < group.samples; s += DAPPLE_LEAST_BATCH) {
+      EXPECT_EQ(work.first_sample, batches_[work.pixel] * DAPPLE_BATCH);
+      for (std::uint32_t s = 0; s < group.samples; s += DAPPLE_BATCH) {
         const double value = normal_(random_) * std::sqrt(variances_[work.pixel]);
         sums_[work.pixel] += value;
         squares_[work.pixel] += value * value;
@@ -148,12 +148,11 @@ class GaussianPixels {
   [[nodiscard]] double mean(std::size_t p) const { return sums_[p] / batches_[p]; }
   [[nodiscard]] std::vector<float> variances(int width) const {
     BatchMoments moments;
-    moments.batch = DAPPLE_LEAST_BATCH;
     std::vector<std::uint32_t> samples;
     for (std::size_t p = 0; p < sums_.size(); ++p) {
       moments.mean.push_back(static_cast<float>(mean(p)));
       moments.squares.push_back(static_cast<float>(squares_[p]));
-      samples.push_back(batches_[p] * DAPPLE_LEAST_BATCH);
+      samples.push_back(batches_[p] * DAPPLE_BATCH);
     }
     return batch_variances(moments, samples, width);
   }

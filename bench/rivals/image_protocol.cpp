@@ -20,7 +20,7 @@ constexpr int kCalibrationRounds = 5;
 /// Samples a pixel from which the largest unoccluded irradiance is known well enough.
 constexpr int kLargestSpp = 256;
 
-/// Samples that the adaptive contestant gives every pixel, if it were not for batches.
+/// Samples that the adaptive contestants give every pixel at least: what tells an error.
 constexpr int kAdaptiveSpp = 1;
 
 /// AO rays a camera sample with which Embree takes part: with either of them.
@@ -135,8 +135,7 @@ std::vector<Contestant> ImageStudy::contestants() {
     contestants.push_back(by_dapple("packet, 16 rays a sample", changes));
   }
   contestants.push_back(adaptive("adaptive", &RenderOptions::target_error, 5));
-  // Below 20 all would be what the least of samples give.
-  contestants.push_back(adaptive("adaptive, least RMSE", &RenderOptions::target_rmse, 20));
+  contestants.push_back(adaptive("adaptive, least RMSE", &RenderOptions::target_rmse, 10));
   return contestants;
 }
 

@@ -1,6 +1,8 @@
 // The options of `dapple render`, and from their text to RenderOptions.
 #include "command/render_arguments.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "command/option_text.hpp"
@@ -16,8 +18,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
       "--crop", a.crop,
       "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
-  app.add_option("--spp", o.spp, "Camera samples a pixel; with a target the least")
-      ->capture_default_str();
+  app.add_option("--spp", a.spp, "Camera samples a pixel; with a target the least")
+      ->default_str(fmt::format("{}, with --target-rmse what tells an error", o.spp));
   app.add_option(
          "--target-error", o.target_error,
          "Sample each pixel until its estimated standard error is below this: of AO, and of "
@@ -155,6 +157,8 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
 
 RenderOptions to_options(const RenderArguments& a) {
   RenderOptions o = a.options;
+  if (a.spp) o.spp = *a.spp;
+  if (!a.spp && o.target_rmse > 0) o.spp = 1;
   o.estimator = parse_estimator(a.estimator);
   o.trace_with = parse_company(a.trace_with);
   parse_passes(a.passes, o);

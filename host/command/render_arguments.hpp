@@ -24,6 +24,7 @@ struct RenderArguments {
   std::string checkpoint, checkpoint_every = "60s", resume;
   SceneOptions scene_options;
   RenderOptions options;
+  std::optional<int> spp;
   bool quiet = false;
 };
 

@@ -145,7 +145,7 @@ void check_state(const std::string& path, const TraceState& state, const StateSh
   }
   const bool too_many = std::any_of(state.samples.begin(), state.samples.end(),
                                     [](std::uint32_t samples) { return samples > kMostSamples; });
-  if (too_many || state.slice_samples < DAPPLE_MOST_DEPTHS || state.slice_samples > kMostSamples ||
+  if (too_many || state.slice_samples < DAPPLE_BATCH || state.slice_samples > kMostSamples ||
       !fits(state.round, state.slice_samples, shape.pixels)) {
     refuse(path, "damaged: its list of work is not of this picture");
   }

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "dapple/shared/pass_params.h"
-#include "dapple/shared/ray.h"
-
 namespace dapple {
 namespace {
 
@@ -77,10 +74,6 @@ RenderOptions by_sample(const RenderOptions& options) {
   out.footprint_ao_rays = footprint_ao_rays(options);
   out.ao_rays = (options.ao_rays + out.depths - 1) / out.depths;
   return out;
-}
-
-std::uint32_t batch_samples(const RenderOptions& options) {
-  return std::max(DAPPLE_LEAST_BATCH, depth_count(options));
 }
 
 }  // namespace dapple

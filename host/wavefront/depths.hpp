@@ -22,7 +22,4 @@ inline std::uint32_t depth_count(const RenderOptions& options) {
   return options.depths > 0 ? static_cast<std::uint32_t>(options.depths) : 1u;
 }
 
-/// Samples of a batch: whole camera rays, or two neighbours would be more alike than others.
-std::uint32_t batch_samples(const RenderOptions& options);
-
 }  // namespace dapple

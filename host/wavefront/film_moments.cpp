@@ -6,14 +6,17 @@
 #include <algorithm>
 
 #include "scene/environment.hpp"
-#include "wavefront/depths.hpp"
 #include "wavefront/pixel_error.hpp"
+#include "wavefront/pixel_neighbourhood.hpp"
 
 namespace dapple {
 namespace {
 
 /// Pixels that a thread goes through in one go.
 constexpr std::uint32_t kPixelGrain = 4096;
+
+/// Samples from which on a pixel's mean is steady enough for the largest to be taken of them.
+constexpr double kSteadySamples = 16;
 
 template <class OfPixel>
 std::vector<float> of_pixels(std::uint32_t pixels, const OfPixel& value) {
@@ -58,10 +61,25 @@ std::vector<float> FilmMoments::light_variances(std::size_t light) const {
       return luminance_sum(first, planes.channels, p) * scale / samples_[p];
     };
   };
-  const std::vector<float> unoccluded = of_pixels(layout_.pixels, mean_from(planes.unoccluded()));
-  const float largest = *std::max_element(unoccluded.begin(), unoccluded.end());
   return variances_of(mean_from(planes.first), layout_.light_squares(light),
-                      largest > 0 ? largest : 1.0);
+                      largest_unoccluded(planes) * scale);
+}
+
+// The largest of noisy means is too large: where pixels have few samples, of means over neighbours.
+double FilmMoments::largest_unoccluded(const LightPlaneRange& planes) const {
+  const std::vector<float> sums = of_pixels(layout_.pixels, [&](std::uint32_t p) {
+    return luminance_sum(planes.unoccluded(), planes.channels, p);
+  });
+  const std::vector<float> sums_around = neighbourhood_sums(sums, width_);
+  const std::vector<float> hits_around = neighbourhood_sums(plane(0, 1.0), width_);
+  double largest = 0;
+  for (std::size_t p = 0; p < sums.size(); ++p) {
+    const double samples = samples_[p], hits = sum(0, static_cast<std::uint32_t>(p));
+    if (hits == 0) continue;
+    const double around = double{sums_around[p]} / hits_around[p] * hits / samples;
+    largest = std::max(largest, samples < kSteadySamples ? around : sums[p] / samples);
+  }
+  return largest > 0 ? largest : 1.0;
 }
 
 template <class Mean>
@@ -72,8 +90,7 @@ std::vector<float> FilmMoments::variances_of(const Mean& mean, std::uint32_t squ
   const double inverse = 1.0 / divisor;
   return batch_variances(
       {of_pixels(layout_.pixels, [&](std::uint32_t p) { return mean(p) * inverse; }),
-       of_pixels(layout_.pixels, [&](std::uint32_t p) { return squares[p] * inverse * inverse; }),
-       batch_samples(options_)},
+       of_pixels(layout_.pixels, [&](std::uint32_t p) { return squares[p] * inverse * inverse; })},
       samples_, width_);
 }
 

@@ -39,6 +39,8 @@ class FilmMoments {
                                      std::uint32_t pixel) const;
   [[nodiscard]] std::vector<float> ao_variances() const;
   [[nodiscard]] std::vector<float> light_variances(std::size_t light) const;
+  /// Of all pixels, in units of the sums.
+  [[nodiscard]] double largest_unoccluded(const LightPlaneRange& planes) const;
   /// batch_variances() of a pass whose samples' values have a pixel's `mean`, divided by `divisor`.
   template <class Mean>
   [[nodiscard]] std::vector<float> variances_of(const Mean& mean, std::uint32_t squares_plane,

@@ -29,7 +29,7 @@ std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& op
   const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
                            lights * static_cast<std::size_t>(options.light_rays);
   const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);
-  return std::max(DAPPLE_MOST_DEPTHS, static_cast<uint>(samples));
+  return std::max(DAPPLE_BATCH, static_cast<uint>(samples));
 }
 
 class PictureTracer {
@@ -82,7 +82,7 @@ class PictureTracer {
 
   /// Whether each pixel has the two batches that tell a variance.
   [[nodiscard]] bool all_know_errors(const std::vector<std::uint32_t>& samples) const {
-    return *std::min_element(samples.begin(), samples.end()) >= 2 * resolve_.batch;
+    return *std::min_element(samples.begin(), samples.end()) >= 2 * DAPPLE_BATCH;
   }
 
   /// Onto the device, where from now on they are.
@@ -165,10 +165,9 @@ class PictureTracer {
     const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
     std::vector<std::vector<float>> errors =
         FilmMoments(sums, squares, layout_, options_, samples, width_).variances();
-    const auto batch = static_cast<float>(resolve_.batch);
     for (std::vector<float>& pass : errors) {
       for (std::size_t p = 0; p < pass.size(); ++p)
-        pass[p] = std::sqrt(pass[p] * batch / static_cast<float>(samples[p]));
+        pass[p] = std::sqrt(pass[p] * DAPPLE_BATCH / static_cast<float>(samples[p]));
     }
     return errors;
   }
@@ -176,7 +175,6 @@ class PictureTracer {
   ResolveParams resolve_params(const View& view) const {
     ResolveParams params{};
     params.film_pixels = layout_.pixels;
-    params.batch = batch_samples(options_);
     params.depth_bits = camera_.depth_bits;
     params.position_scale = layout_.position_scale;
     params.depth_scale = layout_.depth_scale;

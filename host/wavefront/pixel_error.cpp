@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "dapple/shared/pass_params.h"
 #include "wavefront/pixel_neighbourhood.hpp"
 
 namespace dapple {
@@ -20,7 +21,7 @@ constexpr float kNeighbourhoodWeight = 16.0f;
 std::vector<float> batch_variances(const BatchMoments& moments,
                                    const std::vector<std::uint32_t>& samples, int width) {
   const auto freedom = [&](std::size_t p) {
-    const std::uint32_t whole = samples[p] / moments.batch;
+    const std::uint32_t whole = samples[p] / DAPPLE_BATCH;
     return static_cast<float>(whole) - 1.0f;
   };
   const int height = static_cast<int>(samples.size()) / width;

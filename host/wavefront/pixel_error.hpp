@@ -6,11 +6,10 @@
 
 namespace dapple {
 
-/// One pass over a picture's pixels, row by row. A batch is `batch` samples.
+/// One pass over a picture's pixels, row by row. A batch is DAPPLE_BATCH samples.
 struct BatchMoments {
   std::vector<float> mean;     ///< of all samples
   std::vector<float> squares;  ///< of the batches' means, summed
-  std::uint32_t batch;
 };
 
 /// Variance of one batch's mean for each pixel; a pixel's mean over b batches has that over b.

@@ -3,15 +3,14 @@
 #include <algorithm>
 
 #include "dapple/error.hpp"
-#include "dapple/shared/ray.h"
 
 namespace dapple {
 namespace {
 
-/// Samples a pixel and slice: all if they fit, else whole batches, however large these are.
+/// Samples a pixel and slice: all if they fit, else whole batches.
 std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
   return group.samples <= slice_samples ? group.samples
-                                        : slice_samples / DAPPLE_MOST_DEPTHS * DAPPLE_MOST_DEPTHS;
+                                        : slice_samples / DAPPLE_BATCH * DAPPLE_BATCH;
 }
 
 std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {

@@ -7,8 +7,6 @@
 #include <map>
 #include <set>
 
-#include "wavefront/depths.hpp"
-
 namespace dapple {
 namespace {
 
@@ -25,7 +23,7 @@ constexpr std::uint32_t kMostMore = 8;
 
 /// Batches that a pixel gets more at a time. Half of it fits each pixel's wants better, and takes 3
 /// to 10 % more time.
-constexpr std::uint32_t kUnit = 4;
+constexpr std::uint32_t kUnit = 2;
 
 /// Part of the squared error asked for that is aimed at: estimates move as samples come, and a
 /// round for a few more takes as long as a tenth of the picture.
@@ -38,8 +36,8 @@ constexpr std::size_t kMostGroups = 4;
 /// gets more.
 constexpr std::uint32_t kFirst = 16, kPassGrowth = 3;
 
-std::uint32_t whole_batches(int samples, std::uint32_t batch) {
-  return (static_cast<std::uint32_t>(samples) + batch - 1) / batch * batch;
+std::uint32_t whole_batches(int samples) {
+  return (static_cast<std::uint32_t>(samples) + DAPPLE_BATCH - 1) / DAPPLE_BATCH * DAPPLE_BATCH;
 }
 
 /// `take` each pixel of a block.
@@ -130,7 +128,6 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
     : width_(width),
       order_(tile_order(width, height)),
       samples_(std::move(samples)),
-      batch_(batch_samples(options)),
       least_(static_cast<std::uint32_t>(options.spp)),
       most_(least_),
       target_error_(options.target_error),
@@ -138,8 +135,8 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
   samples_.resize(order_.size(), 0);
   if (!is_adaptive()) return;
   // Two batches are the least that tell a variance.
-  least_ = std::max(2 * batch_, whole_batches(options.spp, batch_));
-  most_ = std::max(least_, whole_batches(options.max_spp, batch_));
+  least_ = std::max(2 * DAPPLE_BATCH, whole_batches(options.spp));
+  most_ = std::max(least_, whole_batches(options.max_spp));
 }
 
 std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
@@ -183,9 +180,9 @@ BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
   const std::vector<std::uint32_t> samples = block_most(samples_, width_);
   BatchCounts have(samples.size());
   std::transform(samples.begin(), samples.end(), have.begin(),
-                 [this](std::uint32_t of_block) { return of_block / batch_; });
+                 [](std::uint32_t of_block) { return of_block / DAPPLE_BATCH; });
   BatchCounts wanted = have;
-  const AllocationLimits limits{kUnit, most_ / batch_};
+  const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
   if (target_rmse_ > 0) {
     const double enough =
         double{target_rmse_} * target_rmse_ * static_cast<double>(samples_.size());
@@ -211,7 +208,7 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
   std::vector<std::uint32_t> more(all.size());
   double done = 0, missing = 0;
   for (std::size_t pixel = 0; pixel < more.size(); ++pixel) {
-    const std::uint32_t has = samples_[pixel] / batch_;
+    const std::uint32_t has = samples_[pixel] / DAPPLE_BATCH;
     done += has;
     missing += all[pixel] - has;
     more[pixel] = std::min(all[pixel] - has, kMostMore * has / kUnit * kUnit);
@@ -223,7 +220,7 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
     for (std::uint32_t left = more[pixel], part = 0; left; left -= part) {
       part = whole ? left : left & -left;
       WorkGroup& group = groups[part];
-      group.samples = part * batch_;
+      group.samples = part * DAPPLE_BATCH;
       group.work.push_back({pixel, samples_[pixel]});
       samples_[pixel] += group.samples;
     }

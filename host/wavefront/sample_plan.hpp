@@ -53,7 +53,6 @@ class SamplePlan {
   int width_;
   std::vector<std::uint32_t> order_;  ///< pixels, tile by tile and in these block by block
   std::vector<std::uint32_t> samples_;
-  std::uint32_t batch_;  ///< samples of one
   std::uint32_t least_, most_;
   float target_error_, target_rmse_;
   double fraction_done_ = 0;

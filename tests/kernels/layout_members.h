@@ -85,7 +85,7 @@
   STRUCT(ResolveParams)                                                                      \
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \
-  MEMBER(ResolveParams, batch) MEMBER(ResolveParams, depth_bits)                             \
+  MEMBER(ResolveParams, depth_bits)                                                          \
   MEMBER(ResolveParams, scale)                                                               \
   MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
   MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)

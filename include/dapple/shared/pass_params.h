@@ -23,9 +23,11 @@ typedef struct OcclusionParams {
   uint rays_per_point;        /* packets: rays in a row that share their origin */
 } OcclusionParams;
 
-/* Samples of a pixel whose mean counts once in the sum of squares that errors come from: so many, or
-   those of one camera ray if these are more. */
-#define DAPPLE_LEAST_BATCH 2u
+/* Samples of a pixel whose mean counts once in the sum of squares that errors come from: those of one
+   camera ray at least, or some would be more alike than others. Means of two in place of four, less
+   stratified than a pixel's samples are, made errors of AO 1.04 to 1.23 times what they were at 16
+   samples. */
+#define DAPPLE_BATCH 4u
 
 /* A pixel of the crop (row-major) that is to be sampled, and how many samples it has. */
 typedef struct PixelWork {
@@ -85,7 +87,6 @@ typedef struct ResolveParams {
   uint plane;           /* first plane to add to */
   uint rays;            /* rays a sample */
   uint squares;         /* plane of squares to add to */
-  uint batch;           /* samples of a batch */
   uint depth_bits;      /* as in CameraParams */
   float scale;          /* of unit-range values */
   float position_scale;
