@@ -61,6 +61,8 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--pass", a.pass, "Of pictures: which pass")
       ->capture_default_str()
       ->check(CLI::IsMember({"ao", "light", "all"}));
+  app.add_option("--depths", a.render.depths,
+                 "Of dapple's pictures: samples that share a camera ray; 0: as the scene suits");
   app.add_option("--footprint", a.render.footprint,
                  "dapple's footprint scale, of pictures and points")
       ->capture_default_str();

@@ -6,8 +6,8 @@
 namespace dapple {
 namespace {
 
-/// Opacities up to which that part of all surfaces must be for so many samples a camera ray
-/// (figures in bench/README). More than suit cost up to a fifth; fewer, up to twice the time.
+/// Opacities up to which that part of all surfaces must be for so many samples a camera ray (figures
+/// in the README). More than suit cost up to a fifth of the time, fewer up to half of it.
 constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.7f;
 constexpr double kPart = 0.25;
 
