@@ -49,6 +49,7 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
   for (uint d = 0; d < stops.count; ++d) {
     stops.threshold[d] = vload16(0, chosen->threshold[d] + first);
     stops.t[d].v = (float16)(INFINITY);
+    stops.primitive[d].v = stops.instance[d].v = (int16)(0);
     least = min(least, stops.threshold[d]);
   }
   start_layers(least, &nearest.layers);
