@@ -12,11 +12,11 @@ typedef struct ItemHits {
   uint hits[DAPPLE_MOST_RECORDS], visits[DAPPLE_MOST_RECORDS], tests[DAPPLE_MOST_RECORDS];
 } ItemHits;
 
-/* Where a ray of a beam stopped, sample by sample: `of_item` is the ray's place in `chosen`, of_beam
-   that in `rays`; `points` are those of the item. */
-inline void store_stops(Scene scene, const CameraSamples* chosen, uint of_item, const BeamRays* rays,
-                        uint of_beam, float first_area, float solid_angle, const Stops* stops,
-                        __global SurfacePoint* points, ItemHits* found) {
+/* Where a ray of a beam stopped, sample by sample: `of_item` is the ray's place in `chosen`,
+   of_beam that in `rays`; `points` are those of the item. */
+inline void store_stops(Scene scene, const CameraSamples* chosen, uint of_item,
+                        const BeamRays* rays, uint of_beam, float first_area, float solid_angle,
+                        const Stops* stops, __global SurfacePoint* points, ItemHits* found) {
   const Span span = span_of(rays, of_beam);
   for (uint d = 0; d < stops->count; ++d) {
     const SurfaceHit hit = {stops->t[d].f[of_beam], (uint)stops->primitive[d].i[of_beam],
@@ -63,7 +63,6 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
     found->visits[record] += place < count ? nearest.visits : 0u;
     found->tests[record] += place < count ? nearest.tests : 0u;
   }
-  /* Whoever stops anywhere stops for the greatest threshold. */
   float16 nearest_stop = stops.t[0].v;
   for (uint d = 1; d < stops.count; ++d) nearest_stop = min(nearest_stop, stops.t[d].v);
   for (uint left = bits_of_rays(nearest_stop < INFINITY); left; left &= left - 1u) {
