@@ -50,11 +50,22 @@ TEST(Depths, AreMoreTheMoreRaysSlipThrough) {
   EXPECT_EQ(choose_depths(options, tree(0.2f)), 2) << "as asked for";
 }
 
-TEST(Depths, OfTexturesAndFewLeavesAreNone) {
-  Scene cards = tree(0.2f);
-  cards.textures.push_back({"alpha", 1, 1, {51}});
-  for (Material& material : cards.materials) material.alpha_texture = 0;
-  EXPECT_EQ(choose_depths({}, cards), 1);
+/// Leaves of the alphas of a texture of 2x1 texels.
+Scene cards(std::uint8_t left, std::uint8_t right) {
+  Scene scene = tree(1.0f);
+  scene.textures.push_back({"alpha", 2, 1, {left, right}});
+  for (Mesh& mesh : scene.meshes) mesh.uvs.resize(mesh.positions.size());
+  for (Material& material : scene.materials) material.alpha_texture = 0;
+  return scene;
+}
+
+TEST(Depths, OfTexturesAreThoseOfWhatTheyLetThrough) {
+  EXPECT_EQ(choose_depths({}, cards(0, 255)), 1) << "holes and opaque leaf";
+  EXPECT_EQ(choose_depths({}, cards(51, 51)), 4) << "as an opacity of 0.2";
+  EXPECT_EQ(choose_depths({}, cards(0, 128)), 2) << "what is not there doesn't count";
+}
+
+TEST(Depths, AreNotForAFewThinSurfaces) {
   Scene twigs = tree(1.0f);
   override_opacity(twigs, "bark", 0.1f);
   EXPECT_EQ(choose_depths({}, twigs), 1) << "nearly all surfaces are leaves";

@@ -6,16 +6,13 @@
 namespace dapple {
 namespace {
 
-/// Opacities up to which that part of all surfaces must be for so many samples a camera ray (figures
-/// in the README). More than suit cost up to a fifth of the time, fewer up to half of it.
+/// Opacities up to which that part of all surfaces must be for so many samples a camera ray
+/// (figures in the README). More than suit cost up to a fifth of the time, fewer up to half of it.
 constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.7f;
 constexpr double kPart = 0.25;
 
-/// 1 where a texture says: it mostly lets all through or nothing.
-float opacity_of(const Material& material, float vertex_alpha) {
-  if (material.alpha_mode != AlphaMode::blend || material.alpha_texture >= 0) return 1.0f;
-  return material.alpha * (material.uses_vertex_alpha ? vertex_alpha : 1.0f);
-}
+/// Texels of a texture that are looked at, spread evenly.
+constexpr std::size_t kTexels = 4096;
 
 float mean_vertex_alpha(const Mesh& mesh) {
   if (mesh.vertex_alpha.empty()) return 1.0f;
@@ -23,12 +20,43 @@ float mean_vertex_alpha(const Mesh& mesh) {
          static_cast<float>(mesh.vertex_alpha.size());
 }
 
-/// Of all primitives, and of those that are no more opaque than four and two samples are for.
+/// Of surfaces that stop anything: all, and those that two and four samples suit.
 struct Counts {
   double all = 0, for_two = 0, for_four = 0;
+
+  void add(const Counts& counts, double times) {
+    all += times * counts.all;
+    for_two += times * counts.for_two;
+    for_four += times * counts.for_four;
+  }
 };
 
-Counts count_primitives(const Scene& scene) {
+/// One surface of the material: of a texture, all its texels together.
+Counts count_opacities(const Scene& scene, const Mesh& mesh, const Material& material,
+                       float vertex_alpha) {
+  if (material.alpha_mode == AlphaMode::opaque) return {1, 0, 0};
+  Counts texels;
+  const float factor = material.alpha * (material.uses_vertex_alpha ? vertex_alpha : 1.0f);
+  const auto count = [&](float alpha) {
+    float opacity = alpha * factor;
+    if (material.alpha_mode == AlphaMode::mask) opacity = opacity >= material.alpha_cutoff;
+    if (opacity <= 0) return;
+    texels.add({1, opacity <= kOpacityOfTwo ? 1.0 : 0.0, opacity <= kOpacityOfFour ? 1.0 : 0.0}, 1);
+  };
+  if (material.alpha_texture < 0 || mesh.uvs.empty()) {
+    count(1);
+  } else {
+    const std::vector<std::uint8_t>& alpha = scene.textures[material.alpha_texture].alpha;
+    const std::size_t step = std::max<std::size_t>(1, alpha.size() / kTexels);
+    for (std::size_t at = 0; at < alpha.size(); at += step)
+      count(static_cast<float>(alpha[at]) / 255);
+  }
+  Counts one;
+  if (texels.all > 0) one.add(texels, 1 / texels.all);
+  return one;
+}
+
+Counts count_surfaces(const Scene& scene) {
   std::vector<double> placed(scene.meshes.size(), 0.0);
   for (const Instance& instance : scene.instances) placed[instance.mesh] += 1;
   Counts counts;
@@ -39,11 +67,9 @@ Counts count_primitives(const Scene& scene) {
     for (const std::uint32_t material : mesh.materials) ++of_material[material];
     const float vertex_alpha = mean_vertex_alpha(mesh);
     for (std::size_t i = 0; i < of_material.size(); ++i) {
-      const double primitives = placed[m] * static_cast<double>(of_material[i]);
-      const float opacity = opacity_of(scene.materials[i], vertex_alpha);
-      counts.all += primitives;
-      if (opacity <= kOpacityOfTwo) counts.for_two += primitives;
-      if (opacity <= kOpacityOfFour) counts.for_four += primitives;
+      if (of_material[i] == 0) continue;
+      counts.add(count_opacities(scene, mesh, scene.materials[i], vertex_alpha),
+                 placed[m] * static_cast<double>(of_material[i]));
     }
   }
   return counts;
@@ -58,7 +84,7 @@ double most_samples(const RenderOptions& options) {
 
 int choose_depths(const RenderOptions& options, const Scene& scene) {
   if (options.depths > 0) return options.depths;
-  const Counts counts = count_primitives(scene);
+  const Counts counts = count_surfaces(scene);
   const double enough = kPart * counts.all;
   int depths = counts.for_four > enough ? 4 : counts.for_two > enough ? 2 : 1;
   const double rays = is_adaptive(options) ? options.max_spp : options.spp;
