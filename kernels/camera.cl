@@ -65,7 +65,7 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
   }
   float16 nearest_stop = stops.t[0].v;
   for (uint d = 1; d < stops.count; ++d) nearest_stop = min(nearest_stop, stops.t[d].v);
-  for (uint left = bits_of_rays(nearest_stop < INFINITY); left; left &= left - 1u) {
+  for (uint left = bits_of_16(nearest_stop < INFINITY); left; left &= left - 1u) {
     const uint i = lowest_bit(left);
     store_stops(scene, chosen, first + i, &rays, i, first_area.f[i], solid_angle.f[i], &stops,
                 points, found);

@@ -35,15 +35,6 @@ std::array<float, 3> vertex_alphas(const Material& material, const Mesh& mesh,
   return alpha;
 }
 
-float thresholded(float alpha, float cutoff) {
-  if (cutoff < 0.0f) return std::clamp(alpha, 0.0f, 1.0f);
-  return alpha >= cutoff ? 1.0f : 0.0f;
-}
-
-bool has_texture(const Material& material, const Mesh& mesh) {
-  return material.alpha_texture >= 0 && !mesh.uvs.empty();
-}
-
 void check_material(const Scene& scene, std::uint32_t material) {
   if (material < DAPPLE_MOST_TEXTURED_MATERIALS) return;
   throw Error(ErrorKind::failed,
@@ -54,6 +45,15 @@ void check_material(const Scene& scene, std::uint32_t material) {
 }
 
 }  // namespace
+
+bool has_texture(const Material& material, const Mesh& mesh) {
+  return material.alpha_texture >= 0 && !mesh.uvs.empty();
+}
+
+float thresholded(float alpha, float cutoff) {
+  if (cutoff < 0.0f) return std::clamp(alpha, 0.0f, 1.0f);
+  return alpha >= cutoff ? 1.0f : 0.0f;
+}
 
 float cutoff_of(const Material& material) {
   return material.alpha_mode == AlphaMode::mask ? std::max(material.alpha_cutoff, 0.0f) : -1.0f;

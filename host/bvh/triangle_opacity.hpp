@@ -19,6 +19,12 @@ std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::
 /// Of a segment of a strand, [0,1]: its ends' mean alpha, by the material. No textures.
 float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment);
 
+/// Whether alpha is looked up.
+bool has_texture(const Material& material, const Mesh& mesh);
+
+/// The opacity of an alpha, `cutoff` as cutoff_of().
+float thresholded(float alpha, float cutoff);
+
 /// The alpha from which on a masked material is opaque, or -1 where alpha is opacity.
 float cutoff_of(const Material& material);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "bvh/triangle_opacity.hpp"
+
 namespace dapple {
 namespace {
 
@@ -38,12 +40,11 @@ Counts count_opacities(const Scene& scene, const Mesh& mesh, const Material& mat
   Counts texels;
   const float factor = material.alpha * (material.uses_vertex_alpha ? vertex_alpha : 1.0f);
   const auto count = [&](float alpha) {
-    float opacity = alpha * factor;
-    if (material.alpha_mode == AlphaMode::mask) opacity = opacity >= material.alpha_cutoff;
+    const float opacity = thresholded(alpha * factor, cutoff_of(material));
     if (opacity <= 0) return;
     texels.add({1, opacity <= kOpacityOfTwo ? 1.0 : 0.0, opacity <= kOpacityOfFour ? 1.0 : 0.0}, 1);
   };
-  if (material.alpha_texture < 0 || mesh.uvs.empty()) {
+  if (!has_texture(material, mesh)) {
     count(1);
   } else {
     const std::vector<std::uint8_t>& alpha = scene.textures[material.alpha_texture].alpha;

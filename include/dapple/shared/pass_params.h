@@ -3,6 +3,7 @@
 #define DAPPLE_SHARED_PASS_PARAMS_H
 
 #include "language.h"
+#include "ray.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {
@@ -96,6 +97,7 @@ typedef struct ResolveParams {
 } ResolveParams;
 
 #ifndef __OPENCL_VERSION__
+static_assert(DAPPLE_BATCH % DAPPLE_MOST_DEPTHS == 0, "batches are whole camera rays");
 }  // namespace dapple
 #endif
 
