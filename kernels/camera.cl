@@ -39,7 +39,7 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
                        __global SurfacePoint* points, ItemHits* found) {
   BeamRays rays;
   BeamFloats solid_angle, first_area;
-  aim(params, chosen->x + first, chosen->y + first, &rays, &solid_angle.v, &first_area.v);
+  aim(params, chosen, first, &rays, &solid_angle.v, &first_area.v);
   BeamNearest nearest;
   Stops stops;
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i)

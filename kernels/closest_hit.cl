@@ -26,12 +26,13 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
   const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
   BeamNearest nearest; /* only the first ray's is used */
   LoneRay lone;
+  const TexelArea covers = {0.0f, 0.0f};
   start_layers((float16)(threshold_of(rays + item)), &nearest.layers);
   nearest.visits = nearest.tests = 0u;
   do {
     nearest.t.v = (float16)(ray.t_max);
     nearest.primitive.v = nearest.instance.v = (int16)(-1);
-    start_lone(span, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
+    start_lone(span, covers, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
     ask_for_entry(scene, params.scene.root, 0.0f, &lone);
     while (go_down(scene, &lone, &nearest)) {
     }

@@ -42,12 +42,17 @@ double rmse(const std::vector<float>& a, const std::vector<float>& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
+int depths_of(const RenderOptions& options, const Scene& scene) {
+  std::vector<std::string> notes;
+  return choose_depths(options, scene, choose_view(scene, options, notes));
+}
+
 TEST(Depths, AreMoreTheMoreRaysSlipThrough) {
   for (const auto& [opacity, depths] : {std::pair(1.0f, 1), {0.85f, 1}, {0.5f, 2}, {0.2f, 4}})
-    EXPECT_EQ(choose_depths({}, tree(opacity)), depths) << opacity;
+    EXPECT_EQ(depths_of({}, tree(opacity)), depths) << opacity;
   RenderOptions options;
   options.depths = 2;
-  EXPECT_EQ(choose_depths(options, tree(0.2f)), 2) << "as asked for";
+  EXPECT_EQ(depths_of(options, tree(0.2f)), 2) << "as asked for";
 }
 
 /// Leaves of the alphas of a texture of 2x1 texels.
@@ -60,24 +65,37 @@ Scene cards(std::uint8_t left, std::uint8_t right) {
 }
 
 TEST(Depths, OfTexturesAreThoseOfWhatTheyLetThrough) {
-  EXPECT_EQ(choose_depths({}, cards(0, 255)), 1) << "holes and opaque leaf";
-  EXPECT_EQ(choose_depths({}, cards(51, 51)), 4) << "as an opacity of 0.2";
-  EXPECT_EQ(choose_depths({}, cards(0, 128)), 2) << "what is not there doesn't count";
+  EXPECT_EQ(depths_of({}, cards(0, 255)), 1) << "holes and opaque leaf";
+  EXPECT_EQ(depths_of({}, cards(51, 51)), 4) << "as an opacity of 0.2";
+  EXPECT_EQ(depths_of({}, cards(0, 128)), 2) << "what is not there doesn't count";
+}
+
+TEST(Depths, OfTexturesAreThoseOfThemAsTheyAreSeen) {
+  Scene scene = cards(0, 255);
+  // Far finer than a pixel of the default picture: as an opacity of one half.
+  for (Mesh& mesh : scene.meshes) {
+    for (std::size_t v = 0; v < mesh.uvs.size(); ++v)
+      mesh.uvs[v] = V2f(mesh.positions[v].x + mesh.positions[v].z, mesh.positions[v].y) * 1e5f;
+  }
+  EXPECT_EQ(depths_of({}, scene), 2);
+  RenderOptions exact;
+  exact.estimator = Estimator::exact;
+  EXPECT_EQ(depths_of(exact, scene), 1) << "which averages nothing";
 }
 
 TEST(Depths, AreNotForAFewThinSurfaces) {
   Scene twigs = tree(1.0f);
   override_opacity(twigs, "bark", 0.1f);
-  EXPECT_EQ(choose_depths({}, twigs), 1) << "nearly all surfaces are leaves";
+  EXPECT_EQ(depths_of({}, twigs), 1) << "nearly all surfaces are leaves";
 }
 
 TEST(Depths, LeaveRoomForAllSamples) {
   RenderOptions options;
   options.spp = 1 << 20;
   options.ao_rays = 8;
-  EXPECT_EQ(choose_depths(options, tree(0.2f)), 2);
+  EXPECT_EQ(depths_of(options, tree(0.2f)), 2);
   options.ao_rays = 16;
-  EXPECT_EQ(choose_depths(options, tree(0.2f)), 1);
+  EXPECT_EQ(depths_of(options, tree(0.2f)), 1);
 }
 
 TEST(Depths, AreOfTheSamePictureWithLessNoise) {

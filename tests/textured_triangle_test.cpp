@@ -145,11 +145,31 @@ TEST(TexturedTriangle, AlphasHaveTwelveBitsAndThoseOf8BitColoursAreExact) {
   }
 }
 
+TEST(TexturedTriangle, SizesOfTexelsComeBackAsPowersOfTwo) {
+  const auto held = [](float size) {
+    TexturedCorners corners = corners_at({0, 0}, {1, 0}, {0, 1});
+    corners.material = DAPPLE_MOST_TEXTURED_MATERIALS - 1;
+    corners.texel_size = size;
+    const TexturedCorners back = packed(corners, Wrap::repeat, Wrap::repeat);
+    EXPECT_EQ(back.material, DAPPLE_MOST_TEXTURED_MATERIALS - 1);
+    return back.texel_size;
+  };
+  for (int exponent = -24; exponent <= 6; ++exponent) {
+    const float size = std::ldexp(1.0f, exponent);
+    EXPECT_EQ(held(size), size);
+    EXPECT_EQ(held(1.4f * size), size);
+    EXPECT_EQ(held(0.72f * size), size);
+  }
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float unknown : {0.0f, -1.0f, 1e-9f, 100.0f, infinity, std::nanf("")})
+    EXPECT_EQ(held(unknown), 0) << unknown;
+}
+
 TEST(TexturedTriangle, MaterialsAndWhetherTexturesCountComeBack) {
   TexturedCorners corners = corners_at({0.99f, 0.01f}, {0.5f, 0.9f}, {-7, 1});
   corners.alpha = {0.1f, 0.9f, 0.5f};
   for (const std::uint32_t material :
-       {0u, 1u, 1023u, 1024u, 77777u, DAPPLE_MOST_TEXTURED_MATERIALS - 1u}) {
+       {0u, 1u, 1023u, 1024u, 7777u, DAPPLE_MOST_TEXTURED_MATERIALS - 1u}) {
     for (const bool has_texture : {false, true}) {
       corners.material = material;
       corners.has_texture = has_texture;
@@ -236,7 +256,7 @@ TEST(TexturedTriangle, AMaterialTooManyIsRefusedByName) {
     FAIL() << "not refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::failed);
-    EXPECT_NE(std::string(error.what()).find("material 1048576 (leaf)"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("material 32768 (leaf)"), std::string::npos)
         << error.what();
   }
 }
@@ -244,11 +264,15 @@ TEST(TexturedTriangle, AMaterialTooManyIsRefusedByName) {
 TEST(TexturedTriangle, MaterialsShareTheTexelsOfTheirTexture) {
   const scene_test::SceneOnDevice scene(scene_of_materials(3));
   const DeviceBuffers& buffers = *scene.uploaded.buffers;
-  EXPECT_EQ(buffers.texel_data.size(), 16u);
+  // 4x4 texels, 2x2 from 16 on, one at 32.
+  EXPECT_EQ(buffers.texel_data.size(), 33u);
   ASSERT_EQ(buffers.material_records.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(buffers.material_records[i].texture.offset, 0u);
     EXPECT_EQ(buffers.material_records[i].texture.width, 4u);
+    EXPECT_EQ(buffers.material_records[i].mips, 2u);
+    EXPECT_EQ(buffers.material_records[i].mip_offset[0], 1u);
+    EXPECT_EQ(buffers.material_records[i].mip_offset[1], 2u);
     EXPECT_EQ(buffers.material_records[i].alpha, 1.0f / static_cast<float>(i + 1));
   }
   const auto through =

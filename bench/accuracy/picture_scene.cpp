@@ -90,7 +90,7 @@ std::string PictureScene::device_name() {
 
 Picture PictureScene::render(const RenderOptions& asked) {
   RenderOptions chosen = asked;
-  chosen.depths = choose_depths(asked, scene_);
+  chosen.depths = choose_depths(asked, scene_, view_);
   const RenderOptions options = by_sample(chosen);
   open();
   prepare_kernels(device_->context(), options, scene_.lights);

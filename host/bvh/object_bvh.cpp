@@ -10,6 +10,7 @@
 #include <numeric>
 #include <span>
 
+#include "bvh/coincident_triangles.hpp"
 #include "bvh/packed_strands.hpp"
 #include "bvh/quantize.hpp"
 
@@ -60,11 +61,16 @@ std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, Objec
 /// Opacity of each triangle: [0,1], or -(1 + index) of a textured one.
 std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
   std::vector<float> opacities = uniform_opacities(scene, mesh, object);
+  std::vector<std::uint32_t> textured;
   for (std::uint32_t t = 0; t < opacities.size(); ++t) {
     if (opacities[t] >= 0.0f) continue;
-    opacities[t] = -1.0f - static_cast<float>(object.textured.size());
-    object.textured.push_back(textured_triangle(scene, mesh, t));
+    opacities[t] = -1.0f - static_cast<float>(textured.size());
+    textured.push_back(t);
   }
+  // Two sides of a card let the same through: the product of their means would be less.
+  const std::vector<std::uint8_t> coincident = find_coincident(mesh, textured);
+  for (std::size_t i = 0; i < textured.size(); ++i)
+    object.textured.push_back(textured_triangle(scene, mesh, textured[i], coincident[i] == 0));
   return opacities;
 }
 

@@ -65,6 +65,12 @@ std::uint32_t step_and_flags(const Steps& steps, bool has_texture, bool has_vert
          (has_vertex_alpha ? DAPPLE_HAS_VERTEX_ALPHA : 0u);
 }
 
+std::uint32_t texel_size_code(float size) {
+  if (!(size > 0) || !std::isfinite(size)) return 0;
+  const long code = std::lround(std::log2(size)) + DAPPLE_TEXEL_SIZE_BIAS;
+  return code > 0 && code < DAPPLE_TEXEL_SIZE_CODES ? static_cast<std::uint32_t>(code) : 0;
+}
+
 }  // namespace
 
 TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t) {
@@ -76,7 +82,7 @@ TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap
   const bool has_vertex_alpha =
       alpha != std::array<std::uint32_t, 3>{DAPPLE_ALPHA_ONE, DAPPLE_ALPHA_ONE, DAPPLE_ALPHA_ONE};
   const std::uint32_t lowest_bits[3] = {
-      corners.material & 1023u, corners.material >> 10,
+      corners.material & 1023u, corners.material >> 10 | texel_size_code(corners.texel_size) << 5,
       step_and_flags(steps, corners.has_texture, has_vertex_alpha)};
   TexturedTriangle triangle{};
   for (int corner = 0; corner < 3; ++corner) {
@@ -104,6 +110,8 @@ TexturedCorners unpack_textured(const TexturedTriangle& triangle) {
   }
   corners.material = textured_material(&triangle);
   corners.has_texture = has_texture(&triangle) != 0;
+  const uint size = DAPPLE_TEXEL_SIZE_CODE(triangle.corner[1][1]);
+  if (size) corners.texel_size = std::ldexp(1.0f, static_cast<int>(size) - DAPPLE_TEXEL_SIZE_BIAS);
   return corners;
 }
 

@@ -11,19 +11,6 @@
 namespace dapple {
 namespace {
 
-int wrap(int cell, int size, Wrap mode) {
-  if (mode == Wrap::clamp) return std::clamp(cell, 0, size - 1);
-  const int period = mode == Wrap::mirror ? 2 * size : size;
-  int r = cell % period;
-  if (r < 0) r += period;
-  return r < size ? r : period - 1 - r;
-}
-
-/// A texture coordinate brought near [0,1), so that integers can hold its texel.
-float folded_coordinate(float u, Wrap mode) {
-  return mode == Wrap::clamp ? std::clamp(u, -1.0f, 2.0f) : u - 2.0f * std::floor(0.5f * u);
-}
-
 std::array<float, 3> vertex_alphas(const Material& material, const Mesh& mesh,
                                    std::uint32_t triangle) {
   std::array<float, 3> alpha{1, 1, 1};
@@ -50,13 +37,22 @@ bool has_texture(const Material& material, const Mesh& mesh) {
   return material.alpha_texture >= 0 && !mesh.uvs.empty();
 }
 
-float thresholded(float alpha, float cutoff) {
-  if (cutoff < 0.0f) return std::clamp(alpha, 0.0f, 1.0f);
-  return alpha >= cutoff ? 1.0f : 0.0f;
-}
-
 float cutoff_of(const Material& material) {
   return material.alpha_mode == AlphaMode::mask ? std::max(material.alpha_cutoff, 0.0f) : -1.0f;
+}
+
+float texel_size(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
+  const Material& material = scene.materials[mesh.materials[triangle]];
+  if (!has_texture(material, mesh)) return 0.0f;
+  const Texture& texture = scene.textures[material.alpha_texture];
+  const V2f size(static_cast<float>(texture.width), static_cast<float>(texture.height));
+  const std::uint32_t* at = &mesh.indices[3 * std::size_t{triangle}];
+  const V3f edge1 = mesh.positions[at[1]] - mesh.positions[at[0]];
+  const V3f edge2 = mesh.positions[at[2]] - mesh.positions[at[0]];
+  const V2f across = (mesh.uvs[at[1]] - mesh.uvs[at[0]]) * size;
+  const V2f along = (mesh.uvs[at[2]] - mesh.uvs[at[0]]) * size;
+  const float texels = std::fabs(across.cross(along));
+  return texels > 0 ? std::sqrt(edge1.cross(edge2).length() / texels) : 0.0f;
 }
 
 std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
@@ -85,7 +81,8 @@ float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segmen
   return thresholded(alpha, cutoff_of(material));
 }
 
-TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
+TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle,
+                                   bool averaged) {
   const Material& material = scene.materials[mesh.materials[triangle]];
   TexturedCorners corners;
   corners.material = mesh.materials[triangle];
@@ -97,72 +94,8 @@ TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::ui
     corners.uv[corner] = mesh.uvs[mesh.indices[3 * std::size_t{triangle} + corner]];
   }
   const Texture& texture = scene.textures[material.alpha_texture];
+  if (averaged) corners.texel_size = texel_size(scene, mesh, triangle);
   return pack_textured(corners, texture.wrap_s, texture.wrap_t);
-}
-
-OpacityPyramid::OpacityPyramid(const Texture& texture, float factor, float cutoff)
-    : size_(static_cast<float>(texture.width), static_cast<float>(texture.height)),
-      wrap_s_(texture.wrap_s),
-      wrap_t_(texture.wrap_t) {
-  Level base{static_cast<int>(texture.width), static_cast<int>(texture.height), {}};
-  base.opacity.resize(texture.alpha.size());
-  std::transform(texture.alpha.begin(), texture.alpha.end(), base.opacity.begin(),
-                 [&](std::uint8_t a) {
-                   return thresholded(static_cast<float>(a) * (1.0f / 255.0f) * factor, cutoff);
-                 });
-  levels_.push_back(std::move(base));
-  while (levels_.back().width > 1 || levels_.back().height > 1) {
-    const Level& fine = levels_.back();
-    Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
-    coarse.opacity.resize(static_cast<std::size_t>(coarse.width) * coarse.height);
-    // Odd sizes: the last column or row is shared out by area, so that means are kept.
-    const float sx = static_cast<float>(fine.width) / static_cast<float>(coarse.width);
-    const float sy = static_cast<float>(fine.height) / static_cast<float>(coarse.height);
-    for (int y = 0; y < coarse.height; ++y) {
-      for (int x = 0; x < coarse.width; ++x) {
-        const float x0 = static_cast<float>(x) * sx, x1 = x0 + sx, y0 = static_cast<float>(y) * sy,
-                    y1 = y0 + sy;
-        float sum = 0.0f, weight = 0.0f;
-        for (int j = static_cast<int>(y0); j < fine.height && static_cast<float>(j) < y1; ++j) {
-          const float wy =
-              std::min(y1, static_cast<float>(j + 1)) - std::max(y0, static_cast<float>(j));
-          for (int i = static_cast<int>(x0); i < fine.width && static_cast<float>(i) < x1; ++i) {
-            const float w = wy * (std::min(x1, static_cast<float>(i + 1)) -
-                                  std::max(x0, static_cast<float>(i)));
-            sum += w * fine.opacity[static_cast<std::size_t>(j) * fine.width + i];
-            weight += w;
-          }
-        }
-        coarse.opacity[static_cast<std::size_t>(y) * coarse.width + x] = sum / weight;
-      }
-    }
-    levels_.push_back(std::move(coarse));
-  }
-}
-
-float OpacityPyramid::bilinear(const Level& level, V2f uv) const {
-  const float x = uv.x * static_cast<float>(level.width) - 0.5f;
-  const float y = uv.y * static_cast<float>(level.height) - 0.5f;
-  const float left = std::floor(x), top = std::floor(y);
-  const float fx = x - left, fy = y - top;
-  const auto at = [&](float i, float j) {
-    const int column = wrap(static_cast<int>(i), level.width, wrap_s_);
-    const int row = wrap(static_cast<int>(j), level.height, wrap_t_);
-    return level.opacity[static_cast<std::size_t>(row) * level.width + column];
-  };
-  const float upper = at(left, top) * (1 - fx) + at(left + 1, top) * fx;
-  const float lower = at(left, top + 1) * (1 - fx) + at(left + 1, top + 1) * fx;
-  return upper * (1 - fy) + lower * fy;
-}
-
-float OpacityPyramid::mean(V2f uv, float width_texels) const {
-  const V2f at(folded_coordinate(uv.x, wrap_s_), folded_coordinate(uv.y, wrap_t_));
-  const float level = std::clamp(std::log2(std::max(width_texels, 1.0f)), 0.0f,
-                                 static_cast<float>(levels_.size() - 1));
-  const auto fine = static_cast<std::size_t>(level);
-  const auto coarse = std::min(fine + 1, levels_.size() - 1);
-  const float blend = level - static_cast<float>(fine);
-  return bilinear(levels_[fine], at) * (1 - blend) + bilinear(levels_[coarse], at) * blend;
 }
 
 TextureIntegrals::Key TextureIntegrals::key_of(const TexturedCorners& corners) const {

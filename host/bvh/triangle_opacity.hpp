@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "bvh/opacity_pyramid.hpp"
 #include "bvh/textured_triangle.hpp"
 #include "dapple/scene.hpp"
 
@@ -22,40 +23,18 @@ float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segmen
 /// Whether alpha is looked up.
 bool has_texture(const Material& material, const Mesh& mesh);
 
-/// The opacity of an alpha, `cutoff` as cutoff_of().
-float thresholded(float alpha, float cutoff);
+/// How wide a texel of the material's texture is on the triangle, in the object's units; 0 where
+/// there is none, or no area.
+float texel_size(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
 
 /// The alpha from which on a masked material is opaque, or -1 where alpha is opacity.
 float cutoff_of(const Material& material);
 
-/// The record the kernels look a varying triangle up by. Throws Error failed where its material
-/// is beyond the most that the records can name.
-TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
-
-/// A texture's opacities averaged over squares of 1, 2, 4... texels. Of a cut-out the
-/// texels are thresholded first and averaged only then.
-class OpacityPyramid {
- public:
-  /// `factor` multiplies alpha before the threshold; `cutoff` < 0: blended.
-  OpacityPyramid(const Texture& texture, float factor, float cutoff);
-
-  /// Mean opacity around uv over a square `width_uv` wide (in units of the whole texture,
-  /// the larger of both axes' in texels counts).
-  [[nodiscard]] float mean(V2f uv, float width_texels) const;
-
-  [[nodiscard]] V2f size() const { return size_; }
-
- private:
-  struct Level {
-    int width, height;
-    std::vector<float> opacity;
-  };
-  [[nodiscard]] float bilinear(const Level& level, V2f uv) const;
-
-  std::vector<Level> levels_;
-  V2f size_;
-  Wrap wrap_s_, wrap_t_;
-};
+/// The record the kernels look a varying triangle up by; `averaged`: wide footprints take the mean
+/// of its texels. Throws Error failed where its material is beyond the most that the records can
+/// name.
+TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle,
+                                   bool averaged);
 
 /// Answers "how opaque is this part of the triangle on average" for textured triangles.
 class TextureIntegrals {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bvh/opacity_pyramid.hpp"
 #include "command/command.hpp"
 #include "command/option_text.hpp"
 #include "command/shot.hpp"
@@ -46,7 +47,8 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   std::size_t textures = 0;
   if (!bvh.textured.empty()) {
     textures = scene.materials.size() * sizeof(MaterialRecord);
-    for (const Texture& texture : scene.textures) textures += texture.alpha.size();
+    for (const Texture& texture : scene.textures)
+      textures += texture.alpha.size() + coarser_texels(texture);
   }
   const std::size_t nodes = bvh.nodes.size() * sizeof(BvhNode);
   const std::size_t triangles =

@@ -4,40 +4,13 @@
 #include <cmath>
 #include <cstring>
 
-#include "bvh/triangle_opacity.hpp"
 #include "device/dome_upload.hpp"
 #include "device/light_upload.hpp"
 #include "device/memory_need.hpp"
+#include "device/texture_upload.hpp"
 
 namespace dapple {
 namespace {
-
-/// Appends the texture's texels, once for all materials that it is of.
-TextureRecord pack_texture(const Texture& texture, std::vector<uchar>& texels) {
-  texels.resize((texels.size() + 15) / 16 * 16);
-  TextureRecord record{};
-  record.offset = static_cast<uint>(texels.size() / 16);
-  record.width = texture.width;
-  record.height = texture.height;
-  record.flags = static_cast<uint>(texture.wrap_s) | static_cast<uint>(texture.wrap_t) << 2 |
-                 (texture.nearest ? 16u : 0u);
-  texels.insert(texels.end(), texture.alpha.begin(), texture.alpha.end());
-  return record;
-}
-
-/// One record a material, in their order, as textured triangles name them.
-void pack_materials(const Scene& scene, DeviceBuffers& buffers) {
-  std::vector<TextureRecord> textures;
-  for (const Texture& texture : scene.textures)
-    textures.push_back(pack_texture(texture, buffers.texel_data));
-  for (const Material& material : scene.materials) {
-    MaterialRecord record{};
-    if (material.alpha_texture >= 0) record.texture = textures[material.alpha_texture];
-    record.alpha = material.alpha;
-    record.cutoff = cutoff_of(material);
-    buffers.material_records.push_back(record);
-  }
-}
 
 template <class Array>
 Buffer share(DeviceContext& context, const Array& data) {
@@ -98,7 +71,7 @@ void write_ranges(DeviceContext& context, const Buffer& buffer, const Array& dat
 
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh) {
   auto buffers = std::make_shared<DeviceBuffers>(device);
-  if (!bvh.textured.empty()) pack_materials(scene, *buffers);
+  if (!bvh.textured.empty()) pack_materials(scene, buffers->material_records, buffers->texel_data);
   pack_lights(scene, buffers->light_records, buffers->emitter_triangles);
   pack_domes(scene, buffers->light_records, buffers->environment_data);
   DeviceContext& context = device.context();

@@ -1,7 +1,10 @@
 #include "wavefront/depths.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <numeric>
+#include <optional>
 
 #include "bvh/triangle_opacity.hpp"
 
@@ -13,8 +16,12 @@ namespace {
 constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.7f;
 constexpr double kPart = 0.25;
 
-/// Texels of a texture that are looked at, spread evenly.
-constexpr std::size_t kTexels = 4096;
+/// What of a texture is looked at: squares, and texels of one, along each axis.
+constexpr int kSquares = 64, kTexels = 4;
+
+/// Samples a pixel for which textures are averaged here, whatever the picture's: with more samples
+/// a picture must keep its depths, for renders that are gone on with.
+constexpr int kSamples = 16;
 
 float mean_vertex_alpha(const Mesh& mesh) {
   if (mesh.vertex_alpha.empty()) return 1.0f;
@@ -33,44 +40,103 @@ struct Counts {
   }
 };
 
-/// One surface of the material: of a texture, all its texels together.
-Counts count_opacities(const Scene& scene, const Mesh& mesh, const Material& material,
-                       float vertex_alpha) {
-  if (material.alpha_mode == AlphaMode::opaque) return {1, 0, 0};
-  Counts texels;
-  const float factor = material.alpha * (material.uses_vertex_alpha ? vertex_alpha : 1.0f);
-  const auto count = [&](float alpha) {
-    const float opacity = thresholded(alpha * factor, cutoff_of(material));
-    if (opacity <= 0) return;
-    texels.add({1, opacity <= kOpacityOfTwo ? 1.0 : 0.0, opacity <= kOpacityOfFour ? 1.0 : 0.0}, 1);
-  };
-  if (!has_texture(material, mesh)) {
-    count(1);
-  } else {
-    const std::vector<std::uint8_t>& alpha = scene.textures[material.alpha_texture].alpha;
-    const std::size_t step = std::max<std::size_t>(1, alpha.size() / kTexels);
-    for (std::size_t at = 0; at < alpha.size(); at += step)
-      count(static_cast<float>(alpha[at]) / 255);
+/// Of one surface of that opacity.
+Counts count_opacity(float opacity) {
+  if (opacity <= 0) return {};
+  return {1, opacity <= kOpacityOfTwo ? 1.0 : 0.0, opacity <= kOpacityOfFour ? 1.0 : 0.0};
+}
+
+/// What of a material decides an alpha's opacity.
+struct Factors {
+  float factor, cutoff;
+};
+
+/// The mean opacity of the square of texels from (x, y) on.
+float square_opacity(const Texture& texture, Factors factors, std::uint32_t x, std::uint32_t y,
+                     std::uint32_t side) {
+  const std::uint32_t width = std::min(side, texture.width - x);
+  const std::uint32_t height = std::min(side, texture.height - y);
+  const std::uint32_t columns = std::min<std::uint32_t>(width, kTexels);
+  const std::uint32_t rows = std::min<std::uint32_t>(height, kTexels);
+  float sum = 0;
+  for (std::uint32_t j = 0; j < rows; ++j) {
+    const std::size_t row = y + std::size_t{j} * height / rows;
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const std::size_t column = x + std::size_t{i} * width / columns;
+      const float alpha = static_cast<float>(texture.alpha[row * texture.width + column]) / 255;
+      sum += thresholded(alpha * factors.factor, factors.cutoff);
+    }
   }
+  return sum / static_cast<float>(rows * columns);
+}
+
+/// One surface, all squares of its texture together.
+Counts count_squares(const Texture& texture, Factors factors, std::uint32_t side) {
+  const std::uint32_t across = side * std::max(1u, texture.width / side / kSquares);
+  const std::uint32_t down = side * std::max(1u, texture.height / side / kSquares);
+  Counts squares;
+  for (std::uint32_t y = 0; y < texture.height; y += down)
+    for (std::uint32_t x = 0; x < texture.width; x += across)
+      squares.add(count_opacity(square_opacity(texture, factors, x, y, side)), 1);
   Counts one;
-  if (texels.all > 0) one.add(texels, 1 / texels.all);
+  if (squares.all > 0) one.add(squares, 1 / squares.all);
   return one;
 }
 
-Counts count_surfaces(const Scene& scene) {
-  std::vector<double> placed(scene.meshes.size(), 0.0);
-  for (const Instance& instance : scene.instances) placed[instance.mesh] += 1;
+/// Triangles of a mesh that share a material.
+struct Part {
+  const Material* material = nullptr;
+  double triangles = 0;
+  float texel_size = 0;            ///< object space, of the first triangle that has one
+  std::map<int, Counts> counts{};  ///< of one of them, by the level at which it is seen
+};
+
+using Parts = std::map<std::uint32_t, Part>;  ///< by material
+
+Parts parts_of(const Scene& scene, const Mesh& mesh) {
+  Parts parts;
+  for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
+    Part& part = parts[mesh.materials[i]];
+    part.material = &scene.materials[mesh.materials[i]];
+    ++part.triangles;
+    if (part.texel_size == 0)
+      part.texel_size = texel_size(scene, mesh, static_cast<std::uint32_t>(i));
+  }
+  return parts;
+}
+
+Counts count_part(const Scene& scene, const Mesh& mesh, const Part& part, int level) {
+  const Material& material = *part.material;
+  if (material.alpha_mode == AlphaMode::opaque) return {1, 0, 0};
+  const float vertex_alpha = material.uses_vertex_alpha ? mean_vertex_alpha(mesh) : 1.0f;
+  const Factors factors{material.alpha * vertex_alpha, cutoff_of(material)};
+  if (!has_texture(material, mesh))
+    return count_opacity(thresholded(factors.factor, factors.cutoff));
+  return count_squares(scene.textures[material.alpha_texture], factors, 1u << level);
+}
+
+/// The level at which a camera ray meets the part's texture, by kernels/opacity_lookup.clh.
+int seen_level(const Part& part, const Instance& instance, const Mesh& mesh, const View& view,
+               float share) {
+  if (part.texel_size == 0 || share == 0) return 0;
+  const float scale = std::cbrt(std::fabs(instance.to_world.determinant()));
+  const float width = std::sqrt(share) * pixel_width(view, mesh.positions[0] * instance.to_world);
+  const float level = std::log2(width / (part.texel_size * scale));
+  return std::isfinite(level) ? static_cast<int>(std::clamp(level, 0.0f, 15.0f)) : 0;
+}
+
+Counts count_surfaces(const Scene& scene, const View& view, float share) {
+  std::vector<std::optional<Parts>> parts(scene.meshes.size());
   Counts counts;
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    if (placed[m] == 0) continue;
-    const Mesh& mesh = scene.meshes[m];
-    std::vector<std::size_t> of_material(scene.materials.size(), 0);
-    for (const std::uint32_t material : mesh.materials) ++of_material[material];
-    const float vertex_alpha = mean_vertex_alpha(mesh);
-    for (std::size_t i = 0; i < of_material.size(); ++i) {
-      if (of_material[i] == 0) continue;
-      counts.add(count_opacities(scene, mesh, scene.materials[i], vertex_alpha),
-                 placed[m] * static_cast<double>(of_material[i]));
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    auto& of_mesh = parts[instance.mesh];
+    if (!of_mesh) of_mesh = parts_of(scene, mesh);
+    for (auto& [material, part] : *of_mesh) {
+      const int level = seen_level(part, instance, mesh, view, share);
+      const auto [at, is_new] = part.counts.try_emplace(level);
+      if (is_new) at->second = count_part(scene, mesh, part, level);
+      counts.add(at->second, part.triangles);
     }
   }
   return counts;
@@ -83,9 +149,9 @@ double most_samples(const RenderOptions& options) {
 
 }  // namespace
 
-int choose_depths(const RenderOptions& options, const Scene& scene) {
+int choose_depths(const RenderOptions& options, const Scene& scene, const View& view) {
   if (options.depths > 0) return options.depths;
-  const Counts counts = count_surfaces(scene);
+  const Counts counts = count_surfaces(scene, view, texel_share(options, kSamples));
   const double enough = kPart * counts.all;
   int depths = counts.for_four > enough ? 4 : counts.for_two > enough ? 2 : 1;
   const double rays = is_adaptive(options) ? options.max_spp : options.spp;

@@ -6,11 +6,13 @@
 
 #include "dapple/options.hpp"
 #include "dapple/scene.hpp"
+#include "wavefront/view.hpp"
 
 namespace dapple {
 
-/// `options.depths`, or where that is 0 what suits the scene's opacities.
-int choose_depths(const RenderOptions& options, const Scene& scene);
+/// `options.depths`, or where that is 0 what suits the scene's opacities: those of textures as the
+/// view's camera rays average them.
+int choose_depths(const RenderOptions& options, const Scene& scene, const View& view);
 
 /// What tracing takes: `spp` and `max_spp` count samples, of which each camera ray has `depths`,
 /// which must be chosen, and `ao_rays` those of one sample. Footprints stay what they are without

@@ -179,7 +179,7 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   statistics.estimator = name_of(options.estimator);
 
   const View view = furnish(scene, options, statistics.notes);
-  options.depths = choose_depths(options, scene);
+  options.depths = choose_depths(options, scene, view);
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);
   const RenderOptions sampled = by_sample(options);

@@ -26,6 +26,13 @@ View choose_view(const Scene& scene, const RenderOptions& options, std::vector<s
 /// What the camera kernel needs, but for the slice and the scene; `bounds` are the scene's.
 CameraParams camera_params(const View& view, const RenderOptions& options, const Box3f& bounds);
 
+/// The part of a pixel's area over which a camera ray's textures are averaged where footprints are
+/// made for `spp` samples a pixel.
+float texel_share(const RenderOptions& options, int spp);
+
+/// In metres, of a pixel at a place.
+float pixel_width(const View& view, const V3f& at);
+
 /// World to EXR's camera space: left-handed, x right, y up, +Z forward; row vectors.
 M44f world_to_exr_camera(const Camera& camera);
 

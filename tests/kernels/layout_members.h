@@ -26,7 +26,8 @@
   MEMBER(TextureRecord, flags)                                                               \
   STRUCT(MaterialRecord)                                                                     \
   MEMBER(MaterialRecord, texture) MEMBER(MaterialRecord, alpha)                              \
-  MEMBER(MaterialRecord, cutoff) MEMBER(MaterialRecord, spare)                               \
+  MEMBER(MaterialRecord, cutoff) MEMBER(MaterialRecord, mips)                                \
+  MEMBER(MaterialRecord, spare) MEMBER(MaterialRecord, mip_offset)                           \
   STRUCT(InstanceRecord)                                                                     \
   MEMBER(InstanceRecord, to_object) MEMBER(InstanceRecord, to_world)                         \
   MEMBER(InstanceRecord, inverse_area_scale) MEMBER(InstanceRecord, root)                    \
@@ -72,7 +73,8 @@
   MEMBER(CameraParams, orthographic) MEMBER(CameraParams, width)                             \
   MEMBER(CameraParams, height) MEMBER(CameraParams, crop_x) MEMBER(CameraParams, crop_y)     \
   MEMBER(CameraParams, crop_width) MEMBER(CameraParams, seed)                                \
-  MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, depth_bits)                         \
+  MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, texel_share)                        \
+  MEMBER(CameraParams, depth_bits)                                                           \
   MEMBER(CameraParams, seen_left)                                                            \
   MEMBER(CameraParams, seen_above) MEMBER(CameraParams, seen_right)                          \
   MEMBER(CameraParams, seen_below)                                                           \

@@ -29,7 +29,7 @@ __kernel void look_up_triangle(__global const TexturedTriangle* textured,
   const uint place = item % DAPPLE_LOOKUPS;
   for (uint i = 0; i <= place; ++i) {
     const float2 at = vload2(item - place + i, barycentrics);
-    add_hit(&hits, -1.0f - (float)triangle, at.x, at.y);
+    add_hit(&hits, -1.0f - (float)triangle, at.x, at.y, 0.0f);
   }
   float opacity[DAPPLE_LOOKUPS];
   vstore16(look_up_opacities(scene, &hits), 0, opacity);

@@ -33,13 +33,20 @@ typedef struct TextureRecord {
   uint flags;   /* wrap_s | wrap_t << 2 | nearest << 4 */
 } TextureRecord;
 
+/* Coarser levels of a texture at most: of 65,536 texels along either axis the last is one. */
+#define DAPPLE_MOST_MIPS 16
+
 /* What textured triangles share: opacity = vertex alpha (interpolated) * alpha * texture alpha,
-   then 1 where >= cutoff and 0 below if cutoff >= 0. */
+   then 1 where >= cutoff and 0 below if cutoff >= 0. Where a footprint covers many texels their
+   mean counts, out of a pyramid (Williams, "Pyramidal Parametrics", 1983): level k, half as wide
+   and high as level k - 1, rounded down, holds mean texture alphas, of a cut-out mean opacities. */
 typedef struct MaterialRecord {
   TextureRecord texture;  /* zeros for none */
   float alpha;            /* baseColorFactor.a */
   float cutoff;           /* < 0: blended */
-  uint spare[2];
+  uint mips;              /* levels above the texture itself */
+  uint spare;
+  uint mip_offset[DAPPLE_MOST_MIPS];  /* of level 1 and up, as TextureRecord::offset */
 } MaterialRecord;
 
 /* A placed object. p_object = to_object * (p_world, 1), rows of a 3x4 matrix; rays keep
@@ -56,7 +63,7 @@ typedef struct InstanceRecord {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(TriangleBlock) == 320);
 static_assert(sizeof(TextureRecord) == 16);
-static_assert(sizeof(MaterialRecord) == 32);
+static_assert(sizeof(MaterialRecord) == 96);
 static_assert(sizeof(InstanceRecord) == 112);
 }  // namespace dapple
 #endif

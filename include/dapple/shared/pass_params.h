@@ -58,6 +58,7 @@ typedef struct CameraParams {
   uint crop_width;
   uint seed;
   float inverse_spp;    /* 1 / samples a pixel that were asked for */
+  float texel_share;    /* of a pixel's area that textures are averaged over; 0: none */
   uint depth_bits;      /* two to these samples in a row share a camera ray */
   /* Pixels in which the scene may be: columns [left, right), rows [above, below). */
   uint seen_left, seen_above, seen_right, seen_below;

@@ -1,5 +1,6 @@
-/* A triangle whose opacity varies, in 24 bytes: texture coordinates, vertex alphas and the
-   index of a material; and how they are decoded. host/bvh/textured_triangle.cpp encodes. */
+/* A triangle whose opacity varies, in 24 bytes: texture coordinates, vertex alphas, the index of
+   a material and the size of a texel; and how they are decoded. host/bvh/textured_triangle.cpp
+   encodes. */
 #ifndef DAPPLE_SHARED_TEXTURED_TRIANGLE_H
 #define DAPPLE_SHARED_TEXTURED_TRIANGLE_H
 
@@ -12,7 +13,7 @@ namespace dapple {
 /* Two words a corner, for u and v. Each has 21 bits of its coordinate uppermost, in steps of a
    power of two that all six share. Below them the vertex alpha: upper 11 bits in the first word,
    lowest in the second; below that, of the second: bits 0 to 9 of the material (corner 0), bits
-   10 to 19 (corner 1), the step and three flags (corner 2).
+   10 to 14 and the size of a texel above them (corner 1), the step and three flags (corner 2).
 
    Coordinates and not edges, so that neighbours agree at the vertices they share; of 21 bits,
    since 16 for edges beside a vertex of two floats moved cards by up to 1/64 of a texel: 980 of
@@ -30,11 +31,15 @@ typedef struct TexturedTriangle {
 /* Steps of vertex alphas: those of 8-bit colours are among them, 16 apart. */
 #define DAPPLE_ALPHA_ONE 4080
 
-#define DAPPLE_MOST_TEXTURED_MATERIALS 0x100000u
+#define DAPPLE_MOST_TEXTURED_MATERIALS 0x8000u
+
+/* The texel is 2^(code - bias) wide, in the object's units; code 0: not known. */
+#define DAPPLE_TEXEL_SIZE_BIAS 25
+#define DAPPLE_TEXEL_SIZE_CODES 32
 
 /* Which of the scene's materials. */
 DAPPLE_FUNCTION uint textured_material(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
-  return (triangle->corner[0][1] & 1023u) | (triangle->corner[1][1] & 1023u) << 10;
+  return (triangle->corner[0][1] & 1023u) | (triangle->corner[1][1] & 31u) << 10;
 }
 
 DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
@@ -46,6 +51,9 @@ DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle)
 
 /* COLOR_0.a in 1/4080: the material's factor is not in it. */
 #define DAPPLE_VERTEX_ALPHA(first, second) (((first) & 2047u) << 1 | ((second) >> 10 & 1u))
+
+/* Of corner 1's second word. */
+#define DAPPLE_TEXEL_SIZE_CODE(word) ((word) >> 5 & 31u)
 
 /* A word's coordinate, in steps from the lowest that could be encoded. */
 #define DAPPLE_UV_CODE(word) ((word) >> 11)
