@@ -224,8 +224,8 @@ std::set<float> coverages(RenderOptions options, float instance_scale) {
   return {alpha.begin(), alpha.end()};
 }
 
-// Half of four thresholds, stratified, are below a half: with a coverage of one half in every square
-// the same two of four samples stop everywhere.
+// Half of four thresholds, stratified, are below a half: with a coverage of one half in every
+// square the same two of four samples stop everywhere.
 TEST(AveragedTexels, OfACameraRayAreThoseOfItsPixel) {
   for (const float scale : {1.0f, 0.02f}) {
     RenderOptions options;

@@ -1,0 +1,3 @@
+/* As on an x86 without AVX-512. */
+#undef __AVX512DQ__
+#include "lanes_of_patterns.h"
