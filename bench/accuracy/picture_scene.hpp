@@ -44,9 +44,9 @@ class PictureScene {
   /// The device's name; opens it.
   std::string device_name();
 
-  /// `options` may differ from the constructor's in seed, samples, rays, estimator and
+  /// `asked` may differ from the constructor's in seed, samples, rays, estimator and
   /// footprint. Compiles on first use, outside the times.
-  Picture render(const RenderOptions& options);
+  Picture render(const RenderOptions& asked);
 
   /// What a light pass is relative to from now on; the pictures of one study share it.
   void set_largest(std::vector<double> largest) { largest_ = std::move(largest); }
