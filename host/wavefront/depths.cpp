@@ -95,12 +95,18 @@ using Parts = std::map<std::uint32_t, Part>;  ///< by material
 
 Parts parts_of(const Scene& scene, const Mesh& mesh) {
   Parts parts;
+  Part* part = nullptr;
+  bool textured = false;
   for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
-    Part& part = parts[mesh.materials[i]];
-    part.material = &scene.materials[mesh.materials[i]];
-    ++part.triangles;
-    if (part.texel_size == 0)
-      part.texel_size = texel_size(scene, mesh, static_cast<std::uint32_t>(i));
+    // Most triangles have the material of the one before.
+    if (i == 0 || mesh.materials[i] != mesh.materials[i - 1]) {
+      part = &parts[mesh.materials[i]];
+      part->material = &scene.materials[mesh.materials[i]];
+      textured = has_texture(*part->material, mesh);
+    }
+    ++part->triangles;
+    if (textured && part->texel_size == 0)
+      part->texel_size = texel_size(scene, mesh, static_cast<std::uint32_t>(i));
   }
   return parts;
 }
