@@ -114,8 +114,8 @@ float OpacityPyramid::mean(V2f uv, float width_texels) const {
   return bilinear(levels_[fine], at) * (1 - blend) + bilinear(levels_[coarse], at) * blend;
 }
 
-std::size_t coarser_texels(const Texture& texture) {
-  std::size_t sum = 0;
+std::size_t pyramid_texels(const Texture& texture) {
+  std::size_t sum = texture.alpha.size();
   for (std::size_t width = texture.width, height = texture.height; width > 1 || height > 1;) {
     width = std::max<std::size_t>(1, width / 2);
     height = std::max<std::size_t>(1, height / 2);

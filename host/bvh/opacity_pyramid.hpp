@@ -41,7 +41,7 @@ class OpacityPyramid {
   Wrap wrap_s_, wrap_t_;
 };
 
-/// Texels of all levels above the texture itself.
-std::size_t coarser_texels(const Texture& texture);
+/// Texels of all levels, the texture itself among them.
+std::size_t pyramid_texels(const Texture& texture);
 
 }  // namespace dapple

@@ -13,7 +13,7 @@ MemoryNeed least_need(const Scene& scene) {
   std::size_t triangles = 0, segments = 0, texels = 0;
   for (const Mesh& mesh : scene.meshes)
     (mesh.has_strands() ? segments : triangles) += mesh.primitive_count();
-  for (const Texture& texture : scene.textures) texels += texture.alpha.size() + coarser_texels(texture);
+  for (const Texture& texture : scene.textures) texels += pyramid_texels(texture);
   MemoryNeed need;
   const std::size_t blocks = (triangles + 7) / 8 * sizeof(TriangleBlock);
   const std::size_t segment_blocks = (segments + 7) / 8 * sizeof(SegmentBlock);
