@@ -203,7 +203,7 @@ std::set<float> coverages(RenderOptions options, float instance_scale) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (const V3f& corner : {V3f(0, 0, 9), V3f(0, 1, 9), V3f(1, 0, 9)})
       mesh.positions.push_back(corner + V3f(0, 0, static_cast<float>(i)));
-    mesh.uvs.resize(mesh.positions.size());
+    mesh.uvs.resize(mesh.positions.size(), V2f(0.0f));
     mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2});
     mesh.materials.push_back(0);
   }

@@ -59,7 +59,7 @@ TEST(Depths, AreMoreTheMoreRaysSlipThrough) {
 Scene cards(std::uint8_t left, std::uint8_t right) {
   Scene scene = tree(1.0f);
   scene.textures.push_back({"alpha", 2, 1, {left, right}});
-  for (Mesh& mesh : scene.meshes) mesh.uvs.resize(mesh.positions.size());
+  for (Mesh& mesh : scene.meshes) mesh.uvs.resize(mesh.positions.size(), V2f(0.0f));
   for (Material& material : scene.materials) material.alpha_texture = 0;
   return scene;
 }
