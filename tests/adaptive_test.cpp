@@ -205,6 +205,17 @@ TEST(BatchVariances, OfKnownBatchesAreTheirSampleVariance) {
   }
 }
 
+TEST(BatchVariances, PixelsWithoutSamplesCountForNothing) {
+  // Of the middle pixel batches of 1 and 3, of the others none.
+  BatchMoments moments{std::vector<float>(9, std::nanf("")), std::vector<float>(9)};
+  std::vector<std::uint32_t> samples(9);
+  moments.mean[4] = 2.0f;
+  moments.squares[4] = 10.0f;
+  samples[4] = 2 * DAPPLE_BATCH;
+  const std::vector<float> variances = batch_variances(moments, samples, 3);
+  for (std::size_t p = 0; p < 9; ++p) EXPECT_EQ(variances[p], p == 4 ? 2.0f : 0.0f) << p;
+}
+
 TEST(BatchVariances, NeighboursStandInWhereAPixelKnowsLittle) {
   const std::vector<std::uint32_t> samples(9, 2 * DAPPLE_BATCH);
   BatchMoments moments{std::vector<float>(9, 0.5f), std::vector<float>(9, 0.5f)};

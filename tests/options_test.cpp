@@ -153,8 +153,10 @@ TEST(FootprintSamples, AreThoseAskedForOrWhatATargetNeeds) {
   options.target_rmse = 0.05f;
   EXPECT_EQ(footprint_samples(options), 12);
   options.target_rmse = 0.01f;
-  EXPECT_EQ(footprint_samples(options), 64);
+  EXPECT_EQ(footprint_samples(options), 32);
   options.target_rmse = 0;
+  options.target_error = 0.01f;
+  EXPECT_EQ(footprint_samples(options), 64);
   options.target_error = 1e-6f;
   EXPECT_EQ(footprint_samples(options), options.max_spp);
   options.footprint_spp = 7;

@@ -99,8 +99,11 @@ TEST_F(Resume, ARenderLeftAfterAnySliceGoesOnToTheSameBits) {
   const SceneOnDevice tree(lit_tree());
   RenderOptions deep = with(&RenderOptions::target_error, 0.04f);
   deep.depths = 4;
+  RenderOptions scouted = with(&RenderOptions::target_rmse, 0.03f);
+  scouted.width = 72;
+  scouted.height = 64;
   for (const RenderOptions& options : {small_picture(), with(&RenderOptions::target_error, 0.05f),
-                                       with(&RenderOptions::target_rmse, 0.02f), deep}) {
+                                       with(&RenderOptions::target_rmse, 0.02f), deep, scouted}) {
     const Tracing tracing(tree, options);
     int slices = 0;
     TraceControl count;

@@ -4,13 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "dapple/shared/pass_params.h"
 #include "wavefront/pixel_error.hpp"
 #include "wavefront/sample_allocation.hpp"
+#include "wavefront/scouts.hpp"
 
 namespace dapple {
 namespace {
@@ -181,14 +185,19 @@ struct Drawn {
 Drawn draw(int width, int height, const RenderOptions& options) {
   const std::size_t count = static_cast<std::size_t>(width) * height;
   GaussianPixels pixels(rising_variances(count));
-  const std::vector<float> costs(count, 1.0f);
+  const auto costs = [&] { return std::vector<float>(count, 1.0f); };
   SamplePlan plan(width, height, options);
-  for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) pixels.trace(first.at(0));
+  const auto trace = [&](const std::vector<WorkGroup>& groups) {
+    for (const WorkGroup& group : groups) pixels.trace(group);
+  };
+  trace(plan.scouts());
+  if (plan.only_scouts_have_samples()) trace(plan.after_scouts({pixels.variances(width)}, costs));
+  for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) trace(first);
   Drawn drawn;
   for (; drawn.rounds < 30; ++drawn.rounds) {
     const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)}, costs);
     if (groups.empty()) break;
-    for (const WorkGroup& group : groups) pixels.trace(group);
+    trace(groups);
   }
   double squares = 0;
   for (std::size_t p = 0; p < count; ++p) squares += pixels.mean(p) * pixels.mean(p);
@@ -235,7 +244,7 @@ TEST(SamplePlan, NoPixelGetsMoreThanEightTimesWhatItHasAndAllEndAtTheMost) {
   SamplePlan plan(5, 2, options);
   EXPECT_EQ(plan.least().at(0).samples, 16u);
   const std::vector<std::vector<float>> variances{std::vector<float>(10, 1.0f)};
-  const std::vector<float> costs(10, 1.0f);
+  const auto costs = [] { return std::vector<float>(10, 1.0f); };
   for (int round = 0; round < 20; ++round) {
     const std::vector<std::uint32_t> before = plan.samples();
     if (plan.next(variances, costs).empty()) break;
@@ -246,6 +255,95 @@ TEST(SamplePlan, NoPixelGetsMoreThanEightTimesWhatItHasAndAllEndAtTheMost) {
   }
   for (const std::uint32_t samples : plan.samples()) EXPECT_EQ(samples, 200u);
   EXPECT_EQ(plan.fraction_done(), 1.0);
+}
+
+std::size_t count_of(const std::vector<std::uint32_t>& samples, std::uint32_t count) {
+  return static_cast<std::size_t>(std::count(samples.begin(), samples.end(), count));
+}
+
+TEST(ScoutPixels, AreSquaresAllOverThePicture) {
+  const int width = 130, height = 75;
+  const std::vector<bool> scouts = scout_pixels(width, height);
+  ASSERT_EQ(scouts.size(), 130u * 75u);
+  std::set<std::pair<int, int>> places;
+  for (int top = 0; top + 8 <= height; top += 8) {
+    for (int left = 0; left + 8 <= width; left += 8) {
+      std::vector<std::pair<int, int>> of_cell;
+      for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x)
+          if (scouts[static_cast<std::size_t>(top + y) * width + left + x])
+            of_cell.push_back({x, y});
+      ASSERT_EQ(of_cell.size(), 16u);
+      EXPECT_EQ(of_cell.back().first - of_cell.front().first, 3);
+      EXPECT_EQ(of_cell.back().second - of_cell.front().second, 3);
+      places.insert(of_cell.front());
+    }
+  }
+  EXPECT_EQ(places.size(), 4u) << "no grid that a scene could hide from";
+}
+
+TEST(ScoutPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {
+  EXPECT_TRUE(scout_pixels(63, 64).empty());
+  EXPECT_TRUE(scout_pixels(100'000, 7).empty());
+  for (const auto& [width, height] : {std::pair{64, 64}, {256, 256}, {1920, 1080}, {3840, 2160}}) {
+    const std::vector<bool> scouts = scout_pixels(width, height);
+    const auto count = std::count(scouts.begin(), scouts.end(), true);
+    EXPECT_GE(count, 64 * 16) << width;
+    EXPECT_LE(count, 1024 * 16) << width;
+  }
+}
+
+TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
+  RenderOptions options = by_rmse(0.1f);
+  SamplePlan plan(128, 128, options);
+  const std::vector<WorkGroup> scouts = plan.scouts();
+  EXPECT_EQ(count_of(plan.samples(), 8), 4096u);
+  EXPECT_EQ(count_of(plan.samples(), 0), 3u * 4096u);
+  ASSERT_TRUE(plan.only_scouts_have_samples());
+  const auto costs = [] { return std::vector<float>(16384, 1.0f); };
+  // Batches of variance 0.04: the squared error is 0.01 at 4, times the aim at 4.7.
+  const std::vector<WorkGroup> all = plan.after_scouts({std::vector<float>(16384, 0.04f)}, costs);
+  EXPECT_EQ(count_of(plan.samples(), 5 * DAPPLE_BATCH), 16384u);
+  EXPECT_FALSE(plan.only_scouts_have_samples());
+  GaussianPixels pixels(std::vector<float>(16384, 1.0f));
+  for (const auto& groups : {scouts, all})
+    for (const WorkGroup& group : groups) pixels.trace(group);  // begins where it ended, or fails
+  EXPECT_TRUE(plan.least().empty());
+}
+
+TEST(SamplePlan, AfterTheScoutsNoPixelGetsMoreThanFourTimesTheLeast) {
+  SamplePlan plan(128, 128, by_rmse(0.001f));
+  plan.scouts();
+  plan.after_scouts({std::vector<float>(16384, 1.0f)},
+                    [] { return std::vector<float>(16384, 1.0f); });
+  EXPECT_EQ(count_of(plan.samples(), 32), 16384u);
+}
+
+TEST(SamplePlan, ScoutsThatSeeNothingAskForTheLeast) {
+  SamplePlan plan(128, 128, by_rmse(0.1f));
+  plan.scouts();
+  plan.after_scouts({std::vector<float>(16384, 0.0f)},
+                    [] { return std::vector<float>(16384, 1.0f); });
+  EXPECT_EQ(count_of(plan.samples(), 8), 16384u);
+}
+
+TEST(SamplePlan, GoesOnFromScoutsAsIfItHadSentThem) {
+  const std::vector<float> variances(16384, 0.09f);
+  const auto costs = [] { return std::vector<float>(16384, 1.0f); };
+  SamplePlan plan(128, 128, by_rmse(0.1f));
+  plan.scouts();
+  SamplePlan later(128, 128, by_rmse(0.1f), plan.samples());
+  EXPECT_TRUE(later.scouts().empty());
+  ASSERT_TRUE(later.only_scouts_have_samples());
+  plan.after_scouts({variances}, costs);
+  later.after_scouts({variances}, costs);
+  EXPECT_EQ(plan.samples(), later.samples());
+}
+
+TEST(SamplePlan, LargePicturesReachTheRmseInFewRounds) {
+  const Drawn drawn = draw(128, 128, by_rmse(0.05f));
+  EXPECT_NEAR(drawn.rmse, 0.05, 0.05 * 0.05);
+  EXPECT_LE(drawn.rounds, 6);
 }
 
 TEST(SamplePlan, ListsEveryPixelOnceTileByTile) {

@@ -49,8 +49,7 @@ double FilmMoments::luminance_sum(std::uint32_t first, std::uint32_t channels,
 std::vector<float> FilmMoments::ao_variances() const {
   const double scale = 1.0 / (double{layout_.unit_scale} * options_.ao_rays);
   return variances_of(
-      [&](std::uint32_t p) { return (sum(0, p) - sum(layout_.ao, p) * scale) / samples_[p]; }, 0,
-      1.0);
+      [&](std::uint32_t p) { return mean(sum(0, p) - sum(layout_.ao, p) * scale, p); }, 0, 1.0);
 }
 
 std::vector<float> FilmMoments::light_variances(std::size_t light) const {
@@ -58,7 +57,7 @@ std::vector<float> FilmMoments::light_variances(std::size_t light) const {
   const double scale = 1.0 / (double{layout_.light_scale} * options_.light_rays);
   const auto mean_from = [&](std::uint32_t first) {
     return [&, first](std::uint32_t p) {
-      return luminance_sum(first, planes.channels, p) * scale / samples_[p];
+      return mean(luminance_sum(first, planes.channels, p) * scale, p);
     };
   };
   return variances_of(mean_from(planes.first), layout_.light_squares(light),

@@ -13,7 +13,8 @@
 
 namespace dapple {
 
-/// Each pixel has two batches or more, `width` pixels a row. What it is made from must outlive it.
+/// Each pixel has two batches or more, or none; `width` pixels a row. What it is made from must
+/// outlive it.
 class FilmMoments {
  public:
   FilmMoments(const HostView& sums, const HostView& squares, const FilmLayout& layout,
@@ -33,6 +34,10 @@ class FilmMoments {
  private:
   [[nodiscard]] double sum(std::uint32_t plane, std::uint32_t pixel) const {
     return static_cast<double>(sums_[std::size_t{plane} * layout_.pixels + pixel]);
+  }
+  /// Over a pixel's samples, 0 where there are none.
+  [[nodiscard]] double mean(double sum, std::uint32_t pixel) const {
+    return samples_[pixel] ? sum / samples_[pixel] : 0.0;
   }
   /// Of one channel itself, of three their luminance.
   [[nodiscard]] double luminance_sum(std::uint32_t first, std::uint32_t channels,

@@ -120,17 +120,30 @@ class PictureTracer {
 
   /// False when there is no more to trace.
   bool next_round(SamplePlan& plan, const TraceControl& control) {
-    // Errors depend on the order, by roundings: with a target it is always the same.
-    state_.round = {plan.least(plan.is_adaptive() ? SampleOrder::pixels : control.order)};
-    if (state_.round.is_done() && plan.is_adaptive()) {
-      const std::vector<std::uint32_t>& samples = plan.samples();
-      const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
-      const FilmMoments moments(sums, squares, layout_, options_, samples, width_);
-      state_.round = {plan.next(moments.variances(),
-                                options_.target_rmse > 0 ? moments.costs() : std::vector<float>())};
+    if (plan.is_adaptive()) {
+      state_.round = {next_for_target(plan)};
       if (control.progress) control.progress(plan.fraction_done());
+    } else {
+      state_.round = {plan.least(control.order)};
     }
     return !state_.round.is_done();
+  }
+
+  std::vector<WorkGroup> next_for_target(SamplePlan& plan) {
+    std::vector<WorkGroup> groups = plan.scouts();
+    if (!groups.empty()) return groups;
+    const bool only_scouts = plan.only_scouts_have_samples();
+    // Errors depend on the order, by roundings: with a target it is always the same.
+    if (!only_scouts && !(groups = plan.least()).empty()) return groups;
+    const std::vector<std::uint32_t>& samples = plan.samples();
+    const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
+    const FilmMoments moments(sums, squares, layout_, options_, samples, width_);
+    const auto costs = [&] { return moments.costs(); };
+    std::vector<std::vector<float>> variances = moments.variances();
+    if (only_scouts) return plan.after_scouts(variances, costs);
+    groups = plan.next(variances, costs);
+    if (groups.empty()) variances_ = std::move(variances);
+    return groups;
   }
 
   /// What is left of the round; false when asked to stop before its end.
@@ -162,9 +175,11 @@ class PictureTracer {
   }
 
   std::vector<std::vector<float>> standard_errors(const std::vector<std::uint32_t>& samples) {
-    const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
-    std::vector<std::vector<float>> errors =
-        FilmMoments(sums, squares, layout_, options_, samples, width_).variances();
+    std::vector<std::vector<float>> errors = std::move(variances_);
+    if (errors.empty()) {
+      const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
+      errors = FilmMoments(sums, squares, layout_, options_, samples, width_).variances();
+    }
     for (std::vector<float>& pass : errors) {
       for (std::size_t p = 0; p < pass.size(); ++p)
         pass[p] = std::sqrt(pass[p] * DAPPLE_BATCH / static_cast<float>(samples[p]));
@@ -264,6 +279,7 @@ class PictureTracer {
   ResolveParams resolve_{};
   Queues queues_;
   FilmBuffers film_;
+  std::vector<std::vector<float>> variances_;  ///< of the film as it is at the end, if known
   TraceState state_;   ///< without sums and squares while these are on the device
   double traced_ = 0;  ///< samples, of all pixels
   std::map<std::string, double> earlier_seconds_;

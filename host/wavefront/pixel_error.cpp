@@ -25,22 +25,24 @@ std::vector<float> batch_variances(const BatchMoments& moments,
     return static_cast<float>(whole) - 1.0f;
   };
   const int height = static_cast<int>(samples.size()) / width;
-  std::vector<float> own(samples.size());
+  std::vector<float> own(samples.size()), known(samples.size());
   tbb::parallel_for(0, height, [&](int y) {
     const std::size_t end = static_cast<std::size_t>(y + 1) * width;
     for (std::size_t p = end - width; p < end; ++p) {
+      if (samples[p] == 0) continue;
       const float square = (freedom(p) + 1.0f) * moments.mean[p] * moments.mean[p];
       own[p] = std::max(0.0f, (moments.squares[p] - square) / freedom(p));
+      known[p] = 1.0f;
     }
   });
   std::vector<float> variances = neighbourhood_sums(own, width);
+  const std::vector<float> counts = neighbourhood_sums(known, width);
   tbb::parallel_for(0, height, [&](int y) {
-    const int rows = 1 + (y > 0) + (y + 1 < height);
-    for (int x = 0; x < width; ++x) {
-      const int count = rows * (1 + (x > 0) + (x + 1 < width));
-      const std::size_t p = static_cast<std::size_t>(y) * width + x;
-      const float around = variances[p] / static_cast<float>(count) * kNeighbourhoodWeight;
-      variances[p] = (own[p] * freedom(p) + around) / (freedom(p) + kNeighbourhoodWeight);
+    const std::size_t end = static_cast<std::size_t>(y + 1) * width;
+    for (std::size_t p = end - width; p < end; ++p) {
+      const float around = variances[p] / counts[p] * kNeighbourhoodWeight;
+      const float of_all = own[p] * freedom(p) + around;
+      variances[p] = samples[p] ? of_all / (freedom(p) + kNeighbourhoodWeight) : 0.0f;
     }
   });
   return variances;

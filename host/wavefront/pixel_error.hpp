@@ -14,7 +14,8 @@ struct BatchMoments {
 
 /// Variance of one batch's mean for each pixel; a pixel's mean over b batches has that over b.
 /// Few batches say little of their own pixel: its eight neighbours stand in, with the weight of
-/// sixteen more. `samples`: of each pixel, two batches or more. Pixels `width` a row.
+/// sixteen more. `samples`: of each pixel, two batches or more, or none: it counts for nothing then
+/// and has 0. Pixels `width` a row.
 std::vector<float> batch_variances(const BatchMoments& moments,
                                    const std::vector<std::uint32_t>& samples, int width);
 

@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "wavefront/scouts.hpp"
+
 namespace dapple {
 namespace {
 
@@ -28,6 +30,13 @@ constexpr std::uint32_t kUnit = 2;
 /// Part of the squared error asked for that is aimed at: estimates move as samples come, and a
 /// round for a few more takes as long as a tenth of the picture.
 constexpr double kAim = 0.95;
+
+/// The same where scouts alone have samples, which know the picture's error to a tenth.
+constexpr double kScoutAim = 0.85;
+
+/// Times the least that all pixels get at most after the scouts: of those that see nothing most
+/// samples are for nothing, and beams of more are hardly narrower.
+constexpr std::uint32_t kMostAfterScouts = 4;
 
 /// Groups that get all their samples at once; of more, what is small is better traced together.
 constexpr std::size_t kMostGroups = 4;
@@ -111,6 +120,15 @@ std::size_t count_values(const std::vector<std::uint32_t>& values) {
   return different.size();
 }
 
+/// Those of blocks that have samples; `have`: by block.
+template <class T>
+std::vector<T> where_known(const std::vector<T>& of_blocks, const BatchCounts& have) {
+  std::vector<T> known;
+  for (std::size_t block = 0; block < have.size(); ++block)
+    if (have[block] > 0) known.push_back(of_blocks[block]);
+  return known;
+}
+
 bool all_equal(const std::vector<std::uint32_t>& values) {
   return std::all_of(values.begin(), values.end(), [&](auto v) { return v == values.front(); });
 }
@@ -175,33 +193,68 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
 
 // Of blocks. Sums of their pixels' variances and costs stand in the ratio of the means, and their
 // errors add up to those of the picture.
-BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
-                               const std::vector<float>& costs) const {
+BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances, const Costs& costs,
+                               double aim) const {
   const std::vector<std::uint32_t> samples = block_most(samples_, width_);
-  BatchCounts have(samples.size());
-  std::transform(samples.begin(), samples.end(), have.begin(),
+  BatchCounts of_all(samples.size());
+  std::transform(samples.begin(), samples.end(), of_all.begin(),
                  [](std::uint32_t of_block) { return of_block / DAPPLE_BATCH; });
+  const BatchCounts have = where_known(of_all, of_all);
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
   if (target_rmse_ > 0) {
-    const double enough =
-        double{target_rmse_} * target_rmse_ * static_cast<double>(samples_.size());
-    const std::vector<float> block_costs = block_sums(costs, width_);
+    const auto pixels = samples_.size() - std::count(samples_.begin(), samples_.end(), 0u);
+    const double enough = double{target_rmse_} * target_rmse_ * static_cast<double>(pixels);
+    std::vector<float> block_costs;
     for (const std::vector<float>& pass : variances) {
-      const std::vector<float> of_blocks = block_sums(pass, width_);
-      if (squared_errors(of_blocks, have) > enough)
-        want_rmse(of_blocks, block_costs, kAim * enough, have, limits, wanted);
+      const std::vector<float> of_blocks = where_known(block_sums(pass, width_), of_all);
+      if (squared_errors(of_blocks, have) <= enough) continue;
+      if (block_costs.empty()) block_costs = where_known(block_sums(costs(), width_), of_all);
+      want_rmse(of_blocks, block_costs, aim * enough, have, limits, wanted);
     }
   } else {
     for (const std::vector<float>& pass : variances)
-      want_error(block_most(pass, width_), target_error_, have, limits, wanted);
+      want_error(where_known(block_most(pass, width_), of_all), target_error_, have, limits,
+                 wanted);
   }
   return wanted;
 }
 
+std::vector<WorkGroup> SamplePlan::scouts() {
+  if (!is_adaptive() || !all_equal(samples_) || samples_.front() > 0) return {};
+  const std::vector<bool> scouts = scout_pixels(width_, static_cast<int>(samples_.size()) / width_);
+  if (scouts.empty()) return {};
+  std::vector<WorkGroup> groups(1);
+  groups.front().samples = least_;
+  for (const std::uint32_t pixel : order_) {
+    if (!scouts[pixel]) continue;
+    groups.front().work.push_back({pixel, 0});
+    samples_[pixel] = least_;
+  }
+  return groups;
+}
+
+bool SamplePlan::only_scouts_have_samples() const {
+  return is_adaptive() && !all_equal(samples_) &&
+         std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
+}
+
+std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances,
+                                                const Costs& costs) {
+  BatchCounts counts = wanted(variances, costs, kScoutAim);
+  // Most of these see nothing.
+  std::erase_if(counts, [&](std::uint32_t batches) { return batches * DAPPLE_BATCH <= least_; });
+  if (!counts.empty()) {
+    const auto quarter = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 4);
+    std::nth_element(counts.begin(), quarter, counts.end());
+    least_ = std::min({*quarter * DAPPLE_BATCH, most_, kMostAfterScouts * least_});
+  }
+  return least();
+}
+
 std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances,
-                                        const std::vector<float>& costs) {
-  const BatchCounts of_blocks = wanted(variances, costs);
+                                        const Costs& costs) {
+  const BatchCounts of_blocks = wanted(variances, costs, kAim);
   BatchCounts all(samples_.size());
   visit_blocks(width_, all.size(),
                [&](std::size_t block, std::uint32_t pixel) { all[pixel] = of_blocks[block]; });

@@ -1,6 +1,7 @@
 // Which pixels are sampled next, and how often: all alike, or where the error is.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "dapple/options.hpp"
@@ -21,20 +22,29 @@ enum class SampleOrder {
 /// hangs on slices and on whom rays are traced with), never on threads.
 class SamplePlan {
  public:
+  using Costs = std::function<std::vector<float>()>;
+
   /// `samples`: of each pixel, what an earlier plan gave it; empty: none.
   SamplePlan(int width, int height, const RenderOptions& options,
              std::vector<std::uint32_t> samples = {});
 
   [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
+  /// With a target and a picture large enough, before it has samples: the least for scout_pixels();
+  /// else empty.
+  std::vector<WorkGroup> scouts();
+  [[nodiscard]] bool only_scouts_have_samples() const;
+  /// Raises the least to what three quarters of the pixels will want, going by the scouts, and is
+  /// least() then: rounds are few, and beams narrow in the first. Arguments as for next().
+  std::vector<WorkGroup> after_scouts(const std::vector<std::vector<float>>& variances,
+                                      const Costs& costs);
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
   /// With a target: what is missing for it, in eights but for the most. `variances`: of a batch's
-  /// mean, by pass and pixel, batch_variances(); `costs`: sample_costs(), for an RMSE. No pixel
-  /// gets more than eight times what it has, so that the next decision rests on more, and blocks of
-  /// 2x2 pixels get the same; empty when all are done. A pixel may be in several groups, to be
-  /// traced in their order.
-  std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances,
-                              const std::vector<float>& costs);
+  /// mean, by pass and pixel, batch_variances(); `costs`: sample_costs(), asked for where an RMSE
+  /// is missed. No pixel gets more than eight times what it has, so that the next decision rests on
+  /// more, and blocks of 2x2 pixels get the same; empty when all are done. A pixel may be in
+  /// several groups, to be traced in their order.
+  std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances, const Costs& costs);
 
   /// Samples of each pixel once all work given out is done.
   [[nodiscard]] const std::vector<std::uint32_t>& samples() const { return samples_; }
@@ -46,9 +56,10 @@ class SamplePlan {
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() where all pixels have the same.
   std::vector<WorkGroup> least_of_all(SampleOrder order);
-  /// Batches that the pixels of every block should have in all.
+  /// Batches that the pixels of a block should have in all, by block of those that have samples;
+  /// aims at `aim` times the squared error.
   [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances,
-                                   const std::vector<float>& costs) const;
+                                   const Costs& costs, double aim) const;
 
   int width_;
   std::vector<std::uint32_t> order_;  ///< pixels, tile by tile and in these block by block

@@ -96,7 +96,8 @@ struct RenderOptions {
 }
 
 /// Samples a pixel whose shares footprints begin with: `footprint_spp` if there is one; else `spp`,
-/// and with a target so many that the bias stays below about a third of it.
+/// and with a target so many that the bias over what is seen stays below about a third of a pixel's
+/// error, half of a picture's.
 [[nodiscard]] int footprint_samples(const RenderOptions& options);
 
 /// AO rays a primary sample among which footprints share the hemisphere.
