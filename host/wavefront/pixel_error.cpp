@@ -40,9 +40,12 @@ std::vector<float> batch_variances(const BatchMoments& moments,
   tbb::parallel_for(0, height, [&](int y) {
     const std::size_t end = static_cast<std::size_t>(y + 1) * width;
     for (std::size_t p = end - width; p < end; ++p) {
+      if (samples[p] == 0) {
+        variances[p] = 0;
+        continue;
+      }
       const float around = variances[p] / counts[p] * kNeighbourhoodWeight;
-      const float of_all = own[p] * freedom(p) + around;
-      variances[p] = samples[p] ? of_all / (freedom(p) + kNeighbourhoodWeight) : 0.0f;
+      variances[p] = (own[p] * freedom(p) + around) / (freedom(p) + kNeighbourhoodWeight);
     }
   });
   return variances;

@@ -18,8 +18,8 @@ constexpr int kHalvings = 10;
 
 /// Over the batches that pixels have: the part of the cost of equal samples that an allocation by
 /// deviations must save to be taken. It goes by estimates of these, and what is off in them costs.
-/// Of pictures with two batches a pixel those for which 0.06 to 0.2 was promised took 3 to 25 % more
-/// time than with equal ones, those for which 0.2 to 0.23, up to 13 % less.
+/// Of pictures with two batches a pixel those for which 0.06 to 0.2 was promised took 3 to 25 %
+/// more time than with equal ones, those for which 0.2 to 0.23, up to 13 % less.
 constexpr double kLeastSaved = 0.41;
 
 /// Doublings after which all that vary want the most.

@@ -109,6 +109,13 @@ std::vector<T> block_most(const std::vector<T>& values, int width) {
   return by_block(values, width, T{0}, [](T a, T b) { return std::max(a, b); });
 }
 
+/// Batches that each block has.
+BatchCounts block_batches(const std::vector<std::uint32_t>& samples, int width) {
+  BatchCounts counts = block_most(samples, width);
+  for (std::uint32_t& count : counts) count /= DAPPLE_BATCH;
+  return counts;
+}
+
 /// Different values but 0.
 std::size_t count_values(const std::vector<std::uint32_t>& values) {
   std::set<std::uint32_t> different;
@@ -160,13 +167,16 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
 std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
   if (all_equal(samples_)) return least_of_all(order);
   std::map<std::uint32_t, WorkGroup> groups;
+  WorkGroup* group = nullptr;  // neighbours mostly lack the same
   for (const std::uint32_t pixel : order_) {
     std::uint32_t& has = samples_[pixel];
     const std::uint32_t more = lacks(has, order);
     if (more == 0) continue;
-    WorkGroup& group = groups[more];
-    group.samples = more;
-    group.work.push_back({pixel, has});
+    if (!group || group->samples != more) {
+      group = &groups[more];
+      group->samples = more;
+    }
+    group->work.push_back({pixel, has});
     has += more;
   }
   return in_order(std::move(groups));
@@ -195,10 +205,7 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
 // errors add up to those of the picture.
 BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances, const Costs& costs,
                                double aim) const {
-  const std::vector<std::uint32_t> samples = block_most(samples_, width_);
-  BatchCounts of_all(samples.size());
-  std::transform(samples.begin(), samples.end(), of_all.begin(),
-                 [](std::uint32_t of_block) { return of_block / DAPPLE_BATCH; });
+  const BatchCounts of_all = block_batches(samples_, width_);
   const BatchCounts have = where_known(of_all, of_all);
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
@@ -255,6 +262,10 @@ std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<fl
 std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances,
                                         const Costs& costs) {
   const BatchCounts of_blocks = wanted(variances, costs, kAim);
+  if (of_blocks == block_batches(samples_, width_)) {
+    fraction_done_ = 1;
+    return {};
+  }
   BatchCounts all(samples_.size());
   visit_blocks(width_, all.size(),
                [&](std::size_t block, std::uint32_t pixel) { all[pixel] = of_blocks[block]; });
