@@ -36,7 +36,7 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
     ask_for_entry(scene, params.scene.root, 0.0f, &lone);
     while (go_down(scene, &lone, &nearest)) {
     }
-  } while (pass_layers(&nearest.layers, nearest.t.v).s0);
+  } while (pass_layers(&nearest.layers).s0);
   __global SurfacePoint* point = points + item;
   point->visits = min(nearest.visits, 65535u) | min(nearest.tests, 65535u) << 16;
   const float t = nearest.t.f[0];
