@@ -48,7 +48,8 @@ int depths_of(const RenderOptions& options, const Scene& scene) {
 }
 
 TEST(Depths, AreMoreTheMoreRaysSlipThrough) {
-  for (const auto& [opacity, depths] : {std::pair(1.0f, 1), {0.85f, 1}, {0.5f, 2}, {0.2f, 4}})
+  for (const auto& [opacity, depths] :
+       {std::pair(1.0f, 1), {0.9f, 1}, {0.85f, 2}, {0.5f, 2}, {0.2f, 4}})
     EXPECT_EQ(depths_of({}, tree(opacity)), depths) << opacity;
   RenderOptions options;
   options.depths = 2;
@@ -83,10 +84,25 @@ TEST(Depths, OfTexturesAreThoseOfThemAsTheyAreSeen) {
   EXPECT_EQ(depths_of(exact, scene), 1) << "which averages nothing";
 }
 
+/// A tree of which that part of all triangles is thin.
+Scene partly_thin(double part) {
+  Scene scene = tree(1.0f);
+  scene.materials.push_back(scene.materials.front());
+  scene.materials.back().name = "thin";
+  for (Mesh& mesh : scene.meshes) {
+    const auto count =
+        static_cast<std::ptrdiff_t>(part * static_cast<double>(mesh.materials.size()));
+    std::fill_n(mesh.materials.begin(), count,
+                static_cast<std::uint32_t>(scene.materials.size() - 1));
+  }
+  override_opacity(scene, "thin", 0.1f);
+  return scene;
+}
+
 TEST(Depths, AreNotForAFewThinSurfaces) {
-  Scene twigs = tree(1.0f);
-  override_opacity(twigs, "bark", 0.1f);
-  EXPECT_EQ(depths_of({}, twigs), 1) << "nearly all surfaces are leaves";
+  EXPECT_EQ(depths_of({}, partly_thin(0.05)), 1);
+  EXPECT_EQ(depths_of({}, partly_thin(0.15)), 2);
+  EXPECT_EQ(depths_of({}, partly_thin(0.3)), 4);
 }
 
 TEST(Depths, LeaveRoomForAllSamples) {

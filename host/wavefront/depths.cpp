@@ -13,8 +13,8 @@ namespace {
 
 /// Opacities up to which that part of all surfaces must be for so many samples a camera ray
 /// (figures in the README). More than suit cost up to a fifth of the time, fewer up to half of it.
-constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.7f;
-constexpr double kPart = 0.25;
+constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.85f;
+constexpr double kPartOfFour = 0.25, kPartOfTwo = 0.1;
 
 /// What of a texture is looked at: squares, and texels of one, along each axis.
 constexpr int kSquares = 64, kTexels = 4;
@@ -158,8 +158,9 @@ double most_samples(const RenderOptions& options) {
 int choose_depths(const RenderOptions& options, const Scene& scene, const View& view) {
   if (options.depths > 0) return options.depths;
   const Counts counts = count_surfaces(scene, view, texel_share(options, kSamples));
-  const double enough = kPart * counts.all;
-  int depths = counts.for_four > enough ? 4 : counts.for_two > enough ? 2 : 1;
+  int depths = counts.for_four > kPartOfFour * counts.all ? 4
+               : counts.for_two > kPartOfTwo * counts.all ? 2
+                                                          : 1;
   const double rays = is_adaptive(options) ? options.max_spp : options.spp;
   while (depths > 1 && rays * depths > most_samples(options)) depths /= 2;
   return depths;
