@@ -191,7 +191,7 @@ Drawn draw(int width, int height, const RenderOptions& options) {
     for (const WorkGroup& group : groups) pixels.trace(group);
   };
   trace(plan.scouts());
-  if (plan.only_scouts_have_samples()) trace(plan.after_scouts({pixels.variances(width)}, costs));
+  if (plan.only_scouts_have_samples()) trace(plan.after_scouts({pixels.variances(width)}));
   for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) trace(first);
   Drawn drawn;
   for (; drawn.rounds < 30; ++drawn.rounds) {
@@ -300,9 +300,8 @@ TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
   EXPECT_EQ(count_of(plan.samples(), 8), 4096u);
   EXPECT_EQ(count_of(plan.samples(), 0), 3u * 4096u);
   ASSERT_TRUE(plan.only_scouts_have_samples());
-  const auto costs = [] { return std::vector<float>(16384, 1.0f); };
   // Batches of variance 0.04: the squared error is 0.01 at 4, times the aim at 4.7.
-  const std::vector<WorkGroup> all = plan.after_scouts({std::vector<float>(16384, 0.04f)}, costs);
+  const std::vector<WorkGroup> all = plan.after_scouts({std::vector<float>(16384, 0.04f)});
   EXPECT_EQ(count_of(plan.samples(), 5 * DAPPLE_BATCH), 16384u);
   EXPECT_FALSE(plan.only_scouts_have_samples());
   GaussianPixels pixels(std::vector<float>(16384, 1.0f));
@@ -314,29 +313,39 @@ TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
 TEST(SamplePlan, AfterTheScoutsNoPixelGetsMoreThanFourTimesTheLeast) {
   SamplePlan plan(128, 128, by_rmse(0.001f));
   plan.scouts();
-  plan.after_scouts({std::vector<float>(16384, 1.0f)},
-                    [] { return std::vector<float>(16384, 1.0f); });
+  plan.after_scouts({std::vector<float>(16384, 1.0f)});
   EXPECT_EQ(count_of(plan.samples(), 32), 16384u);
+}
+
+TEST(SamplePlan, ByErrorTheScoutsSayWhatThreeQuartersOfThePixelsWant) {
+  RenderOptions options;
+  options.spp = 8;
+  options.target_error = 0.1f;
+  SamplePlan plan(128, 128, options);
+  plan.scouts();
+  std::vector<float> variances;  // a fifth see nothing, the others want 3 or 6 batches
+  for (int p = 0; p < 16384; ++p)
+    variances.push_back(p % 128 < 26 ? 0.0f : p < 8192 ? 0.03f : 0.06f);
+  plan.after_scouts({variances});
+  EXPECT_EQ(count_of(plan.samples(), 3 * DAPPLE_BATCH), 16384u);
 }
 
 TEST(SamplePlan, ScoutsThatSeeNothingAskForTheLeast) {
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.scouts();
-  plan.after_scouts({std::vector<float>(16384, 0.0f)},
-                    [] { return std::vector<float>(16384, 1.0f); });
+  plan.after_scouts({std::vector<float>(16384, 0.0f)});
   EXPECT_EQ(count_of(plan.samples(), 8), 16384u);
 }
 
 TEST(SamplePlan, GoesOnFromScoutsAsIfItHadSentThem) {
   const std::vector<float> variances(16384, 0.09f);
-  const auto costs = [] { return std::vector<float>(16384, 1.0f); };
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.scouts();
   SamplePlan later(128, 128, by_rmse(0.1f), plan.samples());
   EXPECT_TRUE(later.scouts().empty());
   ASSERT_TRUE(later.only_scouts_have_samples());
-  plan.after_scouts({variances}, costs);
-  later.after_scouts({variances}, costs);
+  plan.after_scouts({variances});
+  later.after_scouts({variances});
   EXPECT_EQ(plan.samples(), later.samples());
 }
 

@@ -138,10 +138,9 @@ class PictureTracer {
     const std::vector<std::uint32_t>& samples = plan.samples();
     const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
     const FilmMoments moments(sums, squares, layout_, options_, samples, width_);
-    const auto costs = [&] { return moments.costs(); };
     std::vector<std::vector<float>> variances = moments.variances();
-    if (only_scouts) return plan.after_scouts(variances, costs);
-    groups = plan.next(variances, costs);
+    if (only_scouts) return plan.after_scouts(variances);
+    groups = plan.next(variances, [&] { return moments.costs(); });
     if (groups.empty()) variances_ = std::move(variances);
     return groups;
   }

@@ -109,6 +109,15 @@ std::vector<T> block_most(const std::vector<T>& values, int width) {
   return by_block(values, width, T{0}, [](T a, T b) { return std::max(a, b); });
 }
 
+/// Of those above 0; 0 if there are none.
+float lower_quartile(std::vector<float> values) {
+  std::erase(values, 0.0f);
+  if (values.empty()) return 0;
+  const auto quarter = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
+  std::nth_element(values.begin(), quarter, values.end());
+  return *quarter;
+}
+
 /// Batches that each block has.
 BatchCounts block_batches(const std::vector<std::uint32_t>& samples, int width) {
   BatchCounts counts = block_most(samples, width);
@@ -203,28 +212,29 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
 
 // Of blocks. Sums of their pixels' variances and costs stand in the ratio of the means, and their
 // errors add up to those of the picture.
-BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances, const Costs& costs,
-                               double aim) const {
-  const BatchCounts of_all = block_batches(samples_, width_);
-  const BatchCounts have = where_known(of_all, of_all);
+BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
+                               const Costs& costs) const {
+  const BatchCounts have = block_batches(samples_, width_);
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
   if (target_rmse_ > 0) {
-    const auto pixels = samples_.size() - std::count(samples_.begin(), samples_.end(), 0u);
-    const double enough = double{target_rmse_} * target_rmse_ * static_cast<double>(pixels);
     std::vector<float> block_costs;
     for (const std::vector<float>& pass : variances) {
-      const std::vector<float> of_blocks = where_known(block_sums(pass, width_), of_all);
-      if (squared_errors(of_blocks, have) <= enough) continue;
-      if (block_costs.empty()) block_costs = where_known(block_sums(costs(), width_), of_all);
-      want_rmse(of_blocks, block_costs, aim * enough, have, limits, wanted);
+      const std::vector<float> of_blocks = block_sums(pass, width_);
+      if (squared_errors(of_blocks, have) <= enough()) continue;
+      if (block_costs.empty()) block_costs = block_sums(costs(), width_);
+      want_rmse(of_blocks, block_costs, kAim * enough(), have, limits, wanted);
     }
   } else {
     for (const std::vector<float>& pass : variances)
-      want_error(where_known(block_most(pass, width_), of_all), target_error_, have, limits,
-                 wanted);
+      want_error(block_most(pass, width_), target_error_, have, limits, wanted);
   }
   return wanted;
+}
+
+double SamplePlan::enough() const {
+  const auto with_samples = samples_.size() - std::count(samples_.begin(), samples_.end(), 0u);
+  return double{target_rmse_} * target_rmse_ * static_cast<double>(with_samples);
 }
 
 std::vector<WorkGroup> SamplePlan::scouts() {
@@ -246,22 +256,29 @@ bool SamplePlan::only_scouts_have_samples() const {
          std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
 }
 
-std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances,
-                                                const Costs& costs) {
-  BatchCounts counts = wanted(variances, costs, kScoutAim);
-  // Most of these see nothing.
-  std::erase_if(counts, [&](std::uint32_t batches) { return batches * DAPPLE_BATCH <= least_; });
-  if (!counts.empty()) {
-    const auto quarter = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 4);
-    std::nth_element(counts.begin(), quarter, counts.end());
-    least_ = std::min({*quarter * DAPPLE_BATCH, most_, kMostAfterScouts * least_});
+std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances) {
+  const BatchCounts of_all = block_batches(samples_, width_);
+  const BatchCounts have = where_known(of_all, of_all), one(have.size(), 1);
+  double batches = 0;
+  for (const std::vector<float>& pass : variances) {
+    if (target_rmse_ > 0) {
+      const double of_one = squared_errors(where_known(block_sums(pass, width_), of_all), one);
+      batches = std::max(batches, of_one / (kScoutAim * enough()));
+    } else {
+      const std::vector<float> of_blocks = where_known(block_most(pass, width_), of_all);
+      batches =
+          std::max(batches, lower_quartile(of_blocks) / (double{target_error_} * target_error_));
+    }
   }
+  const double most = std::min(most_, kMostAfterScouts * least_);
+  const double samples = std::min(std::ceil(batches) * DAPPLE_BATCH, most);
+  least_ = std::max(least_, static_cast<std::uint32_t>(samples));
   return least();
 }
 
 std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances,
                                         const Costs& costs) {
-  const BatchCounts of_blocks = wanted(variances, costs, kAim);
+  const BatchCounts of_blocks = wanted(variances, costs);
   if (of_blocks == block_batches(samples_, width_)) {
     fraction_done_ = 1;
     return {};

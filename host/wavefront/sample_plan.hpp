@@ -33,10 +33,10 @@ class SamplePlan {
   /// else empty.
   std::vector<WorkGroup> scouts();
   [[nodiscard]] bool only_scouts_have_samples() const;
-  /// Raises the least to what three quarters of the pixels will want, going by the scouts, and is
-  /// least() then: rounds are few, and beams narrow in the first. Arguments as for next().
-  std::vector<WorkGroup> after_scouts(const std::vector<std::vector<float>>& variances,
-                                      const Costs& costs);
+  /// Raises the least to what equal samples would take, for an RMSE, or what three quarters of the
+  /// pixels want, going by the scouts, and is least() then: rounds are few, and beams narrow in the
+  /// first. `variances` as for next().
+  std::vector<WorkGroup> after_scouts(const std::vector<std::vector<float>>& variances);
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
   /// With a target: what is missing for it, in eights but for the most. `variances`: of a batch's
@@ -56,10 +56,11 @@ class SamplePlan {
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() where all pixels have the same.
   std::vector<WorkGroup> least_of_all(SampleOrder order);
-  /// Batches that the pixels of a block should have in all, by block of those that have samples;
-  /// aims at `aim` times the squared error.
+  /// Batches that the pixels of every block should have in all.
   [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances,
-                                   const Costs& costs, double aim) const;
+                                   const Costs& costs) const;
+  /// The sum of squared errors, of the pixels that have samples, at the RMSE asked for.
+  [[nodiscard]] double enough() const;
 
   int width_;
   std::vector<std::uint32_t> order_;  ///< pixels, tile by tile and in these block by block
