@@ -121,8 +121,18 @@ TEST_F(Resume, ARenderLeftAfterAnySliceGoesOnToTheSameBits) {
   }
 }
 
-TEST_F(Resume, PassesOverThePictureAddUpToTheSameBits) {
-  const SceneOnDevice tree(lit_tree());
+/// Rays of a beam start side by side then, and not at one point.
+Scene seen_from_afar(Scene scene) {
+  std::vector<std::string> notes;
+  Camera camera = choose_view(scene, small_picture(), notes).camera;
+  camera.kind = Camera::Kind::orthographic;
+  camera.half_height = 3;
+  scene.cameras = {camera};
+  return scene;
+}
+
+void expect_passes_to_add_up(const Scene& scene) {
+  const SceneOnDevice tree(scene);
   RenderOptions options = small_picture();
   options.spp = 100;
   const Tracing tracing(tree, options);
@@ -141,6 +151,16 @@ TEST_F(Resume, PassesOverThePictureAddUpToTheSameBits) {
   };
   EXPECT_EQ(without_visits(a), without_visits(b));
   EXPECT_EQ(sums_of(a).size(), 20 * pixels);
+  const auto sums = a.sums.values<std::int64_t>();
+  EXPECT_GT(std::count_if(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(pixels),
+                          [](std::int64_t hits) { return hits > 0; }),
+            100);
+}
+
+TEST_F(Resume, PassesOverThePictureAddUpToTheSameBits) { expect_passes_to_add_up(lit_tree()); }
+
+TEST_F(Resume, PassesOfAnOrthographicPictureAddUpToTheSameBits) {
+  expect_passes_to_add_up(seen_from_afar(lit_tree()));
 }
 
 RenderResult draw(const RenderOptions& options, const RenderControl& control = {}) {
