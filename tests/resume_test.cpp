@@ -178,7 +178,8 @@ void expect_same_film(const Film& a, const Film& b) {
 }
 
 TEST_F(Resume, AnInterruptedPictureIsWhatThereIsAndItsFileTheRest) {
-  const RenderOptions options = small_picture();
+  RenderOptions options = small_picture();
+  options.depths = 1;
   const RenderResult whole = draw(options);
   EXPECT_FALSE(whole.interrupted);
   RenderControl control;

@@ -122,7 +122,6 @@ class PictureTracer {
   bool next_round(SamplePlan& plan, const TraceControl& control) {
     if (plan.is_adaptive()) {
       state_.round = {next_for_target(plan)};
-      if (control.progress) control.progress(plan.fraction_done());
     } else {
       state_.round = {plan.least(control.order)};
     }
@@ -148,7 +147,10 @@ class PictureTracer {
   /// What is left of the round; false when asked to stop before its end.
   bool trace_round(const SamplePlan& plan, const TraceControl& control) {
     Round& round = state_.round;
-    const double total = static_cast<double>(layout_.pixels) * options_.spp;
+    // With a target what is given out is a part of the work.
+    const double given = sum_of(plan.samples());
+    const double total = plan.is_adaptive() ? given / plan.fraction_done()
+                                            : static_cast<double>(layout_.pixels) * options_.spp;
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
       if (control.stop && control.stop()) return false;
       if (control.save &&
@@ -161,7 +163,8 @@ class PictureTracer {
       trace_slice(slice);
       traced_ += static_cast<double>(slice.pixel_count) * slice.sample_count;
       advance(round, state_.slice_samples);
-      if (control.progress && !plan.is_adaptive()) control.progress(traced_ / total);
+      progress_ = std::max(progress_, traced_ / total);
+      if (control.progress) control.progress(progress_);
     }
     return true;
   }
@@ -279,8 +282,9 @@ class PictureTracer {
   Queues queues_;
   FilmBuffers film_;
   std::vector<std::vector<float>> variances_;  ///< of the film as it is at the end, if known
-  TraceState state_;   ///< without sums and squares while these are on the device
-  double traced_ = 0;  ///< samples, of all pixels
+  TraceState state_;     ///< without sums and squares while these are on the device
+  double traced_ = 0;    ///< samples, of all pixels
+  double progress_ = 0;  ///< [0,1], as estimated: decisions may find that less was done
   std::map<std::string, double> earlier_seconds_;
   Clock::time_point saved_ = Clock::now();
 };

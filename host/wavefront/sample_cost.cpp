@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "dapple/shared/ray.h"
 #include "wavefront/pixel_neighbourhood.hpp"
@@ -42,8 +43,7 @@ std::vector<float> sample_costs(const PassWork& camera, const std::vector<PassWo
   });
   std::vector<float> costs = neighbourhood_sums(spent, width);
   counts = neighbourhood_sums(counts, width);
-  std::transform(costs.begin(), costs.end(), counts.begin(), costs.begin(),
-                 [](float cost, float count) { return count > 0 ? cost / count : 0.0f; });
+  std::transform(costs.begin(), costs.end(), counts.begin(), costs.begin(), std::divides<>());
   return costs;
 }
 

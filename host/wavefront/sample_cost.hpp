@@ -14,7 +14,7 @@ struct PassWork {
 
 /// Nanoseconds of a sample, by pixel, a mean over each pixel's neighbourhood (one sample's cost
 /// says little of the next one's). Only their ratios count. `camera`: visits and tests as
-/// SampleHits has them; `others`: of AO and lights. 0 where no neighbour has samples.
+/// SampleHits has them; `others`: of AO and lights.
 std::vector<float> sample_costs(const PassWork& camera, const std::vector<PassWork>& others,
                                 const std::vector<std::uint32_t>& samples, int width);
 

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <set>
@@ -218,12 +219,13 @@ BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
   if (target_rmse_ > 0) {
+    const double enough = this->enough();
     std::vector<float> block_costs;
     for (const std::vector<float>& pass : variances) {
       const std::vector<float> of_blocks = block_sums(pass, width_);
-      if (squared_errors(of_blocks, have) <= enough()) continue;
+      if (squared_errors(of_blocks, have) <= enough) continue;
       if (block_costs.empty()) block_costs = block_sums(costs(), width_);
-      want_rmse(of_blocks, block_costs, kAim * enough(), have, limits, wanted);
+      want_rmse(of_blocks, block_costs, kAim * enough, have, limits, wanted);
     }
   } else {
     for (const std::vector<float>& pass : variances)
@@ -238,7 +240,7 @@ double SamplePlan::enough() const {
 }
 
 std::vector<WorkGroup> SamplePlan::scouts() {
-  if (!is_adaptive() || !all_equal(samples_) || samples_.front() > 0) return {};
+  if (!is_adaptive() || samples_.front() > 0 || !all_equal(samples_)) return {};
   const std::vector<bool> scouts = scout_pixels(width_, static_cast<int>(samples_.size()) / width_);
   if (scouts.empty()) return {};
   std::vector<WorkGroup> groups(1);
@@ -273,6 +275,7 @@ std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<fl
   const double most = std::min(most_, kMostAfterScouts * least_);
   const double samples = std::min(std::ceil(batches) * DAPPLE_BATCH, most);
   least_ = std::max(least_, static_cast<std::uint32_t>(samples));
+  fraction_done_ = std::min(1.0, least_ / std::max(1.0, batches * DAPPLE_BATCH));
   return least();
 }
 
@@ -290,9 +293,9 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
   double done = 0, missing = 0;
   for (std::size_t pixel = 0; pixel < more.size(); ++pixel) {
     const std::uint32_t has = samples_[pixel] / DAPPLE_BATCH;
-    done += has;
-    missing += all[pixel] - has;
     more[pixel] = std::min(all[pixel] - has, kMostMore * has / kUnit * kUnit);
+    done += has + more[pixel];
+    missing += all[pixel] - has - more[pixel];
   }
   std::map<std::uint32_t, WorkGroup> groups;
   const bool whole = count_values(more) <= kMostGroups;

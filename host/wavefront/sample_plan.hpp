@@ -33,9 +33,9 @@ class SamplePlan {
   /// else empty.
   std::vector<WorkGroup> scouts();
   [[nodiscard]] bool only_scouts_have_samples() const;
-  /// Raises the least to what equal samples would take, for an RMSE, or what three quarters of the
-  /// pixels want, going by the scouts, and is least() then: rounds are few, and beams narrow in the
-  /// first. `variances` as for next().
+  /// Raises the least, to at most four times what it is, to what equal samples would take for an
+  /// RMSE, or what three quarters of the pixels that vary want, going by the scouts, and is least()
+  /// then: rounds are few, and beams narrow in the first. `variances` as for next().
   std::vector<WorkGroup> after_scouts(const std::vector<std::vector<float>>& variances);
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
@@ -48,7 +48,8 @@ class SamplePlan {
 
   /// Samples of each pixel once all work given out is done.
   [[nodiscard]] const std::vector<std::uint32_t>& samples() const { return samples_; }
-  /// Estimated share of the work that is done, [0,1].
+  /// Estimated share of the work that is done once what is given out is, [0,1]; 0 before a
+  /// decision.
   [[nodiscard]] double fraction_done() const { return fraction_done_; }
 
  private:

@@ -1,7 +1,6 @@
 // Pixels that are sampled before all others, to tell how many samples a picture needs.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 namespace dapple {
