@@ -315,6 +315,7 @@ TEST(SamplePlan, AfterTheScoutsNoPixelGetsMoreThanFourTimesTheLeast) {
   plan.scouts();
   plan.after_scouts({std::vector<float>(16384, 1.0f)});
   EXPECT_EQ(count_of(plan.samples(), 32), 16384u);
+  EXPECT_NEAR(plan.fraction_done(), 32.0 / 4096, 1e-6) << "of the most";
 }
 
 TEST(SamplePlan, ByErrorTheScoutsSayWhatThreeQuartersOfThePixelsWant) {
@@ -335,6 +336,7 @@ TEST(SamplePlan, ScoutsThatSeeNothingAskForTheLeast) {
   plan.scouts();
   plan.after_scouts({std::vector<float>(16384, 0.0f)});
   EXPECT_EQ(count_of(plan.samples(), 8), 16384u);
+  EXPECT_EQ(plan.fraction_done(), 1);
 }
 
 TEST(SamplePlan, GoesOnFromScoutsAsIfItHadSentThem) {

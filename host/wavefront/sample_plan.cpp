@@ -119,6 +119,11 @@ float lower_quartile(std::vector<float> values) {
   return *quarter;
 }
 
+double part_above_0(const std::vector<float>& values) {
+  const auto above = std::count_if(values.begin(), values.end(), [](float v) { return v > 0; });
+  return static_cast<double>(above) / static_cast<double>(values.size());
+}
+
 /// Batches that each block has.
 BatchCounts block_batches(const std::vector<std::uint32_t>& samples, int width) {
   BatchCounts counts = block_most(samples, width);
@@ -261,21 +266,22 @@ bool SamplePlan::only_scouts_have_samples() const {
 std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances) {
   const BatchCounts of_all = block_batches(samples_, width_);
   const BatchCounts have = where_known(of_all, of_all), one(have.size(), 1);
-  double batches = 0;
+  double batches = 0, varied = 0;
   for (const std::vector<float>& pass : variances) {
+    const std::vector<float> most_of_block = where_known(block_most(pass, width_), of_all);
+    varied = std::max(varied, part_above_0(most_of_block));
     if (target_rmse_ > 0) {
       const double of_one = squared_errors(where_known(block_sums(pass, width_), of_all), one);
       batches = std::max(batches, of_one / (kScoutAim * enough()));
     } else {
-      const std::vector<float> of_blocks = where_known(block_most(pass, width_), of_all);
-      batches =
-          std::max(batches, lower_quartile(of_blocks) / (double{target_error_} * target_error_));
+      const double enough_of_block = double{target_error_} * target_error_;
+      batches = std::max(batches, lower_quartile(most_of_block) / enough_of_block);
     }
   }
-  const double most = std::min(most_, kMostAfterScouts * least_);
-  const double samples = std::min(std::ceil(batches) * DAPPLE_BATCH, most);
-  least_ = std::max(least_, static_cast<std::uint32_t>(samples));
-  fraction_done_ = std::min(1.0, least_ / std::max(1.0, batches * DAPPLE_BATCH));
+  const double samples = std::min<double>(std::ceil(batches) * DAPPLE_BATCH, most_);
+  const double given = std::min<double>(samples, kMostAfterScouts * least_);
+  least_ = std::max(least_, static_cast<std::uint32_t>(given));
+  fraction_done_ = least_ / (least_ + varied * std::max(0.0, samples - least_));
   return least();
 }
 
