@@ -4,8 +4,7 @@
 #include "dome.clh"
 #include "light_record.h"
 #include "pass_params.h"
-#include "random.clh"
-#include "scene.clh"
+#include "point_rays.clh"
 
 typedef struct LightSample {
   float3 direction;   /* towards the light, unit */
@@ -108,34 +107,41 @@ inline LightSample sample_source(__global const LightRecord* light,
   }
 }
 
-__kernel void light_rays(__global const SurfacePoint* points, __global const uint* active_list,
-                         __global const LightRecord* lights,
-                         __global const EmitterTriangle* emitters,
-                         __global const float* environments, __global Ray* rays,
-                         LightParams params) {
-  const uint item = get_global_id(0);
-  if (item >= params.point_count * params.rays) return;
-  const SurfacePoint point = points[active_list[item / params.rays]];
-  __global const LightRecord* light = lights + params.light;
-  const uint index = point.sample * params.rays + item % params.rays;
-  const uint pair = DAPPLE_PAIR_LIGHT + params.light;
-  const float2 u = sample_2d(point.pixel, index, pair, params.seed);
-  const float3 normal = (float3)(point.normal[0], point.normal[1], point.normal[2]);
-  const float3 position = (float3)(point.position[0], point.position[1], point.position[2]);
-  const float3 origin = position + normal * point.offset;
+inline void store_ray(__global const SurfacePoint* point, __global const LightRecord* light,
+                      __global const EmitterTriangle* emitters,
+                      __global const float* environments, float2 u, uint key, LightParams params,
+                      __global Ray* ray) {
+  const float3 normal = load3(point->normal);
+  const float3 origin = load3(point->position) + normal * point->offset;
   const LightSample sample = light->kind == DAPPLE_LIGHT_DOME
                                  ? sample_around(light, environments, normal, u)
                                  : sample_source(light, emitters, origin, u);
   const float weight =
       sample.solid_angle * fmax(dot(normal, sample.direction), 0.0f) * sample.radiance;
-  __global Ray* ray = rays + item;
   store3(ray->origin, origin);
   store3(ray->direction, sample.direction);
   /* A ray that can bring nothing is not traced: it ends before it starts. */
   ray->t_max = weight > 0.0f ? sample.distance : -1.0f;
   ray->solid_angle = fmin(2.0f * M_PI_F, sample.solid_angle * params.inverse_count);
-  ray->first_area = point.area;
+  ray->first_area = point->area;
   ray->light = light->id;
   ray->weight = weight;
-  ray->key = ray_key(point.pixel, index, pair, params.seed);
+  ray->key = key;
+}
+
+__kernel void light_rays(__global const SurfacePoint* points, __global const uint* active_list,
+                         __global const LightRecord* lights,
+                         __global const EmitterTriangle* emitters,
+                         __global const float* environments, __global Ray* queue,
+                         LightParams params) {
+  const uint first = get_global_id(0) * DAPPLE_RAY_LANES;
+  const uint end = params.point_count * params.rays;
+  if (first >= end) return;
+  PointRays rays;
+  choose_rays(points, active_list, first, end, params.rays, DAPPLE_PAIR_LIGHT + params.light,
+              params.seed, &rays);
+  for (uint i = 0; i < rays.count; ++i) {
+    store_ray(points + rays.point[i], lights + params.light, emitters, environments,
+              (float2)(rays.u[i], rays.v[i]), rays.key[i], params, queue + first + i);
+  }
 }

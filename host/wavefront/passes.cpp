@@ -22,8 +22,9 @@ constexpr uint kPacketChunk = 512;
 /// Items a work-group: of packets and beams few, so that small slices keep all threads busy.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 1;
 
-/// Rays that one item of the AO ray kernel makes; DAPPLE_AO_LANES in kernels/ao.cl.
-constexpr std::size_t kAoLanes = 16;
+/// Rays that one item of the kernels that make them makes; DAPPLE_RAY_LANES in
+/// kernels/point_rays.clh.
+constexpr std::size_t kRayLanes = 16;
 
 std::size_t hit_records(std::size_t samples) {
   return (samples + DAPPLE_HIT_BITS - 1) / DAPPLE_HIT_BITS;
@@ -112,15 +113,17 @@ std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::si
 
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  context.launch(kAoRays, "ao rays", (rays + kAoLanes - 1) / kAoLanes,
+  context.launch(kAoRays, "ao rays", (rays + kRayLanes - 1) / kRayLanes,
                  {queues.points, queues.active, queues.rays, params}, kBeamGroup);
 }
 
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params) {
-  context.launch(kLightRays, "light rays", std::size_t{params.point_count} * params.rays,
+  const std::size_t rays = std::size_t{params.point_count} * params.rays;
+  context.launch(kLightRays, "light rays", (rays + kRayLanes - 1) / kRayLanes,
                  {queues.points, queues.active, scene.lights, scene.emitters, scene.environments,
-                  queues.rays, params});
+                  queues.rays, params},
+                 kBeamGroup);
 }
 
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
