@@ -18,17 +18,23 @@ inline void store_stops(Scene scene, const CameraSamples* chosen, uint of_item,
                         const BeamRays* rays, uint of_beam, float first_area, float solid_angle,
                         const Stops* stops, __global SurfacePoint* points, ItemHits* found) {
   const Span span = span_of(rays, of_beam);
+  SurfaceHit before = {0.0f, 0u, 0u};
   for (uint d = 0; d < stops->count; ++d) {
     const SurfaceHit hit = {stops->t[d].f[of_beam], (uint)stops->primitive[d].i[of_beam],
                             (uint)stops->instance[d].i[of_beam]};
-    if (!(hit.t < INFINITY)) continue;
+    if (!(hit.t < INFINITY)) return;
     const uint place = chosen->place[of_item] * stops->count + d;
     __global SurfacePoint* point = points + place;
-    store_point(scene, hit, span.origin, span.direction, first_area + solid_angle * hit.t * hit.t,
-                point);
-    point->pixel = chosen->pixel[of_item];
+    if (d && hit.primitive == before.primitive && hit.instance == before.instance) {
+      *point = *(point - 1);
+    } else {
+      store_point(scene, hit, span.origin, span.direction,
+                  first_area + solid_angle * hit.t * hit.t, point);
+      point->pixel = chosen->pixel[of_item];
+    }
     point->sample = chosen->sample[of_item] + d;
     found->hits[place / DAPPLE_HIT_BITS] |= 1u << place % DAPPLE_HIT_BITS;
+    before = hit;
   }
 }
 

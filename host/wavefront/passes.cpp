@@ -168,7 +168,7 @@ void resolve_light_pass(DeviceContext& context, const Queues& queues, const Film
 std::vector<KernelShape> every_kernel() {
   std::vector<KernelShape> kernels{
       {kCameraHits, kBeamGroup}, {kClosestHit, kRayGroup},   {kCompactHits, kScanItems},
-      {kAoRays, kBeamGroup},     {kLightRays, kRayGroup},    {kResolveSurface, kRayGroup},
+      {kAoRays, kBeamGroup},     {kLightRays, kBeamGroup},   {kResolveSurface, kRayGroup},
       {kResolveAo, kRayGroup},   {kResolveLight, kRayGroup}, {kResolveDome, kRayGroup},
   };
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
