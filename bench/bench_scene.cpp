@@ -47,7 +47,7 @@ SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, const Vi
   rays.ao.occlusions = context.allocate(rays.ao_count * sizeof(Occlusion));
   ao_ray_pass(
       context, rays.ao,
-      {hits, kRaysPerPoint, 1.0f / kRaysPerPoint, std::numeric_limits<float>::infinity(), 0u});
+      {hits, kRaysPerPoint, 1.0f / kRaysPerPoint, std::numeric_limits<float>::infinity(), 0u, 0u});
   context.finish();
   return rays;
 }

@@ -8,10 +8,19 @@ typedef struct DiskPlaces {
   float x[DAPPLE_RAY_LANES], y[DAPPLE_RAY_LANES], cosine[DAPPLE_RAY_LANES];
 } DiskPlaces;
 
-/* A loop of scalars, so that compilers make vectors of it. */
-inline void choose_directions(const PointRays* rays, DiskPlaces* disk) {
+/* Loops of scalars, so that compilers make vectors of them. */
+inline void choose_directions(const PointRays* rays, AoParams params, DiskPlaces* disk) {
+  if (params.whole_sets) {
+    const float inverse_count = 1.0f / params.rays;
+    for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
+      const uint turn = hash_pair(hash_pair(rays->pixel[i], DAPPLE_PAIR_AO_TURN), params.seed);
+      sunflower_disk(rays->index[i], inverse_count, rays->u[i], turn, disk->x + i, disk->y + i);
+    }
+  } else {
+    for (uint i = 0; i < DAPPLE_RAY_LANES; ++i)
+      concentric_disk(rays->u[i], rays->v[i], disk->x + i, disk->y + i);
+  }
   for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
-    concentric_disk(rays->u[i], rays->v[i], disk->x + i, disk->y + i);
     disk->cosine[i] = sqrt(fmax(1e-8f, 1.0f - disk->x[i] * disk->x[i] - disk->y[i] * disk->y[i]));
   }
 }
@@ -42,7 +51,7 @@ __kernel void ao_rays(__global const SurfacePoint* points, __global const uint* 
   PointRays rays;
   DiskPlaces disk;
   choose_rays(points, active_list, first, end, params.rays, DAPPLE_PAIR_AO, params.seed, &rays);
-  choose_directions(&rays, &disk);
+  choose_directions(&rays, params, &disk);
   for (uint i = 0; i < rays.count; ++i) {
     store_ray(points + rays.point[i], params, &disk, i, rays.key[i], queue + first + i);
   }

@@ -138,6 +138,25 @@ TEST(Sampling, TheConcentricMapIsDefinedInTheCornersAndTheMiddle) {
   for (int i = 0; i < 6; ++i) EXPECT_LT((p[i] - expected[i]).length(), 1e-6f) << p[i];
 }
 
+TEST(Sampling, ASunflowersPlacesAreAGoldenAngleApartInRingsOfOneArea) {
+  constexpr uint kCount = 3000;
+  const double golden = kPi * (3 - std::sqrt(5.0));
+  const Buffer disk = device().allocate(kCount * sizeof(V2f));
+  for (const auto& [jitter, turn] :
+       {std::pair{0.0f, 0u}, {0.5f, 0x20000000u}, {0.999f, 0xdfffffffu}, {0.25f, 0x7fffffffu}}) {
+    run("sampling", "sunflower_points", kCount, {disk, jitter, turn, kCount});
+    const auto places = download<V2f>(disk, kCount);
+    for (uint k = 0; k < kCount; ++k) {
+      const double radius = std::sqrt((k + double{jitter}) / kCount);
+      const double angle = turn / 0x1p32 * 2 * kPi + golden * k;
+      // The angle in 2^-32 of a turn is off by 0.43 of one.
+      const double off = 1e-6 + k * 1e-9;
+      ASSERT_NEAR(places[k].x, radius * std::cos(angle), off) << k << " turned by " << turn;
+      ASSERT_NEAR(places[k].y, radius * std::sin(angle), off) << k << " turned by " << turn;
+    }
+  }
+}
+
 V3f random_direction(std::mt19937& random) {
   std::normal_distribution<float> normal;
   V3f d(normal(random), normal(random), normal(random));

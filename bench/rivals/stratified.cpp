@@ -47,22 +47,39 @@ inline float cosine(float a) {
   return 1.0f + s * (-1.0f / 2 + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320))));
 }
 
-/// The square goes to a disk by Shirley and Chiu, "A Low Distortion Map Between Disk and Square",
-/// 1997; the frame is that of Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
-///
-/// What is written is told apart from what is read by parameters: only there is the promise kept
-/// when this is inlined, and the compiler checks no more than ten pairs of arrays for overlap.
-inline void fill_cosine_directions(const float* x, const float* y, const float* nx, const float* ny,
-                                   const float* nz, unsigned count, float* __restrict dx,
-                                   float* __restrict dy, float* __restrict dz) {
-  constexpr float kQuarterPi = std::numbers::pi_v<float> / 4;
-  for (unsigned i = 0; i < count; ++i) {
-    const float a = 2.0f * x[i] - 1.0f, b = 2.0f * y[i] - 1.0f;
+/// From the unit square, by Shirley and Chiu, "A Low Distortion Map Between Disk and Square", 1997.
+struct Concentric {
+  void operator()(float x, float y, float& u, float& v) const {
+    constexpr float kQuarterPi = std::numbers::pi_v<float> / 4;
+    const float a = 2.0f * x - 1.0f, b = 2.0f * y - 1.0f;
     const bool a_larger = std::fabs(a) > std::fabs(b);
     const float radius = a_larger ? a : b, other = a_larger ? b : a;
     const float angle = kQuarterPi * (other / (radius == 0.0f ? 1.0f : radius));
     const float along = radius * cosine(angle), across = radius * sine(angle);
-    const float u = a_larger ? along : across, v = a_larger ? across : along;
+    u = a_larger ? along : across;
+    v = a_larger ? across : along;
+  }
+};
+
+struct OnDisk {
+  void operator()(float x, float y, float& u, float& v) const {
+    u = x;
+    v = y;
+  }
+};
+
+/// The frame is that of Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
+///
+/// What is written is told apart from what is read by parameters: only there is the promise kept
+/// when this is inlined, and the compiler checks no more than ten pairs of arrays for overlap.
+template <class ToDisk>
+inline void fill_cosine_directions(const ToDisk& to_disk, const float* x, const float* y,
+                                   const float* nx, const float* ny, const float* nz,
+                                   unsigned count, float* __restrict dx, float* __restrict dy,
+                                   float* __restrict dz) {
+  for (unsigned i = 0; i < count; ++i) {
+    float u, v;
+    to_disk(x[i], y[i], u, v);
     const float square = 1.0f - u * u - v * v;
     const float w = std::sqrt(square > 1e-8f ? square : 1e-8f);
     const float s = nz[i] >= 0.0f ? 1.0f : -1.0f;
@@ -95,8 +112,36 @@ void ray_keys(const std::uint32_t* pixel, const std::uint32_t* index, unsigned c
 DAPPLE_MULTIVERSION
 void cosine_directions(const float* x, const float* y, const float* const normal[3], unsigned count,
                        float* const direction[3]) {
-  fill_cosine_directions(x, y, normal[0], normal[1], normal[2], count, direction[0], direction[1],
-                         direction[2]);
+  fill_cosine_directions(Concentric{}, x, y, normal[0], normal[1], normal[2], count, direction[0],
+                         direction[1], direction[2]);
+}
+
+DAPPLE_MULTIVERSION
+void lift_to_directions(const float* x, const float* y, const float* const normal[3],
+                        unsigned count, float* const direction[3]) {
+  fill_cosine_directions(OnDisk{}, x, y, normal[0], normal[1], normal[2], count, direction[0],
+                         direction[1], direction[2]);
+}
+
+DAPPLE_MULTIVERSION
+void sunflower_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
+                      std::size_t rays, std::uint32_t seed, float* x, float* y) {
+  constexpr float kQuarterTurn = std::numbers::pi_v<float> / 2;
+  constexpr float kQuarter = 0x1p30f;
+  const float inverse_count = 1.0f / static_cast<float>(rays);
+  for (unsigned i = 0; i < count; ++i) {
+    const std::uint32_t turn = hash_pair(hash_pair(point[i], kAoTurnPair), seed);
+    const std::uint32_t from_corner = turn + index[i] * 1640531527u + 0x20000000u;
+    const std::uint32_t quarter = from_corner >> 30;
+    const auto along = static_cast<std::int32_t>(from_corner & 0x3fffffffu) - 0x20000000;
+    const float angle = static_cast<float>(along) * (kQuarterTurn / kQuarter);
+    const float s = sine(angle), c = cosine(angle);
+    const float across = (quarter & 1u) != 0 ? s : c, up = (quarter & 1u) != 0 ? c : s;
+    const float ring = static_cast<float>(static_cast<std::int32_t>(index[i])) + x[i];
+    const float radius = std::sqrt(ring * inverse_count);
+    x[i] = radius * (quarter == 1 || quarter == 2 ? -across : across);
+    y[i] = radius * (quarter >= 2 ? -up : up);
+  }
 }
 
 }  // namespace dapple::bench

@@ -4,12 +4,14 @@
 // compiler turns into vector code.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace dapple::bench {
 
 /// Dimension pairs of a pixel or shading point; light l uses kLightPair + l.
-inline constexpr std::uint32_t kPixelPair = 0, kAoPair = 1, kLightPair = 2;
+inline constexpr std::uint32_t kPixelPair = 0, kAoPair = 1, kLightPair = 2,
+                               kAoTurnPair = 0xfffffffeu;
 
 /// 32 bits with full avalanche (the lowbias32 constants found by C. Wellons).
 inline std::uint32_t hash_uint(std::uint32_t x) {
@@ -41,8 +43,18 @@ void sample_squares(const std::uint32_t* pixel, const std::uint32_t* index, unsi
 void ray_keys(const std::uint32_t* pixel, const std::uint32_t* index, unsigned count,
               std::uint32_t pair, std::uint32_t seed, std::uint32_t* keys);
 
-/// Points of the unit square -> unit directions about unit normals, cosine-weighted. The
-/// arrays must not overlap.
+/// Places of the unit disk in sets of `rays` each, place `index[i]` of the set of `point[i]`, as
+/// sunflower_disk() of kernels/direction.clh has them; `x` is in the unit square at first, for
+/// where in its ring a place lies.
+void sunflower_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
+                      std::size_t rays, std::uint32_t seed, float* x, float* y);
+
+/// Points of the unit disk -> unit directions about unit normals, cosine-weighted. The arrays must
+/// not overlap.
+void lift_to_directions(const float* x, const float* y, const float* const normal[3],
+                        unsigned count, float* const direction[3]);
+
+/// The same of points of the unit square.
 void cosine_directions(const float* x, const float* y, const float* const normal[3], unsigned count,
                        float* const direction[3]);
 

@@ -10,6 +10,7 @@
 #include "device/context.hpp"
 #include "device/scene_upload.hpp"
 #include "wavefront/passes.hpp"
+#include "wavefront/point_order.hpp"
 
 namespace dapple {
 namespace {
@@ -116,6 +117,7 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
   const auto rays = static_cast<std::size_t>(options.rays);
   const std::size_t slice = std::max<std::size_t>(1, kSlice / rays);
   const Queues queues = make_queues(context, std::min(slice, points.size()), rays);
+  const std::vector<std::uint32_t> order = order_along_curve(points);
   std::vector<float> ao(points.size());
   std::vector<Occlusion> found;
   for (std::size_t begin = 0; begin < points.size(); begin += slice) {
@@ -123,7 +125,8 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
     std::vector<SurfacePoint> batch;
     std::vector<uint> active;
     for (std::size_t i = 0; i < count; ++i) {
-      batch.push_back(surface_point(points[begin + i], normals[begin + i], begin + i));
+      const std::uint32_t point = order[begin + i];
+      batch.push_back(surface_point(points[point], normals[point], point));
       active.push_back(static_cast<uint>(i));
     }
     context.write(queues.points, batch.data(), count * sizeof(SurfacePoint));
@@ -132,7 +135,7 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
         options.distance > 0 ? options.distance : std::numeric_limits<float>::infinity();
     ao_ray_pass(context, queues,
                 {static_cast<uint>(count), static_cast<uint>(rays), 1.0f / static_cast<float>(rays),
-                 t_max, options.seed});
+                 t_max, options.seed, 1u});
     OcclusionParams params = occlusion_params(*scene.buffers, count, rays, options.footprint);
     if (options.distance > 0 && options.falloff > 0) {
       params.inverse_distance = 1.0f / options.distance;
@@ -144,7 +147,7 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
     for (std::size_t i = 0; i < count; ++i) {
       double sum = 0;
       for (std::size_t r = 0; r < rays; ++r) sum += found[i * rays + r].transmittance;
-      ao[begin + i] = static_cast<float>(sum / static_cast<double>(rays));
+      ao[order[begin + i]] = static_cast<float>(sum / static_cast<double>(rays));
     }
   }
   context.finish();

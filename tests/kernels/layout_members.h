@@ -80,7 +80,7 @@
   MEMBER(CameraParams, seen_below)                                                           \
   STRUCT(AoParams)                                                                           \
   MEMBER(AoParams, point_count) MEMBER(AoParams, rays) MEMBER(AoParams, inverse_count)       \
-  MEMBER(AoParams, t_max) MEMBER(AoParams, seed)                                             \
+  MEMBER(AoParams, t_max) MEMBER(AoParams, seed) MEMBER(AoParams, whole_sets)                \
   STRUCT(LightParams)                                                                        \
   MEMBER(LightParams, point_count) MEMBER(LightParams, rays)                                 \
   MEMBER(LightParams, inverse_count) MEMBER(LightParams, light) MEMBER(LightParams, seed)    \

@@ -71,6 +71,8 @@ typedef struct AoParams {
   float inverse_count;  /* 1 / (rays asked for to estimate this pixel or point) */
   float t_max;
   uint seed;
+  uint whole_sets;      /* a point's rays are all there are for it, its sample being 0: best placed
+                           for that number of them */
 } AoParams;
 
 typedef struct LightParams {
