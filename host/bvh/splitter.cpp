@@ -13,7 +13,7 @@ namespace {
 /// Below this depth ranges are halved, which bounds the depth of hostile input.
 constexpr int kDeepest = 48;
 /// Cost of a triangle test over that of a box test; leaves of 8 lanes are cheap.
-constexpr float kPrimitiveCost = 0.6f;
+constexpr float kPrimitiveCost = 0.5f;
 /// Up to here all ways to split are tried.
 constexpr std::uint32_t kFew = 4;
 constexpr std::uint32_t kParallelSplit = 1u << 16;
