@@ -22,7 +22,7 @@ inline void store_stops(Scene scene, const CameraSamples* chosen, uint of_item,
   for (uint d = 0; d < stops->count; ++d) {
     const SurfaceHit hit = {stops->t[d].f[of_beam], (uint)stops->primitive[d].i[of_beam],
                             (uint)stops->instance[d].i[of_beam]};
-    if (!(hit.t < INFINITY)) return;
+    if (!(hit.t < INFINITY)) return; /* nor do those after it, whose thresholds are lower */
     const uint place = chosen->place[of_item] * stops->count + d;
     __global SurfacePoint* point = points + place;
     if (d && hit.primitive == before.primitive && hit.instance == before.instance) {

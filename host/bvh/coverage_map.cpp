@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "bvh/convex_polygon.hpp"
 #include "bvh/map_row.hpp"
 #include "bvh/multiversion.hpp"
 
@@ -67,19 +66,6 @@ inline bool scale_partial_cells(const CellTriangle& triangle, Tally& tally,
   return fills_more;
 }
 
-/// How far a triangle may reach out of its box by rounding, in cells.
-constexpr float kOutside = 0.01f;
-
-/// Area that lies in the map, of a triangle that reaches out of it.
-float area_inside(const CellTriangle& triangle) {
-  ConvexPolygon polygon(triangle.a, triangle.a + triangle.edge1, triangle.a + triangle.edge2);
-  polygon.cut([](V2f p) { return -p.x; });
-  polygon.cut([](V2f p) { return p.x - kSize; });
-  polygon.cut([](V2f p) { return -p.y; });
-  polygon.cut([](V2f p) { return p.y - kSize; });
-  return polygon.area();
-}
-
 }  // namespace
 
 DAPPLE_MULTIVERSION
@@ -142,19 +128,16 @@ bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellT
   out.a = V2f(triangle.vertex[u] - box.min[u], triangle.vertex[v] - box.min[v]) * scale;
   out.edge1 = V2f(triangle.edge1[u], triangle.edge1[v]) * scale;
   out.edge2 = V2f(triangle.edge2[u], triangle.edge2[v]) * scale;
-  out.whole = 0.5f * std::fabs(out.edge1.x * out.edge2.y - out.edge1.y * out.edge2.x);
-  if (!(out.whole > 1e-6f)) return false;
-  bool reaches_out = false;
-  const auto range = [&](float base, float e1, float e2, int& first, int& last) {
+  out.area = 0.5f * std::fabs(out.edge1.x * out.edge2.y - out.edge1.y * out.edge2.x);
+  if (!(out.area > 1e-6f)) return false;
+  const auto range = [](float base, float e1, float e2, int& first, int& last) {
     const float low = base + std::min({0.0f, e1, e2}), high = base + std::max({0.0f, e1, e2});
-    reaches_out |= low < -kOutside || high > kSize + kOutside;
     first = std::clamp(static_cast<int>(low), 0, kMapSize - 1);
     last = std::clamp(static_cast<int>(high), first, kMapSize - 1);
   };
   range(out.a.x, out.edge1.x, out.edge2.x, out.column0, out.column1);
   range(out.a.y, out.edge1.y, out.edge2.y, out.row0, out.row1);
-  out.area = reaches_out ? area_inside(out) : out.whole;
-  return out.area > 1e-6f;
+  return true;
 }
 
 DAPPLE_MULTIVERSION

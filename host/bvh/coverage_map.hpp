@@ -66,8 +66,7 @@ void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
 /// A projected triangle in units of map cells, and the cells it may touch.
 struct CellTriangle {
   V2f a, edge1, edge2;               ///< edges as the triangle has them, either orientation
-  float whole;                       ///< area in cells
-  float area;                        ///< of what lies in the map: boxes are of what hides
+  float area;                        ///< in cells
   int column0, column1, row0, row1;  ///< inclusive
 };
 
@@ -155,7 +154,7 @@ void add_varying(HiddenCells& cells, const CellTriangle& t, const CellCoverage& 
                  const OpacityAt& opacity_at) {
   cells.row0 = std::min(cells.row0, t.row0);
   cells.row1 = std::max(cells.row1, t.row1);
-  const float share = t.whole > 1.0f ? 1.0f / t.whole : 1.0f;
+  const float share = t.area > 1.0f ? 1.0f / t.area : 1.0f;
   const float inverse = 1.0f / (t.edge1.x * t.edge2.y - t.edge1.y * t.edge2.x);
   for (int row = t.row0; row <= t.row1; ++row) {
     for (int column = t.column0; column <= t.column1; ++column) {

@@ -34,10 +34,6 @@ void for_each_block(std::size_t count, const Body& body) {
 /// Stands for a textured triangle until it has its index.
 constexpr float kTextured = -1.0f;
 
-bool is_cut_out(const Scene& scene, const Mesh& mesh, std::size_t primitive) {
-  return scene.materials[mesh.materials[primitive]].alpha_mode == AlphaMode::mask;
-}
-
 /// Opacity of each primitive, [0,1], or kTextured; counts their kinds.
 std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
   std::vector<float> opacities(mesh.primitive_count());
@@ -45,11 +41,11 @@ std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, Objec
   for_each_block(opacities.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     std::size_t here[3] = {0, 0, 0};
     for (std::size_t t = begin; t < end; ++t) {
+      const bool mask = scene.materials[mesh.materials[t]].alpha_mode == AlphaMode::mask;
       const auto index = static_cast<std::uint32_t>(t);
       opacities[t] = mesh.has_strands() ? segment_opacity(scene, mesh, index)
                                         : uniform_opacity(scene, mesh, index).value_or(kTextured);
-      if (opacities[t] != 0.0f)
-        ++here[is_cut_out(scene, mesh, t) ? 1 : opacities[t] >= 1.0f ? 0 : 2];
+      if (opacities[t] != 0.0f) ++here[mask ? 1 : opacities[t] >= 1.0f ? 0 : 2];
     }
     opaque += here[0];
     cut_out += here[1];
@@ -62,36 +58,19 @@ std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, Objec
   return opacities;
 }
 
-/// Records of the triangles listed, and the part of each that hides anything.
-void add_textured(const Scene& scene, const Mesh& mesh, std::span<const std::uint32_t> textured,
-                  BuiltObject& built) {
-  std::vector<TexturedTriangle>& records = built.object.textured;
+/// Opacity of each triangle: [0,1], or -(1 + index) of a textured one.
+std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
+  std::vector<float> opacities = uniform_opacities(scene, mesh, object);
+  std::vector<std::uint32_t> textured;
+  for (std::uint32_t t = 0; t < opacities.size(); ++t) {
+    if (opacities[t] >= 0.0f) continue;
+    opacities[t] = -1.0f - static_cast<float>(textured.size());
+    textured.push_back(t);
+  }
   // Two sides of a card let the same through: the product of their means would be less.
   const std::vector<std::uint8_t> coincident = find_coincident(mesh, textured);
   for (std::size_t i = 0; i < textured.size(); ++i)
-    records.push_back(textured_triangle(scene, mesh, textured[i], coincident[i] == 0));
-  const OpaqueParts parts(scene, records);
-  built.parts.resize(records.size());
-  tbb::parallel_for(std::size_t{0}, records.size(),
-                    [&](std::size_t i) { built.parts[i] = parts.find(records[i]); });
-}
-
-/// Opacity of each triangle: [0,1], or -(1 + index) of a textured one, of which those that hide
-/// nothing have 0.
-std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, BuiltObject& built) {
-  std::vector<float> opacities = uniform_opacities(scene, mesh, built.object);
-  std::vector<std::uint32_t> textured;
-  for (std::uint32_t t = 0; t < opacities.size(); ++t) {
-    if (opacities[t] < 0.0f) textured.push_back(t);
-  }
-  add_textured(scene, mesh, textured, built);
-  for (std::size_t i = 0; i < textured.size(); ++i) {
-    const std::uint32_t t = textured[i];
-    opacities[t] = built.parts[i].is_empty() ? 0.0f : -1.0f - static_cast<float>(i);
-    if (opacities[t] < 0.0f) continue;
-    --built.object.triangles;
-    --(is_cut_out(scene, mesh, t) ? built.object.cut_out : built.object.translucent);
-  }
+    object.textured.push_back(textured_triangle(scene, mesh, textured[i], coincident[i] == 0));
   return opacities;
 }
 
@@ -156,8 +135,6 @@ double expected_visits(const WideTree& tree) {
 
 }  // namespace
 
-namespace {
-
 // Minima and maxima without branches, which Imath's extendBy() would take at random.
 Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
   const std::uint32_t* index = &mesh.indices[3 * triangle];
@@ -169,16 +146,6 @@ Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
     box.max[axis] = std::max(std::max(a[axis], b[axis]), c[axis]);
   }
   return box;
-}
-
-}  // namespace
-
-Box3f triangle_box(const Mesh& mesh, std::size_t triangle, float opacity,
-                   std::span<const OpaquePart> parts) {
-  if (opacity >= 0.0f) return triangle_box(mesh, triangle);
-  const std::uint32_t* index = &mesh.indices[3 * triangle];
-  return part_box({mesh.positions[index[0]], mesh.positions[index[1]], mesh.positions[index[2]]},
-                  parts[static_cast<std::size_t>(-opacity - 1.0f)]);
 }
 
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
@@ -245,8 +212,7 @@ void summarize(BuiltObject& built) {
 
 void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
                      std::span<PrimitiveBox> boxes, bool keep_triangles, BuiltObject& built) {
-  fill_boxes(opacities, boxes,
-             [&](std::uint32_t t) { return triangle_box(mesh, t, opacities[t], built.parts); });
+  fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
   std::vector<bool> closed;
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
                        [&] { closed = closed_triangles(mesh, opacities); });
@@ -274,7 +240,7 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangl
   BuiltObject built;
   ObjectBvh& object = built.object;
   object.has_strands = mesh.has_strands();
-  const std::vector<float> opacities = triangle_opacities(scene, mesh, built);
+  const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
   if (object.triangles == 0) return built;
   // Not cleared, so that the threads that write the pages also get them from the system.
   const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);

@@ -2,12 +2,10 @@
 // prefilter.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "bvh/coverage_map.hpp"
 #include "bvh/node_opacity.hpp"
-#include "bvh/opaque_part.hpp"
 #include "bvh/triangle_opacity.hpp"
 #include "bvh/wide_tree.hpp"
 #include "dapple/shared/geometry.h"
@@ -43,7 +41,6 @@ struct BuiltObject {
   WideTree tree;                     ///< the object was packed from
   std::vector<std::uint8_t> closed;  ///< by block: bit l for lane l, closed_triangles(); or empty
   std::vector<std::uint32_t> triangles;  ///< by lane of the blocks: index in the mesh; or empty
-  std::vector<OpaquePart> parts;         ///< of the textured triangles
 };
 
 /// Builds and packs the triangles or segments of `mesh` that are not fully transparent. Empty (no
@@ -72,9 +69,7 @@ float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
               float opacity);
 
-/// Of what a triangle of the mesh hides; `opacity` as in set_lane(), by which `parts` has the part.
-Box3f triangle_box(const Mesh& mesh, std::size_t triangle, float opacity,
-                   std::span<const OpaquePart> parts);
+Box3f triangle_box(const Mesh& mesh, std::size_t triangle);
 
 /// Expected node visits of a random ray through the root's box, by the nodes' half_area() summed.
 double expected_visits(double half_areas, const Box3f& root);

@@ -300,7 +300,6 @@ void start_record(BuiltObject& built, const TextureIntegrals& integrals, RefitRe
   record = {};
   record.triangles = std::move(built.triangles);
   record.closed = built.closed;
-  record.parts = std::move(built.parts);
   for (const TexturedTriangle& triangle : built.object.textured)
     record.textured_opacity.push_back(integrals.mean(triangle, 1.0f / 3, 1.0f / 3, 1.0f));
   record.nodes.resize(built.object.nodes.size());

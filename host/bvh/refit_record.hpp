@@ -1,6 +1,5 @@
 // What refitting an object needs beside its arrays: which triangle lies where, and what of its
-// opacities outlives motion. Made while the object is built, some 16 bytes a triangle and
-// 36 more a textured one.
+// opacities outlives motion. Made while the object is built, some 16 bytes a triangle.
 #pragma once
 
 #include <array>
@@ -8,7 +7,6 @@
 #include <vector>
 
 #include "bvh/coverage_map.hpp"
-#include "bvh/opaque_part.hpp"
 #include "bvh/wide_tree.hpp"
 
 namespace dapple {
@@ -69,7 +67,6 @@ struct RefitRecord {
   std::vector<std::uint32_t> triangles;  ///< by lane of the object's blocks: index in the mesh
   std::vector<std::uint8_t> closed;      ///< BuiltObject::closed
   std::vector<float> textured_opacity;   ///< mean of each textured triangle
-  std::vector<OpaquePart> parts;         ///< BuiltObject::parts
   std::vector<KeptOpacity> nodes;
   std::vector<KeptSubtree> subtrees;  ///< in the order of their nodes
   /// The tree above the subtrees, which are nodes without children here.

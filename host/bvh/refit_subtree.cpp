@@ -24,13 +24,6 @@ std::size_t lane_of(const BvhNode& node, const ObjectArrays& object, std::uint32
   return 8 * std::size_t{node.prim_base - object.first_block} + i;
 }
 
-/// Of what a triangle hides, whose block has `opacity`.
-Box3f box_of(const Mesh& mesh, const ObjectArrays& object, const RefitRecord& record,
-             std::uint32_t triangle, float opacity) {
-  const float own = opacity < 0.0f ? opacity + static_cast<float>(object.first_textured) : opacity;
-  return triangle_box(mesh, triangle, own, record.parts);
-}
-
 /// Box3f::extendBy() without its branches, which go either way.
 void join(Box3f& box, const Box3f& other) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -70,7 +63,7 @@ MovedPart SubtreeRefit::leaf(const BvhNode& node, unsigned slot) const {
     TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
     float opacity = block.opacity[i % 8];
     set_lane(block, i % 8, mesh_, triangle, opacity);
-    join(moved.box, box_of(mesh_, object_, record_, triangle, opacity));
+    join(moved.box, triangle_box(mesh_, triangle));
     if (opacity < 0.0f) {
       opacity =
           record_
@@ -164,9 +157,7 @@ WideTree wide_subtree(const Mesh& mesh, const ObjectArrays& object, const RefitR
         const std::uint32_t begin = bvh_leaf_begin(node.leaf_end, slot);
         child.count = bvh_leaf_end(node.leaf_end, slot) - begin;
         for (std::uint32_t i = begin; i < begin + child.count; ++i)
-          child.box.extendBy(box_of(mesh, object, record,
-                                    record.triangles[lane_of(node, object, i)],
-                                    object.blocks[node.prim_base + i / 8].opacity[i % 8]));
+          child.box.extendBy(triangle_box(mesh, record.triangles[lane_of(node, object, i)]));
         wide.primitives += child.count;
       } else {
         continue;
