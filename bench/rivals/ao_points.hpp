@@ -24,7 +24,7 @@ std::vector<Surface> visible_points(const EmbreeScenes& scenes, const CameraRays
 void fill_ao_rays(std::span<const Surface> points, std::size_t rays, std::size_t first,
                   std::uint32_t seed, RayBatch& batch);
 
-/// Ambient occlusion of each point: the mean transmittance of `rays` stratified cosine-weighted
+/// Ambient occlusion of each point: the mean transmittance of a set of `rays` cosine-weighted
 /// rays. 1 = unoccluded.
 std::vector<double> embree_occlusion(const EmbreeScenes& scenes, const EmbreeMethod& method,
                                      std::span<const Surface> points, std::size_t rays,
