@@ -44,8 +44,9 @@ inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* ch
                        const Entries* entries, uint first, uint count,
                        __global SurfacePoint* points, ItemHits* found) {
   BeamRays rays;
+  PixelTaps taps;
   BeamFloats solid_angle, first_area;
-  aim(params, chosen, first, &rays, &solid_angle.v, &first_area.v);
+  aim(params, chosen, first, &taps, &rays, &solid_angle.v, &first_area.v);
   BeamNearest nearest;
   Stops stops;
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i)

@@ -78,7 +78,7 @@ TEST(Depths, OfTexturesAreThoseOfThemAsTheyAreSeen) {
     for (std::size_t v = 0; v < mesh.uvs.size(); ++v)
       mesh.uvs[v] = V2f(mesh.positions[v].x + mesh.positions[v].z, mesh.positions[v].y) * 1e5f;
   }
-  EXPECT_EQ(depths_of({}, scene), 2);
+  EXPECT_EQ(depths_of({}, scene), 4);
   RenderOptions exact;
   exact.estimator = Estimator::exact;
   EXPECT_EQ(depths_of(exact, scene), 1) << "which averages nothing";

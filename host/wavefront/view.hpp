@@ -26,9 +26,15 @@ View choose_view(const Scene& scene, const RenderOptions& options, std::vector<s
 /// What the camera kernel needs, but for the slice and the scene; `bounds` are the scene's.
 CameraParams camera_params(const View& view, const RenderOptions& options, const Box3f& bounds);
 
-/// The part of a pixel's area over which a camera ray's textures are averaged where footprints are
-/// made for `spp` samples a pixel.
-float texel_share(const RenderOptions& options, int spp);
+/// How a camera ray averages textures, as CameraParams has it; zeros: not at all.
+struct TexelFootprint {
+  float share = 0, tap_reach = 0, tap_pull = 0;
+  float spread = 0;  ///< of a pixel's area, a square over which places spread as far
+};
+
+/// Where footprints are made for `spp` samples a pixel. With one depth there are no taps: opacities
+/// between 0 and 1 take thresholds, of which there are too few then, and edges would be noisier.
+TexelFootprint texel_footprint(const RenderOptions& options, int spp);
 
 /// In metres, of a pixel at a place.
 float pixel_width(const View& view, const V3f& at);

@@ -58,7 +58,9 @@ typedef struct CameraParams {
   uint crop_width;
   uint seed;
   float inverse_spp;    /* 1 / samples a pixel that were asked for */
-  float texel_share;    /* of a pixel's area that textures are averaged over; 0: none */
+  float texel_share;    /* of a pixel's area that each look-up in a texture averages; 0: none */
+  float tap_reach;      /* as in PixelTaps; 0: no taps */
+  float tap_pull;       /* how far the middle of a ray's taps is towards the pixel's middle, [0,1] */
   uint depth_bits;      /* two to these samples in a row share a camera ray */
   /* Pixels in which the scene may be: columns [left, right), rows [above, below). */
   uint seen_left, seen_above, seen_right, seen_below;
