@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 
@@ -16,7 +17,7 @@ namespace {
 constexpr std::uint32_t kPixelGrain = 4096;
 
 /// Samples from which on a pixel's mean is steady enough for the largest to be taken of them.
-constexpr double kSteadySamples = 16;
+constexpr std::uint32_t kSteadySamples = 16;
 
 template <class OfPixel>
 std::vector<float> of_pixels(std::uint32_t pixels, const OfPixel& value) {
@@ -66,18 +67,34 @@ std::vector<float> FilmMoments::light_variances(std::size_t light) const {
 
 // The largest of noisy means is too large: where pixels have few samples, of means over neighbours.
 double FilmMoments::largest_unoccluded(const LightPlaneRange& planes) const {
-  const std::vector<float> sums = of_pixels(layout_.pixels, [&](std::uint32_t p) {
-    return luminance_sum(planes.unoccluded(), planes.channels, p);
-  });
-  const std::vector<float> sums_around = neighbourhood_sums(sums, width_);
-  const std::vector<float> hits_around = neighbourhood_sums(plane(0, 1.0), width_);
-  double largest = 0;
-  for (std::size_t p = 0; p < sums.size(); ++p) {
-    const double samples = samples_[p], hits = sum(0, static_cast<std::uint32_t>(p));
-    if (hits == 0) continue;
-    const double around = double{sums_around[p]} / hits_around[p] * hits / samples;
-    largest = std::max(largest, samples < kSteadySamples ? around : sums[p] / samples);
+  const auto unsteady = [](std::uint32_t samples) {
+    return samples > 0 && samples < kSteadySamples;
+  };
+  std::vector<float> sums_around, hits_around;
+  if (std::any_of(samples_.begin(), samples_.end(), unsteady)) {
+    sums_around = neighbourhood_sums(of_pixels(layout_.pixels,
+                                               [&](std::uint32_t p) {
+                                                 return luminance_sum(planes.unoccluded(),
+                                                                      planes.channels, p);
+                                               }),
+                                     width_);
+    hits_around = neighbourhood_sums(plane(0, 1.0), width_);
   }
+  const auto mean_at = [&](std::uint32_t p) {
+    if (!unsteady(samples_[p]))
+      return mean(luminance_sum(planes.unoccluded(), planes.channels, p), p);
+    const double hits = sum(0, p);
+    return hits > 0 ? mean(double{sums_around[p]} / hits_around[p] * hits, p) : 0.0;
+  };
+  using Range = tbb::blocked_range<std::uint32_t>;
+  const double largest = tbb::parallel_reduce(
+      Range(0, layout_.pixels, kPixelGrain), 0.0,
+      [&](const Range& range, double most) {
+        for (std::uint32_t p = range.begin(); p < range.end(); ++p)
+          most = std::max(most, mean_at(p));
+        return most;
+      },
+      [](double a, double b) { return std::max(a, b); });
   return largest > 0 ? largest : 1.0;
 }
 

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -33,7 +34,7 @@ constexpr std::uint32_t kUnit = 2;
 constexpr double kAim = 0.95;
 
 /// The same where scouts alone have samples, which know the picture's error to a tenth.
-constexpr double kScoutAim = 0.85;
+constexpr double kScoutAim = 0.9;
 
 /// Times the least that all pixels get at most after the scouts: of those that see nothing most
 /// samples are for nothing, and beams of more are hardly narrower.
@@ -49,6 +50,10 @@ constexpr std::uint32_t kFirst = 16, kPassGrowth = 3;
 std::uint32_t whole_batches(int samples) {
   return (static_cast<std::uint32_t>(samples) + DAPPLE_BATCH - 1) / DAPPLE_BATCH * DAPPLE_BATCH;
 }
+
+/// So many or more, of which the points of a sequence are best stratified: pictures of 6 and 12
+/// camera rays a pixel take up to 1.4 times as long as those of 8 and 16 for what they show.
+std::uint32_t well_stratified(std::uint32_t samples) { return std::bit_ceil(samples); }
 
 /// `take` each pixel of a block.
 template <class Take>
@@ -279,8 +284,8 @@ std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<fl
     }
   }
   const double samples = std::min<double>(std::ceil(batches) * DAPPLE_BATCH, most_);
-  const double given = std::min<double>(samples, kMostAfterScouts * least_);
-  least_ = std::max(least_, static_cast<std::uint32_t>(given));
+  const std::uint32_t given = well_stratified(static_cast<std::uint32_t>(samples));
+  least_ = std::max(least_, std::min({given, kMostAfterScouts * least_, most_}));
   fraction_done_ = least_ / (least_ + varied * std::max(0.0, samples - least_));
   return least();
 }
