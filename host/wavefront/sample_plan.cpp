@@ -195,6 +195,7 @@ std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
     if (!group || group->samples != more) {
       group = &groups[more];
       group->samples = more;
+      group->work.reserve(order_.size());
     }
     group->work.push_back({pixel, has});
     has += more;
