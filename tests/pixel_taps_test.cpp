@@ -175,6 +175,40 @@ TEST(PixelTaps, AreLessNoisyThanRaysOneByOneAndShowThePixelAndNoMore) {
   }
 }
 
+/// A white disk on a card, transparent around it.
+Texture disk() {
+  Texture texture{"disk", kTexels, kTexels, {}};
+  for (int y = 0; y < kTexels; ++y)
+    for (int x = 0; x < kTexels; ++x)
+      texture.alpha.push_back(std::hypot(x - 127.5, y - 127.5) < 102 ? std::uint8_t{255}
+                                                                     : std::uint8_t{0});
+  return texture;
+}
+
+// Taps that leave the card find nothing there, and far foliage would fade: by three quarters.
+TEST(PixelTaps, OfCardsSmallerThanPixelsStayOnThem) {
+  Points points(5);
+  for (const float pixels : {0.4f, 1.0f, 4.0f}) {
+    std::vector<Card> places;
+    for (int i = 0; i < 400; ++i)
+      places.push_back(
+          {V3f(points.unit() - 0.5f, points.unit() - 0.5f, points.unit() - 0.5f) * 1.8f,
+           V3f(points.unit() - 0.5f, points.unit() - 0.5f, 1) * 90, pixels * 2 / 24});
+    Scene scene = cards(places, true);
+    scene.textures[0] = disk();
+    add_camera(Camera::Kind::orthographic, scene);
+    RenderOptions options = picture(24, 8), exact = picture(24, 256);
+    exact.estimator = Estimator::exact;
+    double found = 0, truth = 0;
+    for (std::uint32_t seed = 0; seed < 24; ++seed) {
+      options.seed = seed;
+      for (const double value : coverage(scene, options)) found += value / 24;
+    }
+    for (const double value : coverage(scene, exact)) truth += value;
+    EXPECT_NEAR(found / truth, 1, 0.04) << pixels;
+  }
+}
+
 /// Cards every way, small and large, two meshes of them: one in the world, one placed twice.
 Scene scattered_cards() {
   Points points(3);

@@ -115,7 +115,7 @@ constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.35f;
 /// that, it is up to a tenth more.
 constexpr float kTapShare = 1.5f;
 
-/// Of a pixel, however large footprints are: nothing is looked up beyond.
+/// Of a pixel, however large footprints are.
 constexpr float kMostTexelShare = 0.25f, kMostTapShare = 0.75f;
 
 /// Variances, in each axis and those of places all over a square of area 1: of taps in the middle
