@@ -175,17 +175,18 @@ TEST(PixelTaps, AreLessNoisyThanRaysOneByOneAndShowThePixelAndNoMore) {
   }
 }
 
-/// A white disk on a card, transparent around it.
+/// An atlas with one leaf, a disk in the middle sixteenth.
 Texture disk() {
   Texture texture{"disk", kTexels, kTexels, {}};
   for (int y = 0; y < kTexels; ++y)
     for (int x = 0; x < kTexels; ++x)
-      texture.alpha.push_back(std::hypot(x - 127.5, y - 127.5) < 102 ? std::uint8_t{255}
-                                                                     : std::uint8_t{0});
+      texture.alpha.push_back(std::hypot(x - 127.5, y - 127.5) < 25.5 ? std::uint8_t{255}
+                                                                      : std::uint8_t{0});
   return texture;
 }
 
-// Taps that leave the card find nothing there, and far foliage would fade: by three quarters.
+// Taps that leave the card find nothing there, and far foliage would fade: 0.19 of it would be left
+// at 0.4 pixels.
 TEST(PixelTaps, OfCardsSmallerThanPixelsStayOnThem) {
   Points points(5);
   for (const float pixels : {0.4f, 1.0f, 4.0f}) {
@@ -196,6 +197,7 @@ TEST(PixelTaps, OfCardsSmallerThanPixelsStayOnThem) {
            V3f(points.unit() - 0.5f, points.unit() - 0.5f, 1) * 90, pixels * 2 / 24});
     Scene scene = cards(places, true);
     scene.textures[0] = disk();
+    for (V2f& uv : scene.meshes[0].uvs) uv = V2f(0.5f) + (uv - V2f(0.5f)) * 0.25f;
     add_camera(Camera::Kind::orthographic, scene);
     RenderOptions options = picture(24, 8), exact = picture(24, 256);
     exact.estimator = Estimator::exact;
@@ -205,7 +207,7 @@ TEST(PixelTaps, OfCardsSmallerThanPixelsStayOnThem) {
       for (const double value : coverage(scene, options)) found += value / 24;
     }
     for (const double value : coverage(scene, exact)) truth += value;
-    EXPECT_NEAR(found / truth, 1, 0.04) << pixels;
+    EXPECT_NEAR(found / truth, 1, 0.08) << pixels;
   }
 }
 
