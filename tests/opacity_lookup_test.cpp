@@ -146,7 +146,8 @@ TEST(OpacityLookup, ATrianglesOpacityIsFactorsTimesTextureThresholdedLast) {
   }
   const Texture texture = noise_texture(Wrap::repeat, Wrap::repeat, false);
   const TextureRecord record{0, 13, 6, 0};
-  const std::vector<MaterialRecord> materials{{record, 0.8f, -1, 0, 0, {}}, {record, 0.8f, 0.3f, 0, 0, {}}};
+  const std::vector<MaterialRecord> materials{{record, 0.8f, -1, 0, 0, {}},
+                                              {record, 0.8f, 0.3f, 0, 0, {}}};
   std::vector<V2f> barycentrics{{0, 0}, {1, 0}, {0, 1}};
   for (int i = 0; i < 20; ++i) {
     for (int j = 0; i + j < 20; ++j) {

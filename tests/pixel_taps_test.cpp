@@ -132,18 +132,6 @@ Errors errors(const Scene& scene, Estimator estimator) {
   return {noise, std::sqrt(std::max(0.0, of_mean * of_mean - noise * noise / kPictures))};
 }
 
-/// Far behind the camera, so that a mesh is not too small to stay an instance of its own.
-void add_triangles_out_of_sight(Mesh& mesh) {
-  for (int i = 0; i < 1000; ++i) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const V3f& corner : {V3f(0, 0, 9), V3f(0, 1, 9), V3f(1, 0, 9)})
-      mesh.positions.push_back(corner + V3f(0, 0, static_cast<float>(i)));
-    mesh.uvs.resize(mesh.positions.size(), V2f(0.0f));
-    mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2});
-    mesh.materials.push_back(0);
-  }
-}
-
 /// A card of 4 m, some 8 texels a pixel, that fills the picture; `scale`: of its one placement that
 /// is seen.
 Scene large_card(V3f degrees, Camera::Kind kind, bool sharp, float scale = 1) {
@@ -207,7 +195,8 @@ TEST(PixelTaps, OfCardsSmallerThanPixelsStayOnThem) {
       for (const double value : coverage(scene, options)) found += value / 24;
     }
     for (const double value : coverage(scene, exact)) truth += value;
-    EXPECT_NEAR(found / truth, 1, 0.08) << pixels;
+    // Mixing of four squares reaches beyond cards of a pixel: 0.97, 0.95 and 1.01 are left.
+    EXPECT_NEAR(found / truth, 1, pixels > 1 ? 0.03 : 0.07) << pixels;
   }
 }
 

@@ -300,7 +300,7 @@ TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
   EXPECT_EQ(count_of(plan.samples(), 8), 1600u);
   EXPECT_EQ(count_of(plan.samples(), 0), 16384u - 1600u);
   ASSERT_TRUE(plan.only_scouts_have_samples());
-  // Batches of variance 0.04: the squared error is 0.01 at 4, times the aim at 4.7: of powers of
+  // Batches of variance 0.04: the squared error is 0.01 at 4, times the aim at 4.4: of powers of
   // two at 8.
   const std::vector<WorkGroup> all = plan.after_scouts({std::vector<float>(16384, 0.04f)});
   EXPECT_EQ(count_of(plan.samples(), 8 * DAPPLE_BATCH), 16384u);

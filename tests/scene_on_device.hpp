@@ -164,4 +164,17 @@ inline Mesh square_mesh(float side, float height, int divisions, std::uint32_t m
   return mesh;
 }
 
+/// Behind cameras that look down from z below 9, so that a mesh is not too small to stay an
+/// instance of its own.
+inline void add_triangles_out_of_sight(Mesh& mesh) {
+  for (int i = 0; i < 1000; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const V3f& corner : {V3f(0, 0, 9), V3f(0, 1, 9), V3f(1, 0, 9)})
+      mesh.positions.push_back(corner + V3f(0, 0, static_cast<float>(i)));
+    mesh.uvs.resize(mesh.positions.size(), V2f(0.0f));
+    mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2});
+    mesh.materials.push_back(0);
+  }
+}
+
 }  // namespace dapple::scene_test

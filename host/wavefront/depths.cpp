@@ -123,17 +123,17 @@ Counts count_part(const Scene& scene, const Mesh& mesh, const Part& part, int le
   return count_squares(scene.textures[material.alpha_texture], factors, 1u << level);
 }
 
-/// The level at which a camera ray meets the part's texture, by kernels/opacity_lookup.clh.
+/// The level whose squares are as large as what a camera ray averages of the part's texture.
 int seen_level(const Part& part, const Instance& instance, const Mesh& mesh, const View& view,
-               float share) {
-  if (part.texel_size == 0 || share == 0) return 0;
+               float spread) {
+  if (part.texel_size == 0 || spread == 0) return 0;
   const float scale = std::cbrt(std::fabs(instance.to_world.determinant()));
-  const float width = std::sqrt(share) * pixel_width(view, mesh.positions[0] * instance.to_world);
+  const float width = std::sqrt(spread) * pixel_width(view, mesh.positions[0] * instance.to_world);
   const float level = std::log2(width / (part.texel_size * scale));
   return std::isfinite(level) ? static_cast<int>(std::clamp(level, 0.0f, 15.0f)) : 0;
 }
 
-Counts count_surfaces(const Scene& scene, const View& view, float share) {
+Counts count_surfaces(const Scene& scene, const View& view, float spread) {
   std::vector<std::optional<Parts>> parts(scene.meshes.size());
   Counts counts;
   for (const Instance& instance : scene.instances) {
@@ -141,7 +141,7 @@ Counts count_surfaces(const Scene& scene, const View& view, float share) {
     auto& of_mesh = parts[instance.mesh];
     if (!of_mesh) of_mesh = parts_of(scene, mesh);
     for (auto& [material, part] : *of_mesh) {
-      const int level = seen_level(part, instance, mesh, view, share);
+      const int level = seen_level(part, instance, mesh, view, spread);
       const auto [at, is_new] = part.counts.try_emplace(level);
       if (is_new) at->second = count_part(scene, mesh, part, level);
       counts.add(at->second, part.triangles);
@@ -159,7 +159,9 @@ double most_samples(const RenderOptions& options) {
 
 int choose_depths(const RenderOptions& options, const Scene& scene, const View& view) {
   if (options.depths > 0) return options.depths;
-  const Counts counts = count_surfaces(scene, view, texel_footprint(options, kSamples).spread);
+  RenderOptions with_taps = options;
+  with_taps.depths = DAPPLE_MOST_DEPTHS;
+  const Counts counts = count_surfaces(scene, view, texel_footprint(with_taps, kSamples).spread);
   int depths = counts.for_four > kPartOfFour * counts.all ? 4
                : counts.for_two > kPartOfTwo * counts.all ? 2
                                                           : 1;

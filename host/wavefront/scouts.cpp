@@ -1,6 +1,7 @@
 #include "wavefront/scouts.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <random>
 
 namespace dapple {
@@ -22,11 +23,9 @@ int squares_of(int width, int height, int cell) { return (width / cell) * (heigh
 /// The largest of 12, 16, 24, 32, 48... pixels of which there are enough.
 int cell_side(int width, int height) {
   int cell = squares_of(width, height, kCell) >= kFewest ? kCell : kSmallCell;
-  for (int small = kCell, large = 2 * kSmallCell; squares_of(width, height, large) >= kEnough;) {
-    cell = large;
-    large = 2 * small;
-    small = cell;
-  }
+  for (int next = 16; squares_of(width, height, next) >= kEnough;
+       next = std::has_single_bit(static_cast<unsigned>(next)) ? next * 3 / 2 : next * 4 / 3)
+    cell = next;
   return cell;
 }
 
