@@ -27,11 +27,13 @@ class RungSums {
 
   void add(const Outcome& outcome) {
     seconds_.push_back(outcome.seconds);
+    double squares = 0;
     for (std::size_t i = 0; i < truth_.values.size(); ++i) {
       const double error = outcome.values[i] - truth_.values[i];
       sum_ += error;
-      squares_ += error * error;
+      squares += error * error;
     }
+    square_errors_.push_back(squares / static_cast<double>(truth_.values.size()));
   }
 
   [[nodiscard]] bool is_long() const {
@@ -41,13 +43,12 @@ class RungSums {
   [[nodiscard]] Rung rung() const {
     const auto values = static_cast<double>(truth_.values.size());
     const auto rounds = static_cast<double>(seconds_.size());
-    const double square = squares_ / (values * rounds);
     Rung rung;
     rung.effort = effort_;
     rung.seconds = median(seconds_);
     const auto [least, most] = std::minmax_element(seconds_.begin(), seconds_.end());
     rung.spread = (*most - *least) / rung.seconds;
-    rung.rmse = std::sqrt(std::max(0.0, square - truth_.variance));
+    rung.rmse = std::sqrt(std::max(0.0, median(square_errors_) - truth_.variance));
     rung.mean_difference = sum_ / (values * rounds);
     rung.mean_difference_error =
         std::sqrt(rung.rmse * rung.rmse / (values * rounds) + truth_.variance / values);
@@ -59,7 +60,8 @@ class RungSums {
   double effort_;
   const Truth& truth_;
   std::vector<double> seconds_;
-  double sum_ = 0, squares_ = 0;
+  std::vector<double> square_errors_;  // of a value, by round
+  double sum_ = 0;
 };
 
 /// Whether the contestant has another effort to make.

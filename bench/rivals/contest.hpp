@@ -37,7 +37,7 @@ struct Rung {
   double effort = 0;
   double seconds = 0;                ///< median over the rounds
   double spread = 0;                 ///< (largest - smallest) / median of the seconds
-  double rmse = 0;                   ///< of a value, the truth's own variance taken out
+  double rmse = 0;                   ///< of a value, the rounds' median, the truth's variance out
   double mean_difference = 0;        ///< of all values' mean, contestant minus truth
   double mean_difference_error = 0;  ///< its standard error
   int rounds = 0;
