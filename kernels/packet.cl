@@ -2,6 +2,7 @@
    those of occlusion.cl. */
 #include "deal.clh"
 #include "packet.clh"
+#include "packet_order.clh"
 
 /* A count shared over a packet's rays without remainder. */
 typedef struct Shares {
@@ -18,35 +19,6 @@ inline uint next_share(Shares* shares) {
   const uint one = shares->over >= shares->count;
   shares->over -= one ? shares->count : 0u;
   return min(shares->each + one, 65535u);
-}
-
-/* Rays that an item takes from the queue, to trace those together that go the same way;
-   kPacketChunk in host/wavefront/passes.cpp. */
-#define DAPPLE_PACKET_CHUNK 512u
-
-/* One of eight, by the signs of the direction, each next to those that differ in one sign. */
-inline uint octant(__global const Ray* ray) {
-  const uint y = ray->direction[1] < 0.0f;
-  const uint xy = y ^ (ray->direction[0] < 0.0f ? 1u : 0u);
-  const uint xyz = xy ^ (ray->direction[2] < 0.0f ? 1u : 0u);
-  return y << 2 | xy << 1 | xyz;
-}
-
-/* Numbers of the `count` rays from `queue` on, by octant. */
-inline void sort_by_octant(__global const Ray* queue, uint count, ushort* order) {
-  uint start[8] = {0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u};
-  uchar of[DAPPLE_PACKET_CHUNK];
-  for (uint i = 0; i < count; ++i) {
-    of[i] = (uchar)octant(queue + i);
-    ++start[of[i]];
-  }
-  uint next = 0;
-  for (uint cell = 0; cell < 8u; ++cell) {
-    const uint size = start[cell];
-    start[cell] = next;
-    next += size;
-  }
-  for (uint i = 0; i < count; ++i) order[start[of[i]]++] = (ushort)i;
 }
 
 /* Rays queue[order[0]] to queue[order[count - 1]]. Node visits and triangle tests are counted once
@@ -91,13 +63,18 @@ __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock
   const uint next = chunks > 1u ? deal(min(item % chunks + 1u, chunks - 1u), chunks) * size : count;
   prefetch_rays(rays + first - skipped + next, min(count, DAPPLE_PACKET_RAYS));
   ushort order[DAPPLE_PACKET_CHUNK];
+  uint traced = count;
   if (count > DAPPLE_PACKET_RAYS) {
-    sort_by_octant(rays + first, count, order);
+    traced = order_rays(rays + first, count, order);
   } else {
     for (uint i = 0; i < count; ++i) order[i] = (ushort)i;
   }
-  for (uint i = 0; i < count; i += DAPPLE_PACKET_RAYS) {
-    trace_packet(scene, params, rays + first, order + i, min(count - i, DAPPLE_PACKET_RAYS),
+  for (uint i = 0; i < traced; i += DAPPLE_PACKET_RAYS) {
+    trace_packet(scene, params, rays + first, order + i, min(traced - i, DAPPLE_PACKET_RAYS),
                  results + first);
+  }
+  for (uint i = traced; i < count; ++i) {
+    results[first + order[i]].transmittance = 1.0f;
+    results[first + order[i]].visits = 0u;
   }
 }

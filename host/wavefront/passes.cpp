@@ -20,8 +20,8 @@ constexpr uint kLeastOfPoint = 16;
 /// several points, took 0.89 (sapling), 0.97 (forest) and 0.84 of the time (cards).
 constexpr uint kLeastOfExactPoint = 32;
 
-/// Rays that one item of the packet kernel takes; DAPPLE_PACKET_CHUNK in kernels/packet.cl.
-constexpr uint kPacketChunk = 512;
+/// Rays that one item of the packet kernel takes; DAPPLE_PACKET_CHUNK in kernels/packet_order.clh.
+constexpr uint kPacketChunk = 1024;
 
 /// Items a work-group: of packets and beams few, so that small slices keep all threads busy.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 1;
