@@ -2,9 +2,9 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
 
 #include "scene/environment.hpp"
 #include "wavefront/pixel_error.hpp"
@@ -67,34 +67,21 @@ std::vector<float> FilmMoments::light_variances(std::size_t light) const {
 
 // The largest of noisy means is too large: where pixels have few samples, of means over neighbours.
 double FilmMoments::largest_unoccluded(const LightPlaneRange& planes) const {
-  const auto unsteady = [](std::uint32_t samples) {
-    return samples > 0 && samples < kSteadySamples;
+  const auto unoccluded = [&](std::size_t p) -> std::array<float, 2> {
+    const auto pixel = static_cast<std::uint32_t>(p);
+    return {static_cast<float>(luminance_sum(planes.unoccluded(), planes.channels, pixel)),
+            static_cast<float>(sum(0, pixel))};
   };
-  std::vector<float> sums_around, hits_around;
-  if (std::any_of(samples_.begin(), samples_.end(), unsteady)) {
-    sums_around = neighbourhood_sums(of_pixels(layout_.pixels,
-                                               [&](std::uint32_t p) {
-                                                 return luminance_sum(planes.unoccluded(),
-                                                                      planes.channels, p);
-                                               }),
-                                     width_);
-    hits_around = neighbourhood_sums(plane(0, 1.0), width_);
-  }
-  const auto mean_at = [&](std::uint32_t p) {
-    if (!unsteady(samples_[p]))
-      return mean(luminance_sum(planes.unoccluded(), planes.channels, p), p);
-    const double hits = sum(0, p);
-    return hits > 0 ? mean(double{sums_around[p]} / hits_around[p] * hits, p) : 0.0;
-  };
-  using Range = tbb::blocked_range<std::uint32_t>;
-  const double largest = tbb::parallel_reduce(
-      Range(0, layout_.pixels, kPixelGrain), 0.0,
-      [&](const Range& range, double most) {
-        for (std::uint32_t p = range.begin(); p < range.end(); ++p)
-          most = std::max(most, mean_at(p));
-        return most;
-      },
-      [](double a, double b) { return std::max(a, b); });
+  std::vector<float> of_rows(layout_.pixels / static_cast<std::uint32_t>(width_));
+  visit_neighbourhoods(
+      layout_.pixels, width_, unoccluded,
+      [&](std::size_t p, std::array<float, 2> own, const std::array<float, 2>& around) {
+        if (own[1] == 0) return;
+        if (samples_[p] < kSteadySamples) own[0] = around[0] / around[1] * own[1];
+        float& most = of_rows[p / static_cast<std::size_t>(width_)];
+        most = std::max(most, own[0] / static_cast<float>(samples_[p]));
+      });
+  const double largest = *std::max_element(of_rows.begin(), of_rows.end());
   return largest > 0 ? largest : 1.0;
 }
 

@@ -1,7 +1,5 @@
 #include "wavefront/pixel_error.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "dapple/shared/pass_params.h"
@@ -24,30 +22,19 @@ std::vector<float> batch_variances(const BatchMoments& moments,
     const std::uint32_t whole = samples[p] / DAPPLE_BATCH;
     return static_cast<float>(whole) - 1.0f;
   };
-  const int height = static_cast<int>(samples.size()) / width;
-  std::vector<float> own(samples.size()), known(samples.size());
-  tbb::parallel_for(0, height, [&](int y) {
-    const std::size_t end = static_cast<std::size_t>(y + 1) * width;
-    for (std::size_t p = end - width; p < end; ++p) {
-      if (samples[p] == 0) continue;
-      const float square = (freedom(p) + 1.0f) * moments.mean[p] * moments.mean[p];
-      own[p] = std::max(0.0f, (moments.squares[p] - square) / freedom(p));
-      known[p] = 1.0f;
-    }
-  });
-  std::vector<float> variances = neighbourhood_sums(own, width);
-  const std::vector<float> counts = neighbourhood_sums(known, width);
-  tbb::parallel_for(0, height, [&](int y) {
-    const std::size_t end = static_cast<std::size_t>(y + 1) * width;
-    for (std::size_t p = end - width; p < end; ++p) {
-      if (samples[p] == 0) {
-        variances[p] = 0;
-        continue;
-      }
-      const float around = variances[p] / counts[p] * kNeighbourhoodWeight;
-      variances[p] = (own[p] * freedom(p) + around) / (freedom(p) + kNeighbourhoodWeight);
-    }
-  });
+  const auto own = [&](std::size_t p) -> std::array<float, 2> {
+    if (samples[p] == 0) return {};
+    const float square = (freedom(p) + 1.0f) * moments.mean[p] * moments.mean[p];
+    return {std::max(0.0f, (moments.squares[p] - square) / freedom(p)), 1.0f};
+  };
+  std::vector<float> variances(samples.size());
+  visit_neighbourhoods(
+      samples.size(), width, own,
+      [&](std::size_t p, const std::array<float, 2>& of_pixel, const std::array<float, 2>& sums) {
+        if (samples[p] == 0) return;
+        const float around = sums[0] / sums[1] * kNeighbourhoodWeight;
+        variances[p] = (of_pixel[0] * freedom(p) + around) / (freedom(p) + kNeighbourhoodWeight);
+      });
   return variances;
 }
 

@@ -1,10 +1,6 @@
 #include "wavefront/sample_cost.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
-#include <functional>
+#include <array>
 
 #include "dapple/shared/ray.h"
 #include "wavefront/pixel_neighbourhood.hpp"
@@ -31,19 +27,16 @@ double nanoseconds(const PassWork& work, const Price& price, std::size_t pixel) 
 
 std::vector<float> sample_costs(const PassWork& camera, const std::vector<PassWork>& others,
                                 const std::vector<std::uint32_t>& samples, int width) {
-  std::vector<float> spent(samples.size()), counts(samples.size());
-  using Range = tbb::blocked_range<std::size_t>;
-  tbb::parallel_for(Range(0, spent.size(), static_cast<std::size_t>(width)), [&](const Range& r) {
-    for (std::size_t p = r.begin(); p < r.end(); ++p) {
-      double sum = nanoseconds(camera, kCameraPrice, p);
-      for (const PassWork& work : others) sum += nanoseconds(work, kRayPrice, p);
-      spent[p] = static_cast<float>(sum);
-      counts[p] = static_cast<float>(samples[p]);
-    }
-  });
-  std::vector<float> costs = neighbourhood_sums(spent, width);
-  counts = neighbourhood_sums(counts, width);
-  std::transform(costs.begin(), costs.end(), counts.begin(), costs.begin(), std::divides<>());
+  const auto spent = [&](std::size_t p) -> std::array<float, 2> {
+    double sum = nanoseconds(camera, kCameraPrice, p);
+    for (const PassWork& work : others) sum += nanoseconds(work, kRayPrice, p);
+    return {static_cast<float>(sum), static_cast<float>(samples[p])};
+  };
+  std::vector<float> costs(samples.size());
+  visit_neighbourhoods(samples.size(), width, spent,
+                       [&](std::size_t p, const auto&, const std::array<float, 2>& sums) {
+                         costs[p] = sums[0] / sums[1];
+                       });
   return costs;
 }
 
