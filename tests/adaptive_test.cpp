@@ -199,29 +199,28 @@ TEST(AdaptiveSampling, OptionsThatCannotBeAreRefused) {
 TEST(BatchVariances, OfKnownBatchesAreTheirSampleVariance) {
   // Sixty-four pixels alike, of two batches with means 0.2 and 0.6: variance 0.08.
   const std::vector<std::uint32_t> samples(64, 2 * DAPPLE_BATCH);
-  const BatchMoments moments{std::vector<float>(64, 0.4f), std::vector<float>(64, 0.4f)};
-  for (const float variance : batch_variances(moments, samples, 8)) {
+  const auto moments = [](std::size_t) { return BatchMoments{0.4f, 0.4f}; };
+  for (const float variance : batch_variances(samples, 8, moments)) {
     EXPECT_NEAR(variance, 0.08f, 1e-6f);
   }
 }
 
 TEST(BatchVariances, PixelsWithoutSamplesCountForNothing) {
   // Of the middle pixel batches of 1 and 3, of the others none.
-  BatchMoments moments{std::vector<float>(9, std::nanf("")), std::vector<float>(9)};
+  const auto moments = [](std::size_t p) {
+    return p == 4 ? BatchMoments{2.0f, 10.0f} : BatchMoments{std::nanf(""), 0.0f};
+  };
   std::vector<std::uint32_t> samples(9);
-  moments.mean[4] = 2.0f;
-  moments.squares[4] = 10.0f;
   samples[4] = 2 * DAPPLE_BATCH;
-  const std::vector<float> variances = batch_variances(moments, samples, 3);
+  const std::vector<float> variances = batch_variances(samples, 3, moments);
   for (std::size_t p = 0; p < 9; ++p) EXPECT_EQ(variances[p], p == 4 ? 2.0f : 0.0f) << p;
 }
 
 TEST(BatchVariances, NeighboursStandInWhereAPixelKnowsLittle) {
   const std::vector<std::uint32_t> samples(9, 2 * DAPPLE_BATCH);
-  BatchMoments moments{std::vector<float>(9, 0.5f), std::vector<float>(9, 0.5f)};
   // The middle pixel alone saw its batches differ: 0 and 1.
-  moments.squares[4] = 1.0f;
-  const std::vector<float> variances = batch_variances(moments, samples, 3);
+  const auto moments = [](std::size_t p) { return BatchMoments{0.5f, p == 4 ? 1.0f : 0.5f}; };
+  const std::vector<float> variances = batch_variances(samples, 3, moments);
   // Its own 0.5 with weight 1, the neighbourhood's 0.5 / 9 with weight 16.
   EXPECT_NEAR(variances[4], (0.5f + 16 * 0.5f / 9) / 17, 1e-6f);
   EXPECT_NEAR(variances[0], 16 * 0.5f / 4 / 17, 1e-6f) << "a corner has four in its neighbourhood";

@@ -151,14 +151,11 @@ class GaussianPixels {
   }
   [[nodiscard]] double mean(std::size_t p) const { return sums_[p] / batches_[p]; }
   [[nodiscard]] std::vector<float> variances(int width) const {
-    BatchMoments moments;
     std::vector<std::uint32_t> samples;
-    for (std::size_t p = 0; p < sums_.size(); ++p) {
-      moments.mean.push_back(static_cast<float>(mean(p)));
-      moments.squares.push_back(static_cast<float>(squares_[p]));
-      samples.push_back(batches_[p] * DAPPLE_BATCH);
-    }
-    return batch_variances(moments, samples, width);
+    for (const std::uint32_t batches : batches_) samples.push_back(batches * DAPPLE_BATCH);
+    return batch_variances(samples, width, [&](std::size_t p) {
+      return BatchMoments{static_cast<float>(mean(p)), static_cast<float>(squares_[p])};
+    });
   }
 
  private:

@@ -91,10 +91,11 @@ std::vector<float> FilmMoments::variances_of(const Mean& mean, std::uint32_t squ
   const std::span<const float> squares =
       squares_.subspan(std::size_t{squares_plane} * layout_.pixels, layout_.pixels);
   const double inverse = 1.0 / divisor;
-  return batch_variances(
-      {of_pixels(layout_.pixels, [&](std::uint32_t p) { return mean(p) * inverse; }),
-       of_pixels(layout_.pixels, [&](std::uint32_t p) { return squares[p] * inverse * inverse; })},
-      samples_, width_);
+  return batch_variances(samples_, width_, [&](std::size_t p) {
+    const double of_pixel = mean(static_cast<std::uint32_t>(p));
+    return BatchMoments{static_cast<float>(of_pixel * inverse),
+                        static_cast<float>(squares[p] * inverse * inverse)};
+  });
 }
 
 std::vector<float> FilmMoments::plane(std::uint32_t number, double factor) const {
