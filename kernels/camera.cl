@@ -31,6 +31,7 @@ inline void store_stops(Scene scene, const CameraSamples* chosen, uint of_item,
       store_point(scene, hit, span.origin, span.direction,
                   first_area + solid_angle * hit.t * hit.t, point);
       point->pixel = chosen->pixel[of_item];
+      point->visits = 0u;
     }
     point->sample = chosen->sample[of_item] + d;
     found->hits[place / DAPPLE_HIT_BITS] |= 1u << place % DAPPLE_HIT_BITS;

@@ -1,5 +1,5 @@
-/* The occlusion pass for packets: one group of a point's rays an item, with results as
-   those of occlusion.cl. */
+/* The occlusion pass for packets: an item traces rays that follow one another in the queue, those of
+   one point or of neighbours, 64 at a time, with results as those of occlusion.cl. */
 #include "deal.clh"
 #include "packet.clh"
 #include "packet_order.clh"

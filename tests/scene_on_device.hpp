@@ -164,7 +164,7 @@ inline Mesh square_mesh(float side, float height, int divisions, std::uint32_t m
   return mesh;
 }
 
-/// Behind cameras that look down from z below 9, so that a mesh is not too small to stay an
+/// Behind cameras that look along -z from below 9, so that a mesh is not too small to stay an
 /// instance of its own.
 inline void add_triangles_out_of_sight(Mesh& mesh) {
   for (int i = 0; i < 1000; ++i) {

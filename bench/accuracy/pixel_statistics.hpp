@@ -33,7 +33,7 @@ class PixelStatistics {
   double pixels_ = 0;
 };
 
-/// Middle of the values, the lower one of two.
+/// Middle of the values, of an even number the mean of the two. There must be one.
 double median(std::vector<double> values);
 
 }  // namespace dapple::bench

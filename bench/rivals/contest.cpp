@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <thread>
 
 #include "accuracy/pixel_statistics.hpp"
@@ -50,8 +51,10 @@ class RungSums {
     rung.spread = (*most - *least) / rung.seconds;
     rung.rmse = std::sqrt(std::max(0.0, median(square_errors_) - truth_.variance));
     rung.mean_difference = sum_ / (values * rounds);
-    rung.mean_difference_error =
-        std::sqrt(rung.rmse * rung.rmse / (values * rounds) + truth_.variance / values);
+    const double square =
+        std::accumulate(square_errors_.begin(), square_errors_.end(), 0.0) / rounds;
+    rung.mean_difference_error = std::sqrt(
+        std::max(0.0, square - truth_.variance) / (values * rounds) + truth_.variance / values);
     rung.rounds = static_cast<int>(rounds);
     return rung;
   }

@@ -20,8 +20,9 @@ constexpr uint kLeastOfPoint = 16;
 /// several points, took 0.89 (sapling), 0.97 (forest) and 0.84 of the time (cards).
 constexpr uint kLeastOfExactPoint = 32;
 
-/// Rays that one item of the packet kernel takes; DAPPLE_PACKET_CHUNK in kernels/packet_order.clh.
-constexpr uint kPacketChunk = 1024;
+/// Rays that one item of the packet kernel takes, of a point or of neighbours; DAPPLE_PACKET_CHUNK
+/// in kernels/packet_order.clh.
+constexpr uint kPointChunk = 512, kNeighbourChunk = 1024;
 
 /// Items a work-group: of packets and beams few, so that small slices keep all threads busy.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 1;
@@ -141,7 +142,8 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
   if (with != Company::alone) {
     if (with == Company::neighbours) launched.rays_per_point = params.ray_count;
     const uint rays = launched.rays_per_point;
-    items = std::size_t{params.ray_count / rays} * ((rays + kPacketChunk - 1) / kPacketChunk);
+    const uint chunk = with == Company::point ? kPointChunk : kNeighbourChunk;
+    items = std::size_t{params.ray_count / rays} * ((rays + chunk - 1) / chunk);
     group = with == Company::point ? kPacketGroup : 1;
   }
   context.launch(occlusion_kernel(estimator, with), label, items,

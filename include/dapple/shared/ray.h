@@ -67,7 +67,7 @@ typedef struct SurfacePoint {
   float area;        /* square metres across the ray that the pixel's share covers */
   uint pixel;        /* index in the whole picture, row-major; seeds the random numbers */
   uint sample;       /* number of the sample in its pixel */
-  uint visits;       /* as in Occlusion, of the camera ray */
+  uint visits;       /* as in Occlusion, of closest_hits(); 0 of camera rays */
 } SurfacePoint;
 
 #ifndef __OPENCL_VERSION__
