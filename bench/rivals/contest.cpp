@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "accuracy/pixel_statistics.hpp"
-#include "rivals/embree_trace.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -153,12 +152,12 @@ std::optional<TimeToError> best_embree(const std::vector<Standing>& standings, d
   return best;
 }
 
-std::string disagreements(const std::vector<Standing>& standings) {
+std::string disagreements(const std::vector<Standing>& standings, double black) {
   std::string text;
   for (const Standing& standing : standings) {
     if (!standing.is_exact || standing.rungs.empty()) continue;
     const Rung& last = standing.rungs.back();
-    const double most = 4 * last.mean_difference_error + 0.5 * kContestBlack;
+    const double most = 4 * last.mean_difference_error + 0.5 * black;
     if (std::fabs(last.mean_difference) <= most) continue;
     text += fmt::format(
         "warning: {}: the mean is {:+.5f} from the reference's, standard error {:.5f}: one of the "

@@ -74,7 +74,8 @@ std::optional<TimeToError> time_to_error(const Standing& standing, double rmse);
 std::optional<TimeToError> best_embree(const std::vector<Standing>& standings, double rmse);
 
 /// A line for every exact contestant whose mean is further from the truth's, at its last effort,
-/// than four standard errors and what cutting off black rays explains; empty: all agree.
-std::string disagreements(const std::vector<Standing>& standings);
+/// than four standard errors and what cutting off rays below a transmittance of `black` explains;
+/// empty: all agree.
+std::string disagreements(const std::vector<Standing>& standings, double black);
 
 }  // namespace dapple::bench

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "accuracy/report.hpp"
+#include "rivals/embree_trace.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -170,7 +171,8 @@ std::string contest_text(const std::vector<Standing>& standings, const std::vect
                                                 : ratio_text(best_embree(standings, target), time));
     }
   }
-  return rungs_text(standings, unit) + "\n" + table_text(cells) + disagreements(standings);
+  return rungs_text(standings, unit) + "\n" + table_text(cells) +
+         disagreements(standings, kContestBlack);
 }
 
 nlohmann::json contest_json(const std::vector<Standing>& standings,
