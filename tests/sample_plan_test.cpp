@@ -297,15 +297,22 @@ TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
   EXPECT_EQ(count_of(plan.samples(), 8), 1600u);
   EXPECT_EQ(count_of(plan.samples(), 0), 16384u - 1600u);
   ASSERT_TRUE(plan.only_scouts_have_samples());
-  // Batches of variance 0.04: the squared error is 0.01 at 4, times the aim at 4.4: of powers of
-  // two at 8.
-  const std::vector<WorkGroup> all = plan.after_scouts({std::vector<float>(16384, 0.04f)});
+  // Batches of variance 0.041: the squared error is 0.01 at 4.1, of powers of two at 8.
+  const std::vector<WorkGroup> all = plan.after_scouts({std::vector<float>(16384, 0.041f)});
   EXPECT_EQ(count_of(plan.samples(), 8 * DAPPLE_BATCH), 16384u);
   EXPECT_FALSE(plan.only_scouts_have_samples());
   GaussianPixels pixels(std::vector<float>(16384, 1.0f));
   for (const auto& groups : {scouts, all})
     for (const WorkGroup& group : groups) pixels.trace(group);  // begins where it ended, or fails
   EXPECT_TRUE(plan.least().empty());
+}
+
+TEST(SamplePlan, AfterTheScoutsNothingIsGivenToBeSure) {
+  // What is missing should the scouts be wrong is less than the doubling that being sure may cost.
+  SamplePlan plan(128, 128, by_rmse(0.1f));
+  plan.scouts();
+  plan.after_scouts({std::vector<float>(16384, 0.0399f)});
+  EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_BATCH), 16384u);
 }
 
 TEST(SamplePlan, AfterTheScoutsNoPixelGetsMoreThanFourTimesTheLeast) {

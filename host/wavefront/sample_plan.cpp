@@ -33,9 +33,6 @@ constexpr std::uint32_t kUnit = 2;
 /// round for a few more takes as long as a tenth of the picture.
 constexpr double kAim = 0.95;
 
-/// The same where scouts alone have samples, which know the picture's error to a tenth.
-constexpr double kScoutAim = 0.9;
-
 /// Times the least that all pixels get at most after the scouts: of those that see nothing most
 /// samples are for nothing, and beams of more are hardly narrower.
 constexpr std::uint32_t kMostAfterScouts = 4;
@@ -53,7 +50,9 @@ std::uint32_t whole_batches(int samples) {
 
 /// So many or more, of which the points of a sequence are best stratified: pictures of 6 and 12
 /// camera rays a pixel take up to 1.4 times as long as those of 8 and 16 for what they show.
-std::uint32_t well_stratified(std::uint32_t samples) { return std::bit_ceil(samples); }
+std::uint32_t well_stratified(double samples) {
+  return std::bit_ceil(static_cast<std::uint32_t>(std::ceil(samples)));
+}
 
 /// `take` each pixel of a block.
 template <class Take>
@@ -278,14 +277,14 @@ std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<fl
     varied = std::max(varied, part_above_0(most_of_block));
     if (target_rmse_ > 0) {
       const double of_one = squared_errors(where_known(block_sums(pass, width_), of_all), one);
-      batches = std::max(batches, of_one / (kScoutAim * enough()));
+      batches = std::max(batches, of_one / enough());
     } else {
       const double enough_of_block = double{target_error_} * target_error_;
       batches = std::max(batches, lower_quartile(most_of_block) / enough_of_block);
     }
   }
-  const double samples = std::min<double>(std::ceil(batches) * DAPPLE_BATCH, most_);
-  const std::uint32_t given = well_stratified(static_cast<std::uint32_t>(samples));
+  const double samples = std::min<double>(batches * DAPPLE_BATCH, most_);
+  const std::uint32_t given = well_stratified(samples);
   least_ = std::max(least_, std::min({given, kMostAfterScouts * least_, most_}));
   fraction_done_ = least_ / (least_ + varied * std::max(0.0, samples - least_));
   return least();

@@ -1,0 +1,93 @@
+// What adaptive sampling reads off a picture's sums.
+#include "wavefront/film_moments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace dapple {
+namespace {
+
+constexpr int kSide = 8;
+
+/// A picture with one light, every sample of which hits something unlit; batches' means have the
+/// variance kOfBatch.
+class UnlitPicture {
+ public:
+  static constexpr float kOfBatch = 0.25f;
+
+  explicit UnlitPicture(std::vector<std::uint32_t> samples)
+      : samples_(std::move(samples)), layout_(view(), options_, box(), {Light{}}) {
+    sums_.resize(std::size_t{layout_.pixels} * layout_.plane_count);
+    for (std::uint32_t p = 0; p < layout_.pixels; ++p) {
+      sums_[p] = samples_[p];
+      const auto batches = static_cast<float>(samples_[p] / DAPPLE_BATCH);
+      squares_.push_back(kOfBatch * std::max(0.0f, batches - 1));
+    }
+  }
+
+  void set_unoccluded(std::uint32_t pixel, double irradiance) {
+    sums_[std::size_t{layout_.lights[0].unoccluded()} * layout_.pixels + pixel] =
+        std::llround(irradiance * samples_[pixel] * layout_.light_scale);
+  }
+
+  /// By which the light's errors are divided.
+  [[nodiscard]] double largest_unoccluded() const {
+    const HostView sums(nullptr, std::as_bytes(std::span(sums_)));
+    const HostView squares(nullptr, std::as_bytes(std::span(squares_)));
+    const FilmMoments moments(sums, squares, layout_, options_, samples_, kSide);
+    return std::sqrt(kOfBatch / moments.variances().at(0).at(0));
+  }
+
+ private:
+  static RenderOptions unlit_options() {
+    RenderOptions options;
+    options.ao = false;
+    return options;
+  }
+  static View view() {
+    View view;
+    view.width = view.height = kSide;
+    view.crop = {0, 0, kSide - 1, kSide - 1};
+    return view;
+  }
+  static Box3f box() { return {V3f(-1.0f), V3f(1.0f)}; }
+
+  RenderOptions options_ = unlit_options();
+  std::vector<std::uint32_t> samples_;
+  FilmLayout layout_;
+  std::vector<std::int64_t> sums_;
+  std::vector<float> squares_;
+};
+
+std::vector<std::uint32_t> alike(std::uint32_t samples) {
+  return std::vector<std::uint32_t>(kSide * kSide, samples);
+}
+
+constexpr std::uint32_t kBright = 3 * kSide + 3, kBesideIt = 3 * kSide + 2;
+
+TEST(FilmMoments, ErrorsAreRelativeToTheLargestUnoccludedIrradianceOfPixelsThatHaveManySamples) {
+  UnlitPicture picture(alike(16));
+  picture.set_unoccluded(kBright, 4);
+  picture.set_unoccluded(kBesideIt, 2);
+  EXPECT_NEAR(picture.largest_unoccluded(), 4, 1e-5);
+}
+
+TEST(FilmMoments, WherePixelsHaveFewSamplesNeighboursAreAveraged) {
+  UnlitPicture picture(alike(8));
+  picture.set_unoccluded(kBright, 4);
+  picture.set_unoccluded(kBesideIt, 2);
+  EXPECT_NEAR(picture.largest_unoccluded(), 6.0 / 9, 1e-5);
+}
+
+TEST(FilmMoments, ScoutsStandForWhatTheyDontSee) {
+  std::vector<std::uint32_t> samples = alike(8);
+  for (int p = kSide * kSide / 2; p < kSide * kSide; ++p) samples[p] = 0;
+  UnlitPicture picture(samples);
+  picture.set_unoccluded(kBright, 4);
+  picture.set_unoccluded(kBesideIt, 2);
+  EXPECT_NEAR(picture.largest_unoccluded(), 4, 1e-5);
+}
+
+}  // namespace
+}  // namespace dapple
