@@ -24,7 +24,7 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
   const Dome dome = dome_of(lights + light, environments);
   PlaneSums sums;
   sums.v = (long8)(0);
-  Batches batches = {0.0f, 0.0f};
+  Batches batches = no_batches();
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     const bool hit = sample_hit(sample_hits, begin + s);
     const uint first = hit ? sample_slot(sample_hits, begin + s) * params.rays : 0u;
@@ -36,6 +36,6 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
     add_to_batch(&batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
-  squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
+  add_squares(squares, params, pixel, &batches);
   add_to_planes(film, params, 8u, pixel, &sums);
 }

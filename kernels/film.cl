@@ -59,7 +59,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
   PlaneSums sums;
   sums.v = (long8)(0);
   long visits = 0, tests = 0;
-  Batches batches = {0.0f, 0.0f};
+  Batches batches = no_batches();
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     const bool hit = sample_hit(sample_hits, begin + s);
@@ -80,7 +80,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
     add_to_batch(&batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
-  squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
+  add_squares(squares, params, pixel, &batches);
   add_to_planes(film, params, 4u, pixel, &sums);
   add_to_plane(film, params, 4, pixel, visits);
   add_to_plane(film, params, 5, pixel, tests);
@@ -98,7 +98,7 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
   PlaneSums sums;
   sums.v = (long8)(0);
   long visits = 0, tests = 0;
-  Batches batches = {0.0f, 0.0f};
+  Batches batches = no_batches();
   const float inverse_rays = 1.0f / params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     const bool hit = sample_hit(sample_hits, begin + s);
@@ -118,7 +118,7 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
     add_to_batch(&batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
-  squares[(ulong)params.squares * params.film_pixels + pixel] += batches.squares;
+  add_squares(squares, params, pixel, &batches);
   add_to_planes(film, params, 2u, pixel, &sums);
   add_to_plane(film, params, 2, pixel, visits);
   add_to_plane(film, params, 3, pixel, tests);

@@ -205,6 +205,21 @@ TEST(BatchVariances, OfKnownBatchesAreTheirSampleVariance) {
   }
 }
 
+TEST(BatchVariances, FromTwoPairsOnPairsTell) {
+  // Means of batches 0, 2, 1, 3: of pairs 1 and 2, so of a pair's mean 0.5, of a batch's twice
+  // that.
+  const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_BATCH);
+  const auto moments = [](std::size_t) { return BatchMoments{1.5f, 14.0f, 5.0f}; };
+  for (const float variance : batch_variances(samples, 8, moments)) EXPECT_NEAR(variance, 1, 1e-6f);
+}
+
+TEST(BatchVariances, WherePairsAreMissingBatchesTell) {
+  const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_BATCH);
+  const auto moments = [](std::size_t) { return BatchMoments{1.5f, 14.0f, 4.0f}; };
+  for (const float variance : batch_variances(samples, 8, moments))
+    EXPECT_NEAR(variance, 5.0f / 3, 1e-6f);
+}
+
 TEST(BatchVariances, PixelsWithoutSamplesCountForNothing) {
   // Of the middle pixel batches of 1 and 3, of the others none.
   const auto moments = [](std::size_t p) {

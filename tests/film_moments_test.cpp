@@ -11,19 +11,17 @@ namespace {
 constexpr int kSide = 8;
 
 /// A picture with one light, every sample of which hits something unlit; batches' means have the
-/// variance kOfBatch.
+/// variance `of_batch`.
 class UnlitPicture {
  public:
-  static constexpr float kOfBatch = 0.25f;
-
-  explicit UnlitPicture(std::vector<std::uint32_t> samples)
-      : samples_(std::move(samples)), layout_(view(), options_, box(), {Light{}}) {
+  UnlitPicture(std::vector<std::uint32_t> samples, float of_batch)
+      : of_batch_(of_batch),
+        samples_(std::move(samples)),
+        layout_(view(), options_, box(), {Light{}}) {
     sums_.resize(std::size_t{layout_.pixels} * layout_.plane_count);
-    for (std::uint32_t p = 0; p < layout_.pixels; ++p) {
-      sums_[p] = samples_[p];
-      const auto batches = static_cast<float>(samples_[p] / DAPPLE_BATCH);
-      squares_.push_back(kOfBatch * std::max(0.0f, batches - 1));
-    }
+    for (std::uint32_t p = 0; p < layout_.pixels; ++p) sums_[p] = samples_[p];
+    add_squares(DAPPLE_BATCH, of_batch_);
+    add_squares(2 * DAPPLE_BATCH, of_batch_ / 2);
   }
 
   void set_unoccluded(std::uint32_t pixel, double irradiance) {
@@ -36,10 +34,17 @@ class UnlitPicture {
     const HostView sums(nullptr, std::as_bytes(std::span(sums_)));
     const HostView squares(nullptr, std::as_bytes(std::span(squares_)));
     const FilmMoments moments(sums, squares, layout_, options_, samples_, kSide);
-    return std::sqrt(kOfBatch / moments.variances().at(0).at(0));
+    return std::sqrt(of_batch_ / moments.variances().at(0).at(0));
   }
 
  private:
+  /// A plane of them: means of so many samples, around 0, have that variance.
+  void add_squares(std::uint32_t samples, float variance) {
+    for (const std::uint32_t of_pixel : samples_) {
+      const auto means = static_cast<float>(of_pixel / samples);
+      squares_.push_back(variance * std::max(0.0f, means - 1));
+    }
+  }
   static RenderOptions unlit_options() {
     RenderOptions options;
     options.ao = false;
@@ -53,6 +58,7 @@ class UnlitPicture {
   }
   static Box3f box() { return {V3f(-1.0f), V3f(1.0f)}; }
 
+  float of_batch_;
   RenderOptions options_ = unlit_options();
   std::vector<std::uint32_t> samples_;
   FilmLayout layout_;
@@ -66,15 +72,16 @@ std::vector<std::uint32_t> alike(std::uint32_t samples) {
 
 constexpr std::uint32_t kBright = 3 * kSide + 3, kBesideIt = 3 * kSide + 2;
 
-TEST(FilmMoments, ErrorsAreRelativeToTheLargestUnoccludedIrradianceOfPixelsThatHaveManySamples) {
-  UnlitPicture picture(alike(16));
+TEST(FilmMoments, LightsErrorsAreRelativeToTheLargestUnoccludedIrradianceLessItsStandardError) {
+  UnlitPicture picture(alike(16), 0.25f);
   picture.set_unoccluded(kBright, 4);
   picture.set_unoccluded(kBesideIt, 2);
-  EXPECT_NEAR(picture.largest_unoccluded(), 4, 1e-5);
+  // Four batches of variance 1/4: 1/4.
+  EXPECT_NEAR(picture.largest_unoccluded(), 4 - 0.25, 1e-5);
 }
 
-TEST(FilmMoments, WherePixelsHaveFewSamplesNeighboursAreAveraged) {
-  UnlitPicture picture(alike(8));
+TEST(FilmMoments, WhatIsMostlyNoiseIsTakenFromTheNeighbours) {
+  UnlitPicture picture(alike(16), 100);
   picture.set_unoccluded(kBright, 4);
   picture.set_unoccluded(kBesideIt, 2);
   EXPECT_NEAR(picture.largest_unoccluded(), 6.0 / 9, 1e-5);
@@ -83,7 +90,7 @@ TEST(FilmMoments, WherePixelsHaveFewSamplesNeighboursAreAveraged) {
 TEST(FilmMoments, ScoutsStandForWhatTheyDontSee) {
   std::vector<std::uint32_t> samples = alike(8);
   for (int p = kSide * kSide / 2; p < kSide * kSide; ++p) samples[p] = 0;
-  UnlitPicture picture(samples);
+  UnlitPicture picture(samples, 0.25f);
   picture.set_unoccluded(kBright, 4);
   picture.set_unoccluded(kBesideIt, 2);
   EXPECT_NEAR(picture.largest_unoccluded(), 4, 1e-5);

@@ -44,12 +44,14 @@ class FilmMoments {
                                      std::uint32_t pixel) const;
   [[nodiscard]] std::vector<float> ao_variances() const;
   [[nodiscard]] std::vector<float> light_variances(std::size_t light) const;
-  /// Of all pixels, in units of the sums.
-  [[nodiscard]] double largest_unoccluded(const LightPlaneRange& planes) const;
-  /// batch_variances() of a pass whose samples' values have a pixel's `mean`, divided by `divisor`.
+  /// Of all pixels, irradiance at radiance 1. `scale`: of the sums; `variances`: batch_variances()
+  /// of the irradiance.
+  [[nodiscard]] double largest_unoccluded(const LightPlaneRange& planes, double scale,
+                                          const std::vector<float>& variances) const;
+  /// batch_variances() of a pass whose samples' values have a pixel's `mean`.
   template <class Mean>
-  [[nodiscard]] std::vector<float> variances_of(const Mean& mean, std::uint32_t squares_plane,
-                                                double divisor) const;
+  [[nodiscard]] std::vector<float> variances_of(const Mean& mean,
+                                                std::uint32_t squares_plane) const;
   [[nodiscard]] std::vector<float> plane(std::uint32_t number, double factor) const;
   /// What `rays` of each hit did, which have planes of visits and tests.
   [[nodiscard]] PassWork work_of(int rays, std::uint32_t visits) const;

@@ -195,12 +195,12 @@ FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box
   if (options.ao) {
     ao = plane_count;
     plane_count += kAoPlanes;
-    ++squares;
+    squares += 2;
   }
   for (const Light& light : scene_lights) {
     lights.push_back({plane_count, light.kind == LightKind::dome ? 3u : 1u});
     plane_count += lights.back().count();
-    ++squares;
+    squares += 2;
   }
   unit_scale = scale_for(1.0);
   light_scale = scale_for(1024.0 * std::numbers::pi);

@@ -34,7 +34,7 @@ struct FilmLayout {
   std::uint32_t plane_count = 0;
   std::uint32_t ao = 0;  ///< first AO plane
   std::vector<LightPlaneRange> lights;
-  std::uint32_t squares = 0;  ///< planes of squares: one of AO, then one a light
+  std::uint32_t squares = 0;  ///< planes of squares: two of AO, then two a light
   float unit_scale = 0;       ///< of values up to 1
   float light_scale = 0;      ///< of irradiance at radiance 1, up to 1024 pi
   float position_scale = 0;
@@ -43,9 +43,9 @@ struct FilmLayout {
   FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
              const std::vector<Light>& lights);
   [[nodiscard]] std::uint32_t ao_visits() const { return ao + 4; }
-  /// Plane of squares of a light; AO's is 0.
+  /// First plane of squares of a light, of batches; that of pairs is next. AO's is 0.
   [[nodiscard]] std::uint32_t light_squares(std::size_t light) const {
-    return static_cast<std::uint32_t>(light) + (ao ? 1u : 0u);
+    return 2 * (static_cast<std::uint32_t>(light) + (ao ? 1u : 0u));
   }
   [[nodiscard]] std::size_t sum_bytes() const {
     return std::size_t{pixels} * plane_count * sizeof(std::int64_t);

@@ -7,10 +7,11 @@
 namespace dapple {
 namespace {
 
-/// Samples a pixel and slice: all if they fit, else whole batches.
+/// Samples a pixel and slice: all if they fit, else whole pairs of batches, or one batch.
 std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
-  return group.samples <= slice_samples ? group.samples
-                                        : slice_samples / DAPPLE_BATCH * DAPPLE_BATCH;
+  if (group.samples <= slice_samples) return group.samples;
+  const std::uint32_t pairs = slice_samples / (2 * DAPPLE_BATCH);
+  return pairs ? pairs * 2 * DAPPLE_BATCH : DAPPLE_BATCH;
 }
 
 std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
