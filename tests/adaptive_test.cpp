@@ -213,9 +213,18 @@ TEST(BatchVariances, FromTwoPairsOnPairsTell) {
   for (const float variance : batch_variances(samples, 8, moments)) EXPECT_NEAR(variance, 1, 1e-6f);
 }
 
-TEST(BatchVariances, WherePairsAreMissingBatchesTell) {
+TEST(BatchVariances, TwoPairsAndABatchAloneTell) {
+  // Means of batches 0 and 2, 3 and 5, and 5 alone: of pairs 1 and 4, and half of 25. The mean
+  // is 3.
+  const std::vector<std::uint32_t> samples(64, 5 * DAPPLE_BATCH);
+  const auto moments = [](std::size_t) { return BatchMoments{3.0f, 63.0f, 29.5f}; };
+  for (const float variance : batch_variances(samples, 8, moments))
+    EXPECT_NEAR(variance, (59.0f - 45.0f) / 2, 1e-5f);
+}
+
+TEST(BatchVariances, WherePairsAreUnknownBatchesTell) {
   const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_BATCH);
-  const auto moments = [](std::size_t) { return BatchMoments{1.5f, 14.0f, 4.0f}; };
+  const auto moments = [](std::size_t) { return BatchMoments{1.5f, 14.0f}; };
   for (const float variance : batch_variances(samples, 8, moments))
     EXPECT_NEAR(variance, 5.0f / 3, 1e-6f);
 }

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "scene_on_device.hpp"
+#include "wavefront/picture.hpp"
+
 namespace dapple {
 namespace {
 
@@ -94,6 +97,43 @@ TEST(FilmMoments, ScoutsStandForWhatTheyDontSee) {
   picture.set_unoccluded(kBright, 4);
   picture.set_unoccluded(kBesideIt, 2);
   EXPECT_NEAR(picture.largest_unoccluded(), 4, 1e-5);
+}
+
+// Of numbers whose sum is known the squares' sum is least when they are equal, and means of pairs
+// lie closer together than what they are of.
+TEST(FilmMoments, KernelsSquareTheMeansOfBatchesAndOfPairs) {
+  const scene_test::SceneOnDevice cloud(make_procedural("scene:cloud?leaves=300"));
+  RenderOptions options;
+  options.light = false;
+  options.width = options.height = 16;
+  options.spp = 28;  // of seven batches one is alone
+  options.depths = 1;
+  std::vector<std::string> notes;
+  const View view = choose_view(cloud.scene, options, notes);
+  const FilmLayout layout(view, options, cloud.bvh.bounds, {});
+  TraceState state;
+  TraceControl control;
+  control.save = [&](const TraceState& now) { state = now; };
+  control.save_every = 1e9;
+  (void)trace_picture(scene_test::device(), cloud.uploaded, view, options, layout, control);
+  ASSERT_EQ(state.squares.size(), 2u * layout.pixels);
+  const double scale = 1.0 / (double{layout.unit_scale} * options.ao_rays);
+  double least = 0, pairs = 0, batches = 0;
+  for (std::uint32_t p = 0; p < layout.pixels; ++p) {
+    const double sum = static_cast<double>(state.sums[p]) -
+                       static_cast<double>(state.sums[layout.ao * layout.pixels + p]) * scale;
+    const double of_pixel[] = {3.5 * std::pow(sum / options.spp, 2),
+                               state.squares[layout.pixels + p], 0.5 * state.squares[p]};
+    EXPECT_LE(of_pixel[0], of_pixel[1] + 1e-5) << p;
+    EXPECT_LE(of_pixel[1], of_pixel[2] + 1e-5) << p;
+    least += of_pixel[0];
+    pairs += of_pixel[1];
+    batches += of_pixel[2];
+  }
+  // Batches differ by six differences, pairs and the one alone by three.
+  EXPECT_LT(1.01 * least, pairs);
+  EXPECT_LT(pairs - least, 0.6 * (batches - least));
+  EXPECT_GT(pairs - least, 0.2 * (batches - least));
 }
 
 }  // namespace

@@ -29,10 +29,10 @@ std::vector<std::uint32_t> given(std::uint32_t samples) {
   return all;
 }
 
-// 7: neither pixels nor samples fit whole; 64: several pixels a slice; 1000: all in one.
+// 7 and 12: neither pixels nor samples fit whole; 64: several pixels a slice; 1000: all in one.
 TEST(Round, EverySampleIsTracedOnceInOrderAndCountedWhereverItIsLeft) {
   for (const std::uint32_t samples : {3u, 16u, 50u}) {
-    for (const std::uint32_t slice_samples : {7u, 64u, 1000u}) {
+    for (const std::uint32_t slice_samples : {7u, 12u, 64u, 1000u}) {
       Round round = two_groups(samples);
       std::vector<std::uint32_t> traced(kPixels, 0);
       while (!round.is_done()) {
@@ -42,7 +42,9 @@ TEST(Round, EverySampleIsTracedOnceInOrderAndCountedWhereverItIsLeft) {
         EXPECT_GT(slice.pixel_count * slice.sample_count, 0u);
         const WorkGroup& group = round.groups[round.group];
         const bool ends = slice.first_sample + slice.sample_count == group.samples;
-        EXPECT_TRUE(ends || slice.sample_count % DAPPLE_BATCH == 0) << "whole batches";
+        const std::uint32_t whole = slice_samples < 2 * DAPPLE_BATCH ? 1 : 2;
+        EXPECT_TRUE(ends || slice.sample_count % (whole * DAPPLE_BATCH) == 0)
+            << "batches, or pairs";
         for (std::uint32_t i = 0; i < slice.pixel_count; ++i) {
           const PixelWork& work = group.work[slice.first_work + i];
           EXPECT_EQ(traced[work.pixel], work.first_sample + slice.first_sample);

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr SealedKind kKind{"checkpoint", 1};
+constexpr SealedKind kKind{"checkpoint", 2};
 constexpr std::size_t kFirstGroup = 4;  ///< its section
 
 /// Nothing asks for more than 2^20 samples a pixel, and no device takes larger slices.

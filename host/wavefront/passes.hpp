@@ -31,7 +31,7 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
 /// What passes resolve into.
 struct FilmBuffers {
   Buffer sums;     ///< 64-bit fixed point planes as FilmLayout says
-  Buffer squares;  ///< float planes, FilmLayout::squares: means of batches and pairs, squared, summed
+  Buffer squares;  ///< float planes, FilmLayout::squares: squared means of batches and of pairs
 };
 
 /// First surfaces of the slice's camera rays into `points` and `sample_hits`.

@@ -16,7 +16,7 @@ namespace dapple {
 struct BatchMoments {
   float mean = 0;           ///< of all samples
   float squares = 0;        ///< of the batches' means, summed
-  float pair_squares = -1;  ///< of the pairs' means, summed; less than they can be: not known
+  float pair_squares = -1;  ///< of the pairs' means, batches alone counting half; below 0: unknown
 };
 
 /// Batches that the neighbourhood counts for. Small weights make samples depend on the pixel's own
@@ -25,23 +25,22 @@ struct BatchMoments {
 /// times their error. Larger ones take more samples.
 inline constexpr float kNeighbourhoodWeight = 16.0f;
 
-/// Whether a pixel's pairs tell its variance: where there are two or more, and nothing beside them.
-inline bool knows_pairs(std::uint32_t batches) { return batches >= 4 && batches % 2 == 0; }
+/// Batches from which on pairs of them tell a variance.
+inline constexpr std::uint32_t kBatchesOfPairs = 4;
 
 /// Differences that a pixel's variance is known from. `batches`: two or more.
 inline float freedom_of(std::uint32_t batches) {
-  return static_cast<float>((knows_pairs(batches) ? batches / 2 : batches) - 1);
+  return static_cast<float>((batches >= kBatchesOfPairs ? (batches + 1) / 2 : batches) - 1);
 }
 
-/// Of one batch's mean, by those of the pixel itself.
+/// Of one batch's mean, by those of the pixel itself. With more than one batch alone, since samples
+/// came in pieces, it is rather too large.
 inline float batch_variance(const BatchMoments& of_pixel, std::uint32_t batches) {
   const auto count = static_cast<float>(batches);
   const float square = count * of_pixel.mean * of_pixel.mean;
-  // A sample that is given out without its pair's other ones leaves less than there must be.
-  const float of_pairs = 2 * of_pixel.pair_squares - square;
-  const float of_batches = of_pixel.squares - square;
-  const bool by_pairs = knows_pairs(batches) && of_pairs >= 0;
-  return by_pairs ? of_pairs / freedom_of(batches) : std::max(0.0f, of_batches) / (count - 1);
+  const bool by_pairs = batches >= kBatchesOfPairs && of_pixel.pair_squares >= 0;
+  const float over = (by_pairs ? 2 * of_pixel.pair_squares : of_pixel.squares) - square;
+  return std::max(0.0f, over) / (by_pairs ? freedom_of(batches) : count - 1);
 }
 
 /// Variance of one batch's mean for each pixel; a pixel's mean over b batches has that over b. The

@@ -92,7 +92,7 @@ typedef struct ResolveParams {
   uint film_pixels;     /* pixels of a plane */
   uint plane;           /* first plane to add to */
   uint rays;            /* rays a sample */
-  uint squares;         /* plane of squares to add to */
+  uint squares;         /* first of two planes of squares to add to */
   uint depth_bits;      /* as in CameraParams */
   float scale;          /* of unit-range values */
   float position_scale;
