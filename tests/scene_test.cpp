@@ -118,6 +118,14 @@ TEST(SceneBounds, IgnoreVerticesThatNoTriangleUses) {
   EXPECT_EQ(scene_bounds(scene_of({mesh}, {placed(0)})).max, V3f(1, 1, 0));
 }
 
+TEST(SceneBounds, IgnoreVerticesAtInfinity) {
+  Mesh mesh = unit_triangle();
+  mesh.positions[0] = V3f(-kInfinity, -5.0f, 3.0f);  // its triangle is left out
+  const Box3f bounds = scene_bounds(scene_of({mesh}, {placed(0, translation({5, 0, 0}))}));
+  EXPECT_EQ(bounds.min, V3f(5, 0, 0));
+  EXPECT_EQ(bounds.max, V3f(6, 1, 0));
+}
+
 TEST(SceneBounds, OfAnEmptySceneAreEmpty) {
   EXPECT_TRUE(scene_bounds(Scene{}).isEmpty());
   EXPECT_TRUE(scene_bounds(scene_of({unit_triangle()}, {})).isEmpty());

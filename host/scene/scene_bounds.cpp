@@ -24,11 +24,13 @@ float strand_reach(const Mesh& mesh, const M44f& transform) {
   return radius * std::sqrt(square / 3);
 }
 
-/// As p * placement, of an affine one: without its division.
+/// As p * placement, of an affine one: without its division, by which vertices that lie at infinity
+/// become not a number, and are in no box.
 V3f placed(const V3f& p, const M44f& placement) {
+  const float nothing = (p.x - p.x) + (p.y - p.y) + (p.z - p.z);
   const auto along = [&](int axis) {
     return p.x * placement[0][axis] + p.y * placement[1][axis] + p.z * placement[2][axis] +
-           placement[3][axis];
+           placement[3][axis] + nothing;
   };
   return {along(0), along(1), along(2)};
 }
