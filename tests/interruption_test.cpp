@@ -63,7 +63,8 @@ TEST_F(Interruption, ASignalEndsWithItsCodeAPictureAndACheckpointThatGoesOn) {
     EXPECT_TRUE(contains(said, "--resume " + path("a.ckpt") + " goes on")) << said;
     const Film film = read_exr(path("out.exr"));
     const auto& samples = film.find("samples")->pixels;
-    EXPECT_GE(*std::min_element(samples.begin(), samples.end()), 16);
+    // The first pass of sixteen, two of which share a camera ray.
+    EXPECT_GE(*std::min_element(samples.begin(), samples.end()), 8);
     EXPECT_EQ(files_in_folder(), 2u);
   }
   RunningProgram again(render(kEndless, {"--resume", path("a.ckpt"), "-q"}), log());
