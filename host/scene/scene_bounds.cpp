@@ -24,26 +24,6 @@ float strand_reach(const Mesh& mesh, const M44f& transform) {
   return radius * std::sqrt(square / 3);
 }
 
-/// As p * placement, of an affine one: without its division, by which vertices that lie at infinity
-/// become not a number, and are in no box.
-V3f placed(const V3f& p, const M44f& placement) {
-  const float nothing = (p.x - p.x) + (p.y - p.y) + (p.z - p.z);
-  const auto along = [&](int axis) {
-    return p.x * placement[0][axis] + p.y * placement[1][axis] + p.z * placement[2][axis] +
-           placement[3][axis] + nothing;
-  };
-  return {along(0), along(1), along(2)};
-}
-
-/// Box3f::extendBy() without its branches, which cost more than all else where vertices come in no
-/// order.
-void extend(Box3f& box, const V3f& by) {
-  for (int axis = 0; axis < 3; ++axis) {
-    box.min[axis] = by[axis] < box.min[axis] ? by[axis] : box.min[axis];
-    box.max[axis] = by[axis] > box.max[axis] ? by[axis] : box.max[axis];
-  }
-}
-
 // Minima and maxima come out the same in any order, so threads may share the work.
 Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
   using Range = tbb::blocked_range<std::size_t>;
@@ -51,7 +31,7 @@ Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
       Range(0, mesh.indices.size(), 16384), Box3f{},
       [&](const Range& range, Box3f box) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          extend(box, placed(mesh.positions[mesh.indices[i]], transform));
+          box.extendBy(mesh.positions[mesh.indices[i]] * transform);
         }
         return box;
       },
