@@ -78,6 +78,9 @@ class NeighbouringRays : public testing::TestWithParam<const char*> {
       ray.first_area = 1e-4f;
       if (random.unit() < 0.3f) ray.t_max = radius * 2 * random.unit();
     }
+    // Rays across an axis, by zeros of either sign.
+    for (std::size_t i = 0; i < rays.size(); i += 13)
+      rays[i].direction[i % 3] = std::copysign(0.0f, rays[i].direction[i % 3]);
     // Rays that end before they start, a few and a row of them.
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (i % 19 == 0 || (i > 1000 && i < 2100)) rays[i].t_max = -1;
@@ -111,6 +114,28 @@ TEST_P(NeighbouringRays, FindTheSameBitsInAnyCompany) {
     const std::vector<Ray> few(rays_.begin() + 100, rays_.begin() + 137);
     const std::vector<float> of_few = transmittances(together(scene_, few, estimator));
     EXPECT_TRUE(std::equal(of_few.begin(), of_few.end(), found.begin() + 100));
+  }
+}
+
+// Packets whose rays all go one way along each axis have loops of their own.
+TEST_P(NeighbouringRays, FindTheSameBitsAmongThoseThatGoTheirWay) {
+  const auto way_of = [](const Ray& ray) {
+    return std::signbit(ray.direction[0]) + 2 * std::signbit(ray.direction[1]) +
+           4 * std::signbit(ray.direction[2]);
+  };
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    const std::vector<float> found = transmittances(together(scene_, rays_, estimator));
+    for (int way = 0; way < 8; ++way) {
+      std::vector<Ray> alike;
+      std::vector<float> of_all;
+      for (std::size_t i = 0; i < rays_.size(); ++i) {
+        if (way_of(rays_[i]) != way) continue;
+        alike.push_back(rays_[i]);
+        of_all.push_back(found[i]);
+      }
+      ASSERT_FALSE(alike.empty());
+      EXPECT_EQ(transmittances(together(scene_, alike, estimator)), of_all) << "way " << way;
+    }
   }
 }
 

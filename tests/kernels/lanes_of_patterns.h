@@ -1,6 +1,7 @@
-/* lanes.clh for patterns of sixteen bits, one an item: what each of its functions makes of them.
-   Included once for each way in which it can be compiled. */
-#include "lanes.clh"
+/* lanes.clh for patterns of sixteen bits, one an item: what each of its functions makes of them, and
+   which children a packet pushes. Included once for each way in which it can be compiled. */
+#define DAPPLE_ONE_POINT 0
+#include "packet_stack.clh"
 
 __kernel void lanes_of_patterns(__global uint* found) {
   const uint pattern = get_global_id(0);
@@ -18,4 +19,27 @@ __kernel void lanes_of_patterns(__global uint* found) {
   to[3] = any_lane(all.hi);
   to[4] = bits_of_16((int16)(lanes_of_bits(pattern & 255u), lanes_of_bits(pattern >> 8)));
   to[5] = pattern ? lowest_bit(pattern) : lowest;
+}
+
+/* `pattern` names the children that are nodes, from number 100 on, and those that are opened, by as
+   many rays as their slot's number and one; 17 entries each: how many are pushed, which, and their
+   rays. */
+__kernel void children_of_patterns(__global BvhNode* nodes, __global uint* found) {
+  const uint pattern = get_global_id(0);
+  __global BvhNode* node = nodes + pattern;
+  node->inner_mask = (uchar)(pattern & 255u);
+  node->child_base = 100u;
+  RaySets opened;
+  for (uint slot = 0; slot < 8u; ++slot)
+    opened.u[slot] = pattern >> (8u + slot) & 1u ? (1UL << (slot + 1u)) - 1UL : 0UL;
+  PacketStack stack;
+  start_stack(&stack);
+  push_inner(node, &opened, &stack);
+  __global uint* to = found + 17u * pattern;
+  const uint pushed = stack.top - DAPPLE_STACK_BOTTOM;
+  to[0] = pushed;
+  for (uint i = 0; i < 8u; ++i) {
+    to[1u + i] = i < pushed ? stack.entry[DAPPLE_STACK_BOTTOM + i] : 0u;
+    to[9u + i] = i < pushed ? (uint)popcount(stack.rays[DAPPLE_STACK_BOTTOM + i]) : 0u;
+  }
 }
