@@ -1,5 +1,7 @@
 #include "wavefront/picture.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -183,8 +185,9 @@ class PictureTracer {
       errors = FilmMoments(sums, squares, layout_, options_, samples, width_).variances();
     }
     for (std::vector<float>& pass : errors) {
-      for (std::size_t p = 0; p < pass.size(); ++p)
+      tbb::parallel_for(std::size_t{0}, pass.size(), [&](std::size_t p) {
         pass[p] = std::sqrt(pass[p] * DAPPLE_BATCH / static_cast<float>(samples[p]));
+      });
     }
     return errors;
   }

@@ -60,6 +60,7 @@ std::vector<float> batch_variances(const std::vector<std::uint32_t>& samples, in
   std::vector<float> variances(samples.size());
   const auto blend = [&](std::size_t p, const std::array<float, 2>& of_pixel,
                          const std::array<float, 2>& sums) {
+    if (sums[0] == 0) return;  // most pixels of a picture of one plant
     if (samples[p] == 0) return;
     const float freedom = freedom_of(batches(p));
     const float around = sums[0] / sums[1] * kNeighbourhoodWeight;

@@ -184,6 +184,7 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
 }
 
 std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
+  if (*std::min_element(samples_.begin(), samples_.end()) >= least_) return {};
   if (all_equal(samples_)) return least_of_all(order);
   std::map<std::uint32_t, WorkGroup> groups;
   WorkGroup* group = nullptr;  // neighbours mostly lack the same
@@ -224,8 +225,7 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
 // Of blocks. Sums of their pixels' variances and costs stand in the ratio of the means, and their
 // errors add up to those of the picture.
 BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
-                               const Costs& costs) const {
-  const BatchCounts have = block_batches(samples_, width_);
+                               const BatchCounts& have, const Costs& costs) const {
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
   if (target_rmse_ > 0) {
@@ -292,8 +292,9 @@ std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<fl
 
 std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances,
                                         const Costs& costs) {
-  const BatchCounts of_blocks = wanted(variances, costs);
-  if (of_blocks == block_batches(samples_, width_)) {
+  const BatchCounts have = block_batches(samples_, width_);
+  const BatchCounts of_blocks = wanted(variances, have, costs);
+  if (of_blocks == have) {
     fraction_done_ = 1;
     return {};
   }

@@ -57,9 +57,9 @@ class SamplePlan {
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() where all pixels have the same.
   std::vector<WorkGroup> least_of_all(SampleOrder order);
-  /// Batches that the pixels of every block should have in all.
+  /// Batches that the pixels of every block should have in all, where they have so many.
   [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances,
-                                   const Costs& costs) const;
+                                   const BatchCounts& have, const Costs& costs) const;
   /// The sum of squared errors, of the pixels that have samples, at the RMSE asked for.
   [[nodiscard]] double enough() const;
 
