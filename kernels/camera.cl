@@ -1,16 +1,22 @@
-/* The camera pass: where the slice's camera rays meet the scene, a beam of them an item. */
-#include "beam_nearest.clh"
+/* The camera pass: where the slice's camera rays meet the scene, a packet of them an item: from one
+   point (DAPPLE_ONE_POINT 1), or side by side (0). */
 #include "camera.clh"
 #include "deal.clh"
+#include "nearest_search.clh"
 #include "surface_point.clh"
 
 #define DAPPLE_MOST_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MOST_DEPTHS / DAPPLE_HIT_BITS)
 
-/* What an item found, by SampleHits: bits of the samples that hit, and sums over the rays of what
-   their beams cost. */
+/* What an item found: bits of the samples that hit, by SampleHits, and what that cost. */
 typedef struct ItemHits {
-  uint hits[DAPPLE_MOST_RECORDS], visits[DAPPLE_MOST_RECORDS], tests[DAPPLE_MOST_RECORDS];
+  uint hits[DAPPLE_MOST_RECORDS];
+  uint visits, tests;  /* as SampleHits has them */
 } ItemHits;
+
+/* Of each ray's share of its pixel. */
+typedef struct BeamShares {
+  BeamFloats first_area, solid_angle;
+} BeamShares;
 
 /* Where a ray of a beam stopped, sample by sample: `of_item` is the ray's place in `chosen`,
    of_beam that in `rays`; `points` are those of the item. */
@@ -39,45 +45,59 @@ inline void store_stops(Scene scene, const CameraSamples* chosen, uint of_item,
   }
 }
 
-/* Where the rays of one beam meet the scene: those of `chosen` from `first` on, but for the ones
-   that are not among the item's `count`. */
-inline void trace_beam(Scene scene, CameraParams params, const CameraSamples* chosen,
-                       const Entries* entries, uint first, uint count,
-                       __global SurfacePoint* points, ItemHits* found) {
-  BeamRays rays;
-  PixelTaps taps;
-  BeamFloats solid_angle, first_area;
-  aim(params, chosen, first, &taps, &rays, &solid_angle.v, &first_area.v);
-  BeamNearest nearest;
-  Stops stops;
+/* The item's rays from `first` on as a beam: those that are not among its `count` have ended. */
+inline void start_beam(CameraParams params, const CameraSamples* chosen, uint first, uint count,
+                       BeamNearest* nearest, Stops* stops) {
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i)
-    nearest.t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
-  stops.count = 1u << params.depth_bits;
+    nearest->t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
+  stops->count = 1u << params.depth_bits;
   float16 least = (float16)(1.0f);
-  for (uint d = 0; d < stops.count; ++d) {
-    stops.threshold[d] = vload16(0, chosen->threshold[d] + first);
-    stops.t[d].v = (float16)(INFINITY);
-    stops.primitive[d].v = stops.instance[d].v = (int16)(0);
-    least = min(least, stops.threshold[d]);
+  for (uint d = 0; d < stops->count; ++d) {
+    stops->threshold[d] = vload16(0, chosen->threshold[d] + first);
+    stops->t[d].v = (float16)(INFINITY);
+    stops->primitive[d].v = stops->instance[d].v = (int16)(0);
+    least = min(least, stops->threshold[d]);
   }
-  start_layers(least, &nearest.layers);
-  nearest.primitive.v = nearest.instance.v = (int16)(0);
-  nearest.farthest = INFINITY;
-  nearest.visits = nearest.tests = 0u;
-  find_nearest(scene, params.scene, entries, &rays, &nearest, &stops);
-  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
-    const uint place = chosen->place[first + i];
-    const uint record = (place << params.depth_bits) / DAPPLE_HIT_BITS;
-    found->visits[record] += place < count ? nearest.visits : 0u;
-    found->tests[record] += place < count ? nearest.tests : 0u;
-  }
-  float16 nearest_stop = stops.t[0].v;
-  for (uint d = 1; d < stops.count; ++d) nearest_stop = min(nearest_stop, stops.t[d].v);
+  start_layers(least, &nearest->layers);
+  nearest->primitive.v = nearest->instance.v = (int16)(0);
+}
+
+/* What the beam met whose first ray is that. */
+inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, const BeamRays* beam,
+                       const BeamShares* shares, const Stops* stops, __global SurfacePoint* points,
+                       ItemHits* found) {
+  float16 nearest_stop = stops->t[0].v;
+  for (uint d = 1; d < stops->count; ++d) nearest_stop = min(nearest_stop, stops->t[d].v);
   for (uint left = bits_of_16(nearest_stop < INFINITY); left; left &= left - 1u) {
     const uint i = lowest_bit(left);
-    store_stops(scene, chosen, first + i, &rays, i, first_area.f[i], solid_angle.f[i], &stops,
-                points, found);
+    store_stops(scene, chosen, first + i, beam, i, shares->first_area.f[i],
+                shares->solid_angle.f[i], stops, points, found);
   }
+}
+
+/* Where the item's rays, `count` of them, meet the scene. */
+inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* chosen,
+                       const Entries* entries, uint count, __global SurfacePoint* points,
+                       ItemHits* found) {
+  BeamRays beams[DAPPLE_PACKET_BEAMS];
+  PixelTaps taps[DAPPLE_PACKET_BEAMS];
+  BeamShares shares[DAPPLE_PACKET_BEAMS];
+  Stops stops[DAPPLE_PACKET_BEAMS];
+  NearestPacket packet;
+  packet.beams = beams;
+  for (uint b = 0; b < DAPPLE_PACKET_BEAMS; ++b) {
+    const uint first = b * DAPPLE_BEAM_RAYS;
+    aim(params, chosen, first, taps + b, beams + b, &shares[b].solid_angle.v,
+        &shares[b].first_area.v);
+    start_beam(params, chosen, first, count, packet.nearest + b, stops + b);
+  }
+  find_nearest(scene, params.scene, entries, &packet, stops);
+  for (uint b = 0; b < DAPPLE_PACKET_BEAMS; ++b) {
+    store_beam(scene, chosen, b * DAPPLE_BEAM_RAYS, beams + b, shares + b, stops + b, points,
+               found);
+  }
+  found->visits += packet.visits;
+  found->tests += packet.tests;
 }
 
 /* Points of samples that miss are left as they are. */
@@ -106,23 +126,17 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
   const uint rays_of_record = DAPPLE_HIT_BITS >> params.depth_bits;
   const uint records = (count + rays_of_record - 1u) / rays_of_record;
   ItemHits found;
-  for (uint record = 0; record < DAPPLE_MOST_RECORDS; ++record)
-    found.hits[record] = found.visits[record] = found.tests[record] = 0u;
+  for (uint record = 0; record < DAPPLE_MOST_RECORDS; ++record) found.hits[record] = 0u;
+  found.visits = entries.visits;
+  found.tests = 0u;
   if (entries.count) {
     CameraSamples chosen, sorted;
     choose_samples(work, params, begin, count, &chosen);
     sort_samples(&chosen, 1u << params.depth_bits, &sorted);
-    for (uint first = 0; first < DAPPLE_ITEM_RAYS; first += DAPPLE_BEAM_RAYS) {
-      trace_beam(scene, params, &sorted, &entries, first, count, points + first_sample, &found);
-    }
+    trace_rays(scene, params, &sorted, &entries, count, points + first_sample, &found);
   }
   for (uint record = 0; record < records; ++record) {
-    const uint of_record = min(count - record * rays_of_record, rays_of_record);
-    /* Nodes that all beams visited together are shared out. */
-    const uint of_entries = (entries.visits + records - 1u - record) / records;
-    const SampleHits of_samples = {found.hits[record], 0u,
-                                   found.visits[record] / of_record + of_entries,
-                                   found.tests[record] / of_record};
+    const SampleHits of_samples = {found.hits[record], 0u, found.visits, found.tests};
     sample_hits[first_sample / DAPPLE_HIT_BITS + record] = of_samples;
   }
 }

@@ -32,7 +32,7 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
   do {
     nearest.t.v = (float16)(ray.t_max);
     nearest.primitive.v = nearest.instance.v = (int16)(-1);
-    start_lone(span, covers, 0, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
+    start_lone(span, covers, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
     ask_for_entry(scene, params.scene.root, 0.0f, &lone);
     while (go_down(scene, &lone, &nearest)) {
     }

@@ -157,8 +157,8 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
   s.rays.camera =
       std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0}) /
       depth_count(options);
-  s.camera = {per_ray(sums.total(kCameraVisits) / DAPPLE_BEAM_RAYS, s.rays.camera),
-              per_ray(sums.total(kCameraVisits + 1), s.rays.camera)};
+  s.camera = {per_ray(sums.total(kCameraVisits) / DAPPLE_ITEM_RAYS, s.rays.camera),
+              per_ray(sums.total(kCameraVisits + 1) / DAPPLE_ITEM_RAYS, s.rays.camera)};
   if (options.ao) {
     s.rays.ao = static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.ao_rays);
     s.ao = {per_ray(sums.total(layout.ao_visits()), s.rays.ao),
@@ -178,7 +178,7 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
 void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
                 const FilmLayout& layout, const RenderOptions& options) {
   const auto total = [&](std::uint32_t p, std::uint32_t which) {
-    double sum = sums.at(kCameraVisits + which, p) / (which == 0 ? DAPPLE_BEAM_RAYS : 1u);
+    double sum = sums.at(kCameraVisits + which, p) / DAPPLE_ITEM_RAYS;
     if (options.ao) sum += sums.at(layout.ao_visits() + which, p);
     for (const LightPlaneRange& light : layout.lights) sum += sums.at(light.visits() + which, p);
     return sum * depth_count(options) / sample_count(picture, p);

@@ -24,8 +24,8 @@ constexpr uint kLeastOfExactPoint = 32;
 /// in kernels/packet_order.clh.
 constexpr uint kPointChunk = 512, kNeighbourChunk = 1024;
 
-/// Items a work-group: of packets and beams few, so that small slices keep all threads busy.
-constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kBeamGroup = 1;
+/// Items a work-group: of packets few, so that small slices keep all threads busy.
+constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kCameraGroup = 1;
 
 /// Rays that one item of the kernels that make them makes; DAPPLE_RAY_LANES in
 /// kernels/point_rays.clh.
@@ -54,7 +54,10 @@ KernelName occlusion_kernel(Estimator estimator, Company with) {
   return {"packet", "packet", {prefiltered, with == Company::point}};
 }
 
-const KernelName kCameraHits{"camera_hits", "camera", {}};
+KernelName camera_kernel(bool orthographic) {
+  return {"camera_hits", "camera", {false, !orthographic}};
+}
+
 const KernelName kClosestHit{"closest_hit", "closest_hit", {}};
 const KernelName kCompactHits{"compact_hits", "compact", {}};
 const KernelName kAoRays{"ao_rays", "ao", {}};
@@ -89,12 +92,13 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   CameraParams camera = params;
   camera.scene = scene.params;
   constexpr std::size_t kRunRays = std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_RUN_ITEMS;
-  static_assert(DAPPLE_RUN_ITEMS % kBeamGroup == 0, "whole runs are launched, and no more");
+  static_assert(DAPPLE_RUN_ITEMS % kCameraGroup == 0, "whole runs are launched, and no more");
   context.launch(
-      kCameraHits, "camera", (rays + kRunRays - 1) / kRunRays * DAPPLE_RUN_ITEMS,
+      camera_kernel(params.orthographic != 0), "camera",
+      (rays + kRunRays - 1) / kRunRays * DAPPLE_RUN_ITEMS,
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.work, queues.points, queues.sample_hits, camera},
-      kBeamGroup);
+      kCameraGroup);
 }
 
 void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -174,10 +178,12 @@ void resolve_light_pass(DeviceContext& context, const Queues& queues, const Film
 
 std::vector<KernelShape> every_kernel() {
   std::vector<KernelShape> kernels{
-      {kCameraHits, kBeamGroup}, {kClosestHit, kRayGroup},   {kCompactHits, kScanItems},
-      {kAoRays, kPacketGroup},   {kLightRays, kPacketGroup}, {kResolveSurface, kRayGroup},
-      {kResolveAo, kRayGroup},   {kResolveLight, kRayGroup}, {kResolveDome, kRayGroup},
+      {kClosestHit, kRayGroup},     {kCompactHits, kScanItems}, {kAoRays, kPacketGroup},
+      {kLightRays, kPacketGroup},   {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
+      {kResolveSurface, kRayGroup}, {kResolveLight, kRayGroup},
   };
+  for (const bool orthographic : {false, true})
+    kernels.push_back({camera_kernel(orthographic), kCameraGroup});
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     kernels.push_back({occlusion_kernel(estimator, Company::alone), kRayGroup});
     kernels.push_back({occlusion_kernel(estimator, Company::neighbours), 1});
@@ -197,10 +203,11 @@ void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const
                   scene.environments, film.sums, film.squares, params, light});
 }
 
-void prepare_kernels(DeviceContext& context, const RenderOptions& options,
+void prepare_kernels(DeviceContext& context, const RenderOptions& options, const Camera& camera,
                      const std::vector<Light>& lights) {
-  for (const KernelName& kernel : {kCameraHits, kCompactHits, kResolveSurface})
-    context.prepare(kernel);
+  context.prepare(camera_kernel(camera.kind == Camera::Kind::orthographic));
+  context.prepare(kCompactHits);
+  context.prepare(kResolveSurface);
   const auto prepare_occlusion = [&](int rays) {
     context.prepare(
         occlusion_kernel(options.estimator, company_in_picture(context, options.estimator, rays)));

@@ -80,8 +80,8 @@ std::vector<KernelShape> every_kernel();
 /// Whom the occlusion rays of a picture are traced with, that many of each sample.
 Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays);
 
-/// Compiles every kernel that `options` and the lights will need.
-void prepare_kernels(DeviceContext& context, const RenderOptions& options,
+/// Compiles every kernel that `options`, the camera and the lights will need.
+void prepare_kernels(DeviceContext& context, const RenderOptions& options, const Camera& camera,
                      const std::vector<Light>& lights);
 
 }  // namespace dapple

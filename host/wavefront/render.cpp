@@ -123,7 +123,7 @@ struct Renderer::Kept {
 
   void open(const RenderOptions& options, RenderStatistics& statistics);
   void bring(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
-  void compile(const Scene& scene, const RenderOptions& options,
+  void compile(const Scene& scene, const View& view, const RenderOptions& options,
                RenderStatistics& statistics) const;
 };
 
@@ -158,11 +158,11 @@ void Renderer::Kept::bring(const Scene& scene, const RenderOptions& options,
   add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
 }
 
-void Renderer::Kept::compile(const Scene& scene, const RenderOptions& options,
+void Renderer::Kept::compile(const Scene& scene, const View& view, const RenderOptions& options,
                              RenderStatistics& statistics) const {
   DeviceContext& context = device->context();
   const double compiled_before = context.kernel_build_seconds();
-  prepare_kernels(context, options, scene.lights);
+  prepare_kernels(context, options, view.camera, scene.lights);
   statistics.seconds.kernel_build = context.kernel_build_seconds() - compiled_before;
 }
 
@@ -189,7 +189,7 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   const Device& device = *kept.device;
   check_memory(device.info(), least_need(scene), "needs at least");
   kept.bring(scene, options, statistics);
-  kept.compile(scene, sampled, statistics);
+  kept.compile(scene, view, sampled, statistics);
   const SceneBvh& bvh = kept.bvh->bvh();
   const DeviceScene& on_device = kept.on_device;
 

@@ -14,8 +14,8 @@ struct Price {
   double ray, visit, test;
 };
 
-/// Nodes are those of a whole beam; a test is one triangle against all its rays.
-constexpr Price kCameraPrice{8.0, 25.0 / DAPPLE_BEAM_RAYS, 1.0};
+/// Nodes and tests are those of all rays of an item.
+constexpr Price kCameraPrice{25.0, 50.0 / DAPPLE_ITEM_RAYS, 4.0 / DAPPLE_ITEM_RAYS};
 constexpr Price kRayPrice{20.0, 30.0, 4.0};
 
 double nanoseconds(const PassWork& work, const Price& price, std::size_t pixel) {

@@ -1,6 +1,5 @@
-/* lanes.clh for patterns of sixteen bits, one an item: what each of its functions makes of them, and
-   which children a packet pushes. Included once for each way in which it can be compiled. */
-#define DAPPLE_ONE_POINT 0
+/* lanes.clh for patterns of sixteen bits, one an item: what each of its functions makes of them,
+   and which children a packet pushes. Included once for each way in which it can be compiled. */
 #include "packet_stack.clh"
 
 __kernel void lanes_of_patterns(__global uint* found) {
@@ -17,7 +16,7 @@ __kernel void lanes_of_patterns(__global uint* found) {
   to[1] = bits_of_lanes(all.lo) | bits_of_lanes(all.hi) << 8;
   to[2] = any_lane(all.lo);
   to[3] = any_lane(all.hi);
-  to[4] = bits_of_16((int16)(lanes_of_bits(pattern & 255u), lanes_of_bits(pattern >> 8)));
+  to[4] = bits_of_16(lanes_of_16_bits(pattern));
   to[5] = pattern ? lowest_bit(pattern) : lowest;
 }
 

@@ -32,7 +32,7 @@ __kernel void look_up_triangle(__global const TexturedTriangle* textured,
     add_hit(&hits, -1.0f - (float)triangle, at.x, at.y, 0.0f);
   }
   float opacity[DAPPLE_LOOKUPS];
-  vstore16(look_up_opacities(scene, &hits, 0), 0, opacity);
+  vstore16(look_up_opacities(scene, &hits), 0, opacity);
   const float2 at = vload2(item, barycentrics);
   const float16 alone =
       look_up_on_triangle(scene, 1u << place, -1.0f - (float)triangle, at.x, at.y, 0.0f, 0);

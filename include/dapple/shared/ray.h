@@ -34,11 +34,11 @@ typedef struct Occlusion {
   uint visits;          /* nodes visited | triangles tested << 16, each clamped to 65535 */
 } Occlusion;
 
-/* Camera rays that are traced together. */
-#define DAPPLE_BEAM_RAYS 16u
-
-/* Camera rays that one item of the camera pass takes: whole beams. */
+/* Camera rays that one item of the camera pass takes, and traces together. */
 #define DAPPLE_ITEM_RAYS 64u
+
+/* Of these, side by side in a vector. */
+#define DAPPLE_BEAM_RAYS 16u
 
 /* Samples at most that share a camera ray: powers of two. */
 #define DAPPLE_MOST_DEPTHS 4u
@@ -53,8 +53,8 @@ typedef struct Occlusion {
 typedef struct SampleHits {
   uint hits;        /* bit i: sample i of these met a surface */
   uint first_slot;  /* place of the first hit among all hits of the slice */
-  /* Of the beams that the samples were in, a sample's mean: nodes, for all rays; triangles, each
-     against all rays. */
+  /* Of the item that the samples were in: nodes that its rays visited together, and pairs of a ray
+     and a triangle or segment. */
   uint visits, tests;
 } SampleHits;
 
