@@ -301,7 +301,7 @@ TEST_F(CommandLine, VisitsAreALayerAndAHeatMapBesideThePreview) {
   const Plane* nodes = film.find("visits.nodes");
   ASSERT_NE(nodes, nullptr);
   ASSERT_NE(film.find("visits.triangles"), nullptr);
-  // Several beams of camera rays visit the root together; the means add up to what the statistics
+  // The camera rays of an item visit the root together; the means add up to what the statistics
   // count.
   double sum = 0;
   for (const float visits : nodes->pixels) sum += visits;

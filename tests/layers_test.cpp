@@ -210,7 +210,7 @@ TEST(Layers, APictureIsCoveredAndAsFarAwayAsSortingSays) {
 }
 
 TEST(Layers, APicturesPartIsThePictureThere) {
-  // Other samples share a beam, and surfaces come in another order.
+  // Other samples share a packet, and surfaces come in another order.
   const RenderResult all = seen_from_above(scene_of(thin_soup()), 5);
   const RenderResult part = seen_from_above(scene_of(thin_soup()), 5, PixelRect{7, 5, 40, 30});
   for (const char* name : {"A", "Z", "P.X", "N.Y", "ao.R"}) {

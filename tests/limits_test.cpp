@@ -85,7 +85,9 @@ TEST_F(Limits, KilledAtAnyMomentTheFileIsTheFormerOrTheNewAndTheNextRunSucceeds)
   for (int ms = 5; ms <= 400; ms += 15) {
     SCOPED_TRACE(ms);
     write_bytes(path("out.exr"), "former");
-    const Outcome run = dapple(command, "timeout -s KILL " + std::to_string(ms / 1000.0));
+    // In the foreground, for it would die with what it kills, and not wait for that to be gone.
+    const Outcome run =
+        dapple(command, "timeout --foreground -s KILL " + std::to_string(ms / 1000.0));
     killed += run.code != 0;
     const std::string left = bytes_of(path("out.exr"));
     EXPECT_TRUE(left == "former" || left == whole) << left.size() << " bytes";

@@ -117,24 +117,49 @@ TEST_P(NeighbouringRays, FindTheSameBitsInAnyCompany) {
   }
 }
 
+/// The rays that go one of eight ways, and what they found.
+std::pair<std::vector<Ray>, std::vector<float>> of_way(int way, const std::vector<Ray>& rays,
+                                                       const std::vector<float>& found) {
+  std::vector<Ray> alike;
+  std::vector<float> of_alike;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const float* d = rays[i].direction;
+    if (std::signbit(d[0]) + 2 * std::signbit(d[1]) + 4 * std::signbit(d[2]) != way) continue;
+    alike.push_back(rays[i]);
+    of_alike.push_back(found[i]);
+  }
+  return {alike, of_alike};
+}
+
 // Packets whose rays all go one way along each axis have loops of their own.
 TEST_P(NeighbouringRays, FindTheSameBitsAmongThoseThatGoTheirWay) {
-  const auto way_of = [](const Ray& ray) {
-    return std::signbit(ray.direction[0]) + 2 * std::signbit(ray.direction[1]) +
-           4 * std::signbit(ray.direction[2]);
-  };
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     const std::vector<float> found = transmittances(together(scene_, rays_, estimator));
     for (int way = 0; way < 8; ++way) {
-      std::vector<Ray> alike;
-      std::vector<float> of_all;
-      for (std::size_t i = 0; i < rays_.size(); ++i) {
-        if (way_of(rays_[i]) != way) continue;
-        alike.push_back(rays_[i]);
-        of_all.push_back(found[i]);
-      }
+      const auto [alike, of_all] = of_way(way, rays_, found);
       ASSERT_FALSE(alike.empty());
       EXPECT_EQ(transmittances(together(scene_, alike, estimator)), of_all) << "way " << way;
+    }
+  }
+}
+
+// The same of rays of one point, which are measured from it.
+TEST_P(NeighbouringRays, OfOnePointFindTheSameBitsAmongThoseThatGoTheirWay) {
+  std::vector<Ray> rays(rays_.begin(), rays_.begin() + 512);
+  for (Ray& ray : rays) {
+    std::copy_n(rays_[1].origin, 3, ray.origin);
+    ray.t_max = 1e9f;
+  }
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    const auto of_point = [&](const std::vector<Ray>& some) {
+      return transmittances(
+          dapple::trace(device(), scene_.uploaded, some, estimator, 1, some.size()));
+    };
+    const std::vector<float> found = of_point(rays);
+    for (int way = 0; way < 8; ++way) {
+      const auto [alike, of_all] = of_way(way, rays, found);
+      ASSERT_GE(alike.size(), 32u);  // so many go together
+      EXPECT_EQ(of_point(alike), of_all) << "way " << way;
     }
   }
 }

@@ -112,7 +112,7 @@ TEST(OracleStrands, RaysMeetTheSamePlacesFirst) {
   EXPECT_LE(different, kChecked / 200);
 }
 
-/// Pictures are made by beams: each pixel's one place must be what a ray towards it meets first.
+/// Pictures are made by packets: each pixel's one place must be what a ray towards it meets first.
 TEST(OracleStrands, CameraRaysMeetWhatIsThere) {
   constexpr float kRadius = 0.004f;
   Scene scene = strand_scene(curly_strands({.strands = 200, .radius = kRadius}), 1);

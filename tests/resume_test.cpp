@@ -121,7 +121,7 @@ TEST_F(Resume, ARenderLeftAfterAnySliceGoesOnToTheSameBits) {
   }
 }
 
-/// Rays of a beam start side by side then, and not at one point.
+/// Camera rays start side by side then, and not at one point.
 Scene seen_from_afar(Scene scene) {
   std::vector<std::string> notes;
   Camera camera = choose_view(scene, small_picture(), notes).camera;

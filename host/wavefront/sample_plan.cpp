@@ -17,12 +17,12 @@ namespace {
 /// Side of the tiles in which work is listed: 64 neighbours see much the same of the scene.
 constexpr int kTile = 8;
 
-/// Side of the blocks of pixels that are given the same samples, so that beams of few samples a
+/// Side of the blocks of pixels that are given the same samples, so that packets of few samples a
 /// pixel are narrow: forests take 3 to 14 % less time, others the same.
 constexpr int kBlock = 2;
 
 /// Times the samples that it has, a pixel may get more in a round. With 3 in its place pictures
-/// took 4 to 10 % more time to the same error (sapling, tree, forest): their beams were wider.
+/// took 4 to 10 % more time to the same error (sapling, tree, forest): their rays lay farther apart.
 constexpr std::uint32_t kMostMore = 8;
 
 /// Batches that a pixel gets more at a time. Half of it fits each pixel's wants better, and takes 3
@@ -34,7 +34,7 @@ constexpr std::uint32_t kUnit = 2;
 constexpr double kAim = 0.95;
 
 /// Times the least that all pixels get at most after the scouts: of those that see nothing most
-/// samples are for nothing, and beams of more are hardly narrower.
+/// samples are for nothing, and packets of more are hardly narrower.
 constexpr std::uint32_t kMostAfterScouts = 4;
 
 /// Groups that get all their samples at once; of more, what is small is better traced together.

@@ -35,7 +35,7 @@ class SamplePlan {
   [[nodiscard]] bool only_scouts_have_samples() const;
   /// Raises the least, to at most four times what it is, to what equal samples would take for an
   /// RMSE, or what three quarters of the pixels that vary want, going by the scouts, and is least()
-  /// then: rounds are few, and beams narrow in the first. `variances` as for next().
+  /// then: rounds are few, and packets narrow in the first. `variances` as for next().
   std::vector<WorkGroup> after_scouts(const std::vector<std::vector<float>>& variances);
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
