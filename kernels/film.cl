@@ -15,8 +15,8 @@ inline long8 surface_sums(ResolveParams params, __global const SurfacePoint* poi
   return fixed_points(values * (float8)(1.0f, n, n, n, p, p, p, params.depth_scale));
 }
 
-/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles
-   each ray is given a whole beam's: the mean over its record. */
+/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles each ray is
+   given those of its whole item. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
                               __global const SampleHits* sample_hits, __global long* film,
                               ResolveParams params) {

@@ -15,7 +15,7 @@ struct Price {
 };
 
 /// Nodes and tests are those of all rays of an item.
-constexpr Price kCameraPrice{25.0, 50.0 / DAPPLE_ITEM_RAYS, 4.0 / DAPPLE_ITEM_RAYS};
+constexpr Price kCameraPrice{8.0, 50.0 / DAPPLE_ITEM_RAYS, 4.0 / DAPPLE_ITEM_RAYS};
 constexpr Price kRayPrice{20.0, 30.0, 4.0};
 
 double nanoseconds(const PassWork& work, const Price& price, std::size_t pixel) {
