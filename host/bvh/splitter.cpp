@@ -6,20 +6,19 @@
 #include <vector>
 
 #include "bvh/multiversion.hpp"
+#include "bvh/surface_cost.hpp"
 
 namespace dapple {
 namespace {
 
 /// Below this depth ranges are halved, which bounds the depth of hostile input.
 constexpr int kDeepest = 48;
-/// Cost of a triangle test over that of a box test; leaves of 8 lanes are cheap.
-constexpr float kPrimitiveCost = 0.5f;
 /// Up to here all ways to split are tried.
 constexpr std::uint32_t kFew = 4;
 constexpr std::uint32_t kParallelSplit = 1u << 16;
 constexpr std::uint32_t kBlock = 1u << 13;
 
-/// The cheapest way to split a few primitives, and its cost as Split::cost.
+/// The cheapest way to split a few primitives, and what both sides cost as leaves.
 struct FewSplit {
   float cost;
   unsigned left_set;
@@ -34,7 +33,7 @@ FewSplit best_of_all(const PrimitiveBox* prims, std::uint32_t count) {
     load_box(prims[__builtin_ctz(set)], box[set].bounds);
     const unsigned rest = set & (set - 1);
     if (rest) box[set].add(box[rest]);
-    cost[set] = box[set].half_area() * static_cast<float>(__builtin_popcount(set));
+    cost[set] = leaf_cost(box[set].half_area(), static_cast<unsigned>(__builtin_popcount(set)));
   }
   // Every split once: the last primitive goes right.
   FewSplit best{std::numeric_limits<float>::infinity(), 1};
@@ -89,9 +88,7 @@ void Splitter::judge(Part& part) const {
   if (part.count == 1 || part.count > kFew) return;
   const FewSplit best = best_of_all(at(part), part.count);
   part.left_set = best.left_set;
-  part.leaf =
-      part.count <= leaf_size_ && part.area + kPrimitiveCost * best.cost >=
-                                      kPrimitiveCost * part.area * static_cast<float>(part.count);
+  part.leaf = part.count <= leaf_size_ && best.cost >= leaf_cost(part.area, part.count);
 }
 
 void Splitter::split(Part& part, Part& right) const {

@@ -1,6 +1,6 @@
-// Each node opens the widest of its children until there are eight (Wald, Benthin, Boulos,
-// "Getting Rid of Packets", 2008), so that no binary tree is ever written down. Subtrees grow
-// in parallel, each in arrays of its own that are put together in the end.
+// Large nodes open the widest of their children until there are eight (Wald, Benthin, Boulos,
+// "Getting Rid of Packets", 2008). Subtrees, in parallel, become binary trees first, whose cheapest
+// nodes of eight are chosen; each grows in arrays of its own that are put together in the end.
 #include "bvh/wide_tree.hpp"
 
 #include <tbb/parallel_for.h>
@@ -10,6 +10,8 @@
 #include <array>
 #include <memory>
 
+#include "bvh/binary_tree.hpp"
+#include "bvh/cheapest_nodes.hpp"
 #include "bvh/splitter.hpp"
 
 namespace dapple {
@@ -36,34 +38,54 @@ struct Parts {
   }
 };
 
-/// Appends a node's children; inner ones will be nodes from `next_node` on.
-WideNode add_children(const Part& whole, const Parts& parts, std::uint32_t next_node,
-                      std::vector<WideChild>& children) {
-  WideNode node{whole.box.box(), static_cast<std::uint32_t>(children.size()), parts.count,
-                whole.count, 0};
-  for (unsigned i = 0; i < parts.count; ++i) {
-    const Part& part = parts.part[i];
-    if (part.leaf) node.leaf_primitives += part.count;
-    children.push_back(
-        {part.box.box(), part.leaf ? part.first : next_node++, part.leaf ? part.count : 0});
+/// Appends a node's children, of which inner ones have count 0 and will be nodes from `next_node`
+/// on.
+WideNode add_children(const Box8& box, std::uint32_t primitives,
+                      std::span<const WideChild> children, std::uint32_t next_node,
+                      WideTree& tree) {
+  WideNode node{box.box(), static_cast<std::uint32_t>(tree.children.size()),
+                static_cast<std::uint32_t>(children.size()), primitives, 0};
+  for (WideChild child : children) {
+    node.leaf_primitives += child.count;
+    if (child.count == 0) child.first = next_node++;
+    tree.children.push_back(child);
   }
   return node;
 }
 
-/// Opens node `index`, which is `whole`, and all below. Depth first, by groups of siblings:
-/// what a ray visits together lies together.
-void grow(const Splitter& splitter, const Part& whole, std::size_t index, WideTree& tree) {
-  const Parts parts(whole, splitter);
-  std::size_t next = tree.nodes.size();
-  const WideNode node = add_children(whole, parts, static_cast<std::uint32_t>(next), tree.children);
-  tree.nodes[index] = node;
-  for (unsigned i = 0; i < parts.count; ++i) {
-    if (!parts.part[i].leaf) tree.nodes.emplace_back();
+/// A binary tree as nodes of eight. Depth first, by groups of siblings: what a ray visits together
+/// lies together.
+class Growth {
+ public:
+  Growth(std::span<const BinaryNode> binary, std::uint32_t leaf_size, WideTree& tree)
+      : binary_(binary), cheapest_(binary, leaf_size), tree_(tree) {}
+
+  /// Node `index` of the wide tree in place of `from`, and all below.
+  void grow(std::uint32_t from, std::size_t index) {
+    const CheapestNodes::Children children = cheapest_.children_of(from);
+    std::array<WideChild, DAPPLE_BVH_WIDTH> wide;
+    for (unsigned i = 0; i < children.count; ++i) {
+      const BinaryNode& child = binary_[children.node[i]];
+      wide[i] = {child.box.box(), child.first,
+                 cheapest_.is_leaf(children.node[i]) ? child.count : 0};
+    }
+    std::size_t next = tree_.nodes.size();
+    tree_.nodes[index] =
+        add_children(binary_[from].box, binary_[from].count, {wide.data(), children.count},
+                     static_cast<std::uint32_t>(next), tree_);
+    for (unsigned i = 0; i < children.count; ++i) {
+      if (wide[i].count == 0) tree_.nodes.emplace_back();
+    }
+    for (unsigned i = 0; i < children.count; ++i) {
+      if (wide[i].count == 0) grow(children.node[i], next++);
+    }
   }
-  for (unsigned i = 0; i < parts.count; ++i) {
-    if (!parts.part[i].leaf) grow(splitter, parts.part[i], next++, tree);
-  }
-}
+
+ private:
+  std::span<const BinaryNode> binary_;
+  CheapestNodes cheapest_;
+  WideTree& tree_;
+};
 
 /// A subtree in arrays of its own; of a large one only the root, its children being branches.
 struct Branch {
@@ -72,28 +94,34 @@ struct Branch {
   std::size_t node_count = 0, child_count = 0;  ///< with all below
 };
 
-Branch grow_branch(const Splitter& splitter, Part& whole) {
+Branch grow_branch(const Splitter& splitter, Part& whole, std::uint32_t leaf_size) {
   Branch branch;
   branch.tree.nodes.emplace_back();
   if (whole.count <= kTaskPrimitives) {
     splitter.bring_home(whole);
-    branch.tree.nodes.reserve(whole.count / 5 + 1);
+    const std::vector<BinaryNode> binary = build_binary_tree(splitter, whole);
+    branch.tree.nodes.reserve(whole.count / 8 + 1);
     branch.tree.children.reserve(whole.count + 1);
-    grow(splitter, whole, 0, branch.tree);
+    Growth(binary, leaf_size, branch.tree).grow(0, 0);
     branch.node_count = branch.tree.nodes.size();
     branch.child_count = branch.tree.children.size();
     return branch;
   }
   Parts parts(whole, splitter);
-  branch.tree.nodes[0] = add_children(whole, parts, 0, branch.tree.children);
+  std::array<WideChild, DAPPLE_BVH_WIDTH> children;
   std::vector<Part*> inner;
   for (unsigned i = 0; i < parts.count; ++i) {
-    if (parts.part[i].leaf) splitter.bring_home(parts.part[i]);
-    if (!parts.part[i].leaf) inner.push_back(&parts.part[i]);
+    Part& part = parts.part[i];
+    children[i] = {part.box.box(), part.first, part.leaf ? part.count : 0};
+    if (part.leaf) splitter.bring_home(part);
+    if (!part.leaf) inner.push_back(&part);
   }
+  branch.tree.nodes[0] =
+      add_children(whole.box, whole.count, {children.data(), parts.count}, 0, branch.tree);
   branch.below.resize(inner.size());
-  tbb::parallel_for(std::size_t{0}, inner.size(),
-                    [&](std::size_t i) { branch.below[i] = grow_branch(splitter, *inner[i]); });
+  tbb::parallel_for(std::size_t{0}, inner.size(), [&](std::size_t i) {
+    branch.below[i] = grow_branch(splitter, *inner[i], leaf_size);
+  });
   branch.node_count = 1;
   branch.child_count = branch.tree.children.size();
   for (const Branch& child : branch.below) {
@@ -138,7 +166,7 @@ Branch grow_all(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size) {
   const auto second = std::make_unique_for_overwrite<PrimitiveBox[]>(boxes.size());
   const Splitter splitter(boxes, {second.get(), boxes.size()}, leaf_size);
   Part whole = splitter.all();
-  return grow_branch(splitter, whole);
+  return grow_branch(splitter, whole, leaf_size);
 }
 
 }  // namespace
