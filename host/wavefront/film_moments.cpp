@@ -95,11 +95,14 @@ template <class Mean>
 std::vector<float> FilmMoments::variances_of(const Mean& mean, std::uint32_t squares_plane) const {
   const std::span<const float> squares = squares_.subspan(
       std::size_t{squares_plane} * layout_.pixels, 2 * std::size_t{layout_.pixels});
-  return batch_variances(samples_, width_, [&](std::size_t p) {
+  const auto moments = [&](std::size_t p) {
     if (squares[p] == 0) return BatchMoments{};  // all of its batches are 0
     const double of_pixel = mean(static_cast<std::uint32_t>(p));
     return BatchMoments{static_cast<float>(of_pixel), squares[p], squares[p + layout_.pixels]};
-  });
+  };
+  std::vector<float> variances = batch_variances(samples_, width_, moments);
+  add_variances_of_single_batches(samples_, width_, moments, variances);
+  return variances;
 }
 
 std::vector<float> FilmMoments::plane(std::uint32_t number, double factor) const {

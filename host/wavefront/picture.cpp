@@ -82,9 +82,10 @@ class PictureTracer {
     return std::accumulate(samples.begin(), samples.end(), 0.0);
   }
 
-  /// Whether each pixel has the two batches that tell a variance.
+  /// Whether some pixels have the two batches that tell a variance, and all others one.
   [[nodiscard]] bool all_know_errors(const std::vector<std::uint32_t>& samples) const {
-    return *std::min_element(samples.begin(), samples.end()) >= 2 * DAPPLE_BATCH;
+    const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
+    return *least >= DAPPLE_BATCH && *most >= 2 * DAPPLE_BATCH;
   }
 
   /// Onto the device, where from now on they are.

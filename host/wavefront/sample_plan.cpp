@@ -22,7 +22,8 @@ constexpr int kTile = 8;
 constexpr int kBlock = 2;
 
 /// Times the samples that it has, a pixel may get more in a round. With 3 in its place pictures
-/// took 4 to 10 % more time to the same error (sapling, tree, forest): their rays lay farther apart.
+/// took 4 to 10 % more time to the same error (sapling, tree, forest): their rays lay farther
+/// apart.
 constexpr std::uint32_t kMostMore = 8;
 
 /// Batches that a pixel gets more at a time. Half of it fits each pixel's wants better, and takes 3
@@ -32,6 +33,10 @@ constexpr std::uint32_t kUnit = 2;
 /// Part of the squared error asked for that is aimed at: estimates move as samples come, and a
 /// round for a few more takes as long as a tenth of the picture.
 constexpr double kAim = 0.95;
+
+/// Part of the squared error asked for that one batch a pixel may leave, as scouts tell it: they
+/// know it to a tenth, and nothing is known later.
+constexpr double kAimOfOne = 0.8;
 
 /// Times the least that all pixels get at most after the scouts: of those that see nothing most
 /// samples are for nothing, and packets of more are hardly narrower.
@@ -174,6 +179,7 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
       samples_(std::move(samples)),
       least_(static_cast<std::uint32_t>(options.spp)),
       most_(least_),
+      one_may_do_(options.target_rmse > 0 && least_ <= DAPPLE_BATCH),
       target_error_(options.target_error),
       target_rmse_(options.target_rmse) {
   samples_.resize(order_.size(), 0);
@@ -181,6 +187,9 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
   // Two batches are the least that tell a variance.
   least_ = std::max(2 * DAPPLE_BATCH, whole_batches(options.spp));
   most_ = std::max(least_, whole_batches(options.max_spp));
+  // What an earlier plan left at one batch is judged again by next().
+  if (one_may_do_ && *std::min_element(samples_.begin(), samples_.end()) == DAPPLE_BATCH)
+    least_ = DAPPLE_BATCH;
 }
 
 std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
@@ -268,7 +277,26 @@ bool SamplePlan::only_scouts_have_samples() const {
          std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
 }
 
+bool SamplePlan::one_batch_does(const std::vector<std::vector<float>>& variances) const {
+  if (!one_may_do_) return false;
+  const auto known = [&](std::size_t pixel) { return samples_[pixel] > DAPPLE_BATCH; };
+  return std::all_of(variances.begin(), variances.end(), [&](const std::vector<float>& pass) {
+    double error = 0, enough = 0;
+    for (std::size_t pixel = 0; pixel < pass.size(); ++pixel) {
+      if (!known(pixel)) continue;
+      error += pass[pixel];
+      enough += double{target_rmse_} * target_rmse_;
+    }
+    return error > 0 && error <= kAimOfOne * enough;  // who sees nothing knows nothing
+  });
+}
+
 std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances) {
+  if (one_batch_does(variances)) {
+    least_ = DAPPLE_BATCH;
+    fraction_done_ = 1;
+    return least();
+  }
   const BatchCounts of_all = block_batches(samples_, width_);
   const BatchCounts have = where_known(of_all, of_all), one(have.size(), 1);
   double batches = 0, varied = 0;
@@ -292,6 +320,12 @@ std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<fl
 
 std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances,
                                         const Costs& costs) {
+  if (*std::min_element(samples_.begin(), samples_.end()) < 2 * DAPPLE_BATCH) {
+    fraction_done_ = 1;
+    if (one_batch_does(variances)) return {};
+    least_ = 2 * DAPPLE_BATCH;
+    return least();
+  }
   const BatchCounts have = block_batches(samples_, width_);
   const BatchCounts of_blocks = wanted(variances, have, costs);
   if (of_blocks == have) {

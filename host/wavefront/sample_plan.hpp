@@ -35,7 +35,8 @@ class SamplePlan {
   [[nodiscard]] bool only_scouts_have_samples() const;
   /// Raises the least, to at most four times what it is, to what equal samples would take for an
   /// RMSE, or what three quarters of the pixels that vary want, going by the scouts, and is least()
-  /// then: rounds are few, and packets narrow in the first. `variances` as for next().
+  /// then: rounds are few, and packets narrow in the first. Where one batch is enough for the RMSE,
+  /// and no more were asked for, others than scouts get one. `variances` as for next().
   std::vector<WorkGroup> after_scouts(const std::vector<std::vector<float>>& variances);
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
@@ -53,6 +54,8 @@ class SamplePlan {
   [[nodiscard]] double fraction_done() const { return fraction_done_; }
 
  private:
+  /// Whether the RMSE is reached with one batch a pixel, by the variances of those with more.
+  [[nodiscard]] bool one_batch_does(const std::vector<std::vector<float>>& variances) const;
   /// Samples more that least() gives a pixel.
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() where all pixels have the same.
@@ -67,6 +70,7 @@ class SamplePlan {
   std::vector<std::uint32_t> order_;  ///< pixels, tile by tile and in these block by block
   std::vector<std::uint32_t> samples_;
   std::uint32_t least_, most_;
+  bool one_may_do_;  ///< one batch a pixel, if it is enough
   float target_error_, target_rmse_;
   double fraction_done_ = 0;
 };
