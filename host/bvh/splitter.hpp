@@ -33,7 +33,8 @@ class Splitter {
   /// `part`, not a leaf, becomes the left side. Large parts are split in parallel.
   void split(Part& part, Part& right) const;
 
-  /// Where the part's primitives should be in the end.
+  /// Where all primitives should be in the end, and brings a part's there.
+  [[nodiscard]] std::span<PrimitiveBox> home() const { return {home_, count_}; }
   void bring_home(Part& part) const;
 
  private:

