@@ -88,15 +88,12 @@ class Reinsertion {
     }
   }
 
-  void round(double part) {
+  void round() {
     std::vector<std::uint32_t> order(nodes_.size() - 1);
     std::iota(order.begin(), order.end(), 1u);
-    const auto count = static_cast<std::ptrdiff_t>(part * static_cast<double>(order.size()));
-    std::partial_sort(
-        order.begin(), order.begin() + count, order.end(), [&](std::uint32_t a, std::uint32_t b) {
-          return nodes_[a].area != nodes_[b].area ? nodes_[a].area > nodes_[b].area : a < b;
-        });
-    order.resize(static_cast<std::size_t>(count));
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return nodes_[a].area != nodes_[b].area ? nodes_[a].area > nodes_[b].area : a < b;
+    });
     for (const std::uint32_t node : order) {
       if (too_deep_) return;
       if (nodes_[node].parent == 0) continue;
@@ -177,11 +174,10 @@ class Reinsertion {
 
 }  // namespace
 
-void reinsert_subtrees(int rounds, double part, std::span<PrimitiveBox> boxes,
-                       std::vector<BinaryNode>& tree) {
+void reinsert_subtrees(int rounds, std::span<PrimitiveBox> boxes, std::vector<BinaryNode>& tree) {
   if (tree.size() < 5) return;  // nothing has a grandparent
   Reinsertion reinsertion(tree);
-  for (int round = 0; round < rounds; ++round) reinsertion.round(part);
+  for (int round = 0; round < rounds; ++round) reinsertion.round();
   if (reinsertion.is_too_deep()) return;
   std::vector<PrimitiveBox> order;
   order.reserve(tree[0].count);

@@ -9,10 +9,9 @@
 
 namespace dapple {
 
-/// Of the largest `part` of all nodes, [0,1], each that lowers the sum of areas elsewhere moves
-/// there, largest first, in `rounds` rounds. `boxes`, which leaves are ranges of, are put in the
+/// In each of so many rounds every node that lowers the sum of areas elsewhere moves there, largest
+/// first. `boxes`, which leaves are ranges of, are put in the
 /// new order.
-void reinsert_subtrees(int rounds, double part, std::span<PrimitiveBox> boxes,
-                       std::vector<BinaryNode>& tree);
+void reinsert_subtrees(int rounds, std::span<PrimitiveBox> boxes, std::vector<BinaryNode>& tree);
 
 }  // namespace dapple
