@@ -107,6 +107,28 @@ TEST(CheapestNodes, NoOtherNodesAreCheaper) {
   EXPECT_TRUE(several_levels) << "trees too small to tell";
 }
 
+TEST(CheapestNodes, InfiniteAreasMakeNoLargeLeaves) {
+  std::mt19937 random(2);
+  std::vector<BinaryNode> tree;
+  grow(0, 1000, std::numeric_limits<float>::infinity(), random, tree);
+  const CheapestNodes nodes(tree, kLeafSize);
+  std::vector<std::uint32_t> waiting{0};
+  std::uint32_t in_leaves = 0;
+  while (!waiting.empty()) {
+    const std::uint32_t node = waiting.back();
+    waiting.pop_back();
+    if (nodes.is_leaf(node)) {
+      ASSERT_LE(tree[node].count, kLeafSize);
+      in_leaves += tree[node].count;
+      continue;
+    }
+    const CheapestNodes::Children children = nodes.children_of(node);
+    ASSERT_GE(children.count, 2u);
+    waiting.insert(waiting.end(), children.node.begin(), children.node.begin() + children.count);
+  }
+  EXPECT_EQ(in_leaves, 1000u);
+}
+
 TEST(CheapestNodes, ALeafIsItsOwnOnlyChild) {
   std::mt19937 random(1);
   std::vector<BinaryNode> tree;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace dapple {
@@ -95,6 +96,34 @@ TEST(Reinsertion, BoxesAroundOneAnotherMakeNoChain) {
   reinsert_subtrees(2, boxes, tree);
   EXPECT_EQ(area_sum(tree), before);
   expect_sound(tree, boxes);
+}
+
+// None in another, all about one point: searches would look at nearly all nodes, and
+// this test would take a minute.
+TEST(Reinsertion, OverlappingBoxesAreLookedAtInReason) {
+  std::mt19937 random(9);
+  std::normal_distribution<float> exponent(0.0f, 1.0f);
+  std::vector<PrimitiveBox> boxes;
+  for (std::uint32_t i = 0; i < 1u << 15; ++i) {
+    const float x = std::exp(exponent(random)), y = std::exp(exponent(random));
+    const V3f corner(x, y, 1 / (x * y));
+    boxes.push_back(primitive_box({-corner, corner}, i));
+  }
+  std::vector<BinaryNode> tree = build(boxes);
+  const double before = area_sum(tree);
+  reinsert_subtrees(2, boxes, tree);
+  EXPECT_LE(area_sum(tree), before);
+  expect_sound(tree, boxes);
+}
+
+TEST(Reinsertion, InfiniteAreasAreLeftAlone) {
+  std::vector<PrimitiveBox> boxes = random_boxes(100);
+  for (PrimitiveBox& box : boxes)
+    for (int a = 0; a < 3; ++a) box.lower[a] *= 2e19f, box.minus_upper[a] *= 2e19f;
+  std::vector<BinaryNode> tree = build(boxes);
+  ASSERT_FALSE(std::isfinite(tree[0].area));
+  reinsert_subtrees(2, boxes, tree);
+  EXPECT_EQ(tree[0].count, 100u);
 }
 
 TEST(Reinsertion, BoxesInOnePlaceAreNoReasonToMove) {

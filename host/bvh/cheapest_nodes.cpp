@@ -24,6 +24,7 @@ CheapestNodes::Ways CheapestNodes::ways_of(const BinaryNode& node, const Ways& l
                                            const Ways& right) const {
   Ways ways;
   ways.cost.fill(std::numeric_limits<float>::infinity());
+  ways.left_children.fill(1);  // where areas are infinite, too
   const unsigned most = std::min<unsigned>(node.count, DAPPLE_BVH_WIDTH);
   for (unsigned children = 2; children <= most; ++children) {
     for (unsigned on_left = 1; on_left < children; ++on_left) {
@@ -39,7 +40,7 @@ CheapestNodes::Ways CheapestNodes::ways_of(const BinaryNode& node, const Ways& l
   const float as_leaf = node.count <= leaf_size_ ? leaf_cost(node.area, node.count)
                                                  : std::numeric_limits<float>::infinity();
   ways.cost[0] = std::min(as_leaf, divided + node.area);
-  ways.leaf = as_leaf <= divided + node.area;
+  ways.leaf = node.count <= leaf_size_ && as_leaf <= divided + node.area;
   for (unsigned children = 2; children < DAPPLE_BVH_WIDTH; ++children)
     ways.cost[children - 1] = std::min(ways.cost[children - 1], ways.cost[children - 2]);
   return ways;

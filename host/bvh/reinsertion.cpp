@@ -1,6 +1,7 @@
 #include "bvh/reinsertion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -9,9 +10,13 @@
 namespace dapple {
 namespace {
 
-/// Levels of a tree that is kept; the splitter's have 48, and few more. Boxes around one another
-/// cost least in a chain, which no stack would hold.
-constexpr unsigned kDeepest = 96;
+/// Levels from `tree`'s root of one that is kept; the splitter makes some 48 from the object's.
+/// Boxes around one another cost least in a chain, which no stack would hold.
+constexpr unsigned kDeepest = 64;
+
+/// Nodes looked at in a round, over all: where boxes overlap that aren't in one another, there is
+/// room for each nearly everywhere. Those of leaves and branches look at fewer than fifty.
+constexpr std::size_t kLooksPerNode = 64;
 
 /// Node 0 is the root and nobody's child.
 struct LinkedNode {
@@ -37,11 +42,18 @@ struct Candidate {
   float gain;
 };
 
-/// The best place at `top` and below. `waiting`: for memory only.
+/// What a search may still look at, and memory that it needs.
+struct Effort {
+  std::size_t looks = 0;
+  std::vector<Candidate> waiting;
+};
+
+/// The best place at `top` and below, as far as the effort goes.
 inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candidate top,
-                       std::vector<Candidate>& waiting, Place& best) {
+                       Effort& effort, Place& best) {
+  std::vector<Candidate>& waiting = effort.waiting;
   waiting.assign(1, top);
-  while (!waiting.empty()) {
+  for (; !waiting.empty() && effort.looks > 0; --effort.looks) {
     const Candidate at = waiting.back();
     waiting.pop_back();
     if (at.gain - moved.area <= best.gain) continue;
@@ -59,17 +71,17 @@ inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candida
 
 /// Node 0 if it is best where it is. Its parent, which goes with it, is not the root.
 DAPPLE_MULTIVERSION
-Place find_place(const LinkedNode* nodes, std::uint32_t moved, std::vector<Candidate>& waiting) {
+Place find_place(const LinkedNode* nodes, std::uint32_t moved, Effort& effort) {
   Place best;
   std::uint32_t below = nodes[moved].parent;
   float gain = nodes[below].area;
   std::uint32_t sibling = nodes[below].other_than(moved);
   Box8 rest = nodes[sibling].box;  // of the ancestor gone up to, without what moves
-  look_below(nodes, nodes[moved], {sibling, gain}, waiting, best);
+  look_below(nodes, nodes[moved], {sibling, gain}, effort, best);
   while (below != 0) {
     const std::uint32_t ancestor = nodes[below].parent;
     sibling = nodes[ancestor].other_than(below);
-    look_below(nodes, nodes[moved], {sibling, gain}, waiting, best);
+    look_below(nodes, nodes[moved], {sibling, gain}, effort, best);
     rest.add(nodes[sibling].box);
     gain += nodes[ancestor].area - rest.half_area();
     below = ancestor;
@@ -94,10 +106,11 @@ class Reinsertion {
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
       return nodes_[a].area != nodes_[b].area ? nodes_[a].area > nodes_[b].area : a < b;
     });
+    effort_.looks = kLooksPerNode * nodes_.size();
     for (const std::uint32_t node : order) {
-      if (too_deep_) return;
+      if (too_deep_ || effort_.looks == 0) return;
       if (nodes_[node].parent == 0) continue;
-      const Place place = find_place(nodes_.data(), node, waiting_);
+      const Place place = find_place(nodes_.data(), node, effort_);
       if (place.node != 0) move(node, place.node);
     }
   }
@@ -168,14 +181,15 @@ class Reinsertion {
   }
 
   std::vector<LinkedNode> nodes_;
-  std::vector<Candidate> waiting_;
+  Effort effort_;
   bool too_deep_ = false;
 };
 
 }  // namespace
 
 void reinsert_subtrees(int rounds, std::span<PrimitiveBox> boxes, std::vector<BinaryNode>& tree) {
-  if (tree.size() < 5) return;  // nothing has a grandparent
+  if (tree.size() < 5) return;               // nothing has a grandparent
+  if (!std::isfinite(tree[0].area)) return;  // nothing can be compared
   Reinsertion reinsertion(tree);
   for (int round = 0; round < rounds; ++round) reinsertion.round();
   if (reinsertion.is_too_deep()) return;

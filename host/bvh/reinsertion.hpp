@@ -10,8 +10,8 @@
 namespace dapple {
 
 /// In each of so many rounds every node that lowers the sum of areas elsewhere moves there, largest
-/// first. `boxes`, which leaves are ranges of, are put in the
-/// new order.
+/// first. `boxes`, which leaves are ranges of, are put in the new order. A tree that would become
+/// very deep stays as it is.
 void reinsert_subtrees(int rounds, std::span<PrimitiveBox> boxes, std::vector<BinaryNode>& tree);
 
 }  // namespace dapple

@@ -14,7 +14,7 @@ struct Part {
   float area = 0;         ///< half_area() of the box
   int depth = 0;          ///< splits above
   unsigned left_set = 0;  ///< of a few primitives: bit i says that number i goes left
-  bool leaf = false;      ///< one primitive, or cheaper to test than to open
+  bool leaf = false;      ///< one primitive, or no dearer than its two sides as leaves
   bool away = false;      ///< its primitives lie in the second array
 };
 

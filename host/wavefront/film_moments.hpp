@@ -13,7 +13,7 @@
 
 namespace dapple {
 
-/// Each pixel has two batches or more, or none; `width` pixels a row. What it is made from must
+/// Each pixel has whole batches, or none; `width` pixels a row. What it is made from must
 /// outlive it.
 class FilmMoments {
  public:
@@ -26,7 +26,8 @@ class FilmMoments {
         samples_(samples),
         width_(width) {}
 
-  /// batch_variances() of every pass, lights relative to their largest unoccluded irradiance.
+  /// batch_variances() of every pass, those of single batches added, lights relative to their
+  /// largest unoccluded irradiance.
   [[nodiscard]] std::vector<std::vector<float>> variances() const;
   /// sample_costs() so far.
   [[nodiscard]] std::vector<float> costs() const;

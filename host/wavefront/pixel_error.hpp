@@ -78,17 +78,20 @@ void add_variances_of_single_batches(const std::vector<std::uint32_t>& samples, 
                                      const Moments& moments, std::vector<float>& variances) {
   const auto is_single = [](std::uint32_t s) { return s / DAPPLE_BATCH == 1; };
   if (std::none_of(samples.begin(), samples.end(), is_single)) return;
-  const auto own = [&](std::size_t p) -> std::array<float, 3> {
+  const auto own = [&](std::size_t p) -> std::array<float, 4> {
     if (samples[p] == 0) return {};
     const float mean = moments(p).mean;
-    return {mean, mean * mean, 1.0f};
+    return {mean, mean * mean, 1.0f, DAPPLE_BATCH / static_cast<float>(samples[p])};
   };
   std::vector<float> spreads(samples.size());
   visit_neighbourhoods(samples.size(), width, own,
-                       [&](std::size_t p, const auto&, const std::array<float, 3>& sums) {
+                       [&](std::size_t p, const auto&, const std::array<float, 4>& sums) {
                          if (sums[2] < 2) return;
                          const float over = sums[1] - sums[0] * sums[0] / sums[2];
                          spreads[p] = std::max(0.0f, over) / (sums[2] - 1);
+                         // Of others what it would be if the neighbours had one batch each, too.
+                         if (!is_single(samples[p]))
+                           spreads[p] += variances[p] * (1.0f - sums[3] / sums[2]);
                        });
   double known = 0, spread = 0;
   for (std::size_t p = 0; p < samples.size(); ++p) {

@@ -35,7 +35,7 @@ constexpr std::uint32_t kUnit = 2;
 constexpr double kAim = 0.95;
 
 /// Part of the squared error asked for that one batch a pixel may leave, as scouts tell it: they
-/// know it to a tenth, and nothing is known later.
+/// know it to a tenth, and hardly more is known later.
 constexpr double kAimOfOne = 0.8;
 
 /// Times the least that all pixels get at most after the scouts: of those that see nothing most
@@ -277,22 +277,25 @@ bool SamplePlan::only_scouts_have_samples() const {
          std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
 }
 
-bool SamplePlan::one_batch_does(const std::vector<std::vector<float>>& variances) const {
+bool SamplePlan::one_batch_does(const std::vector<std::vector<float>>& variances,
+                                double part) const {
   if (!one_may_do_) return false;
-  const auto known = [&](std::size_t pixel) { return samples_[pixel] > DAPPLE_BATCH; };
-  return std::all_of(variances.begin(), variances.end(), [&](const std::vector<float>& pass) {
+  bool any_varies = false;  // who sees nothing knows nothing
+  for (const std::vector<float>& pass : variances) {
     double error = 0, enough = 0;
     for (std::size_t pixel = 0; pixel < pass.size(); ++pixel) {
-      if (!known(pixel)) continue;
+      if (samples_[pixel] <= DAPPLE_BATCH) continue;
       error += pass[pixel];
       enough += double{target_rmse_} * target_rmse_;
     }
-    return error > 0 && error <= kAimOfOne * enough;  // who sees nothing knows nothing
-  });
+    if (error > part * enough) return false;
+    any_varies |= error > 0;
+  }
+  return any_varies;
 }
 
 std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances) {
-  if (one_batch_does(variances)) {
+  if (one_batch_does(variances, kAimOfOne)) {
     least_ = DAPPLE_BATCH;
     fraction_done_ = 1;
     return least();
@@ -322,7 +325,7 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
                                         const Costs& costs) {
   if (*std::min_element(samples_.begin(), samples_.end()) < 2 * DAPPLE_BATCH) {
     fraction_done_ = 1;
-    if (one_batch_does(variances)) return {};
+    if (one_batch_does(variances, 1.0)) return {};
     least_ = 2 * DAPPLE_BATCH;
     return least();
   }

@@ -43,7 +43,9 @@ class SamplePlan {
   /// With a target: what is missing for it, in eights but for the most. `variances`: of a batch's
   /// mean, by pass and pixel, batch_variances(); `costs`: sample_costs(), asked for where an RMSE
   /// is missed. No pixel gets more than eight times what it has, so that the next decision rests on
-  /// more, and blocks of 2x2 pixels get the same; empty when all are done. A pixel may be in
+  /// more, and blocks of 2x2 pixels get the same; empty when all are done. What after_scouts() left
+  /// at one batch is brought to two only where by now that is missed: the largest irradiance, which
+  /// lights' errors are relative to, is known better. A pixel may be in
   /// several groups, to be traced in their order.
   std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances, const Costs& costs);
 
@@ -54,8 +56,10 @@ class SamplePlan {
   [[nodiscard]] double fraction_done() const { return fraction_done_; }
 
  private:
-  /// Whether the RMSE is reached with one batch a pixel, by the variances of those with more.
-  [[nodiscard]] bool one_batch_does(const std::vector<std::vector<float>>& variances) const;
+  /// Whether one batch a pixel leaves at most that part of the squared error asked for, by the
+  /// variances of those with more.
+  [[nodiscard]] bool one_batch_does(const std::vector<std::vector<float>>& variances,
+                                    double part) const;
   /// Samples more that least() gives a pixel.
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() where all pixels have the same.
