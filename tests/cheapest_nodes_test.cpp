@@ -18,7 +18,7 @@ constexpr std::uint32_t kLeafSize = 4;
 void grow(std::uint32_t first, std::uint32_t count, float area, std::mt19937& random,
           std::vector<BinaryNode>& tree) {
   const std::size_t at = tree.size();
-  BinaryNode node;
+  BinaryNode node{};
   node.box.clear();
   node.area = area;
   node.first = first;
