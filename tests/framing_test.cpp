@@ -1,0 +1,139 @@
+// What a scene without them gets: a camera that frames it, and a key light; and cameras by where
+// they look.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "dapple/error.hpp"
+#include "dapple/scene.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// One, whose bounds have that corner and size.
+Scene triangle_at(V3f corner, V3f size) {
+  Scene scene;
+  scene.materials.resize(1);
+  Mesh mesh;
+  mesh.positions = {corner, corner + size, corner + V3f(0, 0, size.z)};
+  mesh.indices = {0, 1, 2};
+  mesh.materials = {0};
+  scene.meshes.push_back(mesh);
+  scene.instances.emplace_back();
+  return scene;
+}
+
+// How far outside the frame a point is: at most 1 when it is inside.
+float frame_excess(const Camera& camera, float aspect, V3f point) {
+  const V3f p = point * camera.to_world.inverse();
+  const float tan_y = std::tan(camera.fov_y / 2);
+  if (p.z >= 0) return kInfinity;
+  return std::max(std::abs(p.x / p.z) / (tan_y * aspect), std::abs(p.y / p.z) / tan_y);
+}
+
+TEST(FrameScene, EveryCornerOfTheBoundsIsInTheFrameAndOneIsNearItsEdge) {
+  for (const V3f& size : {V3f(1, 1, 1), V3f(30, 1, 2), V3f(1, 50, 1), V3f(1, 2, 80)}) {
+    for (const float aspect : {0.5f, 1.0f, 16.0f / 9}) {
+      const Scene scene = triangle_at({7, 8, 9}, size);
+      const Box3f box = scene_bounds(scene);
+      const Camera camera = frame_scene(scene, aspect, 0.6f);
+      float widest = 0;
+      for (const float x : {box.min.x, box.max.x}) {
+        for (const float y : {box.min.y, box.max.y}) {
+          for (const float z : {box.min.z, box.max.z}) {
+            widest = std::max(widest, frame_excess(camera, aspect, {x, y, z}));
+          }
+        }
+      }
+      EXPECT_LE(widest, 1);
+      EXPECT_GT(widest, 0.9f);
+      EXPECT_GT(camera.to_world[3][1], box.center().y);  // a little above
+    }
+  }
+}
+
+TEST(FrameScene, ASceneWithoutExtentStillGetsACamera) {
+  const Camera camera = frame_scene(Scene{}, 1.5f);
+  EXPECT_TRUE(std::isfinite(camera.to_world[3][2]));
+  EXPECT_NE(camera.to_world.determinant(), 0);
+}
+
+TEST(LookAt, LooksAlongMinusZWithARightHandedOrthonormalFrame) {
+  const Camera camera = look_at({1, 2, 3}, {4, 0, -5}, {0, 1, 0}, 0.5f);
+  EXPECT_NEAR(camera.to_world.determinant(), 1, 1e-5);
+  const V3f ahead = V3f(0, 0, -1) * camera.to_world - V3f(1, 2, 3);
+  EXPECT_TRUE(ahead.equalWithAbsError(V3f(3, -2, -8).normalized(), 1e-6f));
+  EXPECT_EQ(camera.to_world[0][1], 0);  // +X is level
+  EXPECT_GT(camera.to_world[1][1], 0);
+  EXPECT_EQ(camera.fov_y, 0.5f);
+}
+
+TEST(LookAt, DegenerateViewsAreRefused) {
+  const V3f up(0, 1, 0);
+  const auto refused = [](V3f from, V3f at, V3f up_, float fov_y) -> std::string {
+    try {
+      look_at(from, at, up_, fov_y);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(refused({1, 2, 3}, {1, 2, 3}, up, 1), "camera: from and at are the same point");
+  EXPECT_EQ(refused({0, 5, 0}, {0, 0, 0}, up, 1), "camera: up is zero or points along the view");
+  EXPECT_EQ(refused({0, 0, 5}, {0, 0, 0}, {0, 0, 0}, 1),
+            "camera: up is zero or points along the view");
+  EXPECT_EQ(refused({kInfinity, 0, 0}, {0, 0, 0}, up, 1), "camera: from, at and up must be finite");
+  EXPECT_NE(refused({0, 0, 5}, {0, 0, 0}, up, 0).find("field of view"), std::string::npos);
+}
+
+TEST(KeyLight, HangsUpLeftInFrontAndFacesTheCentre) {
+  const Scene scene = make_procedural("scene:cube");
+  for (const V3f& from : {V3f(0, 1, 6), V3f(6, 1, 0), V3f(-3, 4, -3), V3f(0, -5, 5)}) {
+    const V3f centre(0, 0.5f, 0);
+    const Camera camera = look_at(from, centre, {0, 1, 0}, 0.7f);
+    const Light key = key_light(scene, camera);
+    EXPECT_EQ(key.name, "key");
+    EXPECT_EQ(key.kind, LightKind::rect);
+    const V3f from_centre = key.position - centre;
+    const M44f& axes = camera.to_world;
+    EXPECT_GT(from_centre.y, 0);
+    EXPECT_LT(from_centre.dot(V3f(axes[0][0], axes[0][1], axes[0][2])), 0);
+    EXPECT_GT(from_centre.dot(V3f(axes[2][0], 0, axes[2][2])), 0);  // whatever its tilt
+    EXPECT_TRUE((-from_centre).normalized().equalWithAbsError(key.direction, 1e-5f));
+    const float radius = std::sqrt(3.0f) / 2;
+    EXPECT_NEAR(from_centre.length(), 3 * radius, 1e-4);
+    EXPECT_NEAR(key.edge_u.length(), radius, 1e-5);
+    EXPECT_NEAR(key.edge_v.length(), radius, 1e-5);
+    EXPECT_NEAR(key.edge_u.dot(key.direction), 0, 1e-5);
+    EXPECT_NEAR(key.edge_u.y, 0, 1e-6);
+  }
+}
+
+TEST(KeyLight, GivesASurfaceAtTheCentreThatFacesItAnIrradianceOfAboutOne) {
+  const Scene scene = make_procedural("scene:cube");
+  const Light key = key_light(scene, frame_scene(scene, 1.5f));
+  const V3f centre(0, 0.5f, 0);
+  constexpr int kCells = 64;
+  double irradiance = 0;
+  for (int j = 0; j < kCells; ++j) {
+    for (int i = 0; i < kCells; ++i) {
+      const float u = (static_cast<float>(i) + 0.5f) / kCells - 0.5f;
+      const float v = (static_cast<float>(j) + 0.5f) / kCells - 0.5f;
+      const V3f to_light = key.position + key.edge_u * u + key.edge_v * v - centre;
+      const float cosine = -key.direction.dot(to_light.normalized());
+      irradiance += key.radiance.x * cosine * cosine / to_light.length2();
+    }
+  }
+  irradiance *= key.edge_u.length() * key.edge_v.length() / (kCells * kCells);
+  // The square's extent takes off 2 * (1/6)^2 * 2/3 of the first-order value 1.
+  EXPECT_NEAR(irradiance, 1 - 0.037, 0.005);
+}
+
+}  // namespace
+}  // namespace dapple
