@@ -2,44 +2,47 @@
 #include "direction.clh"
 #include "pass_params.h"
 #include "point_rays.clh"
+#include "vectors.clh"
 
-/* Directions in the frame of the normal: x, y on the disk below them. */
+/* Directions in the frame of the normal: x, y on the disk below them, z along it. Chosen in loops of
+   scalars, so that compilers make vectors of them. */
 typedef struct DiskPlaces {
-  float x[DAPPLE_RAY_LANES], y[DAPPLE_RAY_LANES], cosine[DAPPLE_RAY_LANES];
+  RayFloats x, y, z;
 } DiskPlaces;
 
-/* Loops of scalars, so that compilers make vectors of them. */
 inline void choose_directions(const PointRays* rays, AoParams params, DiskPlaces* disk) {
+  const RayFloats u = rays->u, v = rays->v;
+  RayFloats x, y;
   if (params.whole_sets) {
+    const RayUints pixel = rays->pixel, index = rays->index;
     const float inverse_count = 1.0f / params.rays;
     for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
-      const uint turn = hash_pair(hash_pair(rays->pixel[i], DAPPLE_PAIR_AO_TURN), params.seed);
-      sunflower_disk(rays->index[i], inverse_count, rays->u[i], turn, disk->x + i, disk->y + i);
+      const uint turn = hash_pair(hash_pair(pixel.u[i], DAPPLE_PAIR_AO_TURN), params.seed);
+      sunflower_disk(index.u[i], inverse_count, u.f[i], turn, x.f + i, y.f + i);
     }
   } else {
     for (uint i = 0; i < DAPPLE_RAY_LANES; ++i)
-      concentric_disk(rays->u[i], rays->v[i], disk->x + i, disk->y + i);
+      concentric_disk(u.f[i], v.f[i], x.f + i, y.f + i);
   }
-  for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
-    disk->cosine[i] = sqrt(fmax(1e-8f, 1.0f - disk->x[i] * disk->x[i] - disk->y[i] * disk->y[i]));
-  }
+  disk->x = x;
+  disk->y = y;
+  disk->z.v = sqrt(max(1.0f - x.v * x.v - y.v * y.v, 1e-8f));
 }
 
 /* The pdf is cos / pi, so a ray's share of the hemisphere is pi / (n cos). */
-inline void store_ray(__global const SurfacePoint* point, AoParams params, const DiskPlaces* disk,
-                      uint i, uint key, __global Ray* ray) {
-  const float3 normal = load3(point->normal);
-  float3 tangent, bitangent;
-  make_frame(normal, &tangent, &bitangent);
-  store3(ray->origin, load3(point->position) + normal * point->offset);
-  store3(ray->direction, normalize(tangent * disk->x[i] + bitangent * disk->y[i] +
-                                   normal * disk->cosine[i]));
-  ray->t_max = params.t_max;
-  ray->solid_angle = fmin(2.0f * M_PI_F, M_PI_F * params.inverse_count / disk->cosine[i]);
-  ray->first_area = point->area;
-  ray->light = 0;
-  ray->weight = 1.0f;
-  ray->key = key;
+inline void aim_rays(const PointRays* rays, AoParams params, const DiskPlaces* disk,
+                     RayWays* ways) {
+  const float16 x = disk->x.v, y = disk->y.v, z = disk->z.v;
+  float16 tangent[3], bitangent[3], direction[3];
+  make_frames(rays->normal[0].v, rays->normal[1].v, rays->normal[2].v, tangent, bitangent);
+  DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis)
+    direction[axis] = tangent[axis] * x + bitangent[axis] * y + rays->normal[axis].v * z;
+  const float16 length = sqrt(dot_16(direction, direction));
+  DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis)
+    ways->direction[axis].v = direction[axis] / length;
+  ways->t_max.v = (float16)(params.t_max);
+  ways->solid_angle.v = min(M_PI_F * params.inverse_count / z, 2.0f * M_PI_F);
+  ways->weight.v = (float16)(1.0f);
 }
 
 /* Ray = active point * rays + ray of the point. */
@@ -50,9 +53,10 @@ __kernel void ao_rays(__global const SurfacePoint* points, __global const uint* 
   if (first >= end) return;
   PointRays rays;
   DiskPlaces disk;
-  choose_rays(points, active_list, first, end, params.rays, DAPPLE_PAIR_AO, params.seed, &rays);
+  load_points(points, active_list, first, end, params.rays, &rays);
+  choose_places(DAPPLE_PAIR_AO, params.seed, &rays);
   choose_directions(&rays, params, &disk);
-  for (uint i = 0; i < rays.count; ++i) {
-    store_ray(points + rays.point[i], params, &disk, i, rays.key[i], queue + first + i);
-  }
+  RayWays ways;
+  aim_rays(&rays, params, &disk, &ways);
+  store_rays(&rays, &ways, 0u, queue + first);
 }

@@ -1,9 +1,9 @@
 /* The camera pass: where the slice's camera rays meet the scene, a packet of them an item: from one
    point (DAPPLE_ONE_POINT 1), or side by side (0). */
+#include "beam_points.clh"
 #include "camera.clh"
 #include "deal.clh"
 #include "nearest_search.clh"
-#include "surface_point.clh"
 
 #define DAPPLE_MOST_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MOST_DEPTHS / DAPPLE_HIT_BITS)
 
@@ -17,33 +17,6 @@ typedef struct ItemHits {
 typedef struct BeamShares {
   BeamFloats first_area, solid_angle;
 } BeamShares;
-
-/* Where a ray of a beam stopped, sample by sample: `of_item` is the ray's place in `chosen`,
-   of_beam that in `rays`; `points` are those of the item. */
-inline void store_stops(Scene scene, const CameraSamples* chosen, uint of_item,
-                        const BeamRays* rays, uint of_beam, float first_area, float solid_angle,
-                        const Stops* stops, __global SurfacePoint* points, ItemHits* found) {
-  const Span span = span_of(rays, of_beam);
-  SurfaceHit before = {0.0f, 0u, 0u};
-  for (uint d = 0; d < stops->count; ++d) {
-    const SurfaceHit hit = {stops->t[d].f[of_beam], (uint)stops->primitive[d].i[of_beam],
-                            (uint)stops->instance[d].i[of_beam]};
-    if (!(hit.t < INFINITY)) return; /* nor do those after it, whose thresholds are lower */
-    const uint place = chosen->place[of_item] * stops->count + d;
-    __global SurfacePoint* point = points + place;
-    if (d && hit.primitive == before.primitive && hit.instance == before.instance) {
-      *point = *(point - 1);
-    } else {
-      store_point(scene, hit, span.origin, span.direction,
-                  first_area + solid_angle * hit.t * hit.t, point);
-      point->pixel = chosen->pixel[of_item];
-      point->visits = 0u;
-    }
-    point->sample = chosen->sample[of_item] + d;
-    found->hits[place / DAPPLE_HIT_BITS] |= 1u << place % DAPPLE_HIT_BITS;
-    before = hit;
-  }
-}
 
 /* The item's rays from `first` on as a beam: those that are not among its `count` have ended. */
 inline void start_beam(CameraParams params, const CameraSamples* chosen, uint first, uint count,
@@ -62,16 +35,41 @@ inline void start_beam(CameraParams params, const CameraSamples* chosen, uint fi
   nearest->primitive.v = nearest->instance.v = (int16)(0);
 }
 
-/* What the beam met whose first ray is that. */
+/* Of the ray in lane `ray` of the points; `of_item` is its place in `chosen`. */
+inline void store_stop(const CameraSamples* chosen, uint of_item, uint sample, uint ray, float t,
+                       float area, const BeamPoints* at, __global SurfacePoint* point) {
+  vstore4((float4)(at->position[0].f[ray], at->position[1].f[ray], at->position[2].f[ray], t), 0,
+          point->position);
+  vstore4((float4)(at->normal[0].f[ray], at->normal[1].f[ray], at->normal[2].f[ray],
+                   at->offset.f[ray]),
+          0, point->normal);
+  vstore4((uint4)(as_uint(area), chosen->pixel[of_item], chosen->sample[of_item] + sample, 0u), 0,
+          (__global uint*)&point->area);
+}
+
+/* What the beam met whose first ray is that, sample by sample; `points` are those of the item. */
 inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, const BeamRays* beam,
                        const BeamShares* shares, const Stops* stops, __global SurfacePoint* points,
                        ItemHits* found) {
-  float16 nearest_stop = stops->t[0].v;
-  for (uint d = 1; d < stops->count; ++d) nearest_stop = min(nearest_stop, stops->t[d].v);
-  for (uint left = bits_of_16(nearest_stop < INFINITY); left; left &= left - 1u) {
-    const uint i = lowest_bit(left);
-    store_stops(scene, chosen, first + i, beam, i, shares->first_area.f[i],
-                shares->solid_angle.f[i], stops, points, found);
+  BeamPoints at;
+  for (uint d = 0; d < stops->count; ++d) {
+    const float16 t = stops->t[d].v;
+    const int16 hit = t < INFINITY;
+    const uint hits = bits_of_16(hit);
+    if (!hits) return; /* nor do the samples after it, whose thresholds are lower */
+    uint others = hits;
+    if (d)
+      others &= bits_of_16((stops->primitive[d].v != stops->primitive[d - 1u].v) |
+                           (stops->instance[d].v != stops->instance[d - 1u].v));
+    if (others) place_stops(scene, beam, stops, d, hits, &at);
+    BeamFloats area;
+    area.v = shares->first_area.v + shares->solid_angle.v * t * t;
+    for (uint left = hits; left; left &= left - 1u) {
+      const uint ray = lowest_bit(left);
+      const uint place = chosen->place[first + ray] * stops->count + d;
+      store_stop(chosen, first + ray, d, ray, stops->t[d].f[ray], area.f[ray], &at, points + place);
+      found->hits[place / DAPPLE_HIT_BITS] |= 1u << place % DAPPLE_HIT_BITS;
+    }
   }
 }
 

@@ -6,8 +6,7 @@
 inline long8 dome_sums(const Dome* dome, __global const Ray* ray, Occlusion found, float scale) {
   const float3 light = ray->weight * dome_colour(dome, load3(ray->direction)) * scale;
   const float3 seen = light * found.transmittance;
-  return fixed_points((float8)(seen.x, seen.y, seen.z, light.x, light.y, light.z,
-                               found.visits & 65535u, found.visits >> 16));
+  return fixed_points((float8)(seen, light, visits_of(found)));
 }
 
 /* Planes: irradiance (3) at radiance 1, the same unoccluded (3), visits, tests. Squares: of its
@@ -22,20 +21,19 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
   const uint begin = local_pixel * params.slice.sample_count;
   if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
   const Dome dome = dome_of(lights + light, environments);
-  PlaneSums sums;
-  sums.v = (long8)(0);
+  long8 sums = (long8)(0);
   Batches batches = no_batches();
+  uint ray = sample_slot(sample_hits, begin) * params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
-    const bool hit = sample_hit(sample_hits, begin + s);
-    const uint first = hit ? sample_slot(sample_hits, begin + s) * params.rays : 0u;
     float value = 0.0f;
-    for (uint r = first; hit && r < first + params.rays; ++r) {
-      sums.v += dome_sums(&dome, rays + r, occlusions[r], params.scale);
-      value += rays[r].weight * occlusions[r].transmittance / params.rays;
+    const uint end = ray + (sample_hit(sample_hits, begin + s) ? params.rays : 0u);
+    for (; ray < end; ++ray) {
+      sums += dome_sums(&dome, rays + ray, occlusions[ray], params.scale);
+      value += rays[ray].weight * occlusions[ray].transmittance / params.rays;
     }
     add_to_batch(&batches, s, value);
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
-  add_to_planes(film, params, 8u, pixel, &sums);
+  add_to_planes(film, params, 8u, pixel, sums);
 }

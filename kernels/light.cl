@@ -14,7 +14,7 @@ typedef struct LightSample {
 } LightSample;
 
 /* A point of a flat emitter, uniform over `area`. */
-inline LightSample towards(float3 from, float3 to, float3 light_normal, float area, bool two_sided) {
+DAPPLE_INLINE LightSample towards(float3 from, float3 to, float3 light_normal, float area, bool two_sided) {
   LightSample sample;
   sample.radiance = 1.0f;
   const float3 way = to - from;
@@ -26,14 +26,8 @@ inline LightSample towards(float3 from, float3 to, float3 light_normal, float ar
   return sample;
 }
 
-inline LightSample sample_rect(__global const LightRecord* light, float3 from, float2 u) {
-  const float3 to = load3(light->position) + (u.x - 0.5f) * load3(light->edge_u) +
-                    (u.y - 0.5f) * load3(light->edge_v);
-  return towards(from, to, load3(light->direction), light->area, false);
-}
-
 /* Uniform in the cone that the sphere subtends; from inside, over all directions. */
-inline LightSample sample_sphere(__global const LightRecord* light, float3 from, float2 u) {
+DAPPLE_INLINE LightSample sample_sphere(__global const LightRecord* light, float3 from, float2 u) {
   LightSample sample;
   sample.radiance = 1.0f;
   const float3 way = load3(light->position) - from;
@@ -58,7 +52,7 @@ inline LightSample sample_sphere(__global const LightRecord* light, float3 from,
   return sample;
 }
 
-inline LightSample sample_sun(__global const LightRecord* light, float2 u) {
+DAPPLE_INLINE LightSample sample_sun(__global const LightRecord* light, float2 u) {
   LightSample sample;
   sample.radiance = 1.0f;
   sample.direction = sample_cone(-load3(light->direction), light->one_minus_cos, u);
@@ -67,7 +61,7 @@ inline LightSample sample_sun(__global const LightRecord* light, float2 u) {
   return sample;
 }
 
-inline LightSample sample_mesh(__global const LightRecord* light,
+DAPPLE_INLINE LightSample sample_mesh(__global const LightRecord* light,
                                __global const EmitterTriangle* emitters, float3 from, float2 u) {
   uint low = 0, high = light->triangle_count - 1u;
   __global const EmitterTriangle* first = emitters + light->first_triangle;
@@ -88,7 +82,7 @@ inline LightSample sample_mesh(__global const LightRecord* light,
   return towards(from, to, normalize(cross(edge1, edge2)), light->area, light->two_sided != 0u);
 }
 
-inline LightSample sample_around(__global const LightRecord* light,
+DAPPLE_INLINE LightSample sample_around(__global const LightRecord* light,
                                  __global const float* environments, float3 normal, float2 u) {
   const Dome dome = dome_of(light, environments);
   LightSample sample;
@@ -97,36 +91,78 @@ inline LightSample sample_around(__global const LightRecord* light,
   return sample;
 }
 
-inline LightSample sample_source(__global const LightRecord* light,
+DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
                                  __global const EmitterTriangle* emitters, float3 from, float2 u) {
   switch (light->kind) {
-    case DAPPLE_LIGHT_RECT: return sample_rect(light, from, u);
     case DAPPLE_LIGHT_SPHERE: return sample_sphere(light, from, u);
     case DAPPLE_LIGHT_SUN: return sample_sun(light, u);
     default: return sample_mesh(light, emitters, from, u);
   }
 }
 
-inline void store_ray(__global const SurfacePoint* point, __global const LightRecord* light,
-                      __global const EmitterTriangle* emitters,
-                      __global const float* environments, float2 u, uint key, LightParams params,
-                      __global Ray* ray) {
-  const float3 normal = load3(point->normal);
-  const float3 origin = load3(point->position) + normal * point->offset;
-  const LightSample sample = light->kind == DAPPLE_LIGHT_DOME
-                                 ? sample_around(light, environments, normal, u)
-                                 : sample_source(light, emitters, origin, u);
-  const float weight =
-      sample.solid_angle * fmax(dot(normal, sample.direction), 0.0f) * sample.radiance;
-  store3(ray->origin, origin);
-  store3(ray->direction, sample.direction);
-  /* A ray that can bring nothing is not traced: it ends before it starts. */
-  ray->t_max = weight > 0.0f ? sample.distance : -1.0f;
-  ray->solid_angle = fmin(2.0f * M_PI_F, sample.solid_angle * params.inverse_count);
-  ray->first_area = point->area;
-  ray->light = light->id;
-  ray->weight = weight;
-  ray->key = key;
+/* Sixteen LightSamples, a ray's in each lane. */
+typedef struct LightSamples {
+  RayFloats direction[3], distance, solid_angle, radiance;
+} LightSamples;
+
+/* As towards(), with places on the rectangle. */
+inline void sample_rect(__global const LightRecord* light, const PointRays* rays,
+                        LightSamples* samples) {
+  const float16 u = rays->u.v - 0.5f, v = rays->v.v - 0.5f;
+  float16 way[3], square = (float16)(1e-20f), against = (float16)(0.0f);
+  DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
+    way[axis] = light->position[axis] + u * light->edge_u[axis] + v * light->edge_v[axis] -
+                rays->origin[axis].v;
+    square += way[axis] * way[axis];
+  }
+  const float16 distance = sqrt(square);
+  DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
+    samples->direction[axis].v = way[axis] / distance;
+    against -= samples->direction[axis].v * light->direction[axis];
+  }
+  samples->distance.v = distance;
+  samples->solid_angle.v = light->area * max(against, 0.0f) / square;
+  samples->radiance.v = (float16)(1.0f);
+}
+
+inline void sample_light(__global const LightRecord* light,
+                         __global const EmitterTriangle* emitters,
+                         __global const float* environments, const PointRays* rays,
+                         LightSamples* samples) {
+  if (light->kind == DAPPLE_LIGHT_RECT) {
+    sample_rect(light, rays, samples);
+    return;
+  }
+  for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
+    const float2 u = (float2)(rays->u.f[i], rays->v.f[i]);
+    const float3 normal =
+        (float3)(rays->normal[0].f[i], rays->normal[1].f[i], rays->normal[2].f[i]);
+    const float3 origin =
+        (float3)(rays->origin[0].f[i], rays->origin[1].f[i], rays->origin[2].f[i]);
+    const LightSample sample = light->kind == DAPPLE_LIGHT_DOME
+                                   ? sample_around(light, environments, normal, u)
+                                   : sample_source(light, emitters, origin, u);
+    samples->direction[0].f[i] = sample.direction.x;
+    samples->direction[1].f[i] = sample.direction.y;
+    samples->direction[2].f[i] = sample.direction.z;
+    samples->distance.f[i] = sample.distance;
+    samples->solid_angle.f[i] = sample.solid_angle;
+    samples->radiance.f[i] = sample.radiance;
+  }
+}
+
+/* A ray that can bring nothing is not traced: it ends before it starts. */
+inline void aim_rays(const PointRays* rays, const LightSamples* samples, float inverse_count,
+                     RayWays* ways) {
+  float16 cosine = (float16)(0.0f);
+  DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
+    ways->direction[axis].v = samples->direction[axis].v;
+    cosine += rays->normal[axis].v * samples->direction[axis].v;
+  }
+  const float16 solid_angle = samples->solid_angle.v;
+  ways->weight.v = solid_angle * max(cosine, 0.0f) * samples->radiance.v;
+  ways->t_max.v = ways->weight.v > 0.0f ? samples->distance.v : (float16)(-1.0f);
+  ways->solid_angle.v = min(solid_angle * inverse_count, 2.0f * M_PI_F);
 }
 
 __kernel void light_rays(__global const SurfacePoint* points, __global const uint* active_list,
@@ -137,11 +173,13 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   const uint first = get_global_id(0) * DAPPLE_RAY_LANES;
   const uint end = params.point_count * params.rays;
   if (first >= end) return;
+  __global const LightRecord* light = lights + params.light;
   PointRays rays;
-  choose_rays(points, active_list, first, end, params.rays, DAPPLE_PAIR_LIGHT + params.light,
-              params.seed, &rays);
-  for (uint i = 0; i < rays.count; ++i) {
-    store_ray(points + rays.point[i], lights + params.light, emitters, environments,
-              (float2)(rays.u[i], rays.v[i]), rays.key[i], params, queue + first + i);
-  }
+  LightSamples samples;
+  RayWays ways;
+  load_points(points, active_list, first, end, params.rays, &rays);
+  choose_places(DAPPLE_PAIR_LIGHT + params.light, params.seed, &rays);
+  sample_light(light, emitters, environments, &rays, &samples);
+  aim_rays(&rays, &samples, params.inverse_count, &ways);
+  store_rays(&rays, &ways, light->id, queue + first);
 }

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "dapple/shared/bvh_node.h"
@@ -49,6 +51,26 @@ TEST_P(Lanes, OpenedNodesArePushedInOrderAndLeavesAreNot) {
     }
     const auto* at = &found[kValues * pattern];
     ASSERT_EQ(std::vector<uint>(at, at + kValues), expected) << "pattern " << pattern;
+  }
+}
+
+TEST_P(Lanes, AreRoundedAsOnTheHost) {
+  std::vector<float> numbers;
+  for (float x = 0.0f; x < 4.0f; x += 0.125f) {  // halves among them, to the even ones
+    for (const float at :
+         {x, 1000.0f + x, std::nextafter(x, 9.0f), 8388608.0f + x, 1e18f * x, 2e8f * x})
+      numbers.insert(numbers.end(), {at, -at});
+  }
+  const auto count = static_cast<uint>(numbers.size());
+  ASSERT_EQ(count % 16, 0u);
+  const Buffer in = upload(numbers), floors = device().allocate(count * sizeof(float)),
+               wholes = device().allocate(count * sizeof(std::int64_t));
+  run(GetParam(), "rounded", count / 16, {in, floors, wholes, count / 16});
+  const auto floored = download<float>(floors, count);
+  const auto whole = download<std::int64_t>(wholes, count);
+  for (uint i = 0; i < count; ++i) {
+    EXPECT_EQ(floored[i], std::floor(numbers[i])) << numbers[i];
+    EXPECT_EQ(whole[i], std::llrint(numbers[i])) << numbers[i];
   }
 }
 

@@ -173,15 +173,17 @@ TEST(Sampling, FramesAreOrthonormalAndRightHandedForEveryNormal) {
   }
   const Buffer tangents = device().allocate(normals.size() * sizeof(V3f));
   const Buffer bitangents = device().allocate(normals.size() * sizeof(V3f));
-  run("sampling", "frames", normals.size(),
-      {upload(normals), tangents, bitangents, static_cast<uint>(normals.size())});
-  const auto t = download<V3f>(tangents, normals.size());
-  const auto b = download<V3f>(bitangents, normals.size());
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    // A handful of roundings of numbers up to 1.
-    EXPECT_NEAR(t[i].length(), 1, 2e-6f) << normals[i];
-    EXPECT_NEAR(b[i].length(), 1, 2e-6f) << normals[i];
-    EXPECT_LT((t[i].cross(b[i]) - normals[i]).length(), 2e-6f) << normals[i];
+  for (const char* kernel : {"frames", "lane_frames"}) {
+    run("sampling", kernel, normals.size(),
+        {upload(normals), tangents, bitangents, static_cast<uint>(normals.size())});
+    const auto t = download<V3f>(tangents, normals.size());
+    const auto b = download<V3f>(bitangents, normals.size());
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      // A handful of roundings of numbers up to 1.
+      EXPECT_NEAR(t[i].length(), 1, 2e-6f) << kernel << normals[i];
+      EXPECT_NEAR(b[i].length(), 1, 2e-6f) << kernel << normals[i];
+      EXPECT_LT((t[i].cross(b[i]) - normals[i]).length(), 2e-6f) << kernel << normals[i];
+    }
   }
 }
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "scene/environment.hpp"
 #include "wavefront/pixel_error.hpp"
 #include "wavefront/pixel_neighbourhood.hpp"
 
@@ -36,12 +35,6 @@ std::vector<std::vector<float>> FilmMoments::variances() const {
   for (std::size_t light = 0; light < layout_.lights.size(); ++light)
     out.push_back(light_variances(light));
   return out;
-}
-
-double FilmMoments::luminance_sum(std::uint32_t first, std::uint32_t channels,
-                                  std::uint32_t pixel) const {
-  if (channels == 1) return sum(first, pixel);
-  return luminance(V3d(sum(first, pixel), sum(first + 1, pixel), sum(first + 2, pixel)));
 }
 
 // Of occlusion, which is 0 where samples missed.

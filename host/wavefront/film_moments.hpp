@@ -8,6 +8,7 @@
 
 #include "dapple/options.hpp"
 #include "device/context.hpp"
+#include "scene/environment.hpp"
 #include "wavefront/film_sums.hpp"
 #include "wavefront/sample_cost.hpp"
 
@@ -42,7 +43,10 @@ class FilmMoments {
   }
   /// Of one channel itself, of three their luminance.
   [[nodiscard]] double luminance_sum(std::uint32_t first, std::uint32_t channels,
-                                     std::uint32_t pixel) const;
+                                     std::uint32_t pixel) const {
+    if (channels == 1) return sum(first, pixel);
+    return luminance(V3d(sum(first, pixel), sum(first + 1, pixel), sum(first + 2, pixel)));
+  }
   [[nodiscard]] std::vector<float> ao_variances() const;
   [[nodiscard]] std::vector<float> light_variances(std::size_t light) const;
   /// Of all pixels, irradiance at radiance 1. `scale`: of the sums; `variances`: batch_variances()

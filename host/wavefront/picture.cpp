@@ -79,7 +79,7 @@ class PictureTracer {
   using Clock = std::chrono::steady_clock;
 
   static double sum_of(const std::vector<std::uint32_t>& samples) {
-    return std::accumulate(samples.begin(), samples.end(), 0.0);
+    return static_cast<double>(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}));
   }
 
   /// Whether some pixels have the two batches that tell a variance, and all others one.

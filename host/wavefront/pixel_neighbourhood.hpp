@@ -13,33 +13,65 @@ namespace dapple {
 /// Rows that a thread goes through in one go.
 inline constexpr int kNeighbourhoodRows = 16;
 
+/// Values of a row of pixels, N each, those of one kind side by side: sums of rows are vectors
+/// then. Columns lie from 1 on, with zeros on either side.
+template <std::size_t N>
+class NeighbourhoodRow {
+ public:
+  explicit NeighbourhoodRow(int width) : stride_(width + 2), values_(N * stride_) {}
+
+  [[nodiscard]] float* kind(std::size_t i) { return values_.data() + i * stride_; }
+  void set(int column, const std::array<float, N>& values) {
+    for (std::size_t i = 0; i < N; ++i) kind(i)[column + 1] = values[i];
+  }
+  [[nodiscard]] std::array<float, N> at(int column) {
+    std::array<float, N> values;
+    for (std::size_t i = 0; i < N; ++i) values[i] = kind(i)[column + 1];
+    return values;
+  }
+  /// This row's values become the sums of the three.
+  void set_sums(NeighbourhoodRow& above, NeighbourhoodRow& own, NeighbourhoodRow& below) {
+    for (std::size_t i = 0; i < values_.size(); ++i)
+      values_[i] = above.values_[i] + own.values_[i] + below.values_[i];
+  }
+  /// And these of each value and those on either side of it in `columns`.
+  void set_sums_of_three(NeighbourhoodRow& columns) {
+    for (std::size_t kind = 0; kind < N; ++kind) {
+      const float* from = columns.kind(kind);
+      float* to = this->kind(kind);
+      for (std::size_t x = 1; x + 1 < stride_; ++x) to[x] = from[x] + from[x - 1] + from[x + 1];
+    }
+  }
+  void swap(NeighbourhoodRow& other) { values_.swap(other.values_); }
+
+ private:
+  std::size_t stride_;
+  std::vector<float> values_;
+};
+
 /// Calls `take` with each of so many pixels, `width` a row: its number, its values and their sums
 /// over it and its up to eight neighbours. `value`: a pixel's std::array<float, N>; asked for up to
 /// three times. Nothing of the size of a picture is kept.
 template <class Value, class Take>
 void visit_neighbourhoods(std::size_t pixels, int width, const Value& value, const Take& take) {
   using Values = decltype(value(std::size_t{}));
+  using Row = NeighbourhoodRow<std::tuple_size_v<Values>>;
   const int height = static_cast<int>(pixels) / width;
-  const auto fill = [&](int y, std::vector<Values>& row) {
+  const auto fill = [&](int y, Row& row) {
     for (int x = 0; x < width; ++x)
-      row[x] = y < 0 || y >= height ? Values{} : value(static_cast<std::size_t>(y) * width + x);
-  };
-  const auto add = [](Values a, const Values& b) {
-    for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
-    return a;
+      row.set(x, y < 0 || y >= height ? Values{} : value(static_cast<std::size_t>(y) * width + x));
   };
   using Range = tbb::blocked_range<int>;
   tbb::parallel_for(Range(0, height, kNeighbourhoodRows), [&](const Range& rows) {
-    // Columns lie from 1 on, with nothing on either side.
-    std::vector<Values> above(width), own(width), below(width), columns(width + 2);
+    Row above(width), own(width), below(width), columns(width), around(width);
     fill(rows.begin() - 1, above);
     fill(rows.begin(), own);
     for (int y = rows.begin(); y < rows.end(); ++y) {
       fill(y + 1, below);
-      for (int x = 0; x < width; ++x) columns[x + 1] = add(add(above[x], own[x]), below[x]);
+      columns.set_sums(above, own, below);
+      around.set_sums_of_three(columns);
       for (int x = 0; x < width; ++x)
-        take(static_cast<std::size_t>(y) * width + x, own[x],
-             add(add(columns[x + 1], columns[x]), columns[x + 2]));
+        take(static_cast<std::size_t>(y) * width + x, own.at(x), around.at(x));
       above.swap(own);
       own.swap(below);
     }

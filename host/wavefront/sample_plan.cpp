@@ -160,6 +160,13 @@ std::vector<T> where_known(const std::vector<T>& of_blocks, const BatchCounts& h
   return known;
 }
 
+/// As std::min_element(), of which compilers make no vectors.
+std::uint32_t fewest(const std::vector<std::uint32_t>& values) {
+  std::uint32_t least = values.front();
+  for (const std::uint32_t value : values) least = std::min(least, value);
+  return least;
+}
+
 bool all_equal(const std::vector<std::uint32_t>& values) {
   return std::all_of(values.begin(), values.end(), [&](auto v) { return v == values.front(); });
 }
@@ -188,12 +195,11 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
   least_ = std::max(2 * DAPPLE_BATCH, whole_batches(options.spp));
   most_ = std::max(least_, whole_batches(options.max_spp));
   // What an earlier plan left at one batch is judged again by next().
-  if (one_may_do_ && *std::min_element(samples_.begin(), samples_.end()) == DAPPLE_BATCH)
-    least_ = DAPPLE_BATCH;
+  if (one_may_do_ && fewest(samples_) == DAPPLE_BATCH) least_ = DAPPLE_BATCH;
 }
 
 std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
-  if (*std::min_element(samples_.begin(), samples_.end()) >= least_) return {};
+  if (fewest(samples_) >= least_) return {};
   if (all_equal(samples_)) return least_of_all(order);
   std::map<std::uint32_t, WorkGroup> groups;
   WorkGroup* group = nullptr;  // neighbours mostly lack the same
@@ -323,7 +329,7 @@ std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<fl
 
 std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances,
                                         const Costs& costs) {
-  if (*std::min_element(samples_.begin(), samples_.end()) < 2 * DAPPLE_BATCH) {
+  if (fewest(samples_) < 2 * DAPPLE_BATCH) {
     fraction_done_ = 1;
     if (one_batch_does(variances, 1.0)) return {};
     least_ = 2 * DAPPLE_BATCH;

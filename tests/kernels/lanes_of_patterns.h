@@ -20,6 +20,17 @@ __kernel void lanes_of_patterns(__global uint* found) {
   to[5] = pattern ? lowest_bit(pattern) : lowest;
 }
 
+/* Sixteen numbers an item: their floors, and all as whole numbers. */
+__kernel void rounded(__global const float* numbers, __global float* floors,
+                      __global long* wholes, uint items) {
+  const uint item = get_global_id(0);
+  if (item >= items) return;
+  const float16 x = vload16(item, numbers);
+  vstore16(floor_16(x), item, floors);
+  vstore8(rounded_longs(x.lo), 2u * item, wholes);
+  vstore8(rounded_longs(x.hi), 2u * item + 1u, wholes);
+}
+
 /* `pattern` names the children that are nodes, from number 100 on, and those that are opened, by as
    many rays as their slot's number and one; 17 entries each: how many are pushed, which, and their
    rays. */

@@ -34,6 +34,26 @@ __kernel void frames(__global const float* normals, __global float* tangents,
   vstore3(bitangent, item, bitangents);
 }
 
+/* The same by make_frames(), item by item in the next of its lanes. */
+__kernel void lane_frames(__global const float* normals, __global float* tangents,
+                          __global float* bitangents, uint count) {
+  const uint item = get_global_id(0), lane = item % 16u;
+  if (item >= count) return;
+  RayFloats normal[3], tangent[3], bitangent[3];
+  float16 along[3], across[3];
+  for (uint axis = 0; axis < 3u; ++axis) {
+    normal[axis].v = (float16)(axis == 2u ? 1.0f : 0.0f);
+    normal[axis].f[lane] = normals[3u * item + axis];
+  }
+  make_frames(normal[0].v, normal[1].v, normal[2].v, along, across);
+  for (uint axis = 0; axis < 3u; ++axis) {
+    tangent[axis].v = along[axis];
+    bitangent[axis].v = across[axis];
+    tangents[3u * item + axis] = tangent[axis].f[lane];
+    bitangents[3u * item + axis] = bitangent[axis].f[lane];
+  }
+}
+
 __kernel void cone_directions(__global const float* squares, __global const float* axes,
                               __global float* directions, float one_minus_cos, uint count) {
   const uint item = get_global_id(0);
@@ -41,16 +61,25 @@ __kernel void cone_directions(__global const float* squares, __global const floa
   vstore3(sample_cone(vload3(item, axes), one_minus_cos, vload2(item, squares)), item, directions);
 }
 
-/* Direction, distance and solid angle of `count` samples of a light seen from the origin. */
+/* Direction, distance and solid angle of `count` samples of a light seen from the origin, item by
+   item in the next of sixteen lanes. */
 __kernel void light_samples(__global const LightRecord* lights,
                             __global const EmitterTriangle* emitters, __global float* directions,
                             __global float* distances, __global float* solid_angles, uint light,
                             uint count) {
-  const uint item = get_global_id(0);
+  const uint item = get_global_id(0), lane = item % DAPPLE_RAY_LANES;
   if (item >= count) return;
   const float2 u = sample_2d(0, item, DAPPLE_PAIR_LIGHT, 1);
-  const LightSample sample = sample_source(lights + light, emitters, (float3)(0.0f), u);
-  vstore3(sample.direction, item, directions);
-  distances[item] = sample.distance;
-  solid_angles[item] = sample.solid_angle;
+  PointRays rays;
+  LightSamples samples;
+  for (uint axis = 0; axis < 3u; ++axis) rays.origin[axis].v = rays.normal[axis].v = (float16)(0.0f);
+  rays.u.v = rays.v.v = (float16)(0.5f);
+  rays.u.f[lane] = u.x;
+  rays.v.f[lane] = u.y;
+  sample_light(lights + light, emitters, 0, &rays, &samples);
+  vstore3((float3)(samples.direction[0].f[lane], samples.direction[1].f[lane],
+                   samples.direction[2].f[lane]),
+          item, directions);
+  distances[item] = samples.distance.f[lane];
+  solid_angles[item] = samples.solid_angle.f[lane];
 }
