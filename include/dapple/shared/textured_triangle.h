@@ -37,17 +37,15 @@ typedef struct TexturedTriangle {
 #define DAPPLE_TEXEL_SIZE_BIAS 25
 #define DAPPLE_TEXEL_SIZE_CODES 32
 
-/* Which of the scene's materials. */
-DAPPLE_FUNCTION uint textured_material(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
-  return (triangle->corner[0][1] & 1023u) | (triangle->corner[1][1] & 31u) << 10;
-}
-
 DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
   return triangle->corner[2][1] & DAPPLE_HAS_TEXTURE;
 }
 
 /* Of words, or of vectors of them: `first` and `second` are a corner's, `last` is the second word
    of corner 2. */
+
+/* Which of the scene's materials, of the second words of corners 0 and 1. */
+#define DAPPLE_MATERIAL_NUMBER(first, second) (((first) & 1023u) | ((second) & 31u) << 10)
 
 /* COLOR_0.a in 1/4080: the material's factor is not in it. */
 #define DAPPLE_VERTEX_ALPHA(first, second) (((first) & 2047u) << 1 | ((second) >> 10 & 1u))
@@ -64,6 +62,10 @@ DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle)
 
 /* The step, as the bits of a float. */
 #define DAPPLE_UV_STEP_BITS(last) ((((last) & DAPPLE_UV_EXPONENT) + 64u) << 23)
+
+DAPPLE_FUNCTION uint textured_material(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
+  return DAPPLE_MATERIAL_NUMBER(triangle->corner[0][1], triangle->corner[1][1]);
+}
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(TexturedTriangle) == 24);
