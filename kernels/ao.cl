@@ -4,15 +4,14 @@
 #include "point_rays.clh"
 #include "vectors.clh"
 
-/* Directions in the frame of the normal: x, y on the disk below them, z along it. Chosen in loops of
-   scalars, so that compilers make vectors of them. */
+/* Directions in the frame of the normal: x, y on the disk below them, z along it. */
 typedef struct DiskPlaces {
   RayFloats x, y, z;
 } DiskPlaces;
 
 inline void choose_directions(const PointRays* rays, AoParams params, DiskPlaces* disk) {
   const RayFloats u = rays->u, v = rays->v;
-  RayFloats x, y;
+  RayFloats x, y; /* in loops of scalars, so that compilers make vectors of them */
   if (params.whole_sets) {
     const RayUints pixel = rays->pixel, index = rays->index;
     const float inverse_count = 1.0f / params.rays;

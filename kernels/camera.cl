@@ -52,6 +52,7 @@ inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, con
                        const BeamShares* shares, const Stops* stops, __global SurfacePoint* points,
                        ItemHits* found) {
   BeamPoints at;
+  clear_points(&at);
   for (uint d = 0; d < stops->count; ++d) {
     const float16 t = stops->t[d].v;
     const int16 hit = t < INFINITY;

@@ -3,7 +3,8 @@
 #include "lanes.clh"
 #include "scene.clh"
 
-/* Position (3), depth, normal (3), hits: as they lie in a SurfacePoint. */
+/* Position (3), depth, normal (3), hits: a SurfacePoint has t and offset where depth and hits
+   are. */
 inline long8 surface_sums(ResolveParams params, float8 scale, __global const SurfacePoint* point) {
   float8 values = vload8(0, point->position);
   values.s3 = 0.0f;

@@ -5,7 +5,9 @@
 #include "light_record.h"
 #include "pass_params.h"
 #include "point_rays.clh"
+#include "vectors.clh"
 
+/* Always inlined: a sample would be returned through memory. */
 typedef struct LightSample {
   float3 direction;   /* towards the light, unit */
   float distance;
@@ -14,7 +16,8 @@ typedef struct LightSample {
 } LightSample;
 
 /* A point of a flat emitter, uniform over `area`. */
-DAPPLE_INLINE LightSample towards(float3 from, float3 to, float3 light_normal, float area, bool two_sided) {
+DAPPLE_INLINE LightSample towards(float3 from, float3 to, float3 light_normal, float area,
+                                  bool two_sided) {
   LightSample sample;
   sample.radiance = 1.0f;
   const float3 way = to - from;
@@ -62,7 +65,8 @@ DAPPLE_INLINE LightSample sample_sun(__global const LightRecord* light, float2 u
 }
 
 DAPPLE_INLINE LightSample sample_mesh(__global const LightRecord* light,
-                               __global const EmitterTriangle* emitters, float3 from, float2 u) {
+                                      __global const EmitterTriangle* emitters, float3 from,
+                                      float2 u) {
   uint low = 0, high = light->triangle_count - 1u;
   __global const EmitterTriangle* first = emitters + light->first_triangle;
   while (low < high) {
@@ -83,7 +87,8 @@ DAPPLE_INLINE LightSample sample_mesh(__global const LightRecord* light,
 }
 
 DAPPLE_INLINE LightSample sample_around(__global const LightRecord* light,
-                                 __global const float* environments, float3 normal, float2 u) {
+                                        __global const float* environments, float3 normal,
+                                        float2 u) {
   const Dome dome = dome_of(light, environments);
   LightSample sample;
   sample.direction = sample_dome(&dome, normal, u, &sample.solid_angle, &sample.radiance);
@@ -91,8 +96,10 @@ DAPPLE_INLINE LightSample sample_around(__global const LightRecord* light,
   return sample;
 }
 
+/* Of all lights but rectangles, sample_rect(), and domes. */
 DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
-                                 __global const EmitterTriangle* emitters, float3 from, float2 u) {
+                                        __global const EmitterTriangle* emitters, float3 from,
+                                        float2 u) {
   switch (light->kind) {
     case DAPPLE_LIGHT_SPHERE: return sample_sphere(light, from, u);
     case DAPPLE_LIGHT_SUN: return sample_sun(light, u);
@@ -121,7 +128,7 @@ inline void sample_rect(__global const LightRecord* light, const PointRays* rays
     against -= samples->direction[axis].v * light->direction[axis];
   }
   samples->distance.v = distance;
-  samples->solid_angle.v = light->area * max(against, 0.0f) / square;
+  samples->solid_angle.v = light->area * at_least_0(against) / square;
   samples->radiance.v = (float16)(1.0f);
 }
 
@@ -160,7 +167,7 @@ inline void aim_rays(const PointRays* rays, const LightSamples* samples, float i
     cosine += rays->normal[axis].v * samples->direction[axis].v;
   }
   const float16 solid_angle = samples->solid_angle.v;
-  ways->weight.v = solid_angle * max(cosine, 0.0f) * samples->radiance.v;
+  ways->weight.v = solid_angle * at_least_0(cosine) * samples->radiance.v;
   ways->t_max.v = ways->weight.v > 0.0f ? samples->distance.v : (float16)(-1.0f);
   ways->solid_angle.v = min(solid_angle * inverse_count, 2.0f * M_PI_F);
 }

@@ -21,24 +21,26 @@ class NeighbourhoodRow {
   explicit NeighbourhoodRow(int width) : stride_(width + 2), values_(N * stride_) {}
 
   [[nodiscard]] float* kind(std::size_t i) { return values_.data() + i * stride_; }
+  [[nodiscard]] const float* kind(std::size_t i) const { return values_.data() + i * stride_; }
   void set(int column, const std::array<float, N>& values) {
     for (std::size_t i = 0; i < N; ++i) kind(i)[column + 1] = values[i];
   }
-  [[nodiscard]] std::array<float, N> at(int column) {
+  [[nodiscard]] std::array<float, N> at(int column) const {
     std::array<float, N> values;
     for (std::size_t i = 0; i < N; ++i) values[i] = kind(i)[column + 1];
     return values;
   }
   /// This row's values become the sums of the three.
-  void set_sums(NeighbourhoodRow& above, NeighbourhoodRow& own, NeighbourhoodRow& below) {
+  void set_sums(const NeighbourhoodRow& above, const NeighbourhoodRow& own,
+                const NeighbourhoodRow& below) {
     for (std::size_t i = 0; i < values_.size(); ++i)
       values_[i] = above.values_[i] + own.values_[i] + below.values_[i];
   }
   /// And these of each value and those on either side of it in `columns`.
-  void set_sums_of_three(NeighbourhoodRow& columns) {
-    for (std::size_t kind = 0; kind < N; ++kind) {
-      const float* from = columns.kind(kind);
-      float* to = this->kind(kind);
+  void set_sums_of_three(const NeighbourhoodRow& columns) {
+    for (std::size_t i = 0; i < N; ++i) {
+      const float* from = columns.kind(i);
+      float* to = kind(i);
       for (std::size_t x = 1; x + 1 < stride_; ++x) to[x] = from[x] + from[x - 1] + from[x + 1];
     }
   }

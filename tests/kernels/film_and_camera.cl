@@ -1,4 +1,5 @@
 /* Parts of the camera pass and of resolving as kernels. */
+#include "beam_points.clh"
 #include "camera_samples.clh"
 #include "film.clh"
 
@@ -22,4 +23,44 @@ __kernel void camera_order(__global const float* x, __global const float* y,
 __kernel void to_fixed_points(__global const float* values, __global long* sums, uint count) {
   const uint item = get_global_id(0);
   if (item < count) vstore8(fixed_points(vload8(item, values)), item, sums);
+}
+
+/* Sixteen rays, seven numbers each (origin, direction, t), and what they hit: points as they are
+   placed side by side and one by one, seven numbers each. */
+__kernel void placed_points(__global const TriangleBlock* blocks,
+                            __global const SegmentBlock* segments,
+                            __global const InstanceRecord* instances, __global const float* rays,
+                            __global const uint* primitives, __global const uint* placements,
+                            __global float* together, __global float* alone) {
+  if (get_global_id(0) > 0) return;
+  const Scene scene = {0, blocks, segments, 0, 0, 0, instances};
+  BeamRays beam;
+  Stops stops;
+  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
+    for (uint axis = 0; axis < 3u; ++axis) {
+      ((float*)(beam.origin + axis))[i] = rays[7u * i + axis];
+      ((float*)(beam.direction + axis))[i] = rays[7u * i + 3u + axis];
+    }
+    stops.t[0].f[i] = rays[7u * i + 6u];
+    stops.primitive[0].i[i] = (int)primitives[i];
+    stops.instance[0].i[i] = (int)placements[i];
+  }
+  BeamPoints at;
+  clear_points(&at);
+  place_stops(scene, &beam, &stops, 0u, 65535u, &at);
+  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
+    const float3 origin = vload3(0, rays + 7u * i), direction = vload3(0, rays + 7u * i + 3u);
+    const SurfaceHit hit = {rays[7u * i + 6u], primitives[i], placements[i]};
+    const WorldPlace place = place_of_hit(scene, hit, origin, direction);
+    float3 normal = normalize(place.normal);
+    if (dot(normal, direction) > 0.0f) normal = -normal;
+    vstore3(place.position, 0, alone + 7u * i);
+    vstore3(normal, 0, alone + 7u * i + 3u);
+    alone[7u * i + 6u] = place.offset;
+    for (uint axis = 0; axis < 3u; ++axis) {
+      together[7u * i + axis] = at.position[axis].f[i];
+      together[7u * i + 3u + axis] = at.normal[axis].f[i];
+    }
+    together[7u * i + 6u] = at.offset.f[i];
+  }
 }

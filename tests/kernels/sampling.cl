@@ -72,7 +72,8 @@ __kernel void light_samples(__global const LightRecord* lights,
   const float2 u = sample_2d(0, item, DAPPLE_PAIR_LIGHT, 1);
   PointRays rays;
   LightSamples samples;
-  for (uint axis = 0; axis < 3u; ++axis) rays.origin[axis].v = rays.normal[axis].v = (float16)(0.0f);
+  for (uint axis = 0; axis < 3u; ++axis)
+    rays.origin[axis].v = rays.normal[axis].v = (float16)(0.0f);
   rays.u.v = rays.v.v = (float16)(0.5f);
   rays.u.f[lane] = u.x;
   rays.v.f[lane] = u.y;

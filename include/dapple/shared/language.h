@@ -15,8 +15,8 @@ typedef char schar; /* signed in OpenCL C */
 /* For loops over axes: as loops they keep arrays of vectors in memory. PoCL's compiler made hair 1.26
    times as fast with it. */
 #define DAPPLE_UNROLL _Pragma("unroll")
-/* For loops over sixteen lanes or more, of scalars in arrays of the function's own: without it PoCL's
-   compiler makes vectors of four. Rays to lights are made in 0.77 of the time with it. */
+/* For loops over sixteen lanes or more, of scalars that nothing else may point to: without it
+   PoCL's compiler makes vectors of four. Rays to lights are made in 0.77 of the time with it. */
 #if defined(__clang__)
 #define DAPPLE_SIXTEEN_LANES _Pragma("clang loop vectorize_width(16) interleave(disable)")
 #else

@@ -45,7 +45,8 @@ DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle)
    of corner 2. */
 
 /* Which of the scene's materials, of the second words of corners 0 and 1. */
-#define DAPPLE_MATERIAL_NUMBER(first, second) (((first) & 1023u) | ((second) & 31u) << 10)
+#define DAPPLE_MATERIAL_NUMBER(of_corner_0, of_corner_1) \
+  (((of_corner_0) & 1023u) | ((of_corner_1) & 31u) << 10)
 
 /* COLOR_0.a in 1/4080: the material's factor is not in it. */
 #define DAPPLE_VERTEX_ALPHA(first, second) (((first) & 2047u) << 1 | ((second) >> 10 & 1u))
