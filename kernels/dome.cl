@@ -6,7 +6,8 @@
 inline long8 dome_sums(const Dome* dome, __global const Ray* ray, Occlusion found, float scale) {
   const float3 light = ray->weight * dome_colour(dome, load3(ray->direction)) * scale;
   const float3 seen = light * found.transmittance;
-  return fixed_points((float8)(seen, light, visits_of(found)));
+  return fixed_points((float8)(seen.x, seen.y, seen.z, light.x, light.y, light.z,
+                               nodes_of(found), tests_of(found)));
 }
 
 /* Planes: irradiance (3) at radiance 1, the same unoccluded (3), visits, tests. Squares: of its

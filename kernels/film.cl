@@ -15,6 +15,10 @@ inline long8 surface_sums(ResolveParams params, float8 scale, __global const Sur
   return fixed_points(values * scale);
 }
 
+inline long8 in_order_of_planes(long8 s) {
+  return (long8)(s.s7, s.s4, s.s5, s.s6, s.s0, s.s1, s.s2, s.s3);
+}
+
 /* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles each ray is
    given those of its whole item. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
@@ -43,7 +47,7 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
     add_to_plane(film, params, 9, pixel, tests);
   }
   if (!of_points.s7) return;
-  add_to_planes(film, params, 8u, pixel, of_points.s74560123);
+  add_to_planes(film, params, 8u, pixel, in_order_of_planes(of_points));
 }
 
 /* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
@@ -58,7 +62,8 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
   if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
   long8 sums = (long8)(0);
   Batches batches = no_batches();
-  const float inverse_rays = 1.0f / params.rays;
+  const float inverse_rays = 1.0f / params.rays, of_unit = params.scale;
+  const float8 scale = (float8)(of_unit, of_unit, of_unit, of_unit, 1.0f, 1.0f, 1.0f, 1.0f);
   uint ray = sample_slot(sample_hits, begin) * params.rays;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     float value = 0.0f;
@@ -67,9 +72,11 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
       const Occlusion found = occlusions[ray];
       const float seen = found.transmittance;
       value += (1.0f - seen) * inverse_rays;
-      const float4 bent = vload4(0, rays[ray].direction) * seen;
-      const float4 scaled = (float4)(seen, bent.xyz) * params.scale;
-      sums += fixed_points((float8)(scaled, visits_of(found), 0.0f, 0.0f));
+      __global const float* direction = rays[ray].direction;
+      sums += fixed_points((float8)(seen, seen * direction[0], seen * direction[1],
+                                    seen * direction[2], nodes_of(found), tests_of(found), 0.0f,
+                                    0.0f) *
+                           scale);
     }
     add_to_batch(&batches, s, value);
   }
@@ -98,8 +105,8 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
       const Occlusion found = occlusions[ray];
       const float weight = rays[ray].weight, light = weight * found.transmittance;
       value += light * inverse_rays;
-      sums += fixed_points((float8)(light * params.scale, weight * params.scale, visits_of(found),
-                                    0.0f, 0.0f, 0.0f, 0.0f));
+      sums += fixed_points((float8)(light * params.scale, weight * params.scale, nodes_of(found),
+                                    tests_of(found), 0.0f, 0.0f, 0.0f, 0.0f));
     }
     add_to_batch(&batches, s, value);
   }
