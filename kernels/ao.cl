@@ -2,18 +2,17 @@
 #include "direction.clh"
 #include "pass_params.h"
 #include "point_rays.clh"
-#include "vectors.clh"
 
 /* Directions in the frame of the normal: x, y on the disk below them, z along it. */
 typedef struct DiskPlaces {
-  RayFloats x, y, z;
+  Floats16 x, y, z;
 } DiskPlaces;
 
 inline void choose_directions(const PointRays* rays, AoParams params, DiskPlaces* disk) {
-  const RayFloats u = rays->u, v = rays->v;
-  RayFloats x, y; /* in loops of scalars, so that compilers make vectors of them */
+  const Floats16 u = rays->u, v = rays->v;
+  Floats16 x, y; /* in loops of scalars, so that compilers make vectors of them */
   if (params.whole_sets) {
-    const RayUints pixel = rays->pixel, index = rays->index;
+    const Uints16 pixel = rays->pixel, index = rays->index;
     const float inverse_count = 1.0f / params.rays;
     for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
       const uint turn = hash_pair(hash_pair(pixel.u[i], DAPPLE_PAIR_AO_TURN), params.seed);

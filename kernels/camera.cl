@@ -15,7 +15,7 @@ typedef struct ItemHits {
 
 /* Of each ray's share of its pixel. */
 typedef struct BeamShares {
-  BeamFloats first_area, solid_angle;
+  Floats16 first_area, solid_angle;
 } BeamShares;
 
 /* The item's rays from `first` on as a beam: those that are not among its `count` have ended. */
@@ -63,7 +63,7 @@ inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, con
       others &= bits_of_16((stops->primitive[d].v != stops->primitive[d - 1u].v) |
                            (stops->instance[d].v != stops->instance[d - 1u].v));
     if (others) place_stops(scene, beam, stops, d, hits, &at);
-    BeamFloats area;
+    Floats16 area;
     area.v = shares->first_area.v + shares->solid_angle.v * t * t;
     for (uint left = hits; left; left &= left - 1u) {
       const uint ray = lowest_bit(left);

@@ -5,7 +5,6 @@
 #include "light_record.h"
 #include "pass_params.h"
 #include "point_rays.clh"
-#include "vectors.clh"
 
 /* Always inlined: a sample would be returned through memory. */
 typedef struct LightSample {
@@ -109,7 +108,7 @@ DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
 
 /* Sixteen LightSamples, a ray's in each lane. */
 typedef struct LightSamples {
-  RayFloats direction[3], distance, solid_angle, radiance;
+  Floats16 direction[3], distance, solid_angle, radiance;
 } LightSamples;
 
 /* As towards(), with places on the rectangle. */

@@ -39,7 +39,7 @@ __kernel void lane_frames(__global const float* normals, __global float* tangent
                           __global float* bitangents, uint count) {
   const uint item = get_global_id(0), lane = item % 16u;
   if (item >= count) return;
-  RayFloats normal[3], tangent[3], bitangent[3];
+  Floats16 normal[3], tangent[3], bitangent[3];
   float16 along[3], across[3];
   for (uint axis = 0; axis < 3u; ++axis) {
     normal[axis].v = (float16)(axis == 2u ? 1.0f : 0.0f);
