@@ -64,6 +64,7 @@ DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle)
 /* The step, as the bits of a float. */
 #define DAPPLE_UV_STEP_BITS(last) ((((last) & DAPPLE_UV_EXPONENT) + 64u) << 23)
 
+/* Which of the scene's materials. */
 DAPPLE_FUNCTION uint textured_material(DAPPLE_GLOBAL const TexturedTriangle* triangle) {
   return DAPPLE_MATERIAL_NUMBER(triangle->corner[0][1], triangle->corner[1][1]);
 }
