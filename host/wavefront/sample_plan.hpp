@@ -45,8 +45,8 @@ class SamplePlan {
   /// is missed. No pixel gets more than eight times what it has, so that the next decision rests on
   /// more, and blocks of 2x2 pixels get the same; empty when all are done. What after_scouts() left
   /// at one batch is brought to two only where by now that is missed: the largest irradiance, which
-  /// lights' errors are relative to, is known better. A pixel may be in several groups, to be traced
-  /// in their order.
+  /// lights' errors are relative to, is known better. A pixel may be in several groups, to be
+  /// traced in their order.
   std::vector<WorkGroup> next(const std::vector<std::vector<float>>& variances, const Costs& costs);
 
   /// Samples of each pixel once all work given out is done.

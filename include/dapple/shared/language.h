@@ -16,8 +16,8 @@ typedef char schar; /* signed in OpenCL C */
    times as fast with it. */
 #define DAPPLE_UNROLL _Pragma("unroll")
 /* For loops over sixteen lanes or more, of scalars that nothing else may point to: without it
-   PoCL's compiler makes vectors of four. Rays to lights are made in 0.92 of the time with it, camera
-   rays traced in 0.96. */
+   PoCL's compiler makes vectors of four. Rays to lights are made in 0.92 of the time with it,
+   camera rays traced in 0.96. */
 #if defined(__clang__)
 #define DAPPLE_SIXTEEN_LANES _Pragma("clang loop vectorize_width(16) interleave(disable)")
 #else
