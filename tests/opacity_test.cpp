@@ -116,6 +116,50 @@ float depth_along(const V3f& opacity, const V3f& size, const V3f& d) {
                    size.x * size.y * std::fabs(d.z));
 }
 
+/// What is in a box at random: any opacities, any two kinds of surfaces.
+NodeOpacity random_opacity(std::mt19937& random) {
+  std::uniform_real_distribution<float> part(0.0f, 1.0f);
+  NodeOpacity opacity;
+  for (int axis = 0; axis < 3; ++axis) opacity.axes[axis] = part(random);
+  opacity.normals.add(random_direction(random), part(random));
+  opacity.normals.add(random_direction(random), part(random));
+  return opacity;
+}
+
+TEST(OpacityModel, AClumpHidesItsEllipsoidsAreaFromAnyDirection) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 1000; ++i) {
+    NodeOpacity clump = random_opacity(random);
+    clump.clumping = 1;
+    const V3f size(1, 2, 0.5f), d = random_direction(random), c = clump.normals.correlation();
+    const float expected =
+        box_depth(clump.axes.x, clump.axes.y, clump.axes.z, c.x * std::copysign(1.0f, d.x * d.y),
+                  c.y * std::copysign(1.0f, d.y * d.z), c.z * std::copysign(1.0f, d.z * d.x),
+                  size.y * size.z * std::fabs(d.x), size.z * size.x * std::fabs(d.y),
+                  size.x * size.y * std::fabs(d.z));
+    EXPECT_NEAR(opacity_along(clump, size, d), std::min(1.0f, expected), 1e-5f);
+  }
+}
+
+TEST(OpacityModel, WhatLiesEvenlyHidesItsOpacityAlongEachAxis) {
+  for (const float opacity : {0.0f, 0.001f, 0.3f, 0.7f, 0.99f, 0.9999f}) {
+    NodeOpacity even;
+    even.axes = V3f(opacity);
+    for (int axis = 0; axis < 3; ++axis) {
+      V3f direction(0.0f);
+      direction[axis] = -2;
+      EXPECT_NEAR(opacity_along(even, V3f(1, 2, 3), direction), opacity, 3e-6f);
+    }
+  }
+}
+
+TEST(OpacityModel, DepthsOfWhatLiesEvenlyNeedNoFactor) {
+  std::mt19937 random(4);
+  for (int i = 0; i < 1000; ++i)
+    EXPECT_NEAR(clumping_factor(random_opacity(random), V3f(1, 2, 0.5f)), 1.0f, 1e-5f);
+  EXPECT_EQ(clumping_factor({}, V3f(1, 2, 0.5f)), 1.0f);
+}
+
 TEST(OpacityModel, ASolidBoxIsOpaqueInEveryDirection) {
   std::mt19937 random(1);
   for (const V3f& size : {V3f(1, 1, 1), V3f(1, 3, 0.2f), V3f(1, 0.01f, 1)}) {

@@ -1,6 +1,7 @@
 #include "bvh/node_opacity.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -59,16 +60,78 @@ V3f NormalMoments::correlation() const {
   return {of(3, 0, 1), of(4, 1, 2), of(5, 2, 0)};
 }
 
+namespace {
+
+/// Numbers of four directions side by side, in one register of any x86-64.
+using Four = float __attribute__((vector_size(16)));
+using FourInts = int __attribute__((vector_size(16)));
+
+Four all(float x) { return Four{x, x, x, x}; }
+Four least(Four a, Four b) { return a < b ? a : b; }
+Four largest(Four a, Four b) { return a > b ? a : b; }
+Four magnitude(Four x) { return largest(x, -x); }
+Four root(Four x) {
+  return Four{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+}
+
+/// exp(-x), to 3e-6 of it, of numbers from 0 on; beyond 87 nothing is left.
+Four exp_of_minus(Four x) {
+  const Four octaves = least(x, all(87.0f)) * std::numbers::log2e_v<float>;
+  const FourInts whole = __builtin_convertvector(octaves + 0.5f, FourInts);
+  // Taylor's series of 2^rest for rest in [-1/2, 1/2].
+  const Four rest = __builtin_convertvector(whole, Four) - octaves;
+  Four p = 1.3333558e-3f * rest + 9.6181291e-3f;
+  p = p * rest + 5.5504109e-2f;
+  p = p * rest + 2.4022651e-1f;
+  p = p * rest + 6.9314718e-1f;
+  p = p * rest + 1.0f;
+  const FourInts power = (127 - whole) << 23;
+  return p * std::bit_cast<Four>(power);
+}
+
+struct FourVectors {
+  Four x, y, z;
+};
+
+/// chord_variance().
+Four chord_variances(const FourVectors& facing) {
+  // Mean square by the box's covariogram, the integral over the longest chord of
+  // prod (1 - q_k s); q_k is the share of side k that this chord spans.
+  const Four most = largest(largest(facing.x, facing.y), largest(facing.z, all(1e-37f)));
+  const Four per = 1.0f / most;
+  const Four qx = facing.x * per, qy = facing.y * per, qz = facing.z * per;
+  const Four e1 = qx + qy + qz, e2 = qx * qy + qy * qz + qz * qx, e3 = qx * qy * qz;
+  return largest(all(0.0f),
+                 2.0f * e1 * (1.0f - e1 * (1.0f / 2) + e2 * (1.0f / 3) - e3 * (1.0f / 4)) - 1.0f);
+}
+
+/// Variances of the depths that chord_depth() and centre_weight() give rays, over the squares of
+/// their means `depth`. Sampled for boxes of any shape, to a tenth: long chords are those through
+/// the middle.
+Four depth_variances(Four depth, Four chords, float concentration) {
+  // How much of a chord's deviation from the mean one counts: chord_depth().
+  constexpr float kPerDepth = 1.0f / (DAPPLE_FILLED_DEPTH - DAPPLE_SPARSE_DEPTH);
+  const Four counted =
+      least(largest((DAPPLE_FILLED_DEPTH - depth) * kPerDepth, all(0.0f)), all(1.0f));
+  return chords * counted * counted * (1.0f + 1.3f * concentration) +
+         0.17f * concentration * concentration;
+}
+
+/// Of rays whose depths have these means and variances, as if gamma distributed.
+Four mean_transmittances(Four depth, Four variance) {
+  // (1 + v depth)^(-1 / v), with log(1 + x) as x (6 + x) / (6 + 4 x), to a hundredth up to 2.
+  const Four x = variance * depth;
+  return exp_of_minus(depth * (6.0f + x) / (6.0f + 4.0f * x));
+}
+
+}  // namespace
+
 float depth_of(float opacity) {
   return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
 }
 
 float chord_variance(const V3f& facing) {
-  // Mean square by the box's covariogram, the integral over the longest chord of
-  // prod (1 - q_k s); q_k is the share of side k that this chord spans.
-  const V3f q = facing / std::max({facing.x, facing.y, facing.z, 1e-37f});
-  const float e1 = q.x + q.y + q.z, e2 = q.x * q.y + q.y * q.z + q.z * q.x, e3 = q.x * q.y * q.z;
-  return std::max(0.0f, 2.0f * e1 * (1.0f - e1 / 2.0f + e2 / 3.0f - e3 / 4.0f) - 1.0f);
+  return chord_variances({all(facing.x), all(facing.y), all(facing.z)})[0];
 }
 
 float concentration_of(float off_centre) {
@@ -79,23 +142,6 @@ float concentration_of(float off_centre) {
 
 namespace {
 
-/// Variance of the depths that chord_depth() and centre_weight() give rays, over the square of
-/// their mean `depth`. Sampled for boxes of any shape, to a tenth: long chords are those through
-/// the middle.
-float depth_variance(float depth, const V3f& facing, float concentration) {
-  if (!(depth > 0.0f)) return 0.0f;
-  const float counted = chord_depth(depth, 2.0f) / depth - 1.0f;  // of a chord's deviation
-  const float chords = chord_variance(facing) * counted * counted;
-  return chords * (1.0f + 1.3f * concentration) + 0.17f * concentration * concentration;
-}
-
-/// Of rays whose depths have this mean and variance, as if gamma distributed.
-float mean_transmittance(float depth, float variance) {
-  // (1 + v depth)^(-1 / v), with log(1 + x) as x (6 + x) / (6 + 4 x), to a hundredth up to 2.
-  const float x = variance * depth;
-  return std::exp(-depth * (6.0f + x) / (6.0f + 4.0f * x));
-}
-
 /// How much of what concentration takes from the mean opacity is given back: all in nodes of
 /// many triangles. Neighbouring small nodes hide the same rays more than independent ones would,
 /// and a little too much light in each sets their product right (measured on trees).
@@ -104,7 +150,7 @@ float compensation(std::size_t triangles) {
   return std::clamp(std::log2(static_cast<float>(triangles) + 1.0f) / 12.0f, 0.0f, 1.0f);
 }
 
-/// Looks at a box of some size from any direction.
+/// Looks at a box of some size from four directions at a time.
 class DirectionalOpacity {
  public:
   DirectionalOpacity(const NodeOpacity& opacity, const V3f& size)
@@ -116,48 +162,52 @@ class DirectionalOpacity {
         concentration_(opacity.concentration),
         compensated_(opacity.concentration * compensation(opacity.triangles)) {}
 
-  struct View {
-    float facing;   ///< projected area of the box
-    float met;      ///< mean opacity that rays meet
-    float slope;    ///< its change with a factor on depths
-    float opacity;  ///< that they should meet
+  struct Views {
+    Four facing;   ///< projected area of the box
+    Four met;      ///< mean opacity that rays meet
+    Four slope;    ///< its change with a factor on depths
+    Four opacity;  ///< that they should meet
   };
 
-  [[nodiscard]] View along(const V3f& direction) const {
-    V3f facing, correlation;
-    for (int axis = 0; axis < 3; ++axis) {
-      facing[axis] = faces_[axis] * std::fabs(direction[axis]);
-      correlation[axis] =
-          correlation_[axis] * std::copysign(1.0f, direction[axis] * direction[(axis + 1) % 3]);
-    }
-    const auto blend = [&](const V3f& axes) {
-      return box_depth(axes.x, axes.y, axes.z, correlation.x, correlation.y, correlation.z,
-                       facing.x, facing.y, facing.z);
-    };
-    const float depth = blend(depths_);
-    View view = meet(facing, depth);
+  [[nodiscard]] Views along(const FourVectors& direction) const {
+    const FourVectors facing{faces_.x * magnitude(direction.x), faces_.y * magnitude(direction.y),
+                             faces_.z * magnitude(direction.z)};
+    const FourVectors seen{faces_.x * direction.x, faces_.y * direction.y, faces_.z * direction.z};
+    const Four area = facing.x + facing.y + facing.z;
+    const Four depth = blend(depths_, seen, area);
+    const Four chords = chord_variances(facing);
+    Views views = meet(area, depth, chords);
     // What gathers around the middle is no less opaque for the box's empty corners.
-    const float even = 1.0f - mean_transmittance(depth, (1.0f - concentration_) *
-                                                            depth_variance(depth, facing, 0.0f));
-    view.opacity = even + clumping_ * (std::min(1.0f, blend(axes_)) - even);
-    return view;
+    const Four even = 1.0f - mean_transmittances(depth, (1.0f - concentration_) *
+                                                            depth_variances(depth, chords, 0.0f));
+    const Four clump = least(blend(axes_, seen, area), all(1.0f));
+    views.opacity = even + clumping_ * (clump - even);
+    return views;
   }
 
-  /// Along an axis, where the opacity is known.
-  [[nodiscard]] View along_axis(int axis) const {
-    V3f facing(0.0f);
-    facing[axis] = faces_[axis];
-    View view = meet(facing, depths_[axis]);
-    view.opacity = axes_[axis];
-    return view;
+  /// Along the axes, where opacities are known and all ways through the box are as long. Of what is
+  /// fourth nothing is seen.
+  [[nodiscard]] Views along_axes() const {
+    Views views = meet(Four{faces_.x, faces_.y, faces_.z, 0.0f},
+                       Four{depths_.x, depths_.y, depths_.z, 0.0f}, all(0.0f));
+    views.opacity = Four{axes_.x, axes_.y, axes_.z, 0.0f};
+    return views;
   }
 
  private:
-  [[nodiscard]] View meet(const V3f& facing, float depth) const {
-    const float variance = depth_variance(depth, facing, compensated_);
-    const float transmittance = mean_transmittance(depth, variance);
-    return {facing.x + facing.y + facing.z, 1.0f - transmittance,
-            depth * transmittance / (1.0f + variance * depth), 0.0f};
+  [[nodiscard]] Views meet(Four area, Four depth, Four chords) const {
+    const Four variance = depth_variances(depth, chords, compensated_);
+    const Four transmittance = mean_transmittances(depth, variance);
+    return {area, 1.0f - transmittance, depth * transmittance / (1.0f + variance * depth),
+            all(0.0f)};
+  }
+
+  /// box_depth() of dapple/shared/opacity.h; correlations have the signs of directions, and so have
+  /// the areas `seen` here.
+  [[nodiscard]] Four blend(const V3f& along, const FourVectors& seen, Four area) const {
+    const Four x = along.x * seen.x, y = along.y * seen.y, z = along.z * seen.z;
+    const Four mixed = correlation_.x * x * y + correlation_.y * y * z + correlation_.z * z * x;
+    return root(largest(x * x + y * y + z * z + 2.0f * mixed, all(0.0f))) / (area + 1e-37f);
   }
 
   V3f faces_, axes_, depths_, correlation_;
@@ -168,25 +218,28 @@ class DirectionalOpacity {
 }  // namespace
 
 float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction) {
-  return DirectionalOpacity(opacity, size).along(direction).opacity;
+  const FourVectors directions{all(direction.x), all(direction.y), all(direction.z)};
+  return DirectionalOpacity(opacity, size).along(directions).opacity[0];
 }
 
 float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
   const DirectionalOpacity directional(opacity, size);
-  // Hidden area summed over directions: what is wanted beyond what the depths give, and how
-  // the latter changes with the factor.
-  float wanting = 0, slope = 0;
-  const auto add = [&](float weight, const DirectionalOpacity::View& view) {
-    wanting += weight * view.facing * (view.opacity - view.met);
-    slope += weight * view.facing * view.slope;
-  };
   // The axes and the diagonals of a cube, weighted 2/15 and 3/20, integrate polynomials of
   // degree 5 over the sphere (Abramowitz and Stegun, 25.4.65).
-  for (int axis = 0; axis < 3; ++axis) add(2.0f / 15, directional.along_axis(axis));
-  const float root = std::sqrt(1.0f / 3.0f);
-  for (const V3f& signs : {V3f(1, 1, 1), V3f(1, -1, -1), V3f(-1, 1, -1), V3f(-1, -1, 1)}) {
-    add(3.0f / 20, directional.along(signs * root));
-  }
+  constexpr float kRoot = 0.57735027f;
+  const auto axes = directional.along_axes();
+  const auto diagonals = directional.along(FourVectors{Four{kRoot, kRoot, -kRoot, -kRoot},
+                                                       Four{kRoot, -kRoot, kRoot, -kRoot},
+                                                       Four{kRoot, -kRoot, -kRoot, kRoot}});
+  const Four of_axes = 2.0f / 15 * axes.facing;
+  const Four of_diagonals = 3.0f / 20 * diagonals.facing;
+  // Hidden area summed over directions: what is wanted beyond what the depths give, and how
+  // the latter changes with the factor.
+  const Four wanted =
+      of_axes * (axes.opacity - axes.met) + of_diagonals * (diagonals.opacity - diagonals.met);
+  const Four changed = of_axes * axes.slope + of_diagonals * diagonals.slope;
+  const float wanting = wanted[0] + wanted[1] + wanted[2] + wanted[3];
+  const float slope = changed[0] + changed[1] + changed[2] + changed[3];
   if (!(slope > 0.0f)) return 1.0f;
   return std::clamp(1.0f + wanting / slope, 0.6f, 1.6f);
 }
