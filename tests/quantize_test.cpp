@@ -96,13 +96,16 @@ void expect_margin_and_snug(const BvhNode& node, unsigned slot, const Box3f& box
     const double step = step_of(node, a);
     const double resolution = std::numeric_limits<double>::epsilon() * std::fabs(box.min[a]);
     const double least = (kGridMargin - 1e-6) * step - resolution;
+    const double rounding_below = kGridRounding * std::fabs(box.min[a]);
+    const double rounding_above = kGridRounding * std::fabs(box.max[a]);
     const double below = box.min[a] - exact_lower(node, a, slot);
     const double above = exact_upper(node, a, slot) - box.max[a];
-    EXPECT_GE(below, least) << "axis " << a;
-    EXPECT_GE(above, least) << "axis " << a;
+    EXPECT_GE(below, least + 0.999999 * rounding_below) << "axis " << a;
+    EXPECT_GE(above, least + 0.999999 * rounding_above) << "axis " << a;
     // A bound is rounded to the next step beyond a margin.
-    EXPECT_LE(below, (1 + 2 * kGridMargin) * step + resolution) << "axis " << a;
-    EXPECT_LE(above, (1 + 2 * kGridMargin) * step + resolution) << "axis " << a;
+    const double most = (1 + 2 * kGridMargin) * step + resolution;
+    EXPECT_LE(below, most + rounding_below) << "axis " << a;
+    EXPECT_LE(above, most + rounding_above) << "axis " << a;
   }
 }
 
@@ -134,14 +137,28 @@ TEST(Quantize, TheGridIsWithinTwiceTheFinestThatFits) {
       BvhNode node{};
       set_grid(node, parent);
       for (int a = 0; a < 3; ++a) {
-        if (node.exponent[a] == 1) continue;  // as fine as a normal float's exponent goes
-        // The origin must be a float below the box: where floats are sparse the grid has to
-        // reach from there. 255 steps of half the size may just fail to cover this.
-        const double reach =
-            static_cast<double>(parent.max[a]) - std::nextafter(parent.min[a], -kInfinity);
+        if (node.exponent[a] == 27) continue;  // 2^-100: as fine as it goes
+        // The origin must be a float below the box and its margin: where floats are sparse the
+        // grid has to reach from there. 255 steps of half the size may just fail to cover this.
+        const auto start =
+            static_cast<float>(parent.min[a] - 2 * kGridRounding * std::fabs(parent.min[a]));
+        const double reach = parent.max[a] + kGridRounding * std::fabs(parent.max[a]) -
+                             std::nextafter(start, -kInfinity);
         EXPECT_GT(reach, 253.0 / 4 * step_of(node, a)) << "axis " << a << ", box " << i;
       }
     }
+  }
+}
+
+TEST(Quantize, SidesOfFlatBoxesAreNoDenormalNumbers) {
+  BvhNode node{};
+  const Box3f ground(V3f(-1, 0, -1), V3f(1, 0, 1));
+  set_grid(node, ground);
+  set_child_box(node, 0, ground);
+  const Box3f grown = child_box(node, 0);
+  for (const float side : {grown.min.y, grown.max.y}) {
+    EXPECT_TRUE(std::isnormal(side)) << side;
+    EXPECT_LT(std::fabs(side), 1e-29f);
   }
 }
 

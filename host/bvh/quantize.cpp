@@ -8,18 +8,27 @@
 namespace dapple {
 namespace {
 
+/// Margin of a side at `coordinate`, in steps.
+double margin(float coordinate, double step) {
+  return kGridMargin + kGridRounding * std::fabs(coordinate) / step;
+}
+
+/// Steps are 2^-100 at least: what is made of smaller ones may be denormal, and multiplied a
+/// hundred times as slowly.
+constexpr int kLeastPower = -100;
+
 /// The smallest power of two s with which [lower, upper] fits 253 steps from an origin
 /// rounded down to a float; the two steps left are for the margins.
 void choose_axis(float lower, float upper, float& origin, uchar& exponent) {
-  int power = -126;
+  int power = kLeastPower;
   const double size = static_cast<double>(upper) - lower;
   if (size > 0) power = std::max(power, static_cast<int>(std::ceil(std::log2(size / 253.0))));
   for (;; ++power) {
     const double step = std::ldexp(1.0, power);
-    const double wanted = lower - 2.0 * kGridMargin * step;
+    const double wanted = lower - 2.0 * margin(lower, step) * step;
     auto start = static_cast<float>(wanted);
     if (start > wanted) start = std::nextafter(start, -std::numeric_limits<float>::infinity());
-    if ((upper - static_cast<double>(start)) / step + kGridMargin > 255.0) continue;
+    if ((upper - static_cast<double>(start)) / step + margin(upper, step) > 255.0) continue;
     origin = start;
     exponent = static_cast<uchar>(power + 127);
     return;
@@ -40,8 +49,8 @@ void set_child_box(BvhNode& node, unsigned slot, const Box3f& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const double step = std::ldexp(1.0, node.exponent[axis] - 127);
     const double origin = node.origin[axis];
-    const double lower = std::floor((box.min[axis] - origin) / step - kGridMargin);
-    const double upper = std::ceil((box.max[axis] - origin) / step + kGridMargin);
+    const double lower = std::floor((box.min[axis] - origin) / step - margin(box.min[axis], step));
+    const double upper = std::ceil((box.max[axis] - origin) / step + margin(box.max[axis], step));
     assert(lower >= -1.0 && upper <= 256.0);
     node.lower[axis][slot] = static_cast<uchar>(std::clamp(lower, 0.0, 255.0));
     node.upper[axis][slot] = static_cast<uchar>(std::clamp(upper, 0.0, 255.0));

@@ -10,13 +10,15 @@ namespace dapple {
 /// (finite, not empty), and marks every slot empty.
 void set_grid(BvhNode& node, const Box3f& box);
 
-/// Stores `box`, which lies inside the grid's box, as child `slot`, grown to grid steps
-/// plus at least kGridMargin of a step, which pays for the kernel's rounding.
+/// Stores `box`, which lies inside the grid's box, as child `slot`, grown to grid steps plus at
+/// least kGridMargin of a step and kGridRounding of a side's coordinate, which pay for the kernels'
+/// rounding.
 void set_child_box(BvhNode& node, unsigned slot, const Box3f& box);
 
 /// The grown box of child `slot`, as the kernels see it.
 Box3f child_box(const BvhNode& node, unsigned slot);
 
 inline constexpr double kGridMargin = 1.0 / 1024.0;
+inline constexpr double kGridRounding = 0x1p-24;  ///< half of a float's last place
 
 }  // namespace dapple
