@@ -160,14 +160,20 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
   const Row zero{}, one = zero + 1.0f;
   Row x;
   for (int i = 0; i < kMapSize; ++i) x[i] = static_cast<float>(i) + 0.5f;
+  // Along a row shares are straight lines, and from row to row they differ by ny.
+  Row beyond[3], step[3];
+  const float y = static_cast<float>(triangle.row0) + 0.5f;
+  for (int e = 0; e < 3; ++e) {
+    beyond[e] = x * nx[e] + (offset[e] + ny[e] * y);
+    step[e] = zero + ny[e];
+  }
   Tally tally;
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    const float y = static_cast<float>(row) + 0.5f;
     Row left = zero - 2.0f;
     for (int e = 0; e < 3; ++e) {
-      Row share = x * nx[e] + (offset[e] + ny[e] * y);
-      share = share > zero ? share : zero;
+      const Row share = beyond[e] > zero ? beyond[e] : zero;
       left += share < one ? share : one;
+      beyond[e] += step[e];
     }
     left = left > zero ? left : zero;
     store_row(&coverage.share[row * kMapSize], left);
