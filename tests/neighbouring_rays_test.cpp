@@ -57,7 +57,15 @@ Scene strands_and_leaves() {
   return scene;
 }
 
+/// Vertices moved to where floats are sparser.
+Scene moved(Scene scene, const V3f& by) {
+  for (Mesh& mesh : scene.meshes)
+    for (V3f& position : mesh.positions) position += by;
+  return scene;
+}
+
 Scene scene_named(const std::string& name) {
+  if (name == "far") return moved(make_procedural("scene:tree?leaves=3000"), V3f(40, -20, 10));
   if (name == "sheared") return forest_with_sheared_trees();
   if (name == "strands") return strand_scene(curly_strands({}), 0.3f);
   return name == "strands and leaves" ? strands_and_leaves() : make_procedural(name);
@@ -168,7 +176,43 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NeighbouringRays,
                          testing::Values("scene:tree?leaves=3000",
                                          "scene:cloud?leaves=3000&opacity=0.2",
                                          "scene:forest?trees=9&leaves=500", "sheared", "strands",
-                                         "strands and leaves"));
+                                         "strands and leaves", "far"));
+
+/// Squares across the axes, a kilometre away: boxes around them are as thick as roundings.
+Scene far_sheets() {
+  Scene scene;
+  scene.materials.push_back(material_of(0.3f));
+  Mesh mesh;
+  Points random(5);
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    const V3f middle(random.unit(), random.unit(), random.unit());
+    V3f u(0.0f), v(0.0f);
+    u[(i + 1) % 3] = v[(i + 2) % 3] = 0.04f;
+    for (const V3f& corner : {-u - v, u - v, u + v, v - u})
+      mesh.positions.push_back(V3f(1000, -500, 250) + middle + corner);
+    const std::uint32_t first = 4 * i;
+    for (const std::uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u})
+      mesh.indices.push_back(first + corner);
+  }
+  mesh.materials.assign(mesh.indices.size() / 3, 0);
+  place(scene, std::move(mesh), {});
+  return scene;
+}
+
+TEST(NeighbouringRaysFarAway, FindFlatBoxesNoDeeperThanAlone) {
+  const SceneOnDevice scene(far_sheets());
+  const std::vector<Ray> rays = rays_through(scene.bvh.bounds, 5003, 1, 0.02f, 7);
+  double difference = 0, hidden = 0;
+  const auto alone = scene.trace(rays, Estimator::prefiltered);
+  const auto found = together(scene, rays, Estimator::prefiltered);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    difference += alone[i].transmittance - found[i].transmittance;
+    hidden += 1 - alone[i].transmittance;
+  }
+  const auto count = static_cast<double>(rays.size());
+  EXPECT_GT(hidden / count, 0.2) << "the case does not test much";
+  EXPECT_LT(std::fabs(difference), 0.01 * hidden);
+}
 
 TEST(Trace, RaysToDifferentLightsAreNeverHiddenByTheirOwn) {
   Scene scene;

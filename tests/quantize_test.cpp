@@ -91,11 +91,9 @@ void expect_contains(const Box3f& outer, const Box3f& inner) {
 
 void expect_margin_and_snug(const BvhNode& node, unsigned slot, const Box3f& box) {
   for (int a = 0; a < 3; ++a) {
-    // 1e-6 of a step: doubles divided, the quotient up to 255. Where a box has no size, steps
-    // are finer than doubles at its coordinates, and a margin is lost in them.
+    // 1e-6 of a step: doubles divided, the quotient up to 255.
     const double step = step_of(node, a);
-    const double resolution = std::numeric_limits<double>::epsilon() * std::fabs(box.min[a]);
-    const double least = (kGridMargin - 1e-6) * step - resolution;
+    const double least = (kGridMargin - 1e-6) * step;
     const double rounding_below = kGridRounding * std::fabs(box.min[a]);
     const double rounding_above = kGridRounding * std::fabs(box.max[a]);
     const double below = box.min[a] - exact_lower(node, a, slot);
@@ -103,7 +101,7 @@ void expect_margin_and_snug(const BvhNode& node, unsigned slot, const Box3f& box
     EXPECT_GE(below, least + 0.999999 * rounding_below) << "axis " << a;
     EXPECT_GE(above, least + 0.999999 * rounding_above) << "axis " << a;
     // A bound is rounded to the next step beyond a margin.
-    const double most = (1 + 2 * kGridMargin) * step + resolution;
+    const double most = (1 + 2 * kGridMargin) * step;
     EXPECT_LE(below, most + rounding_below) << "axis " << a;
     EXPECT_LE(above, most + rounding_above) << "axis " << a;
   }

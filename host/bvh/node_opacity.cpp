@@ -74,7 +74,7 @@ Four root(Four x) {
   return Four{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
 }
 
-/// exp(-x), to 3e-6 of it, of numbers from 0 on; beyond 87 nothing is left.
+/// exp(-x) of numbers from 0 on, to 4e-6 of it up to 16; beyond 87 nothing is left.
 Four exp_of_minus(Four x) {
   const Four octaves = least(x, all(87.0f)) * std::numbers::log2e_v<float>;
   const FourInts whole = __builtin_convertvector(octaves + 0.5f, FourInts);
@@ -185,8 +185,8 @@ class DirectionalOpacity {
     return views;
   }
 
-  /// Along the axes, where opacities are known and all ways through the box are as long. Of what is
-  /// fourth nothing is seen.
+  /// Along the axes, where opacities are known and all ways through the box are equally long, so
+  /// that chords have no variance. The fourth lane sees no area.
   [[nodiscard]] Views along_axes() const {
     Views views = meet(Four{faces_.x, faces_.y, faces_.z, 0.0f},
                        Four{depths_.x, depths_.y, depths_.z, 0.0f}, all(0.0f));

@@ -17,8 +17,8 @@ double margin(float coordinate, double step) {
 /// hundred times as slowly.
 constexpr int kLeastPower = -100;
 
-/// The smallest power of two s with which [lower, upper] fits 253 steps from an origin
-/// rounded down to a float; the two steps left are for the margins.
+/// The smallest power of two with which [lower, upper] and the margins on both sides fit 255 steps
+/// from an origin rounded down to a float. 253 steps is where to begin.
 void choose_axis(float lower, float upper, float& origin, uchar& exponent) {
   int power = kLeastPower;
   const double size = static_cast<double>(upper) - lower;

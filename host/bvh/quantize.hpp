@@ -19,6 +19,11 @@ void set_child_box(BvhNode& node, unsigned slot, const Box3f& box);
 Box3f child_box(const BvhNode& node, unsigned slot);
 
 inline constexpr double kGridMargin = 1.0 / 1024.0;
-inline constexpr double kGridRounding = 0x1p-24;  ///< half of a float's last place
+
+/// Of a coordinate: two roundings to a float. Kernels round a stored side to a float, which leaves
+/// it at least as far outside as a float can say, and then multiply it and the ray's origin by the
+/// inverse direction: two roundings of numbers about as large as the coordinate over the direction.
+/// Where a ray has far to go to the box the rest is a part of the distance, and is paid for there.
+inline constexpr double kGridRounding = 0x1p-23;
 
 }  // namespace dapple
