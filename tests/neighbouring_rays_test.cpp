@@ -178,8 +178,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NeighbouringRays,
                                          "scene:forest?trees=9&leaves=500", "sheared", "strands",
                                          "strands and leaves", "far"));
 
-/// Squares across the axes, a kilometre away: boxes around them are as thick as roundings.
-Scene far_sheets() {
+/// Squares of 2 `half` a side across the axes, a kilometre away: boxes around them are as thick as
+/// roundings.
+Scene far_sheets(float half) {
   Scene scene;
   scene.materials.push_back(material_of(0.3f));
   Mesh mesh;
@@ -187,7 +188,7 @@ Scene far_sheets() {
   for (std::uint32_t i = 0; i < 400; ++i) {
     const V3f middle(random.unit(), random.unit(), random.unit());
     V3f u(0.0f), v(0.0f);
-    u[(i + 1) % 3] = v[(i + 2) % 3] = 0.04f;
+    u[(i + 1) % 3] = v[(i + 2) % 3] = half;
     for (const V3f& corner : {-u - v, u - v, u + v, v - u})
       mesh.positions.push_back(V3f(1000, -500, 250) + middle + corner);
     const std::uint32_t first = 4 * i;
@@ -199,8 +200,8 @@ Scene far_sheets() {
   return scene;
 }
 
-TEST(NeighbouringRaysFarAway, FindFlatBoxesNoDeeperThanAlone) {
-  const SceneOnDevice scene(far_sheets());
+TEST(NeighbouringRaysFarAway, FindFlatBoxesAsDeepAsAlone) {
+  const SceneOnDevice scene(far_sheets(0.04f));
   const std::vector<Ray> rays = rays_through(scene.bvh.bounds, 5003, 1, 0.02f, 7);
   double difference = 0, hidden = 0;
   const auto alone = scene.trace(rays, Estimator::prefiltered);
@@ -211,7 +212,8 @@ TEST(NeighbouringRaysFarAway, FindFlatBoxesNoDeeperThanAlone) {
   }
   const auto count = static_cast<double>(rays.size());
   EXPECT_GT(hidden / count, 0.2) << "the case does not test much";
-  EXPECT_LT(std::fabs(difference), 0.01 * hidden);
+  // Roundings of thousands of depths, of either sign; without chords, for one, it is 0.0012.
+  EXPECT_LT(std::fabs(difference), 3e-4 * hidden);
 }
 
 TEST(Trace, RaysToDifferentLightsAreNeverHiddenByTheirOwn) {

@@ -187,6 +187,51 @@ TEST(OpacityModel, FactorsOfClumpsAreThoseOfTheirMirrorImagesAndOfAxesRenamed) {
   EXPECT_GT(changed, 300) << "the case does not test much";
 }
 
+/// Area hidden by the box, and its change with a factor on depths, over directions from everywhere.
+struct HiddenArea {
+  double wanted = 0, given = 0, change = 0;
+};
+
+HiddenArea hidden_area(const NodeOpacity& clump, const V3f& size, std::mt19937& random) {
+  constexpr float kStep = 0.01f;
+  const auto with_factor = [&](float factor) {
+    NodeOpacity even = clump;
+    even.clumping = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      even.axes[axis] = 1.0f - std::exp(-factor * depth_of(clump.axes[axis]));
+    return even;
+  };
+  const NodeOpacity less = with_factor(1 - kStep), even = with_factor(1),
+                    more = with_factor(1 + kStep);
+  HiddenArea hidden;
+  for (int i = 0; i < 400; ++i) {
+    const V3f d = random_direction(random);
+    const double facing = size.y * size.z * std::fabs(d.x) + size.z * size.x * std::fabs(d.y) +
+                          size.x * size.y * std::fabs(d.z);
+    hidden.wanted += facing * opacity_along(clump, size, d);
+    hidden.given += facing * opacity_along(even, size, d);
+    hidden.change +=
+        facing * (opacity_along(more, size, d) - opacity_along(less, size, d)) / (2 * kStep);
+  }
+  return hidden;
+}
+
+TEST(OpacityModel, FactorsMakeUpForWhatClumpsHideLessFromEverywhere) {
+  std::mt19937 random(6);
+  double factors = 0, expected = 0;
+  for (int i = 0; i < 500; ++i) {
+    NodeOpacity clump = random_opacity(random);
+    clump.clumping = 0.3f;
+    const V3f size(1, 2, 1.5f);
+    const HiddenArea hidden = hidden_area(clump, size, random);
+    factors += clumping_factor(clump, size) - 1;
+    expected += (hidden.wanted - hidden.given) / hidden.change;
+  }
+  EXPECT_LT(expected, -0.02 * 500) << "the case does not test much";
+  // Seven directions stand for all: to 3 % here. Diagonals weighted as the axes would be 11 % off.
+  EXPECT_NEAR(factors / expected, 1, 0.05);
+}
+
 TEST(OpacityModel, ASolidBoxIsOpaqueInEveryDirection) {
   std::mt19937 random(1);
   for (const V3f& size : {V3f(1, 1, 1), V3f(1, 3, 0.2f), V3f(1, 0.01f, 1)}) {
