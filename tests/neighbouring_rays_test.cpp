@@ -216,6 +216,36 @@ TEST(NeighbouringRaysFarAway, FindFlatBoxesAsDeepAsAlone) {
   EXPECT_LT(std::fabs(difference), 3e-4 * hidden);
 }
 
+/// A ray from five centimetres away, not along it, through the square with this first corner, a
+/// tenth of a float's last place inside of its edge.
+Ray ray_inside_edge(const V3f* corner, Points& random) {
+  using V3d = Imath::V3d;
+  const V3d edge(corner[1] - corner[0]), other(corner[3] - corner[0]);
+  const int axis = std::fabs(other.x) > 0 ? 0 : std::fabs(other.y) > 0 ? 1 : 2;
+  const float side = corner[0][axis];
+  const double inside = (std::nextafter(std::fabs(side), kInfinity) - std::fabs(side)) / 10.0;
+  const V3d at = V3d(corner[0]) + edge * (0.2 + 0.6 * random.unit()) + other.normalized() * inside;
+  const V3f normal = (corner[1] - corner[0]).cross(corner[3] - corner[0]).normalized();
+  V3f away = random.on_sphere();
+  while (std::fabs(away.dot(normal)) < 0.2f) away = random.on_sphere();
+  const V3f from = V3f(at) + away * 0.05f;
+  return make_ray(from, V3f(at - V3d(from)), 0, 0.1f);
+}
+
+// Boxes end where squares do: without a margin for roundings rays would pass them by.
+TEST(NeighbouringRaysFarAway, MeetSquaresAtTheirEdges) {
+  const SceneOnDevice scene(far_sheets(0.001f));
+  const std::vector<V3f>& corners = scene.scene.meshes[0].positions;
+  Points random(9);
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i + 3 < corners.size(); i += 4)
+    for (int k = 0; k < 10; ++k) rays.push_back(ray_inside_edge(&corners[i], random));
+  int missed = 0;
+  for (const Occlusion& one : together(scene, rays, Estimator::exact))
+    missed += one.transmittance > 0.9f;
+  EXPECT_EQ(missed, 0) << "of " << rays.size();
+}
+
 TEST(Trace, RaysToDifferentLightsAreNeverHiddenByTheirOwn) {
   Scene scene;
   scene.materials.push_back(material_of(1));
