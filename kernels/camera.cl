@@ -2,8 +2,8 @@
    point (DAPPLE_ONE_POINT 1), or side by side (0). */
 #include "beam_points.clh"
 #include "camera.clh"
-#include "deal.clh"
 #include "nearest_search.clh"
+#include "turns.clh"
 
 #define DAPPLE_MOST_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MOST_DEPTHS / DAPPLE_HIT_BITS)
 
@@ -99,20 +99,12 @@ inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* ch
   found->tests += packet.tests;
 }
 
-/* Points of samples that miss are left as they are. */
-__kernel void camera_hits(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
-                          __global const SegmentBlock* segments,
-                          __global const TexturedTriangle* textured,
-                          __global const MaterialRecord* materials, __global const uchar* texels,
-                          __global const InstanceRecord* instances,
-                          __global const PixelWork* work, __global SurfacePoint* points,
-                          __global SampleHits* sample_hits, CameraParams params) {
-  const uint rays = params.slice.pixel_count * rays_of_pixel(params);
-  const uint items = (rays + DAPPLE_ITEM_RAYS - 1u) / DAPPLE_ITEM_RAYS;
-  const uint begin = deal_runs(get_global_id(0), items, DAPPLE_RUN_ITEMS) * DAPPLE_ITEM_RAYS;
-  if (begin >= rays) return;
+/* Of all `rays` those of one item. Points of samples that miss are left as they are. */
+inline void trace_item(Scene scene, CameraParams params, uint item, uint rays,
+                       __global const PixelWork* work, __global SurfacePoint* points,
+                       __global SampleHits* sample_hits) {
+  const uint begin = item * DAPPLE_ITEM_RAYS;
   const uint count = min(rays - begin, DAPPLE_ITEM_RAYS);
-  const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   Entries entries;
   entries.count = entries.visits = 0u;
   const PixelBounds pixels = pixels_of_rays(work, params, begin, count);
@@ -137,5 +129,24 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
   for (uint record = 0; record < records; ++record) {
     const SampleHits of_samples = {found.hits[record], 0u, found.visits, found.tests};
     sample_hits[first_sample / DAPPLE_HIT_BITS + record] = of_samples;
+  }
+}
+
+__kernel void camera_hits(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                          __global const SegmentBlock* segments,
+                          __global const TexturedTriangle* textured,
+                          __global const MaterialRecord* materials, __global const uchar* texels,
+                          __global const InstanceRecord* instances,
+                          __global const PixelWork* work, __global SurfacePoint* points,
+                          __global SampleHits* sample_hits, CameraParams params,
+                          __global uint* turns, uint first_turn) {
+  const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
+  const uint rays = params.slice.pixel_count * rays_of_pixel(params);
+  const uint items = (rays + DAPPLE_ITEM_RAYS - 1u) / DAPPLE_ITEM_RAYS;
+  const uint pieces = (items + DAPPLE_PIECE_ITEMS - 1u) / DAPPLE_PIECE_ITEMS;
+  for (uint piece; (piece = take_turn(turns, first_turn)) < pieces;) {
+    const uint end = min((piece + 1u) * DAPPLE_PIECE_ITEMS, items);
+    for (uint item = piece * DAPPLE_PIECE_ITEMS; item < end; ++item)
+      trace_item(scene, params, item, rays, work, points, sample_hits);
   }
 }

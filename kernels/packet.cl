@@ -1,8 +1,8 @@
-/* The occlusion pass for packets: an item traces rays that follow one another in the queue, those of
-   one point or of neighbours, 64 at a time, with results as those of occlusion.cl. */
-#include "deal.clh"
+/* The occlusion pass for packets: rays that follow one another in the queue, those of one point or
+   of neighbours, go 64 at a time, with results as those of occlusion.cl. */
 #include "packet.clh"
 #include "packet_order.clh"
+#include "turns.clh"
 
 /* A count shared over a packet's rays without remainder. */
 typedef struct Shares {
@@ -43,38 +43,65 @@ inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray
   }
 }
 
-/* Rays lie as points * rays_per_point; each point's are cut into chunks of about the same size, of
-   at most DAPPLE_PACKET_CHUNK, one an item. */
+/* `count` rays from the first one on, at most DAPPLE_PACKET_CHUNK. */
+inline void trace_chunk(Scene scene, OcclusionParams params, __global const Ray* rays, uint count,
+                        __global Occlusion* results) {
+  ushort order[DAPPLE_PACKET_CHUNK];
+  uint traced = count;
+  if (count > DAPPLE_PACKET_RAYS) {
+    traced = order_rays(rays, count, order);
+  } else {
+    for (uint i = 0; i < count; ++i) order[i] = (ushort)i;
+  }
+  for (uint i = 0; i < traced; i += DAPPLE_PACKET_RAYS)
+    trace_packet(scene, params, rays, order + i, min(traced - i, DAPPLE_PACKET_RAYS), results);
+  for (uint i = traced; i < count; ++i) {
+    results[order[i]].transmittance = 1.0f;
+    results[order[i]].visits = 0u;
+  }
+}
+
+#if DAPPLE_ONE_POINT
+/* Rays lie as points * rays_per_point; each point's are cut into chunks of about the same size, and
+   a piece is some of these in a row. */
+inline void trace_piece(Scene scene, OcclusionParams params, uint piece, __global const Ray* rays,
+                        __global Occlusion* results) {
+  const uint of_point = (params.rays_per_point + DAPPLE_PACKET_CHUNK - 1u) / DAPPLE_PACKET_CHUNK;
+  const uint size = (params.rays_per_point + of_point - 1u) / of_point;
+  const uint chunks = params.ray_count / params.rays_per_point * of_point;
+  const uint end = min((piece + 1u) * params.piece_chunks, chunks);
+  for (uint chunk = piece * params.piece_chunks; chunk < end; ++chunk) {
+    const uint skipped = chunk % of_point * size;
+    const uint first = chunk / of_point * params.rays_per_point + skipped;
+    const uint count = min(size, params.rays_per_point - skipped);
+    prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
+    trace_chunk(scene, params, rays + first, count, results + first);
+  }
+}
+#else
+/* A chunk of neighbours is a piece; the last ones are small, so that all who take turns end at
+   about the same time. */
+inline uint start_of_piece(OcclusionParams params, uint piece) {
+  const uint large = min(piece, params.large_pieces);
+  return min(large * DAPPLE_PACKET_CHUNK + (piece - large) * DAPPLE_SMALL_CHUNK, params.ray_count);
+}
+
+inline void trace_piece(Scene scene, OcclusionParams params, uint piece, __global const Ray* rays,
+                        __global Occlusion* results) {
+  const uint first = start_of_piece(params, piece);
+  trace_chunk(scene, params, rays + first, start_of_piece(params, piece + 1u) - first,
+              results + first);
+}
+#endif
+
 __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                      __global const SegmentBlock* segments,
                      __global const TexturedTriangle* textured,
                      __global const MaterialRecord* materials, __global const uchar* texels,
                      __global const InstanceRecord* instances, __global const Ray* rays,
-                     __global Occlusion* results, OcclusionParams params) {
-  const uint chunks = (params.rays_per_point + DAPPLE_PACKET_CHUNK - 1u) / DAPPLE_PACKET_CHUNK;
-  const uint item = get_global_id(0);
-  if (item >= params.ray_count / params.rays_per_point * chunks) return;
-  const uint size = (params.rays_per_point + chunks - 1u) / chunks;
-  const uint skipped = deal(item % chunks, chunks) * size;
-  const uint first = item / chunks * params.rays_per_point + skipped;
-  const uint count = min(size, params.rays_per_point - skipped);
+                     __global Occlusion* results, OcclusionParams params, __global uint* turns,
+                     uint first_turn) {
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
-  /* Those that the thread takes next. */
-  const uint next = chunks > 1u ? deal(min(item % chunks + 1u, chunks - 1u), chunks) * size : count;
-  prefetch_rays(rays + first - skipped + next, min(count, DAPPLE_PACKET_RAYS));
-  ushort order[DAPPLE_PACKET_CHUNK];
-  uint traced = count;
-  if (count > DAPPLE_PACKET_RAYS) {
-    traced = order_rays(rays + first, count, order);
-  } else {
-    for (uint i = 0; i < count; ++i) order[i] = (ushort)i;
-  }
-  for (uint i = 0; i < traced; i += DAPPLE_PACKET_RAYS) {
-    trace_packet(scene, params, rays + first, order + i, min(traced - i, DAPPLE_PACKET_RAYS),
-                 results + first);
-  }
-  for (uint i = traced; i < count; ++i) {
-    results[first + order[i]].transmittance = 1.0f;
-    results[first + order[i]].visits = 0u;
-  }
+  for (uint piece; (piece = take_turn(turns, first_turn)) < params.pieces;)
+    trace_piece(scene, params, piece, rays, results);
 }

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -34,7 +33,7 @@ std::vector<T> download(const Buffer& buffer, std::size_t count) {
 }
 
 inline void run(const std::string& file, const std::string& kernel, std::size_t items,
-                std::initializer_list<KernelArgument> arguments) {
+                const std::vector<KernelArgument>& arguments) {
   device().launch({kernel, file, {}}, kernel, items, arguments);
   device().finish();
 }

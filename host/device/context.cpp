@@ -18,6 +18,14 @@ namespace {
 /// Events are collected every so many launches, so that long renders hold few of them.
 constexpr std::size_t kEventsHeld = 256;
 
+/// Work-groups of a compute unit that take turns, if there are as many pieces: enough for every
+/// thread of PoCL to get one, which takes half of those that are left.
+constexpr std::size_t kGroupsTakingTurns = 32;
+
+/// Turns are counted modulo 2^32, from here on, so that every process soon comes to where they
+/// start again.
+constexpr cl_uint kFirstTurn = 0xfffff000u;
+
 /// What buffers are cleared with: PoCL stores one pattern after the other, and a film of a
 /// megapixel cleared byte by byte took as long as its rays.
 constexpr cl_ulong8 kZeros{};
@@ -81,6 +89,8 @@ struct DeviceContext::State {
   std::vector<std::pair<std::string, cl::Event>> events;
   std::map<std::string, double> pass_seconds;
   double build_seconds = 0;
+  Buffer turns;  ///< counts those taken; none before the first launch in turns
+  cl_uint next_turn = kFirstTurn;
 
   cl::Program& program(const std::string& file, const Variant& variant);
   cl::Kernel& kernel(const KernelName& name);
@@ -262,7 +272,7 @@ std::size_t DeviceContext::largest_group(const KernelName& kernel) {
 }
 
 void DeviceContext::launch(const KernelName& name, const std::string& label, std::size_t items,
-                           std::initializer_list<KernelArgument> arguments, std::size_t group) {
+                           const std::vector<KernelArgument>& arguments, std::size_t group) {
   if (items == 0) return;
   in_opencl("running pass " + label, [&] {
     cl::Kernel& kernel = state_->kernel(name);
@@ -281,6 +291,24 @@ void DeviceContext::launch(const KernelName& name, const std::string& label, std
     state_->events.emplace_back(label, event);
   });
   if (state_->events.size() >= kEventsHeld) finish();
+}
+
+void DeviceContext::launch_in_turns(const KernelName& name, const std::string& label,
+                                    std::size_t pieces, std::vector<KernelArgument> arguments,
+                                    std::size_t group) {
+  if (pieces == 0) return;
+  State& s = *state_;
+  if (!s.turns.bytes()) {
+    s.turns = allocate(sizeof s.next_turn);
+    write(s.turns, &s.next_turn, sizeof s.next_turn);
+  }
+  const std::size_t groups =
+      std::min((pieces + group - 1) / group, kGroupsTakingTurns * s.info.compute_units);
+  arguments.emplace_back(s.turns);
+  arguments.emplace_back(s.next_turn);
+  launch(name, label, groups * group, arguments, group);
+  // Each piece was a turn, and each item has asked once more than there were pieces for it.
+  s.next_turn += static_cast<cl_uint>(pieces + groups * group);
 }
 
 void DeviceContext::finish() {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <initializer_list>
 #include <map>
 #include <memory>
 #include <span>
@@ -118,7 +117,11 @@ class DeviceContext {
   /// Enqueues `items` work-items, rounded up to whole groups of `group`: kernels check
   /// bounds. `label` names the pass in pass_seconds().
   void launch(const KernelName& name, const std::string& label, std::size_t items,
-              std::initializer_list<KernelArgument> arguments, std::size_t group = 64);
+              const std::vector<KernelArgument>& arguments, std::size_t group = 64);
+  /// Enqueues work-items enough to keep the device busy, which take `pieces` pieces of work by
+  /// turns, as kernels/turns.clh says: the kernel's last two arguments are added here.
+  void launch_in_turns(const KernelName& name, const std::string& label, std::size_t pieces,
+                       std::vector<KernelArgument> arguments, std::size_t group = 64);
   void finish();
   /// Waits like finish(), but whatever has become of the launches.
   void wait() noexcept;

@@ -1,5 +1,7 @@
 #include "wavefront/passes.hpp"
 
+#include <algorithm>
+
 #include "dapple/shared/ray.h"
 
 namespace dapple {
@@ -20,9 +22,13 @@ constexpr uint kLeastOfPoint = 16;
 /// several points, took 0.89 (sapling), 0.97 (forest) and 0.84 of the time (cards).
 constexpr uint kLeastOfExactPoint = 32;
 
-/// Rays that one item of the packet kernel takes, of a point or of neighbours; DAPPLE_PACKET_CHUNK
-/// in kernels/packet_order.clh.
-constexpr uint kPointChunk = 512, kNeighbourChunk = 1024;
+/// Rays of a chunk, of a point or of neighbours, and of a small one of neighbours;
+/// DAPPLE_PACKET_CHUNK and DAPPLE_SMALL_CHUNK in kernels/packet_order.clh.
+constexpr uint kPointChunk = 512, kNeighbourChunk = 1024, kSmallChunk = 256;
+
+/// Rays that points of a piece have at least: with fewer, threads that take turns look at the same
+/// nodes twice.
+constexpr uint kPieceRays = 256;
 
 /// Items a work-group: of packets few, so that small slices keep all threads busy.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kCameraGroup = 1;
@@ -48,6 +54,24 @@ Company company(Estimator estimator, uint rays_per_point, RayOrder order,
   return share || order == RayOrder::by_pixel ? Company::neighbours : Company::alone;
 }
 
+uint rounded_up(uint count, uint of_each) { return (count + of_each - 1) / of_each; }
+
+/// Cuts the queue into the pieces in which packets are traced. Not a question of how many threads
+/// there are: who travels together decides what is counted as visits.
+void cut_into_pieces(Company with, OcclusionParams& params) {
+  if (with == Company::neighbours) {
+    params.rays_per_point = params.ray_count;
+    params.large_pieces = params.ray_count / kNeighbourChunk * 3 / 4;
+    const uint rest = params.ray_count - params.large_pieces * kNeighbourChunk;
+    params.pieces = params.large_pieces + rounded_up(rest, kSmallChunk);
+  } else {
+    const uint chunks = rounded_up(params.rays_per_point, kPointChunk);
+    params.piece_chunks = std::max(1u, kPieceRays / params.rays_per_point);
+    params.pieces =
+        rounded_up(params.ray_count / params.rays_per_point * chunks, params.piece_chunks);
+  }
+}
+
 KernelName occlusion_kernel(Estimator estimator, Company with) {
   const bool prefiltered = estimator != Estimator::exact;
   if (with == Company::alone) return {"occlusion", "occlusion", {prefiltered}};
@@ -56,6 +80,10 @@ KernelName occlusion_kernel(Estimator estimator, Company with) {
 
 KernelName camera_kernel(bool orthographic) {
   return {"camera_hits", "camera", {false, !orthographic}};
+}
+
+constexpr std::size_t packet_group(Company with) {
+  return with == Company::point ? kPacketGroup : 1;
 }
 
 const KernelName kClosestHit{"closest_hit", "closest_hit", {}};
@@ -91,11 +119,9 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
       std::size_t{params.slice.pixel_count} * (params.slice.sample_count >> params.depth_bits);
   CameraParams camera = params;
   camera.scene = scene.params;
-  constexpr std::size_t kRunRays = std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_RUN_ITEMS;
-  static_assert(DAPPLE_RUN_ITEMS % kCameraGroup == 0, "whole runs are launched, and no more");
-  context.launch(
-      camera_kernel(params.orthographic != 0), "camera",
-      (rays + kRunRays - 1) / kRunRays * DAPPLE_RUN_ITEMS,
+  constexpr std::size_t kPieceOfRays = std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_PIECE_ITEMS;
+  context.launch_in_turns(
+      camera_kernel(params.orthographic != 0), "camera", (rays + kPieceOfRays - 1) / kPieceOfRays,
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.work, queues.points, queues.sample_hits, camera},
       kCameraGroup);
@@ -141,19 +167,17 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                     RayOrder order) {
   if (params.ray_count == 0) return;
   const Company with = company(estimator, params.rays_per_point, order, context);
-  std::size_t items = params.ray_count, group = kRayGroup;
   OcclusionParams launched = params;
-  if (with != Company::alone) {
-    if (with == Company::neighbours) launched.rays_per_point = params.ray_count;
-    const uint rays = launched.rays_per_point;
-    const uint chunk = with == Company::point ? kPointChunk : kNeighbourChunk;
-    items = std::size_t{params.ray_count / rays} * ((rays + chunk - 1) / chunk);
-    group = with == Company::point ? kPacketGroup : 1;
+  if (with != Company::alone) cut_into_pieces(with, launched);
+  const KernelName kernel = occlusion_kernel(estimator, with);
+  const std::vector<KernelArgument> arguments{
+      scene.nodes,  scene.blocks,    scene.segments, scene.textured,    scene.materials,
+      scene.texels, scene.instances, queues.rays,    queues.occlusions, launched};
+  if (with == Company::alone) {
+    context.launch(kernel, label, params.ray_count, arguments, kRayGroup);
+  } else {
+    context.launch_in_turns(kernel, label, launched.pieces, arguments, packet_group(with));
   }
-  context.launch(occlusion_kernel(estimator, with), label, items,
-                 {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials,
-                  scene.texels, scene.instances, queues.rays, queues.occlusions, launched},
-                 group);
 }
 
 void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,

@@ -22,6 +22,10 @@ typedef struct OcclusionParams {
   float inverse_distance;     /* AO: 1 / D for the falloff; 0: none */
   float falloff;              /* AO: the power p; 0: none */
   uint rays_per_point;        /* packets: rays in a row that share their origin */
+  /* Packets; set by occlusion_pass(). */
+  uint pieces;                /* of all rays, taken by turns */
+  uint large_pieces;          /* of neighbours: the first pieces, which are whole chunks */
+  uint piece_chunks;          /* of points: chunks of a piece */
 } OcclusionParams;
 
 /* Samples of a pixel whose mean counts once in the sum of squares that errors come from: those of one

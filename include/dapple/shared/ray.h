@@ -43,8 +43,8 @@ typedef struct Occlusion {
 /* Samples at most that share a camera ray: powers of two. */
 #define DAPPLE_MOST_DEPTHS 4u
 
-/* Items of the camera pass in a row that see much the same; whole runs are launched. */
-#define DAPPLE_RUN_ITEMS 16u
+/* Items of the camera pass in a row that go together, as they see much the same. */
+#define DAPPLE_PIECE_ITEMS 4u
 
 /* Samples of a SampleHits. */
 #define DAPPLE_HIT_BITS 16u
