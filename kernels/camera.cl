@@ -139,11 +139,10 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
                           __global const InstanceRecord* instances,
                           __global const PixelWork* work, __global SurfacePoint* points,
                           __global SampleHits* sample_hits, CameraParams params,
-                          __global uint* turns, uint first_turn) {
+                          __global uint* turns, uint first_turn, uint pieces) {
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   const uint rays = params.slice.pixel_count * rays_of_pixel(params);
   const uint items = (rays + DAPPLE_ITEM_RAYS - 1u) / DAPPLE_ITEM_RAYS;
-  const uint pieces = (items + DAPPLE_PIECE_ITEMS - 1u) / DAPPLE_PIECE_ITEMS;
   for (uint piece; (piece = take_turn(turns, first_turn)) < pieces;) {
     const uint end = min((piece + 1u) * DAPPLE_PIECE_ITEMS, items);
     for (uint item = piece * DAPPLE_PIECE_ITEMS; item < end; ++item)

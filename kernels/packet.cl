@@ -74,7 +74,7 @@ inline void trace_piece(Scene scene, OcclusionParams params, uint piece, __globa
     const uint skipped = chunk % of_point * size;
     const uint first = chunk / of_point * params.rays_per_point + skipped;
     const uint count = min(size, params.rays_per_point - skipped);
-    prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
+    if (chunk + 1u < end) prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
     trace_chunk(scene, params, rays + first, count, results + first);
   }
 }
@@ -82,7 +82,7 @@ inline void trace_piece(Scene scene, OcclusionParams params, uint piece, __globa
 /* A chunk of neighbours is a piece; the last ones are small, so that all who take turns end at
    about the same time. */
 inline uint start_of_piece(OcclusionParams params, uint piece) {
-  const uint large = min(piece, params.large_pieces);
+  const uint large = min(piece, params.large_chunks);
   return min(large * DAPPLE_PACKET_CHUNK + (piece - large) * DAPPLE_SMALL_CHUNK, params.ray_count);
 }
 
@@ -100,8 +100,8 @@ __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock
                      __global const MaterialRecord* materials, __global const uchar* texels,
                      __global const InstanceRecord* instances, __global const Ray* rays,
                      __global Occlusion* results, OcclusionParams params, __global uint* turns,
-                     uint first_turn) {
+                     uint first_turn, uint pieces) {
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
-  for (uint piece; (piece = take_turn(turns, first_turn)) < params.pieces;)
+  for (uint piece; (piece = take_turn(turns, first_turn)) < pieces;)
     trace_piece(scene, params, piece, rays, results);
 }

@@ -20,6 +20,8 @@ std::vector<Occlusion> together(const SceneOnDevice& scene, const std::vector<Ra
   DeviceContext& context = device().context();
   const Queues queues = make_queues(context, rays.size(), 1);
   context.write(queues.rays, rays.data(), rays.size() * sizeof(Ray));
+  std::vector<Occlusion> found(rays.size(), {std::numeric_limits<float>::quiet_NaN(), 0});
+  context.write(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
   OcclusionParams params{};
   params.scene = scene.uploaded.buffers->params;
   params.ray_count = static_cast<uint>(rays.size());
@@ -27,7 +29,6 @@ std::vector<Occlusion> together(const SceneOnDevice& scene, const std::vector<Ra
   params.footprint = 1;
   occlusion_pass(context, queues, *scene.uploaded.buffers, "test", estimator, params,
                  RayOrder::by_pixel);
-  std::vector<Occlusion> found(rays.size());
   context.read(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
   return found;
 }

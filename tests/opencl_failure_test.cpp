@@ -2,6 +2,9 @@
 // picture is right.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "dapple/error.hpp"
 #include "failing_opencl.hpp"
 #include "film_files.hpp"
@@ -94,6 +97,33 @@ TEST_F(OpenclFailure, LeavesTheDeviceUsable) {
     for (std::size_t i = 0; i < rays.size(); ++i)
       ASSERT_EQ(after[i].transmittance, before[i].transmittance) << "failure " << n;
   }
+}
+
+// Neighbours take their work by turns, which host and device count: a failure must not put them out
+// of step, that of the count's own first write neither.
+TEST_F(OpenclFailure, LeavesTurnsInStep) {
+  const Scene scene = make_procedural("scene:cloud?leaves=300&opacity=0.5");
+  const SceneBvh bvh = build_bvh(scene);
+  const auto rays = scene_test::rays_through(bvh.bounds, 700, 5, 0, 1);
+  const auto find = [&](const Device& device, const DeviceScene& uploaded) {
+    std::vector<float> found;
+    for (const Occlusion& one : trace(device, uploaded, rays, Estimator::exact))
+      found.push_back(one.transmittance);
+    return found;
+  };
+  const auto on_new_device = [&](int failing) {
+    const Device device("", "", Company::neighbours);
+    const DeviceScene uploaded = upload(device, scene, bvh);
+    fail_call(failing);
+    if (failing) film_test::error_of([&] { static_cast<void>(find(device, uploaded)); });
+    const int count = calls();
+    fail_call(0);
+    std::vector<float> found = find(device, uploaded);
+    return std::pair(failing ? count : calls(), found);
+  };
+  const auto [count, expected] = on_new_device(0);
+  EXPECT_EQ(std::count(expected.begin(), expected.end(), 0.0f), 0);  // as of rays not traced
+  for (int n = 1; n < count; ++n) EXPECT_EQ(on_new_device(n).second, expected) << "failure " << n;
 }
 
 }  // namespace

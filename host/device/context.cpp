@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <utility>
 
 #include "device/kernel_cache.hpp"
 #include "device/kernel_source.hpp"
@@ -18,8 +19,8 @@ namespace {
 /// Events are collected every so many launches, so that long renders hold few of them.
 constexpr std::size_t kEventsHeld = 256;
 
-/// Work-groups of a compute unit that take turns, if there are as many pieces: enough for every
-/// thread of PoCL to get one, which takes half of those that are left.
+/// Work-groups of a compute unit that take turns, if there are as many pieces: enough for each of
+/// PoCL's threads to get one, though the first ones take many at once.
 constexpr std::size_t kGroupsTakingTurns = 32;
 
 /// Turns are counted modulo 2^32, from here on, so that every process soon comes to where they
@@ -89,7 +90,7 @@ struct DeviceContext::State {
   std::vector<std::pair<std::string, cl::Event>> events;
   std::map<std::string, double> pass_seconds;
   double build_seconds = 0;
-  Buffer turns;  ///< counts those taken; none before the first launch in turns
+  Buffer turns;  ///< counts those taken; none before the first launch, or after one that failed
   cl_uint next_turn = kFirstTurn;
 
   cl::Program& program(const std::string& file, const Variant& variant);
@@ -298,17 +299,20 @@ void DeviceContext::launch_in_turns(const KernelName& name, const std::string& l
                                     std::size_t group) {
   if (pieces == 0) return;
   State& s = *state_;
-  if (!s.turns.bytes()) {
-    s.turns = allocate(sizeof s.next_turn);
-    write(s.turns, &s.next_turn, sizeof s.next_turn);
+  // Whatever is thrown from here on, the next launch has a count of its own.
+  Buffer turns = std::exchange(s.turns, {});
+  if (!turns.bytes()) {
+    turns = allocate(sizeof s.next_turn);
+    s.next_turn = kFirstTurn;
+    write(turns, &s.next_turn, sizeof s.next_turn);
   }
-  const std::size_t groups =
-      std::min((pieces + group - 1) / group, kGroupsTakingTurns * s.info.compute_units);
-  arguments.emplace_back(s.turns);
-  arguments.emplace_back(s.next_turn);
+  const std::size_t groups = std::min(pieces, kGroupsTakingTurns * s.info.compute_units);
+  const auto count = static_cast<cl_uint>(pieces);
+  arguments.insert(arguments.end(), {turns, s.next_turn, count});
   launch(name, label, groups * group, arguments, group);
   // Each piece was a turn, and each item has asked once more than there were pieces for it.
   s.next_turn += static_cast<cl_uint>(pieces + groups * group);
+  s.turns = std::move(turns);
 }
 
 void DeviceContext::finish() {

@@ -48,7 +48,8 @@ class HostView {
   std::span<const std::byte> bytes_;
 };
 
-/// A kernel argument: a buffer, or a struct or number by value.
+/// A kernel argument: a buffer, or a struct or number by value. It only points to what it is made
+/// from, which must live until the launch is enqueued.
 struct KernelArgument {
   KernelArgument(const Buffer& b) : buffer(&b) {}  // NOLINT: implicit, so that calls read as lists
   template <class T>
@@ -118,8 +119,8 @@ class DeviceContext {
   /// bounds. `label` names the pass in pass_seconds().
   void launch(const KernelName& name, const std::string& label, std::size_t items,
               const std::vector<KernelArgument>& arguments, std::size_t group = 64);
-  /// Enqueues work-items enough to keep the device busy, which take `pieces` pieces of work by
-  /// turns, as kernels/turns.clh says: the kernel's last two arguments are added here.
+  /// Enqueues work-items enough to keep the device busy, which take `pieces` pieces of work, below
+  /// 2^31, by turns: take_turn() of kernels/turns.clh. Three arguments are added here.
   void launch_in_turns(const KernelName& name, const std::string& label, std::size_t pieces,
                        std::vector<KernelArgument> arguments, std::size_t group = 64);
   void finish();

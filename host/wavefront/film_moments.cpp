@@ -65,6 +65,7 @@ double FilmMoments::largest_unoccluded(const LightPlaneRange& planes, double sca
                                        const std::vector<float>& variances) const {
   const bool only_scouts = std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
   const auto unoccluded = [&](std::size_t p) -> std::array<float, 2> {
+    if (samples_[p] == 0) return {};
     const auto pixel = static_cast<std::uint32_t>(p);
     return {static_cast<float>(luminance_sum(planes.unoccluded(), planes.channels, pixel) * scale),
             static_cast<float>(sum(0, pixel))};

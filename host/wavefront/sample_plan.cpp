@@ -151,13 +151,16 @@ std::size_t count_values(const std::vector<std::uint32_t>& values) {
   return different.size();
 }
 
-/// Those of blocks that have samples; `have`: by block.
-template <class T>
-std::vector<T> where_known(const std::vector<T>& of_blocks, const BatchCounts& have) {
-  std::vector<T> known;
-  for (std::size_t block = 0; block < have.size(); ++block)
-    if (have[block] > 0) known.push_back(of_blocks[block]);
-  return known;
+/// Of `pixels`, a block's in a row, the values put together block by block.
+template <class Join>
+std::vector<float> of_blocks_among(const std::vector<std::uint32_t>& pixels,
+                                   const std::vector<float>& values, const Join& join) {
+  constexpr std::size_t kPixels = std::size_t{kBlock} * kBlock;
+  std::vector<float> joined(pixels.size() / kPixels);
+  for (std::size_t block = 0; block < joined.size(); ++block)
+    for (std::size_t i = block * kPixels; i < (block + 1) * kPixels; ++i)
+      joined[block] = join(joined[block], values[pixels[i]]);
+  return joined;
 }
 
 /// As std::min_element(), of which compilers make no vectors.
@@ -244,7 +247,7 @@ BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
   BatchCounts wanted = have;
   const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
   if (target_rmse_ > 0) {
-    const double enough = this->enough();
+    const double enough = enough_of(samples_.size());
     std::vector<float> block_costs;
     for (const std::vector<float>& pass : variances) {
       const std::vector<float> of_blocks = block_sums(pass, width_);
@@ -259,9 +262,8 @@ BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
   return wanted;
 }
 
-double SamplePlan::enough() const {
-  const auto with_samples = samples_.size() - std::count(samples_.begin(), samples_.end(), 0u);
-  return double{target_rmse_} * target_rmse_ * static_cast<double>(with_samples);
+double SamplePlan::enough_of(std::size_t pixels) const {
+  return double{target_rmse_} * target_rmse_ * static_cast<double>(pixels);
 }
 
 std::vector<WorkGroup> SamplePlan::scouts() {
@@ -278,18 +280,25 @@ std::vector<WorkGroup> SamplePlan::scouts() {
   return groups;
 }
 
+std::vector<std::uint32_t> SamplePlan::sampled() const {
+  std::vector<std::uint32_t> pixels;
+  std::copy_if(order_.begin(), order_.end(), std::back_inserter(pixels),
+               [&](std::uint32_t pixel) { return samples_[pixel] > 0; });
+  return pixels;
+}
+
 bool SamplePlan::only_scouts_have_samples() const {
   return is_adaptive() && !all_equal(samples_) &&
          std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
 }
 
 bool SamplePlan::one_batch_does(const std::vector<std::vector<float>>& variances,
-                                double part) const {
+                                const std::vector<std::uint32_t>& pixels, double part) const {
   if (!one_may_do_) return false;
   bool any_varies = false;  // who sees nothing knows nothing
   for (const std::vector<float>& pass : variances) {
     double error = 0, enough = 0;
-    for (std::size_t pixel = 0; pixel < pass.size(); ++pixel) {
+    for (const std::uint32_t pixel : pixels) {
       if (samples_[pixel] <= DAPPLE_BATCH) continue;
       error += pass[pixel];
       enough += double{target_rmse_} * target_rmse_;
@@ -301,20 +310,21 @@ bool SamplePlan::one_batch_does(const std::vector<std::vector<float>>& variances
 }
 
 std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances) {
-  if (one_batch_does(variances, kAimOfOne)) {
+  const std::vector<std::uint32_t> scouts = sampled();
+  if (one_batch_does(variances, scouts, kAimOfOne)) {
     least_ = DAPPLE_BATCH;
     fraction_done_ = 1;
     return least();
   }
-  const BatchCounts of_all = block_batches(samples_, width_);
-  const BatchCounts have = where_known(of_all, of_all), one(have.size(), 1);
+  const double enough = enough_of(scouts.size());
   double batches = 0, varied = 0;
   for (const std::vector<float>& pass : variances) {
-    const std::vector<float> most_of_block = where_known(block_most(pass, width_), of_all);
+    const auto most = [](float a, float b) { return std::max(a, b); };
+    const std::vector<float> most_of_block = of_blocks_among(scouts, pass, most);
     varied = std::max(varied, part_above_0(most_of_block));
     if (target_rmse_ > 0) {
-      const double of_one = squared_errors(where_known(block_sums(pass, width_), of_all), one);
-      batches = std::max(batches, of_one / enough());
+      const std::vector<float> sums = of_blocks_among(scouts, pass, std::plus<>());
+      batches = std::max(batches, squared_errors(sums, BatchCounts(sums.size(), 1)) / enough);
     } else {
       const double enough_of_block = double{target_error_} * target_error_;
       batches = std::max(batches, lower_quartile(most_of_block) / enough_of_block);
@@ -331,7 +341,7 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
                                         const Costs& costs) {
   if (fewest(samples_) < 2 * DAPPLE_BATCH) {
     fraction_done_ = 1;
-    if (one_batch_does(variances, 1.0)) return {};
+    if (one_batch_does(variances, order_, 1.0)) return {};
     least_ = 2 * DAPPLE_BATCH;
     return least();
   }

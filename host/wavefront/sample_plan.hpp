@@ -56,10 +56,12 @@ class SamplePlan {
   [[nodiscard]] double fraction_done() const { return fraction_done_; }
 
  private:
+  /// Pixels that have samples, in order.
+  [[nodiscard]] std::vector<std::uint32_t> sampled() const;
   /// Whether one batch a pixel leaves at most that part of the squared error asked for, by the
-  /// variances of those with more.
+  /// variances of those of `pixels` with more.
   [[nodiscard]] bool one_batch_does(const std::vector<std::vector<float>>& variances,
-                                    double part) const;
+                                    const std::vector<std::uint32_t>& pixels, double part) const;
   /// Samples more that least() gives a pixel.
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() where all pixels have the same.
@@ -67,8 +69,8 @@ class SamplePlan {
   /// Batches that the pixels of every block should have in all, where they have so many.
   [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances,
                                    const BatchCounts& have, const Costs& costs) const;
-  /// The sum of squared errors, of the pixels that have samples, at the RMSE asked for.
-  [[nodiscard]] double enough() const;
+  /// The sum of squared errors of so many pixels at the RMSE asked for.
+  [[nodiscard]] double enough_of(std::size_t pixels) const;
 
   int width_;
   std::vector<std::uint32_t> order_;  ///< pixels, tile by tile and in these block by block

@@ -63,8 +63,7 @@
   MEMBER(OcclusionParams, scene) MEMBER(OcclusionParams, ray_count)                          \
   MEMBER(OcclusionParams, footprint) MEMBER(OcclusionParams, inverse_distance)               \
   MEMBER(OcclusionParams, falloff) MEMBER(OcclusionParams, rays_per_point)                   \
-  MEMBER(OcclusionParams, pieces) MEMBER(OcclusionParams, large_pieces)                      \
-  MEMBER(OcclusionParams, piece_chunks)                                                      \
+  MEMBER(OcclusionParams, large_chunks) MEMBER(OcclusionParams, piece_chunks)                \
   STRUCT(PixelWork) MEMBER(PixelWork, pixel) MEMBER(PixelWork, first_sample)                 \
   STRUCT(SliceParams)                                                                        \
   MEMBER(SliceParams, first_work) MEMBER(SliceParams, pixel_count)                          \

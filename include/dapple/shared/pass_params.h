@@ -15,6 +15,12 @@ typedef struct SceneParams {
   uint has_top;      /* 1: root is top-level; 0: it is the only object's, in world space */
 } SceneParams;
 
+/* Rays of a chunk, which are sorted together before they go as packets: at most so many of one
+   point; of neighbours so many, and fewer in the last chunks of a queue. */
+#define DAPPLE_POINT_CHUNK 512u
+#define DAPPLE_NEIGHBOUR_CHUNK 1024u
+#define DAPPLE_SMALL_CHUNK 256u
+
 typedef struct OcclusionParams {
   SceneParams scene;
   uint ray_count;
@@ -23,9 +29,8 @@ typedef struct OcclusionParams {
   float falloff;              /* AO: the power p; 0: none */
   uint rays_per_point;        /* packets: rays in a row that share their origin */
   /* Packets; set by occlusion_pass(). */
-  uint pieces;                /* of all rays, taken by turns */
-  uint large_pieces;          /* of neighbours: the first pieces, which are whole chunks */
-  uint piece_chunks;          /* of points: chunks of a piece */
+  uint large_chunks;          /* of neighbours: the first ones, of DAPPLE_NEIGHBOUR_CHUNK rays */
+  uint piece_chunks;          /* of points: how many are a piece of work */
 } OcclusionParams;
 
 /* Samples of a pixel whose mean counts once in the sum of squares that errors come from: those of one

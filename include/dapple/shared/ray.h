@@ -34,7 +34,7 @@ typedef struct Occlusion {
   uint visits;          /* nodes visited | triangles tested << 16, each clamped to 65535 */
 } Occlusion;
 
-/* Camera rays that one item of the camera pass takes, and traces together. */
+/* Camera rays that are traced together: an item of the camera pass. */
 #define DAPPLE_ITEM_RAYS 64u
 
 /* Of these, side by side in a vector. */
@@ -43,7 +43,7 @@ typedef struct Occlusion {
 /* Samples at most that share a camera ray: powers of two. */
 #define DAPPLE_MOST_DEPTHS 4u
 
-/* Items of the camera pass in a row that go together, as they see much the same. */
+/* Items in a row that are a piece of work, taken in one turn: they see much the same. */
 #define DAPPLE_PIECE_ITEMS 4u
 
 /* Samples of a SampleHits. */
