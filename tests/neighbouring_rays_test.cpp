@@ -7,8 +7,7 @@
 
 #include "curly_strands.hpp"
 #include "device/scene_upload.hpp"
-#include "scene_on_device.hpp"
-#include "wavefront/passes.hpp"
+#include "queued_rays.hpp"
 
 namespace dapple {
 namespace {
@@ -17,20 +16,7 @@ using namespace scene_test;
 
 std::vector<Occlusion> together(const SceneOnDevice& scene, const std::vector<Ray>& rays,
                                 Estimator estimator) {
-  DeviceContext& context = device().context();
-  const Queues queues = make_queues(context, rays.size(), 1);
-  context.write(queues.rays, rays.data(), rays.size() * sizeof(Ray));
-  std::vector<Occlusion> found(rays.size(), {std::numeric_limits<float>::quiet_NaN(), 0});
-  context.write(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
-  OcclusionParams params{};
-  params.scene = scene.uploaded.buffers->params;
-  params.ray_count = static_cast<uint>(rays.size());
-  params.rays_per_point = 1;
-  params.footprint = 1;
-  occlusion_pass(context, queues, *scene.uploaded.buffers, "test", estimator, params,
-                 RayOrder::by_pixel);
-  context.read(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
-  return found;
+  return trace_queue(scene, rays, estimator, 1, RayOrder::by_pixel);
 }
 
 std::vector<float> transmittances(const std::vector<Occlusion>& found) {

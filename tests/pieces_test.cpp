@@ -2,12 +2,10 @@
 // bits that it finds among others.
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <algorithm>
 #include <vector>
 
-#include "device/context.hpp"
-#include "scene_on_device.hpp"
-#include "wavefront/passes.hpp"
+#include "queued_rays.hpp"
 
 namespace dapple {
 namespace {
@@ -17,21 +15,10 @@ using namespace scene_test;
 /// What the rays find, `rays_per_point` in a row from one point; NaN where none is traced.
 std::vector<float> transmittances(const SceneOnDevice& scene, const std::vector<Ray>& rays,
                                   std::size_t rays_per_point, RayOrder order) {
-  DeviceContext& context = device().context();
-  const Queues queues = make_queues(context, rays.size(), 1);
-  context.write(queues.rays, rays.data(), rays.size() * sizeof(Ray));
-  std::vector<Occlusion> found(rays.size(), {std::numeric_limits<float>::quiet_NaN(), 0});
-  context.write(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
-  OcclusionParams params{};
-  params.scene = scene.uploaded.buffers->params;
-  params.ray_count = static_cast<uint>(rays.size());
-  params.rays_per_point = static_cast<uint>(rays_per_point);
-  params.footprint = 1;
-  occlusion_pass(context, queues, *scene.uploaded.buffers, "test", Estimator::prefiltered, params,
-                 order);
-  context.read(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
   std::vector<float> values;
-  for (const Occlusion& one : found) values.push_back(one.transmittance);
+  for (const Occlusion& one :
+       trace_queue(scene, rays, Estimator::prefiltered, rays_per_point, order))
+    values.push_back(one.transmittance);
   return values;
 }
 
