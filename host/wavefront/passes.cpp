@@ -38,8 +38,14 @@ constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kCameraGroup = 1;
 /// kernels/point_rays.clh.
 constexpr std::size_t kRayLanes = 16;
 
+/// Parts of at most `size` that hold `count`.
+template <class T>
+T parts_of(T count, T size) {
+  return (count + size - 1) / size;
+}
+
 std::size_t hit_records(std::size_t samples) {
-  return (samples + DAPPLE_HIT_BITS - 1) / DAPPLE_HIT_BITS;
+  return parts_of<std::size_t>(samples, DAPPLE_HIT_BITS);
 }
 
 /// Never a question of how many rays there are in all: kernels differ in roundings, and a crop must
@@ -55,21 +61,19 @@ Company company(Estimator estimator, uint rays_per_point, RayOrder order,
   return share || order == RayOrder::by_pixel ? Company::neighbours : Company::alone;
 }
 
-uint rounded_up(uint count, uint of_each) { return (count + of_each - 1) / of_each; }
-
 /// Cuts a queue of neighbours into chunks, of which there are as many as it says. Not a question of
 /// how many threads there are: who travels together decides what is counted as visits.
 uint cut_neighbours(OcclusionParams& params) {
   params.large_chunks = params.ray_count / DAPPLE_NEIGHBOUR_CHUNK * kWholeOfFour / 4;
   const uint rest = params.ray_count - params.large_chunks * DAPPLE_NEIGHBOUR_CHUNK;
-  return params.large_chunks + rounded_up(rest, DAPPLE_SMALL_CHUNK);
+  return params.large_chunks + parts_of<uint>(rest, DAPPLE_SMALL_CHUNK);
 }
 
 /// The same of points, and puts chunks together to pieces, of which it says the number.
 uint cut_points(bool on_cpu, OcclusionParams& params) {
-  const uint chunks = rounded_up(params.rays_per_point, DAPPLE_POINT_CHUNK);
+  const uint chunks = parts_of<uint>(params.rays_per_point, DAPPLE_POINT_CHUNK);
   params.piece_chunks = on_cpu ? std::max(1u, kPieceRays / params.rays_per_point) : 1u;
-  return rounded_up(params.ray_count / params.rays_per_point * chunks, params.piece_chunks);
+  return parts_of<uint>(params.ray_count / params.rays_per_point * chunks, params.piece_chunks);
 }
 
 KernelName occlusion_kernel(Estimator estimator, Company with) {
@@ -121,7 +125,7 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   camera.scene = scene.params;
   constexpr std::size_t kPieceOfRays = std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_PIECE_ITEMS;
   context.launch_in_turns(
-      camera_kernel(params.orthographic != 0), "camera", (rays + kPieceOfRays - 1) / kPieceOfRays,
+      camera_kernel(params.orthographic != 0), "camera", parts_of(rays, kPieceOfRays),
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.work, queues.points, queues.sample_hits, camera},
       kCameraGroup);
@@ -149,14 +153,14 @@ std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::si
 
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  context.launch(kAoRays, "ao rays", (rays + kRayLanes - 1) / kRayLanes,
+  context.launch(kAoRays, "ao rays", parts_of(rays, kRayLanes),
                  {queues.points, queues.active, queues.rays, params}, kPacketGroup);
 }
 
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  context.launch(kLightRays, "light rays", (rays + kRayLanes - 1) / kRayLanes,
+  context.launch(kLightRays, "light rays", parts_of(rays, kRayLanes),
                  {queues.points, queues.active, scene.lights, scene.emitters, scene.environments,
                   queues.rays, params},
                  kPacketGroup);
