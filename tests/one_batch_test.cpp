@@ -74,6 +74,43 @@ TEST(OneBatch, IsNotEnoughWhereMoreAreAskedForOrEachPixelHasATarget) {
   EXPECT_EQ(with_batches(after_scouts(by_error, all_equal(0.001f)), 2), kPixels);
 }
 
+/// Of AO alone, for which a quarter of the scouts goes first.
+SamplePlan after_vanguard(float target, const Variances& variances) {
+  RenderOptions options = by_rmse(target);
+  options.light = false;
+  SamplePlan plan(kSide, kSide, options);
+  plan.scouts();
+  EXPECT_EQ(with_batches(plan, 2), kScouts / 4);
+  EXPECT_TRUE(plan.only_scouts_have_samples());
+  plan.after_scouts(variances);
+  return plan;
+}
+
+TEST(OneBatch, IsTakenFromTheVanguardWhereItIsByFarEnough) {
+  SamplePlan plan = after_vanguard(0.1f, all_equal(0.0024f));
+  EXPECT_EQ(with_batches(plan, 1), kPixels - kScouts / 4);
+  EXPECT_TRUE(plan.next(all_equal(0.0024f), no_costs).empty());
+}
+
+TEST(OneBatch, IsLeftToAllScoutsElsewhere) {
+  for (const float variance : {0.0026f, 0.0079f, 0.0081f, 0.0f}) {
+    SamplePlan plan = after_vanguard(0.1f, all_equal(variance));
+    EXPECT_EQ(with_batches(plan, 2), kScouts) << variance;
+    EXPECT_EQ(with_batches(plan, 0), kPixels - kScouts);
+    // As it is after a checkpoint, too.
+    RenderOptions options = by_rmse(0.1f);
+    options.light = false;
+    SamplePlan resumed(kSide, kSide, options, plan.samples());
+    EXPECT_TRUE(resumed.scouts().empty());
+    for (SamplePlan* goes_on : {&plan, &resumed}) {
+      goes_on->after_scouts(all_equal(variance));
+      const bool one = variance > 0 && variance < 0.008f;
+      EXPECT_EQ(with_batches(*goes_on, 1), one ? kPixels - kScouts : 0u) << variance;
+      EXPECT_EQ(with_batches(*goes_on, 2), one ? kScouts : kPixels) << variance;
+    }
+  }
+}
+
 TEST(OneBatch, IsJudgedAgainByWhoeverGoesOn) {
   const SamplePlan plan = after_scouts(by_rmse(0.1f), all_equal(0.005f));
   SamplePlan same(kSide, kSide, by_rmse(0.1f), plan.samples());

@@ -290,6 +290,15 @@ TEST(ScoutPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {
   }
 }
 
+TEST(ScoutPixels, HaveAQuarterOfThemInTheVanguard) {
+  const std::vector<bool> all = scout_pixels(130, 130);
+  const std::vector<bool> first = scout_pixels(130, 130, Scouts::vanguard);
+  ASSERT_EQ(first.size(), all.size());
+  EXPECT_EQ(4 * std::count(first.begin(), first.end(), true),
+            std::count(all.begin(), all.end(), true));
+  for (std::size_t p = 0; p < all.size(); ++p) EXPECT_TRUE(!first[p] || all[p]) << p;
+}
+
 TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
   RenderOptions options = by_rmse(0.1f);
   SamplePlan plan(128, 128, options);

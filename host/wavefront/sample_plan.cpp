@@ -38,6 +38,9 @@ constexpr double kAim = 0.95;
 /// know it to a tenth, and hardly more is known later.
 constexpr double kAimOfOne = 0.8;
 
+/// The same as the vanguard tells it, which knows it to a half.
+constexpr double kAimOfVanguard = 0.25;
+
 /// Times the least that all pixels get at most after the scouts: of those that see nothing most
 /// samples are for nothing, and packets of more are hardly narrower.
 constexpr std::uint32_t kMostAfterScouts = 4;
@@ -190,6 +193,8 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
       least_(static_cast<std::uint32_t>(options.spp)),
       most_(least_),
       one_may_do_(options.target_rmse > 0 && least_ <= DAPPLE_BATCH),
+      // Lights' errors are relative to the largest irradiance, of which few pixels know little.
+      vanguard_(one_may_do_ && !options.light),
       target_error_(options.target_error),
       target_rmse_(options.target_rmse) {
   samples_.resize(order_.size(), 0);
@@ -268,12 +273,15 @@ double SamplePlan::enough_of(std::size_t pixels) const {
 
 std::vector<WorkGroup> SamplePlan::scouts() {
   if (!is_adaptive() || samples_.front() > 0 || !all_equal(samples_)) return {};
-  const std::vector<bool> scouts = scout_pixels(width_, static_cast<int>(samples_.size()) / width_);
+  return send(scout_pixels(width_, height(), vanguard_ ? Scouts::vanguard : Scouts::all));
+}
+
+std::vector<WorkGroup> SamplePlan::send(const std::vector<bool>& scouts) {
   if (scouts.empty()) return {};
   std::vector<WorkGroup> groups(1);
   groups.front().samples = least_;
   for (const std::uint32_t pixel : order_) {
-    if (!scouts[pixel]) continue;
+    if (!scouts[pixel] || samples_[pixel] > 0) continue;
     groups.front().work.push_back({pixel, 0});
     samples_[pixel] = least_;
   }
@@ -311,11 +319,14 @@ bool SamplePlan::one_batch_does(const std::vector<std::vector<float>>& variances
 
 std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances) {
   const std::vector<std::uint32_t> scouts = sampled();
-  if (one_batch_does(variances, scouts, kAimOfOne)) {
+  const std::vector<bool> all = scout_pixels(width_, height());
+  const bool is_vanguard = scouts.size() < static_cast<std::size_t>(std::ranges::count(all, true));
+  if (one_batch_does(variances, scouts, is_vanguard ? kAimOfVanguard : kAimOfOne)) {
     least_ = DAPPLE_BATCH;
     fraction_done_ = 1;
     return least();
   }
+  if (is_vanguard) return send(all);
   const double enough = enough_of(scouts.size());
   double batches = 0, varied = 0;
   for (const std::vector<float>& pass : variances) {

@@ -29,14 +29,15 @@ class SamplePlan {
              std::vector<std::uint32_t> samples = {});
 
   [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
-  /// With a target and a picture large enough, before it has samples: the least for scout_pixels();
-  /// else empty.
+  /// With a target and a picture large enough, before it has samples: the least for scout_pixels(),
+  /// where one batch may be enough first for their vanguard; else empty.
   std::vector<WorkGroup> scouts();
   [[nodiscard]] bool only_scouts_have_samples() const;
   /// Raises the least, to at most four times what it is, to what equal samples would take for an
   /// RMSE, or what three quarters of the pixels that vary want, going by the scouts, and is least()
   /// then: rounds are few, and packets narrow in the first. Where one batch is enough for the RMSE,
-  /// and no more were asked for, others than scouts get one. `variances` as for next().
+  /// and no more were asked for, others than scouts get one. Where so far only the vanguard has
+  /// samples, and one batch is not by far enough, the other scouts'. `variances` as for next().
   std::vector<WorkGroup> after_scouts(const std::vector<std::vector<float>>& variances);
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
@@ -56,6 +57,8 @@ class SamplePlan {
   [[nodiscard]] double fraction_done() const { return fraction_done_; }
 
  private:
+  /// The least for those of `scouts` that have no samples.
+  std::vector<WorkGroup> send(const std::vector<bool>& scouts);
   /// Pixels that have samples, in order.
   [[nodiscard]] std::vector<std::uint32_t> sampled() const;
   /// Whether one batch a pixel leaves at most that part of the squared error asked for, by the
@@ -72,11 +75,14 @@ class SamplePlan {
   /// The sum of squared errors of so many pixels at the RMSE asked for.
   [[nodiscard]] double enough_of(std::size_t pixels) const;
 
+  [[nodiscard]] int height() const { return static_cast<int>(samples_.size()) / width_; }
+
   int width_;
   std::vector<std::uint32_t> order_;  ///< pixels, tile by tile and in these block by block
   std::vector<std::uint32_t> samples_;
   std::uint32_t least_, most_;
   bool one_may_do_;  ///< one batch a pixel, if it is enough
+  bool vanguard_;    ///< goes before the other scouts
   float target_error_, target_rmse_;
   double fraction_done_ = 0;
 };

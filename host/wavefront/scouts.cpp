@@ -31,7 +31,7 @@ int cell_side(int width, int height) {
 
 }  // namespace
 
-std::vector<bool> scout_pixels(int width, int height) {
+std::vector<bool> scout_pixels(int width, int height, Scouts which) {
   const int cell = cell_side(width, height);
   if (squares_of(width, height, cell) < kFewest) return {};
   std::vector<bool> scouts(static_cast<std::size_t>(width) * height, false);
@@ -40,6 +40,7 @@ std::vector<bool> scout_pixels(int width, int height) {
   for (int row = 0; row < height / cell; ++row) {
     for (int column = 0; column < width / cell; ++column) {
       const int left = column * cell + place(), top = row * cell + place();
+      if (which == Scouts::vanguard && (row % 2 != 0 || column % 2 != 0)) continue;
       for (int y = top; y < top + kSquare; ++y) {
         const auto begin = scouts.begin() + static_cast<std::ptrdiff_t>(y) * width + left;
         std::fill_n(begin, kSquare, true);
