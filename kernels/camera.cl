@@ -13,11 +13,6 @@ typedef struct ItemHits {
   uint visits, tests;  /* as SampleHits has them */
 } ItemHits;
 
-/* Of each ray's share of its pixel. */
-typedef struct BeamShares {
-  Floats16 first_area, solid_angle;
-} BeamShares;
-
 /* The item's rays from `first` on as a beam: those that are not among its `count` have ended. */
 inline void start_beam(CameraParams params, const CameraSamples* chosen, uint first, uint count,
                        BeamNearest* nearest, Stops* stops) {
@@ -49,8 +44,8 @@ inline void store_stop(const CameraSamples* chosen, uint of_item, uint sample, u
 
 /* What the beam met whose first ray is that, sample by sample; `points` are those of the item. */
 inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, const BeamRays* beam,
-                       const BeamShares* shares, const Stops* stops, __global SurfacePoint* points,
-                       ItemHits* found) {
+                       const BeamShares* shares, const uint* keys, const Stops* stops,
+                       __global SurfacePoint* points, ItemHits* found) {
   BeamPoints at;
   clear_points(&at);
   for (uint d = 0; d < stops->count; ++d) {
@@ -62,7 +57,7 @@ inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, con
     if (d)
       others &= bits_of_16((stops->primitive[d].v != stops->primitive[d - 1u].v) |
                            (stops->instance[d].v != stops->instance[d - 1u].v));
-    if (others) place_stops(scene, beam, stops, d, hits, &at);
+    if (others) place_stops(scene, beam, keys, stops, d, hits, &at);
     Floats16 area;
     area.v = shares->first_area.v + shares->solid_angle.v * t * t;
     for (uint left = hits; left; left &= left - 1u) {
@@ -70,6 +65,23 @@ inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, con
       const uint place = chosen->place[first + ray] * stops->count + d;
       store_stop(chosen, first + ray, d, ray, stops->t[d].f[ray], area.f[ray], &at, points + place);
       found->hits[place / DAPPLE_HIT_BITS] |= 1u << place % DAPPLE_HIT_BITS;
+    }
+  }
+}
+
+/* How much a box of haze may cover varies as footprints do, so that nothing pops. */
+inline void set_haze(CameraParams params, const BeamShares* shares, NearestPacket* packet) {
+  packet->haze_error = params.haze_error;
+  packet->share_of_sample = 1.0f / (1u << params.depth_bits);
+  for (uint b = 0; b < DAPPLE_PACKET_BEAMS; ++b) {
+    const float16 scale = DAPPLE_HAZE_PIXELS / params.inverse_spp * shares[b].spread.v;
+    Floats16 first_area, solid_angle;
+    first_area.v = scale * shares[b].first_area.v;
+    solid_angle.v = 0.25f * scale * shares[b].solid_angle.v; /* a quarter, as PacketRay has it */
+    PacketRay* rays = packet->world.rays + b * DAPPLE_BEAM_RAYS;
+    for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
+      rays[i].first_area = first_area.f[i];
+      rays[i].solid_angle = solid_angle.f[i];
     }
   }
 }
@@ -86,13 +98,14 @@ inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* ch
   packet.beams = beams;
   for (uint b = 0; b < DAPPLE_PACKET_BEAMS; ++b) {
     const uint first = b * DAPPLE_BEAM_RAYS;
-    aim(params, chosen, first, taps + b, beams + b, &shares[b].solid_angle.v,
-        &shares[b].first_area.v);
+    aim(params, chosen, first, taps + b, beams + b, shares + b, packet.key + first);
     start_beam(params, chosen, first, count, packet.nearest + b, stops + b);
   }
+  set_haze(params, shares, &packet);
   find_nearest(scene, params.scene, entries, &packet, stops);
   for (uint b = 0; b < DAPPLE_PACKET_BEAMS; ++b) {
-    store_beam(scene, chosen, b * DAPPLE_BEAM_RAYS, beams + b, shares + b, stops + b, points,
+    const uint first = b * DAPPLE_BEAM_RAYS;
+    store_beam(scene, chosen, first, beams + b, shares + b, packet.key + first, stops + b, points,
                found);
   }
   found->visits += packet.visits;
@@ -111,7 +124,7 @@ inline void trace_item(Scene scene, CameraParams params, uint item, uint rays,
   if (may_see_scene(params, pixels)) {
     BeamBounds bounds;
     bound_pixels(params, pixels, &bounds);
-    find_entries(scene, params.scene, &bounds, &entries);
+    find_entries(scene, params.scene, params.haze_error > 0.0f, &bounds, &entries);
   }
   const uint first_sample = begin << params.depth_bits;
   const uint rays_of_record = DAPPLE_HIT_BITS >> params.depth_bits;

@@ -126,6 +126,27 @@ Four mean_transmittances(Four depth, Four variance) {
 
 }  // namespace
 
+unsigned unevenness_class(const NodeOpacity& opacity) {
+  float greatest = 0, most = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    greatest += opacity.axes[axis] * (1.0f - opacity.axes[axis]);
+    most = std::max(most, opacity.axes[axis]);
+  }
+  const float square = std::max(opacity.clumping * greatest / 3, std::pow(most, 4.0f));
+  unsigned of_seven = 0;
+  for (float limit = DAPPLE_EVENEST_SQUARE; of_seven < DAPPLE_UNEVEN && !(square <= limit);
+       limit *= 2)
+    ++of_seven;
+  return of_seven;
+}
+
+unsigned unevenness_of_child(const BvhNode& node, unsigned slot) {
+  unsigned bits = 0;
+  for (unsigned pair = 0; pair < 3; ++pair)
+    bits |= (static_cast<unsigned>(node.correlation[pair][slot]) & 1u) << pair;
+  return bits;
+}
+
 float depth_of(float opacity) {
   return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
 }

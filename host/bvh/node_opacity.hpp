@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "dapple/scene.hpp"
+#include "dapple/shared/bvh_node.h"
 
 namespace dapple {
 
@@ -37,6 +38,12 @@ struct NodeOpacity {
 /// squared distance of what hides from the centre of the box, seen along the axes, in half
 /// sizes. 2/3 and more, as of things that fill the box evenly or stay away from its middle: 0.
 float concentration_of(float off_centre);
+
+/// How unevenly a box is filled, as nodes store it: dapple/shared/opacity.h.
+unsigned unevenness_class(const NodeOpacity& opacity);
+
+/// The same as stored.
+unsigned unevenness_of_child(const BvhNode& node, unsigned slot);
 
 /// -log(1 - opacity), at most the greatest depth that a node can store.
 float depth_of(float opacity);

@@ -262,12 +262,20 @@ V3f grown_opacity(const V3f& axes, const Box3f& exact, const Box3f& box) {
   return grown;
 }
 
+/// The nearest code of a correlation whose least bit is that one.
+schar encode_correlation(float correlation, unsigned bit) {
+  const int last = static_cast<int>(bit), most = 126 + last;
+  const auto half =
+      static_cast<int>(std::lround((127.0f * correlation - static_cast<float>(bit)) / 2));
+  return static_cast<schar>(std::clamp(2 * half + last, -most, most));
+}
+
 void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
-                  const V3f& correlation) {
+                  const V3f& correlation, unsigned unevenness) {
   for (int axis = 0; axis < 3; ++axis) {
     node.depth[axis][slot] =
         encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_GREATEST_DEPTH));
-    node.correlation[axis][slot] = static_cast<schar>(std::lround(127.0f * correlation[axis]));
+    node.correlation[axis][slot] = encode_correlation(correlation[axis], unevenness >> axis & 1u);
   }
 }
 
@@ -279,7 +287,8 @@ float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity
   NodeOpacity grown = opacity;
   grown.axes = grown_opacity(opacity.axes, exact, box);
   const float factor = clumping_factor(grown, box.max - box.min);
-  store_depths(node, slot, grown.axes, factor, opacity.normals.correlation());
+  store_depths(node, slot, grown.axes, factor, opacity.normals.correlation(),
+               unevenness_class(opacity));
   const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.concentration));
   node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
   return factor;
@@ -291,7 +300,8 @@ void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
   for (int axis = 0; axis < 3; ++axis)
     axes[axis] = std::min(1.0f, axes[axis] * kept.share(axis, slot));
   store_depths(node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
-               normals.correlation());
+               normals.correlation(),
+               std::max(unevenness_of_child(node, slot), unevenness_class({axes, {}})));
 }
 
 namespace {

@@ -47,7 +47,8 @@ __kernel void placed_points(__global const TriangleBlock* blocks,
   }
   BeamPoints at;
   clear_points(&at);
-  place_stops(scene, &beam, &stops, 0u, 65535u, &at);
+  const uint keys[DAPPLE_BEAM_RAYS] = {0};
+  place_stops(scene, &beam, keys, &stops, 0u, 65535u, &at);
   for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
     const float3 origin = vload3(0, rays + 7u * i), direction = vload3(0, rays + 7u * i + 3u);
     const SurfaceHit hit = {rays[7u * i + 6u], primitives[i], placements[i]};

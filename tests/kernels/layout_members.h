@@ -75,7 +75,7 @@
   MEMBER(CameraParams, height) MEMBER(CameraParams, crop_x) MEMBER(CameraParams, crop_y)     \
   MEMBER(CameraParams, crop_width) MEMBER(CameraParams, seed)                                \
   MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, texel_share)                        \
-  MEMBER(CameraParams, tap_reach) MEMBER(CameraParams, tap_pull)                             \
+  MEMBER(CameraParams, tap_reach) MEMBER(CameraParams, tap_pull) MEMBER(CameraParams, haze_error)                             \
   MEMBER(CameraParams, depth_bits)                                                           \
   MEMBER(CameraParams, seen_left)                                                            \
   MEMBER(CameraParams, seen_above) MEMBER(CameraParams, seen_right)                          \

@@ -37,6 +37,13 @@ DAPPLE_FUNCTION float depth_decode(uchar code) {
   return root * root * DAPPLE_GREATEST_DEPTH;
 }
 
+/* How unevenly a child is filled, in the least bits of its three correlations, which they don't
+   need: class c from 0 to 6 where the opacities of a sixteenth by a sixteenth of the box's sides,
+   seen along the axes, deviate from their mean by 2^(c/2 - 8) at most (rms), and the mean squared is
+   no more than that either; 7: all others. */
+#define DAPPLE_UNEVEN 7u
+#define DAPPLE_EVENEST_SQUARE 1.52587890625e-5f /* 2^-16 */
+
 DAPPLE_FUNCTION float correlation_decode(schar code) { return (float)code * (1.0f / 127.0f); }
 
 /* Mean optical depth of a box along a direction. facing_k = (projected area along axis k) *

@@ -70,6 +70,7 @@ typedef struct CameraParams {
   float texel_share;    /* of a pixel's area that each look-up in a texture averages; 0: none */
   float tap_reach;      /* as in PixelTaps; 0: no taps */
   float tap_pull;       /* how far the middle of a ray's taps is towards the pixel's middle, [0,1] */
+  float haze_error;     /* by which what a box of haze hides of a pixel may deviate; 0: no haze */
   uint depth_bits;      /* two to these samples in a row share a camera ray */
   /* Pixels in which the scene may be: columns [left, right), rows [above, below). */
   uint seen_left, seen_above, seen_right, seen_below;
