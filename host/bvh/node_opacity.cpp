@@ -140,13 +140,6 @@ unsigned unevenness_class(const NodeOpacity& opacity) {
   return of_seven;
 }
 
-unsigned unevenness_of_child(const BvhNode& node, unsigned slot) {
-  unsigned bits = 0;
-  for (unsigned pair = 0; pair < 3; ++pair)
-    bits |= (static_cast<unsigned>(node.correlation[pair][slot]) & 1u) << pair;
-  return bits;
-}
-
 float depth_of(float opacity) {
   return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
 }

@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "dapple/scene.hpp"
-#include "dapple/shared/bvh_node.h"
 
 namespace dapple {
 
@@ -41,9 +40,6 @@ float concentration_of(float off_centre);
 
 /// How unevenly a box is filled, as nodes store it: dapple/shared/opacity.h.
 unsigned unevenness_class(const NodeOpacity& opacity);
-
-/// The same as stored.
-unsigned unevenness_of_child(const BvhNode& node, unsigned slot);
 
 /// -log(1 - opacity), at most the greatest depth that a node can store.
 float depth_of(float opacity);

@@ -65,6 +65,9 @@ NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, co
 float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
                         const Box3f& exact);
 
+/// unevenness_class() as stored with it.
+unsigned unevenness_of_child(const BvhNode& node, unsigned slot);
+
 /// A triangle of the mesh into a lane; `opacity` in [0,1], or the code of a textured one.
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
               float opacity);

@@ -294,6 +294,13 @@ float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity
   return factor;
 }
 
+unsigned unevenness_of_child(const BvhNode& node, unsigned slot) {
+  unsigned bits = 0;
+  for (unsigned pair = 0; pair < 3; ++pair)
+    bits |= (static_cast<unsigned>(node.correlation[pair][slot]) & 1u) << pair;
+  return bits;
+}
+
 void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
                       const SurfaceAreas& areas, const NormalMoments& normals, const Box3f& exact) {
   V3f axes = layers_in(areas, exact);

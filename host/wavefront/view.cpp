@@ -122,18 +122,17 @@ constexpr float kMostTexelShare = 0.25f, kMostTapShare = 0.75f;
 /// power of two, so 0.54 of it in the mean).
 constexpr float kTapVariance = 0.75f, kTexelVariance = 1.6f;
 
-/// Of the RMSE that footprint_samples() are for, the part by which what one box of haze hides of a
-/// pixel may deviate. There may be some behind each other; but AO differs by a part of that only,
-/// for what is in haze is hardly occluded.
-constexpr float kHazeError = 0.5f, kRmseOfFootprint = 0.057f;
+/// Of footprint_rmse(), the part by which what one box of haze hides of a pixel may deviate. There
+/// may be some behind each other; but AO differs by a part of that only, for what is in haze is
+/// hardly occluded.
+constexpr float kHazeError = 0.5f;
 
 /// Without a target pictures are as good as rays make them. Errors of lights are relative to the
 /// largest irradiance, which haze has little of.
 float haze_error(const RenderOptions& options) {
   const bool exact = options.estimator == Estimator::exact || options.footprint == 0;
   if (exact || options.light || !is_adaptive(options)) return 0;
-  const float rmse = kRmseOfFootprint / std::sqrt(static_cast<float>(footprint_samples(options)));
-  return kHazeError * rmse;
+  return kHazeError * footprint_rmse(options);
 }
 
 }  // namespace

@@ -100,6 +100,9 @@ struct RenderOptions {
 /// error, half of a picture's.
 [[nodiscard]] int footprint_samples(const RenderOptions& options);
 
+/// The RMSE of a picture that footprints of so many samples are for, [0,1].
+[[nodiscard]] float footprint_rmse(const RenderOptions& options);
+
 /// AO rays a primary sample among which footprints share the hemisphere.
 [[nodiscard]] inline int footprint_ao_rays(const RenderOptions& options) {
   return options.footprint_ao_rays > 0 ? options.footprint_ao_rays : options.ao_rays;
