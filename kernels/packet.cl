@@ -25,11 +25,8 @@ inline uint next_share(Shares* shares) {
    and shared over them. */
 inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray* queue,
                          const ushort* order, uint count, __global Occlusion* results) {
-  PacketRays world;
-  load_rays(queue, order, count, params.footprint, &world);
   Packet packet;
-  start_packet(count, &packet);
-  traverse_packet(scene, params, queue[order[0]].light, &world, &packet);
+  traverse_rays(scene, params, queue, order, count, &packet);
   Shares visits = make_shares(packet.visits, count);
   Shares tests = make_shares(packet.tests, count);
   for (uint i = 0; i < count; i += 8u) {
@@ -47,12 +44,7 @@ inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray
 inline void trace_chunk(Scene scene, OcclusionParams params, __global const Ray* rays, uint count,
                         __global Occlusion* results) {
   ushort order[DAPPLE_PACKET_CHUNK];
-  uint traced = count;
-  if (count > DAPPLE_PACKET_RAYS) {
-    traced = order_rays(rays, count, order);
-  } else {
-    for (uint i = 0; i < count; ++i) order[i] = (ushort)i;
-  }
+  const uint traced = order_chunk(rays, count, order);
   for (uint i = 0; i < traced; i += DAPPLE_PACKET_RAYS)
     trace_packet(scene, params, rays, order + i, min(traced - i, DAPPLE_PACKET_RAYS), results);
   for (uint i = traced; i < count; ++i) {

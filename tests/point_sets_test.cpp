@@ -110,6 +110,47 @@ TEST(PointSets, APointsRaysDoNotHangOnTheOthers) {
   }
 }
 
+/// Rays made, traced and added up point by point bring what rays that go through queues do, where
+/// each is traced by itself: the same rays, but for the roundings of what they meet.
+TEST(PointSets, BringTheSameWithoutQueues) {
+  const SceneOnDevice scene(make_procedural("scene:forest?trees=20&leaves=500"));
+  const Device alone("", "", Company::alone);
+  const DeviceScene uploaded = upload(alone, scene.scene, scene.bvh);
+  const Ground ground = ground_below_a_tree(60);
+  for (const int rays : {32, 63, 100, 512}) {
+    for (const float distance : {0.0f, 6.0f}) {
+      SCOPED_TRACE(std::to_string(rays) + " rays, distance " + std::to_string(distance));
+      OcclusionOptions options;
+      options.rays = rays;
+      options.estimator = Estimator::exact;
+      options.distance = distance;
+      options.falloff = distance > 0 ? 2.0f : 0.0f;
+      options.seed = 11;
+      const auto at_once =
+          occlusion(device(), scene.uploaded, ground.points, ground.normals, options);
+      const auto in_passes = occlusion(alone, uploaded, ground.points, ground.normals, options);
+      int apart = 0;
+      for (std::size_t i = 0; i < at_once.size(); ++i) {
+        EXPECT_NEAR(at_once[i], in_passes[i], 1.5 / rays) << "point " << i;
+        apart += std::fabs(at_once[i] - in_passes[i]) > 1e-4f ? 1 : 0;
+      }
+      // A ray that goes through an edge may be seen on either side of it.
+      EXPECT_LE(apart, 3);
+      EXPECT_LT(*std::min_element(at_once.begin(), at_once.end()), 0.97f) << "nothing to see";
+    }
+  }
+}
+
+TEST(PointSets, AreOneWhereNothingIsInTheWay) {
+  const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
+  const V3f below(0, -1, 0);
+  for (const int rays : {1, 16, 100, 512, 1000}) {
+    OcclusionOptions options;
+    options.rays = rays;
+    EXPECT_EQ(scene.occlusion_at(V3f(0, -1, 0), below, options), 1.0f) << rays << " rays";
+  }
+}
+
 TEST(PointOrder, IsOfAllPointsAndKeepsNeighboursTogether) {
   Points random(9);
   std::vector<V3f> points;

@@ -294,6 +294,10 @@ void DeviceContext::launch(const KernelName& name, const std::string& label, std
   if (state_->events.size() >= kEventsHeld) finish();
 }
 
+std::size_t DeviceContext::groups_in_turns(std::size_t pieces) const {
+  return std::min(pieces, kGroupsTakingTurns * state_->info.compute_units);
+}
+
 void DeviceContext::launch_in_turns(const KernelName& name, const std::string& label,
                                     std::size_t pieces, std::vector<KernelArgument> arguments,
                                     std::size_t group) {
@@ -306,7 +310,7 @@ void DeviceContext::launch_in_turns(const KernelName& name, const std::string& l
     s.next_turn = kFirstTurn;
     write(turns, &s.next_turn, sizeof s.next_turn);
   }
-  const std::size_t groups = std::min(pieces, kGroupsTakingTurns * s.info.compute_units);
+  const std::size_t groups = groups_in_turns(pieces);
   const auto count = static_cast<cl_uint>(pieces);
   arguments.insert(arguments.end(), {turns, s.next_turn, count});
   launch(name, label, groups * group, arguments, group);

@@ -123,6 +123,8 @@ class DeviceContext {
   /// 2^31, by turns: take_turn() of kernels/turns.clh. Three arguments are added here.
   void launch_in_turns(const KernelName& name, const std::string& label, std::size_t pieces,
                        std::vector<KernelArgument> arguments, std::size_t group = 64);
+  /// Work-groups that take so many pieces by turns.
+  [[nodiscard]] std::size_t groups_in_turns(std::size_t pieces) const;
   void finish();
   /// Waits like finish(), but whatever has become of the launches.
   void wait() noexcept;

@@ -32,7 +32,7 @@ constexpr uint kWholeOfFour = 3;
 constexpr uint kPieceRays = 256;
 
 /// Items a work-group: few where each has much to do.
-constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kCameraGroup = 1;
+constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kCameraGroup = 1, kPointGroup = 1;
 
 /// Rays that one item of the kernels that make them makes; DAPPLE_RAY_LANES in
 /// kernels/point_rays.clh.
@@ -82,6 +82,10 @@ KernelName occlusion_kernel(Estimator estimator, Company with) {
   return {"packet", "packet", {prefiltered, with == Company::point}};
 }
 
+KernelName point_ao_kernel(Estimator estimator) {
+  return {"point_ao", "point_ao", {estimator != Estimator::exact, true}};
+}
+
 KernelName camera_kernel(bool orthographic) {
   return {"camera_hits", "camera", {false, !orthographic}};
 }
@@ -114,6 +118,15 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
   queues.active = context.allocate(samples * sizeof(uint));
   queues.active_count = context.allocate(sizeof(uint));
   queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
+  return queues;
+}
+
+Queues make_point_queues(DeviceContext& context, std::size_t points, std::size_t rays_per_point) {
+  const std::size_t at_work = context.groups_in_turns(points);
+  Queues queues;
+  queues.rays = context.allocate(at_work * rays_per_point * sizeof(Ray));
+  queues.points = context.allocate(points * sizeof(SurfacePoint));
+  queues.occlusions = context.allocate(points * sizeof(float));
   return queues;
 }
 
@@ -186,6 +199,23 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
   }
 }
 
+bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays_per_point) {
+  return rays_per_point <= DAPPLE_POINT_CHUNK &&
+         company(estimator, static_cast<uint>(rays_per_point), RayOrder::any, context) ==
+             Company::point;
+}
+
+void point_ao_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                   Estimator estimator, const AoParams& ao_params, const OcclusionParams& params) {
+  OcclusionParams launched = params;
+  const uint pieces = cut_points(context.info().kind == "CPU", launched);
+  context.launch_in_turns(
+      point_ao_kernel(estimator), "ao", pieces,
+      {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
+       scene.instances, queues.points, queues.rays, queues.occlusions, ao_params, launched},
+      kPointGroup);
+}
+
 void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                           const ResolveParams& params) {
   context.launch(kResolveSurface, "resolve", params.slice.pixel_count,
@@ -216,6 +246,7 @@ std::vector<KernelShape> every_kernel() {
     kernels.push_back({camera_kernel(orthographic), kCameraGroup});
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     kernels.push_back({occlusion_kernel(estimator, Company::alone), kRayGroup});
+    kernels.push_back({point_ao_kernel(estimator), kPointGroup});
     for (const Company with : {Company::neighbours, Company::point})
       kernels.push_back({occlusion_kernel(estimator, with), packet_group(with)});
   }

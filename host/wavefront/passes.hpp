@@ -28,6 +28,10 @@ struct Queues {
 
 Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample);
 
+/// The same for point_ao_pass(), where only the rays of points that are worked on are in memory,
+/// and `occlusions` are floats, one a point.
+Queues make_point_queues(DeviceContext& context, std::size_t points, std::size_t rays_per_point);
+
 /// What passes resolve into.
 struct FilmBuffers {
   Buffer sums;     ///< 64-bit fixed point planes as FilmLayout says
@@ -57,6 +61,14 @@ void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Qu
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order = RayOrder::any);
+
+/// Whether so many AO rays of each point are best made, traced and averaged at once: points that a
+/// packet each is for, of rays that one chunk holds.
+bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays_per_point);
+
+/// AO in [0,1] of the points in `points` into `occlusions`, where at_once() says so.
+void point_ao_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                   Estimator estimator, const AoParams& ao_params, const OcclusionParams& params);
 
 void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                           const ResolveParams& params);

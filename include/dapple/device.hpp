@@ -13,8 +13,8 @@ namespace dapple {
 /// Whom an occlusion ray is traced with, which is a question of time: roundings apart all find the
 /// same, but that prefiltered rays of a point may stop at other nodes.
 enum class Company : std::uint8_t {
-  automatic,  ///< what suits the device: on CPUs neighbours, or from 32 rays a point up point; else
-              ///< alone
+  automatic,  ///< what suits the device: on CPUs neighbours, or from 16 rays a point up (exact ones
+              ///< 32) point; else alone
   alone,      ///< every ray is a work-item
   neighbours,  ///< up to 64 rays that start near each other
   point,       ///< the rays of one point
