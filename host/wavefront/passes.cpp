@@ -95,12 +95,12 @@ constexpr std::size_t packet_group(Company with) {
 }
 
 const KernelName kClosestHit{"closest_hit", "closest_hit", {}};
-const KernelName kCompactHits{"compact_hits", "compact", {}};
-const KernelName kAoRays{"ao_rays", "ao", {}};
-const KernelName kLightRays{"light_rays", "light", {}};
-const KernelName kResolveSurface{"resolve_surface", "film", {}};
-const KernelName kResolveAo{"resolve_ao", "film", {}};
-const KernelName kResolveLight{"resolve_light", "film", {}};
+const KernelName kCompactHits{"compact_hits", "passes", {}};
+const KernelName kAoRays{"ao_rays", "passes", {}};
+const KernelName kLightRays{"light_rays", "passes", {}};
+const KernelName kResolveSurface{"resolve_surface", "passes", {}};
+const KernelName kResolveAo{"resolve_ao", "passes", {}};
+const KernelName kResolveLight{"resolve_light", "passes", {}};
 const KernelName kResolveDome{"resolve_dome", "dome", {}};
 
 }  // namespace
