@@ -12,7 +12,8 @@ namespace {
 const char* describe(Company company) {
   switch (company) {
     case Company::neighbours:
-      return "rays are traced with their neighbours, 32 and more of a point with each other";
+      return "rays are traced with their neighbours, 16 and more of a point with each other, exact "
+             "ones 32 and more";
     case Company::point:
       return "rays of a point are traced with each other";
     default:
