@@ -158,7 +158,7 @@ inline void sample_light(__global const LightRecord* light,
 }
 
 /* A ray that can bring nothing is not traced: it ends before it starts. */
-inline void aim_rays(const PointRays* rays, const LightSamples* samples, float inverse_count,
+inline void aim_light_rays(const PointRays* rays, const LightSamples* samples, float inverse_count,
                      RayWays* ways) {
   float16 cosine = (float16)(0.0f);
   DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
@@ -186,6 +186,6 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   load_points(points, active_list, first, end, params.rays, &rays);
   choose_places(DAPPLE_PAIR_LIGHT + params.light, params.seed, &rays);
   sample_light(light, emitters, environments, &rays, &samples);
-  aim_rays(&rays, &samples, params.inverse_count, &ways);
+  aim_light_rays(&rays, &samples, params.inverse_count, &ways);
   store_rays(&rays, &ways, light->id, queue + first);
 }

@@ -1,4 +1,4 @@
-/* The kernels of pictures that trace nothing, compiled together: each program takes a fifth of a
+/* The kernels around those that trace, compiled together: each program takes a fifth of a
    second on PoCL for OpenCL's own header. Domes, which few scenes have, are apart. */
 #include "ao.cl"
 #include "compact.cl"

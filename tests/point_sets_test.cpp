@@ -110,25 +110,33 @@ TEST(PointSets, APointsRaysDoNotHangOnTheOthers) {
   }
 }
 
-/// Rays made, traced and added up point by point bring what rays that go through queues do, where
-/// each is traced by itself: the same rays, but for the roundings of what they meet.
-TEST(PointSets, BringTheSameWithoutQueues) {
-  const SceneOnDevice scene(make_procedural("scene:forest?trees=20&leaves=500"));
-  const Device alone("", "", Company::alone);
-  const DeviceScene uploaded = upload(alone, scene.scene, scene.bvh);
-  const Ground ground = ground_below_a_tree(60);
-  for (const int rays : {32, 63, 100, 512}) {
+/// Points whose rays are made, traced and added up at once beside those whose rays go through
+/// queues and are traced each by itself.
+class AtOnce : public testing::Test {
+ protected:
+  using Found = std::pair<std::vector<float>, std::vector<float>>;
+  Found found(const OcclusionOptions& options) const {
+    return {occlusion(at_once_, on_at_once_, ground_.points, ground_.normals, options),
+            occlusion(alone_, on_alone_, ground_.points, ground_.normals, options)};
+  }
+  static OcclusionOptions options(int rays, Estimator estimator, float distance) {
+    return {rays, estimator, 1.0f, distance, distance > 0 ? 2.0f : 0.0f, 11};
+  }
+
+ private:
+  const Scene scene_ = make_procedural("scene:forest?trees=20&leaves=500");
+  const SceneBvh bvh_ = build_bvh(scene_);
+  const Device at_once_{"", "", Company::point}, alone_{"", "", Company::alone};
+  const DeviceScene on_at_once_ = upload(at_once_, scene_, bvh_);
+  const DeviceScene on_alone_ = upload(alone_, scene_, bvh_);
+  const Ground ground_ = ground_below_a_tree(60);
+};
+
+TEST_F(AtOnce, ExactPointsAreThoseOfQueues) {
+  for (const int rays : {5, 32, 63, 100, 512}) {
     for (const float distance : {0.0f, 6.0f}) {
       SCOPED_TRACE(std::to_string(rays) + " rays, distance " + std::to_string(distance));
-      OcclusionOptions options;
-      options.rays = rays;
-      options.estimator = Estimator::exact;
-      options.distance = distance;
-      options.falloff = distance > 0 ? 2.0f : 0.0f;
-      options.seed = 11;
-      const auto at_once =
-          occlusion(device(), scene.uploaded, ground.points, ground.normals, options);
-      const auto in_passes = occlusion(alone, uploaded, ground.points, ground.normals, options);
+      const auto [at_once, in_passes] = found(options(rays, Estimator::exact, distance));
       int apart = 0;
       for (std::size_t i = 0; i < at_once.size(); ++i) {
         EXPECT_NEAR(at_once[i], in_passes[i], 1.5 / rays) << "point " << i;
@@ -137,6 +145,26 @@ TEST(PointSets, BringTheSameWithoutQueues) {
       // A ray that goes through an edge may be seen on either side of it.
       EXPECT_LE(apart, 3);
       EXPECT_LT(*std::min_element(at_once.begin(), at_once.end()), 0.97f) << "nothing to see";
+    }
+  }
+}
+
+/// Depths of nodes are those along the way to their middles here, and along each ray there.
+TEST_F(AtOnce, PrefilteredPointsAreNearThoseOfQueues) {
+  for (const int rays : {16, 100}) {
+    for (const float distance : {0.0f, 6.0f}) {
+      SCOPED_TRACE(std::to_string(rays) + " rays, distance " + std::to_string(distance));
+      const auto [at_once, in_passes] = found(options(rays, Estimator::prefiltered, distance));
+      double sum = 0, squares = 0;
+      for (std::size_t i = 0; i < at_once.size(); ++i) {
+        const double apart = double{at_once[i]} - in_passes[i];
+        sum += apart;
+        squares += apart * apart;
+      }
+      const auto count = static_cast<double>(at_once.size());
+      EXPECT_LT(std::fabs(sum / count), 0.002);
+      EXPECT_LT(std::sqrt(squares / count), 0.005);
+      EXPECT_GT(squares, 0) << "the same kernel";
     }
   }
 }

@@ -200,7 +200,7 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
 }
 
 bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays_per_point) {
-  return rays_per_point <= DAPPLE_POINT_CHUNK &&
+  return context.info().kind == "CPU" && rays_per_point <= DAPPLE_POINT_CHUNK &&
          company(estimator, static_cast<uint>(rays_per_point), RayOrder::any, context) ==
              Company::point;
 }

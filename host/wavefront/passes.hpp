@@ -14,6 +14,9 @@ enum class RayOrder {
   by_pixel,  ///< they start near each other: CPUs trace them together
 };
 
+/// Rays of queries a launch, so that no launch runs long enough to trip a watchdog.
+inline constexpr std::size_t kQueryRays = 1u << 18;
+
 /// Queues for one slice; sized once, reused by every slice.
 struct Queues {
   Buffer work;          ///< PixelWork of camera_pass(), allocated by who makes pictures
@@ -62,8 +65,8 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order = RayOrder::any);
 
-/// Whether so many AO rays of each point are best made, traced and averaged at once: points that a
-/// packet each is for, of rays that one chunk holds.
+/// Whether so many AO rays of each point are best made, traced and averaged at once: on CPUs, where
+/// points have packets of their own, and one chunk holds a point's rays.
 bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays_per_point);
 
 /// AO in [0,1] of the points in `points` into `occlusions`, where at_once() says so.

@@ -16,9 +16,6 @@
 namespace dapple {
 namespace {
 
-/// Rays a launch, so that no launch runs long enough to trip a watchdog.
-constexpr std::size_t kSlice = 1u << 18;
-
 /// The offset that clears the rounding of coordinates given as floats.
 SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t index) {
   SurfacePoint point{};
@@ -66,7 +63,7 @@ void write_points(DeviceContext& context, const Queues& queues, std::span<const 
   context.write(queues.points, batch.data(), batch.size() * sizeof(SurfacePoint));
 }
 
-/// Of the points in the queues, which are rays that stay on the device.
+/// AO of the points in the queue, whose rays stay on the device.
 void occlusion_at_once(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                        const OcclusionOptions& options, std::span<float> ao) {
   point_ao_pass(context, queues, scene, options.estimator, ao_params(options, ao.size()),
@@ -74,7 +71,7 @@ void occlusion_at_once(DeviceContext& context, const Queues& queues, const Devic
   context.read(queues.occlusions, ao.data(), ao.size_bytes());
 }
 
-/// The same of rays that go through queues.
+/// The same by rays that go through queues.
 void occlusion_in_passes(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                          const OcclusionOptions& options, std::span<float> ao) {
   std::vector<uint> active(ao.size());
@@ -108,7 +105,7 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
   }
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
-  const std::size_t slice = std::min(std::max<std::size_t>(1, kSlice / rays), points.size());
+  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), points.size());
   const bool together = at_once(context, options.estimator, rays);
   const Queues queues =
       together ? make_point_queues(context, slice, rays) : make_queues(context, slice, rays);

@@ -12,9 +12,6 @@
 namespace dapple {
 namespace {
 
-/// Rays a launch, so that no launch runs long enough to trip a watchdog.
-constexpr std::size_t kSlice = 1u << 18;
-
 OcclusionParams occlusion_params(const DeviceBuffers& scene, std::size_t points,
                                  std::size_t rays_per_point, float footprint) {
   OcclusionParams params{};
@@ -54,7 +51,7 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
   const bool one_light = std::all_of(rays.begin(), rays.end(),
                                      [&](const Ray& ray) { return ray.light == rays[0].light; });
   if (!one_light) rays_per_point = 1;
-  const std::size_t slice = std::max<std::size_t>(1, kSlice / rays_per_point) * rays_per_point;
+  const std::size_t slice = std::max<std::size_t>(1, kQueryRays / rays_per_point) * rays_per_point;
   const Queues queues = make_queues(context, std::min(slice, rays.size()), 1);
   std::vector<Occlusion> results(rays.size());
   for (std::size_t begin = 0; begin < rays.size(); begin += slice) {
@@ -72,10 +69,10 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
 std::vector<SurfacePoint> closest_hits(const Device& device, const DeviceScene& scene,
                                        std::span<const Ray> rays) {
   DeviceContext& context = device.context();
-  const Queues queues = make_queues(context, std::min(kSlice, rays.size()), 1);
+  const Queues queues = make_queues(context, std::min(kQueryRays, rays.size()), 1);
   std::vector<SurfacePoint> points(rays.size());
-  for (std::size_t begin = 0; begin < rays.size(); begin += kSlice) {
-    const std::size_t count = std::min(kSlice, rays.size() - begin);
+  for (std::size_t begin = 0; begin < rays.size(); begin += kQueryRays) {
+    const std::size_t count = std::min(kQueryRays, rays.size() - begin);
     context.write(queues.rays, &rays[begin], count * sizeof(Ray));
     context.write(queues.points, &points[begin], count * sizeof(SurfacePoint));
     closest_hit_pass(context, *scene.buffers, queues, count);

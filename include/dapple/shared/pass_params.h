@@ -28,7 +28,7 @@ typedef struct OcclusionParams {
   float inverse_distance;     /* AO: 1 / D for the falloff; 0: none */
   float falloff;              /* AO: the power p; 0: none */
   uint rays_per_point;        /* packets: rays in a row that share their origin */
-  /* Packets; set by occlusion_pass(). */
+  /* Packets; set by occlusion_pass() and point_ao_pass(). */
   uint large_chunks;          /* of neighbours: the first ones, of DAPPLE_NEIGHBOUR_CHUNK rays */
   uint piece_chunks;          /* of points: how many are a piece of work */
 } OcclusionParams;
@@ -78,7 +78,7 @@ typedef struct CameraParams {
 
 /* Rays a point for AO; also for points that no camera made. */
 typedef struct AoParams {
-  uint point_count;     /* points to shoot from: entries of the active list */
+  uint point_count;     /* points to shoot from: entries of the active list, if there is one */
   uint rays;            /* a point */
   float inverse_count;  /* 1 / (rays asked for to estimate this pixel or point) */
   float t_max;
