@@ -145,7 +145,7 @@ class KernelCacheCold : public program_test::ProgramRun {
       fs::resize_file(entry.path(), bytes);
       ++damaged;
     }
-    EXPECT_GT(damaged, 3);
+    EXPECT_GE(damaged, 3) << "camera rays, packets, the rest";
   }
 };
 
