@@ -159,7 +159,7 @@ inline void sample_light(__global const LightRecord* light,
 
 /* A ray that can bring nothing is not traced: it ends before it starts. */
 inline void aim_light_rays(const PointRays* rays, const LightSamples* samples, float inverse_count,
-                     RayWays* ways) {
+                           RayWays* ways) {
   float16 cosine = (float16)(0.0f);
   DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
     ways->direction[axis].v = samples->direction[axis].v;

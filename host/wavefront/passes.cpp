@@ -208,7 +208,7 @@ bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays
 void point_ao_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                    Estimator estimator, const AoParams& ao_params, const OcclusionParams& params) {
   OcclusionParams launched = params;
-  const uint pieces = cut_points(context.info().kind == "CPU", launched);
+  const uint pieces = cut_points(true, launched);
   context.launch_in_turns(
       point_ao_kernel(estimator), "ao", pieces,
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
