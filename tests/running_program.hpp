@@ -52,6 +52,7 @@ class RunningProgram {
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
+  [[nodiscard]] pid_t process() const { return process_; }
   void send(int signal) const { kill(process_, signal); }
   [[nodiscard]] bool has_ended() {
     if (!ended_) ended_ = waitpid(process_, &status_, WNOHANG) == process_;

@@ -1,6 +1,7 @@
 #include "device/platforms.hpp"
 
 #include <fmt/format.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -28,6 +29,21 @@ std::string machine_for_hwloc() {
                      static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   return fmt::format("numa:1(memory={}) pu:{}", bytes,
                      std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// "1" has each of PoCL's threads keep to a CPU of its own, by number. Left to the system, two that
+/// were woken together shared one CPU while the other stood idle, in one of ten to one of two
+/// launches of a millisecond. Empty where there would be fewer threads than CPUs, which other
+/// programs' threads may have to share, or where not all CPUs are ours.
+std::string one_cpu_a_thread() {
+  if (std::getenv("POCL_AFFINITY") || std::getenv("POCL_MAX_PTHREAD_COUNT")) return {};
+  cpu_set_t ours;
+  if (sched_getaffinity(0, sizeof ours, &ours) != 0) return {};
+  const long cpus = sysconf(_SC_NPROCESSORS_CONF);
+  for (long i = 0; i < cpus; ++i) {
+    if (!CPU_ISSET(static_cast<std::size_t>(i), &ours)) return {};
+  }
+  return "1";
 }
 
 std::vector<cl::Platform> platforms() {
@@ -130,6 +146,7 @@ std::vector<cl::Device> usable_devices() {
   // PoCL reads these when it is first asked for its devices.
   const EnvironmentWhile cache_folder("POCL_CACHE_DIR", cache.folder().string());
   const EnvironmentWhile machine("HWLOC_SYNTHETIC", machine_for_hwloc());
+  const EnvironmentWhile affinity("POCL_AFFINITY", one_cpu_a_thread());
   const auto found = platforms();
   if (found.empty()) throw Error(ErrorKind::device, no_platform());
   std::vector<cl::Device> usable;
