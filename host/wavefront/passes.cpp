@@ -125,7 +125,6 @@ Queues make_point_queues(DeviceContext& context, std::size_t points, std::size_t
   const std::size_t at_work = context.groups_in_turns(points);
   Queues queues;
   queues.rays = context.allocate(at_work * rays_per_point * sizeof(Ray));
-  queues.points = context.allocate(points * sizeof(SurfacePoint));
   queues.occlusions = context.allocate(points * sizeof(float));
   return queues;
 }

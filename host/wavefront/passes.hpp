@@ -32,7 +32,7 @@ struct Queues {
 Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample);
 
 /// The same for point_ao_pass(), where only the rays of points that are worked on are in memory,
-/// and `occlusions` are floats, one a point.
+/// and `occlusions` are floats, one a point. `points` are the caller's.
 Queues make_point_queues(DeviceContext& context, std::size_t points, std::size_t rays_per_point);
 
 /// What passes resolve into.

@@ -55,13 +55,27 @@ OcclusionParams occlusion_params(const OcclusionOptions& options, const DeviceBu
   return params;
 }
 
-void write_points(DeviceContext& context, const Queues& queues, std::span<const V3f> points,
-                  std::span<const V3f> normals, std::span<const std::uint32_t> chosen) {
-  std::vector<SurfacePoint> batch;
-  batch.reserve(chosen.size());
-  for (const std::uint32_t i : chosen) batch.push_back(surface_point(points[i], normals[i], i));
-  context.write(queues.points, batch.data(), batch.size() * sizeof(SurfacePoint));
-}
+/// Points that the device may read where the host has put them, so for as long as a launch runs.
+class SharedPoints {
+ public:
+  SharedPoints(DeviceContext& context, std::span<const V3f> points, std::span<const V3f> normals,
+               std::span<const std::uint32_t> chosen)
+      : context_(context) {
+    points_.reserve(chosen.size());
+    for (const std::uint32_t i : chosen) points_.push_back(surface_point(points[i], normals[i], i));
+  }
+  ~SharedPoints() { context_.wait(); }
+  SharedPoints(const SharedPoints&) = delete;
+  SharedPoints& operator=(const SharedPoints&) = delete;
+
+  [[nodiscard]] Buffer buffer() const {
+    return context_.share(points_.data(), points_.size() * sizeof(SurfacePoint));
+  }
+
+ private:
+  DeviceContext& context_;
+  std::vector<SurfacePoint> points_;
+};
 
 /// AO of the points in the queue, whose rays stay on the device.
 void occlusion_at_once(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
@@ -107,13 +121,14 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
   const auto rays = static_cast<std::size_t>(options.rays);
   const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), points.size());
   const bool together = at_once(context, options.estimator, rays);
-  const Queues queues =
+  Queues queues =
       together ? make_point_queues(context, slice, rays) : make_queues(context, slice, rays);
   const std::vector<std::uint32_t> order = order_along_curve(points);
   std::vector<float> ao(points.size()), found;
   for (std::size_t begin = 0; begin < points.size(); begin += slice) {
     const auto chosen = std::span(order).subspan(begin, std::min(slice, points.size() - begin));
-    write_points(context, queues, points, normals, chosen);
+    const SharedPoints batch(context, points, normals, chosen);
+    queues.points = batch.buffer();
     found.resize(chosen.size());
     (together ? occlusion_at_once : occlusion_in_passes)(context, queues, *scene.buffers, options,
                                                          found);
