@@ -12,6 +12,7 @@
 #include "command/command.hpp"
 #include "command/interruption.hpp"
 #include "dapple/error.hpp"
+#include "device/compiler_processes.hpp"
 #include "device/driver_crash.hpp"
 
 namespace {
@@ -33,12 +34,14 @@ int run(int argc, char** argv) {
   CLI::App& scene = *app.add_subcommand("scene", "Write a procedural scene as a GLB file");
   CLI::App& devices = *app.add_subcommand("devices", "List the OpenCL devices");
   CLI::App& compare = *app.add_subcommand("compare", "Tell how far two OpenEXR files are apart");
+  CLI::App& compile = *app.add_subcommand("compile", "Compile kernels for another process");
   const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
       {&render, dapple::add_render_command(render)},
       {&info, dapple::add_info_command(info)},
       {&scene, dapple::add_scene_command(scene)},
       {&devices, dapple::add_devices_command(devices)},
       {&compare, dapple::add_compare_command(compare)},
+      {&compile, dapple::add_compile_command(compile)},
   };
   try {
     app.parse(argc, argv);
@@ -69,6 +72,7 @@ int say(const char* what, int reason = 0) {
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a write past ulimit -f fails, and says why
   dapple::report_driver_crashes();
+  dapple::CompilerProcesses::use("/proc/self/exe");
   try {
     const int code = run(argc, argv);
     return std::fflush(stdout) == 0 ? code : say("cannot write to the standard output", errno);

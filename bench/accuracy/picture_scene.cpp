@@ -93,7 +93,9 @@ Picture PictureScene::render(const RenderOptions& asked) {
   chosen.depths = choose_depths(asked, scene_, view_);
   const RenderOptions options = by_sample(chosen);
   open();
-  prepare_kernels(device_->context(), options, view_.camera, scene_.lights);
+  for (const KernelName& kernel :
+       picture_kernels(device_->context(), options, view_.camera, scene_.lights))
+    device_->context().prepare(kernel);
   const std::vector<Light> lights = options.light ? scene_.lights : std::vector<Light>{};
   const FilmLayout layout(view_, options, bvh_.bounds, lights);
   const auto start = std::chrono::steady_clock::now();

@@ -15,5 +15,6 @@ Run add_info_command(CLI::App& app);
 Run add_scene_command(CLI::App& app);
 Run add_devices_command(CLI::App& app);
 Run add_compare_command(CLI::App& app);
+Run add_compile_command(CLI::App& app);
 
 }  // namespace dapple

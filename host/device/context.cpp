@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <utility>
 
@@ -89,10 +88,12 @@ struct DeviceContext::State {
   std::vector<std::string> known_programs;  ///< what KernelCache knows programs by
   std::vector<std::pair<std::string, cl::Event>> events;
   std::map<std::string, double> pass_seconds;
-  double build_seconds = 0;
   Buffer turns;  ///< counts those taken; none before the first launch, or after one that failed
   cl_uint next_turn = kFirstTurn;
+  bool rehearsing = false;
 
+  /// What KernelCache knows a program by, of that source.
+  [[nodiscard]] std::string known_by(const std::string& source, const Variant& variant) const;
   cl::Program& program(const std::string& file, const Variant& variant);
   cl::Kernel& kernel(const KernelName& name);
   void collect_events();
@@ -103,29 +104,36 @@ std::string Variant::options() const {
                      prefiltered ? 1 : 0, one_point ? 1 : 0);
 }
 
+std::string file_of(const KernelName& kernel) {
+  return (kernel.file.empty() ? kernel.name : kernel.file) + ".cl";
+}
+
+std::string DeviceContext::State::known_by(const std::string& source,
+                                           const Variant& variant) const {
+  return fmt::format("{}\n{}\n{}\n{}\n{}", info.platform, info.driver, info.name, variant.options(),
+                     source);
+}
+
 cl::Program& DeviceContext::State::program(const std::string& file, const Variant& variant) {
   const auto key = std::pair(file, variant);
   if (const auto found = programs.find(key); found != programs.end()) return found->second;
-  const auto start = std::chrono::steady_clock::now();
   const std::string source = expand_kernel(file, kernel_dir), options = variant.options();
-  const std::string known_by =
-      fmt::format("{}\n{}\n{}\n{}\n{}", info.platform, info.driver, info.name, options, source);
+  const std::string known = known_by(source, variant);
   cl::Program built(context, source);
   cl_int result = CL_SUCCESS;
-  KernelCache::of_process().build(known_by, [&] { result = compile(built, device, options); });
+  KernelCache::of_process().build(known, [&] { result = compile(built, device, options); });
   if (result != CL_SUCCESS) {
     const auto log = built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
     throw Error(ErrorKind::device,
                 fmt::format("{}: the OpenCL compiler of {} refused it ({}):\n{}", file, info.name,
                             opencl_error_name(result), first_lines(log, 12)));
   }
-  known_programs.push_back(known_by);
-  build_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  known_programs.push_back(known);
   return programs.emplace(key, built).first->second;
 }
 
 cl::Kernel& DeviceContext::State::kernel(const KernelName& name) {
-  const std::string file = (name.file.empty() ? name.name : name.file) + ".cl";
+  const std::string file = file_of(name);
   const auto key = std::tuple(file, name.name, name.variant);
   if (const auto found = kernels.find(key); found != kernels.end()) return found->second;
   return kernels.emplace(key, cl::Kernel(program(file, name.variant), name.name.c_str()))
@@ -266,6 +274,19 @@ void DeviceContext::prepare(const KernelName& kernel) {
   in_opencl("compiling kernel " + kernel.name, [&] { state_->kernel(kernel); });
 }
 
+bool DeviceContext::keeps_compiled() const {
+  return state_->info.platform == kPoclPlatform && KernelCache::of_process().keeps();
+}
+
+bool DeviceContext::is_compiled(const KernelName& kernel) const {
+  const std::string file = file_of(kernel);
+  if (state_->programs.contains({file, kernel.variant})) return true;
+  const std::string source = expand_kernel(file, state_->kernel_dir);
+  return KernelCache::of_process().has(state_->known_by(source, kernel.variant));
+}
+
+void DeviceContext::rehearse() { state_->rehearsing = true; }
+
 std::size_t DeviceContext::largest_group(const KernelName& kernel) {
   return in_opencl("compiling kernel " + kernel.name, [&] {
     return state_->kernel(kernel).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->device);
@@ -274,7 +295,7 @@ std::size_t DeviceContext::largest_group(const KernelName& kernel) {
 
 void DeviceContext::launch(const KernelName& name, const std::string& label, std::size_t items,
                            const std::vector<KernelArgument>& arguments, std::size_t group) {
-  if (items == 0) return;
+  if (items == 0 && !state_->rehearsing) return;
   in_opencl("running pass " + label, [&] {
     cl::Kernel& kernel = state_->kernel(name);
     cl_uint index = 0;
@@ -286,9 +307,9 @@ void DeviceContext::launch(const KernelName& name, const std::string& label, std
       }
     }
     cl::Event event;
-    state_->queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-                                       cl::NDRange((items + group - 1) / group * group),
-                                       cl::NDRange(group), nullptr, &event);
+    state_->queue.enqueueNDRangeKernel(
+        kernel, cl::NullRange, cl::NDRange(std::max(items + group - 1, group) / group * group),
+        cl::NDRange(group), nullptr, &event);
     state_->events.emplace_back(label, event);
   });
   if (state_->events.size() >= kEventsHeld) finish();
@@ -301,8 +322,8 @@ std::size_t DeviceContext::groups_in_turns(std::size_t pieces) const {
 void DeviceContext::launch_in_turns(const KernelName& name, const std::string& label,
                                     std::size_t pieces, std::vector<KernelArgument> arguments,
                                     std::size_t group) {
-  if (pieces == 0) return;
   State& s = *state_;
+  if (pieces == 0 && !s.rehearsing) return;
   // Whatever is thrown from here on, the next launch has a count of its own.
   Buffer turns = std::exchange(s.turns, {});
   if (!turns.bytes()) {
@@ -310,7 +331,7 @@ void DeviceContext::launch_in_turns(const KernelName& name, const std::string& l
     s.next_turn = kFirstTurn;
     write(turns, &s.next_turn, sizeof s.next_turn);
   }
-  const std::size_t groups = groups_in_turns(pieces);
+  const std::size_t groups = std::max<std::size_t>(groups_in_turns(pieces), 1);
   const auto count = static_cast<cl_uint>(pieces);
   arguments.insert(arguments.end(), {turns, s.next_turn, count});
   launch(name, label, groups * group, arguments, group);
@@ -331,7 +352,5 @@ void DeviceContext::wait() noexcept { clFinish(state_->queue()); }
 const std::map<std::string, double>& DeviceContext::pass_seconds() const {
   return state_->pass_seconds;
 }
-
-double DeviceContext::kernel_build_seconds() const { return state_->build_seconds; }
 
 }  // namespace dapple

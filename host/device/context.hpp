@@ -113,6 +113,13 @@ class DeviceContext {
 
   /// Compiles a kernel ahead of its first launch.
   void prepare(const KernelName& kernel);
+  /// Whether other processes get what is compiled here: PoCL's, if the kernel cache has a place.
+  [[nodiscard]] bool keeps_compiled() const;
+  /// Whether its program has been compiled, here or for the kernel cache.
+  [[nodiscard]] bool is_compiled(const KernelName& kernel) const;
+  /// From here on launches of nothing are of one group, which finds nothing to do: drivers compile
+  /// some of a kernel when it is first launched.
+  void rehearse();
   /// The most items a work-group of the kernel can have here.
   std::size_t largest_group(const KernelName& kernel);
   /// Enqueues `items` work-items, rounded up to whole groups of `group`: kernels check
@@ -131,8 +138,6 @@ class DeviceContext {
 
   /// Device seconds of all finished launches, by label.
   [[nodiscard]] const std::map<std::string, double>& pass_seconds() const;
-  /// Wall seconds spent compiling so far.
-  [[nodiscard]] double kernel_build_seconds() const;
 
  private:
   struct State;

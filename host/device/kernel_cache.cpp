@@ -126,6 +126,11 @@ void KernelCache::restore(const fs::path& entry, Program& program) const {
   program.kept = {files.begin(), files.end()};
 }
 
+bool KernelCache::has(const std::string& text) const {
+  std::error_code ignored;
+  return keeps() && fs::exists(store_ / entry_name(text), ignored);
+}
+
 void KernelCache::build(const std::string& text, const std::function<void()>& build) {
   if (!private_) {
     build();

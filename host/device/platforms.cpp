@@ -82,7 +82,7 @@ std::string trimmed(std::string text) {
 }
 
 bool is_pocl(const cl::Platform& platform) {
-  return trimmed(platform.getInfo<CL_PLATFORM_NAME>()) == "Portable Computing Language";
+  return trimmed(platform.getInfo<CL_PLATFORM_NAME>()) == kPoclPlatform;
 }
 
 std::string no_platform() {

@@ -9,6 +9,9 @@
 
 namespace dapple {
 
+/// DeviceInfo::platform of PoCL.
+inline constexpr const char* kPoclPlatform = "Portable Computing Language";
+
 DeviceInfo describe(const cl::Device& device);
 
 /// Best first: GPUs, then CPUs, by compute units; never empty. Throws Error device.

@@ -181,8 +181,13 @@ void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Qu
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order) {
-  if (params.ray_count == 0) return;
-  const Company with = company(estimator, params.rays_per_point, order, context);
+  occlusion_pass_with(company(estimator, params.rays_per_point, order, context), context, queues,
+                      scene, label, estimator, params);
+}
+
+void occlusion_pass_with(Company with, DeviceContext& context, const Queues& queues,
+                         const DeviceBuffers& scene, const std::string& label, Estimator estimator,
+                         const OcclusionParams& params) {
   OcclusionParams launched = params;
   const KernelName kernel = occlusion_kernel(estimator, with);
   const std::vector<KernelArgument> arguments{
@@ -263,26 +268,25 @@ void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const
                   scene.environments, film.sums, film.squares, params, light});
 }
 
-void prepare_kernels(DeviceContext& context, const RenderOptions& options, const Camera& camera,
-                     const std::vector<Light>& lights) {
-  context.prepare(camera_kernel(camera.kind == Camera::Kind::orthographic));
-  context.prepare(kCompactHits);
-  context.prepare(kResolveSurface);
-  const auto prepare_occlusion = [&](int rays) {
-    context.prepare(
+std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
+                                        const Camera& camera, const std::vector<Light>& lights) {
+  std::vector<KernelName> kernels{camera_kernel(camera.kind == Camera::Kind::orthographic),
+                                  kCompactHits, kResolveSurface};
+  const auto add_occlusion = [&](int rays) {
+    kernels.push_back(
         occlusion_kernel(options.estimator, company_in_picture(context, options.estimator, rays)));
   };
   if (options.ao) {
-    prepare_occlusion(options.ao_rays);
-    context.prepare(kAoRays);
-    context.prepare(kResolveAo);
+    add_occlusion(options.ao_rays);
+    kernels.insert(kernels.end(), {kAoRays, kResolveAo});
   }
   if (options.light) {
-    prepare_occlusion(options.light_rays);
-    context.prepare(kLightRays);
+    add_occlusion(options.light_rays);
+    kernels.push_back(kLightRays);
     for (const Light& light : lights)
-      context.prepare(light.kind == LightKind::dome ? kResolveDome : kResolveLight);
+      kernels.push_back(light.kind == LightKind::dome ? kResolveDome : kResolveLight);
   }
+  return kernels;
 }
 
 }  // namespace dapple

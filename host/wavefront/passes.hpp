@@ -65,6 +65,11 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order = RayOrder::any);
 
+/// The same in the company that it says.
+void occlusion_pass_with(Company with, DeviceContext& context, const Queues& queues,
+                         const DeviceBuffers& scene, const std::string& label, Estimator estimator,
+                         const OcclusionParams& params);
+
 /// Whether so many AO rays of each point are best made, traced and averaged at once: on CPUs, where
 /// points have packets of their own, and one chunk holds a point's rays.
 bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays_per_point);
@@ -95,8 +100,8 @@ std::vector<KernelShape> every_kernel();
 /// Whom the occlusion rays of a picture are traced with, that many of each sample.
 Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays);
 
-/// Compiles every kernel that `options`, the camera and the lights will need.
-void prepare_kernels(DeviceContext& context, const RenderOptions& options, const Camera& camera,
-                     const std::vector<Light>& lights);
+/// What a picture with these options, camera and lights needs.
+std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
+                                        const Camera& camera, const std::vector<Light>& lights);
 
 }  // namespace dapple

@@ -9,6 +9,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
+#include "device/compiler_processes.hpp"
 #include "device/context.hpp"
 #include "device/memory_need.hpp"
 #include "wavefront/depths.hpp"
@@ -123,7 +124,7 @@ struct Renderer::Kept {
 
   void open(const RenderOptions& options, RenderStatistics& statistics);
   void bring(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
-  void compile(const Scene& scene, const View& view, const RenderOptions& options,
+  void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                RenderStatistics& statistics) const;
 };
 
@@ -158,12 +159,13 @@ void Renderer::Kept::bring(const Scene& scene, const RenderOptions& options,
   add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
 }
 
-void Renderer::Kept::compile(const Scene& scene, const View& view, const RenderOptions& options,
+/// What `processes` have compiled, and the rest.
+void Renderer::Kept::compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                              RenderStatistics& statistics) const {
-  DeviceContext& context = device->context();
-  const double compiled_before = context.kernel_build_seconds();
-  prepare_kernels(context, options, view.camera, scene.lights);
-  statistics.seconds.kernel_build = context.kernel_build_seconds() - compiled_before;
+  const Stopwatch compiling;
+  processes.wait();
+  for (const KernelName& kernel : kernels) device->context().prepare(kernel);
+  statistics.seconds.kernel_build = compiling.seconds();
 }
 
 Renderer::Renderer() : kept_(std::make_unique<Kept>()) {}
@@ -188,8 +190,11 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   kept.open(options, statistics);
   const Device& device = *kept.device;
   check_memory(device.info(), least_need(scene), "needs at least");
+  const auto kernels = picture_kernels(device.context(), sampled, view.camera, scene.lights);
+  CompilerProcesses processes;
+  processes.start(device.context(), options.device, options.kernel_dir, kernels);
   kept.bring(scene, options, statistics);
-  kept.compile(scene, view, sampled, statistics);
+  kept.compile(kernels, processes, statistics);
   const SceneBvh& bvh = kept.bvh->bvh();
   const DeviceScene& on_device = kept.on_device;
 

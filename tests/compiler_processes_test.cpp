@@ -1,0 +1,125 @@
+// Kernels compiled ahead by processes of their own: to the last, so that pictures find nothing left
+// to compile, and none missed where no process can be started.
+#include "device/compiler_processes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "dapple/error.hpp"
+#include "device/environment_while.hpp"
+#include "program_run.hpp"
+#include "running_program.hpp"
+#include "wavefront/passes.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using program_test::Milliseconds;
+using program_test::Outcome;
+using program_test::RunningProgram;
+
+namespace fs = std::filesystem;
+
+TEST(KernelText, IsReadBackAsItWasWritten) {
+  std::set<std::string> texts;
+  for (const KernelShape& shape : every_kernel()) {
+    const std::string text = text_of(shape.kernel);
+    const KernelName read = parse_kernel(text);
+    EXPECT_EQ(read.name, shape.kernel.name);
+    EXPECT_EQ(read.file, shape.kernel.file);
+    EXPECT_EQ(read.variant, shape.kernel.variant);
+    EXPECT_TRUE(texts.insert(text).second) << text;
+  }
+}
+
+TEST(KernelText, AnythingElseIsRefused) {
+  for (const char* text :
+       {"", "packet", "packet/packet/1", "packet/packet/1/0/", "packet/packet/1/x", "../packet/1/0",
+        "packet/../1/0", " packet/packet/1/0"})
+    EXPECT_THROW(parse_kernel(text), Error) << text;
+}
+
+class CompilerProcessesCold : public program_test::ProgramRun {
+ protected:
+  [[nodiscard]] Outcome with_cache(const std::string& arguments,
+                                   const std::string& before = "") const {
+    return dapple(arguments, "POCL_CACHE_DIR='" + path("cache") + "' " + before);
+  }
+  /// Files of machine code that are kept: programs, kernels and sizes of groups.
+  [[nodiscard]] std::set<std::string> machine_code() const {
+    std::set<std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(path("cache")))
+      if (entry.path().extension() == ".so") files.insert(entry.path().string());
+    return files;
+  }
+};
+
+TEST_F(CompilerProcessesCold, PicturesFindNothingLeftToCompile) {
+  std::string kernels;
+  for (const KernelShape& shape : every_kernel()) kernels += " " + text_of(shape.kernel);
+  const Outcome compiled = with_cache("compile" + kernels);
+  ASSERT_EQ(compiled.code, 0) << compiled.err;
+  const auto files = machine_code();
+  EXPECT_EQ(files.size(), every_kernel().size());
+  for (const char* options : {"--passes ao,light", "--estimator exact --trace-with alone",
+                              "--estimator packet --ao-rays 32"}) {
+    const Outcome run = with_cache(
+        std::string("render scene:cube -o out.exr --width 8 --height 8 --spp 2 ") + options);
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(machine_code(), files) << options;
+  }
+}
+
+TEST_F(CompilerProcessesCold, OfProgramsAloneNoMachineCodeIsMade) {
+  ASSERT_EQ(with_cache("compile --programs compact_hits/passes/0/0").code, 0);
+  EXPECT_TRUE(machine_code().empty());
+  EXPECT_FALSE(fs::is_empty(path("cache")));
+  ASSERT_EQ(with_cache("compile compact_hits/passes/0/0").code, 0);
+  EXPECT_EQ(machine_code().size(), 1u);
+}
+
+TEST_F(CompilerProcessesCold, APictureIsCompiledByProcesses) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one CPU compiles by itself";
+  const EnvironmentWhile cache("POCL_CACHE_DIR", path("cache"));
+  RunningProgram program({"render", "scene:cube", "-o", path("out.exr"), "--spp", "1", "-q"},
+                         path("log"));
+  const std::string process = std::to_string(program.process());
+  const fs::path children = "/proc/" + process + "/task/" + process + "/children";
+  if (!fs::exists(children)) GTEST_SKIP() << "this system does not tell of a process's children";
+  std::set<std::string> arguments;
+  while (!program.has_ended()) {
+    std::istringstream ids(bytes_of(children));
+    for (std::string id; ids >> id;) arguments.insert(bytes_of("/proc/" + id + "/cmdline"));
+    std::this_thread::sleep_for(Milliseconds(20));
+  }
+  EXPECT_EQ(program.wait(), 0) << bytes_of(path("log"));
+  std::size_t compilers = 0;
+  for (const std::string& text : arguments) compilers += contains(text, "/camera/") ? 1 : 0;
+  EXPECT_GE(compilers, 1u);
+  EXPECT_GE(arguments.size(), 2u);
+}
+
+TEST_F(CompilerProcessesCold, WhereNoneCanBeStartedThePictureIsTheSame) {
+  if (!program_test::has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
+  const std::string picture =
+      "render scene:cube --width 16 --height 16 --spp 4 -q --passes ao,light,visits -o ";
+  ASSERT_EQ(with_cache(picture + "with.exr").code, 0);
+  const std::size_t kernels = machine_code().size();
+  fs::remove_all(path("cache"));
+  // /proc/self/exe is what they are.
+  const std::string no_proc = program_test::in_namespace("mount -t tmpfs none /proc");
+  const Outcome run = with_cache(picture + "without.exr", no_proc);
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(machine_code().size(), kernels);
+  // Not the whole file: the CPU's name, which the file has, comes from /proc.
+  const Film with = read_exr(path("with.exr")), without = read_exr(path("without.exr"));
+  for (const char* layer : {"ao.R", "light.key.R", "visits.nodes"}) {
+    ASSERT_NE(with.find(layer), nullptr) << layer;
+    EXPECT_EQ(with.find(layer)->pixels, without.find(layer)->pixels) << layer;
+  }
+}
+
+}  // namespace
+}  // namespace dapple
