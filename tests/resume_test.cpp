@@ -24,7 +24,7 @@ RenderOptions small_picture() {
   options.width = 40;
   options.height = 36;
   options.spp = 40;
-  options.ao_rays = 16;  // slices are of 8,192 samples
+  options.ao_rays = 32;  // slices are of 8,192 samples
   options.visits = true;
   return options;
 }
@@ -304,7 +304,7 @@ TEST_F(Resume, OtherSettingsAreRefusedAndNamed) {
       {"--footprint 4, this render has --footprint 4.0000005",
        [](auto& o) { o.footprint = std::nextafter(4.0f, 5.0f); }},
       {"--passes ao,light, this render has --passes ao", [](auto& o) { o.light = false; }},
-      {"--ao-rays 16, this render has --ao-rays 7", [](auto& o) { o.ao_rays = 7; }},
+      {"--ao-rays 32, this render has --ao-rays 7", [](auto& o) { o.ao_rays = 7; }},
       {"--light-rays 1, this", [](auto& o) { o.light_rays = 2; }},
       {"--ao-distance 0, this", [](auto& o) { o.ao_distance = 3; }},
       {"--target-error or --target-rmse", [](auto& o) { o.target_error = 0.1f; }},
