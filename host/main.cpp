@@ -70,6 +70,7 @@ int say(const char* what, int reason = 0) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGCHLD, SIG_DFL);  // whatever we were started with: we wait for processes of ours
   std::signal(SIGXFSZ, SIG_IGN);  // a write past ulimit -f fails, and says why
   dapple::report_driver_crashes();
   dapple::CompilerProcesses::use("/proc/self/exe");

@@ -4,22 +4,26 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <map>
-#include <thread>
+#include <set>
 
 #include "dapple/error.hpp"
-#include "device/kernel_cache.hpp"
+#include "device/cpus.hpp"
 #include "device/kernel_source.hpp"
 
 extern char** environ;
 
 namespace dapple {
 namespace {
+
+/// Each takes some 200 MB.
+constexpr std::size_t kMostProcesses = 4;
 
 using Arguments = std::vector<std::string>;
 
@@ -37,11 +41,21 @@ pid_t start_process(const std::string& program, Arguments arguments) {
   if (posix_spawn_file_actions_init(&files) != 0) return 0;
   for (const int descriptor : {0, 1, 2})
     posix_spawn_file_actions_addopen(&files, descriptor, "/dev/null", O_RDWR, 0);
+  posix_spawn_file_actions_addclosefrom_np(&files, 3);
   pid_t process = 0;
   if (posix_spawn(&process, program.c_str(), &files, nullptr, argv.data(), environ) != 0)
     process = 0;
   posix_spawn_file_actions_destroy(&files);
   return process;
+}
+
+/// Where it has none, who asks for the kernel is told why.
+bool has_source(const KernelName& kernel, const std::string& kernel_dir) {
+  try {
+    return !expand_kernel(kernel.file + ".cl", kernel_dir).empty();
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 /// Kernels of one program, which is compiled as a whole.
@@ -51,10 +65,10 @@ struct Share {
 };
 
 std::vector<Share> by_program(const DeviceContext& context, const std::string& kernel_dir,
-                              const std::vector<KernelName>& kernels) {
+                              const std::set<KernelName>& kernels, CompileTo to) {
   std::map<std::pair<std::string, Variant>, Share> programs;
   for (const KernelName& kernel : kernels) {
-    if (context.is_compiled(kernel)) continue;
+    if (!has_source(kernel, kernel_dir) || context.is_compiled(kernel, to)) continue;
     Share& share = programs[{kernel.file, kernel.variant}];
     if (share.kernels.empty())
       share.source_size = expand_kernel(kernel.file + ".cl", kernel_dir).size();
@@ -99,7 +113,7 @@ KernelName parse_kernel(const std::string& text) {
 void CompilerProcesses::use(const std::string& program) { program_in_use() = program; }
 
 CompilerProcesses::~CompilerProcesses() {
-  for (const pid_t process : running_) kill(process, SIGTERM);
+  for (const pid_t process : running_) kill(process, SIGKILL);
   wait();
 }
 
@@ -107,10 +121,11 @@ void CompilerProcesses::start(const DeviceContext& context, const std::string& d
                               const std::string& kernel_dir, const std::vector<KernelName>& kernels,
                               CompileTo to) {
   if (program_in_use().empty() || !context.keeps_compiled()) return;
-  const std::size_t cpus = std::thread::hardware_concurrency();
+  const std::size_t cpus = cpus_of_process().size();
   if (cpus < 2) return;  // nothing would be sooner
-  for (const Share& share : deal(by_program(context, kernel_dir, kernels), cpus)) {
-    Arguments arguments{"dapple", "compile"};
+  const auto programs = by_program(context, kernel_dir, {kernels.begin(), kernels.end()}, to);
+  for (const Share& share : deal(programs, std::min(cpus, kMostProcesses))) {
+    Arguments arguments{"dapple", "compile", "--parent", std::to_string(getpid())};
     if (to == CompileTo::programs) arguments.emplace_back("--programs");
     if (!device.empty()) arguments.insert(arguments.end(), {"--device", device});
     if (!kernel_dir.empty()) arguments.insert(arguments.end(), {"--kernel-dir", kernel_dir});

@@ -16,10 +16,6 @@ std::string text_of(const KernelName& kernel);
 /// Throws Error usage.
 KernelName parse_kernel(const std::string& text);
 
-/// How far kernels are compiled: programs alone, which tells whether they can be, or to the machine
-/// code that PoCL makes of each when it is first launched.
-enum class CompileTo { programs, machine_code };
-
 class CompilerProcesses {
  public:
   /// A program that compiles kernels when it is called with "compile", as in
@@ -32,8 +28,8 @@ class CompilerProcesses {
   CompilerProcesses(const CompilerProcesses&) = delete;
   CompilerProcesses& operator=(const CompilerProcesses&) = delete;
 
-  /// Starts as many as there are CPUs, at most, on those of `kernels` that no process has compiled
-  /// before. `device`, `kernel_dir`: what `context` was opened with.
+  /// Starts as many as there are CPUs, at most four, on those of `kernels` that no process has
+  /// compiled before. `device`, `kernel_dir`: what `context` was opened with.
   void start(const DeviceContext& context, const std::string& device, const std::string& kernel_dir,
              const std::vector<KernelName>& kernels, CompileTo to = CompileTo::machine_code);
   /// Until all have ended. What they could not compile is compiled when it is asked for, which says

@@ -278,11 +278,12 @@ bool DeviceContext::keeps_compiled() const {
   return state_->info.platform == kPoclPlatform && KernelCache::of_process().keeps();
 }
 
-bool DeviceContext::is_compiled(const KernelName& kernel) const {
+bool DeviceContext::is_compiled(const KernelName& kernel, CompileTo to) const {
   const std::string file = file_of(kernel);
   if (state_->programs.contains({file, kernel.variant})) return true;
   const std::string source = expand_kernel(file, state_->kernel_dir);
-  return KernelCache::of_process().has(state_->known_by(source, kernel.variant));
+  return KernelCache::of_process().has(state_->known_by(source, kernel.variant),
+                                       to == CompileTo::machine_code ? kernel.name : "");
 }
 
 void DeviceContext::rehearse() { state_->rehearsing = true; }

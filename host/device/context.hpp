@@ -73,7 +73,12 @@ struct KernelName {
   std::string name;
   std::string file;
   Variant variant;
+  auto operator<=>(const KernelName&) const = default;
 };
+
+/// How far kernels are compiled: programs alone, which tells whether they can be, or to the machine
+/// code that PoCL makes of each when it is first launched.
+enum class CompileTo { programs, machine_code };
 
 class DeviceContext {
  public:
@@ -115,8 +120,8 @@ class DeviceContext {
   void prepare(const KernelName& kernel);
   /// Whether other processes get what is compiled here: PoCL's, if the kernel cache has a place.
   [[nodiscard]] bool keeps_compiled() const;
-  /// Whether its program has been compiled, here or for the kernel cache.
-  [[nodiscard]] bool is_compiled(const KernelName& kernel) const;
+  /// Whether it has been compiled so far, here or for the kernel cache.
+  [[nodiscard]] bool is_compiled(const KernelName& kernel, CompileTo to) const;
   /// From here on launches of nothing are of one group, which finds nothing to do: drivers compile
   /// some of a kernel when it is first launched.
   void rehearse();

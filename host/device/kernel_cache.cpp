@@ -126,9 +126,12 @@ void KernelCache::restore(const fs::path& entry, Program& program) const {
   program.kept = {files.begin(), files.end()};
 }
 
-bool KernelCache::has(const std::string& text) const {
-  std::error_code ignored;
-  return keeps() && fs::exists(store_ / entry_name(text), ignored);
+bool KernelCache::has(const std::string& text, const std::string& kernel) const {
+  if (!keeps()) return false;
+  const std::vector<fs::path> files = sealed_files(store_ / entry_name(text));
+  const std::string wanted = kernel.empty() ? "program.bc" : kernel + ".so";
+  return std::any_of(files.begin(), files.end(),
+                     [&](const fs::path& file) { return file.filename() == wanted; });
 }
 
 void KernelCache::build(const std::string& text, const std::function<void()>& build) {

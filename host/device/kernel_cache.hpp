@@ -32,8 +32,8 @@ class KernelCache {
 
   /// Whether compiled programs are kept for later processes, and go to them.
   [[nodiscard]] bool keeps() const { return !store_.empty(); }
-  /// Whether something is kept of that program, whole or damaged.
-  [[nodiscard]] bool has(const std::string& text) const;
+  /// Whether that program is kept, and with it machine code of `kernel` unless that is empty.
+  [[nodiscard]] bool has(const std::string& text, const std::string& kernel) const;
   /// Runs `build`, which compiles the program that `text` stands for: its source, its options, and
   /// all there is to know of its compiler. What is kept of it is there when `build` runs.
   void build(const std::string& text, const std::function<void()>& build);

@@ -1,7 +1,6 @@
 #include "device/platforms.hpp"
 
 #include <fmt/format.h>
-#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "device/cpus.hpp"
 #include "device/environment_while.hpp"
 #include "device/kernel_cache.hpp"
 
@@ -37,13 +37,10 @@ std::string machine_for_hwloc() {
 /// programs' threads may have to share, or where not all CPUs are ours.
 std::string one_cpu_a_thread() {
   if (std::getenv("POCL_AFFINITY") || std::getenv("POCL_MAX_PTHREAD_COUNT")) return {};
-  cpu_set_t ours;
-  if (sched_getaffinity(0, sizeof ours, &ours) != 0) return {};
-  const long cpus = sysconf(_SC_NPROCESSORS_CONF);
-  for (long i = 0; i < cpus; ++i) {
-    if (!CPU_ISSET(static_cast<std::size_t>(i), &ours)) return {};
-  }
-  return "1";
+  const std::vector<int> ours = cpus_of_process();
+  const auto count = static_cast<long>(ours.size());
+  const bool all = count > 0 && count == sysconf(_SC_NPROCESSORS_ONLN) && ours.back() == count - 1;
+  return all ? "1" : "";
 }
 
 std::vector<cl::Platform> platforms() {

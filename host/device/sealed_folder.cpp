@@ -95,6 +95,13 @@ bool seal(const fs::path& folder, const std::vector<fs::path>& files) {
   return out.good();
 }
 
+std::vector<fs::path> sealed_files(const fs::path& sealed) {
+  std::vector<fs::path> paths;
+  for (const SealedFile& file : read_list(sealed).value_or(std::vector<SealedFile>{}))
+    paths.push_back(file.path);
+  return paths;
+}
+
 bool unseal(const fs::path& sealed, const fs::path& target, std::vector<fs::path>& files) {
   const auto list = read_list(sealed);
   if (!list) return false;

@@ -11,6 +11,9 @@ namespace dapple {
 /// not be written.
 bool seal(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
 
+/// The paths that `sealed` lists; none where the list is damaged.
+std::vector<std::filesystem::path> sealed_files(const std::filesystem::path& sealed);
+
 /// Puts the files that `sealed` lists into `target`, by hard links where that goes, and their paths
 /// into `files`. False, and nothing is left in `target`, where one is not what was sealed.
 bool unseal(const std::filesystem::path& sealed, const std::filesystem::path& target,

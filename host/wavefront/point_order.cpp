@@ -6,7 +6,7 @@
 namespace dapple {
 namespace {
 
-constexpr int kAxisBits = 10;
+constexpr int kAxisBits = 10, kDigitBits = 10;
 constexpr float kSteps = 1 << kAxisBits;  ///< along each axis
 
 struct PlacedPoint {
@@ -47,9 +47,9 @@ std::vector<PlacedPoint> place_points(std::span<const V3f> points) {
 /// A radix sort, which keeps equals in order: a thousand points are in order 25 microseconds
 /// sooner than by comparisons, of the 1,500 that 16 rays each take.
 void sort_by_place(std::vector<PlacedPoint>& points) {
-  constexpr std::uint32_t kDigits = 1u << kAxisBits;
+  constexpr std::uint32_t kDigits = 1u << kDigitBits;
   std::vector<PlacedPoint> sorted(points.size());
-  for (int shift = 0; shift < 3 * kAxisBits; shift += kAxisBits) {
+  for (int shift = 0; shift < 3 * kAxisBits; shift += kDigitBits) {
     const auto digit = [shift](const PlacedPoint& p) { return p.place >> shift & (kDigits - 1); };
     std::array<std::uint32_t, kDigits + 1> start{};
     for (const PlacedPoint& point : points) ++start[digit(point) + 1];

@@ -14,8 +14,11 @@ std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_sample
   return pairs ? pairs * 2 * DAPPLE_BATCH : DAPPLE_BATCH;
 }
 
+/// Pixels a slice: of 65,535 work-items and more PoCL compiles kernels once again.
+constexpr std::uint32_t kMostEntries = 65'472;
+
 std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
-  return slice_samples / samples_at_once(group, slice_samples);
+  return std::min(slice_samples / samples_at_once(group, slice_samples), kMostEntries);
 }
 
 void take_back(std::uint32_t& samples, std::uint32_t pending) {

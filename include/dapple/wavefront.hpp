@@ -21,7 +21,8 @@ struct RenderStatistics {
     double load = 0, cache = 0, build = 0, prefilter = 0, refit = 0, upload = 0, kernel_build = 0,
            trace = 0, checkpoint = 0, write = 0, total = 0;
   } seconds;  ///< wall time; cache is reading and writing it, refit is finding what moved and
-              ///< refitting it, trace all passes, camera rays included, checkpoints not
+              ///< refitting it, kernel_build waiting for kernels once the scene is on the device,
+              ///< trace all passes, camera rays included, checkpoints not
   std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
   struct {
     std::uint64_t camera = 0, ao = 0, light = 0;
