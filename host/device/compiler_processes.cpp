@@ -22,7 +22,7 @@ extern char** environ;
 namespace dapple {
 namespace {
 
-/// Each takes some 200 MB.
+/// Each takes some 230 MB.
 constexpr std::size_t kMostProcesses = 4;
 
 using Arguments = std::vector<std::string>;
