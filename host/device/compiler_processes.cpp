@@ -17,8 +17,6 @@
 #include "device/cpus.hpp"
 #include "device/kernel_source.hpp"
 
-extern char** environ;
-
 namespace dapple {
 namespace {
 

@@ -50,7 +50,7 @@ void average_nothing(EmptyStage& s, const Variant& variant) {
 using Pass = std::function<void(EmptyStage&, const Variant&)>;
 
 const std::map<std::string, Pass>& passes() {
-  static const std::map<std::string, Pass> of_kernel{
+  static const std::map<std::string, Pass> kOfKernel{
       {"camera_hits", find_nothing},
       {"closest_hit",
        [](EmptyStage& s, const Variant&) { closest_hit_pass(s.context, s.scene, s.queues, 0); }},
@@ -77,7 +77,7 @@ const std::map<std::string, Pass>& passes() {
          resolve_dome_pass(s.context, s.scene, s.queues, s.film, {}, 0);
        }},
   };
-  return of_kernel;
+  return kOfKernel;
 }
 
 }  // namespace
