@@ -5,8 +5,6 @@
 #include "command/statistics_text.hpp"
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
-#include "device/compiler_processes.hpp"
-#include "wavefront/passes.hpp"
 
 namespace dapple {
 namespace {
@@ -34,22 +32,12 @@ bool print_device(const DeviceInfo& info, const DeviceCheck& check) {
   return check.refusals.empty();
 }
 
-/// The same as check_device(), by several processes at once.
-DeviceCheck check_by_processes(const Device& device, const std::string& kernel_dir) {
-  std::vector<KernelName> kernels;
-  for (const KernelShape& shape : every_kernel()) kernels.push_back(shape.kernel);
-  CompilerProcesses processes;
-  processes.start(device.context(), device.info().name, kernel_dir, kernels, CompileTo::programs);
-  processes.wait();
-  return check_device(device);
-}
-
 void run_devices(const std::string& kernel_dir) {
   bool one_will_do = false;
   for (const DeviceInfo& info : list_devices()) {
     DeviceCheck check;
     try {
-      check = check_by_processes(Device(info.name, kernel_dir), kernel_dir);
+      check = check_device(Device(info.name, kernel_dir));
     } catch (const Error& error) {
       check.refusals.emplace_back(error.what());
     }

@@ -47,10 +47,10 @@ pid_t start_process(const std::string& program, Arguments arguments) {
   return process;
 }
 
-/// Where it has none, who asks for the kernel is told why.
-bool has_source(const KernelName& kernel, const std::string& kernel_dir) {
+/// Whoever asks for a kernel without a source is told why then.
+bool is_missing(const DeviceContext& context, const KernelName& kernel, CompileTo to) {
   try {
-    return !expand_kernel(kernel.file + ".cl", kernel_dir).empty();
+    return !context.is_compiled(kernel, to);
   } catch (const Error&) {
     return false;
   }
@@ -62,14 +62,14 @@ struct Share {
   std::vector<KernelName> kernels;
 };
 
-std::vector<Share> by_program(const DeviceContext& context, const std::string& kernel_dir,
-                              const std::set<KernelName>& kernels, CompileTo to) {
+std::vector<Share> by_program(const DeviceContext& context, const std::set<KernelName>& kernels,
+                              CompileTo to) {
   std::map<std::pair<std::string, Variant>, Share> programs;
   for (const KernelName& kernel : kernels) {
-    if (!has_source(kernel, kernel_dir) || context.is_compiled(kernel, to)) continue;
-    Share& share = programs[{kernel.file, kernel.variant}];
-    if (share.kernels.empty())
-      share.source_size = expand_kernel(kernel.file + ".cl", kernel_dir).size();
+    if (!is_missing(context, kernel, to)) continue;
+    const std::string file = kernel.source_file();
+    Share& share = programs[{file, kernel.variant}];
+    if (share.kernels.empty()) share.source_size = expand_kernel(file, context.kernel_dir()).size();
     share.kernels.push_back(kernel);
   }
   std::vector<Share> shares;
@@ -115,18 +115,21 @@ CompilerProcesses::~CompilerProcesses() {
   wait();
 }
 
-void CompilerProcesses::start(const DeviceContext& context, const std::string& device,
-                              const std::string& kernel_dir, const std::vector<KernelName>& kernels,
+void CompilerProcesses::start(const DeviceContext& context, const std::vector<KernelName>& kernels,
                               CompileTo to) {
   if (program_in_use().empty() || !context.keeps_compiled()) return;
   const std::size_t cpus = cpus_of_process().size();
   if (cpus < 2) return;  // nothing would be sooner
-  const auto programs = by_program(context, kernel_dir, {kernels.begin(), kernels.end()}, to);
+  Arguments common{"dapple", "compile", "--parent", std::to_string(getpid())};
+  if (to == CompileTo::programs) common.emplace_back("--programs");
+  const auto add_option = [&](const char* name, const std::string& value) {
+    if (!value.empty()) common.insert(common.end(), {name, value});
+  };
+  add_option("--device", context.chosen_by());
+  add_option("--kernel-dir", context.kernel_dir());
+  const auto programs = by_program(context, {kernels.begin(), kernels.end()}, to);
   for (const Share& share : deal(programs, std::min(cpus, kMostProcesses))) {
-    Arguments arguments{"dapple", "compile", "--parent", std::to_string(getpid())};
-    if (to == CompileTo::programs) arguments.emplace_back("--programs");
-    if (!device.empty()) arguments.insert(arguments.end(), {"--device", device});
-    if (!kernel_dir.empty()) arguments.insert(arguments.end(), {"--kernel-dir", kernel_dir});
+    Arguments arguments = common;
     for (const KernelName& kernel : share.kernels) arguments.push_back(text_of(kernel));
     if (const pid_t process = start_process(program_in_use(), std::move(arguments)))
       running_.push_back(process);

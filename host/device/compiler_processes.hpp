@@ -29,9 +29,8 @@ class CompilerProcesses {
   CompilerProcesses& operator=(const CompilerProcesses&) = delete;
 
   /// Starts as many as there are CPUs, at most four, on those of `kernels` that no process has
-  /// compiled before. `device`, `kernel_dir`: what `context` was opened with.
-  void start(const DeviceContext& context, const std::string& device, const std::string& kernel_dir,
-             const std::vector<KernelName>& kernels, CompileTo to = CompileTo::machine_code);
+  /// compiled before.
+  void start(const DeviceContext& context, const std::vector<KernelName>& kernels, CompileTo to);
   /// Until all have ended. What they could not compile is compiled when it is asked for, which says
   /// why.
   void wait();

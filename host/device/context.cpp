@@ -76,6 +76,7 @@ struct Buffer::Memory {
 struct DeviceContext::State {
   DriverInUse driver_in_use;
   DeviceInfo info;
+  std::string chosen_by;
   std::string kernel_dir;
   Company trace_with = Company::automatic;
   cl::Device device;
@@ -104,10 +105,6 @@ std::string Variant::options() const {
                      prefiltered ? 1 : 0, one_point ? 1 : 0);
 }
 
-std::string file_of(const KernelName& kernel) {
-  return (kernel.file.empty() ? kernel.name : kernel.file) + ".cl";
-}
-
 std::string DeviceContext::State::known_by(const std::string& source,
                                            const Variant& variant) const {
   return fmt::format("{}\n{}\n{}\n{}\n{}", info.platform, info.driver, info.name, variant.options(),
@@ -133,7 +130,7 @@ cl::Program& DeviceContext::State::program(const std::string& file, const Varian
 }
 
 cl::Kernel& DeviceContext::State::kernel(const KernelName& name) {
-  const std::string file = file_of(name);
+  const std::string file = name.source_file();
   const auto key = std::tuple(file, name.name, name.variant);
   if (const auto found = kernels.find(key); found != kernels.end()) return found->second;
   return kernels.emplace(key, cl::Kernel(program(file, name.variant), name.name.c_str()))
@@ -152,6 +149,7 @@ void DeviceContext::State::collect_events() {
 DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Company trace_with)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
+  s.chosen_by = name;
   s.kernel_dir = std::move(kernel_dir);
   s.trace_with = trace_with;
   s.device = choose_device(name);
@@ -169,6 +167,10 @@ DeviceContext::~DeviceContext() {
 }
 
 const DeviceInfo& DeviceContext::info() const { return state_->info; }
+
+const std::string& DeviceContext::chosen_by() const { return state_->chosen_by; }
+
+const std::string& DeviceContext::kernel_dir() const { return state_->kernel_dir; }
 
 bool DeviceContext::shares_memory() const { return state_->shares_memory; }
 
@@ -279,7 +281,7 @@ bool DeviceContext::keeps_compiled() const {
 }
 
 bool DeviceContext::is_compiled(const KernelName& kernel, CompileTo to) const {
-  const std::string file = file_of(kernel);
+  const std::string file = kernel.source_file();
   if (state_->programs.contains({file, kernel.variant})) return true;
   const std::string source = expand_kernel(file, state_->kernel_dir);
   return KernelCache::of_process().has(state_->known_by(source, kernel.variant),

@@ -73,6 +73,8 @@ struct KernelName {
   std::string name;
   std::string file;
   Variant variant;
+  /// "packet.cl".
+  [[nodiscard]] std::string source_file() const { return (file.empty() ? name : file) + ".cl"; }
   auto operator<=>(const KernelName&) const = default;
 };
 
@@ -89,6 +91,9 @@ class DeviceContext {
   DeviceContext& operator=(const DeviceContext&) = delete;
 
   [[nodiscard]] const DeviceInfo& info() const;
+  /// What the device was chosen by, and where kernels are read, as the constructor got them.
+  [[nodiscard]] const std::string& chosen_by() const;
+  [[nodiscard]] const std::string& kernel_dir() const;
   /// With the host: share() makes no copies.
   [[nodiscard]] bool shares_memory() const;
   /// Whom whoever opened the device wants rays to be traced with.
@@ -120,7 +125,8 @@ class DeviceContext {
   void prepare(const KernelName& kernel);
   /// Whether other processes get what is compiled here: PoCL's, if the kernel cache has a place.
   [[nodiscard]] bool keeps_compiled() const;
-  /// Whether it has been compiled so far, here or for the kernel cache.
+  /// Whether it has been compiled so far, here or for the kernel cache. Throws Error failed where
+  /// its source cannot be read.
   [[nodiscard]] bool is_compiled(const KernelName& kernel, CompileTo to) const;
   /// From here on launches of nothing are of one group, which finds nothing to do: drivers compile
   /// some of a kernel when it is first launched.

@@ -1,15 +1,29 @@
-// Whether a device can run every kernel: each is compiled, none launched.
+// Whether a device can run every kernel: each is compiled, by several processes at once where that
+// goes, none launched.
 #include <fmt/format.h>
 
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
+#include "device/compiler_processes.hpp"
 #include "device/context.hpp"
 #include "wavefront/passes.hpp"
 
 namespace dapple {
+namespace {
+
+void compile_ahead(const DeviceContext& context) {
+  std::vector<KernelName> kernels;
+  for (const KernelShape& shape : every_kernel()) kernels.push_back(shape.kernel);
+  CompilerProcesses processes;
+  processes.start(context, kernels, CompileTo::programs);
+  processes.wait();
+}
+
+}  // namespace
 
 DeviceCheck check_device(const Device& device) {
   DeviceContext& context = device.context();
+  compile_ahead(context);
   DeviceCheck check;
   check.trace_with = company_in_picture(context, Estimator::prefiltered, 1);
   for (const auto& [kernel, group] : every_kernel()) {

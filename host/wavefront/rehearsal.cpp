@@ -27,11 +27,15 @@ struct EmptyStage {
   FilmBuffers film;
 };
 
+Estimator estimator_of(const Variant& variant) {
+  return variant.prefiltered ? Estimator::prefiltered : Estimator::exact;
+}
+
 void occlude_nothing(EmptyStage& s, Company with, const Variant& variant) {
   OcclusionParams params{};
   params.rays_per_point = 1;
-  occlusion_pass_with(with, s.context, s.queues, s.scene, "occlusion",
-                      variant.prefiltered ? Estimator::prefiltered : Estimator::exact, params);
+  occlusion_pass_with(with, s.context, s.queues, s.scene, "occlusion", estimator_of(variant),
+                      params);
 }
 
 void find_nothing(EmptyStage& s, const Variant& variant) {
@@ -43,8 +47,7 @@ void find_nothing(EmptyStage& s, const Variant& variant) {
 void average_nothing(EmptyStage& s, const Variant& variant) {
   OcclusionParams params{};
   params.rays_per_point = 1;
-  point_ao_pass(s.context, s.queues, s.scene,
-                variant.prefiltered ? Estimator::prefiltered : Estimator::exact, {}, params);
+  point_ao_pass(s.context, s.queues, s.scene, estimator_of(variant), {}, params);
 }
 
 using Pass = std::function<void(EmptyStage&, const Variant&)>;

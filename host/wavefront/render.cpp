@@ -192,7 +192,7 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   check_memory(device.info(), least_need(scene), "needs at least");
   const auto kernels = picture_kernels(device.context(), sampled, view.camera, scene.lights);
   CompilerProcesses processes;
-  processes.start(device.context(), options.device, options.kernel_dir, kernels);
+  processes.start(device.context(), kernels, CompileTo::machine_code);
   kept.bring(scene, options, statistics);
   kept.compile(kernels, processes, statistics);
   const SceneBvh& bvh = kept.bvh->bvh();
