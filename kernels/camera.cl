@@ -113,9 +113,9 @@ inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* ch
 }
 
 /* Of all `rays` those of one item. Points of samples that miss are left as they are. */
-inline void trace_item(Scene scene, CameraParams params, uint item, uint rays,
-                       __global const PixelWork* work, __global SurfacePoint* points,
-                       __global SampleHits* sample_hits) {
+DAPPLE_INLINE void trace_item(Scene scene, CameraParams params, uint item, uint rays,
+                              __global const PixelWork* work, __global SurfacePoint* points,
+                              __global SampleHits* sample_hits) {
   const uint begin = item * DAPPLE_ITEM_RAYS;
   const uint count = min(rays - begin, DAPPLE_ITEM_RAYS);
   Entries entries;
