@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 TEST(KernelText, IsReadBackAsItWasWritten) {
   std::set<std::string> texts;
-  for (const KernelShape& shape : every_kernel()) {
+  for (const KernelShape& shape : every_kernel(Device().context())) {
     const std::string text = text_of(shape.kernel);
     const KernelName read = parse_kernel(text);
     EXPECT_EQ(read.name, shape.kernel.name);
@@ -93,11 +93,12 @@ class CompilingProcessesCold : public CompilingProcesses {};
 
 TEST_F(CompilingProcessesCold, PicturesFindNothingLeftToCompile) {
   std::string kernels;
-  for (const KernelShape& shape : every_kernel()) kernels += " " + text_of(shape.kernel);
+  for (const KernelShape& shape : every_kernel(Device().context()))
+    kernels += " " + text_of(shape.kernel);
   const Outcome compiled = with_cache("compile" + kernels);
   ASSERT_EQ(compiled.code, 0) << compiled.err;
   const auto files = machine_code();
-  EXPECT_EQ(files.size(), every_kernel().size());
+  EXPECT_EQ(files.size(), every_kernel(Device().context()).size());
   const std::string small = "--width 8 --height 8 ";
   for (const std::string& options :
        {small + "--passes ao,light", small + "--estimator exact --trace-with alone",

@@ -13,7 +13,7 @@ namespace {
 
 void compile_ahead(const DeviceContext& context) {
   std::vector<KernelName> kernels;
-  for (const KernelShape& shape : every_kernel()) kernels.push_back(shape.kernel);
+  for (const KernelShape& shape : every_kernel(context)) kernels.push_back(shape.kernel);
   CompilerProcesses processes;
   processes.start(context, kernels, CompileTo::programs);
   processes.wait();
@@ -26,7 +26,7 @@ DeviceCheck check_device(const Device& device) {
   compile_ahead(context);
   DeviceCheck check;
   check.trace_with = company_in_picture(context, Estimator::prefiltered, 1);
-  for (const auto& [kernel, group] : every_kernel()) {
+  for (const auto& [kernel, group] : every_kernel(context)) {
     try {
       const std::size_t largest = context.largest_group(kernel);
       if (largest >= group) continue;

@@ -90,8 +90,10 @@ KernelName camera_kernel(bool orthographic) {
   return {"camera_hits", "camera", {false, !orthographic}};
 }
 
-constexpr std::size_t packet_group(Company with) {
-  return with == Company::point ? kPacketGroup : 1;
+/// Several only where items of a group run side by side: packets take so much memory that Intel's
+/// CPU runtime refuses groups of 16.
+std::size_t packet_group(const DeviceContext& context, Company with) {
+  return with == Company::point && context.info().kind != "CPU" ? kPacketGroup : 1;
 }
 
 const KernelName kClosestHit{"closest_hit", "closest_hit", {}};
@@ -199,7 +201,7 @@ void occlusion_pass_with(Company with, DeviceContext& context, const Queues& que
     const uint pieces = with == Company::neighbours
                             ? cut_neighbours(launched)
                             : cut_points(context.info().kind == "CPU", launched);
-    context.launch_in_turns(kernel, label, pieces, arguments, packet_group(with));
+    context.launch_in_turns(kernel, label, pieces, arguments, packet_group(context, with));
   }
 }
 
@@ -240,7 +242,7 @@ void resolve_light_pass(DeviceContext& context, const Queues& queues, const Film
                   film.squares, params});
 }
 
-std::vector<KernelShape> every_kernel() {
+std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   std::vector<KernelShape> kernels{
       {kClosestHit, kRayGroup},     {kCompactHits, kScanItems}, {kAoRays, kPacketGroup},
       {kLightRays, kPacketGroup},   {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
@@ -252,7 +254,7 @@ std::vector<KernelShape> every_kernel() {
     kernels.push_back({occlusion_kernel(estimator, Company::alone), kRayGroup});
     kernels.push_back({point_ao_kernel(estimator), kPointGroup});
     for (const Company with : {Company::neighbours, Company::point})
-      kernels.push_back({occlusion_kernel(estimator, with), packet_group(with)});
+      kernels.push_back({occlusion_kernel(estimator, with), packet_group(context, with)});
   }
   return kernels;
 }

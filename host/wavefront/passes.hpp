@@ -95,7 +95,7 @@ struct KernelShape {
   std::size_t group = 0;
 };
 /// All that any picture or query needs.
-std::vector<KernelShape> every_kernel();
+std::vector<KernelShape> every_kernel(const DeviceContext& context);
 
 /// Whom the occlusion rays of a picture are traced with, that many of each sample.
 Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays);
