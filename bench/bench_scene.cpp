@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "dapple/error.hpp"
-#include "wavefront/sample_plan.hpp"
+#include "sampling/sample_plan.hpp"
 
 namespace dapple::bench {
 namespace {

@@ -10,8 +10,8 @@
 #include "dapple/bvh.hpp"
 #include "dapple/device.hpp"
 #include "dapple/shared/pass_params.h"
-#include "wavefront/passes.hpp"
-#include "wavefront/view.hpp"
+#include "passes/passes.hpp"
+#include "camera/view.hpp"
 
 namespace dapple::bench {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "benchmarks.hpp"
-#include "swaying.hpp"
+#include "support/swaying_tree.hpp"
 
 namespace dapple::bench {
 namespace {

@@ -7,7 +7,7 @@ foreach(source IN LISTS SOURCES)
 endforeach()
 string(SHA256 all "${all}")
 file(WRITE ${OUTPUT} "// Generated from host/bvh/ by cmake/builder_version.cmake.
-#include \"bvh/builder_version.hpp\"
+#include \"bvh/storage/builder_version.hpp\"
 
 namespace dapple {
 std::string_view builder_version() { return \"${all}\"; }

@@ -1,10 +1,13 @@
-# Writes a C++ file that defines dapple::embedded_sources() over the files in SOURCES, as
-# byte arrays: raw string literals would hit compilers' length limits.
+# Writes a C++ file that defines dapple::embedded_sources() over the files in SOURCES, named by their
+# paths below the folders in ROOTS, as byte arrays: raw string literals would hit compilers' length limits.
 set(arrays "")
 set(table "")
 set(index 0)
 foreach(source IN LISTS SOURCES)
-  get_filename_component(name ${source} NAME)
+  set(name ${source})
+  foreach(root IN LISTS ROOTS)
+    string(REPLACE "${root}/" "" name "${name}")
+  endforeach()
   file(READ ${source} bytes HEX)
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${bytes}")
   string(APPEND arrays "const char source_${index}[] = {${bytes}'\\0'};\n")
@@ -12,7 +15,7 @@ foreach(source IN LISTS SOURCES)
   math(EXPR index "${index} + 1")
 endforeach()
 file(WRITE ${OUTPUT} "// Generated from kernels/ by cmake/embed.cmake.
-#include \"device/kernel_source.hpp\"
+#include \"device/programs/kernel_source.hpp\"
 
 namespace {
 ${arrays}

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "command/command.hpp"
-#include "command/interruption.hpp"
+#include "commands/command.hpp"
+#include "commands/interruption.hpp"
 #include "dapple/error.hpp"
-#include "device/compiler_processes.hpp"
+#include "device/programs/compiler_processes.hpp"
 #include "device/driver_crash.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include "accuracy/prefilter_cost.hpp"
 #include "accuracy/report.hpp"
 #include "dapple/error.hpp"
-#include "file/output_file.hpp"
+#include "files/output_file.hpp"
 
 namespace dapple::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "accuracy/subtree.hpp"
-#include "embree_oracle.hpp"
+#include "oracle/embree_oracle.hpp"
 
 namespace dapple::bench {
 

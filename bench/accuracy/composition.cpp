@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvh/quantize.hpp"
-#include "bvh/strand_coverage.hpp"
-#include "bvh/triangle_opacity.hpp"
+#include "bvh/build/quantize.hpp"
+#include "bvh/opacity/strand_coverage.hpp"
+#include "bvh/opacity/triangle_opacity.hpp"
 
 namespace dapple::bench {
 namespace {

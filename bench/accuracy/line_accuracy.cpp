@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "accuracy/report.hpp"
-#include "line_of_points.hpp"
-#include "pulled_back_camera.hpp"
+#include "support/line_of_points.hpp"
+#include "support/receding_camera.hpp"
 
 namespace dapple::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "accuracy/box_rays.hpp"
-#include "bvh/node_opacity.hpp"
+#include "bvh/opacity/node_opacity.hpp"
 #include "dapple/error.hpp"
 #include "dapple/shared/opacity.h"
 

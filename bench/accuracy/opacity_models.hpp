@@ -36,7 +36,7 @@ struct DirectionalModel {
   bool centred = true;  ///< rays that pass the box's centre meet more
 };
 
-/// kernels/footprint.clh's child_depths(), one lane.
+/// kernels/opacity/footprint.clh's child_depths(), one lane.
 inline constexpr DirectionalModel kRendererModel{Blend::depths, Chord::scaled, true};
 
 /// Optical depth of the node along a unit direction for a ray whose chord is `chord` times

@@ -6,9 +6,9 @@
 
 #include "dapple/error.hpp"
 #include "device/context.hpp"
-#include "wavefront/depths.hpp"
-#include "wavefront/passes.hpp"
-#include "wavefront/picture.hpp"
+#include "camera/camera_splitting.hpp"
+#include "passes/passes.hpp"
+#include "render/picture.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -23,7 +23,7 @@ Scene furnished(const std::string& spec, const RenderOptions& options, View& vie
   return scene;
 }
 
-/// Planes of film sums as means over samples; their order is that of kernels/film.cl.
+/// Planes of film sums as means over samples; their order is that of kernels/film/film.cl.
 class Sums {
  public:
   Sums(const TracedPicture& picture, const FilmLayout& layout)

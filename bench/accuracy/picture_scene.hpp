@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dapple/wavefront.hpp"
-#include "wavefront/view.hpp"
+#include "camera/view.hpp"
 
 namespace dapple::bench {
 

@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "accuracy/report.hpp"
-#include "bvh/object_bvh.hpp"
+#include "bvh/build/object_bvh.hpp"
 
 namespace dapple::bench {
 namespace {

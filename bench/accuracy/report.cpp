@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "accuracy/svg_plot.hpp"
-#include "file/output_file.hpp"
+#include "files/output_file.hpp"
 
 namespace dapple::bench {
 namespace {

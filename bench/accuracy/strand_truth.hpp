@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "bvh/strand_segment.hpp"
-#include "embree_oracle.hpp"
+#include "bvh/storage/strand_segment.hpp"
+#include "oracle/embree_oracle.hpp"
 
 namespace dapple::bench {
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "bvh/segment_block.hpp"
-#include "bvh/textured_triangle.hpp"
+#include "bvh/storage/segment_block.hpp"
+#include "bvh/storage/textured_triangle.hpp"
 
 namespace dapple::bench {
 namespace {

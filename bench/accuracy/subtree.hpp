@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "bvh/strand_segment.hpp"
+#include "bvh/storage/strand_segment.hpp"
 #include "dapple/bvh.hpp"
 
 namespace dapple::bench {

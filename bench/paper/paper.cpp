@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "accuracy/report.hpp"
-#include "file/output_file.hpp"
+#include "files/output_file.hpp"
 #include "paper/variants.hpp"
 
 namespace dapple::bench {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rivals/ray_batch.hpp"
-#include "wavefront/view.hpp"
+#include "camera/view.hpp"
 
 namespace dapple::bench {
 

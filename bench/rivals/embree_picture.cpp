@@ -17,7 +17,7 @@
 namespace dapple::bench {
 namespace {
 
-/// Roundings of the largest coordinate by which rays start off surfaces; kernels/closest_hit.cl
+/// Roundings of the largest coordinate by which rays start off surfaces; kernels/camera/closest_hit.cl
 /// takes 16 of a sum that is little larger.
 constexpr float kRoundings = 16;
 

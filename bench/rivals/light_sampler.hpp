@@ -1,4 +1,4 @@
-// Shadow rays to a light for the Embree side: the same densities as kernels/light.cl, so that the
+// Shadow rays to a light for the Embree side: the same densities as kernels/lights/light.cl, so that the
 // noise is the same.
 #pragma once
 

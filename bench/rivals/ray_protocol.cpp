@@ -14,7 +14,7 @@
 #include "accuracy/pixel_statistics.hpp"
 #include "device/context.hpp"
 #include "rivals/stratified.hpp"
-#include "wavefront/passes.hpp"
+#include "passes/passes.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -136,7 +136,7 @@ PreparedRays prepare_rays(std::span<const Surface> points, std::uint32_t seed) {
         cosine += normal[axis] * ray.direction[axis];
       }
       ray.t_max = batch.t_max[i];
-      // 1 / (n pdf), as kernels/ao_rays.clh has it.
+      // 1 / (n pdf), as kernels/occlusion/ao_rays.clh has it.
       constexpr float kPi = std::numbers::pi_v<float>;
       ray.solid_angle = std::min(2 * kPi, kPi / (kRaysAPoint * std::max(1e-4f, cosine)));
       ray.weight = 1;

@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "dapple/error.hpp"
-#include "file/output_file.hpp"
+#include "files/output_file.hpp"
 
 namespace dapple::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include "accuracy/picture_scene.hpp"
 #include "rivals/ao_points.hpp"
 #include "rivals/embree_picture.hpp"
-#include "wavefront/view.hpp"
+#include "camera/view.hpp"
 
 namespace dapple::bench {
 

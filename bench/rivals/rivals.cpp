@@ -9,7 +9,7 @@
 
 #include "accuracy/report.hpp"
 #include "dapple/error.hpp"
-#include "file/output_file.hpp"
+#include "files/output_file.hpp"
 #include "rivals/image_protocol.hpp"
 #include "rivals/point_protocol.hpp"
 #include "rivals/ray_protocol.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bvh/multiversion.hpp"
+#include "bvh/build/multiversion.hpp"
 
 namespace dapple::bench {
 namespace {

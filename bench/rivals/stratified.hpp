@@ -1,5 +1,5 @@
 // Stratified random points and directions for the Embree side: the sequences that
-// kernels/random.clh documents (a Sobol (0,2) sequence a pixel and dimension pair, Owen-scrambled
+// kernels/sampling/random.clh documents (a Sobol (0,2) sequence a pixel and dimension pair, Owen-scrambled
 // by hashing), so that both sides pay for the same quality. Plain loops over floats, which the
 // compiler turns into vector code.
 #pragma once
@@ -44,7 +44,7 @@ void ray_keys(const std::uint32_t* pixel, const std::uint32_t* index, unsigned c
               std::uint32_t pair, std::uint32_t seed, std::uint32_t* keys);
 
 /// Places of the unit disk in sets of `rays` each, place `index[i]` of the set of `point[i]`, as
-/// sunflower_disk() of kernels/direction.clh has them; `x` is in the unit square at first, for
+/// sunflower_disk() of kernels/sampling/direction.clh has them; `x` is in the unit square at first, for
 /// where in its ring a place lies.
 void sunflower_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
                       std::size_t rays, std::uint32_t seed, float* x, float* y);

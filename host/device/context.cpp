@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
-#include "device/kernel_cache.hpp"
-#include "device/kernel_source.hpp"
+#include "device/programs/kernel_cache.hpp"
+#include "device/programs/kernel_source.hpp"
 #include "device/opencl.hpp"
 #include "device/page_pool.hpp"
 #include "device/platforms.hpp"

@@ -138,7 +138,7 @@ class DeviceContext {
   void launch(const KernelName& name, const std::string& label, std::size_t items,
               const std::vector<KernelArgument>& arguments, std::size_t group = 64);
   /// Enqueues work-items enough to keep the device busy, which take `pieces` pieces of work, below
-  /// 2^31, by turns: take_turn() of kernels/turns.clh. Three arguments are added here.
+  /// 2^31, by turns: take_turn() of kernels/vectors/tickets.clh. Three arguments are added here.
   void launch_in_turns(const KernelName& name, const std::string& label, std::size_t pieces,
                        std::vector<KernelArgument> arguments, std::size_t group = 64);
   /// Work-groups that take so many pieces by turns.

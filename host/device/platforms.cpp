@@ -12,7 +12,7 @@
 
 #include "device/cpus.hpp"
 #include "device/environment_while.hpp"
-#include "device/kernel_cache.hpp"
+#include "device/programs/kernel_cache.hpp"
 
 namespace dapple {
 namespace {

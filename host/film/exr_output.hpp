@@ -4,7 +4,7 @@
 #include <string>
 
 #include "dapple/film.hpp"
-#include "file/output_file.hpp"
+#include "files/output_file.hpp"
 
 namespace dapple {
 

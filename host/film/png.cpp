@@ -15,7 +15,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
-#include "file/output_file.hpp"
+#include "files/output_file.hpp"
 #include "film/film_defect.hpp"
 #include "film/heat_color.hpp"
 

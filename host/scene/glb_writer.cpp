@@ -8,7 +8,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
-#include "file/output_file.hpp"
+#include "files/output_file.hpp"
 #include "scene/glb_layout.hpp"
 
 namespace dapple {

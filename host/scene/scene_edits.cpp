@@ -7,7 +7,7 @@
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
 #include "scene/ground.hpp"
-#include "scene/mesh_shapes.hpp"
+#include "scene/procedural/mesh_shapes.hpp"
 
 namespace dapple {
 namespace {

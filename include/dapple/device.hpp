@@ -48,7 +48,7 @@ class Device {
   std::shared_ptr<DeviceContext> context_;
 };
 
-struct DeviceBuffers;  // host/device/scene_upload.hpp
+struct DeviceBuffers;  // host/device/upload/scene_upload.hpp
 
 /// A scene in device memory. Keeps the device alive.
 struct DeviceScene {

@@ -138,7 +138,7 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              float footprint = kDefaultFootprint, std::size_t rays_per_point = 1);
 
 /// The surface that stops each ray: of the rays that come to a surface of opacity a, the share a.
-/// Which these are is hashed from origin, direction and key (kernels/closest_hit.cl): the same ray
+/// Which these are is hashed from origin, direction and key (kernels/camera/closest_hit.cl): the same ray
 /// finds the same. Where t < 0 there is none.
 std::vector<SurfacePoint> closest_hits(const Device& device, const DeviceScene& scene,
                                        std::span<const Ray> rays);

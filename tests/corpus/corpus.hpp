@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gltf_builder.hpp"
+#include "support/gltf_builder.hpp"
 
 namespace dapple::test {
 

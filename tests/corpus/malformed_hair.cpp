@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "corpus/corpus.hpp"
-#include "hair_builder.hpp"
+#include "support/hair_builder.hpp"
 
 namespace dapple::test {
 namespace {

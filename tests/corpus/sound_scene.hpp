@@ -1,7 +1,7 @@
 // A scene with one of everything that glTF has, for the corpus to damage or to twist.
 #pragma once
 
-#include "gltf_builder.hpp"
+#include "support/gltf_builder.hpp"
 
 namespace dapple::test {
 

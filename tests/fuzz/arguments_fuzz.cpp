@@ -1,10 +1,10 @@
 // Any text as what follows an option: an Error of kind usage, or options that are in range.
 #include <string>
 
-#include "command/option_text.hpp"
+#include "commands/option_text.hpp"
 #include "dapple/error.hpp"
-#include "scene/procedural.hpp"
-#include "scene/procedural_parameters.hpp"
+#include "scene/procedural/procedural.hpp"
+#include "scene/procedural/parameters.hpp"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bvh/builder_version.hpp"
-#include "bvh/bvh_cache.hpp"
-#include "file/sealed_file.hpp"
+#include "bvh/storage/builder_version.hpp"
+#include "bvh/storage/bvh_cache.hpp"
+#include "files/sealed_file.hpp"
 
 namespace {
 

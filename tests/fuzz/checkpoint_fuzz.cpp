@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "dapple/error.hpp"
-#include "file/compression.hpp"
-#include "file/sealed_file.hpp"
-#include "wavefront/checkpoint.hpp"
+#include "files/compression.hpp"
+#include "files/sealed_file.hpp"
+#include "render/checkpoint.hpp"
 
 namespace {
 

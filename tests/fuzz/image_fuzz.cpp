@@ -1,6 +1,6 @@
 // Any bytes as an image: an Error of kind input, or as many alphas as pixels.
 #include "dapple/error.hpp"
-#include "scene/image.hpp"
+#include "scene/images/image.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -1,6 +1,6 @@
 // Any bytes as a dome's Radiance HDR image: an Error of kind input, or as many texels as pixels.
 #include "dapple/error.hpp"
-#include "scene/radiance_hdr.hpp"
+#include "scene/images/radiance_hdr.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

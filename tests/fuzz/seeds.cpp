@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "corpus/corpus.hpp"
-#include "gltf_builder.hpp"
+#include "support/gltf_builder.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 /* Parts of the camera pass and of resolving as kernels. */
-#include "beam_points.clh"
-#include "camera_samples.clh"
-#include "film.clh"
+#include "camera/surface_points16.clh"
+#include "camera/camera_samples.clh"
+#include "film/film.clh"
 
 /* The order in which one item takes its samples, by their places in the picture. */
 __kernel void camera_order(__global const float* x, __global const float* y,

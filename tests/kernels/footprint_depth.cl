@@ -1,7 +1,7 @@
 /* The vectorized opacity model of footprint.clh: optical depths of a node's children along
    a direction, the ray crossing `chords` mean chords of each box. Where it passes does not
    count: nothing in the nodes is concentrated. */
-#include "footprint.clh"
+#include "opacity/footprint.clh"
 
 __kernel void depths(__global const BvhNode* nodes, __global const float* directions,
                      __global float* results, float chords, uint count) {

@@ -1,6 +1,6 @@
 /* lanes.clh for patterns of sixteen bits, one an item: what each of its functions makes of them,
    and which children a packet pushes. Included once for each way in which it can be compiled. */
-#include "packet_stack.clh"
+#include "occlusion/packet_stack.clh"
 
 __kernel void lanes_of_patterns(__global uint* found) {
   const uint pattern = get_global_id(0);

@@ -1,11 +1,11 @@
 /* Reports the layout of every shared struct as the device's compiler sees it, in the order
    of layout_members.h: sizes of structs; offset and size of members. */
-#include "bvh_node.h"
-#include "geometry.h"
+#include "dapple/shared/bvh_node.h"
+#include "dapple/shared/geometry.h"
 #include "layout_members.h"
-#include "light_record.h"
-#include "pass_params.h"
-#include "ray.h"
+#include "dapple/shared/light_record.h"
+#include "dapple/shared/pass_params.h"
+#include "dapple/shared/ray.h"
 
 #define DAPPLE_REPORT_STRUCT(Type) \
   report[next++] = (uint)sizeof(Type);

@@ -1,5 +1,5 @@
 /* Every struct that crosses to the device and every member of it, for both languages.
-   tests/layout_test.cpp notices a member that is missing here: sizes would not add up. */
+   tests/device/layout_test.cpp notices a member that is missing here: sizes would not add up. */
 #ifndef DAPPLE_LAYOUT_MEMBERS_H
 #define DAPPLE_LAYOUT_MEMBERS_H
 

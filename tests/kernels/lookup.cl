@@ -1,5 +1,5 @@
 /* opacity_lookup.clh as kernels. */
-#include "opacity_lookup.clh"
+#include "opacity/opacity_lookup.clh"
 
 /* Texture coordinates in, alpha out. */
 __kernel void look_up(__global const TextureRecord* textures, __global const uchar* texels,

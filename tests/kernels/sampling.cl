@@ -1,5 +1,5 @@
 /* random.clh, direction.clh and the light samplers as kernels: one item, one sample. */
-#include "light.cl"
+#include "lights/light.cl"
 
 __kernel void sobol_points(__global float* points, uint pixel, uint pair, uint seed, uint first,
                            uint count) {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "scene/gltf/uri.hpp"
-#include "scene/image.hpp"
+#include "scene/images/image.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {

@@ -3,7 +3,7 @@
 #ifndef DAPPLE_SHARED_BVH_NODE_H
 #define DAPPLE_SHARED_BVH_NODE_H
 
-#include "language.h"
+#include "dapple/shared/language.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {

@@ -3,9 +3,9 @@
 #ifndef DAPPLE_SHARED_GEOMETRY_H
 #define DAPPLE_SHARED_GEOMETRY_H
 
-#include "language.h"
-#include "segment_block.h"
-#include "textured_triangle.h"
+#include "dapple/shared/language.h"
+#include "dapple/shared/segment_block.h"
+#include "dapple/shared/textured_triangle.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {

@@ -1,6 +1,6 @@
 /* The little that OpenCL C and C++ spell differently, so that the headers beside this one
    compile as both. Layout rule: scalars and fixed arrays only, no padding the compiler
-   could choose (tests/layout_test.cpp compares sizeof and offsets on the device). */
+   could choose (tests/device/layout_test.cpp compares sizeof and offsets on the device). */
 #ifndef DAPPLE_SHARED_LANGUAGE_H
 #define DAPPLE_SHARED_LANGUAGE_H
 

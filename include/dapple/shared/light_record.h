@@ -3,7 +3,7 @@
 #ifndef DAPPLE_SHARED_LIGHT_RECORD_H
 #define DAPPLE_SHARED_LIGHT_RECORD_H
 
-#include "language.h"
+#include "dapple/shared/language.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {
@@ -30,7 +30,7 @@ typedef struct LightRecord {
   uint triangle_count;
   uint two_sided;
   uint id;                /* mesh: 1 + index of the light; else 0 */
-  uint environment_first; /* dome: where its floats begin, see kernels/dome.clh */
+  uint environment_first; /* dome: where its floats begin, see kernels/lights/dome.clh */
   uint environment_width, environment_height;
   float rotation; /* dome: radians about +Y */
 } LightRecord;

@@ -4,7 +4,7 @@
 #ifndef DAPPLE_SHARED_OPACITY_H
 #define DAPPLE_SHARED_OPACITY_H
 
-#include "language.h"
+#include "dapple/shared/language.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {

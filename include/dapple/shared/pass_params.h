@@ -2,8 +2,8 @@
 #ifndef DAPPLE_SHARED_PASS_PARAMS_H
 #define DAPPLE_SHARED_PASS_PARAMS_H
 
-#include "language.h"
-#include "ray.h"
+#include "dapple/shared/language.h"
+#include "dapple/shared/ray.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {

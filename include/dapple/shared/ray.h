@@ -2,7 +2,7 @@
 #ifndef DAPPLE_SHARED_RAY_H
 #define DAPPLE_SHARED_RAY_H
 
-#include "language.h"
+#include "dapple/shared/language.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {

@@ -1,4 +1,4 @@
-/* Segments of strands, as leaves hold them, and how they are decoded. host/bvh/segment_block.cpp
+/* Segments of strands, as leaves hold them, and how they are decoded. host/bvh/storage/segment_block.cpp
    encodes.
 
    A segment is the side of a cone (its axis between two end points, a radius at each) between two
@@ -9,7 +9,7 @@
 #ifndef DAPPLE_SHARED_SEGMENT_BLOCK_H
 #define DAPPLE_SHARED_SEGMENT_BLOCK_H
 
-#include "language.h"
+#include "dapple/shared/language.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {

@@ -1,10 +1,10 @@
 /* A triangle whose opacity varies, in 24 bytes: texture coordinates, vertex alphas, the index of
-   a material and the size of a texel; and how they are decoded. host/bvh/textured_triangle.cpp
+   a material and the size of a texel; and how they are decoded. host/bvh/storage/textured_triangle.cpp
    encodes. */
 #ifndef DAPPLE_SHARED_TEXTURED_TRIANGLE_H
 #define DAPPLE_SHARED_TEXTURED_TRIANGLE_H
 
-#include "language.h"
+#include "dapple/shared/language.h"
 
 #ifndef __OPENCL_VERSION__
 namespace dapple {

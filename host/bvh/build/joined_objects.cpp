@@ -1,0 +1,147 @@
+#include "bvh/build/joined_objects.hpp"
+
+#include <fmt/format.h>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+/// `sign`: 1 to count what comes before too, -1 to count no more than the object's own.
+void shift(BvhNode& node, const ObjectOffsets& by, int sign) {
+  const std::uint32_t first = node.prim_base & DAPPLE_SEGMENTS ? by.segments : by.block;
+  node.child_base += static_cast<std::uint32_t>(sign) * by.node;
+  node.prim_base += static_cast<std::uint32_t>(sign) * first;
+}
+
+void shift(TriangleBlock& block, const ObjectOffsets& by, int sign) {
+  for (float& opacity : block.opacity) {
+    if (opacity < 0.0f) opacity -= static_cast<float>(sign) * static_cast<float>(by.textured);
+  }
+}
+
+void shift(SegmentBlock&, const ObjectOffsets&, int) {}
+void shift(TexturedTriangle&, const ObjectOffsets&, int) {}
+
+/// Each part's values shifted by its offsets, and `spare` more. Parts are emptied on the way, to
+/// need memory for one twice.
+template <class T>
+std::vector<T> values_of(std::span<ConstArray<T>* const> parts,
+                         std::span<const ObjectOffsets> offsets, std::size_t spare) {
+  std::size_t count = spare;
+  for (const ConstArray<T>* part : parts) count += part->size();
+  std::vector<T> values;
+  values.reserve(count);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const ConstArray<T> part = std::exchange(*parts[p], {});
+    const std::size_t first = values.size();
+    values.insert(values.end(), part.begin(), part.end());
+    for (std::size_t i = first; i < values.size(); ++i) shift(values[i], offsets[p], 1);
+  }
+  values.resize(count);
+  return values;
+}
+
+/// The first parts that are not empty have offsets 0, so that alone they need not be copied.
+template <class T>
+ConstArray<T> joined(std::span<ConstArray<T>* const> parts,
+                     std::span<const ObjectOffsets> offsets) {
+  ConstArray<T>* only = nullptr;
+  std::size_t filled = 0;
+  for (ConstArray<T>* part : parts) {
+    if (part->empty()) continue;
+    only = part;
+    ++filled;
+  }
+  if (filled == 1) return std::exchange(*only, {});
+  return values_of<T>(parts, offsets, 0);
+}
+
+template <class T>
+std::vector<ConstArray<T>*> parts_of(std::vector<FinishedObject>& objects,
+                                     ConstArray<T> FinishedObject::*array) {
+  std::vector<ConstArray<T>*> parts;
+  for (FinishedObject& object : objects) parts.push_back(&(object.*array));
+  return parts;
+}
+
+template <class T>
+ConstArray<T> part_of(const ConstArray<T>& all, std::size_t first, std::size_t end,
+                      const ObjectOffsets& offsets) {
+  std::vector<T> values(all.begin() + first, all.begin() + end);
+  for (T& value : values) shift(value, offsets, -1);
+  return values;
+}
+
+/// What refitting does not change: strands that move are built anew.
+void join_constant(SceneBvh& bvh, std::vector<FinishedObject>& objects,
+                   const std::vector<ObjectOffsets>& offsets) {
+  bvh.segments = joined<SegmentBlock>(parts_of(objects, &FinishedObject::segments), offsets);
+  bvh.textured = joined<TexturedTriangle>(parts_of(objects, &FinishedObject::textured), offsets);
+}
+
+}  // namespace
+
+std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
+                                   const std::string& source) {
+  std::vector<ObjectOffsets> offsets;
+  std::size_t nodes = 0, blocks = 0, segments = 0, textured = 0;
+  const auto push = [&] {
+    // The stack's top bit marks instances, that of a primitive's number, eight to a block, marks
+    // segments; a textured triangle's index must fit a float.
+    constexpr std::uint32_t kMostBlocks = DAPPLE_SEGMENTS / 8;
+    if (nodes >= DAPPLE_SEGMENTS || blocks > kMostBlocks || segments > kMostBlocks ||
+        textured >= 1u << 24) {
+      throw Error(ErrorKind::failed,
+                  fmt::format("{}: too many triangles for the BVH's indices", source));
+    }
+    offsets.push_back({static_cast<std::uint32_t>(nodes), static_cast<std::uint32_t>(blocks),
+                       static_cast<std::uint32_t>(segments), static_cast<std::uint32_t>(textured)});
+  };
+  push();
+  for (const FinishedObject& object : objects) {
+    nodes += object.nodes.size();
+    blocks += object.blocks.size();
+    segments += object.segments.size();
+    textured += object.textured.size();
+    push();
+  }
+  return offsets;
+}
+
+void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
+          const std::vector<ObjectOffsets>& offsets, std::vector<BvhNode> top) {
+  ConstArray<BvhNode> top_nodes(std::move(top));
+  std::vector<ConstArray<BvhNode>*> nodes = parts_of(objects, &FinishedObject::nodes);
+  nodes.push_back(&top_nodes);
+  std::vector<ObjectOffsets> node_offsets = offsets;
+  node_offsets.back() = {};  // the top level's indices already count so
+  bvh.nodes = joined<BvhNode>(nodes, node_offsets);
+  bvh.blocks = joined<TriangleBlock>(parts_of(objects, &FinishedObject::blocks), offsets);
+  join_constant(bvh, objects, offsets);
+}
+
+ChangeableArrays join_changeable(SceneBvh& bvh, std::vector<FinishedObject>& objects,
+                                 const std::vector<ObjectOffsets>& offsets, std::size_t spare) {
+  const auto nodes = std::make_shared<std::vector<BvhNode>>(
+      values_of<BvhNode>(parts_of(objects, &FinishedObject::nodes), offsets, spare));
+  const auto blocks = std::make_shared<std::vector<TriangleBlock>>(
+      values_of<TriangleBlock>(parts_of(objects, &FinishedObject::blocks), offsets, 0));
+  bvh.nodes = {*nodes, nodes};
+  bvh.blocks = {*blocks, blocks};
+  join_constant(bvh, objects, offsets);
+  return {*nodes, *blocks};
+}
+
+FinishedObject separate(const SceneBvh& bvh, const ObjectSummary& summary,
+                        const ObjectOffsets& first, const ObjectOffsets& end) {
+  FinishedObject object;
+  static_cast<ObjectSummary&>(object) = summary;
+  object.nodes = part_of(bvh.nodes, first.node, end.node, first);
+  object.blocks = part_of(bvh.blocks, first.block, end.block, first);
+  object.segments = part_of(bvh.segments, first.segments, end.segments, first);
+  object.textured = part_of(bvh.textured, first.textured, end.textured, first);
+  return object;
+}
+
+}  // namespace dapple

@@ -1,0 +1,255 @@
+#include "bvh/build/object_bvh.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <numeric>
+#include <span>
+
+#include "bvh/build/coincident_triangles.hpp"
+#include "bvh/storage/packed_strands.hpp"
+#include "bvh/build/quantize.hpp"
+
+namespace dapple {
+namespace {
+
+/// Primitives a leaf may hold.
+constexpr std::uint32_t kLeafSize = 4;
+static_assert(kLeafSize * DAPPLE_BVH_WIDTH <= DAPPLE_MOST_PRIMITIVES);
+
+/// Triangles to a task of one pass over them all.
+constexpr std::uint32_t kGrain = 1u << 14;
+
+template <class Body>
+void for_each_block(std::size_t count, const Body& body) {
+  tbb::parallel_for(std::size_t{0}, (count + kGrain - 1) / kGrain, [&](std::size_t block) {
+    body(block, block * kGrain, std::min(count, (block + 1) * kGrain));
+  });
+}
+
+/// Stands for a textured triangle until it has its index.
+constexpr float kTextured = -1.0f;
+
+/// Opacity of each primitive, [0,1], or kTextured; counts their kinds.
+std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
+  std::vector<float> opacities(mesh.primitive_count());
+  std::atomic<std::size_t> opaque = 0, cut_out = 0, translucent = 0;
+  for_each_block(opacities.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::size_t here[3] = {0, 0, 0};
+    for (std::size_t t = begin; t < end; ++t) {
+      const bool mask = scene.materials[mesh.materials[t]].alpha_mode == AlphaMode::mask;
+      const auto index = static_cast<std::uint32_t>(t);
+      opacities[t] = mesh.has_strands() ? segment_opacity(scene, mesh, index)
+                                        : uniform_opacity(scene, mesh, index).value_or(kTextured);
+      if (opacities[t] != 0.0f) ++here[mask ? 1 : opacities[t] >= 1.0f ? 0 : 2];
+    }
+    opaque += here[0];
+    cut_out += here[1];
+    translucent += here[2];
+  });
+  object.opaque = opaque;
+  object.cut_out = cut_out;
+  object.translucent = translucent;
+  object.triangles = object.opaque + object.cut_out + object.translucent;
+  return opacities;
+}
+
+/// Opacity of each triangle: [0,1], or -(1 + index) of a textured one.
+std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
+  std::vector<float> opacities = uniform_opacities(scene, mesh, object);
+  std::vector<std::uint32_t> textured;
+  for (std::uint32_t t = 0; t < opacities.size(); ++t) {
+    if (opacities[t] >= 0.0f) continue;
+    opacities[t] = -1.0f - static_cast<float>(textured.size());
+    textured.push_back(t);
+  }
+  // Two sides of a card let the same through: the product of their means would be less.
+  const std::vector<std::uint8_t> coincident = find_coincident(mesh, textured);
+  for (std::size_t i = 0; i < textured.size(); ++i)
+    object.textured.push_back(textured_triangle(scene, mesh, textured[i], coincident[i] == 0));
+  return opacities;
+}
+
+/// Of the primitives that can be seen, in their order. Fills `boxes`, one for each.
+template <class BoxOf>
+void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> boxes,
+                const BoxOf& box_of) {
+  std::vector<std::size_t> next((opacities.size() + kGrain - 1) / kGrain + 1, 0);
+  for_each_block(opacities.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+    const auto transparent = std::count(&opacities[begin], opacities.data() + end, 0.0f);
+    next[block + 1] = end - begin - static_cast<std::size_t>(transparent);
+  });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for_each_block(opacities.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::size_t to = next[block];
+    for (std::size_t t = begin; t < end; ++t) {
+      if (opacities[t] == 0.0f) continue;
+      const auto index = static_cast<std::uint32_t>(t);
+      boxes[to++] = primitive_box(box_of(index), index);
+    }
+  });
+}
+
+/// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
+void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
+                    const std::vector<float>& opacities, const std::vector<bool>& closed,
+                    bool keep_triangles) {
+  ObjectBvh& object = built.object;
+  const WideTree& wide = built.tree;
+  std::uint32_t blocks = 0;
+  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
+    object.nodes[n].prim_base = blocks;
+    blocks += blocks_of(wide.nodes[n]);
+  }
+  if (!closed.empty()) built.closed.assign(blocks, 0);
+  if (keep_triangles) built.triangles.assign(8 * std::size_t{blocks}, 0);
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
+        for (std::size_t n = range.begin(); n < range.end(); ++n) {
+          std::uint32_t next = 0;
+          for (const WideChild& child : wide.children_of(wide.nodes[n])) {
+            for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
+              const std::uint32_t triangle = boxes[child.first + i].primitive;
+              const std::uint32_t block = object.nodes[n].prim_base + next / 8;
+              set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
+              if (keep_triangles) built.triangles[8 * std::size_t{block} + next % 8] = triangle;
+              if (!closed.empty() && closed[triangle]) {
+                built.closed[block] |= static_cast<std::uint8_t>(1u << next % 8);
+              }
+            }
+          }
+        }
+      });
+}
+
+/// Expected node visits of a random ray through the root's box, by surface areas.
+double expected_visits(const WideTree& tree) {
+  double sum = 0;
+  for (const WideNode& node : tree.nodes) sum += half_area(node.box);
+  return dapple::expected_visits(sum, tree.nodes[0].box);
+}
+
+}  // namespace
+
+// Minima and maxima without branches, which Imath's extendBy() would take at random.
+Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
+  const std::uint32_t* index = &mesh.indices[3 * triangle];
+  const V3f &a = mesh.positions[index[0]], &b = mesh.positions[index[1]],
+            &c = mesh.positions[index[2]];
+  Box3f box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = std::min(std::min(a[axis], b[axis]), c[axis]);
+    box.max[axis] = std::max(std::max(a[axis], b[axis]), c[axis]);
+  }
+  return box;
+}
+
+void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
+              float opacity) {
+  const std::uint32_t* index = &mesh.indices[3 * std::size_t{triangle}];
+  const V3f vertex = mesh.positions[index[0]];
+  const V3f edge1 = mesh.positions[index[1]] - vertex, edge2 = mesh.positions[index[2]] - vertex;
+  for (int axis = 0; axis < 3; ++axis) {
+    block.vertex[axis][lane] = vertex[axis];
+    block.edge1[axis][lane] = edge1[axis];
+    block.edge2[axis][lane] = edge2[axis];
+  }
+  block.opacity[lane] = opacity;
+}
+
+double expected_visits(double half_areas, const Box3f& root) {
+  const double area = half_area(root);
+  return area > 0 ? half_areas / area : 1;
+}
+
+std::size_t count_blocks(const WideTree& tree) {
+  std::size_t blocks = 0;
+  for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
+  return blocks;
+}
+
+std::vector<BvhNode> pack_nodes(const WideTree& tree) {
+  std::vector<BvhNode> nodes(tree.nodes.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1024), [&](const auto& range) {
+    for (std::size_t n = range.begin(); n < range.end(); ++n) {
+      const WideNode& wide = tree.nodes[n];
+      BvhNode& node = nodes[n];
+      set_grid(node, wide.box);
+      std::uint32_t primitives = 0;
+      for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
+        if (slot < wide.child_count) {
+          const WideChild& child = tree.children_of(wide)[slot];
+          set_child_box(node, slot, child.box);
+          primitives += child.count;
+          if (child.count == 0) {
+            if (node.inner_mask == 0) node.child_base = child.first;
+            node.inner_mask = static_cast<uchar>(node.inner_mask | 1u << slot);
+          }
+        }
+        node.leaf_end[slot] = static_cast<uchar>(primitives);
+      }
+    }
+  });
+  return nodes;
+}
+
+namespace {
+
+/// What is known of an object once its tree stands.
+void summarize(BuiltObject& built) {
+  ObjectBvh& object = built.object;
+  const WideTree& tree = built.tree;
+  object.box = tree.nodes[0].box;
+  for (const WideChild& child : tree.children_of(tree.nodes[0])) object.parts.push_back(child.box);
+  tbb::parallel_invoke([&] { object.nodes = pack_nodes(tree); },
+                       [&] { object.stack = stack_needed(tree); },
+                       [&] { object.sah_cost = expected_visits(tree); });
+}
+
+void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
+                     std::span<PrimitiveBox> boxes, bool keep_triangles, BuiltObject& built) {
+  fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
+  std::vector<bool> closed;
+  tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
+                       [&] { closed = closed_triangles(mesh, opacities); });
+  tbb::parallel_invoke([&] { built.object.blocks.resize(count_blocks(built.tree)); },
+                       [&] { summarize(built); });
+  pack_triangles(built, boxes, mesh, opacities, closed, keep_triangles);
+}
+
+void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
+                   std::span<PrimitiveBox> boxes, BuiltObject& built) {
+  const StrandJoints joints(mesh);
+  fill_boxes(opacities, boxes, [&](std::uint32_t s) { return bounds(joints.segment(mesh, s)); });
+  built.tree = build_wide_tree(boxes, kLeafSize);
+  PackedStrands packed = pack_strands(built.tree, boxes, mesh, joints, opacities);
+  built.object.segments = std::move(packed.blocks);
+  summarize(built);
+  for (std::size_t n = 0; n < built.object.nodes.size(); ++n) {
+    built.object.nodes[n].prim_base = DAPPLE_SEGMENTS | packed.first_block[n];
+  }
+}
+
+}  // namespace
+
+BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangles) {
+  BuiltObject built;
+  ObjectBvh& object = built.object;
+  object.has_strands = mesh.has_strands();
+  const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
+  if (object.triangles == 0) return built;
+  // Not cleared, so that the threads that write the pages also get them from the system.
+  const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);
+  const std::span boxes(storage.get(), object.triangles);
+  if (mesh.has_strands())
+    build_strands(mesh, opacities, boxes, built);
+  else
+    build_triangles(mesh, opacities, boxes, keep_triangles, built);
+  return built;
+}
+
+}  // namespace dapple

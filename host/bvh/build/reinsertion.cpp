@@ -1,0 +1,205 @@
+#include "bvh/build/reinsertion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "bvh/build/multiversion.hpp"
+
+namespace dapple {
+namespace {
+
+/// Levels from `tree`'s root of one that is kept; the splitter makes some 48 from the object's.
+/// Boxes around one another cost least in a chain, which no stack would hold.
+constexpr unsigned kDeepest = 64;
+
+/// Nodes looked at in a round, over all: where boxes overlap that aren't in one another, there is
+/// room for each nearly everywhere. Those of leaves and branches look at fewer than fifty.
+constexpr std::size_t kLooksPerNode = 64;
+
+/// Node 0 is the root and nobody's child.
+struct LinkedNode {
+  Box8 box;
+  float area;
+  std::uint32_t parent;
+  std::uint32_t child[2];  ///< 0: a leaf
+
+  [[nodiscard]] std::uint32_t other_than(std::uint32_t node) const {
+    return child[child[0] == node];
+  }
+};
+
+/// A node to stand beside, and by how much the sum of areas falls.
+struct Place {
+  std::uint32_t node = 0;
+  float gain = 0;
+};
+
+/// A node to look at, and what is gained before what it takes to let the subtree in there.
+struct Candidate {
+  std::uint32_t node;
+  float gain;
+};
+
+/// What a search may still look at, and memory that it needs.
+struct Effort {
+  std::size_t looks = 0;
+  std::vector<Candidate> waiting;
+};
+
+/// The best place at `top` and below, as far as the effort goes.
+inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candidate top,
+                       Effort& effort, Place& best) {
+  std::vector<Candidate>& waiting = effort.waiting;
+  waiting.assign(1, top);
+  for (; !waiting.empty() && effort.looks > 0; --effort.looks) {
+    const Candidate at = waiting.back();
+    waiting.pop_back();
+    if (at.gain - moved.area <= best.gain) continue;
+    const LinkedNode& node = nodes[at.node];
+    Box8 both = node.box;
+    both.add(moved.box);
+    const float area = both.half_area();
+    if (at.gain - area > best.gain) best = {at.node, at.gain - area};
+    const float below = at.gain - (area - node.area);
+    if (node.child[0] == 0 || below - moved.area <= best.gain) continue;
+    waiting.push_back({node.child[0], below});
+    waiting.push_back({node.child[1], below});
+  }
+}
+
+/// Node 0 if it is best where it is. Its parent, which goes with it, is not the root.
+DAPPLE_MULTIVERSION
+Place find_place(const LinkedNode* nodes, std::uint32_t moved, Effort& effort) {
+  Place best;
+  std::uint32_t below = nodes[moved].parent;
+  float gain = nodes[below].area;
+  std::uint32_t sibling = nodes[below].other_than(moved);
+  Box8 rest = nodes[sibling].box;  // of the ancestor gone up to, without what moves
+  look_below(nodes, nodes[moved], {sibling, gain}, effort, best);
+  while (below != 0) {
+    const std::uint32_t ancestor = nodes[below].parent;
+    sibling = nodes[ancestor].other_than(below);
+    look_below(nodes, nodes[moved], {sibling, gain}, effort, best);
+    rest.add(nodes[sibling].box);
+    gain += nodes[ancestor].area - rest.half_area();
+    below = ancestor;
+  }
+  return best;
+}
+
+class Reinsertion {
+ public:
+  explicit Reinsertion(const std::vector<BinaryNode>& tree) : nodes_(tree.size()) {
+    for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+      nodes_[n].box = tree[n].box;
+      nodes_[n].area = tree[n].area;
+      nodes_[n].child[0] = nodes_[n].child[1] = 0;
+      if (tree[n].right != 0) set_children(n, n + 1, tree[n].right);
+    }
+  }
+
+  void round() {
+    std::vector<std::uint32_t> order(nodes_.size() - 1);
+    std::iota(order.begin(), order.end(), 1u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return nodes_[a].area != nodes_[b].area ? nodes_[a].area > nodes_[b].area : a < b;
+    });
+    effort_.looks = kLooksPerNode * nodes_.size();
+    for (const std::uint32_t node : order) {
+      if (too_deep_ || effort_.looks == 0) return;
+      if (nodes_[node].parent == 0) continue;
+      const Place place = find_place(nodes_.data(), node, effort_);
+      if (place.node != 0) move(node, place.node);
+    }
+  }
+
+  [[nodiscard]] bool is_too_deep() const {
+    std::vector<std::pair<std::uint32_t, unsigned>> waiting{{0, 1}};  // with their levels
+    while (!waiting.empty()) {
+      const auto [node, level] = waiting.back();
+      waiting.pop_back();
+      if (level > kDeepest) return true;
+      if (nodes_[node].child[0] == 0) continue;
+      for (const std::uint32_t child : nodes_[node].child) waiting.push_back({child, level + 1});
+    }
+    return too_deep_;
+  }
+
+  /// Appends node `from` and all below to `to`, whose leaves are those of `leaves`, and their boxes
+  /// to `order`; `first`: index of its first box.
+  void write(std::uint32_t from, const std::vector<BinaryNode>& leaves,
+             std::span<const PrimitiveBox> boxes, std::uint32_t first,
+             std::vector<PrimitiveBox>& order, std::vector<BinaryNode>& to) const {
+    const LinkedNode& node = nodes_[from];
+    const std::size_t at = to.size(), before = order.size();
+    to.push_back({node.box, node.area, first + static_cast<std::uint32_t>(before), 0, 0});
+    if (node.child[0] == 0) {
+      const auto range = boxes.subspan(leaves[from].first, leaves[from].count);
+      order.insert(order.end(), range.begin(), range.end());
+    } else {
+      write(node.child[0], leaves, boxes, first, order, to);
+      to[at].right = static_cast<std::uint32_t>(to.size());
+      write(node.child[1], leaves, boxes, first, order, to);
+    }
+    to[at].count = static_cast<std::uint32_t>(order.size() - before);
+  }
+
+ private:
+  void set_children(std::uint32_t node, std::uint32_t left, std::uint32_t right) {
+    nodes_[node].child[0] = left;
+    nodes_[node].child[1] = right;
+    nodes_[left].parent = nodes_[right].parent = node;
+  }
+
+  void replace(std::uint32_t child, std::uint32_t by) {
+    const std::uint32_t parent = nodes_[child].parent;
+    nodes_[parent].child[nodes_[parent].child[1] == child] = by;
+    nodes_[by].parent = parent;
+  }
+
+  void move(std::uint32_t node, std::uint32_t beside) {
+    const std::uint32_t parent = nodes_[node].parent;
+    replace(parent, nodes_[parent].other_than(node));
+    fit(nodes_[parent].parent);
+    replace(beside, parent);
+    set_children(parent, beside, node);
+    fit(parent);
+  }
+
+  /// The boxes of a node and all above.
+  void fit(std::uint32_t node) {
+    for (unsigned level = 1;; node = nodes_[node].parent, ++level) {
+      LinkedNode& it = nodes_[node];
+      it.box = nodes_[it.child[0]].box;
+      it.box.add(nodes_[it.child[1]].box);
+      it.area = it.box.half_area();
+      too_deep_ |= level > kDeepest;
+      if (node == 0) return;
+    }
+  }
+
+  std::vector<LinkedNode> nodes_;
+  Effort effort_;
+  bool too_deep_ = false;
+};
+
+}  // namespace
+
+void reinsert_subtrees(int rounds, std::span<PrimitiveBox> boxes, std::vector<BinaryNode>& tree) {
+  if (tree.size() < 5) return;               // nothing has a grandparent
+  if (!std::isfinite(tree[0].area)) return;  // nothing can be compared
+  Reinsertion reinsertion(tree);
+  for (int round = 0; round < rounds; ++round) reinsertion.round();
+  if (reinsertion.is_too_deep()) return;
+  std::vector<PrimitiveBox> order;
+  order.reserve(tree[0].count);
+  std::vector<BinaryNode> better;
+  better.reserve(tree.size());
+  reinsertion.write(0, tree, boxes, tree[0].first, order, better);
+  std::copy(order.begin(), order.end(), boxes.begin() + tree[0].first);
+  tree = std::move(better);
+}
+
+}  // namespace dapple

@@ -1,0 +1,21 @@
+// A built scene with what its arrays alone don't tell any more.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bvh/build/joined_objects.hpp"
+#include "dapple/bvh.hpp"
+
+namespace dapple {
+
+struct BuiltScene {
+  SceneBvh bvh;
+  std::vector<ObjectSummary> objects;  ///< of each mesh
+  std::vector<ObjectOffsets> offsets;  ///< lay_out()
+};
+
+/// As build_bvh().
+BuiltScene build_scene(const Scene& scene, const std::string& cache_folder);
+
+}  // namespace dapple

@@ -1,0 +1,54 @@
+// Splits ranges of primitives in two, top-down, and says where to stop.
+#pragma once
+
+#include <span>
+
+#include "bvh/build/binning.hpp"
+
+namespace dapple {
+
+/// A range of primitives, measured.
+struct Part {
+  Box8 box, centres2;
+  std::uint32_t first = 0, count = 0;
+  float area = 0;         ///< half_area() of the box
+  int depth = 0;          ///< splits above
+  unsigned left_set = 0;  ///< of a few primitives: bit i says that number i goes left
+  bool leaf = false;      ///< one primitive, or no dearer than its two sides as leaves
+  bool away = false;      ///< its primitives lie in the second array
+};
+
+/// Splits by surface area heuristic: the same parts whatever the threads.
+class Splitter {
+ public:
+  /// Sorts `home`, which `second`, of the same size, helps to.
+  Splitter(std::span<PrimitiveBox> home, std::span<PrimitiveBox> second, std::uint32_t leaf_size)
+      : home_(home.data()),
+        second_(second.data()),
+        count_(static_cast<std::uint32_t>(home.size())),
+        leaf_size_(leaf_size) {}
+
+  [[nodiscard]] Part all() const;
+
+  /// `part`, not a leaf, becomes the left side. Large parts are split in parallel.
+  void split(Part& part, Part& right) const;
+
+  /// Where all primitives should be in the end, and brings a part's there.
+  [[nodiscard]] std::span<PrimitiveBox> home() const { return {home_, count_}; }
+  void bring_home(Part& part) const;
+
+ private:
+  void split_few(Part& part, Part& right) const;
+  void split_in_parallel(Part& part, Part& right) const;
+  void halve(Part& part, Part& right) const;
+  /// Sets area, leaf and left_set.
+  void judge(Part& part) const;
+  [[nodiscard]] PrimitiveBox* at(const Part& part) const {
+    return (part.away ? second_ : home_) + part.first;
+  }
+
+  PrimitiveBox *home_, *second_;
+  std::uint32_t count_, leaf_size_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,73 @@
+#include "bvh/build/wide_collapse.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "bvh/build/surface_cost.hpp"
+
+namespace dapple {
+
+CheapestNodes::CheapestNodes(std::span<const BinaryNode> tree, std::uint32_t leaf_size)
+    : tree_(tree), leaf_size_(leaf_size), ways_(tree.size()) {
+  for (std::size_t n = tree.size(); n-- > 0;) {
+    const BinaryNode& node = tree[n];
+    if (node.right == 0) {
+      ways_[n].cost.fill(leaf_cost(node.area, node.count));
+      ways_[n].leaf = true;
+    } else {
+      ways_[n] = ways_of(node, ways_[n + 1], ways_[node.right]);
+    }
+  }
+}
+
+CheapestNodes::Ways CheapestNodes::ways_of(const BinaryNode& node, const Ways& left,
+                                           const Ways& right) const {
+  Ways ways;
+  ways.cost.fill(std::numeric_limits<float>::infinity());
+  ways.left_children.fill(1);  // where areas are infinite, too
+  const unsigned most = std::min<unsigned>(node.count, DAPPLE_BVH_WIDTH);
+  for (unsigned children = 2; children <= most; ++children) {
+    for (unsigned on_left = 1; on_left < children; ++on_left) {
+      const float cost = left.cost[on_left - 1] + right.cost[children - on_left - 1];
+      if (cost >= ways.cost[children - 1]) continue;
+      ways.cost[children - 1] = cost;
+      ways.left_children[children - 1] = static_cast<std::uint8_t>(on_left);
+    }
+  }
+  // What is not worth as many children keeps fewer, but a node is divided.
+  const float divided = ways.cost[most - 1];
+  ways.left_children[DAPPLE_BVH_WIDTH - 1] = ways.left_children[most - 1];
+  const float as_leaf = node.count <= leaf_size_ ? leaf_cost(node.area, node.count)
+                                                 : std::numeric_limits<float>::infinity();
+  ways.cost[0] = std::min(as_leaf, divided + node.area);
+  ways.leaf = node.count <= leaf_size_ && as_leaf <= divided + node.area;
+  for (unsigned children = 2; children < DAPPLE_BVH_WIDTH; ++children)
+    ways.cost[children - 1] = std::min(ways.cost[children - 1], ways.cost[children - 2]);
+  return ways;
+}
+
+CheapestNodes::Children CheapestNodes::children_of(std::uint32_t node) const {
+  Children children;
+  if (is_leaf(node))
+    add_children(node, 1, children);
+  else
+    divide(node, DAPPLE_BVH_WIDTH, children);
+  return children;
+}
+
+void CheapestNodes::add_children(std::uint32_t node, unsigned most, Children& children) const {
+  const auto& cost = ways_[node].cost;
+  while (most > 1 && cost[most - 1] == cost[most - 2]) --most;
+  if (most > 1)
+    divide(node, most, children);
+  else
+    children.node[children.count++] = node;
+}
+
+void CheapestNodes::divide(std::uint32_t node, unsigned most, Children& children) const {
+  const unsigned on_left = ways_[node].left_children[most - 1];
+  add_children(node + 1, on_left, children);
+  add_children(tree_[node].right, most - on_left, children);
+}
+
+}  // namespace dapple

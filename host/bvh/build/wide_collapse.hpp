@@ -1,0 +1,47 @@
+// Which subtrees of a binary tree become the children of nodes of eight, and which its leaves, so
+// that the surface area heuristic's cost is least (Ylitie, Karras, Laine, "Efficient Incoherent Ray
+// Traversal on GPUs Through Compressed Wide BVHs", 2017).
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "bvh/build/binary_tree.hpp"
+#include "dapple/shared/bvh_node.h"
+
+namespace dapple {
+
+class CheapestNodes {
+ public:
+  /// Of `tree`, which outlives it; leaves have at most `leaf_size` primitives.
+  CheapestNodes(std::span<const BinaryNode> tree, std::uint32_t leaf_size);
+
+  [[nodiscard]] bool is_leaf(std::uint32_t node) const { return ways_[node].leaf; }
+
+  /// Binary nodes, from the left.
+  struct Children {
+    std::array<std::uint32_t, DAPPLE_BVH_WIDTH> node;
+    unsigned count = 0;
+  };
+  /// Of a node of eight in place of binary `node`; of a leaf itself.
+  [[nodiscard]] Children children_of(std::uint32_t node) const;
+
+ private:
+  /// The cheapest ways to make a subtree 1 to 8 children of a node.
+  struct Ways {
+    std::array<float, DAPPLE_BVH_WIDTH> cost;  ///< [children - 1]; of 8 at least two
+    std::array<std::uint8_t, DAPPLE_BVH_WIDTH> left_children;  ///< how many of them on the left
+    bool leaf = false;                                         ///< as one child
+  };
+
+  [[nodiscard]] Ways ways_of(const BinaryNode& node, const Ways& left, const Ways& right) const;
+  void add_children(std::uint32_t node, unsigned most, Children& children) const;
+  void divide(std::uint32_t node, unsigned most, Children& children) const;
+
+  std::span<const BinaryNode> tree_;
+  std::uint32_t leaf_size_;
+  std::vector<Ways> ways_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,102 @@
+#include "bvh/opacity/closed_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace dapple {
+namespace {
+
+/// What may be left of the area vectors of a closed piece.
+constexpr float kOpenShare = 0.1f;
+
+/// Vertices that triangles connect, as a forest with one root a piece.
+class Pieces {
+ public:
+  explicit Pieces(std::size_t vertices) : parent_(vertices) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
+  /// Halves the path on the way (Tarjan and van Leeuwen, "Worst-case Analysis of Set Union
+  /// Algorithms", 1984).
+  std::uint32_t root(std::uint32_t vertex) {
+    while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
+    return vertex;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+V3f area_vector(const Mesh& mesh, const std::uint32_t* index) {
+  const V3f& a = mesh.positions[index[0]];
+  return 0.5f * (mesh.positions[index[1]] - a).cross(mesh.positions[index[2]] - a);
+}
+
+}  // namespace
+
+std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opacities) {
+  const auto opaque = [&](std::size_t t) { return opacities[t] == 1.0f; };
+  if (std::none_of(opacities.begin(), opacities.end(), [](float o) { return o == 1.0f; })) {
+    return {};
+  }
+  Pieces pieces(mesh.positions.size());
+  for (std::size_t t = 0; t < opacities.size(); ++t) {
+    if (!opaque(t)) continue;
+    const std::uint32_t* index = &mesh.indices[3 * t];
+    pieces.join(index[0], index[1]);
+    pieces.join(index[0], index[2]);
+  }
+  struct Sums {
+    V3f vector{0, 0, 0};
+    float area = 0;
+  };
+  std::vector<Sums> sums(mesh.positions.size());
+  for (std::size_t t = 0; t < opacities.size(); ++t) {
+    if (!opaque(t)) continue;
+    const std::uint32_t* index = &mesh.indices[3 * t];
+    const V3f vector = area_vector(mesh, index);
+    Sums& piece = sums[pieces.root(index[0])];
+    piece.vector += vector;
+    piece.area += vector.length();
+  }
+  std::vector<bool> closed(opacities.size());
+  bool any = false;
+  for (std::size_t t = 0; t < opacities.size(); ++t) {
+    if (!opaque(t)) continue;
+    const Sums& piece = sums[pieces.root(mesh.indices[3 * t])];
+    closed[t] = piece.vector.length() < kOpenShare * piece.area;
+    any |= closed[t];
+  }
+  return any ? closed : std::vector<bool>{};
+}
+
+void SurfaceAreas::add(const V3f& area, float opacity, bool closed) {
+  for (int axis = 0; axis < 3; ++axis) {
+    V3f& side = !closed ? other : area[axis] > 0.0f ? front : back;
+    side[axis] += opacity * std::fabs(area[axis]);
+  }
+}
+
+void SurfaceAreas::add(const SurfaceAreas& areas) {
+  front += areas.front;
+  back += areas.back;
+  other += areas.other;
+}
+
+float enclosed_share(const SurfaceAreas& a, const SurfaceAreas& b, int axis) {
+  // What has no other side yet in its own node, front positive.
+  const float single_a = a.front[axis] - a.back[axis], single_b = b.front[axis] - b.back[axis];
+  if (single_a * single_b >= 0.0f) return 0.0f;
+  const auto hidden = [&](const SurfaceAreas& node) {
+    return std::max(node.front[axis], node.back[axis]) + node.other[axis];
+  };
+  const float paired = std::min(std::fabs(single_a), std::fabs(single_b));
+  return std::min(1.0f, paired / std::min(hidden(a), hidden(b)));
+}
+
+}  // namespace dapple

@@ -1,0 +1,279 @@
+#include "bvh/opacity/coverage_map.hpp"
+
+#include <cmath>
+
+#include "bvh/opacity/map_row.hpp"
+#include "bvh/build/multiversion.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr float kSize = kMapSize;
+/// Of scaling a triangle's cells to its area; two bring nearly all to a rounding.
+constexpr int kScalingPasses = 3;
+
+/// A triangle that slipped between the cells: its area shared by the cells it touches.
+void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
+  const int columns = triangle.column1 - triangle.column0 + 1,
+            rows = triangle.row1 - triangle.row0 + 1;
+  const float share = std::min(1.0f, triangle.area / static_cast<float>(columns * rows));
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    for (int column = 0; column < kMapSize; ++column) {
+      const bool touched = column >= triangle.column0 && column <= triangle.column1;
+      coverage.share[row * kMapSize + column] = touched ? share : 0.0f;
+    }
+  }
+}
+
+/// Of the touched rows, column by column, cells that are full and what the others hold.
+struct Tally {
+  Row full{}, partial{}, largest{};
+
+  void add(const Row& in) {
+    const Row zero{}, one = zero + 1.0f;
+    const Row rest = in >= one ? zero : in;
+    full += in >= one ? one : zero;
+    partial += rest;
+    largest = largest > rest ? largest : rest;
+  }
+};
+
+/// Cells that are full stay full; the others are scaled so that the sum is the triangle's
+/// area. True when that filled more cells, so that another pass would come closer.
+inline bool scale_partial_cells(const CellTriangle& triangle, Tally& tally,
+                                CellCoverage& coverage) {
+  const float full_sum = sum_of(tally.full), partial_sum = sum_of(tally.partial);
+  if (full_sum + partial_sum <= 0.0f) {
+    spread_evenly(triangle, coverage);
+    return false;
+  }
+  if (partial_sum <= 0.0f) return false;
+  const float scale = std::max(0.0f, triangle.area - full_sum) / partial_sum;
+  const bool fills_more = largest_of(tally.largest) * scale > 1.0f;
+  const Row zero{}, one = zero + 1.0f;
+  tally = {};
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    Row out;
+    load_row(&coverage.share[row * kMapSize], out);
+    // Selecting by two comparisons at once would come out lane by lane (g++ 12).
+    const Row kept = out >= one ? one : zero;
+    Row scaled = out * scale;
+    scaled = scaled < one ? scaled : one;
+    scaled = scaled > kept ? scaled : kept;
+    store_row(&coverage.share[row * kMapSize], scaled);
+    if (fills_more) tally.add(scaled);
+  }
+  return fills_more;
+}
+
+}  // namespace
+
+DAPPLE_MULTIVERSION
+void fill_cells(std::array<float, kMapCells>& cells, float value) {
+  const Row filled = Row{} + value;
+  for (int row = 0; row < kMapSize; ++row) store_row(&cells[row * kMapSize], filled);
+}
+
+DAPPLE_MULTIVERSION
+float CoverageMap::mean_opacity(int axis) const {
+  Row sum{};
+  for (int row = 0; row < kMapSize; ++row) {
+    Row t;
+    load_row(&transmittance[axis][row * kMapSize], t);
+    sum += t;
+  }
+  return 1.0f - sum_of(sum) / kMapCells;
+}
+
+DAPPLE_MULTIVERSION
+float CoverageMap::opacity_off_centre(int axis) const {
+  const auto square = [](int cell) {
+    const float x = (static_cast<float>(cell) + 0.5f) * (2.0f / kMapSize) - 1.0f;
+    return x * x;
+  };
+  Row columns, sum{};
+  for (int i = 0; i < kMapSize; ++i) columns[i] = square(i);
+  const Row one = Row{} + 1.0f;
+  for (int row = 0; row < kMapSize; ++row) {
+    Row t;
+    load_row(&transmittance[axis][row * kMapSize], t);
+    sum += (one - t) * (columns + square(row));
+  }
+  return sum_of(sum) / kMapCells;
+}
+
+DAPPLE_MULTIVERSION
+float CoverageMap::clumping() const {
+  float variance = 0, greatest = 0;
+  for (const auto& map : transmittance) {
+    Row sum{}, squares{};
+    for (int row = 0; row < kMapSize; ++row) {
+      Row t;
+      load_row(&map[row * kMapSize], t);
+      sum += t;
+      squares += t * t;
+    }
+    const float mean = sum_of(sum) / kMapCells;
+    variance += std::max(0.0f, sum_of(squares) / kMapCells - mean * mean);
+    greatest += std::max(0.0f, mean * (1.0f - mean));
+  }
+  return greatest > 1e-6f ? std::min(1.0f, variance / greatest) : 0.0f;
+}
+
+bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out) {
+  const int u = column_axis(axis), v = row_axis(axis);
+  const float width = box.max[u] - box.min[u], height = box.max[v] - box.min[v];
+  if (!(width > 0.0f && height > 0.0f)) return false;
+  const V2f scale(kSize / width, kSize / height);
+  out.a = V2f(triangle.vertex[u] - box.min[u], triangle.vertex[v] - box.min[v]) * scale;
+  out.edge1 = V2f(triangle.edge1[u], triangle.edge1[v]) * scale;
+  out.edge2 = V2f(triangle.edge2[u], triangle.edge2[v]) * scale;
+  out.area = 0.5f * std::fabs(out.edge1.x * out.edge2.y - out.edge1.y * out.edge2.x);
+  if (!(out.area > 1e-6f)) return false;
+  const auto range = [](float base, float e1, float e2, int& first, int& last) {
+    const float low = base + std::min({0.0f, e1, e2}), high = base + std::max({0.0f, e1, e2});
+    first = std::clamp(static_cast<int>(low), 0, kMapSize - 1);
+    last = std::clamp(static_cast<int>(high), first, kMapSize - 1);
+  };
+  range(out.a.x, out.edge1.x, out.edge2.x, out.column0, out.column1);
+  range(out.a.y, out.edge1.y, out.edge2.y, out.row0, out.row1);
+  return true;
+}
+
+DAPPLE_MULTIVERSION
+void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
+  // Each edge cuts a share 1 - c from a cell; where the shares don't overlap, as in a thin
+  // sliver or along an edge, what is left is c0 + c1 + c2 - 2. The rest is put right by
+  // scaling to the known area. Rows are done whole: one or two vectors, no remainders.
+  V2f corner[3] = {triangle.a, triangle.a + triangle.edge1, triangle.a + triangle.edge2};
+  if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x)
+    std::swap(corner[1], corner[2]);
+  float nx[3], ny[3], offset[3];
+  for (int e = 0; e < 3; ++e) {
+    const V2f from = corner[e], along = corner[(e + 1) % 3] - from;
+    const float reach = std::fabs(along.x) + std::fabs(along.y);
+    const float inverse = reach > 0.0f ? 1.0f / reach : 0.0f;
+    nx[e] = -along.y * inverse;
+    ny[e] = along.x * inverse;
+    offset[e] = reach > 0.0f ? 0.5f - nx[e] * from.x - ny[e] * from.y : 1.0f;
+  }
+  const Row zero{}, one = zero + 1.0f;
+  Row x;
+  for (int i = 0; i < kMapSize; ++i) x[i] = static_cast<float>(i) + 0.5f;
+  // Along a row shares are straight lines, and from row to row they differ by ny.
+  Row beyond[3], step[3];
+  const float y = static_cast<float>(triangle.row0) + 0.5f;
+  for (int e = 0; e < 3; ++e) {
+    beyond[e] = x * nx[e] + (offset[e] + ny[e] * y);
+    step[e] = zero + ny[e];
+  }
+  Tally tally;
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    Row left = zero - 2.0f;
+    for (int e = 0; e < 3; ++e) {
+      const Row share = beyond[e] > zero ? beyond[e] : zero;
+      left += share < one ? share : one;
+      beyond[e] += step[e];
+    }
+    left = left > zero ? left : zero;
+    store_row(&coverage.share[row * kMapSize], left);
+    tally.add(left);
+  }
+  for (int pass = 0; pass < kScalingPasses; ++pass) {
+    if (!scale_partial_cells(triangle, tally, coverage)) break;
+  }
+}
+
+DAPPLE_MULTIVERSION
+void HiddenCells::add_uniform(const CellTriangle& triangle, const CellCoverage& coverage,
+                              float opacity) {
+  row0 = std::min(row0, triangle.row0);
+  row1 = std::max(row1, triangle.row1);
+  for (int cell = triangle.row0 * kMapSize; cell < (triangle.row1 + 1) * kMapSize; ++cell) {
+    hidden[cell] += opacity * coverage.share[cell];
+  }
+}
+
+void HiddenCells::clear() {
+  for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) hidden[cell] = 0.0f;
+  row0 = kMapSize;
+  row1 = -1;
+}
+
+void HiddenCells::enclose(HiddenCells& back) {
+  for (int cell = back.row0 * kMapSize; cell < (back.row1 + 1) * kMapSize; ++cell) {
+    hidden[cell] = std::max(hidden[cell], back.hidden[cell]);
+  }
+  row0 = std::min(row0, back.row0);
+  row1 = std::max(row1, back.row1);
+  back.clear();
+}
+
+DAPPLE_MULTIVERSION
+void HiddenCells::flush(std::array<float, kMapCells>& map) {
+  for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) {
+    map[cell] *= 1.0f - std::min(1.0f, hidden[cell]);
+  }
+  clear();
+}
+
+std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
+                          CellCoverage& coverage, HiddenCells& cells, HiddenCells& back) {
+  std::uint64_t done = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (!triangles[t].closed) continue;
+    done |= std::uint64_t{1} << t;
+    CellTriangle projected;
+    if (!project(triangles[t], box, axis, projected)) continue;
+    rasterize(projected, coverage);
+    const bool faces_axis = triangles[t].edge1.cross(triangles[t].edge2)[axis] > 0.0f;
+    (faces_axis ? cells : back).add_uniform(projected, coverage, triangles[t].opacity);
+  }
+  cells.enclose(back);
+  return done;
+}
+
+unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b) {
+  const V3f p[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
+  const V3f q[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
+  // Edges are stored rounded: corners that were one may differ by a few roundings.
+  const float tolerance =
+      1e-5f * (std::fabs(a.edge1.x) + std::fabs(a.edge1.y) + std::fabs(a.edge1.z) +
+               std::fabs(a.edge2.x) + std::fabs(a.edge2.y) + std::fabs(a.edge2.z));
+  int shared[2][2], count = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (count < 2 && p[i].equalWithAbsError(q[j], tolerance)) {
+        shared[count][0] = i;
+        shared[count++][1] = j;
+      }
+    }
+  }
+  if (count < 2 || shared[0][0] == shared[1][0] || shared[0][1] == shared[1][1]) return 0;
+  const V3f& from = p[shared[0][0]];
+  const V3f edge = p[shared[1][0]] - from;
+  const V3f third_a = p[3 - shared[0][0] - shared[1][0]] - from;
+  const V3f third_b = q[3 - shared[0][1] - shared[1][1]] - from;
+  const V3f turn_a = edge.cross(third_a), turn_b = edge.cross(third_b);
+  unsigned axes = 0;
+  for (int axis = 0; axis < 3; ++axis) axes |= unsigned{turn_a[axis] * turn_b[axis] < 0.0f} << axis;
+  return axes;
+}
+
+bool is_single_layer(std::span<const CoveringTriangle> triangles) {
+  for (std::size_t t = 1; t < triangles.size(); ++t) {
+    unsigned axes = 0;
+    for (std::size_t other = 0; other < t && axes != 7u; ++other)
+      axes |= side_by_side(triangles[other], triangles[t]);
+    if (axes != 7u) return false;
+  }
+  return true;
+}
+
+CoverageMap uniform_map(const V3f& opacity) {
+  CoverageMap map;
+  for (int axis = 0; axis < 3; ++axis) map.transmittance[axis].fill(1.0f - opacity[axis]);
+  return map;
+}
+
+}  // namespace dapple

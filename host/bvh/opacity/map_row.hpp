@@ -1,0 +1,36 @@
+// A row of a coverage map in one to four vector registers.
+#pragma once
+
+#include <cstring>
+
+#include "bvh/opacity/coverage_map.hpp"
+
+namespace dapple {
+
+using Row = float __attribute__((vector_size(kMapSize * sizeof(float))));
+
+// By reference: a vector wider than the instruction set's has no calling convention.
+inline void load_row(const float* from, Row& row) { std::memcpy(&row, from, sizeof row); }
+inline void store_row(float* to, const Row& row) { std::memcpy(to, &row, sizeof row); }
+
+inline void keep_least(Row& row, const Row& other) { row = row < other ? row : other; }
+
+/// Halves added to halves: four additions deep instead of sixteen.
+inline float sum_of(const Row& row) {
+  Row sum = row;
+  sum += __builtin_shufflevector(sum, sum, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
+  sum += __builtin_shufflevector(sum, sum, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11);
+  sum += __builtin_shufflevector(sum, sum, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
+  return sum[0] + sum[1];
+}
+
+inline float largest_of(const Row& row) {
+  Row most = row;
+  const auto take = [&most](const Row& other) { most = most > other ? most : other; };
+  take(__builtin_shufflevector(most, most, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
+  take(__builtin_shufflevector(most, most, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
+  take(__builtin_shufflevector(most, most, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13));
+  return most[0] > most[1] ? most[0] : most[1];
+}
+
+}  // namespace dapple

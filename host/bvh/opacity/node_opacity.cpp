@@ -1,0 +1,261 @@
+#include "bvh/opacity/node_opacity.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "dapple/shared/opacity.h"
+
+namespace dapple {
+
+void NormalMoments::add(const V3f& normal, float opacity) {
+  const float length = normal.length();
+  if (!(length > 0.0f)) return;
+  const V3f n = normal * (opacity / length);
+  const float terms[6] = {n.x * normal.x, n.y * normal.y, n.z * normal.z,
+                          n.x * normal.y, n.y * normal.z, n.z * normal.x};
+  for (int i = 0; i < 6; ++i) sum[i] += terms[i];
+}
+
+void NormalMoments::add_cylinder(const V3f& axis, float radius, float opacity) {
+  const float length = axis.length();
+  if (!(length > 0.0f)) return;
+  const V3f t = axis / length;
+  // The mean of n n^T around the axis is (1 - t t^T) / 2; half of the side is pi r l.
+  const float weight = 0.5f * static_cast<float>(std::numbers::pi) * radius * length * opacity;
+  const float terms[6] = {1.0f - t.x * t.x, 1.0f - t.y * t.y, 1.0f - t.z * t.z,
+                          -t.x * t.y,       -t.y * t.z,       -t.z * t.x};
+  for (int i = 0; i < 6; ++i) sum[i] += weight * terms[i];
+}
+
+void NormalMoments::add(const NormalMoments& other) {
+  for (int i = 0; i < 6; ++i) sum[i] += other.sum[i];
+}
+
+NormalMoments NormalMoments::placed(const M44f& to_world) const {
+  // Rows are the images of the axes; cofactor rows are their cross products.
+  V3f axis[3];
+  for (int i = 0; i < 3; ++i) axis[i] = V3f(to_world[i][0], to_world[i][1], to_world[i][2]);
+  const V3f cofactor[3] = {axis[1].cross(axis[2]), axis[2].cross(axis[0]), axis[0].cross(axis[1])};
+  const float m[3][3] = {
+      {sum[0], sum[3], sum[5]}, {sum[3], sum[1], sum[4]}, {sum[5], sum[4], sum[2]}};
+  const auto turned = [&](int a, int b) {
+    float value = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) value += cofactor[i][a] * m[i][j] * cofactor[j][b];
+    }
+    return value;
+  };
+  NormalMoments out;
+  out.sum = {turned(0, 0), turned(1, 1), turned(2, 2), turned(0, 1), turned(1, 2), turned(2, 0)};
+  return out;
+}
+
+V3f NormalMoments::correlation() const {
+  const auto of = [&](int pair, int i, int j) {
+    const float product = sum[i] * sum[j];
+    return product > 0.0f ? std::clamp(sum[pair] / std::sqrt(product), -1.0f, 1.0f) : 0.0f;
+  };
+  return {of(3, 0, 1), of(4, 1, 2), of(5, 2, 0)};
+}
+
+namespace {
+
+/// Numbers of four directions side by side, in one register of any x86-64.
+using Four = float __attribute__((vector_size(16)));
+using FourInts = int __attribute__((vector_size(16)));
+
+Four all(float x) { return Four{x, x, x, x}; }
+Four least(Four a, Four b) { return a < b ? a : b; }
+Four largest(Four a, Four b) { return a > b ? a : b; }
+Four magnitude(Four x) { return largest(x, -x); }
+Four root(Four x) {
+  return Four{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+}
+
+/// exp(-x) of numbers from 0 on, to 4e-6 of it up to 16; beyond 87 nothing is left.
+Four exp_of_minus(Four x) {
+  const Four octaves = least(x, all(87.0f)) * std::numbers::log2e_v<float>;
+  const FourInts whole = __builtin_convertvector(octaves + 0.5f, FourInts);
+  // Taylor's series of 2^rest for rest in [-1/2, 1/2].
+  const Four rest = __builtin_convertvector(whole, Four) - octaves;
+  Four p = 1.3333558e-3f * rest + 9.6181291e-3f;
+  p = p * rest + 5.5504109e-2f;
+  p = p * rest + 2.4022651e-1f;
+  p = p * rest + 6.9314718e-1f;
+  p = p * rest + 1.0f;
+  const FourInts power = (127 - whole) << 23;
+  return p * std::bit_cast<Four>(power);
+}
+
+struct FourVectors {
+  Four x, y, z;
+};
+
+/// chord_variance().
+Four chord_variances(const FourVectors& facing) {
+  // Mean square by the box's covariogram, the integral over the longest chord of
+  // prod (1 - q_k s); q_k is the share of side k that this chord spans.
+  const Four most = largest(largest(facing.x, facing.y), largest(facing.z, all(1e-37f)));
+  const Four per = 1.0f / most;
+  const Four qx = facing.x * per, qy = facing.y * per, qz = facing.z * per;
+  const Four e1 = qx + qy + qz, e2 = qx * qy + qy * qz + qz * qx, e3 = qx * qy * qz;
+  return largest(all(0.0f),
+                 2.0f * e1 * (1.0f - e1 * (1.0f / 2) + e2 * (1.0f / 3) - e3 * (1.0f / 4)) - 1.0f);
+}
+
+/// Variances of the depths that chord_depth() and centre_weight() give rays, over the squares of
+/// their means `depth`. Sampled for boxes of any shape, to a tenth: long chords are those through
+/// the middle.
+Four depth_variances(Four depth, Four chords, float concentration) {
+  // How much of a chord's deviation from the mean one counts: chord_depth().
+  constexpr float kPerDepth = 1.0f / (DAPPLE_FILLED_DEPTH - DAPPLE_SPARSE_DEPTH);
+  const Four counted =
+      least(largest((DAPPLE_FILLED_DEPTH - depth) * kPerDepth, all(0.0f)), all(1.0f));
+  return chords * counted * counted * (1.0f + 1.3f * concentration) +
+         0.17f * concentration * concentration;
+}
+
+/// Of rays whose depths have these means and variances, as if gamma distributed.
+Four mean_transmittances(Four depth, Four variance) {
+  // (1 + v depth)^(-1 / v), with log(1 + x) as x (6 + x) / (6 + 4 x), to a hundredth up to 2.
+  const Four x = variance * depth;
+  return exp_of_minus(depth * (6.0f + x) / (6.0f + 4.0f * x));
+}
+
+}  // namespace
+
+unsigned unevenness_class(const NodeOpacity& opacity) {
+  float greatest = 0, most = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    greatest += opacity.axes[axis] * (1.0f - opacity.axes[axis]);
+    most = std::max(most, opacity.axes[axis]);
+  }
+  const float square = std::max(opacity.clumping * greatest / 3, std::pow(most, 4.0f));
+  unsigned of_seven = 0;
+  for (float limit = DAPPLE_EVENEST_SQUARE; of_seven < DAPPLE_UNEVEN && !(square <= limit);
+       limit *= 2)
+    ++of_seven;
+  return of_seven;
+}
+
+float depth_of(float opacity) {
+  return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
+}
+
+float chord_variance(const V3f& facing) {
+  return chord_variances({all(facing.x), all(facing.y), all(facing.z)})[0];
+}
+
+float concentration_of(float off_centre) {
+  // Where opacity falls as 1 + c (2/3 - r), r has mean 2/3 - c times its variance over a square.
+  constexpr float kVariance = 8.0f / 45.0f;
+  return std::clamp((2.0f / 3.0f - off_centre) / kVariance, 0.0f, 1.0f);
+}
+
+namespace {
+
+/// How much of what concentration takes from the mean opacity is given back: all in nodes of
+/// many triangles. Neighbouring small nodes hide the same rays more than independent ones would,
+/// and a little too much light in each sets their product right (measured on trees).
+float compensation(std::size_t triangles) {
+  if (triangles == 0) return 1.0f;
+  return std::clamp(std::log2(static_cast<float>(triangles) + 1.0f) / 12.0f, 0.0f, 1.0f);
+}
+
+/// Looks at a box of some size from four directions at a time.
+class DirectionalOpacity {
+ public:
+  DirectionalOpacity(const NodeOpacity& opacity, const V3f& size)
+      : faces_(size.y * size.z, size.z * size.x, size.x * size.y),
+        axes_(opacity.axes),
+        depths_(depth_of(axes_.x), depth_of(axes_.y), depth_of(axes_.z)),
+        correlation_(opacity.normals.correlation()),
+        clumping_(opacity.clumping),
+        concentration_(opacity.concentration),
+        compensated_(opacity.concentration * compensation(opacity.triangles)) {}
+
+  struct Views {
+    Four facing;   ///< projected area of the box
+    Four met;      ///< mean opacity that rays meet
+    Four slope;    ///< its change with a factor on depths
+    Four opacity;  ///< that they should meet
+  };
+
+  [[nodiscard]] Views along(const FourVectors& direction) const {
+    const FourVectors facing{faces_.x * magnitude(direction.x), faces_.y * magnitude(direction.y),
+                             faces_.z * magnitude(direction.z)};
+    const FourVectors seen{faces_.x * direction.x, faces_.y * direction.y, faces_.z * direction.z};
+    const Four area = facing.x + facing.y + facing.z;
+    const Four depth = blend(depths_, seen, area);
+    const Four chords = chord_variances(facing);
+    Views views = meet(area, depth, chords);
+    // What gathers around the middle is no less opaque for the box's empty corners.
+    const Four even = 1.0f - mean_transmittances(depth, (1.0f - concentration_) *
+                                                            depth_variances(depth, chords, 0.0f));
+    const Four clump = least(blend(axes_, seen, area), all(1.0f));
+    views.opacity = even + clumping_ * (clump - even);
+    return views;
+  }
+
+  /// Along the axes, where opacities are known and all ways through the box are equally long, so
+  /// that chords have no variance. The fourth lane sees no area.
+  [[nodiscard]] Views along_axes() const {
+    Views views = meet(Four{faces_.x, faces_.y, faces_.z, 0.0f},
+                       Four{depths_.x, depths_.y, depths_.z, 0.0f}, all(0.0f));
+    views.opacity = Four{axes_.x, axes_.y, axes_.z, 0.0f};
+    return views;
+  }
+
+ private:
+  [[nodiscard]] Views meet(Four area, Four depth, Four chords) const {
+    const Four variance = depth_variances(depth, chords, compensated_);
+    const Four transmittance = mean_transmittances(depth, variance);
+    return {area, 1.0f - transmittance, depth * transmittance / (1.0f + variance * depth),
+            all(0.0f)};
+  }
+
+  /// box_depth() of dapple/shared/opacity.h; correlations have the signs of directions, and so have
+  /// the areas `seen` here.
+  [[nodiscard]] Four blend(const V3f& along, const FourVectors& seen, Four area) const {
+    const Four x = along.x * seen.x, y = along.y * seen.y, z = along.z * seen.z;
+    const Four mixed = correlation_.x * x * y + correlation_.y * y * z + correlation_.z * z * x;
+    return root(largest(x * x + y * y + z * z + 2.0f * mixed, all(0.0f))) / (area + 1e-37f);
+  }
+
+  V3f faces_, axes_, depths_, correlation_;
+  float clumping_, concentration_;
+  float compensated_;  ///< the concentration that is made up for
+};
+
+}  // namespace
+
+float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction) {
+  const FourVectors directions{all(direction.x), all(direction.y), all(direction.z)};
+  return DirectionalOpacity(opacity, size).along(directions).opacity[0];
+}
+
+float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
+  const DirectionalOpacity directional(opacity, size);
+  // The axes and the diagonals of a cube, weighted 2/15 and 3/20, integrate polynomials of
+  // degree 5 over the sphere (Abramowitz and Stegun, 25.4.65).
+  constexpr float kRoot = 0.57735027f;
+  const auto axes = directional.along_axes();
+  const auto diagonals = directional.along(FourVectors{Four{kRoot, kRoot, -kRoot, -kRoot},
+                                                       Four{kRoot, -kRoot, kRoot, -kRoot},
+                                                       Four{kRoot, -kRoot, -kRoot, kRoot}});
+  const Four of_axes = 2.0f / 15 * axes.facing;
+  const Four of_diagonals = 3.0f / 20 * diagonals.facing;
+  // Hidden area summed over directions: what is wanted beyond what the depths give, and how
+  // the latter changes with the factor.
+  const Four wanted =
+      of_axes * (axes.opacity - axes.met) + of_diagonals * (diagonals.opacity - diagonals.met);
+  const Four changed = of_axes * axes.slope + of_diagonals * diagonals.slope;
+  const float wanting = wanted[0] + wanted[1] + wanted[2] + wanted[3];
+  const float slope = changed[0] + changed[1] + changed[2] + changed[3];
+  if (!(slope > 0.0f)) return 1.0f;
+  return std::clamp(1.0f + wanting / slope, 0.6f, 1.6f);
+}
+
+}  // namespace dapple

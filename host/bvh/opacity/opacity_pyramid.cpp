@@ -1,0 +1,127 @@
+#include "bvh/opacity/opacity_pyramid.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace dapple {
+namespace {
+
+int wrap(int cell, int size, Wrap mode) {
+  if (mode == Wrap::clamp) return std::clamp(cell, 0, size - 1);
+  const int period = mode == Wrap::mirror ? 2 * size : size;
+  int r = cell % period;
+  if (r < 0) r += period;
+  return r < size ? r : period - 1 - r;
+}
+
+/// A texture coordinate brought near [0,1), so that integers can hold its texel.
+float folded_coordinate(float u, Wrap mode) {
+  return mode == Wrap::clamp ? std::clamp(u, -1.0f, 2.0f) : u - 2.0f * std::floor(0.5f * u);
+}
+
+/// Those of a finer axis that one texel of a coarser axis is over: of odd sizes some are shared out
+/// by length, so that means are kept.
+struct Shares {
+  int first = 0, count = 0;
+  float share[4] = {};  ///< a ratio of sizes below 4, of lengths 1 to 3, meets four at most
+};
+
+std::vector<Shares> shares_of(int fine, int coarse) {
+  std::vector<Shares> all(static_cast<std::size_t>(coarse));
+  const double scale = static_cast<double>(fine) / coarse;
+  for (int c = 0; c < coarse; ++c) {
+    const double begin = c * scale, end = begin + scale;
+    Shares& shares = all[static_cast<std::size_t>(c)];
+    shares.first = static_cast<int>(begin);
+    for (int f = shares.first; f < fine && f < end && shares.count < 4; ++f) {
+      const double inside = std::min(end, f + 1.0) - std::max(begin, static_cast<double>(f));
+      shares.share[shares.count++] = static_cast<float>(inside / scale);
+    }
+  }
+  return all;
+}
+
+OpacityPyramid::Level coarser(const OpacityPyramid::Level& fine) {
+  OpacityPyramid::Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
+  coarse.opacity.resize(static_cast<std::size_t>(coarse.width) * coarse.height);
+  const std::vector<Shares> columns = shares_of(fine.width, coarse.width);
+  const std::vector<Shares> rows = shares_of(fine.height, coarse.height);
+  tbb::parallel_for(0, coarse.height, [&](int y) {
+    const Shares& down = rows[static_cast<std::size_t>(y)];
+    float* to = &coarse.opacity[static_cast<std::size_t>(y) * coarse.width];
+    for (int x = 0; x < coarse.width; ++x) {
+      const Shares& across = columns[static_cast<std::size_t>(x)];
+      float sum = 0;
+      for (int j = 0; j < down.count; ++j) {
+        const float* from =
+            &fine.opacity[static_cast<std::size_t>(down.first + j) * fine.width + across.first];
+        float of_row = 0;
+        for (int i = 0; i < across.count; ++i) of_row += across.share[i] * from[i];
+        sum += down.share[j] * of_row;
+      }
+      to[x] = sum;
+    }
+  });
+  return coarse;
+}
+
+}  // namespace
+
+float thresholded(float alpha, float cutoff) {
+  if (cutoff < 0.0f) return std::clamp(alpha, 0.0f, 1.0f);
+  return alpha >= cutoff ? 1.0f : 0.0f;
+}
+
+OpacityPyramid::OpacityPyramid(const Texture& texture, float factor, float cutoff)
+    : size_(static_cast<float>(texture.width), static_cast<float>(texture.height)),
+      wrap_s_(texture.wrap_s),
+      wrap_t_(texture.wrap_t) {
+  Level base{static_cast<int>(texture.width), static_cast<int>(texture.height), {}};
+  base.opacity.resize(texture.alpha.size());
+  std::transform(texture.alpha.begin(), texture.alpha.end(), base.opacity.begin(),
+                 [&](std::uint8_t a) {
+                   return thresholded(static_cast<float>(a) * (1.0f / 255.0f) * factor, cutoff);
+                 });
+  levels_.push_back(std::move(base));
+  while (levels_.back().width > 1 || levels_.back().height > 1)
+    levels_.push_back(coarser(levels_.back()));
+}
+
+float OpacityPyramid::bilinear(const Level& level, V2f uv) const {
+  const float x = uv.x * static_cast<float>(level.width) - 0.5f;
+  const float y = uv.y * static_cast<float>(level.height) - 0.5f;
+  const float left = std::floor(x), top = std::floor(y);
+  const float fx = x - left, fy = y - top;
+  const auto at = [&](float i, float j) {
+    const int column = wrap(static_cast<int>(i), level.width, wrap_s_);
+    const int row = wrap(static_cast<int>(j), level.height, wrap_t_);
+    return level.opacity[static_cast<std::size_t>(row) * level.width + column];
+  };
+  const float upper = at(left, top) * (1 - fx) + at(left + 1, top) * fx;
+  const float lower = at(left, top + 1) * (1 - fx) + at(left + 1, top + 1) * fx;
+  return upper * (1 - fy) + lower * fy;
+}
+
+float OpacityPyramid::mean(V2f uv, float width_texels) const {
+  const V2f at(folded_coordinate(uv.x, wrap_s_), folded_coordinate(uv.y, wrap_t_));
+  const float level = std::clamp(std::log2(std::max(width_texels, 1.0f)), 0.0f,
+                                 static_cast<float>(levels_.size() - 1));
+  const auto fine = static_cast<std::size_t>(level);
+  const auto coarse = std::min(fine + 1, levels_.size() - 1);
+  const float blend = level - static_cast<float>(fine);
+  return bilinear(levels_[fine], at) * (1 - blend) + bilinear(levels_[coarse], at) * blend;
+}
+
+std::size_t pyramid_texels(const Texture& texture) {
+  std::size_t sum = texture.alpha.size();
+  for (std::size_t width = texture.width, height = texture.height; width > 1 || height > 1;) {
+    width = std::max<std::size_t>(1, width / 2);
+    height = std::max<std::size_t>(1, height / 2);
+    sum += width * height;
+  }
+  return sum;
+}
+
+}  // namespace dapple

@@ -1,0 +1,47 @@
+// A texture's opacities at every coarseness: for prefiltering nodes, and for rays whose footprints
+// cover many texels (kernels/opacity/opacity_lookup.clh).
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// The opacity of an alpha: 1 from `cutoff` on and 0 below, or the alpha itself where it is < 0.
+float thresholded(float alpha, float cutoff);
+
+/// A texture's opacities averaged over squares of 1, 2, 4... texels (Williams, "Pyramidal
+/// Parametrics", 1983). Of a cut-out the texels are thresholded first and averaged only then.
+class OpacityPyramid {
+ public:
+  /// Level k is half as wide and high as level k - 1, rounded down, and at least 1.
+  struct Level {
+    int width, height;
+    std::vector<float> opacity;  ///< row by row, [0,1]
+  };
+
+  /// `factor` multiplies alpha before the threshold; `cutoff` < 0: blended.
+  OpacityPyramid(const Texture& texture, float factor, float cutoff);
+
+  /// Mean opacity around uv over a square `width_texels` wide.
+  [[nodiscard]] float mean(V2f uv, float width_texels) const;
+
+  /// From the texture itself to one texel.
+  [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
+
+  [[nodiscard]] V2f size() const { return size_; }
+
+ private:
+  [[nodiscard]] float bilinear(const Level& level, V2f uv) const;
+
+  std::vector<Level> levels_;
+  V2f size_;
+  Wrap wrap_s_, wrap_t_;
+};
+
+/// Texels of all levels, the texture itself among them.
+std::size_t pyramid_texels(const Texture& texture);
+
+}  // namespace dapple

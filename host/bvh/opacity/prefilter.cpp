@@ -1,0 +1,342 @@
+// Directional opacity, bottom-up: leaves are drawn into coverage maps of their own, and
+// each node puts its children's maps into one that it hands to its parent.
+#include "bvh/opacity/prefilter.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "bvh/build/quantize.hpp"
+#include "bvh/storage/segment_block.hpp"
+#include "bvh/opacity/strand_coverage.hpp"
+#include "dapple/shared/opacity.h"
+
+namespace dapple {
+namespace {
+
+/// Subtrees of fewer primitives are not worth a task.
+constexpr std::uint32_t kTaskPrimitives = 2048;
+
+/// From here on up to 1, nodes count as parts of something solid.
+constexpr float kNearlySolid = 0.9f;
+
+uchar encode_depth(float depth) {
+  return static_cast<uchar>(std::lround(std::sqrt(depth / DAPPLE_GREATEST_DEPTH) * 255.0f));
+}
+
+/// Primitives that a leaf holds at most.
+constexpr std::size_t kMostInLeaf = 8;
+
+/// A leaf's primitives, as what they hide, and what adds up over them.
+struct Leaf {
+  /// Triangles once for all axes; or along each the strips of segments, two triangles each.
+  std::array<CoveringTriangle, 3 * 2 * kMostInLeaf> storage;
+  std::size_t count = 0;  ///< primitives
+  std::size_t drawn = 0;  ///< triangles along an axis
+  bool facing = false;    ///< each axis has its own
+  bool textured = false;
+  bool single_layer = false;
+  NormalMoments normals;
+  SurfaceAreas areas;
+  [[nodiscard]] std::span<const CoveringTriangle> along(int axis) const {
+    return {storage.data() + (facing ? static_cast<std::size_t>(axis) * drawn : 0), drawn};
+  }
+  [[nodiscard]] Covering covering() const { return {along(0), along(1), along(2)}; }
+};
+
+/// Mean over the triangle, seen along `axis`, of the squared distance from the box's centre in
+/// half sizes.
+float mean_off_centre(const CoveringTriangle& t, const Box3f& box, int axis) {
+  float sum = 0;
+  for (const int k : {column_axis(axis), row_axis(axis)}) {
+    const float halves = 2.0f / (box.max[k] - box.min[k]);
+    const float a = (t.vertex[k] - box.min[k]) * halves - 1.0f;
+    const float b = a + t.edge1[k] * halves, c = a + t.edge2[k] * halves;
+    sum += (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0f;
+  }
+  return sum;
+}
+
+/// What map_opacity() would say of a single layer, had its map endless cells.
+NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
+  NodeOpacity opacity;
+  opacity.normals = leaf.normals;
+  opacity.triangles = leaf.count;
+  float variance = 0, greatest = 0, off_centre = 0, total = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float face = face_area(box, axis);
+    if (!(face > 0.0f)) continue;
+    float hidden = 0, square = 0;
+    for (const CoveringTriangle& t : leaf.along(axis)) {
+      const float share = 0.5f * std::fabs(t.edge1.cross(t.edge2)[axis]) / face;
+      hidden += t.opacity * share;
+      square += t.opacity * t.opacity * share;
+      off_centre += t.opacity * share * face * mean_off_centre(t, box, axis);
+      total += t.opacity * share * face;
+    }
+    opacity.axes[axis] = hidden = std::min(hidden, 1.0f);
+    variance += std::max(0.0f, square - hidden * hidden);
+    greatest += hidden * (1.0f - hidden);
+  }
+  if (greatest > 1e-6f) opacity.clumping = std::min(1.0f, variance / greatest);
+  if (total > 0.0f) opacity.concentration = concentration_of(off_centre / total);
+  return opacity;
+}
+
+class Prefilter {
+ public:
+  Prefilter(const PrefilterTask& task, const TextureIntegrals& integrals)
+      : task_(task), object_(task.object), tree_(task.tree), integrals_(integrals) {}
+
+  Summary node(std::uint32_t index) {
+    const WideNode& wide = tree_.nodes[index];
+    if (wide.child_count == 0) return task_.stumps->summary(index);
+    const std::uint32_t own = task_.node_of.empty() ? index : task_.node_of[index];
+    const auto children = tree_.children_of(wide);
+    NodeCoverage coverage(wide.box);
+    NormalMoments normals;
+    const auto add_inner = [&](unsigned slot, const Summary& below) {
+      coverage.add(below.map, children[slot].box, below.areas);
+      normals.add(below.normals);
+      set_inner_opacity(own, slot, children[slot], below, wide.primitives);
+    };
+    const bool parallel = wide.primitives > kTaskPrimitives;
+    std::vector<Summary> below(parallel ? wide.child_count : 0);
+    if (parallel) {
+      tbb::parallel_for(0u, wide.child_count, [&](unsigned slot) {
+        if (!children[slot].count) below[slot] = node(children[slot].first);
+      });
+    }
+    // By slot, so that the bits don't depend on which task came first.
+    for (unsigned slot = 0; slot < wide.child_count; ++slot) {
+      if (children[slot].count) {
+        normals.add(add_leaf(own, slot, children[slot].box, coverage));
+      } else {
+        add_inner(slot, parallel ? below[slot] : node(children[slot].first));
+      }
+    }
+    return {coverage.map(), normals, coverage.areas()};
+  }
+
+ private:
+  /// Of child `slot` of the object's node `own`; of those that have children, by what is in them.
+  void set_inner_opacity(std::uint32_t own, unsigned slot, const WideChild& child,
+                         const Summary& below, std::uint32_t primitives) const {
+    const WideNode& wide = tree_.nodes[child.first];
+    const NodeOpacity* measured = nullptr;
+    if (wide.child_count == 0) {
+      measured = task_.stumps->measured(child.first);
+      if (!measured) {
+        set_kept_opacity(object_.nodes[own], slot, task_.record->nodes[own], below.areas,
+                         below.normals, child.box);
+        return;
+      }
+    }
+    NodeOpacity opacity = measured ? *measured : map_opacity(below.map, below.normals, child.box);
+    opacity.triangles = wide.primitives;
+    set_opacity(own, slot, opacity, child.box, below.areas);
+    if (task_.record && !measured && wide.primitives <= kRigidPrimitives &&
+        (primitives > kRigidPrimitives || own == 0)) {
+      task_.record->subtrees[task_.record->subtree_at(child.first)].keep(below.map, below.areas,
+                                                                         child.box);
+    }
+  }
+
+  void set_opacity(std::uint32_t own, unsigned slot, const NodeOpacity& opacity, const Box3f& box,
+                   const SurfaceAreas& areas) const {
+    const float factor = set_child_opacity(object_.nodes[own], slot, opacity, box);
+    if (task_.record) task_.record->nodes[own].keep(slot, opacity.axes, areas, box, factor);
+  }
+
+  /// Sets the leaf's opacity and puts it into its node's coverage; returns its normals.
+  NormalMoments add_leaf(std::uint32_t own, unsigned slot, const Box3f& box,
+                         NodeCoverage& coverage) const {
+    const BvhNode& node = object_.nodes[own];
+    const Leaf leaf =
+        node.prim_base & DAPPLE_SEGMENTS ? load_strands(node, slot) : load_triangles(node, slot);
+    if (leaf.single_layer) {
+      coverage.add_layer(leaf.covering(), box, leaf.areas);
+      set_opacity(own, slot, layer_opacity(leaf, box), box, leaf.areas);
+      return leaf.normals;
+    }
+    CoverageMap map;
+    cover(map, box, leaf.covering(), [&](const CoveringTriangle& t, float u, float v, float share) {
+      return mean_opacity(t, u, v, share);
+    });
+    coverage.add(map, box, leaf.areas);
+    NodeOpacity opacity = map_opacity(map, leaf.normals, box);
+    opacity.triangles = leaf.count;
+    set_opacity(own, slot, opacity, box, leaf.areas);
+    return leaf.normals;
+  }
+
+  Leaf load_strands(const BvhNode& node, unsigned slot) const {
+    Leaf leaf;
+    std::array<StrandSegment, kMostInLeaf> segments;
+    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
+         i < bvh_leaf_end(node.leaf_end, slot); ++i) {
+      const std::uint32_t block = bvh_block_index(node.prim_base) + i / 8;
+      segments[leaf.count] = unpack_segment(object_.segments[block], i % 8);
+      add_surface(segments[leaf.count++], leaf.normals, leaf.areas);
+    }
+    const std::span all(segments.data(), leaf.count);
+    leaf.facing = true;
+    leaf.drawn = 2 * leaf.count;
+    auto to = leaf.storage.begin();
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const StrandSegment& segment : all) {
+        for (const CoveringTriangle& half : facing_strip(segment, axis)) *to++ = half;
+      }
+    }
+    leaf.single_layer = is_one_strand(all);
+    return leaf;
+  }
+
+  Leaf load_triangles(const BvhNode& node, unsigned slot) const {
+    Leaf leaf;
+    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
+         i < bvh_leaf_end(node.leaf_end, slot); ++i) {
+      const TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
+      const unsigned lane = i % 8;
+      const auto at = [lane](const float(&v)[3][8]) {
+        return V3f(v[0][lane], v[1][lane], v[2][lane]);
+      };
+      const CoveringTriangle triangle{at(block.vertex), at(block.edge1), at(block.edge2),
+                                      block.opacity[lane], is_closed(node.prim_base + i / 8, lane)};
+      leaf.textured |= triangle.opacity < 0.0f;
+      const float opacity = triangle.opacity >= 0.0f
+                                ? triangle.opacity
+                                : mean_opacity(triangle, 1.0f / 3, 1.0f / 3, 1.0f);
+      const V3f area = 0.5f * triangle.edge1.cross(triangle.edge2);
+      leaf.normals.add(area, opacity);
+      leaf.areas.add(area, opacity, triangle.closed);
+      leaf.storage[leaf.count++] = triangle;
+    }
+    leaf.drawn = leaf.count;
+    leaf.single_layer = !leaf.textured && is_single_layer(leaf.along(0));
+    return leaf;
+  }
+
+  bool is_closed(std::uint32_t block, unsigned lane) const {
+    const std::size_t own = block - object_.first_block;
+    return !object_.closed.empty() && (object_.closed[own] >> lane & 1u) != 0;
+  }
+
+  float mean_opacity(const CoveringTriangle& triangle, float u, float v, float share) const {
+    const auto textured = static_cast<std::size_t>(-triangle.opacity - 1.0f);
+    return integrals_.mean(object_.textured[textured], u, v, share);
+  }
+
+  const PrefilterTask& task_;
+  const ObjectArrays& object_;
+  const WideTree& tree_;
+  const TextureIntegrals& integrals_;
+};
+
+}  // namespace
+
+NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box) {
+  NodeOpacity opacity{V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals,
+                      map.clumping()};
+  float off_centre = 0, total = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    off_centre += face_area(box, axis) * map.opacity_off_centre(axis);
+    total += face_area(box, axis) * opacity.axes[axis];
+  }
+  if (total > 0.0f) opacity.concentration = concentration_of(off_centre / total);
+  return opacity;
+}
+
+namespace {
+
+/// Of the grown box of a child, whose exact one had the opacities `axes`.
+V3f grown_opacity(const V3f& axes, const Box3f& exact, const Box3f& box) {
+  V3f grown;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float area = face_area(box, axis);
+    const float share = area > 0.0f ? std::min(face_area(exact, axis) / area, 1.0f) : 0.0f;
+    // A solid part of a wall must not leak where its box grew: its neighbours are there.
+    const float solid = std::clamp((axes[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
+    grown[axis] = axes[axis] * (share + solid * (1.0f - share));
+  }
+  return grown;
+}
+
+/// The nearest code of a correlation whose least bit is that one.
+schar encode_correlation(float correlation, unsigned bit) {
+  const int last = static_cast<int>(bit), most = 126 + last;
+  const auto half =
+      static_cast<int>(std::lround((127.0f * correlation - static_cast<float>(bit)) / 2));
+  return static_cast<schar>(std::clamp(2 * half + last, -most, most));
+}
+
+void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
+                  const V3f& correlation, unsigned unevenness) {
+  for (int axis = 0; axis < 3; ++axis) {
+    node.depth[axis][slot] =
+        encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_GREATEST_DEPTH));
+    node.correlation[axis][slot] = encode_correlation(correlation[axis], unevenness >> axis & 1u);
+  }
+}
+
+}  // namespace
+
+float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
+                        const Box3f& exact) {
+  const Box3f box = child_box(node, slot);
+  NodeOpacity grown = opacity;
+  grown.axes = grown_opacity(opacity.axes, exact, box);
+  const float factor = clumping_factor(grown, box.max - box.min);
+  store_depths(node, slot, grown.axes, factor, opacity.normals.correlation(),
+               unevenness_class(opacity));
+  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.concentration));
+  node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
+  return factor;
+}
+
+unsigned unevenness_of_child(const BvhNode& node, unsigned slot) {
+  unsigned bits = 0;
+  for (unsigned pair = 0; pair < 3; ++pair)
+    bits |= (static_cast<unsigned>(node.correlation[pair][slot]) & 1u) << pair;
+  return bits;
+}
+
+void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
+                      const SurfaceAreas& areas, const NormalMoments& normals, const Box3f& exact) {
+  V3f axes = layers_in(areas, exact);
+  for (int axis = 0; axis < 3; ++axis)
+    axes[axis] = std::min(1.0f, axes[axis] * kept.share(axis, slot));
+  store_depths(node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
+               normals.correlation(),
+               std::max(unevenness_of_child(node, slot), unevenness_class({axes, {}})));
+}
+
+namespace {
+
+void start_record(BuiltObject& built, const TextureIntegrals& integrals, RefitRecord& record) {
+  record = {};
+  record.triangles = std::move(built.triangles);
+  record.closed = built.closed;
+  for (const TexturedTriangle& triangle : built.object.textured)
+    record.textured_opacity.push_back(integrals.mean(triangle, 1.0f / 3, 1.0f / 3, 1.0f));
+  record.nodes.resize(built.object.nodes.size());
+  cut_subtrees(built.tree, record);
+}
+
+}  // namespace
+
+Summary prefilter(const PrefilterTask& task, const TextureIntegrals& integrals) {
+  return Prefilter(task, integrals).node(0);
+}
+
+void prefilter(BuiltObject& built, const TextureIntegrals& integrals, RefitRecord* record) {
+  ObjectBvh& object = built.object;
+  if (record) start_record(built, integrals, *record);
+  const ObjectArrays arrays{object.nodes,   object.blocks, object.textured, built.closed, 0, 0, 0,
+                            object.segments};
+  const Summary all = prefilter({arrays, built.tree, {}, record, nullptr}, integrals);
+  object.opacity = map_opacity(all.map, all.normals, object.box);
+  object.opacity.triangles = object.triangles;
+}
+
+}  // namespace dapple

@@ -1,0 +1,152 @@
+#include "bvh/opacity/triangle_opacity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+std::array<float, 3> vertex_alphas(const Material& material, const Mesh& mesh,
+                                   std::uint32_t triangle) {
+  std::array<float, 3> alpha{1, 1, 1};
+  if (material.uses_vertex_alpha && !mesh.vertex_alpha.empty()) {
+    for (int corner = 0; corner < 3; ++corner) {
+      alpha[corner] = mesh.vertex_alpha[mesh.indices[3 * std::size_t{triangle} + corner]];
+    }
+  }
+  return alpha;
+}
+
+void check_material(const Scene& scene, std::uint32_t material) {
+  if (material < DAPPLE_MOST_TEXTURED_MATERIALS) return;
+  throw Error(ErrorKind::failed,
+              fmt::format("{}: the opacity of material {} ({}) varies over triangles, which only "
+                          "the first {} materials' may; merge materials that are equal",
+                          scene.source, material, scene.materials[material].name,
+                          DAPPLE_MOST_TEXTURED_MATERIALS));
+}
+
+}  // namespace
+
+bool has_texture(const Material& material, const Mesh& mesh) {
+  return material.alpha_texture >= 0 && !mesh.uvs.empty();
+}
+
+float cutoff_of(const Material& material) {
+  return material.alpha_mode == AlphaMode::mask ? std::max(material.alpha_cutoff, 0.0f) : -1.0f;
+}
+
+float texel_size(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
+  const Material& material = scene.materials[mesh.materials[triangle]];
+  if (!has_texture(material, mesh)) return 0.0f;
+  const Texture& texture = scene.textures[material.alpha_texture];
+  const V2f size(static_cast<float>(texture.width), static_cast<float>(texture.height));
+  const std::uint32_t* at = &mesh.indices[3 * std::size_t{triangle}];
+  const V3f edge1 = mesh.positions[at[1]] - mesh.positions[at[0]];
+  const V3f edge2 = mesh.positions[at[2]] - mesh.positions[at[0]];
+  const V2f across = (mesh.uvs[at[1]] - mesh.uvs[at[0]]) * size;
+  const V2f along = (mesh.uvs[at[2]] - mesh.uvs[at[0]]) * size;
+  const float texels = std::fabs(across.cross(along));
+  return texels > 0 ? std::sqrt(edge1.cross(edge2).length() / texels) : 0.0f;
+}
+
+std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
+  const Material& material = scene.materials[mesh.materials[triangle]];
+  if (material.alpha_mode == AlphaMode::opaque) return 1.0f;
+  if (has_texture(material, mesh)) return std::nullopt;
+  auto alpha = vertex_alphas(material, mesh, triangle);
+  for (float& corner : alpha) corner *= material.alpha;
+  const float cutoff = cutoff_of(material);
+  const float first = thresholded(alpha[0], cutoff);
+  const bool same_alpha = alpha[0] == alpha[1] && alpha[1] == alpha[2];
+  const bool same_side = cutoff >= 0.0f && first == thresholded(alpha[1], cutoff) &&
+                         first == thresholded(alpha[2], cutoff);
+  if (same_alpha || same_side) return first;
+  return std::nullopt;
+}
+
+float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment) {
+  const Material& material = scene.materials[mesh.materials[segment]];
+  if (material.alpha_mode == AlphaMode::opaque) return 1.0f;
+  float alpha = material.alpha;
+  if (material.uses_vertex_alpha && !mesh.vertex_alpha.empty()) {
+    const std::uint32_t* at = &mesh.indices[2 * std::size_t{segment}];
+    alpha *= 0.5f * (mesh.vertex_alpha[at[0]] + mesh.vertex_alpha[at[1]]);
+  }
+  return thresholded(alpha, cutoff_of(material));
+}
+
+TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle,
+                                   bool averaged) {
+  const Material& material = scene.materials[mesh.materials[triangle]];
+  TexturedCorners corners;
+  corners.material = mesh.materials[triangle];
+  check_material(scene, corners.material);
+  corners.alpha = vertex_alphas(material, mesh, triangle);
+  corners.has_texture = has_texture(material, mesh);
+  if (!corners.has_texture) return pack_textured(corners, Wrap::repeat, Wrap::repeat);
+  for (int corner = 0; corner < 3; ++corner) {
+    corners.uv[corner] = mesh.uvs[mesh.indices[3 * std::size_t{triangle} + corner]];
+  }
+  const Texture& texture = scene.textures[material.alpha_texture];
+  if (averaged) corners.texel_size = texel_size(scene, mesh, triangle);
+  return pack_textured(corners, texture.wrap_s, texture.wrap_t);
+}
+
+TextureIntegrals::Key TextureIntegrals::key_of(const TexturedCorners& corners) const {
+  // A blended texture's mean is linear in the factor, which is applied later; a cut-out's
+  // is not, so it gets a pyramid for each factor (rounded, where vertices differ).
+  const Material& material = materials_[corners.material];
+  const float cutoff = cutoff_of(material);
+  if (cutoff < 0.0f) return {material.alpha_texture, 1.0f, -1.0f};
+  const float factor =
+      material.alpha * (corners.alpha[0] + corners.alpha[1] + corners.alpha[2]) / 3.0f;
+  return {material.alpha_texture, std::round(factor * 64.0f) / 64.0f, cutoff};
+}
+
+TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured)
+    : materials_(scene.materials) {
+  std::vector<Key> keys;
+  for (const TexturedTriangle& triangle : textured) {
+    const TexturedCorners corners = unpack_textured(triangle);
+    if (!corners.has_texture) continue;
+    const Key key = key_of(corners);
+    if (keys.empty() || keys.back() != key) keys.push_back(key);
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  pyramids_.reserve(keys.size());
+  for (const Key& key : keys) {
+    pyramids_.emplace_back(key,
+                           OpacityPyramid(scene.textures[key.texture], key.factor, key.cutoff));
+  }
+}
+
+const OpacityPyramid* TextureIntegrals::find(const Key& key) const {
+  const auto at = std::lower_bound(pyramids_.begin(), pyramids_.end(), key,
+                                   [](const auto& entry, const Key& k) { return entry.first < k; });
+  return at != pyramids_.end() && at->first == key ? &at->second : nullptr;
+}
+
+float TextureIntegrals::mean(const TexturedTriangle& triangle, float u, float v,
+                             float share) const {
+  const TexturedCorners corners = unpack_textured(triangle);
+  const float w = 1.0f - u - v;
+  const float cutoff = cutoff_of(materials_[corners.material]);
+  const float alpha = materials_[corners.material].alpha *
+                      (corners.alpha[0] * w + corners.alpha[1] * u + corners.alpha[2] * v);
+  const OpacityPyramid* pyramid = corners.has_texture ? find(key_of(corners)) : nullptr;
+  if (!pyramid) return thresholded(alpha, cutoff);
+  const auto& [a, b, c] = corners.uv;
+  const V2f e1 = (b - a) * pyramid->size(), e2 = (c - a) * pyramid->size();
+  const float texels = 0.5f * std::fabs(e1.x * e2.y - e1.y * e2.x) * share;
+  const float mean = pyramid->mean(a * w + b * u + c * v, std::sqrt(texels));
+  return cutoff < 0.0f ? std::clamp(mean * alpha, 0.0f, 1.0f) : mean;
+}
+
+}  // namespace dapple

@@ -1,0 +1,62 @@
+// What opacity a triangle has: one number, or a texture and factors to be looked up at
+// each hit (kernels/opacity/opacity_lookup.clh) and averaged over areas when prefiltering.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bvh/opacity/opacity_pyramid.hpp"
+#include "bvh/storage/textured_triangle.hpp"
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// The triangle's opacity in [0,1] if it is the same all over, else nothing.
+std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
+
+/// Of a segment of a strand, [0,1]: its ends' mean alpha, by the material. No textures.
+float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment);
+
+/// Whether alpha is looked up.
+bool has_texture(const Material& material, const Mesh& mesh);
+
+/// How wide a texel of the material's texture is on the triangle, in the object's units; 0 where
+/// there is none, or no area.
+float texel_size(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
+
+/// The alpha from which on a masked material is opaque, or -1 where alpha is opacity.
+float cutoff_of(const Material& material);
+
+/// The record the kernels look a varying triangle up by; `averaged`: wide footprints take the mean
+/// of its texels. Throws Error failed where its material is beyond the most that the records can
+/// name.
+TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle,
+                                   bool averaged);
+
+/// Answers "how opaque is this part of the triangle on average" for textured triangles.
+class TextureIntegrals {
+ public:
+  /// Makes the pyramids that `textured` need, each once. Keeps `scene`'s materials by address.
+  TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured);
+
+  /// Mean opacity of the triangle around barycentrics (u, v) over an area that is `share`
+  /// of the triangle's, [0,1].
+  [[nodiscard]] float mean(const TexturedTriangle& triangle, float u, float v, float share) const;
+
+ private:
+  struct Key {
+    int texture;
+    float factor, cutoff;
+    auto operator<=>(const Key&) const = default;
+  };
+  [[nodiscard]] Key key_of(const TexturedCorners& corners) const;
+  [[nodiscard]] const OpacityPyramid* find(const Key& key) const;
+
+  const std::vector<Material>& materials_;
+  std::vector<std::pair<Key, OpacityPyramid>> pyramids_;  ///< sorted by key
+};
+
+}  // namespace dapple

@@ -1,0 +1,179 @@
+#include "bvh/refit/refit_object.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "bvh/build/quantize.hpp"
+#include "bvh/refit/refit_subtree.hpp"
+
+namespace dapple {
+namespace {
+
+/// A subtree whose surfaces lie by so much denser or thinner in its box than when it was last
+/// prefiltered has not moved rigidly.
+constexpr float kRigidChange = 1.5f;
+
+/// Subtrees to a task.
+constexpr std::size_t kGrain = 16;
+
+bool is_alike(float now, float then) {
+  constexpr float kNone = 1e-3f;  // layers that make no difference
+  return (now <= kRigidChange * then && then <= kRigidChange * now) ||
+         (now < kNone && then < kNone);
+}
+
+void set_boxes(BvhNode& node, const WideTree& tree, const WideNode& wide) {
+  set_grid(node, wide.box);
+  for (unsigned slot = 0; slot < wide.child_count; ++slot)
+    set_child_box(node, slot, tree.children_of(wide)[slot].box);
+}
+
+class ObjectRefit : public Stumps {
+ public:
+  ObjectRefit(const Scene& scene, const Mesh& mesh, const ObjectArrays& object, RefitRecord& record)
+      : scene_(scene),
+        mesh_(mesh),
+        object_(object),
+        record_(record),
+        subtree_(mesh, object, record),
+        moved_(record.subtrees.size()),
+        measured_(record.subtrees.size()) {}
+
+  void refit(ObjectSummary& summary) {
+    move_subtrees();
+    move_upper_leaves();
+    const double half_areas = move_upper_boxes();
+    const WideTree& upper = record_.upper;
+    summary.box = upper.nodes[0].box;
+    summary.parts.clear();
+    for (const WideChild& child : upper.children_of(upper.nodes[0]))
+      summary.parts.push_back(child.box);
+    summary.sah_cost = expected_visits(half_areas, summary.box);
+    const bool needs_textures = find_strays() || has_textured_leaves();
+    const TextureIntegrals integrals(
+        scene_, needs_textures ? object_.textured : std::span<const TexturedTriangle>{});
+    measure_strays(integrals);
+    const Summary all = prefilter({object_, upper, record_.upper_nodes, &record_, this}, integrals);
+    summary.opacity = map_opacity(all.map, all.normals, summary.box);
+    summary.opacity.triangles = summary.triangles;
+  }
+
+  Summary summary(std::uint32_t node) const override {
+    const std::size_t s = record_.subtree_at(record_.upper_nodes[node]);
+    const MovedPart& moved = moved_[s];
+    const KeptSubtree& kept = record_.subtrees[s];
+    return {kept.map.with_means(kept.axes_at(layers_in(moved.areas, moved.box))), moved.normals,
+            moved.areas};
+  }
+
+  const NodeOpacity* measured(std::uint32_t node) const override {
+    const auto& found = measured_[record_.subtree_at(record_.upper_nodes[node])];
+    return found ? &*found : nullptr;
+  }
+
+ private:
+  template <class Body>
+  void for_each_subtree(const Body& body) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, record_.subtrees.size(), kGrain),
+                      [&](const auto& range) {
+                        for (std::size_t s = range.begin(); s < range.end(); ++s) body(s);
+                      });
+  }
+
+  void move_subtrees() {
+    for_each_subtree(
+        [&](std::size_t s) { moved_[s] = subtree_.subtree(record_.subtrees[s].node); });
+  }
+
+  void move_upper_leaves() {
+    WideTree& upper = record_.upper;
+    tbb::parallel_for(std::size_t{0}, upper.nodes.size(), [&](std::size_t n) {
+      const WideNode& wide = upper.nodes[n];
+      if (wide.child_count == 0) return;
+      const BvhNode& node = object_.nodes[record_.upper_nodes[n]];
+      for (unsigned slot = 0; slot < wide.child_count; ++slot) {
+        WideChild& child = upper.children[wide.first_child + slot];
+        if (child.count > 0) child.box = subtree_.leaf(node, slot).box;
+      }
+    });
+  }
+
+  /// Exact boxes bottom-up, then the nodes'. Returns the half_area() of all nodes summed.
+  double move_upper_boxes() {
+    WideTree& upper = record_.upper;
+    double half_areas = 0;
+    for (std::size_t n = upper.nodes.size(), s = moved_.size(); n-- > 0;) {
+      if (upper.nodes[n].child_count > 0) continue;
+      upper.nodes[n].box = moved_[--s].box;
+      half_areas += moved_[s].half_areas;
+    }
+    pass_up_boxes(upper);
+    for (const WideNode& node : upper.nodes)
+      if (node.child_count > 0) half_areas += half_area(node.box);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, upper.nodes.size(), 256),
+                      [&](const auto& range) {
+                        for (std::size_t n = range.begin(); n < range.end(); ++n)
+                          if (upper.nodes[n].child_count > 0)
+                            set_boxes(object_.nodes[record_.upper_nodes[n]], upper, upper.nodes[n]);
+                      });
+    return half_areas;
+  }
+
+  /// Marks subtrees that changed their shape; whether there are any.
+  bool find_strays() {
+    bool any = false;
+    strays_.assign(moved_.size(), 0);
+    for (std::size_t s = 0; s < moved_.size(); ++s) {
+      const V3f now = layers_in(moved_[s].areas, moved_[s].box), then = record_.subtrees[s].layers;
+      for (int axis = 0; axis < 3; ++axis)
+        if (!is_alike(now[axis], then[axis])) strays_[s] = 1;
+      any |= strays_[s] != 0;
+    }
+    return any;
+  }
+
+  bool has_textured_leaves() const {
+    for (std::size_t n = 0; n < record_.upper.nodes.size(); ++n) {
+      const WideNode& wide = record_.upper.nodes[n];
+      const BvhNode& node = object_.nodes[record_.upper_nodes[n]];
+      for (std::uint32_t i = 0; wide.child_count > 0 && i < wide.leaf_primitives; ++i)
+        if (object_.blocks[node.prim_base + i / 8].opacity[i % 8] < 0.0f) return true;
+    }
+    return false;
+  }
+
+  void measure_strays(const TextureIntegrals& integrals) {
+    for_each_subtree([&](std::size_t s) {
+      if (!strays_[s]) return;
+      KeptSubtree& kept = record_.subtrees[s];
+      std::vector<std::uint32_t> node_of;
+      const WideTree tree = wide_subtree(mesh_, object_, record_, kept.node, node_of);
+      const Summary found = prefilter({object_, tree, node_of, &record_, nullptr}, integrals);
+      const Box3f& box = tree.nodes[0].box;
+      measured_[s] = map_opacity(found.map, found.normals, box);
+      kept.keep(found.map, found.areas, box);
+    });
+  }
+
+  const Scene& scene_;
+  const Mesh& mesh_;
+  const ObjectArrays& object_;
+  RefitRecord& record_;
+  SubtreeRefit subtree_;
+  std::vector<MovedPart> moved_;
+  std::vector<std::uint8_t> strays_;
+  std::vector<std::optional<NodeOpacity>> measured_;
+};
+
+}  // namespace
+
+void refit_object(const Scene& scene, const Mesh& mesh, const ObjectArrays& object,
+                  RefitRecord& record, ObjectSummary& summary) {
+  ObjectRefit(scene, mesh, object, record).refit(summary);
+}
+
+}  // namespace dapple

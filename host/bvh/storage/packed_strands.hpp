@@ -1,0 +1,22 @@
+// The segments of a tree's leaves in blocks, and the tree fitted around what the blocks hold.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bvh/storage/segment_block.hpp"
+#include "bvh/build/wide_tree.hpp"
+
+namespace dapple {
+
+struct PackedStrands {
+  std::vector<SegmentBlock> blocks;
+  std::vector<std::uint32_t> first_block;  ///< of each node
+};
+
+/// In slot order, padded to whole blocks a node; `opacities` are the mesh's segments'. The boxes of
+/// `tree` become those of the segments as blocks round them.
+PackedStrands pack_strands(WideTree& tree, std::span<const PrimitiveBox> order, const Mesh& mesh,
+                           const StrandJoints& joints, const std::vector<float>& opacities);
+
+}  // namespace dapple

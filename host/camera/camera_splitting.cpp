@@ -1,0 +1,183 @@
+#include "camera/camera_splitting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "bvh/opacity/triangle_opacity.hpp"
+
+namespace dapple {
+namespace {
+
+/// Opacities up to which that part of all surfaces must be for so many samples a camera ray
+/// (figures in the README). More than suit cost up to a fifth of the time, fewer up to half of it.
+/// What textures average comes in all opacities, and four suit it from where two do.
+constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.85f;
+constexpr double kPartOfFour = 0.25, kPartOfTwo = 0.1;
+
+/// What of a texture is looked at: squares, and texels of one, along each axis.
+constexpr int kSquares = 64, kTexels = 4;
+
+/// Samples a pixel for which textures are averaged here, whatever the picture's: with more samples
+/// a picture must keep its depths, for renders that are gone on with.
+constexpr int kSamples = 16;
+
+float mean_vertex_alpha(const Mesh& mesh) {
+  if (mesh.vertex_alpha.empty()) return 1.0f;
+  return std::accumulate(mesh.vertex_alpha.begin(), mesh.vertex_alpha.end(), 0.0f) /
+         static_cast<float>(mesh.vertex_alpha.size());
+}
+
+/// Of surfaces that stop anything: all, and those that two and four samples suit.
+struct Counts {
+  double all = 0, for_two = 0, for_four = 0;
+
+  void add(const Counts& counts, double times) {
+    all += times * counts.all;
+    for_two += times * counts.for_two;
+    for_four += times * counts.for_four;
+  }
+};
+
+/// Of one surface of that opacity, where four samples suit opacities up to `of_four`.
+Counts count_opacity(float opacity, float of_four) {
+  if (opacity <= 0) return {};
+  return {1, opacity <= kOpacityOfTwo ? 1.0 : 0.0, opacity <= of_four ? 1.0 : 0.0};
+}
+
+/// What of a material decides an alpha's opacity.
+struct Factors {
+  float factor, cutoff;
+};
+
+/// The mean opacity of the square of texels from (x, y) on.
+float square_opacity(const Texture& texture, Factors factors, std::uint32_t x, std::uint32_t y,
+                     std::uint32_t side) {
+  const std::uint32_t width = std::min(side, texture.width - x);
+  const std::uint32_t height = std::min(side, texture.height - y);
+  const std::uint32_t columns = std::min<std::uint32_t>(width, kTexels);
+  const std::uint32_t rows = std::min<std::uint32_t>(height, kTexels);
+  float sum = 0;
+  for (std::uint32_t j = 0; j < rows; ++j) {
+    const std::size_t row = y + std::size_t{j} * height / rows;
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const std::size_t column = x + std::size_t{i} * width / columns;
+      const float alpha = static_cast<float>(texture.alpha[row * texture.width + column]) / 255;
+      sum += thresholded(alpha * factors.factor, factors.cutoff);
+    }
+  }
+  return sum / static_cast<float>(rows * columns);
+}
+
+/// One surface, all squares of its texture together.
+Counts count_squares(const Texture& texture, Factors factors, std::uint32_t side) {
+  const std::uint32_t across = side * std::max(1u, texture.width / side / kSquares);
+  const std::uint32_t down = side * std::max(1u, texture.height / side / kSquares);
+  const float of_four = side > 1 ? kOpacityOfTwo : kOpacityOfFour;
+  Counts squares;
+  for (std::uint32_t y = 0; y < texture.height; y += down)
+    for (std::uint32_t x = 0; x < texture.width; x += across)
+      squares.add(count_opacity(square_opacity(texture, factors, x, y, side), of_four), 1);
+  Counts one;
+  if (squares.all > 0) one.add(squares, 1 / squares.all);
+  return one;
+}
+
+/// Triangles of a mesh that share a material.
+struct Part {
+  const Material* material = nullptr;
+  double triangles = 0;
+  float texel_size = 0;            ///< object space, of the first triangle that has one
+  std::map<int, Counts> counts{};  ///< of one of them, by the level at which it is seen
+};
+
+using Parts = std::map<std::uint32_t, Part>;  ///< by material
+
+Parts parts_of(const Scene& scene, const Mesh& mesh) {
+  Parts parts;
+  Part* part = nullptr;
+  bool textured = false;
+  for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
+    // Most triangles have the material of the one before.
+    if (i == 0 || mesh.materials[i] != mesh.materials[i - 1]) {
+      part = &parts[mesh.materials[i]];
+      part->material = &scene.materials[mesh.materials[i]];
+      textured = has_texture(*part->material, mesh);
+    }
+    ++part->triangles;
+    if (textured && part->texel_size == 0)
+      part->texel_size = texel_size(scene, mesh, static_cast<std::uint32_t>(i));
+  }
+  return parts;
+}
+
+Counts count_part(const Scene& scene, const Mesh& mesh, const Part& part, int level) {
+  const Material& material = *part.material;
+  if (material.alpha_mode == AlphaMode::opaque) return {1, 0, 0};
+  const float vertex_alpha = material.uses_vertex_alpha ? mean_vertex_alpha(mesh) : 1.0f;
+  const Factors factors{material.alpha * vertex_alpha, cutoff_of(material)};
+  if (!has_texture(material, mesh))
+    return count_opacity(thresholded(factors.factor, factors.cutoff), kOpacityOfFour);
+  return count_squares(scene.textures[material.alpha_texture], factors, 1u << level);
+}
+
+/// The level whose squares are as large as what a camera ray averages of the part's texture.
+int seen_level(const Part& part, const Instance& instance, const Mesh& mesh, const View& view,
+               float spread) {
+  if (part.texel_size == 0 || spread == 0) return 0;
+  const float scale = std::cbrt(std::fabs(instance.to_world.determinant()));
+  const float width = std::sqrt(spread) * pixel_width(view, mesh.positions[0] * instance.to_world);
+  const float level = std::log2(width / (part.texel_size * scale));
+  return std::isfinite(level) ? static_cast<int>(std::clamp(level, 0.0f, 15.0f)) : 0;
+}
+
+Counts count_surfaces(const Scene& scene, const View& view, float spread) {
+  std::vector<std::optional<Parts>> parts(scene.meshes.size());
+  Counts counts;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    auto& of_mesh = parts[instance.mesh];
+    if (!of_mesh) of_mesh = parts_of(scene, mesh);
+    for (auto& [material, part] : *of_mesh) {
+      const int level = seen_level(part, instance, mesh, view, spread);
+      const auto [at, is_new] = part.counts.try_emplace(level);
+      if (is_new) at->second = count_part(scene, mesh, part, level);
+      counts.add(at->second, part.triangles);
+    }
+  }
+  return counts;
+}
+
+/// Samples of a pixel that it may have, whatever of them share a camera ray.
+double most_samples(const RenderOptions& options) {
+  return double{kMostRaysOfPixel} / std::max(options.ao_rays, options.light_rays);
+}
+
+}  // namespace
+
+int choose_depths(const RenderOptions& options, const Scene& scene, const View& view) {
+  if (options.depths > 0) return options.depths;
+  RenderOptions with_taps = options;
+  with_taps.depths = DAPPLE_MOST_DEPTHS;
+  const Counts counts = count_surfaces(scene, view, texel_footprint(with_taps, kSamples).spread);
+  int depths = counts.for_four > kPartOfFour * counts.all ? 4
+               : counts.for_two > kPartOfTwo * counts.all ? 2
+                                                          : 1;
+  const double rays = is_adaptive(options) ? options.max_spp : options.spp;
+  while (depths > 1 && rays * depths > most_samples(options)) depths /= 2;
+  return depths;
+}
+
+RenderOptions by_sample(const RenderOptions& options) {
+  RenderOptions out = options;
+  out.spp *= out.depths;
+  out.max_spp *= out.depths;
+  out.footprint_spp = footprint_samples(options);
+  out.footprint_ao_rays = footprint_ao_rays(options);
+  out.ao_rays = (options.ao_rays + out.depths - 1) / out.depths;
+  return out;
+}
+
+}  // namespace dapple

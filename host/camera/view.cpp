@@ -1,0 +1,222 @@
+#include "camera/view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "dapple/error.hpp"
+#include "camera/camera_splitting.hpp"
+
+namespace dapple {
+namespace {
+
+float radians(float degrees) { return degrees * std::numbers::pi_v<float> / 180.0f; }
+
+Camera named_camera(const Scene& scene, const std::string& name) {
+  std::string list;
+  for (const Camera& camera : scene.cameras) {
+    if (camera.name == name) return camera;
+    list += (list.empty() ? "" : ", ") + camera.name;
+  }
+  throw Error(ErrorKind::usage,
+              fmt::format("--camera {}: {} has {}", name, scene.source,
+                          list.empty() ? "no cameras" : "only these cameras: " + list));
+}
+
+Camera choose_camera(const Scene& scene, const RenderOptions& options,
+                     std::vector<std::string>& notes) {
+  if (options.look) {
+    const float fov = options.fov_degrees > 0 ? options.fov_degrees : 40.0f;
+    return look_at(options.look->from, options.look->at, options.look->up, radians(fov));
+  }
+  if (!options.camera.empty()) return named_camera(scene, options.camera);
+  if (!scene.cameras.empty()) {
+    if (scene.cameras.size() > 1) {
+      notes.push_back(
+          fmt::format("camera: {}, the first of {}", scene.cameras[0].name, scene.cameras.size()));
+    }
+    return scene.cameras[0];
+  }
+  notes.emplace_back("no camera in the scene: framed it; --look-from and --look-at choose another");
+  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+  return options.fov_degrees > 0 ? frame_scene(scene, aspect, radians(options.fov_degrees))
+                                 : frame_scene(scene, aspect);
+}
+
+/// Half width and half height of the image plane: at distance 1, or in metres.
+V2f half_extent(const View& view) {
+  const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
+  const bool orthographic = view.camera.kind == Camera::Kind::orthographic;
+  const float half = orthographic ? view.camera.half_height : std::tan(0.5f * view.camera.fov_y);
+  return {half * aspect, half};
+}
+
+/// Relative to the largest coordinate: what rounding may move a surface by, and more.
+constexpr double kBoundsMargin = 1e-5;
+
+/// Where the corners of the scene's bounds are in the picture, in pixels from its top left;
+/// infinite where one is not before the camera.
+Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
+  Imath::Box2d everywhere(Imath::V2d(-std::numeric_limits<double>::infinity()),
+                          Imath::V2d(std::numeric_limits<double>::infinity()));
+  const Imath::M44d to_world(view.camera.to_world);
+  if (!(std::fabs(to_world.determinant()) > 0)) return everywhere;
+  const Imath::M44d to_camera = to_world.inverse();
+  const Imath::V2d half(half_extent(view));
+  const V3d low(bounds.min), high(bounds.max);
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max(
+        {largest, std::fabs(low[axis]), std::fabs(high[axis]), std::fabs(to_world[3][axis])});
+  }
+  const double margin = kBoundsMargin * largest;
+  Imath::Box2d seen;
+  for (int corner = 0; corner < 8; ++corner) {
+    V3d at;
+    for (int axis = 0; axis < 3; ++axis)
+      at[axis] = corner >> axis & 1 ? high[axis] + margin : low[axis] - margin;
+    at *= to_camera;
+    if (view.camera.kind == Camera::Kind::perspective) {
+      if (!(-at.z > margin)) return everywhere;
+      at /= -at.z;
+    }
+    const Imath::V2d pixel((at.x / half.x + 1) / 2 * view.width,
+                           (1 - at.y / half.y) / 2 * view.height);
+    if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y)) return everywhere;
+    seen.extendBy(pixel);
+  }
+  return seen;
+}
+
+/// The pixel that `at` is in, of `count`; `count` itself if it is beyond them.
+uint pixel_at(double at, int count) {
+  return static_cast<uint>(std::clamp(at, 0.0, static_cast<double>(count)));
+}
+
+/// A pixel more on each side than the scene's bounds.
+void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
+  const Imath::Box2d seen = picture_bounds(view, bounds);
+  params.seen_left = pixel_at(seen.min.x - 1, view.width);
+  params.seen_above = pixel_at(seen.min.y - 1, view.height);
+  params.seen_right = pixel_at(seen.max.x + 2, view.width);
+  params.seen_below = pixel_at(seen.max.y + 2, view.height);
+}
+
+/// Of a camera sample's footprint, what a look-up in a texture averages: by itself, and as one of
+/// four taps.
+constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.35f;
+
+/// What the taps stand for together. Of cards an RMSE of 0.02 takes 0.8 (AO) and 0.5 (light) of the
+/// time of single look-ups, with the depths that they allow; with half of it, a fifth more.
+constexpr float kTapShare = 1.5f;
+
+/// Of a pixel, however large footprints are.
+constexpr float kMostTexelShare = 0.25f, kMostTapShare = 0.75f;
+
+/// Variances, in each axis and those of places all over a square of area 1: of taps in the middle
+/// of its quarters, and of bilinear look-ups among squares of texels that are no larger than it (a
+/// power of two, so 0.54 of it in the mean).
+constexpr float kTapVariance = 0.75f, kTexelVariance = 1.6f;
+
+/// Of footprint_rmse(), the part by which what one box of haze hides of a pixel may deviate. There
+/// may be some behind each other; but AO differs by a part of that only, for what is in haze is
+/// hardly occluded.
+constexpr float kHazeError = 0.5f;
+
+/// Without a target pictures are as good as rays make them. Errors of lights are relative to the
+/// largest irradiance, which haze has little of.
+float haze_error(const RenderOptions& options) {
+  const bool exact = options.estimator == Estimator::exact || options.footprint == 0;
+  if (exact || options.light || !is_adaptive(options)) return 0;
+  return kHazeError * footprint_rmse(options);
+}
+
+}  // namespace
+
+View choose_view(const Scene& scene, const RenderOptions& options,
+                 std::vector<std::string>& notes) {
+  View view{choose_camera(scene, options, notes), options.width, options.height,
+            options.crop.value_or(PixelRect{0, 0, options.width - 1, options.height - 1})};
+  if (options.fov_degrees > 0 && view.camera.kind == Camera::Kind::perspective) {
+    view.camera.fov_y = radians(options.fov_degrees);
+  }
+  return view;
+}
+
+TexelFootprint texel_footprint(const RenderOptions& options, int spp) {
+  if (options.estimator == Estimator::exact || options.footprint == 0) return {};
+  const float footprint = options.footprint / static_cast<float>(spp);
+  TexelFootprint texels;
+  if (depth_count(options) == 1) {
+    texels.share = texels.spread = kTexelShare * footprint;
+    return texels;
+  }
+  texels.share = std::min(kTexelShareOfTap * footprint, kMostTexelShare);
+  const float taps = std::min(kTapShare * footprint, kMostTapShare);
+  texels.tap_reach = 0.25f * std::sqrt(taps);
+  texels.spread = kTapVariance * taps + kTexelVariance * texels.share;
+  texels.tap_pull = 1.0f - std::sqrt(1.0f - texels.spread);
+  return texels;
+}
+
+float pixel_width(const View& view, const V3f& at) {
+  const float width = 2 * half_extent(view).y / static_cast<float>(view.height);
+  const V3f from = view.camera.to_world.translation();
+  return view.camera.kind == Camera::Kind::orthographic ? width : width * (at - from).length();
+}
+
+CameraParams camera_params(const View& view, const RenderOptions& options, const Box3f& bounds) {
+  CameraParams params{};
+  const M44f& m = view.camera.to_world;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) params.to_world[4 * row + column] = m[column][row];
+  }
+  const V2f half = half_extent(view);
+  params.half_width = half.x;
+  params.half_height = half.y;
+  params.orthographic = view.camera.kind == Camera::Kind::orthographic ? 1u : 0u;
+  params.width = static_cast<uint>(view.width);
+  params.height = static_cast<uint>(view.height);
+  params.crop_x = static_cast<uint>(view.crop.x0);
+  params.crop_y = static_cast<uint>(view.crop.y0);
+  params.crop_width = static_cast<uint>(view.crop.width());
+  params.seed = options.seed;
+  params.inverse_spp = 1.0f / static_cast<float>(footprint_samples(options));
+  const TexelFootprint texels = texel_footprint(options, footprint_samples(options));
+  params.texel_share = texels.share;
+  params.tap_reach = texels.tap_reach;
+  params.tap_pull = texels.tap_pull;
+  params.haze_error = haze_error(options);
+  params.depth_bits = static_cast<uint>(std::countr_zero(depth_count(options)));
+  set_seen(view, bounds, params);
+  return params;
+}
+
+M44f world_to_exr_camera(const Camera& camera) {
+  M44f flip;
+  flip[2][2] = -1.0f;
+  return camera.to_world.inverse() * flip;
+}
+
+M44f world_to_ndc(const View& view) {
+  const V2f half = half_extent(view);
+  // Image plane to [0,1], y down; homogeneous, so the halves ride on w.
+  M44f projection;
+  projection[0][0] = 0.5f / half.x;
+  projection[1][1] = -0.5f / half.y;
+  const bool perspective = view.camera.kind == Camera::Kind::perspective;
+  const int from = perspective ? 2 : 3;  // w is z, or 1
+  projection[from][0] += 0.5f;
+  projection[from][1] += 0.5f;
+  if (perspective) {
+    projection[2][3] = 1.0f;
+    projection[3][3] = 0.0f;
+  }
+  return world_to_exr_camera(view.camera) * projection;
+}
+
+}  // namespace dapple

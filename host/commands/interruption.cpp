@@ -1,0 +1,45 @@
+#include "commands/interruption.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+
+namespace dapple {
+namespace {
+
+constexpr int kSignalled = 128;  ///< added to a signal's number, as shells do
+
+// All that a handler may touch.
+volatile std::sig_atomic_t received = 0;
+volatile std::sig_atomic_t saving = 0;
+
+// What a process that ends here leaves unfinished has no name of its own yet; the next run removes
+// it. A second SIGTERM is no sign of impatience: process managers send it twice.
+extern "C" void on_interruption(int signal) {
+  if (!saving || (received && signal == SIGINT)) _exit(kSignalled + signal);
+  if (!received) received = signal;
+}
+
+}  // namespace
+
+void catch_interruptions() {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction action {};
+    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = on_interruption;
+    action.sa_flags = SA_RESTART;
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+Stop save_when_interrupted() {
+  return [] {
+    saving = 1;
+    return received != 0;
+  };
+}
+
+int interruption_code() { return received ? kSignalled + received : 0; }
+
+}  // namespace dapple

@@ -1,0 +1,130 @@
+#include "commands/option_text.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <vector>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts{""};
+  for (const char c : text) {
+    if (c == at) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+/// The whole of `text` as a number, or an error.
+template <class Number>
+Number parse_number(const std::string& flag, const std::string& text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size() && !text.empty()) return value;
+  throw Error(ErrorKind::usage, fmt::format("{}: '{}' is not a number", flag, text));
+}
+
+template <class Number>
+std::vector<Number> parse_numbers(const std::string& flag, const std::string& text,
+                                  std::size_t count, const char* shape) {
+  const auto parts = split(text, ',');
+  if (parts.size() != count)
+    throw Error(ErrorKind::usage, fmt::format("{} {}: expected {}", flag, text, shape));
+  std::vector<Number> numbers;
+  for (const std::string& part : parts) numbers.push_back(parse_number<Number>(flag, part));
+  return numbers;
+}
+
+}  // namespace
+
+V3f parse_vector(const std::string& flag, const std::string& text) {
+  const auto v = parse_numbers<float>(flag, text, 3, "X,Y,Z");
+  return {v[0], v[1], v[2]};
+}
+
+PixelRect parse_crop(const std::string& text) {
+  const auto v = parse_numbers<int>("--crop", text, 4, "X0,Y0,X1,Y1");
+  return {v[0], v[1], v[2], v[3]};
+}
+
+std::pair<std::string, float> parse_opacity(const std::string& text) {
+  const auto at = text.rfind('=');
+  if (at == std::string::npos || at == 0) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--opacity {}: expected MATERIAL=VALUE, as in leaf=0.85", text));
+  }
+  return {text.substr(0, at),
+          parse_number<float>("--opacity " + text.substr(0, at), text.substr(at + 1))};
+}
+
+FrameRange parse_frames(const std::string& text) {
+  constexpr std::int64_t kMostFrames = 100'000, kLargestNumber = 1'000'000'000;
+  const auto fail = [&](const char* expected) {
+    throw Error(ErrorKind::usage, fmt::format("--frames {}: expected {}", text, expected));
+  };
+  const auto parts = split(text, ':');
+  const auto ends = split(parts[0], '-');
+  if (parts.size() > 2 || ends.size() > 2) fail("A-B or A-B:STEP, as in 1-24 or 0-100:10");
+  FrameRange range;
+  range.first = parse_number<std::int64_t>("--frames", ends.front());
+  range.last = parse_number<std::int64_t>("--frames", ends.back());
+  if (parts.size() == 2) range.step = parse_number<std::int64_t>("--frames", parts[1]);
+  if (range.last < range.first) fail("the first frame before the last");
+  if (range.last > kLargestNumber || range.step < 1 || range.step > kLargestNumber)
+    fail("numbers up to 1000000000, and a step of 1 or more");
+  if (range.count() > kMostFrames) fail("at most 100000 frames");
+  return range;
+}
+
+Estimator parse_estimator(const std::string& text) {
+  if (text == "exact") return Estimator::exact;
+  if (text == "prefiltered") return Estimator::prefiltered;
+  if (text == "packet") return Estimator::packet;
+  throw Error(ErrorKind::usage,
+              fmt::format("--estimator {}: there are exact, prefiltered and packet", text));
+}
+
+double parse_seconds(const std::string& flag, const std::string& text) {
+  const std::string units = "smh";
+  const std::size_t unit = text.empty() ? std::string::npos : units.find(text.back());
+  const bool plain = unit == std::string::npos;
+  double seconds = parse_number<double>(flag, plain ? text : text.substr(0, text.size() - 1));
+  for (std::size_t i = 0; !plain && i < unit; ++i) seconds *= 60;
+  if (seconds > 0 && seconds <= 1e9) return seconds;
+  throw Error(ErrorKind::usage,
+              fmt::format("{} {}: expected a time above 0, as in 30, 30s, 5m or 1h", flag, text));
+}
+
+Company parse_company(const std::string& text) {
+  if (text == "auto") return Company::automatic;
+  if (text == "alone") return Company::alone;
+  if (text == "neighbours") return Company::neighbours;
+  if (text == "point") return Company::point;
+  throw Error(ErrorKind::usage,
+              fmt::format("--trace-with {}: it is auto, alone, neighbours or point", text));
+}
+
+void parse_passes(const std::string& text, RenderOptions& options) {
+  options.ao = options.light = options.visits = false;
+  for (const std::string& pass : split(text, ',')) {
+    if (pass == "ao") {
+      options.ao = true;
+    } else if (pass == "light") {
+      options.light = true;
+    } else if (pass == "visits") {
+      options.visits = true;
+    } else {
+      throw Error(ErrorKind::usage,
+                  fmt::format("--passes {}: there are ao, light and visits", text));
+    }
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,144 @@
+// dapple render: the pipeline from a scene to files, top to bottom, for each frame.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <set>
+#include <thread>
+
+#include "commands/command.hpp"
+#include "commands/frames.hpp"
+#include "commands/interruption.hpp"
+#include "commands/option_text.hpp"
+#include "commands/progress.hpp"
+#include "commands/render_arguments.hpp"
+#include "commands/shot.hpp"
+#include "commands/statistics_text.hpp"
+#include "dapple/error.hpp"
+#include "dapple/wavefront.hpp"
+#include "files/output_file.hpp"
+#include "film/exr_output.hpp"
+
+namespace dapple {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
+  return {progress.callback(), save_when_interrupted(), a.checkpoint,
+          parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
+}
+
+void write_statistics(const RenderStatistics& statistics, const std::string& path) {
+  write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
+}
+
+void write_pictures(const RenderResult& result, const Frame& frame) {
+  use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+  write_exr(result.film, frame.output, result.interrupted ? Durable::no : Durable::yes);
+  if (!frame.png.empty()) write_png(result.film, frame.png);
+  if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
+}
+
+/// One line each; a scene may have thousands. Frames of a sequence repeat themselves.
+class NotePrinter {
+ public:
+  void print(const std::vector<std::string>& notes) {
+    constexpr std::size_t kMost = 20;
+    std::size_t printed = 0, left = 0;
+    for (const std::string& note : notes) {
+      if (!told_.insert(note).second) continue;
+      if (printed++ < kMost) {
+        fmt::print(stderr, "note: {}\n", note);
+      } else {
+        ++left;
+      }
+    }
+    if (left > 0) fmt::print(stderr, "note: and {} more\n", left);
+  }
+
+ private:
+  std::set<std::string> told_;
+};
+
+void print_summary(const RenderStatistics& s, const Frame& frame) {
+  const std::string files = frame.output + (frame.png.empty() ? "" : " and " + frame.png);
+  if (frame.title.empty()) {
+    fmt::print("{}wrote {}\n", statistics_text(s), files);
+    return;
+  }
+  fmt::print(
+      "{}, at {:.3f} s: load {:.2f}, build {:.2f}, refit {:.2f}, trace {:.2f}, total {:.2f} s; "
+      "wrote {}\n",
+      frame.title, *frame.seconds, s.seconds.load, s.seconds.build + s.seconds.prefilter,
+      s.seconds.refit, s.seconds.trace, s.seconds.total, files);
+  std::fflush(stdout);
+}
+
+void run_render(const RenderArguments& a) {
+  RenderOptions options = to_options(a);
+  const std::vector<Frame> frames = list_frames(a);
+  ProgressBar progress(a.quiet);
+  const RenderControl control = to_control(a, progress);
+  check_files(frames, a);
+  if (!options.cache.empty()) prepare_bvh_cache(options.cache);
+  catch_interruptions();
+
+  auto start = Clock::now();
+  Shot shot(a, options);
+  NotePrinter notes;
+  Renderer renderer;
+  for (const Frame& frame : frames) {
+    progress.begin(frame.title);
+    Scene scene = shot.frame(frame.seconds);
+    if (&frame == &frames.front()) check_files_spare(frames, a, scene.files);
+    const double load_seconds = since(start);
+    RenderResult result = renderer.render(std::move(scene), options, control);
+    progress.clear();
+    RenderStatistics& statistics = result.statistics;
+    // The picture before was the last that was asked for.
+    if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
+
+    const auto writing = Clock::now();
+    if (frame.seconds)
+      result.film.metadata.settings.emplace_back("frame_seconds",
+                                                 fmt::format("{}", *frame.seconds));
+    write_pictures(result, frame);
+    statistics.seconds.load = load_seconds;
+    statistics.seconds.write = since(writing);
+    statistics.seconds.total = since(start);
+    if (!frame.stats_json.empty()) write_statistics(statistics, frame.stats_json);
+    if (!result.checkpoint_failure.empty())
+      throw Error(ErrorKind::failed, result.checkpoint_failure + "; the picture is written");
+    if (!a.quiet) {
+      notes.print(statistics.notes);
+      print_summary(statistics, frame);
+    }
+    if (result.interrupted || interruption_code() != 0) break;
+    start = Clock::now();
+  }
+}
+
+}  // namespace
+
+Run add_render_command(CLI::App& app) {
+  auto a = std::make_shared<RenderArguments>();
+  add_render_options(app, *a);
+  app.footer(
+      "Example:\n  dapple render tree.glb --opacity leaf=0.85 --spp 64 -o tree.exr --png "
+      "tree.png\n"
+      "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt  # Ctrl-C saves\n"
+      "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt --resume tree.ckpt\n"
+      "  dapple render \"scene:tree?wind=1\" --frames 0-47 --fps 24 -o out.####.exr"
+      "\n\n"
+      "Layers: R,G,B,A; ao; bent; light.NAME; N; P; Z; samples; error; visits. Where rays miss, ao "
+      "is 1.");
+  return [a] { run_render(*a); };
+}
+
+}  // namespace dapple

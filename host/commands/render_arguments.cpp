@@ -1,0 +1,179 @@
+// The options of `dapple render`, and from their text to RenderOptions.
+#include "commands/render_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "commands/option_text.hpp"
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+void add_picture_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  app.add_option("--width", o.width, "Picture width, pixels")->capture_default_str();
+  app.add_option("--height", o.height, "Picture height, pixels")->capture_default_str();
+  app.add_option(
+      "--crop", a.crop,
+      "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
+  app.add_option("--spp", a.spp, "Camera samples a pixel; with a target the least")
+      ->default_str(fmt::format("{}, with --target-rmse what tells an error", o.spp));
+  app.add_option(
+         "--target-error", o.target_error,
+         "Sample each pixel until its estimated standard error is below this: of AO, and of "
+         "lights relative to their largest unoccluded irradiance; 0: --spp everywhere")
+      ->capture_default_str();
+  app.add_option(
+         "--target-rmse", o.target_rmse,
+         "Sample where time lowers the picture's error most, until the estimated root mean square "
+         "of its pixels' errors is below this in every pass; 0: don't. Sooner there than by "
+         "--target-error to the same mean, but pixels' errors differ")
+      ->capture_default_str();
+  app.add_option("--max-spp", o.max_spp, "With a target the most samples a pixel")
+      ->capture_default_str();
+  app.add_option("--depths", o.depths,
+                 "Surfaces at which a camera sample is shaded, 1, 2 or 4, each chosen among those "
+                 "that it slips through; 0: by the scene's opacities, more for thin leaves")
+      ->capture_default_str();
+  app.add_option("--ao-rays", o.ao_rays, "AO rays a camera sample, at least one a depth")
+      ->capture_default_str();
+  app.add_option("--light-rays", o.light_rays, "Rays a light and camera sample")
+      ->capture_default_str();
+  app.add_option(
+         "--estimator", a.estimator,
+         "exact: every surface counts; prefiltered: stop at BVH nodes the ray's footprint covers; "
+         "packet: prefiltered, with 4 --ao-rays and more those of a camera sample at once on GPUs "
+         "too, as CPUs do anyway")
+      ->capture_default_str();
+  app.add_option(
+         "--footprint", o.footprint,
+         "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
+      ->capture_default_str();
+  app.add_option(
+         "--passes", a.passes,
+         "Which passes to make, with commas between: ao, light; visits: what the others' rays cost")
+      ->capture_default_str();
+  app.add_option("--ao-distance", o.ao_distance,
+                 "Surfaces farther than this, in metres, don't occlude; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--ao-falloff", o.ao_falloff,
+                 "Power p: a surface at t counts (1 - t / distance)^p; 0: a hard limit")
+      ->capture_default_str();
+  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
+}
+
+void add_scene_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  app.add_option("--camera", o.camera,
+                 "Camera by name; default: the scene's first, or one that frames it");
+  app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
+  app.add_option("--look-at", a.look_at, "Where it looks: X,Y,Z");
+  app.add_option("--up", a.up, "Its up direction: X,Y,Z; default 0,1,0");
+  app.add_option("--fov", o.fov_degrees,
+                 "Vertical field of view, degrees; default: the camera's own, or 40");
+  app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
+  app.add_option(
+      "--dome", a.dome,
+      "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
+      "around, beside other lights");
+  app.add_option("--dome-rotation", a.dome_rotation,
+                 "Degrees by which it is turned about +Y, from +Z towards +X")
+      ->capture_default_str();
+  app.add_option("--light-radius", a.scene_options.light_radius,
+                 "Radius that glTF point lights get, metres")
+      ->capture_default_str();
+  app.add_option("--line-radius", a.scene_options.line_radius,
+                 "Make strands of this radius, metres, of a glTF file's lines; 0: leave them out")
+      ->capture_default_str();
+  app.add_flag("--allow-outside", a.scene_options.allow_outside,
+               "Let a glTF file name buffers and images outside of its folder");
+  app.add_option("--opacity", a.opacity,
+                 "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
+  app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
+}
+
+void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
+  CLI::Option& checkpoint = *app.add_option(
+      "--checkpoint", a.checkpoint,
+      "Keep what is traced in this file, for --resume; also when interrupted, and at the end");
+  app.add_option("--checkpoint-every", a.checkpoint_every, "How often, as in 30, 30s, 5m or 1h")
+      ->capture_default_str()
+      ->needs(&checkpoint);
+  app.add_option("--resume", a.resume,
+                 "Go on from this checkpoint: same scene and options, but --spp, --max-spp and "
+                 "the targets may ask for more");
+}
+
+void add_motion_options(CLI::App& app, RenderArguments& a) {
+  CLI::Option& frame = *app.add_option(
+      "--frame", a.frame, "Seconds: what moves is shown as it is at that time; default: at rest");
+  CLI::Option& frames =
+      *app.add_option("--frames", a.frames,
+                      "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; the outputs "
+                      "have a run of # in place of the number")
+           ->excludes(&frame);
+  app.add_option("--fps", a.fps, "Frames a second")->capture_default_str()->needs(&frames);
+  app.add_option("--animation", a.scene_options.animation,
+                 "The glTF animation that plays, by name; *: all at once; default: the first");
+}
+
+void check_motion(const RenderArguments& a) {
+  if (!(std::isfinite(a.fps) && a.fps > 0))
+    throw Error(ErrorKind::usage, "--fps must be a number above 0");
+  if (!a.scene_options.animation.empty() && !a.frame && a.frames.empty())
+    throw Error(ErrorKind::usage, "--animation needs --frame or --frames: which time to show");
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& app, RenderArguments& a) {
+  app.add_option("SCENE", a.scene,
+                 "glTF file (.gltf, .glb), hair (.hair) or a procedural scene, "
+                 "\"scene:tree?leaves=50000\"")
+      ->required();
+  app.add_option("-o,--output", a.output, "OpenEXR file to write")->required();
+  app.add_option("--png", a.png,
+                 "Also write an 8-bit preview, and with visits a heat map F_visits.png");
+  add_picture_options(app, a);
+  add_scene_options(app, a);
+  add_motion_options(app, a);
+  add_checkpoint_options(app, a);
+  app.add_option("--device", a.options.device,
+                 "OpenCL device, by part of its name (see dapple devices)");
+  app.add_option("--trace-with", a.trace_with,
+                 "Whom a ray is traced with, for devices that do better than dapple guesses: auto; "
+                 "alone; neighbours; point: the rays of its own point")
+      ->capture_default_str();
+  app.add_option("--kernel-dir", a.options.kernel_dir,
+                 "Read OpenCL kernels from this folder (for developers)");
+  app.add_option("--cache", a.options.cache,
+                 "Keep built BVHs in this folder, made if there is none, and reuse them; it may be "
+                 "deleted at any time");
+  app.add_option("--stats-json", a.stats_json, "Write the statistics as JSON");
+  app.add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
+}
+
+RenderOptions to_options(const RenderArguments& a) {
+  RenderOptions o = a.options;
+  if (a.spp) o.spp = *a.spp;
+  if (!a.spp && o.target_rmse > 0) o.spp = 1;
+  o.estimator = parse_estimator(a.estimator);
+  o.trace_with = parse_company(a.trace_with);
+  parse_passes(a.passes, o);
+  if (!a.crop.empty()) o.crop = parse_crop(a.crop);
+  if (!a.look_from.empty() || !a.look_at.empty()) {
+    if (a.look_from.empty() || a.look_at.empty()) {
+      throw Error(ErrorKind::usage, "--look-from and --look-at go together");
+    }
+    o.look = LookAt{parse_vector("--look-from", a.look_from), parse_vector("--look-at", a.look_at),
+                    a.up.empty() ? V3f(0, 1, 0) : parse_vector("--up", a.up)};
+  }
+  for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
+  validate(o);
+  check_motion(a);
+  return o;
+}
+
+}  // namespace dapple

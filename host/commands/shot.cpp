@@ -1,0 +1,72 @@
+// Scenes frame by frame: see shot.hpp.
+#include "commands/shot.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "scene/ground.hpp"
+#include "camera/view.hpp"
+
+namespace dapple {
+namespace {
+
+Light read_dome(const RenderArguments& a) {
+  Light dome;
+  dome.name = "dome";
+  dome.kind = LightKind::dome;
+  dome.environment = load_environment(a.dome);
+  dome.rotation =
+      static_cast<float>(std::remainder(a.dome_rotation, 360.0) * std::numbers::pi / 180);
+  return dome;
+}
+
+}  // namespace
+
+void use_lights(Scene& scene, const std::vector<Light>& lights) {
+  for (Instance& instance : scene.instances) instance.light = -1;
+  scene.lights = lights;
+  for (const Light& light : lights)
+    if (light.environment) scene.files.push_back(light.environment->file);
+}
+
+Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), options_(options) {
+  if (!a.lights.empty()) lights_ = load_lights(a.lights);
+  if (!a.dome.empty()) dome_ = read_dome(a);
+  if (a.frames.empty()) return;
+  moving_.emplace(a.scene, a.scene_options);
+  options.ground = false;
+}
+
+Scene Shot::frame(std::optional<double> seconds) {
+  SceneOptions scene_options = arguments_.scene_options;
+  scene_options.time = seconds;
+  Scene scene = moving_ ? moving_->at(seconds) : load_scene(arguments_.scene, scene_options);
+  if (lights_) use_lights(scene, *lights_);
+  if (dome_) scene.lights.push_back(*dome_);
+  if (!moving_) return scene;
+  if (!set_) set_ = settle(scene);
+  put_up(scene);
+  return scene;
+}
+
+Shot::Set Shot::settle(const Scene& first) const {
+  Set set;
+  const Camera camera = choose_view(first, options_, set.notes).camera;
+  if (!options_.look && first.cameras.empty()) set.camera = camera;
+  if (options_.light && first.lights.empty()) set.light = key_light(first, camera);
+  if (options_.ground) set.ground_under = scene_bounds(first);
+  return set;
+}
+
+void Shot::put_up(Scene& scene) const {
+  if (set_->camera) scene.cameras.push_back(*set_->camera);
+  if (set_->light) scene.lights.push_back(*set_->light);
+  if (set_->ground_under) add_ground(scene, *set_->ground_under);
+  scene.warnings.insert(scene.warnings.end(), set_->notes.begin(), set_->notes.end());
+  if (set_->light)
+    scene.warnings.emplace_back(
+        "no lights in the scene: added a rect light named key; --lights F brings others");
+}
+
+}  // namespace dapple

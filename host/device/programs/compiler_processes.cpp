@@ -1,0 +1,147 @@
+#include "device/programs/compiler_processes.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "dapple/error.hpp"
+#include "device/cpus.hpp"
+#include "device/programs/kernel_source.hpp"
+
+namespace dapple {
+namespace {
+
+/// Each takes some 230 MB.
+constexpr std::size_t kMostProcesses = 4;
+
+using Arguments = std::vector<std::string>;
+
+std::string& program_in_use() {
+  static std::string program;
+  return program;
+}
+
+/// The process, or 0 where it cannot be started. It says nothing.
+pid_t start_process(const std::string& program, Arguments arguments) {
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  if (posix_spawn_file_actions_init(&files) != 0) return 0;
+  for (const int descriptor : {0, 1, 2})
+    posix_spawn_file_actions_addopen(&files, descriptor, "/dev/null", O_RDWR, 0);
+  posix_spawn_file_actions_addclosefrom_np(&files, 3);
+  pid_t process = 0;
+  if (posix_spawn(&process, program.c_str(), &files, nullptr, argv.data(), environ) != 0)
+    process = 0;
+  posix_spawn_file_actions_destroy(&files);
+  return process;
+}
+
+/// Whoever asks for a kernel without a source is told why then.
+bool is_missing(const DeviceContext& context, const KernelName& kernel, CompileTo to) {
+  try {
+    return !context.is_compiled(kernel, to);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Kernels of one program, which is compiled as a whole.
+struct Share {
+  std::size_t source_size = 0;  ///< bytes: roughly what compiling takes
+  std::vector<KernelName> kernels;
+};
+
+std::vector<Share> by_program(const DeviceContext& context, const std::set<KernelName>& kernels,
+                              CompileTo to) {
+  std::map<std::pair<std::string, Variant>, Share> programs;
+  for (const KernelName& kernel : kernels) {
+    if (!is_missing(context, kernel, to)) continue;
+    const std::string file = kernel.source_file();
+    Share& share = programs[{file, kernel.variant}];
+    if (share.kernels.empty()) share.source_size = expand_kernel(file, context.kernel_dir()).size();
+    share.kernels.push_back(kernel);
+  }
+  std::vector<Share> shares;
+  for (auto& [program, share] : programs) shares.push_back(std::move(share));
+  return shares;
+}
+
+/// The same in `count` shares of about the same size: the largest goes first, each to whom has
+/// least.
+std::vector<Share> deal(std::vector<Share> programs, std::size_t count) {
+  const auto less = [](const Share& a, const Share& b) { return a.source_size < b.source_size; };
+  std::vector<Share> hands(std::min(count, programs.size()));
+  std::stable_sort(programs.rbegin(), programs.rend(), less);
+  for (const Share& program : programs) {
+    Share& hand = *std::min_element(hands.begin(), hands.end(), less);
+    hand.source_size += program.source_size;
+    hand.kernels.insert(hand.kernels.end(), program.kernels.begin(), program.kernels.end());
+  }
+  return hands;
+}
+
+}  // namespace
+
+std::string text_of(const KernelName& kernel) {
+  return fmt::format("{}:{}:{:d}:{:d}", kernel.name, kernel.file, kernel.variant.prefiltered,
+                     kernel.variant.one_point);
+}
+
+KernelName parse_kernel(const std::string& text) {
+  char name[64], file[64];
+  int prefiltered = 0, one_point = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%63[a-z_]:%63[a-z_/]:%1d:%1d%n", name, file, &prefiltered,
+                  &one_point, &end) != 4 ||
+      static_cast<std::size_t>(end) != text.size())
+    throw Error(ErrorKind::usage, "no kernel: '" + text + "'");
+  return {name, file, {prefiltered != 0, one_point != 0}};
+}
+
+void CompilerProcesses::use(const std::string& program) { program_in_use() = program; }
+
+CompilerProcesses::~CompilerProcesses() {
+  for (const pid_t process : running_) kill(process, SIGKILL);
+  wait();
+}
+
+void CompilerProcesses::start(const DeviceContext& context, const std::vector<KernelName>& kernels,
+                              CompileTo to) {
+  if (program_in_use().empty() || !context.keeps_compiled()) return;
+  const std::size_t cpus = cpus_of_process().size();
+  if (cpus < 2) return;  // nothing would be sooner
+  Arguments common{"dapple", "compile", "--parent", std::to_string(getpid())};
+  if (to == CompileTo::programs) common.emplace_back("--programs");
+  const auto add_option = [&](const char* name, const std::string& value) {
+    if (!value.empty()) common.insert(common.end(), {name, value});
+  };
+  add_option("--device", context.chosen_by());
+  add_option("--kernel-dir", context.kernel_dir());
+  const auto programs = by_program(context, {kernels.begin(), kernels.end()}, to);
+  for (const Share& share : deal(programs, std::min(cpus, kMostProcesses))) {
+    Arguments arguments = common;
+    for (const KernelName& kernel : share.kernels) arguments.push_back(text_of(kernel));
+    if (const pid_t process = start_process(program_in_use(), std::move(arguments)))
+      running_.push_back(process);
+  }
+}
+
+void CompilerProcesses::wait() {
+  for (const pid_t process : running_) {
+    while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }
+  running_.clear();
+}
+
+}  // namespace dapple

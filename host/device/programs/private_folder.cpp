@@ -1,0 +1,71 @@
+// The lock tells the living from the dead: the kernel lets go of it however a process ends, and
+// unlike a process id it holds in containers that share the place.
+#include "device/programs/private_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPrefix = "dapple-run-";
+constexpr int kAttempts = 20;
+
+int open_folder(const fs::path& folder) {
+  return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+}
+
+bool is_removed(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) != 0 || status.st_nlink == 0;
+}
+
+void remove_those_of_the_dead(const fs::path& parent) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent, ignored)) {
+    if (!entry.path().filename().native().starts_with(kPrefix)) continue;
+    const int lock = open_folder(entry.path());
+    if (lock < 0) continue;
+    if (flock(lock, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry.path(), ignored);
+    close(lock);
+  }
+}
+
+}  // namespace
+
+PrivateFolder::PrivateFolder(const fs::path& parent) : owner_(getpid()) {
+  std::error_code error;
+  fs::create_directories(parent, error);
+  if (error) throw Error(ErrorKind::failed, error.message());
+  remove_those_of_the_dead(parent);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::string name = (parent / (std::string(kPrefix) + "XXXXXX")).string();
+    if (!mkdtemp(name.data())) throw Error(ErrorKind::failed, std::strerror(errno));
+    lock_ = open_folder(name);
+    path_ = name;
+    // Between its birth and its lock a folder looks like one of the dead to others. Where a file
+    // system has no locks, nobody can take others' folders for dead ones either.
+    if (lock_ >= 0 && (flock(lock_, LOCK_EX) != 0 || !is_removed(lock_))) return;
+    if (lock_ >= 0) close(lock_);
+    lock_ = -1;
+  }
+  throw Error(ErrorKind::failed, "folders vanish as soon as they are made");
+}
+
+PrivateFolder::~PrivateFolder() {
+  std::error_code ignored;
+  if (getpid() == owner_) fs::remove_all(path_, ignored);
+  if (lock_ >= 0) close(lock_);
+}
+
+}  // namespace dapple

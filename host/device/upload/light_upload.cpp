@@ -1,0 +1,76 @@
+#include "device/upload/light_upload.hpp"
+
+#include <cmath>
+
+namespace dapple {
+namespace {
+
+void store(const V3f& from, float (&to)[3]) {
+  for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
+}
+
+/// Appends the triangles of every instance that emits for `light`; their area in m^2.
+double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangle>& emitters) {
+  const std::size_t first = emitters.size();
+  std::vector<double> areas;
+  double total = 0;
+  for (const Instance& instance : scene.instances) {
+    if (instance.light != light) continue;
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.has_strands()) continue;
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+      const auto corner = [&](int c) {
+        return mesh.positions[mesh.indices[3 * t + c]] * instance.to_world;
+      };
+      const V3f vertex = corner(0);
+      const V3f edge1 = corner(1) - vertex, edge2 = corner(2) - vertex;
+      const V3f cross = edge1.cross(edge2);
+      const double area = 0.5 * cross.length();
+      if (!(area > 0)) continue;
+      EmitterTriangle triangle{};
+      store(vertex, triangle.vertex);
+      // A mirrored placement turns triangles inside out; glTF's front face stays front.
+      const bool mirrored = instance.to_world.determinant() < 0;
+      store(mirrored ? edge2 : edge1, triangle.edge1);
+      store(mirrored ? edge1 : edge2, triangle.edge2);
+      emitters.push_back(triangle);
+      total += area;
+      areas.push_back(total);
+    }
+  }
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    emitters[first + i].cumulative = static_cast<float>(areas[i] / total);
+  }
+  return total;
+}
+
+}  // namespace
+
+void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
+                 std::vector<EmitterTriangle>& emitters) {
+  for (std::size_t index = 0; index < scene.lights.size(); ++index) {
+    const Light& light = scene.lights[index];
+    LightRecord record{};
+    record.kind = static_cast<uint>(light.kind);
+    store(light.position, record.position);
+    store(light.direction, record.direction);
+    store(light.edge_u, record.edge_u);
+    store(light.edge_v, record.edge_v);
+    record.radius = light.radius;
+    const double half = std::sin(0.5 * light.angular_radius);
+    record.one_minus_cos = static_cast<float>(2.0 * half * half);
+    record.cos_inner = light.cos_inner;
+    record.cos_outer = light.cos_outer;
+    record.two_sided = light.double_sided ? 1u : 0u;
+    record.area = light.edge_u.cross(light.edge_v).length();
+    if (light.kind == LightKind::mesh) {
+      record.id = static_cast<uint>(index + 1);
+      record.first_triangle = static_cast<uint>(emitters.size());
+      record.area = static_cast<float>(append_emitters(scene, static_cast<int>(index), emitters));
+      record.triangle_count = static_cast<uint>(emitters.size()) - record.first_triangle;
+    }
+    records.push_back(record);
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,136 @@
+#include "device/upload/scene_upload.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "device/upload/dome_upload.hpp"
+#include "device/upload/light_upload.hpp"
+#include "device/upload/memory_need.hpp"
+#include "device/upload/texture_upload.hpp"
+
+namespace dapple {
+namespace {
+
+template <class Array>
+Buffer share(DeviceContext& context, const Array& data) {
+  return context.share(data.data(), data.size() * sizeof(data[0]));
+}
+
+template <class Array>
+std::size_t bytes_of(const Array& data) {
+  return data.size() * sizeof(data[0]);
+}
+
+std::size_t bytes_of_all(const DeviceBuffers& b) {
+  return b.nodes.bytes() + b.blocks.bytes() + b.segments.bytes() + b.textured.bytes() +
+         b.instances.bytes() + b.materials.bytes() + b.texels.bytes() + b.lights.bytes() +
+         b.emitters.bytes() + b.environments.bytes();
+}
+
+/// Shares `now` unless that is what is there already.
+template <class T>
+void share_if_new(DeviceContext& context, std::vector<T> now, std::vector<T>& values,
+                  Buffer& buffer) {
+  if (now.size() == values.size() &&
+      (now.empty() || std::memcmp(now.data(), values.data(), bytes_of(now)) == 0))
+    return;
+  buffer = {};
+  values = std::move(now);
+  buffer = share(context, values);
+}
+
+void share_lights(DeviceContext& context, const Scene& scene, DeviceBuffers& buffers) {
+  std::vector<LightRecord> records;
+  std::vector<EmitterTriangle> emitters;
+  std::vector<float> environments;
+  pack_lights(scene, records, emitters);
+  pack_domes(scene, records, environments);
+  share_if_new(context, std::move(records), buffers.light_records, buffers.lights);
+  share_if_new(context, std::move(emitters), buffers.emitter_triangles, buffers.emitters);
+  share_if_new(context, std::move(environments), buffers.environment_data, buffers.environments);
+}
+
+void share_placement(DeviceContext& context, const SceneBvh& bvh, DeviceBuffers& buffers) {
+  buffers.instances = {};
+  buffers.instance_records = bvh.instances;
+  buffers.instances = share(context, buffers.instance_records);
+  buffers.params = {bvh.root, bvh.has_top ? 1u : 0u};
+}
+
+template <class Array>
+void write_ranges(DeviceContext& context, const Buffer& buffer, const Array& data,
+                  const std::vector<IndexRange>& ranges) {
+  for (const IndexRange& range : ranges) {
+    context.write(buffer, &data[range.begin], (range.end - range.begin) * sizeof(data[0]),
+                  range.begin * sizeof(data[0]));
+  }
+}
+
+}  // namespace
+
+DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh) {
+  auto buffers = std::make_shared<DeviceBuffers>(device);
+  if (!bvh.textured.empty()) pack_materials(scene, buffers->material_records, buffers->texel_data);
+  pack_lights(scene, buffers->light_records, buffers->emitter_triangles);
+  pack_domes(scene, buffers->light_records, buffers->environment_data);
+  DeviceContext& context = device.context();
+  DeviceScene result;
+  result.bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(bvh.segments) +
+                 bytes_of(bvh.textured) + bytes_of(bvh.instances) +
+                 bytes_of(buffers->material_records) + bytes_of(buffers->texel_data) +
+                 bytes_of(buffers->light_records) + bytes_of(buffers->emitter_triangles) +
+                 bytes_of(buffers->environment_data);
+  check_memory(
+      device.info(),
+      {result.bytes, std::max({bytes_of(bvh.nodes), bytes_of(bvh.blocks), bytes_of(bvh.segments)})},
+      "needs");
+  buffers->node_values = bvh.nodes;
+  buffers->block_values = bvh.blocks;
+  buffers->segment_values = bvh.segments;
+  buffers->textured_values = bvh.textured;
+  buffers->nodes = share(context, bvh.nodes);
+  buffers->blocks = share(context, bvh.blocks);
+  buffers->segments = share(context, bvh.segments);
+  buffers->textured = share(context, bvh.textured);
+  share_placement(context, bvh, *buffers);
+  buffers->bounds = bvh.bounds;
+  buffers->materials = share(context, buffers->material_records);
+  buffers->texels = share(context, buffers->texel_data);
+  buffers->lights = share(context, buffers->light_records);
+  buffers->emitters = share(context, buffers->emitter_triangles);
+  buffers->environments = share(context, buffers->environment_data);
+  context.finish();
+  result.buffers = std::move(buffers);
+  return result;
+}
+
+BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
+                 const Scene& moved) {
+  DeviceContext& context = device.context();
+  DeviceBuffers& buffers = *on_device.buffers;
+  BvhUpdate changes;
+  {
+    const std::shared_ptr<void> nodes = context.lend(buffers.nodes),
+                                blocks = context.lend(buffers.blocks);
+    changes = bvh.update(moved);
+  }
+  const SceneBvh& now = bvh.bvh();
+  if (changes.is_new) {
+    on_device = {};
+    on_device = upload(device, moved, now);
+    return changes;
+  }
+  if (!context.shares_memory()) {
+    write_ranges(context, buffers.nodes, now.nodes, changes.nodes);
+    write_ranges(context, buffers.blocks, now.blocks, changes.blocks);
+  }
+  buffers.bounds = now.bounds;
+  if (changes.placement) share_placement(context, now, buffers);
+  share_lights(context, moved, buffers);
+  context.finish();
+  on_device.bytes = bytes_of_all(buffers);
+  return changes;
+}
+
+}  // namespace dapple

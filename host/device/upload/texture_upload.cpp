@@ -1,0 +1,76 @@
+#include "device/upload/texture_upload.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <span>
+#include <tuple>
+
+#include "bvh/opacity/triangle_opacity.hpp"
+
+namespace dapple {
+namespace {
+
+/// Texels begin at multiples of this, and offsets count them.
+constexpr std::size_t kOffsetUnit = 16;
+
+uint next_offset(std::vector<uchar>& texels) {
+  texels.resize((texels.size() + kOffsetUnit - 1) / kOffsetUnit * kOffsetUnit);
+  return static_cast<uint>(texels.size() / kOffsetUnit);
+}
+
+TextureRecord pack_texture(const Texture& texture, std::vector<uchar>& texels) {
+  TextureRecord record{};
+  record.offset = next_offset(texels);
+  record.width = texture.width;
+  record.height = texture.height;
+  record.flags = static_cast<uint>(texture.wrap_s) | static_cast<uint>(texture.wrap_t) << 2 |
+                 (texture.nearest ? 16u : 0u);
+  texels.insert(texels.end(), texture.alpha.begin(), texture.alpha.end());
+  return record;
+}
+
+/// Offsets of the coarser levels, finest first.
+std::vector<uint> pack_mips(const Texture& texture, float factor, float cutoff,
+                            std::vector<uchar>& texels) {
+  const OpacityPyramid pyramid(texture, factor, cutoff);
+  std::vector<uint> offsets;
+  for (std::size_t level = 1; level < pyramid.levels().size(); ++level) {
+    if (offsets.size() == DAPPLE_MOST_MIPS) break;
+    offsets.push_back(next_offset(texels));
+    for (const float opacity : pyramid.levels()[level].opacity)
+      texels.push_back(static_cast<uchar>(std::lround(255.0f * opacity)));
+  }
+  return offsets;
+}
+
+}  // namespace
+
+void pack_materials(const Scene& scene, std::vector<MaterialRecord>& records,
+                    std::vector<uchar>& texels) {
+  std::vector<TextureRecord> textures;
+  for (const Texture& texture : scene.textures) textures.push_back(pack_texture(texture, texels));
+  std::map<std::tuple<int, float, float>, std::vector<uint>> mips;
+  for (const Material& material : scene.materials) {
+    MaterialRecord record{};
+    record.alpha = material.alpha;
+    record.cutoff = cutoff_of(material);
+    if (material.alpha_texture >= 0) {
+      record.texture = textures[material.alpha_texture];
+      if (material.alpha_mode != AlphaMode::opaque) {
+        // What is blended is linear in the factor, which is applied later.
+        const float factor = record.cutoff < 0 ? 1.0f : material.alpha;
+        const auto [at, is_new] = mips.try_emplace({material.alpha_texture, factor, record.cutoff});
+        if (is_new) {
+          at->second =
+              pack_mips(scene.textures[material.alpha_texture], factor, record.cutoff, texels);
+        }
+        record.mips = static_cast<uint>(at->second.size());
+        std::copy(at->second.begin(), at->second.end(), record.mip_offset);
+      }
+    }
+    records.push_back(record);
+  }
+}
+
+}  // namespace dapple

@@ -1,0 +1,72 @@
+#include "files/compression.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+/// Bytes a frame: enough of them for all processors, and few enough not to matter to the size.
+constexpr std::size_t kFrame = std::size_t{1} << 20;
+constexpr int kLevel = 1;
+
+/// A block of zeros, 128 KiB, takes 4 bytes: no frame can become more than this times its size.
+constexpr std::size_t kMostGrowth = std::size_t{1} << 16;
+
+/// What one thread works with from frame to frame: fresh memory for each takes longer than zstd.
+struct Workshop {
+  std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
+  std::size_t capacity = ZSTD_compressBound(kFrame);
+  std::unique_ptr<std::byte[]> frame = std::make_unique_for_overwrite<std::byte[]>(capacity);
+};
+
+std::vector<std::byte> compress_frame(Workshop& workshop, Section bytes) {
+  std::byte* frame = workshop.frame.get();
+  const std::size_t size = ZSTD_compressCCtx(workshop.context.get(), frame, workshop.capacity,
+                                             bytes.data(), bytes.size(), kLevel);
+  if (ZSTD_isError(size)) {
+    throw Error(ErrorKind::failed, std::string("cannot compress: ") + ZSTD_getErrorName(size));
+  }
+  return {frame, frame + size};
+}
+
+}  // namespace
+
+std::vector<std::byte> compress(Section bytes) {
+  std::vector<std::vector<std::byte>> frames((bytes.size() + kFrame - 1) / kFrame);
+  tbb::enumerable_thread_specific<Workshop> workshops;
+  tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+    const std::size_t first = i * kFrame;
+    frames[i] = compress_frame(workshops.local(),
+                               bytes.subspan(first, std::min(kFrame, bytes.size() - first)));
+  });
+  std::vector<std::byte> all;
+  for (const std::vector<std::byte>& frame : frames)
+    all.insert(all.end(), frame.begin(), frame.end());
+  return all;
+}
+
+std::size_t decompressed_size(Section frames) {
+  std::size_t all = 0;
+  while (!frames.empty()) {
+    const std::size_t size = ZSTD_findFrameCompressedSize(frames.data(), frames.size());
+    const unsigned long long becomes = ZSTD_getFrameContentSize(frames.data(), frames.size());
+    if (ZSTD_isError(size) || size > frames.size() || becomes > size * kMostGrowth) return 0;
+    all += becomes;
+    frames = frames.subspan(size);
+  }
+  return all;
+}
+
+bool decompress(Section frames, std::span<std::byte> bytes) {
+  if (frames.empty()) return bytes.empty();
+  return ZSTD_decompress(bytes.data(), bytes.size(), frames.data(), frames.size()) == bytes.size();
+}
+
+}  // namespace dapple

@@ -1,0 +1,183 @@
+// Pending files on POSIX calls: iostreams lose errno, and "No space left on device" is the
+// one thing that the user must be told. In: bytes. Out: a finished file, or an Error.
+#include "files/output_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "dapple/error.hpp"
+#include "files/temporary_file.hpp"
+
+namespace dapple {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+
+std::string cannot_write(const std::string& path, const std::string& reason) {
+  return "cannot write " + path + ": " + reason;
+}
+
+std::string folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+// A path that does not resolve (a loop, an unreadable folder) is left for open() to refuse.
+std::string follow_links(const std::string& path) {
+  std::error_code ignored;
+  const fs::path resolved = fs::canonical(path, ignored);
+  return ignored ? path : resolved.string();
+}
+
+// Why `target` cannot become a file of ours; empty when it can.
+std::string refusal(const std::string& target) {
+  if (target.empty()) return "the name is empty";
+  std::error_code problem;
+  const fs::file_status status = fs::status(target, problem);
+  // Renaming over it would replace the link; creating what it names is not ours to do.
+  if (!fs::exists(status) && fs::is_symlink(fs::symlink_status(target, problem)))
+    return "it is a symbolic link that leads nowhere";
+  if (fs::is_directory(status)) return "it is a folder";
+  if (fs::exists(status) && !fs::is_regular_file(status)) return "it is not a regular file";
+  if (fs::exists(status) && access(target.c_str(), W_OK) != 0) return std::strerror(errno);
+  if (fs::path(target).filename().empty()) return "it names a folder, not a file";
+
+  const std::string folder = folder_of(target);
+  if (!fs::is_directory(folder, problem)) return "there is no folder " + folder;
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    return "folder " + folder + ": " + std::strerror(errno);
+  }
+  const auto longest = pathconf(folder.c_str(), _PC_NAME_MAX);
+  if (longest > 0 && fs::path(target).filename().native().size() > std::size_t(longest)) {
+    return std::strerror(ENAMETOOLONG);
+  }
+  return {};
+}
+
+// An overwritten file keeps its permissions. Where that fails, the umask's are no worse.
+void copy_permissions(const std::string& from, int to) {
+  struct stat existing {};
+  if (stat(from.c_str(), &existing) == 0 && fchmod(to, existing.st_mode & 0777) != 0) errno = 0;
+}
+
+// Whether the file is these pieces and nothing else.
+bool holds(const std::string& path, std::span<const std::string_view> pieces) {
+  std::ifstream file(path, std::ios::binary);
+  std::string block(kBufferBytes, '\0');
+  for (std::string_view piece : pieces) {
+    while (!piece.empty()) {
+      const std::size_t step = std::min(piece.size(), block.size());
+      file.read(block.data(), static_cast<std::streamsize>(step));
+      if (!file || piece.substr(0, step) != std::string_view(block.data(), step)) return false;
+      piece.remove_prefix(step);
+    }
+  }
+  return file.peek() == std::ifstream::traits_type::eof();
+}
+
+}  // namespace
+
+void check_output_path(const std::string& path) {
+  const std::string reason = refusal(follow_links(path));
+  if (!reason.empty()) throw Error(ErrorKind::usage, cannot_write(path, reason));
+  remove_abandoned_files(folder_of(follow_links(path)));
+}
+
+PendingFile::PendingFile(const std::string& target) : name_(target), target_(follow_links(target)) {
+  const std::string reason = refusal(target_);
+  if (!reason.empty()) throw Error(ErrorKind::failed, cannot_write(name_, reason));
+  TemporaryFile file = create_temporary_file(folder_of(target_));
+  descriptor_ = file.descriptor;
+  if (descriptor_ < 0) {
+    throw Error(ErrorKind::failed, cannot_write(name_, std::strerror(errno)));
+  }
+  temporary_ = std::move(file.path);
+  lock_ = fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
+  copy_permissions(target_, descriptor_);
+  buffer_.reserve(kBufferBytes);
+}
+
+PendingFile::~PendingFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void PendingFile::fail(const std::string& reason) {
+  if (first_failure_.empty()) first_failure_ = reason;
+  throw Error(ErrorKind::failed, cannot_write(name_, first_failure_));
+}
+
+void PendingFile::fail_with_errno() { fail(std::strerror(errno)); }
+
+void PendingFile::write(const char* bytes, std::size_t count) {
+  while (count > 0) {
+    const std::size_t step = std::min(count, kBufferBytes - buffer_.size());
+    buffer_.append(bytes, step);
+    bytes += step;
+    count -= step;
+    if (buffer_.size() == kBufferBytes) flush();
+  }
+}
+
+void PendingFile::flush() {
+  if (!first_failure_.empty()) fail(first_failure_);
+  assert(descriptor_ >= 0);
+  std::size_t done = 0;
+  while (done < buffer_.size()) {
+    const ssize_t step = pwrite(descriptor_, buffer_.data() + done, buffer_.size() - done,
+                                static_cast<off_t>(flushed_ + done));
+    if (step < 0 && errno == EINTR) continue;
+    if (step < 0) fail_with_errno();
+    done += static_cast<std::size_t>(step);
+  }
+  flushed_ += buffer_.size();
+  buffer_.clear();
+}
+
+void PendingFile::seek(std::uint64_t position) {
+  flush();
+  flushed_ = position;
+}
+
+void PendingFile::close(Durable durable) {
+  flush();
+  // EINVAL: some file systems cannot sync, which is theirs to decide.
+  if (durable == Durable::yes && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS)
+    fail_with_errno();
+  const int descriptor = descriptor_;
+  descriptor_ = -1;
+  if (::close(descriptor) != 0) fail_with_errno();
+}
+
+void PendingFile::commit() {
+  assert(descriptor_ < 0);
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail_with_errno();
+  temporary_.clear();
+}
+
+void write_whole_file(const std::string& path, std::string_view bytes) {
+  write_whole_file(path, std::span(&bytes, 1));
+}
+
+void write_whole_file(const std::string& path, std::span<const std::string_view> pieces) {
+  PendingFile file(path);
+  for (const std::string_view piece : pieces) file.write(piece.data(), piece.size());
+  file.close();
+  if (!holds(file.temporary_path(), pieces)) {
+    file.fail("what was read back differs from what was written");
+  }
+  file.commit();
+}
+
+}  // namespace dapple

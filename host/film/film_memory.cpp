@@ -1,0 +1,46 @@
+// Bytes a pixel, and how many there are: see film_memory.hpp.
+#include "film/film_memory.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "dapple/error.hpp"
+#include "film/film_sums.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr std::size_t kSurfaceChannels = 18;  // RGBA, ao, bent, N, P, Z, samples
+constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
+constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if all were domes
+
+/// Sums are on the device, which on a CPU is the same memory, and read back; channels are in
+/// the film and in the file that is being written.
+std::size_t bytes_per_pixel(std::size_t lights) {
+  const std::size_t sums = kSurfacePlanes + kAoPlanes + kLightPlanes * lights;
+  const std::size_t channels = kSurfaceChannels + kLightChannels * lights;
+  return 2 * (sums * sizeof(std::int64_t) + channels * sizeof(float));
+}
+
+double machine_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+void check_film_memory(const View& view, std::size_t light_count) {
+  constexpr double kGigabyte = 1e9;
+  const double needs = static_cast<double>(view.crop.width()) * view.crop.height() *
+                       static_cast<double>(bytes_per_pixel(light_count));
+  const double has = machine_bytes();
+  if (needs <= has / 2 || has <= 0) return;
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("--width {} --height {}: the picture takes {:.1f} GB with {} light{}, and this "
+                  "machine has {:.1f} GB; make it smaller, render parts with --crop, or fewer "
+                  "lights with --lights or --passes ao",
+                  view.width, view.height, needs / kGigabyte, light_count,
+                  light_count == 1 ? "" : "s", has / kGigabyte));
+}
+
+}  // namespace dapple

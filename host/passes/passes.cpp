@@ -1,0 +1,294 @@
+#include "passes/passes.hpp"
+
+#include <algorithm>
+
+#include "dapple/shared/ray.h"
+
+namespace dapple {
+namespace {
+
+/// Work-items of the one group that compacts; DAPPLE_SCAN_ITEMS in kernels/film/compact.cl.
+constexpr std::size_t kScanItems = 256;
+
+/// Rays of a point from which on they go together: of AO rays 2 took up to a seventh longer than
+/// one by one, 4 were 1.15 to 1.4 times as fast, exact or prefiltered (sapling, tree, cards).
+constexpr uint kLeastPacket = 4;
+
+/// And from which on they go without those of other points, with arithmetic for one origin: 16 rays
+/// of points in space took 0.8 (tree, forest) to 0.98 times as long (cards).
+constexpr uint kLeastOfPoint = 16;
+
+/// The same of exact rays, whose time goes into triangles: with 16 packets of 64 that are full, of
+/// several points, took 0.89 (sapling), 0.97 (forest) and 0.84 of the time (cards).
+constexpr uint kLeastOfExactPoint = 32;
+
+/// Part of the chunks of neighbours that are whole. What is left when threads take the last ones is
+/// short then: AO of sapling and forest took 0.94 of the time that it took in fixed shares, and
+/// with no small chunks 0.96.
+constexpr uint kWholeOfFour = 3;
+
+/// Rays of points that are a piece of work on a CPU, at most, but for a point that has more:
+/// threads that take turns point by point all look at the same nodes.
+constexpr uint kPieceRays = 256;
+
+/// Items a work-group: few where each has much to do.
+constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kCameraGroup = 1, kPointGroup = 1;
+
+/// Rays that one item of the kernels that make them makes; DAPPLE_RAY_LANES in
+/// kernels/occlusion/point_rays.clh.
+constexpr std::size_t kRayLanes = 16;
+
+/// Parts of at most `size` that hold `count`.
+template <class T>
+T parts_of(T count, T size) {
+  return (count + size - 1) / size;
+}
+
+std::size_t hit_records(std::size_t samples) {
+  return parts_of<std::size_t>(samples, DAPPLE_HIT_BITS);
+}
+
+/// Never a question of how many rays there are in all: kernels differ in roundings, and a crop must
+/// make the bits of the whole picture.
+Company company(Estimator estimator, uint rays_per_point, RayOrder order,
+                const DeviceContext& context) {
+  if (context.trace_with() != Company::automatic) return context.trace_with();
+  const bool share = rays_per_point >= kLeastPacket;
+  if (context.info().kind != "CPU")
+    return share && estimator == Estimator::packet ? Company::point : Company::alone;
+  const uint least_of_point = estimator == Estimator::exact ? kLeastOfExactPoint : kLeastOfPoint;
+  if (rays_per_point >= least_of_point) return Company::point;
+  return share || order == RayOrder::by_pixel ? Company::neighbours : Company::alone;
+}
+
+/// Cuts a queue of neighbours into chunks, of which there are as many as it says. Not a question of
+/// how many threads there are: who travels together decides what is counted as visits.
+uint cut_neighbours(OcclusionParams& params) {
+  params.large_chunks = params.ray_count / DAPPLE_NEIGHBOUR_CHUNK * kWholeOfFour / 4;
+  const uint rest = params.ray_count - params.large_chunks * DAPPLE_NEIGHBOUR_CHUNK;
+  return params.large_chunks + parts_of<uint>(rest, DAPPLE_SMALL_CHUNK);
+}
+
+/// The same of points, and puts chunks together to pieces, of which it says the number.
+uint cut_points(bool on_cpu, OcclusionParams& params) {
+  const uint chunks = parts_of<uint>(params.rays_per_point, DAPPLE_POINT_CHUNK);
+  params.piece_chunks = on_cpu ? std::max(1u, kPieceRays / params.rays_per_point) : 1u;
+  return parts_of<uint>(params.ray_count / params.rays_per_point * chunks, params.piece_chunks);
+}
+
+KernelName occlusion_kernel(Estimator estimator, Company with) {
+  const bool prefiltered = estimator != Estimator::exact;
+  if (with == Company::alone) return {"occlusion", "occlusion/occlusion", {prefiltered}};
+  return {"packet", "occlusion/packet", {prefiltered, with == Company::point}};
+}
+
+KernelName point_ao_kernel(Estimator estimator) {
+  return {"point_ao", "occlusion/point_ao", {estimator != Estimator::exact, true}};
+}
+
+KernelName camera_kernel(bool orthographic) {
+  return {"camera_hits", "camera/camera", {false, !orthographic}};
+}
+
+/// Several only where items of a group run side by side: packets take so much memory that Intel's
+/// CPU runtime refuses groups of 16.
+std::size_t packet_group(const DeviceContext& context, Company with) {
+  return with == Company::point && context.info().kind != "CPU" ? kPacketGroup : 1;
+}
+
+const KernelName kClosestHit{"closest_hit", "camera/closest_hit", {}};
+const KernelName kCompactHits{"compact_hits", "queue_kernels", {}};
+const KernelName kAoRays{"ao_rays", "queue_kernels", {}};
+const KernelName kLightRays{"light_rays", "queue_kernels", {}};
+const KernelName kResolveSurface{"resolve_surface", "queue_kernels", {}};
+const KernelName kResolveAo{"resolve_ao", "queue_kernels", {}};
+const KernelName kResolveLight{"resolve_light", "queue_kernels", {}};
+const KernelName kResolveDome{"resolve_dome", "lights/dome", {}};
+
+}  // namespace
+
+std::size_t Queues::bytes() const {
+  return work.bytes() + rays.bytes() + points.bytes() + sample_hits.bytes() + active.bytes() +
+         active_count.bytes() + occlusions.bytes();
+}
+
+Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample) {
+  Queues queues;
+  queues.rays = context.allocate(samples * rays_per_sample * sizeof(Ray));
+  queues.points = context.allocate(samples * sizeof(SurfacePoint));
+  queues.sample_hits = context.allocate(hit_records(samples) * sizeof(SampleHits));
+  queues.active = context.allocate(samples * sizeof(uint));
+  queues.active_count = context.allocate(sizeof(uint));
+  queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
+  return queues;
+}
+
+Queues make_point_queues(DeviceContext& context, std::size_t points, std::size_t rays_per_point) {
+  const std::size_t at_work = context.groups_in_turns(points);
+  Queues queues;
+  queues.rays = context.allocate(at_work * rays_per_point * sizeof(Ray));
+  queues.occlusions = context.allocate(points * sizeof(float));
+  return queues;
+}
+
+void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                 const CameraParams& params) {
+  const std::size_t rays =
+      std::size_t{params.slice.pixel_count} * (params.slice.sample_count >> params.depth_bits);
+  CameraParams camera = params;
+  camera.scene = scene.params;
+  constexpr std::size_t kPieceOfRays = std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_PIECE_ITEMS;
+  context.launch_in_turns(
+      camera_kernel(params.orthographic != 0), "camera", parts_of(rays, kPieceOfRays),
+      {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
+       scene.instances, queues.work, queues.points, queues.sample_hits, camera},
+      kCameraGroup);
+}
+
+void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                      std::size_t rays) {
+  OcclusionParams params{};
+  params.scene = scene.params;
+  params.ray_count = static_cast<uint>(rays);
+  context.launch(kClosestHit, "closest hit", rays,
+                 {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials,
+                  scene.texels, scene.instances, queues.rays, queues.points, params});
+}
+
+std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples) {
+  context.launch(kCompactHits, "compact", kScanItems,
+                 {queues.sample_hits, queues.active, queues.active_count,
+                  static_cast<uint>(hit_records(samples))},
+                 kScanItems);
+  std::uint32_t count = 0;
+  context.read(queues.active_count, &count, sizeof count);
+  return count;
+}
+
+void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
+  const std::size_t rays = std::size_t{params.point_count} * params.rays;
+  context.launch(kAoRays, "ao rays", parts_of(rays, kRayLanes),
+                 {queues.points, queues.active, queues.rays, params}, kPacketGroup);
+}
+
+void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                    const LightParams& params) {
+  const std::size_t rays = std::size_t{params.point_count} * params.rays;
+  context.launch(kLightRays, "light rays", parts_of(rays, kRayLanes),
+                 {queues.points, queues.active, scene.lights, scene.emitters, scene.environments,
+                  queues.rays, params},
+                 kPacketGroup);
+}
+
+void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                    const std::string& label, Estimator estimator, const OcclusionParams& params,
+                    RayOrder order) {
+  occlusion_pass_with(company(estimator, params.rays_per_point, order, context), context, queues,
+                      scene, label, estimator, params);
+}
+
+void occlusion_pass_with(Company with, DeviceContext& context, const Queues& queues,
+                         const DeviceBuffers& scene, const std::string& label, Estimator estimator,
+                         const OcclusionParams& params) {
+  OcclusionParams launched = params;
+  const KernelName kernel = occlusion_kernel(estimator, with);
+  const std::vector<KernelArgument> arguments{
+      scene.nodes,  scene.blocks,    scene.segments, scene.textured,    scene.materials,
+      scene.texels, scene.instances, queues.rays,    queues.occlusions, launched};
+  if (with == Company::alone) {
+    context.launch(kernel, label, params.ray_count, arguments, kRayGroup);
+  } else {
+    const uint pieces = with == Company::neighbours
+                            ? cut_neighbours(launched)
+                            : cut_points(context.info().kind == "CPU", launched);
+    context.launch_in_turns(kernel, label, pieces, arguments, packet_group(context, with));
+  }
+}
+
+bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays_per_point) {
+  return context.info().kind == "CPU" && rays_per_point <= DAPPLE_POINT_CHUNK &&
+         company(estimator, static_cast<uint>(rays_per_point), RayOrder::any, context) ==
+             Company::point;
+}
+
+void point_ao_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                   Estimator estimator, const AoParams& ao_params, const OcclusionParams& params) {
+  OcclusionParams launched = params;
+  const uint pieces = cut_points(true, launched);
+  context.launch_in_turns(
+      point_ao_kernel(estimator), "ao", pieces,
+      {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
+       scene.instances, queues.points, queues.rays, queues.occlusions, ao_params, launched},
+      kPointGroup);
+}
+
+void resolve_surface_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
+                          const ResolveParams& params) {
+  context.launch(kResolveSurface, "resolve", params.slice.pixel_count,
+                 {queues.work, queues.points, queues.sample_hits, film.sums, params});
+}
+
+void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
+                     const ResolveParams& params) {
+  context.launch(kResolveAo, "resolve", params.slice.pixel_count,
+                 {queues.work, queues.sample_hits, queues.rays, queues.occlusions, film.sums,
+                  film.squares, params});
+}
+
+void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
+                        const ResolveParams& params) {
+  context.launch(kResolveLight, "resolve", params.slice.pixel_count,
+                 {queues.work, queues.sample_hits, queues.rays, queues.occlusions, film.sums,
+                  film.squares, params});
+}
+
+std::vector<KernelShape> every_kernel(const DeviceContext& context) {
+  std::vector<KernelShape> kernels{
+      {kClosestHit, kRayGroup},     {kCompactHits, kScanItems}, {kAoRays, kPacketGroup},
+      {kLightRays, kPacketGroup},   {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
+      {kResolveSurface, kRayGroup}, {kResolveLight, kRayGroup},
+  };
+  for (const bool orthographic : {false, true})
+    kernels.push_back({camera_kernel(orthographic), kCameraGroup});
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    kernels.push_back({occlusion_kernel(estimator, Company::alone), kRayGroup});
+    kernels.push_back({point_ao_kernel(estimator), kPointGroup});
+    for (const Company with : {Company::neighbours, Company::point})
+      kernels.push_back({occlusion_kernel(estimator, with), packet_group(context, with)});
+  }
+  return kernels;
+}
+
+Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays) {
+  return company(estimator, static_cast<uint>(rays), RayOrder::by_pixel, context);
+}
+
+void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                       const FilmBuffers& film, const ResolveParams& params, uint light) {
+  context.launch(kResolveDome, "resolve", params.slice.pixel_count,
+                 {queues.work, queues.sample_hits, queues.rays, queues.occlusions, scene.lights,
+                  scene.environments, film.sums, film.squares, params, light});
+}
+
+std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
+                                        const Camera& camera, const std::vector<Light>& lights) {
+  std::vector<KernelName> kernels{camera_kernel(camera.kind == Camera::Kind::orthographic),
+                                  kCompactHits, kResolveSurface};
+  const auto add_occlusion = [&](int rays) {
+    kernels.push_back(
+        occlusion_kernel(options.estimator, company_in_picture(context, options.estimator, rays)));
+  };
+  if (options.ao) {
+    add_occlusion(options.ao_rays);
+    kernels.insert(kernels.end(), {kAoRays, kResolveAo});
+  }
+  if (options.light) {
+    add_occlusion(options.light_rays);
+    kernels.push_back(kLightRays);
+    for (const Light& light : lights)
+      kernels.push_back(light.kind == LightKind::dome ? kResolveDome : kResolveLight);
+  }
+  return kernels;
+}
+
+}  // namespace dapple

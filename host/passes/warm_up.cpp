@@ -1,0 +1,99 @@
+#include "passes/warm_up.hpp"
+
+#include <functional>
+#include <map>
+
+#include "dapple/error.hpp"
+#include "device/upload/scene_upload.hpp"
+#include "passes/passes.hpp"
+
+namespace dapple {
+namespace {
+
+/// What passes take, with room for nothing.
+struct EmptyStage {
+  explicit EmptyStage(const Device& device)
+      : context(device.context()), scene(device), queues(make_queues(context, 0, 0)) {
+    for (Buffer* buffer :
+         {&scene.nodes, &scene.blocks, &scene.segments, &scene.textured, &scene.materials,
+          &scene.texels, &scene.instances, &scene.lights, &scene.emitters, &scene.environments,
+          &queues.work, &film.sums, &film.squares})
+      *buffer = context.allocate(0);
+  }
+
+  DeviceContext& context;
+  DeviceBuffers scene;
+  Queues queues;
+  FilmBuffers film;
+};
+
+Estimator estimator_of(const Variant& variant) {
+  return variant.prefiltered ? Estimator::prefiltered : Estimator::exact;
+}
+
+void occlude_nothing(EmptyStage& s, Company with, const Variant& variant) {
+  OcclusionParams params{};
+  params.rays_per_point = 1;
+  occlusion_pass_with(with, s.context, s.queues, s.scene, "occlusion", estimator_of(variant),
+                      params);
+}
+
+void find_nothing(EmptyStage& s, const Variant& variant) {
+  CameraParams params{};
+  params.orthographic = !variant.one_point;
+  camera_pass(s.context, s.scene, s.queues, params);
+}
+
+void average_nothing(EmptyStage& s, const Variant& variant) {
+  OcclusionParams params{};
+  params.rays_per_point = 1;
+  point_ao_pass(s.context, s.queues, s.scene, estimator_of(variant), {}, params);
+}
+
+using Pass = std::function<void(EmptyStage&, const Variant&)>;
+
+const std::map<std::string, Pass>& passes() {
+  static const std::map<std::string, Pass> kOfKernel{
+      {"camera_hits", find_nothing},
+      {"closest_hit",
+       [](EmptyStage& s, const Variant&) { closest_hit_pass(s.context, s.scene, s.queues, 0); }},
+      {"compact_hits", [](EmptyStage& s, const Variant&) { compact_pass(s.context, s.queues, 0); }},
+      {"ao_rays", [](EmptyStage& s, const Variant&) { ao_ray_pass(s.context, s.queues, {}); }},
+      {"light_rays",
+       [](EmptyStage& s, const Variant&) { light_ray_pass(s.context, s.scene, s.queues, {}); }},
+      {"occlusion", [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Company::alone, v); }},
+      {"packet",
+       [](EmptyStage& s, const Variant& v) {
+         occlude_nothing(s, v.one_point ? Company::point : Company::neighbours, v);
+       }},
+      {"point_ao", average_nothing},
+      {"resolve_surface",
+       [](EmptyStage& s, const Variant&) {
+         resolve_surface_pass(s.context, s.queues, s.film, {});
+       }},
+      {"resolve_ao",
+       [](EmptyStage& s, const Variant&) { resolve_ao_pass(s.context, s.queues, s.film, {}); }},
+      {"resolve_light",
+       [](EmptyStage& s, const Variant&) { resolve_light_pass(s.context, s.queues, s.film, {}); }},
+      {"resolve_dome",
+       [](EmptyStage& s, const Variant&) {
+         resolve_dome_pass(s.context, s.scene, s.queues, s.film, {}, 0);
+       }},
+  };
+  return kOfKernel;
+}
+
+}  // namespace
+
+void rehearse(const Device& device, const std::vector<KernelName>& kernels) {
+  EmptyStage stage(device);
+  stage.context.rehearse();
+  for (const KernelName& kernel : kernels) {
+    const auto pass = passes().find(kernel.name);
+    if (pass == passes().end()) throw Error(ErrorKind::usage, "no kernel: '" + kernel.name + "'");
+    pass->second(stage, kernel.variant);
+  }
+  stage.context.finish();
+}
+
+}  // namespace dapple

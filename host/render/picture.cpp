@@ -1,0 +1,305 @@
+#include "render/picture.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "camera/camera_splitting.hpp"
+#include "sampling/film_moments.hpp"
+#include "passes/passes.hpp"
+#include "sampling/sample_plan.hpp"
+
+namespace dapple {
+namespace {
+
+/// Rays in flight: on a CPU few enough for the queues to stay in its caches, and as many as that
+/// waiting for the last ray of a pass takes little (half as many: lights on sapling and cards took
+/// 1.03 times as long, AO as long; twice as many: 1.01); on a GPU enough to fill it.
+constexpr std::size_t kCpuSlice = 1u << 18;
+constexpr std::size_t kGpuSlice = 1u << 19;
+
+/// Rays of all kinds that a slice may trace, as a multiple of those in flight: with many lights it
+/// would take too long to wait for when the render is to stop.
+constexpr std::size_t kRaysOverInFlight = 4;
+
+std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
+                               std::size_t lights, std::size_t rays_in_flight) {
+  const std::size_t slice = device.kind == "GPU" ? kGpuSlice : kCpuSlice;
+  const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
+                           lights * static_cast<std::size_t>(options.light_rays);
+  const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);
+  return std::max(DAPPLE_BATCH, static_cast<uint>(samples));
+}
+
+class PictureTracer {
+ public:
+  PictureTracer(const Device& device, const DeviceScene& scene, const View& view,
+                const RenderOptions& options, const FilmLayout& layout, TraceState state)
+      : context_(device.context()),
+        scene_(*scene.buffers),
+        options_(options),
+        layout_(layout),
+        light_count_(layout.lights.size()),
+        width_(view.crop.width()),
+        camera_(camera_params(view, options, scene_.bounds)),
+        state_(std::move(state)) {
+    const std::size_t rays = static_cast<std::size_t>(
+        std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
+    if (state_.slice_samples == 0)
+      state_.slice_samples = samples_of_slice(device.info(), options, light_count_, rays);
+    queues_ = make_queues(context_, state_.slice_samples, rays);
+    queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
+    film_.sums = context_.allocate_zeros(layout.sum_bytes());
+    film_.squares = context_.allocate_zeros(layout.square_bytes());
+    place_sums();
+    resolve_ = resolve_params(view);
+  }
+
+  TracedPicture trace(const TraceControl& control) {
+    SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples);
+    traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
+    TracedPicture picture;
+    while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control)))
+      picture.interrupted = !trace_round(plan, control);
+    if (control.save) save(plan, control);
+    picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
+    if (plan.is_adaptive() && all_know_errors(picture.samples))
+      picture.errors = standard_errors(picture.samples);
+    picture.sums = context_.view(film_.sums);
+    context_.finish();
+    picture.pass_seconds = pass_seconds();
+    picture.queue_bytes = queues_.bytes();
+    return picture;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  static double sum_of(const std::vector<std::uint32_t>& samples) {
+    return static_cast<double>(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}));
+  }
+
+  /// Whether some pixels have the two batches that tell a variance, and all others one.
+  [[nodiscard]] bool all_know_errors(const std::vector<std::uint32_t>& samples) const {
+    const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
+    return *least >= DAPPLE_BATCH && *most >= 2 * DAPPLE_BATCH;
+  }
+
+  /// Onto the device, where from now on they are.
+  void place_sums() {
+    earlier_seconds_ = state_.pass_seconds;
+    for (const auto& [label, seconds] : context_.pass_seconds()) earlier_seconds_[label] -= seconds;
+    if (state_.sums.empty()) return;
+    context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
+    context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
+    release_sums();
+  }
+
+  void release_sums() {
+    state_.sums = {};
+    state_.squares = {};
+  }
+
+  void read_state(const SamplePlan& plan) {
+    state_.sums.resize(layout_.sum_bytes() / sizeof(std::int64_t));
+    state_.squares.resize(layout_.square_bytes() / sizeof(float));
+    context_.read(film_.sums, state_.sums.data(), layout_.sum_bytes());
+    context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
+    context_.finish();
+    state_.samples = plan.samples();
+    state_.pass_seconds = pass_seconds();
+  }
+
+  /// Of this picture, in this run and those that it goes on from.
+  [[nodiscard]] std::map<std::string, double> pass_seconds() const {
+    std::map<std::string, double> sum = earlier_seconds_;
+    for (const auto& [label, seconds] : context_.pass_seconds()) sum[label] += seconds;
+    std::erase_if(sum, [](const auto& pass) { return pass.second == 0; });  // of other pictures
+    return sum;
+  }
+
+  /// False when there is no more to trace.
+  bool next_round(SamplePlan& plan, const TraceControl& control) {
+    if (plan.is_adaptive()) {
+      state_.round = {next_for_target(plan)};
+    } else {
+      state_.round = {plan.least(control.order)};
+    }
+    return !state_.round.is_done();
+  }
+
+  std::vector<WorkGroup> next_for_target(SamplePlan& plan) {
+    std::vector<WorkGroup> groups = plan.scouts();
+    if (!groups.empty()) return groups;
+    const bool only_scouts = plan.only_scouts_have_samples();
+    // Errors depend on the order, by roundings: with a target it is always the same.
+    if (!only_scouts && !(groups = plan.least()).empty()) return groups;
+    const std::vector<std::uint32_t>& samples = plan.samples();
+    const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
+    const FilmMoments moments(sums, squares, layout_, options_, samples, width_);
+    std::vector<std::vector<float>> variances = moments.variances();
+    if (only_scouts) return plan.after_scouts(variances);
+    groups = plan.next(variances, [&] { return moments.costs(); });
+    if (groups.empty()) variances_ = std::move(variances);
+    return groups;
+  }
+
+  /// What is left of the round; false when asked to stop before its end.
+  bool trace_round(const SamplePlan& plan, const TraceControl& control) {
+    Round& round = state_.round;
+    // With a target what is given out is a part of the work.
+    const double given = sum_of(plan.samples());
+    const double total = plan.is_adaptive() ? given / plan.fraction_done()
+                                            : static_cast<double>(layout_.pixels) * options_.spp;
+    for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
+      if (control.stop && control.stop()) return false;
+      if (control.save &&
+          Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
+        save(plan, control);
+      const WorkGroup& group = round.groups[round.group];
+      if (new_group)
+        context_.write(queues_.work, group.work.data(), group.work.size() * sizeof(PixelWork));
+      const SliceParams slice = next_slice(round, state_.slice_samples);
+      trace_slice(slice);
+      traced_ += static_cast<double>(slice.pixel_count) * slice.sample_count;
+      advance(round, state_.slice_samples);
+      progress_ = std::max(progress_, traced_ / total);
+      if (control.progress) control.progress(progress_);
+    }
+    return true;
+  }
+
+  void save(const SamplePlan& plan, const TraceControl& control) {
+    read_state(plan);
+    control.save(state_);
+    release_sums();
+    saved_ = Clock::now();
+  }
+
+  std::vector<std::vector<float>> standard_errors(const std::vector<std::uint32_t>& samples) {
+    std::vector<std::vector<float>> errors = std::move(variances_);
+    if (errors.empty()) {
+      const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
+      errors = FilmMoments(sums, squares, layout_, options_, samples, width_).variances();
+    }
+    for (std::vector<float>& pass : errors) {
+      tbb::parallel_for(std::size_t{0}, pass.size(), [&](std::size_t p) {
+        pass[p] = std::sqrt(pass[p] * DAPPLE_BATCH / static_cast<float>(samples[p]));
+      });
+    }
+    return errors;
+  }
+
+  ResolveParams resolve_params(const View& view) const {
+    ResolveParams params{};
+    params.film_pixels = layout_.pixels;
+    params.depth_bits = camera_.depth_bits;
+    params.position_scale = layout_.position_scale;
+    params.depth_scale = layout_.depth_scale;
+    const M44f& m = view.camera.to_world;
+    for (int axis = 0; axis < 3; ++axis) {
+      params.axis[axis] = -m[2][axis];
+      params.eye[axis] = m[3][axis];
+    }
+    return params;
+  }
+
+  void trace_slice(const SliceParams& slice) {
+    const std::size_t samples = std::size_t{slice.pixel_count} * slice.sample_count;
+    camera_.slice = slice;
+    resolve_.slice = slice;
+    camera_pass(context_, scene_, queues_, camera_);
+    resolve_.plane = 0;
+    resolve_.scale = layout_.unit_scale;
+    resolve_surface_pass(context_, queues_, film_, resolve_);
+    const std::uint32_t hits = compact_pass(context_, queues_, samples);
+    if (hits == 0) return;
+    if (options_.ao) trace_ao(hits);
+    for (uint light = 0; light < light_count_; ++light) trace_light(light, hits);
+  }
+
+  void trace_ao(std::uint32_t hits) {
+    AoParams ao{};
+    ao.point_count = hits;
+    ao.rays = static_cast<uint>(options_.ao_rays);
+    ao.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
+                               static_cast<float>(footprint_ao_rays(options_)));
+    ao.t_max =
+        options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
+    ao.seed = options_.seed;
+    ao_ray_pass(context_, queues_, ao);
+    OcclusionParams params = occlusion_params(hits, ao.rays);
+    if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
+      params.inverse_distance = 1.0f / options_.ao_distance;
+      params.falloff = options_.ao_falloff;
+    }
+    occlusion_pass(context_, queues_, scene_, "ao occlusion", options_.estimator, params,
+                   RayOrder::by_pixel);
+    resolve_.plane = layout_.ao;
+    resolve_.squares = 0;
+    resolve_.rays = ao.rays;
+    resolve_.scale = layout_.unit_scale;
+    resolve_ao_pass(context_, queues_, film_, resolve_);
+  }
+
+  void trace_light(uint light, std::uint32_t hits) {
+    LightParams params{};
+    params.point_count = hits;
+    params.rays = static_cast<uint>(options_.light_rays);
+    params.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
+                                   static_cast<float>(options_.light_rays));
+    params.light = light;
+    params.seed = options_.seed;
+    light_ray_pass(context_, scene_, queues_, params);
+    occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator,
+                   occlusion_params(hits, params.rays), RayOrder::by_pixel);
+    resolve_.plane = layout_.lights[light].first;
+    resolve_.squares = layout_.light_squares(light);
+    resolve_.rays = params.rays;
+    resolve_.scale = layout_.light_scale;
+    if (layout_.lights[light].channels == 3)
+      resolve_dome_pass(context_, scene_, queues_, film_, resolve_, light);
+    else
+      resolve_light_pass(context_, queues_, film_, resolve_);
+  }
+
+  [[nodiscard]] OcclusionParams occlusion_params(uint points, uint rays_per_point) const {
+    OcclusionParams params{};
+    params.scene = scene_.params;
+    params.ray_count = points * rays_per_point;
+    params.rays_per_point = rays_per_point;
+    params.footprint = options_.footprint;
+    return params;
+  }
+
+  DeviceContext& context_;
+  const DeviceBuffers& scene_;
+  const RenderOptions& options_;
+  const FilmLayout& layout_;
+  std::size_t light_count_;
+  int width_;  ///< pixels of the crop
+  CameraParams camera_;
+  ResolveParams resolve_{};
+  Queues queues_;
+  FilmBuffers film_;
+  std::vector<std::vector<float>> variances_;  ///< of the film as it is at the end, if known
+  TraceState state_;     ///< without sums and squares while these are on the device
+  double traced_ = 0;    ///< samples, of all pixels
+  double progress_ = 0;  ///< [0,1], as estimated: decisions may find that less was done
+  std::map<std::string, double> earlier_seconds_;
+  Clock::time_point saved_ = Clock::now();
+};
+
+}  // namespace
+
+TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
+                            const RenderOptions& options, const FilmLayout& layout,
+                            const TraceControl& control, TraceState state) {
+  return PictureTracer(device, scene, view, options, layout, std::move(state)).trace(control);
+}
+
+}  // namespace dapple

@@ -1,0 +1,39 @@
+// Tracing one picture, slice by slice, into its film sums.
+#pragma once
+
+#include "dapple/wavefront.hpp"
+#include "device/upload/scene_upload.hpp"
+#include "film/film_sums.hpp"
+#include "sampling/sample_plan.hpp"
+#include "render/trace_state.hpp"
+
+namespace dapple {
+
+struct TracedPicture {
+  HostView sums;                       ///< std::int64_t, as FilmLayout says
+  std::vector<std::uint32_t> samples;  ///< of each pixel; 0 only where interrupted
+  /// With a target, unless interrupted before they are known: standard errors by pass (AO, then the
+  /// lights, these relative to their largest unoccluded irradiance) and pixel.
+  std::vector<std::vector<float>> errors;
+  std::map<std::string, double> pass_seconds;  ///< device seconds by label, earlier runs' too
+  std::size_t queue_bytes = 0;
+  bool interrupted = false;
+};
+
+/// How tracing is watched and left; any of the functions may be empty.
+struct TraceControl {
+  Progress progress;
+  Stop stop;                                    ///< asked before each slice
+  std::function<void(const TraceState&)> save;  ///< called every `save_every` and at the end
+  double save_every = 0;                        ///< seconds
+  SampleOrder order = SampleOrder::pixels;
+};
+
+/// Runs every pass that `options` ask for over the view's crop. The result depends on
+/// neither the slices nor the device's threads. Goes on from `state`, which must fit the picture,
+/// unless that is empty.
+TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
+                            const RenderOptions& options, const FilmLayout& layout,
+                            const TraceControl& control, TraceState state = {});
+
+}  // namespace dapple

@@ -1,0 +1,142 @@
+// AO at points of the caller's own, for baking.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "dapple/error.hpp"
+#include "dapple/wavefront.hpp"
+#include "device/context.hpp"
+#include "device/upload/scene_upload.hpp"
+#include "passes/passes.hpp"
+#include "passes/point_order.hpp"
+
+namespace dapple {
+namespace {
+
+/// The offset that clears the rounding of coordinates given as floats.
+SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t index) {
+  SurfacePoint point{};
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    point.position[axis] = position[axis];
+    point.normal[axis] = normal[axis];
+    largest = std::max(largest, std::fabs(position[axis]));
+  }
+  point.offset = largest * 4e-6f;
+  point.pixel = static_cast<uint>(index);
+  return point;
+}
+
+AoParams ao_params(const OcclusionOptions& options, std::size_t points) {
+  AoParams params{};
+  params.point_count = static_cast<uint>(points);
+  params.rays = static_cast<uint>(options.rays);
+  params.inverse_count = 1.0f / static_cast<float>(options.rays);
+  params.t_max = options.distance > 0 ? options.distance : std::numeric_limits<float>::infinity();
+  params.seed = options.seed;
+  params.whole_sets = 1;
+  return params;
+}
+
+OcclusionParams occlusion_params(const OcclusionOptions& options, const DeviceBuffers& scene,
+                                 std::size_t points) {
+  OcclusionParams params{};
+  params.scene = scene.params;
+  params.rays_per_point = static_cast<uint>(options.rays);
+  params.ray_count = static_cast<uint>(points) * params.rays_per_point;
+  params.footprint = options.footprint;
+  if (options.distance > 0 && options.falloff > 0) {
+    params.inverse_distance = 1.0f / options.distance;
+    params.falloff = options.falloff;
+  }
+  return params;
+}
+
+/// Points that the device may read where the host has put them, so for as long as a launch runs.
+class SharedPoints {
+ public:
+  SharedPoints(DeviceContext& context, std::span<const V3f> points, std::span<const V3f> normals,
+               std::span<const std::uint32_t> chosen)
+      : context_(context) {
+    points_.reserve(chosen.size());
+    for (const std::uint32_t i : chosen) points_.push_back(surface_point(points[i], normals[i], i));
+  }
+  ~SharedPoints() { context_.wait(); }
+  SharedPoints(const SharedPoints&) = delete;
+  SharedPoints& operator=(const SharedPoints&) = delete;
+
+  [[nodiscard]] Buffer buffer() const {
+    return context_.share(points_.data(), points_.size() * sizeof(SurfacePoint));
+  }
+
+ private:
+  DeviceContext& context_;
+  std::vector<SurfacePoint> points_;
+};
+
+/// AO of the points in the queue, whose rays stay on the device.
+void occlusion_at_once(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                       const OcclusionOptions& options, std::span<float> ao) {
+  point_ao_pass(context, queues, scene, options.estimator, ao_params(options, ao.size()),
+                occlusion_params(options, scene, ao.size()));
+  context.read(queues.occlusions, ao.data(), ao.size_bytes());
+}
+
+/// The same by rays that go through queues.
+void occlusion_in_passes(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                         const OcclusionOptions& options, std::span<float> ao) {
+  std::vector<uint> active(ao.size());
+  std::iota(active.begin(), active.end(), 0u);
+  context.write(queues.active, active.data(), active.size() * sizeof(uint));
+  ao_ray_pass(context, queues, ao_params(options, ao.size()));
+  occlusion_pass(context, queues, scene, "occlusion", options.estimator,
+                 occlusion_params(options, scene, ao.size()));
+  const auto rays = static_cast<std::size_t>(options.rays);
+  std::vector<Occlusion> found(ao.size() * rays);
+  context.read(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
+  for (std::size_t i = 0; i < ao.size(); ++i) {
+    double sum = 0;
+    for (std::size_t r = 0; r < rays; ++r) sum += found[i * rays + r].transmittance;
+    ao[i] = static_cast<float>(sum / static_cast<double>(rays));
+  }
+}
+
+}  // namespace
+
+std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
+                             std::span<const V3f> points, std::span<const V3f> normals,
+                             const OcclusionOptions& options) {
+  if (points.size() != normals.size()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("occlusion: {} points but {} normals", points.size(), normals.size()));
+  }
+  if (options.rays < 1 || options.rays > 1 << 20) {
+    throw Error(ErrorKind::usage, fmt::format("occlusion: rays is {}; it must be from 1 to {}",
+                                              options.rays, 1 << 20));
+  }
+  DeviceContext& context = device.context();
+  const auto rays = static_cast<std::size_t>(options.rays);
+  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), points.size());
+  const bool together = at_once(context, options.estimator, rays);
+  Queues queues =
+      together ? make_point_queues(context, slice, rays) : make_queues(context, slice, rays);
+  const std::vector<std::uint32_t> order = order_along_curve(points);
+  std::vector<float> ao(points.size()), found;
+  for (std::size_t begin = 0; begin < points.size(); begin += slice) {
+    const auto chosen = std::span(order).subspan(begin, std::min(slice, points.size() - begin));
+    const SharedPoints batch(context, points, normals, chosen);
+    queues.points = batch.buffer();
+    found.resize(chosen.size());
+    (together ? occlusion_at_once : occlusion_in_passes)(context, queues, *scene.buffers, options,
+                                                         found);
+    for (std::size_t i = 0; i < chosen.size(); ++i) ao[chosen[i]] = found[i];
+    queues.points = {};  // what it refers to goes
+  }
+  context.finish();
+  return ao;
+}
+
+}  // namespace dapple

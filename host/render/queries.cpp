@@ -1,0 +1,85 @@
+// Rays that no camera made: the raw queries.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dapple/error.hpp"
+#include "dapple/wavefront.hpp"
+#include "device/context.hpp"
+#include "device/upload/scene_upload.hpp"
+#include "passes/passes.hpp"
+
+namespace dapple {
+namespace {
+
+OcclusionParams occlusion_params(const DeviceBuffers& scene, std::size_t points,
+                                 std::size_t rays_per_point, float footprint) {
+  OcclusionParams params{};
+  params.scene = scene.params;
+  params.ray_count = static_cast<uint>(points * rays_per_point);
+  params.rays_per_point = static_cast<uint>(rays_per_point);
+  params.footprint = footprint;
+  return params;
+}
+
+/// Throws Error usage unless the rays are whole points, all of a point from one place to one
+/// light.
+void check_points(std::span<const Ray> rays, std::size_t rays_per_point) {
+  if (rays_per_point < 1 || rays.size() % rays_per_point != 0) {
+    throw Error(ErrorKind::usage, fmt::format("trace: {} rays are no whole number of points of {}",
+                                              rays.size(), rays_per_point));
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& first = rays[i - i % rays_per_point];
+    if (std::equal(first.origin, first.origin + 3, rays[i].origin) && first.light == rays[i].light)
+      continue;
+    throw Error(ErrorKind::usage,
+                fmt::format("trace: ray {} starts elsewhere or is aimed at another light than the "
+                            "first of its point",
+                            i));
+  }
+}
+
+}  // namespace
+
+std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
+                             std::span<const Ray> rays, Estimator estimator, float footprint,
+                             std::size_t rays_per_point) {
+  check_points(rays, rays_per_point);
+  DeviceContext& context = device.context();
+  // Points traced together share a light: where there are several, each ray goes alone.
+  const bool one_light = std::all_of(rays.begin(), rays.end(),
+                                     [&](const Ray& ray) { return ray.light == rays[0].light; });
+  if (!one_light) rays_per_point = 1;
+  const std::size_t slice = std::max<std::size_t>(1, kQueryRays / rays_per_point) * rays_per_point;
+  const Queues queues = make_queues(context, std::min(slice, rays.size()), 1);
+  std::vector<Occlusion> results(rays.size());
+  for (std::size_t begin = 0; begin < rays.size(); begin += slice) {
+    const std::size_t count = std::min(slice, rays.size() - begin);
+    context.write(queues.rays, &rays[begin], count * sizeof(Ray));
+    occlusion_pass(
+        context, queues, *scene.buffers, "occlusion", estimator,
+        occlusion_params(*scene.buffers, count / rays_per_point, rays_per_point, footprint));
+    context.read(queues.occlusions, &results[begin], count * sizeof(Occlusion));
+  }
+  context.finish();
+  return results;
+}
+
+std::vector<SurfacePoint> closest_hits(const Device& device, const DeviceScene& scene,
+                                       std::span<const Ray> rays) {
+  DeviceContext& context = device.context();
+  const Queues queues = make_queues(context, std::min(kQueryRays, rays.size()), 1);
+  std::vector<SurfacePoint> points(rays.size());
+  for (std::size_t begin = 0; begin < rays.size(); begin += kQueryRays) {
+    const std::size_t count = std::min(kQueryRays, rays.size() - begin);
+    context.write(queues.rays, &rays[begin], count * sizeof(Ray));
+    context.write(queues.points, &points[begin], count * sizeof(SurfacePoint));
+    closest_hit_pass(context, *scene.buffers, queues, count);
+    context.read(queues.points, &points[begin], count * sizeof(SurfacePoint));
+  }
+  context.finish();
+  return points;
+}
+
+}  // namespace dapple

@@ -1,0 +1,242 @@
+// render(): scene and options in, film and statistics out. Read it top to bottom to know
+// what dapple does.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "dapple/error.hpp"
+#include "dapple/wavefront.hpp"
+#include "device/programs/compiler_processes.hpp"
+#include "device/context.hpp"
+#include "device/upload/memory_need.hpp"
+#include "camera/camera_splitting.hpp"
+#include "film/film_memory.hpp"
+#include "passes/passes.hpp"
+#include "render/picture.hpp"
+#include "render/resume.hpp"
+#include "render/stopwatch.hpp"
+
+namespace dapple {
+namespace {
+
+/// Overrides, lights and ground, in the order that framing needs: the camera sees the
+/// scene as it came, without the ground.
+View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
+  for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
+  View view = choose_view(scene, options, notes);
+  if (options.light && scene.lights.empty()) {
+    scene.lights.push_back(key_light(scene, view.camera));
+    notes.emplace_back(
+        "no lights in the scene: added a rect light named key; --lights F brings others");
+  }
+  check_film_memory(view, options.light ? scene.lights.size() : 0);
+  if (options.ground) add_ground(scene);
+  merge_single_instances(scene);
+  settle_domes(scene);
+  return view;
+}
+
+FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions& options,
+                      const DeviceInfo& device) {
+  FilmMetadata m;
+  m.world_to_camera = world_to_exr_camera(view.camera);
+  m.world_to_ndc = world_to_ndc(view);
+  m.samples = options.spp;
+  m.seed = options.seed;
+  m.scene = scene.source;
+  m.device = device.name;
+  m.version = DAPPLE_VERSION;
+  const auto set = [&](const char* name, const auto& value) {
+    m.settings.emplace_back(name, fmt::format("{}", value));
+  };
+  set("estimator", name_of(options.estimator));
+  set("footprint", options.footprint);
+  if (options.trace_with != Company::automatic) set("trace_with", name_of(options.trace_with));
+  if (options.target_error > 0) set("target_error", options.target_error);
+  if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
+  if (is_adaptive(options)) set("max_spp", options.max_spp);
+  if (footprint_samples(options) != options.spp) set("footprint_spp", footprint_samples(options));
+  set("depths", options.depths);
+  set("ao_rays", options.ao_rays);
+  set("light_rays", options.light_rays);
+  set("ao_distance", options.ao_distance);
+  set("ao_falloff", options.ao_falloff);
+  for (const auto& [material, value] : options.opacity) {
+    m.settings.emplace_back("opacity_" + layer_name(material), fmt::format("{}", value));
+  }
+  return m;
+}
+
+void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
+  s.cache.used = true;
+  s.cache.objects_read = bvh.cache.objects_read;
+  s.cache.objects_written = bvh.cache.objects_written;
+  s.cache.seconds_saved = bvh.cache.seconds_saved;
+  s.seconds.cache = bvh.cache.read_seconds + bvh.cache.write_seconds;
+  if (!bvh.cache.note.empty()) s.notes.push_back("BVH cache: " + bvh.cache.note);
+}
+
+void add_build_seconds(RenderStatistics& s, const BvhStatistics& bvh) {
+  s.seconds.build = bvh.build_seconds;
+  s.seconds.prefilter = bvh.prefilter_seconds;
+}
+
+void add_update_statistics(RenderStatistics& s, const BvhUpdate& update, const BvhStatistics& bvh) {
+  if (update.objects_rebuilt > 0) add_build_seconds(s, bvh);
+  s.seconds.refit = std::max(0.0, update.seconds - s.seconds.build - s.seconds.prefilter);
+  s.refit = {true, update.objects_kept, update.objects_refitted, update.objects_rebuilt,
+             update.cost_ratio};
+}
+
+void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBuffers& buffers) {
+  s.triangles = bvh.statistics.triangles;
+  s.segments = bvh.statistics.segments;
+  s.nodes = bvh.nodes.size();
+  s.bytes.nodes = buffers.nodes.bytes();
+  s.bytes.triangles = buffers.blocks.bytes() + buffers.textured.bytes();
+  s.bytes.segments = buffers.segments.bytes();
+  s.bytes.textures = buffers.texels.bytes() + buffers.materials.bytes();
+  s.bytes.instances = buffers.instances.bytes();
+}
+
+void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
+                          const FilmLayout& layout) {
+  s.pass_seconds = picture.pass_seconds;
+  s.bytes.film = layout.sum_bytes() + layout.square_bytes();
+  s.bytes.queues = picture.queue_bytes;
+}
+
+/// What a device was opened with.
+std::array<std::string, 3> device_key(const RenderOptions& options) {
+  return {options.device, options.kernel_dir, name_of(options.trace_with)};
+}
+
+}  // namespace
+
+struct Renderer::Kept {
+  std::array<std::string, 3> device_key;
+  std::optional<Device> device;
+  std::optional<UpdatableBvh> bvh;
+  DeviceScene on_device;
+
+  void open(const RenderOptions& options, RenderStatistics& statistics);
+  void bring(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
+  void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
+               RenderStatistics& statistics) const;
+};
+
+void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statistics) {
+  const auto key = dapple::device_key(options);
+  if (!device || key != device_key) {
+    *this = {};
+    device_key = key;
+    device.emplace(options.device, options.kernel_dir, options.trace_with);
+  }
+  statistics.device = device->info().name;
+  for (std::string& note : device->context().notes()) statistics.notes.push_back(std::move(note));
+}
+
+/// The scene to the device, by the BVH that there is.
+void Renderer::Kept::bring(const Scene& scene, const RenderOptions& options,
+                           RenderStatistics& statistics) {
+  const Stopwatch bringing;
+  if (bvh) {
+    const BvhUpdate changes = update(*device, on_device, *bvh, scene);
+    add_update_statistics(statistics, changes, bvh->bvh().statistics);
+    statistics.seconds.upload = bringing.seconds() - changes.seconds;
+  } else {
+    bvh.emplace(scene, UpdatableBvh::Motion::maybe, options.cache);
+    const BvhStatistics& built = bvh->bvh().statistics;
+    add_build_seconds(statistics, built);
+    if (!options.cache.empty()) add_cache_statistics(statistics, built);
+    const Stopwatch uploading;
+    on_device = upload(*device, scene, bvh->bvh());
+    statistics.seconds.upload = uploading.seconds();
+  }
+  add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
+}
+
+/// What `processes` have compiled, and the rest.
+void Renderer::Kept::compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
+                             RenderStatistics& statistics) const {
+  const Stopwatch compiling;
+  processes.wait();
+  for (const KernelName& kernel : kernels) device->context().prepare(kernel);
+  statistics.seconds.kernel_build = compiling.seconds();
+}
+
+Renderer::Renderer() : kept_(std::make_unique<Kept>()) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderControl& control) {
+  const Stopwatch total;
+  validate(options);
+  RenderResult result;
+  RenderStatistics& statistics = result.statistics;
+  statistics.estimator = name_of(options.estimator);
+
+  const View view = furnish(scene, options, statistics.notes);
+  options.depths = choose_depths(options, scene, view);
+  std::optional<Checkpoint> resumed;
+  if (!control.resume.empty()) resumed = resume(control.resume, view, options);
+  const RenderOptions sampled = by_sample(options);
+  // Here until all went well: after an error nothing of it is of use.
+  Kept kept = std::exchange(*kept_, {});
+  kept.open(options, statistics);
+  const Device& device = *kept.device;
+  check_memory(device.info(), least_need(scene), "needs at least");
+  const auto kernels = picture_kernels(device.context(), sampled, view.camera, scene.lights);
+  CompilerProcesses processes;
+  processes.start(device.context(), kernels, CompileTo::machine_code);
+  kept.bring(scene, options, statistics);
+  kept.compile(kernels, processes, statistics);
+  const SceneBvh& bvh = kept.bvh->bvh();
+  const DeviceScene& on_device = kept.on_device;
+
+  const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
+  const FilmLayout layout(view, sampled, bvh.bounds, lights);
+  TraceControl tracing{control.progress, control.stop, {}, 0, SampleOrder::pixels};
+  if (resumed || !control.checkpoint.empty()) {
+    Checkpoint about{option_settings(options, view),
+                     content_settings(options, view, bvh, *on_device.buffers),
+                     footprint_samples(options), statistics.device};
+    if (resumed) check_resumed(control.resume, *resumed, about, layout, statistics.notes);
+    write_checkpoints(tracing, control, std::move(about), result);
+  }
+
+  const Stopwatch trace_time;
+  const TracedPicture picture = trace_picture(device, on_device, view, sampled, layout, tracing,
+                                              resumed ? std::move(resumed->state) : TraceState{});
+  statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
+  add_trace_statistics(statistics, picture, layout);
+
+  result.film = {view.width, view.height, view.crop,
+                 develop(picture, layout, sampled, lights, statistics),
+                 metadata(scene, view, options, device.info())};
+  for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
+  result.interrupted = picture.interrupted;
+  if (result.interrupted) {
+    result.film.metadata.settings.emplace_back("interrupted", "yes");
+    statistics.notes.push_back(interruption_note(picture, sampled, control));
+  }
+  *kept_ = std::move(kept);
+  statistics.seconds.total = total.seconds();
+  return result;
+}
+
+RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control) {
+  return Renderer().render(std::move(scene), options, control);
+}
+
+RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress) {
+  RenderControl control;
+  control.progress = progress;
+  return render(std::move(scene), options, control);
+}
+
+}  // namespace dapple

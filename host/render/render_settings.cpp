@@ -1,0 +1,118 @@
+#include "render/render_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dapple/error.hpp"
+#include "device/programs/kernel_source.hpp"
+#include "files/checksum.hpp"
+
+namespace dapple {
+namespace {
+
+std::string passes_text(const RenderOptions& options) {
+  // Visits are counted in any case.
+  return fmt::format("{}{}{}", options.ao ? "ao" : "", options.ao && options.light ? "," : "",
+                     options.light ? "light" : "");
+}
+
+std::string camera_checksum(const Camera& camera) {
+  ChecksumStream stream;
+  stream.add_value(camera.kind);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) stream.add_value(camera.to_world[row][column]);
+  stream.add_value(camera.fov_y);
+  stream.add_value(camera.half_height);
+  return hex_text(stream.value());
+}
+
+/// What rays meet: with overridden opacities, ground and all.
+std::string scene_checksum(const SceneBvh& bvh, const DeviceBuffers& scene) {
+  ChecksumStream stream;
+  stream.add_range(bvh.nodes);
+  stream.add_range(bvh.blocks);
+  stream.add_range(bvh.segments);
+  stream.add_range(bvh.textured);
+  stream.add_range(bvh.instances);
+  stream.add_range(scene.material_records);
+  stream.add_range(scene.texel_data);
+  stream.add_value(bvh.root);
+  for (int axis = 0; axis < 3; ++axis) {
+    stream.add_value(bvh.bounds.min[axis]);
+    stream.add_value(bvh.bounds.max[axis]);
+  }
+  return hex_text(stream.value());
+}
+
+std::string light_checksum(const DeviceBuffers& scene) {
+  ChecksumStream stream;
+  stream.add_range(scene.light_records);
+  stream.add_range(scene.emitter_triangles);
+  stream.add_range(scene.environment_data);
+  return hex_text(stream.value());
+}
+
+std::string kernel_checksum(const RenderOptions& options) {
+  ChecksumStream stream;
+  for (const EmbeddedSource& source : embedded_sources()) {
+    if (source.name.ends_with(".cl"))
+      stream.add_range(expand_kernel(std::string(source.name), options.kernel_dir));
+  }
+  return hex_text(stream.value());
+}
+
+bool is_checksum(const std::string& value) {
+  return value.size() == 32 && value.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+}  // namespace
+
+Settings option_settings(const RenderOptions& options, const View& view) {
+  const auto number = [](auto value) { return fmt::format("{}", value); };
+  const PixelRect& crop = view.crop;
+  return {
+      {"--width", number(options.width)},
+      {"--height", number(options.height)},
+      {"--crop", fmt::format("{},{},{},{}", crop.x0, crop.y0, crop.x1, crop.y1)},
+      {"--seed", number(options.seed)},
+      {"--estimator", name_of(options.estimator)},
+      {"--trace-with", name_of(options.trace_with)},
+      {"--footprint", number(options.footprint)},
+      {"--passes", passes_text(options)},
+      {"--depths", number(options.depths)},
+      {"--ao-rays", number(options.ao_rays)},
+      {"--light-rays", number(options.light_rays)},
+      {"--ao-distance", number(options.ao_distance)},
+      {"--ao-falloff", number(options.ao_falloff)},
+      {"--target-error or --target-rmse", is_adaptive(options) ? "a value" : "none"},
+  };
+}
+
+Settings content_settings(const RenderOptions& options, const View& view, const SceneBvh& bvh,
+                          const DeviceBuffers& scene) {
+  return {
+      {"scene, --opacity or --ground", scene_checksum(bvh, scene)},
+      {"camera", camera_checksum(view.camera)},
+      {"lights", options.light ? light_checksum(scene) : "none"},
+      {"version of dapple", DAPPLE_VERSION},
+      {"kernels", kernel_checksum(options)},
+  };
+}
+
+void require_same(const std::string& path, const Settings& then, const Settings& now) {
+  for (const auto& asked : now) {
+    const std::string &name = asked.first, &value = asked.second;  // clang 14 captures no bindings
+    const auto found = std::find_if(then.begin(), then.end(),
+                                    [&](const auto& setting) { return setting.first == name; });
+    const std::string before = found == then.end() ? "none" : found->second;
+    if (before == value) continue;
+    const bool opaque = is_checksum(before) || is_checksum(value);
+    throw Error(ErrorKind::usage,
+                opaque ? fmt::format("--resume {}: was made with another {}", path, name)
+                       : fmt::format("--resume {}: was made with {} {}, this render has {} {}",
+                                     path, name, before, name, value));
+  }
+}
+
+}  // namespace dapple

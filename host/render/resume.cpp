@@ -1,0 +1,85 @@
+#include "render/resume.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "dapple/error.hpp"
+#include "camera/camera_splitting.hpp"
+#include "render/stopwatch.hpp"
+
+namespace dapple {
+namespace {
+
+/// More samples may be asked for than a checkpoint has, not fewer.
+void require_enough_samples(const std::string& path, const TraceState& state,
+                            const RenderOptions& options) {
+  const bool adaptive = is_adaptive(options);
+  const int asked = adaptive ? options.max_spp : options.spp;
+  const auto most =
+      (state.samples.empty() ? 0u : *std::max_element(state.samples.begin(), state.samples.end())) /
+      depth_count(options);
+  if (most <= static_cast<std::uint32_t>(asked)) return;
+  throw Error(ErrorKind::usage,
+              fmt::format("--resume {}: has {} samples a pixel already, {} {} asks for fewer", path,
+                          most, adaptive ? "--max-spp" : "--spp", asked));
+}
+
+}  // namespace
+
+Checkpoint resume(const std::string& path, const View& view, RenderOptions& options) {
+  Checkpoint checkpoint = read_checkpoint(path);
+  require_same(path, checkpoint.options, option_settings(options, view));
+  require_enough_samples(path, checkpoint.state, options);
+  if (options.footprint_spp > 0 && options.footprint_spp != checkpoint.footprint_spp) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--resume {}: was made with footprint_spp {}, this render has {}", path,
+                            checkpoint.footprint_spp, options.footprint_spp));
+  }
+  options.footprint_spp = checkpoint.footprint_spp;
+  return checkpoint;
+}
+
+void check_resumed(const std::string& path, const Checkpoint& resumed, const Checkpoint& now,
+                   const FilmLayout& layout, std::vector<std::string>& notes) {
+  require_same(path, resumed.content, now.content);
+  check_state(path, resumed.state,
+              {layout.pixels, layout.sum_bytes() / sizeof(std::int64_t),
+               layout.square_bytes() / sizeof(float)});
+  notes.push_back("went on from " + path);
+  if (resumed.device != now.device) {
+    notes.push_back(
+        fmt::format("{} was traced on {}: the picture's bits are not those of one device", path,
+                    resumed.device));
+  }
+}
+
+void write_checkpoints(TraceControl& tracing, const RenderControl& control, Checkpoint about,
+                       RenderResult& result) {
+  if (control.checkpoint.empty()) return;
+  tracing.order = SampleOrder::passes;
+  tracing.save_every = control.checkpoint_every;
+  tracing.save = [&control, &result, about = std::move(about)](const TraceState& state) {
+    const Stopwatch writing;
+    result.checkpoint_failure.clear();
+    try {
+      write_checkpoint(control.checkpoint, about, state);
+    } catch (const Error& error) {
+      result.checkpoint_failure = error.what();
+    }
+    result.statistics.seconds.checkpoint += writing.seconds();
+  };
+}
+
+std::string interruption_note(const TracedPicture& picture, const RenderOptions& options,
+                              const RenderControl& control) {
+  const double samples = std::accumulate(picture.samples.begin(), picture.samples.end(), 0.0) /
+                         static_cast<double>(picture.samples.size() * depth_count(options));
+  const std::string next = control.checkpoint.empty()
+                               ? "with --checkpoint F it could go on"
+                               : "--resume " + control.checkpoint + " goes on";
+  return fmt::format("interrupted after {:.3g} samples a pixel on average; {}", samples, next);
+}
+
+}  // namespace dapple

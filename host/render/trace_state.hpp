@@ -1,0 +1,22 @@
+// All that tracing a picture has come to between two slices: from here it goes on to the same bits.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sampling/round.hpp"
+
+namespace dapple {
+
+struct TraceState {
+  std::uint32_t slice_samples = 0;     ///< as rounds are cut; the device's choice at the start
+  std::vector<std::int64_t> sums;      ///< planes as FilmLayout says
+  std::vector<float> squares;          ///< planes as FilmLayout says
+  std::vector<std::uint32_t> samples;  ///< of each pixel, with all of the round's
+  Round round;
+  std::map<std::string, double> pass_seconds;  ///< device seconds so far, by label
+};
+
+}  // namespace dapple

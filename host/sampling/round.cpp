@@ -1,0 +1,68 @@
+#include "sampling/round.hpp"
+
+#include <algorithm>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+/// Samples a pixel and slice: all if they fit, else whole pairs of batches, or one batch.
+std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
+  if (group.samples <= slice_samples) return group.samples;
+  const std::uint32_t pairs = slice_samples / (2 * DAPPLE_BATCH);
+  return pairs ? pairs * 2 * DAPPLE_BATCH : DAPPLE_BATCH;
+}
+
+/// Pixels a slice: of 65,535 work-items and more PoCL compiles kernels once again.
+constexpr std::uint32_t kMostEntries = 65'472;
+
+std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
+  return std::min(slice_samples / samples_at_once(group, slice_samples), kMostEntries);
+}
+
+void take_back(std::uint32_t& samples, std::uint32_t pending) {
+  if (pending > samples) {
+    throw Error(ErrorKind::failed, "a pixel has more samples to come than it was given");
+  }
+  samples -= pending;
+}
+
+}  // namespace
+
+SliceParams next_slice(const Round& round, std::uint32_t slice_samples) {
+  const WorkGroup& group = round.groups[round.group];
+  const auto count = static_cast<std::uint32_t>(group.work.size());
+  return {round.entry, std::min(entries_at_once(group, slice_samples), count - round.entry),
+          round.sample,
+          std::min(samples_at_once(group, slice_samples), group.samples - round.sample)};
+}
+
+void advance(Round& round, std::uint32_t slice_samples) {
+  const SliceParams slice = next_slice(round, slice_samples);
+  const WorkGroup& group = round.groups[round.group];
+  round.sample += slice.sample_count;
+  if (round.sample < group.samples) return;
+  round.sample = 0;
+  round.entry += slice.pixel_count;
+  if (round.entry < group.work.size()) return;
+  round.entry = 0;
+  ++round.group;
+}
+
+std::vector<std::uint32_t> traced_samples(const Round& round, std::uint32_t slice_samples,
+                                          const std::vector<std::uint32_t>& given) {
+  std::vector<std::uint32_t> samples = given;
+  for (std::size_t g = round.group; g < round.groups.size(); ++g) {
+    const WorkGroup& group = round.groups[g];
+    const bool begun = g == round.group;
+    const std::size_t first = begun ? round.entry : 0;
+    const std::size_t part_end = begun ? first + entries_at_once(group, slice_samples) : 0;
+    for (std::size_t entry = first; entry < group.work.size(); ++entry)
+      take_back(samples[group.work[entry].pixel],
+                group.samples - (entry < part_end ? round.sample : 0));
+  }
+  return samples;
+}
+
+}  // namespace dapple

@@ -1,0 +1,131 @@
+// Decoding images through stb_image: see image.hpp.
+#include "scene/images/image.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "dapple/error.hpp"
+#include "scene/images/image_structure.hpp"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_NO_STDIO
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_PNG
+#include <stb_image.h>
+
+namespace dapple {
+namespace {
+
+struct StbiFree {
+  void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
+};
+
+struct Pixels {
+  std::unique_ptr<stbi_uc, StbiFree> bytes;
+  std::size_t width = 0;
+  std::size_t height = 0;
+};
+
+[[noreturn]] void refuse(const std::string& what, const std::string& why) {
+  throw Error(ErrorKind::input, what + ": " + why);
+}
+
+void check_size(std::uint64_t width, std::uint64_t height, const std::string& what) {
+  if (width * height <= kMaxImagePixels) return;
+  refuse(what, "is too large (" + std::to_string(width) + " x " + std::to_string(height) +
+                   " pixels, at most " + std::to_string(kMaxImagePixels) + " in all)");
+}
+
+std::uint64_t big_endian(std::span<const std::uint8_t> bytes) {
+  std::uint64_t value = 0;
+  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
+  return value;
+}
+
+/// stb_image reads a PNG header too, but calls one of more than 2^30 bytes "unknown".
+void check_png_size(std::span<const std::uint8_t> bytes, const std::string& what) {
+  constexpr std::size_t kSizesEnd = 24;
+  if (bytes.size() < kSizesEnd) refuse(what, "is corrupt (its PNG header)");
+  check_size(big_endian(bytes.subspan(16, 4)), big_endian(bytes.subspan(20, 4)), what);
+}
+
+/// The header alone decides whether an image is small enough: 100 bytes of PNG can ask
+/// for gigabytes.
+void check_header(std::span<const std::uint8_t> bytes, const std::string& what) {
+  const ImageFormat format = image_format(bytes);
+  if (format == ImageFormat::other) refuse(what, "is neither a PNG nor a JPEG image");
+  const bool png = format == ImageFormat::png;
+  if (png) check_png_size(bytes, what);
+  const std::string defect = png ? png_defect(bytes) : jpeg_defect(bytes);
+  if (!defect.empty()) refuse(what, "is corrupt (" + defect + ")");
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  if (stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
+                            &channels) == 0) {
+    refuse(what, png ? "is corrupt (its PNG header)" : "is corrupt (its JPEG header)");
+  }
+  check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), what);
+}
+
+/// `channels` as stb_image counts them: 2 is grey and alpha, 3 is RGB.
+Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::string& what) {
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    refuse(what, "has more than 2^31 bytes");
+  }
+  check_header(bytes, what);
+  const int size = static_cast<int>(bytes.size());
+  int width = 0;
+  int height = 0;
+  int in_file = 0;
+  Pixels pixels;
+  pixels.bytes.reset(
+      stbi_load_from_memory(bytes.data(), size, &width, &height, &in_file, channels));
+  if (!pixels.bytes) {
+    refuse(what, std::string("is corrupt (") + stbi_failure_reason() + ")");
+  }
+  pixels.width = static_cast<std::size_t>(width);
+  pixels.height = static_cast<std::size_t>(height);
+  return pixels;
+}
+
+/// IEC 61966-2-1.
+double linear_from_srgb(double value) {
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+}  // namespace
+
+AlphaImage decode_alpha(std::span<const std::uint8_t> bytes, const std::string& what) {
+  const Pixels pixels = decode(bytes, 2, what);
+  AlphaImage image;
+  image.width = static_cast<std::uint32_t>(pixels.width);
+  image.height = static_cast<std::uint32_t>(pixels.height);
+  image.alpha.resize(pixels.width * pixels.height);
+  for (std::size_t i = 0; i < image.alpha.size(); ++i) {
+    image.alpha[i] = pixels.bytes.get()[2 * i + 1];
+  }
+  return image;
+}
+
+Imath::V3f mean_linear_color(std::span<const std::uint8_t> bytes, const std::string& what) {
+  const Pixels pixels = decode(bytes, 3, what);
+  const std::size_t count = pixels.width * pixels.height;
+  std::array<std::array<std::uint64_t, 256>, 3> histogram{};
+  for (std::size_t i = 0; i < 3 * count; ++i) ++histogram[i % 3][pixels.bytes.get()[i]];
+  Imath::V3f mean(0.0f);
+  for (int channel = 0; channel < 3; ++channel) {
+    double sum = 0;
+    for (std::size_t level = 0; level < 256; ++level) {
+      sum += linear_from_srgb(static_cast<double>(level) / 255.0) *
+             static_cast<double>(histogram[static_cast<std::size_t>(channel)][level]);
+    }
+    mean[channel] = static_cast<float>(sum / static_cast<double>(count));
+  }
+  return mean;
+}
+
+}  // namespace dapple

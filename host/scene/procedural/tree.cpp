@@ -1,0 +1,142 @@
+// Puts wood around a tree's skeleton and leaves on its twigs.
+#include "scene/procedural/tree.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "scene/procedural/mesh_shapes.hpp"
+#include "scene/procedural/pcg32.hpp"
+#include "scene/procedural/tree_skeleton.hpp"
+
+namespace dapple {
+namespace {
+
+// One-sided leaf area over the ground under the crown; broad-leaved trees have 3 to 6.
+constexpr float kLeafAreaIndex = 4.0f;
+
+float leaf_length(const TreeShape& shape) {
+  if (shape.leaf_length_m > 0) return shape.leaf_length_m;
+  const float crown_radius = kCrownRadius * shape.height_m;
+  const float area = kLeafAreaIndex * std::numbers::pi_v<float> * crown_radius * crown_radius;
+  const float length = std::sqrt(area / (kBladeArea * static_cast<float>(shape.leaves)));
+  return std::min(length, 0.03f * shape.height_m);  // a handful of leaves stays leaves
+}
+
+// The child that carries a branch on: its thickest; 0 for none.
+std::vector<std::uint32_t> find_leaders(const TreeSkeleton& tree) {
+  std::vector<std::uint32_t> leaders(tree.size(), 0);
+  for (std::uint32_t node = 1; node < tree.size(); ++node) {
+    std::uint32_t& leader = leaders[tree.parents[node]];
+    if (leader == 0 || tree.radii[node] > tree.radii[leader]) leader = node;
+  }
+  return leaders;
+}
+
+int sides_of(float radius, float trunk_radius) {
+  const float share = radius / trunk_radius;
+  return share > 0.5f ? 12 : share > 0.25f ? 7 : share > 0.12f ? 5 : 3;
+}
+
+/// Carries the tube that begins at vertex `first`, whose rings are around `nodes`, from rest.
+void sway_tube(Mesh& mesh, std::size_t first, const std::vector<std::uint32_t>& nodes, int sides,
+               const SwayingSkeleton& swaying) {
+  for (std::size_t v = first; v < mesh.positions.size(); ++v) {
+    const std::size_t ring = (v - first) / static_cast<std::size_t>(sides);
+    mesh.positions[v] = swaying.moved(nodes[ring], mesh.positions[v]);
+  }
+}
+
+// Every branch is a tube from its parent's axis to its tip, with as many sides as its
+// thickness deserves.
+void append_wood(Mesh& mesh, const TreeSkeleton& tree, const SwayingSkeleton* swaying,
+                 std::uint32_t material) {
+  const std::vector<std::uint32_t> leaders = find_leaders(tree);
+  std::vector<std::uint32_t> nodes;
+  std::vector<V3f> points;
+  std::vector<float> radii;
+  for (std::uint32_t first = 1; first < tree.size(); ++first) {
+    const std::uint32_t parent = tree.parents[first];
+    const bool is_trunk = parent == 0 && leaders[0] == first;
+    if (!is_trunk && leaders[parent] == first) continue;
+    nodes = {parent};
+    points = {tree.positions[parent]};
+    radii = {tree.radii[is_trunk ? parent : first]};
+    for (std::uint32_t node = first; node != 0; node = leaders[node]) {
+      nodes.push_back(node);
+      points.push_back(tree.positions[node]);
+      radii.push_back(tree.radii[node]);
+    }
+    const std::size_t first_vertex = mesh.positions.size();
+    const int sides = sides_of(radii[0], tree.radii[0]);
+    append_tube(mesh, points, radii, sides, material);
+    if (swaying != nullptr) sway_tube(mesh, first_vertex, nodes, sides, *swaying);
+  }
+}
+
+// Leaves stand around their twig, point away from it and hang a little; their upper sides
+// seek the sky, each in its own way.
+Blade grow_leaf(Pcg32& rng, V3f twig, V3f twig_foot, float reach, float length) {
+  const V3f along = twig_foot + (twig - twig_foot) * rng.unit();
+  const V3f offset = point_in_ball(rng);
+  const V3f wander = unit_vector(rng);
+  const V3f lean = unit_vector(rng);
+  Blade blade;
+  blade.base = along + offset * V3f(reach, 0.7f * reach, reach);
+  blade.axis = (offset * 0.6f + wander * 0.8f + V3f(0, -0.3f, 0)).normalized();
+  V3f up = V3f(0, 1, 0) + lean * 0.9f;
+  up -= blade.axis * up.dot(blade.axis);
+  blade.normal = up.length2() > 1e-6f ? up.normalized() : perpendicular(blade.axis);
+  // A leaf whose axis cancelled out has none: give it one that is at right angles to up.
+  if (blade.axis.length2() < 0.5f) blade.axis = perpendicular(blade.normal);
+  blade.length = length * rng.between(0.75f, 1.25f);
+  return blade;
+}
+
+Blade carry_leaf(Blade leaf, const SwayingSkeleton& swaying, std::uint32_t twig) {
+  leaf.base = swaying.moved(twig, leaf.base);
+  leaf.axis = swaying.turned(twig, leaf.axis);
+  leaf.normal = swaying.turned(twig, leaf.normal);
+  return leaf;
+}
+
+void append_leaves(Mesh& mesh, const TreeSkeleton& tree, const SwayingSkeleton* swaying,
+                   const TreeShape& shape, std::uint32_t material) {
+  BladeRange blades(mesh, shape.leaves, material);
+  const float length = leaf_length(shape);
+  const float reach = 0.034f * shape.height_m;
+  const auto grow = [&](const tbb::blocked_range<std::uint32_t>& range) {
+    for (std::uint32_t leaf = range.begin(); leaf < range.end(); ++leaf) {
+      // Leaves of one twig are neighbours in memory too.
+      const std::uint64_t twig_count = tree.twigs.size();
+      const std::uint32_t twig = tree.twigs[leaf * twig_count / shape.leaves];
+      Pcg32 rng(shape.seed, leaf);
+      Blade blade =
+          grow_leaf(rng, tree.positions[twig], tree.positions[tree.parents[twig]], reach, length);
+      if (swaying != nullptr)
+        blade = flutter(carry_leaf(blade, *swaying, twig), shape.wind, shape.seed, leaf);
+      blades.set(leaf, blade);
+    }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, shape.leaves, 4096), grow);
+}
+
+}  // namespace
+
+Mesh make_tree(const TreeShape& shape, const TreeMaterials& materials) {
+  const TreeSkeleton skeleton = grow_skeleton(shape.seed, shape.height_m);
+  std::optional<SwayingSkeleton> swaying;
+  if (shape.wind.blows()) swaying.emplace(skeleton, shape.height_m, shape.wind);
+  const SwayingSkeleton* const sway = swaying ? &*swaying : nullptr;
+  Mesh mesh;
+  mesh.name = "tree";
+  if (shape.wood) append_wood(mesh, skeleton, sway, materials.bark);
+  append_leaves(mesh, skeleton, sway, shape, materials.leaf);
+  return mesh;
+}
+
+}  // namespace dapple

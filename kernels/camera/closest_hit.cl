@@ -1,0 +1,49 @@
+/* What stops each ray of a queue. */
+#include "camera/closest_ray.clh"
+#include "dapple/shared/pass_params.h"
+#include "geometry/surface_point.clh"
+
+/* Different rays have unrelated thresholds even where their keys are equal. */
+inline float threshold_of(__global const Ray* ray) {
+  uint bits = ray->key;
+  for (uint axis = 0; axis < 3u; ++axis) {
+    bits = hash_pair(as_uint(ray->origin[axis]), bits);
+    bits = hash_pair(as_uint(ray->direction[axis]), bits);
+  }
+  return unit_float(bits);
+}
+
+__kernel void closest_hit(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                          __global const SegmentBlock* segments,
+                          __global const TexturedTriangle* textured,
+                          __global const MaterialRecord* materials, __global const uchar* texels,
+                          __global const InstanceRecord* instances, __global const Ray* rays,
+                          __global SurfacePoint* points, OcclusionParams params) {
+  const uint item = get_global_id(0);
+  if (item >= params.ray_count) return;
+  const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
+  const Ray ray = rays[item];
+  const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
+  BeamNearest nearest; /* only the first ray's is used */
+  LoneRay lone;
+  const TexelArea covers = {0.0f, 0.0f};
+  start_layers((float16)(threshold_of(rays + item)), &nearest.layers);
+  nearest.visits = nearest.tests = 0u;
+  do {
+    nearest.t.v = (float16)(ray.t_max);
+    nearest.primitive.v = nearest.instance.v = (int16)(-1);
+    start_lone(span, covers, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
+    ask_for_entry(scene, params.scene.root, 0.0f, &lone);
+    while (go_down(scene, &lone, &nearest)) {
+    }
+  } while (pass_layers(&nearest.layers).s0);
+  __global SurfacePoint* point = points + item;
+  point->visits = min(nearest.visits, 65535u) | min(nearest.tests, 65535u) << 16;
+  const float t = nearest.t.f[0];
+  if (t < ray.t_max) {
+    store_point(scene, hit_of_ray(&nearest, 0u), span.origin, span.direction,
+                ray.first_area + ray.solid_angle * t * t, point);
+  } else {
+    point->t = -1.0f;
+  }
+}

@@ -1,0 +1,116 @@
+/* The passes that add up camera samples, AO and lights: see film.clh. */
+#include "film/film.clh"
+#include "vectors/lanes.clh"
+#include "geometry/scene.clh"
+
+/* Position (3), depth, normal (3), hits: a SurfacePoint has t and offset where depth and hits
+   are. */
+inline long8 surface_sums(ResolveParams params, float8 scale, __global const SurfacePoint* point) {
+  float8 values = vload8(0, point->position);
+  values.s3 = 0.0f;
+  DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
+    values.s3 += (point->position[axis] - params.eye[axis]) * params.axis[axis];
+  }
+  values.s7 = 1.0f;
+  return fixed_points(values * scale);
+}
+
+inline long8 in_order_of_planes(long8 s) {
+  return (long8)(s.s7, s.s4, s.s5, s.s6, s.s0, s.s1, s.s2, s.s3);
+}
+
+/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles each ray is
+   given those of its whole item. */
+__kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
+                              __global const SampleHits* sample_hits, __global long* film,
+                              ResolveParams params) {
+  const uint local_pixel = get_global_id(0);
+  if (local_pixel >= params.slice.pixel_count) return;
+  const float n = params.scale, p = params.position_scale;
+  const float8 scale = (float8)(p, p, p, params.depth_scale, n, n, n, 1.0f);
+  long8 of_points = (long8)(0);
+  long visits = 0, tests = 0;
+  const uint begin = local_pixel * params.slice.sample_count;
+  const uint end = begin + params.slice.sample_count;
+  for (uint r = begin / DAPPLE_HIT_BITS; r * DAPPLE_HIT_BITS < end; ++r) {
+    const SampleHits record = sample_hits[r];
+    const uint range = range_of_samples(r, begin, end);
+    const uint rays = popcount(range) >> params.depth_bits;
+    visits += (long)record.visits * rays;
+    tests += (long)record.tests * rays;
+    for (uint left = record.hits & range; left; left &= left - 1u)
+      of_points += surface_sums(params, scale, points + r * DAPPLE_HIT_BITS + lowest_bit(left));
+  }
+  const uint pixel = pixel_of(work, params, local_pixel);
+  if (visits | tests) {
+    add_to_plane(film, params, 8, pixel, visits);
+    add_to_plane(film, params, 9, pixel, tests);
+  }
+  if (!of_points.s7) return;
+  add_to_planes(film, params, 8u, pixel, in_order_of_planes(of_points));
+}
+
+/* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
+   is 0 where samples missed. */
+__kernel void resolve_ao(__global const PixelWork* work, __global const SampleHits* sample_hits,
+                         __global const Ray* rays,
+                         __global const Occlusion* occlusions, __global long* film,
+                         __global float* squares, ResolveParams params) {
+  const uint local_pixel = get_global_id(0);
+  if (local_pixel >= params.slice.pixel_count) return;
+  const uint begin = local_pixel * params.slice.sample_count;
+  if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
+  long8 sums = (long8)(0);
+  Batches batches = no_batches();
+  const float inverse_rays = 1.0f / params.rays, of_unit = params.scale;
+  const float8 scale = (float8)(of_unit, of_unit, of_unit, of_unit, 1.0f, 1.0f, 1.0f, 1.0f);
+  uint ray = sample_slot(sample_hits, begin) * params.rays;
+  for (uint s = 0; s < params.slice.sample_count; ++s) {
+    float value = 0.0f;
+    const uint end = ray + (sample_hit(sample_hits, begin + s) ? params.rays : 0u);
+    for (; ray < end; ++ray) {
+      const Occlusion found = occlusions[ray];
+      const float seen = found.transmittance;
+      value += (1.0f - seen) * inverse_rays;
+      __global const float* direction = rays[ray].direction;
+      sums += fixed_points((float8)(seen, seen * direction[0], seen * direction[1],
+                                    seen * direction[2], nodes_of(found), tests_of(found), 0.0f,
+                                    0.0f) *
+                           scale);
+    }
+    add_to_batch(&batches, s, value);
+  }
+  const uint pixel = pixel_of(work, params, local_pixel);
+  add_squares(squares, params, pixel, &batches);
+  add_to_planes(film, params, 6u, pixel, sums);
+}
+
+/* Planes: irradiance at radiance 1, the same unoccluded, visits, tests. */
+__kernel void resolve_light(__global const PixelWork* work, __global const SampleHits* sample_hits,
+                            __global const Ray* rays,
+                            __global const Occlusion* occlusions, __global long* film,
+                            __global float* squares, ResolveParams params) {
+  const uint local_pixel = get_global_id(0);
+  if (local_pixel >= params.slice.pixel_count) return;
+  const uint begin = local_pixel * params.slice.sample_count;
+  if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
+  long8 sums = (long8)(0);
+  Batches batches = no_batches();
+  const float inverse_rays = 1.0f / params.rays;
+  uint ray = sample_slot(sample_hits, begin) * params.rays;
+  for (uint s = 0; s < params.slice.sample_count; ++s) {
+    float value = 0.0f;
+    const uint end = ray + (sample_hit(sample_hits, begin + s) ? params.rays : 0u);
+    for (; ray < end; ++ray) {
+      const Occlusion found = occlusions[ray];
+      const float weight = rays[ray].weight, light = weight * found.transmittance;
+      value += light * inverse_rays;
+      sums += fixed_points((float8)(light * params.scale, weight * params.scale, nodes_of(found),
+                                    tests_of(found), 0.0f, 0.0f, 0.0f, 0.0f));
+    }
+    add_to_batch(&batches, s, value);
+  }
+  const uint pixel = pixel_of(work, params, local_pixel);
+  add_squares(squares, params, pixel, &batches);
+  add_to_planes(film, params, 4u, pixel, sums);
+}

@@ -1,6 +1,0 @@
-/* The kernels around those that trace, compiled together: each program takes a fifth of a
-   second on PoCL for OpenCL's own header. Domes, which few scenes have, are apart. */
-#include "ao.cl"
-#include "compact.cl"
-#include "film.cl"
-#include "light.cl"

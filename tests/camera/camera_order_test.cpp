@@ -1,0 +1,193 @@
+// The samples of one camera item are taken in an order in which sixteen in a row lie together,
+// where they stop is the same side by side and one by one, and sums are rounded as OpenCL's own
+// saturating conversion does.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "dapple/shared/geometry.h"
+#include "dapple/shared/segment_block.h"
+#include "support/test_kernel.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace kernel_test;
+
+constexpr std::size_t kItem = 64, kBeam = 16;
+
+struct Places {
+  std::vector<float> x, y;
+};
+
+std::vector<uint> order_of(const Places& places) {
+  const Buffer x = upload(places.x), y = upload(places.y);
+  const Buffer order = device().allocate(kItem * sizeof(uint));
+  run("film_and_camera", "camera_order", 1, {x, y, order});
+  return download<uint>(order, kItem);
+}
+
+/// Samples on a grid of cells, row by row, from (left, top) on, each in the middle of its cell.
+Places grid(int columns, float left, float top, float cell) {
+  Places places;
+  for (std::size_t i = 0; i < kItem; ++i) {
+    places.x.push_back(left + (static_cast<float>(i % columns) + 0.5f) * cell);
+    places.y.push_back(top + (static_cast<float>(i / columns) + 0.5f) * cell);
+  }
+  return places;
+}
+
+/// Sides of the box around the widest beam.
+std::pair<float, float> widest(const Places& places, const std::vector<uint>& order) {
+  std::pair<float, float> widest{0, 0};
+  for (std::size_t beam = 0; beam < kItem; beam += kBeam) {
+    const auto side = [&](const std::vector<float>& at) {
+      float low = at[order[beam]], high = low;
+      for (std::size_t i = beam; i < beam + kBeam; ++i) {
+        low = std::min(low, at[order[i]]);
+        high = std::max(high, at[order[i]]);
+      }
+      return high - low;
+    };
+    widest = {std::max(widest.first, side(places.x)), std::max(widest.second, side(places.y))};
+  }
+  return widest;
+}
+
+TEST(CameraOrder, EachSampleIsTakenOnce) {
+  for (const Places& places :
+       {grid(8, 16, 8, 1), grid(64, 3, 5, 1.0f / 64), grid(4, 250, 300, 0.7f),
+        Places{std::vector<float>(kItem, 7.5f), std::vector<float>(kItem, 1.0f)}}) {
+    const std::vector<uint> order = order_of(places);
+    EXPECT_EQ(std::set<uint>(order.begin(), order.end()).size(), kItem);
+    EXPECT_LT(*std::max_element(order.begin(), order.end()), kItem);
+  }
+}
+
+TEST(CameraOrder, SixteenInARowFillASquareOfATileAndAQuarterOfAPixel) {
+  for (const float cell : {1.0f, 1.0f / 8}) {
+    const Places places = grid(8, 24, 16, cell);
+    const auto [width, height] = widest(places, order_of(places));
+    EXPECT_FLOAT_EQ(width, 3 * cell);
+    EXPECT_FLOAT_EQ(height, 3 * cell);
+  }
+}
+
+/// A ray through a point of each triangle of two blocks, some of which count as placed.
+class PlacedRays {
+ public:
+  PlacedRays() : blocks_(2), instances_(1) {
+    InstanceRecord& instance = instances_[0];
+    // Twice as large, from x to y, and moved.
+    const float to_world[12] = {0, -2, 0, 1, 2, 0, 0, -1, 0, 0, 2, 3};
+    const float to_object[12] = {0, 0.5f, 0, 0.5f, -0.5f, 0, 0, 0.5f, 0, 0, 0.5f, -1.5f};
+    std::copy_n(to_world, 12, instance.to_world);
+    std::copy_n(to_object, 12, instance.to_object);
+    for (uint i = 0; i < 16; ++i) add(i, i % 3 == 1);
+    add_edge_on();
+  }
+
+  void expect_alike() const {
+    const Buffer together = device().allocate(16 * 7 * sizeof(float));
+    const Buffer alone = device().allocate(16 * 7 * sizeof(float));
+    const std::vector<SegmentBlock> none(1);
+    run("film_and_camera", "placed_points", 1,
+        {upload(blocks_), upload(none), upload(instances_), upload(rays_), upload(primitives_),
+         upload(placements_), together, alone});
+    const auto a = download<float>(together, 16 * 7), b = download<float>(alone, 16 * 7);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_TRUE(std::isfinite(a[i])) << "ray " << i / 7;
+      EXPECT_NEAR(a[i], b[i], 2e-6f) << "ray " << i / 7 << ", " << i % 7;
+    }
+    for (std::size_t i = 0; i < 15; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(a[7 * i + axis], met_[3 * i + axis], 1e-5f) << "ray " << i;
+  }
+
+ private:
+  void add(uint i, bool placed) {
+    const V3f vertex(random(), random(), random()), edge1(random(), random(), 1.0f),
+        edge2(random(), 1.0f, random());
+    TriangleBlock& block = blocks_[i / 8];
+    for (int axis = 0; axis < 3; ++axis) {
+      block.vertex[axis][i % 8] = vertex[axis];
+      block.edge1[axis][i % 8] = edge1[axis];
+      block.edge2[axis][i % 8] = edge2[axis];
+    }
+    V3f met = vertex + 0.3f * edge1 + 0.4f * edge2;
+    const float* m = instances_[0].to_world;
+    const auto row = [&](int r) {
+      return m[4 * r] * met.x + m[4 * r + 1] * met.y + m[4 * r + 2] * met.z + m[4 * r + 3];
+    };
+    if (placed) met = V3f(row(0), row(1), row(2));
+    const V3f direction = V3f(random(), random(), random()).normalized();
+    const V3f origin = met - 3.0f * direction;
+    for (const float value : {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z})
+      rays_.push_back(value);
+    rays_.push_back(3.0f);
+    primitives_.push_back(i);
+    placements_.push_back(placed ? 0u : ~0u);
+    met_.insert(met_.end(), {met.x, met.y, met.z});
+  }
+  /// The last ray lies in the plane of its triangle.
+  void add_edge_on() {
+    TriangleBlock& block = blocks_[1];
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, ray[6] = {0.25f, -1, 0, 0, 1, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+      block.vertex[axis][7] = corners[axis];
+      block.edge1[axis][7] = corners[3 + axis];
+      block.edge2[axis][7] = corners[6 + axis];
+    }
+    std::copy_n(ray, 6, rays_.end() - 7);
+    placements_.back() = ~0u;
+  }
+  float random() { return std::uniform_real_distribution<float>(-1, 1)(random_); }
+
+  std::mt19937 random_{5};
+  std::vector<TriangleBlock> blocks_;
+  std::vector<InstanceRecord> instances_;
+  std::vector<float> rays_, met_;
+  std::vector<uint> primitives_, placements_;
+};
+
+TEST(CameraPoints, SideBySideAreAsTheyAreOneByOne) { PlacedRays().expect_alike(); }
+
+TEST(FixedPoints, RoundToEvenSaturateAndTakeNanAsZero) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> values{0.5f,          1.5f,       2.5f,  -0.5f,      -1.5f,     1e18f,
+                                  -3e18f,        8388607.5f, 1e30f, -kInfinity, kInfinity, -1e30f,
+                                  std::nanf(""), 0.0f,       0.25f, -7.75f};
+  const Buffer in = upload(values);
+  const Buffer out = device().allocate(values.size() * sizeof(std::int64_t));
+  const auto items = static_cast<uint>(values.size() / 8);
+  run("film_and_camera", "to_fixed_points", items, {in, out, items});
+  const auto sums = download<std::int64_t>(out, values.size());
+  // The greatest float below 2^63.
+  constexpr std::int64_t kMost = 9223371487098961920;
+  const std::vector<std::int64_t> expected{0,
+                                           2,
+                                           2,
+                                           0,
+                                           -2,
+                                           static_cast<std::int64_t>(1e18f),
+                                           static_cast<std::int64_t>(-3e18f),
+                                           8388608,
+                                           kMost,
+                                           -kMost,
+                                           kMost,
+                                           -kMost,
+                                           0,
+                                           0,
+                                           0,
+                                           -8};
+  EXPECT_EQ(sums, expected);
+}
+
+}  // namespace
+}  // namespace dapple

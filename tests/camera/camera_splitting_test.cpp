@@ -1,0 +1,190 @@
+// Samples that share a camera ray: as many as suit the scene's opacities, of the same picture, with
+// less noise where a ray slips through much.
+#include "camera/camera_splitting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <vector>
+
+#include "dapple/wavefront.hpp"
+
+namespace dapple {
+namespace {
+
+Scene tree(float opacity) {
+  Scene scene = make_procedural("scene:tree?leaves=20000");
+  override_opacity(scene, "leaf", opacity);
+  return scene;
+}
+
+RenderOptions small_picture(int depths) {
+  RenderOptions options;
+  options.width = 48;
+  options.height = 40;
+  options.depths = depths;
+  return options;
+}
+
+const std::vector<float>& channel(const RenderResult& result, const char* name) {
+  return result.film.find(name)->pixels;
+}
+
+double mean(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double rmse(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += std::pow(double{a[i]} - b[i], 2);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+int depths_of(const RenderOptions& options, const Scene& scene) {
+  std::vector<std::string> notes;
+  return choose_depths(options, scene, choose_view(scene, options, notes));
+}
+
+TEST(Depths, AreMoreTheMoreRaysSlipThrough) {
+  for (const auto& [opacity, depths] :
+       {std::pair(1.0f, 1), {0.9f, 1}, {0.85f, 2}, {0.5f, 2}, {0.2f, 4}})
+    EXPECT_EQ(depths_of({}, tree(opacity)), depths) << opacity;
+  RenderOptions options;
+  options.depths = 2;
+  EXPECT_EQ(depths_of(options, tree(0.2f)), 2) << "as asked for";
+}
+
+/// Leaves of the alphas of a texture of 2x1 texels.
+Scene cards(std::uint8_t left, std::uint8_t right) {
+  Scene scene = tree(1.0f);
+  scene.textures.push_back({"alpha", 2, 1, {left, right}});
+  for (Mesh& mesh : scene.meshes) mesh.uvs.resize(mesh.positions.size(), V2f(0.0f));
+  for (Material& material : scene.materials) material.alpha_texture = 0;
+  return scene;
+}
+
+TEST(Depths, OfTexturesAreThoseOfWhatTheyLetThrough) {
+  EXPECT_EQ(depths_of({}, cards(0, 255)), 1) << "holes and opaque leaf";
+  EXPECT_EQ(depths_of({}, cards(51, 51)), 4) << "as an opacity of 0.2";
+  EXPECT_EQ(depths_of({}, cards(0, 128)), 2) << "what is not there doesn't count";
+}
+
+TEST(Depths, OfTexturesAreThoseOfThemAsTheyAreSeen) {
+  Scene scene = cards(0, 255);
+  // Far finer than a pixel of the default picture: as an opacity of one half.
+  for (Mesh& mesh : scene.meshes) {
+    for (std::size_t v = 0; v < mesh.uvs.size(); ++v)
+      mesh.uvs[v] = V2f(mesh.positions[v].x + mesh.positions[v].z, mesh.positions[v].y) * 1e5f;
+  }
+  EXPECT_EQ(depths_of({}, scene), 4);
+  RenderOptions exact;
+  exact.estimator = Estimator::exact;
+  EXPECT_EQ(depths_of(exact, scene), 1) << "which averages nothing";
+}
+
+/// A tree of which that part of all triangles is thin.
+Scene partly_thin(double part) {
+  Scene scene = tree(1.0f);
+  scene.materials.push_back(scene.materials.front());
+  scene.materials.back().name = "thin";
+  for (Mesh& mesh : scene.meshes) {
+    const auto count =
+        static_cast<std::ptrdiff_t>(part * static_cast<double>(mesh.materials.size()));
+    std::fill_n(mesh.materials.begin(), count,
+                static_cast<std::uint32_t>(scene.materials.size() - 1));
+  }
+  override_opacity(scene, "thin", 0.1f);
+  return scene;
+}
+
+TEST(Depths, AreNotForAFewThinSurfaces) {
+  EXPECT_EQ(depths_of({}, partly_thin(0.05)), 1);
+  EXPECT_EQ(depths_of({}, partly_thin(0.15)), 2);
+  EXPECT_EQ(depths_of({}, partly_thin(0.3)), 4);
+}
+
+TEST(Depths, LeaveRoomForAllSamples) {
+  RenderOptions options;
+  options.spp = 1 << 20;
+  options.ao_rays = 8;
+  EXPECT_EQ(depths_of(options, tree(0.2f)), 2);
+  options.ao_rays = 16;
+  EXPECT_EQ(depths_of(options, tree(0.2f)), 1);
+}
+
+TEST(Depths, AreOfTheSamePictureWithLessNoise) {
+  // As many AO rays a camera sample for all, and footprints that cover nothing.
+  RenderOptions many = small_picture(1);
+  many.spp = 1024;
+  many.ao_rays = 4;
+  many.estimator = Estimator::exact;
+  const RenderResult truth = render(tree(0.2f), many);
+  std::vector<double> errors;
+  for (const int depths : {1, 2, 4}) {
+    RenderOptions options = many;
+    options.depths = depths;
+    options.spp = 16;
+    const RenderResult result = render(tree(0.2f), options);
+    for (const char* name : {"A", "ao.R", "light.key.G", "N.Y", "bent.Y"}) {
+      const auto &found = channel(result, name), &expected = channel(truth, name);
+      const double error_of_mean =
+          rmse(found, expected) / std::sqrt(static_cast<double>(found.size()));
+      EXPECT_NEAR(mean(found), mean(expected), 3 * error_of_mean) << name << ", " << depths;
+    }
+    errors.push_back(rmse(channel(result, "ao.R"), channel(truth, "ao.R")));
+  }
+  EXPECT_LT(errors[1], 0.9 * errors[0]);
+  EXPECT_LT(errors[2], 0.9 * errors[0]);
+}
+
+TEST(Depths, CountCameraSamplesAndTheirRays) {
+  RenderOptions options = small_picture(4);
+  options.spp = 3;
+  options.light_rays = 2;
+  const RenderResult result = render(tree(0.2f), options);
+  for (const float samples : channel(result, "samples")) EXPECT_EQ(samples, 3);
+  const auto& rays = result.statistics.rays;
+  EXPECT_EQ(rays.camera, 3u * 48 * 40);
+  EXPECT_EQ(rays.light, 2 * rays.ao) << "one AO ray and two light rays a depth";
+  const double hits = mean(channel(result, "A")) * 48 * 40 * 3 * 4;
+  EXPECT_NEAR(static_cast<double>(rays.ao), hits, 1e-4 * hits);
+}
+
+TEST(Depths, WithATargetErrorsAreThoseOfWholeCameraRays) {
+  RenderOptions many = small_picture(1);
+  many.spp = 2048;
+  const std::vector<float> truth = channel(render(tree(0.2f), many), "ao.R");
+  for (const int depths : {2, 4}) {
+    RenderOptions options = small_picture(depths);
+    options.spp = 2;
+    options.light = false;
+    options.target_rmse = 0.015f;
+    options.footprint_spp = many.spp;
+    const RenderResult result = render(tree(0.2f), options), again = render(tree(0.2f), options);
+    const std::vector<float>& ao = channel(result, "ao.R");
+    // Samples of one ray are alike: counted as if they were not, errors would be underestimated.
+    EXPECT_LT(rmse(ao, truth), 0.016) << depths;
+    EXPECT_GT(rmse(ao, truth), 0.011) << depths;
+    EXPECT_EQ(std::memcmp(ao.data(), channel(again, "ao.R").data(), ao.size() * sizeof(float)), 0);
+    for (const float samples : channel(result, "samples")) EXPECT_GE(samples, 2);
+  }
+}
+
+TEST(Depths, APicturesPartIsThePictureThere) {
+  RenderOptions options = small_picture(4);
+  options.spp = 5;
+  const RenderResult whole = render(tree(0.2f), options);
+  options.crop = PixelRect{7, 5, 40, 30};
+  const RenderResult part = render(tree(0.2f), options);
+  for (const char* name : {"A", "Z", "P.X", "ao.R", "light.key.R"})
+    for (int y = 5; y <= 30; ++y)
+      for (int x = 7; x <= 40; ++x)
+        ASSERT_EQ(channel(whole, name)[static_cast<std::size_t>(y) * 48 + x],
+                  channel(part, name)[static_cast<std::size_t>(y - 5) * 34 + (x - 7)])
+            << name << " at " << x << ", " << y;
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,361 @@
+// The program as its users meet it: exit codes, messages that name what is wrong, nothing
+// left behind by a failure, and the files of a success.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "dapple/film.hpp"
+#include "dapple/shared/ray.h"
+#include "support/program_run.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+
+using program_test::Outcome;
+
+class CommandLine : public program_test::ProgramRun {};
+
+TEST_F(CommandLine, HelpOfEveryCommandHasAnExample) {
+  for (const char* arguments :
+       {"--help", "render --help", "info --help", "scene --help", "devices --help"}) {
+    const Outcome run = dapple(arguments);
+    EXPECT_EQ(run.code, 0) << arguments;
+    EXPECT_TRUE(contains(run.out, "Example:")) << arguments;
+    EXPECT_TRUE(contains(run.out, "\n  dapple ")) << arguments;
+    EXPECT_EQ(run.err, "") << arguments;
+  }
+  EXPECT_TRUE(contains(dapple("--help").out, "Exit codes"));
+  const Outcome version = dapple("--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.rfind("dapple ", 0), 0u) << version.out;
+}
+
+TEST_F(CommandLine, TheTwoTargetsExcludeEachOther) {
+  const Outcome run = render("--target-error 0.1 --target-rmse 0.1");
+  expect_failure(run, 2, "--target-error");
+  expect_failure(run, 2, "--target-rmse");
+  const Outcome one = render("--target-rmse 0.1");
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_TRUE(contains(one.out, "estimated RMSE: ao 0.")) << one.out;
+}
+
+TEST_F(CommandLine, UsageErrorsNameTheirFlagAndLeaveNothingBehind) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"--no-such-flag", "--no-such-flag"},
+      {"--spp 0", "--spp"},
+      {"--spp -1", "--spp"},
+      {"--spp 1e99", "--spp"},
+      {"--spp abc", "--spp"},
+      {"--spp 1.5", "--spp"},
+      {"--spp", "--spp"},
+      {"--seed -1", "--seed"},
+      {"--seed 4294967296", "--seed"},
+      {"--ao-rays 0", "--ao-rays"},
+      {"--light-rays 5000", "--light-rays"},
+      {"--footprint nan", "--footprint"},
+      {"--footprint -1", "--footprint"},
+      {"--ao-distance -1", "--ao-distance"},
+      {"--ao-falloff 2", "--ao-distance"},
+      {"--target-rmse 2", "--target-rmse"},
+      {"--target-rmse nan", "--target-rmse"},
+      {"--crop 0,0,8,7", "--crop"},
+      {"--crop 5,5,4,4", "--crop"},
+      {"--crop -1,0,4,4", "--crop"},
+      {"--crop 1,2,3", "--crop"},
+      {"--crop a,b,c,d", "--crop"},
+      {"--crop 0,0,7,99999999999", "--crop"},
+      {"--passes foo", "--passes"},
+      {"--passes ao,", "--passes"},
+      {"--passes ''", "--passes"},
+      {"--estimator foo", "--estimator"},
+      {"--look-from 0,1,2", "--look-at"},
+      {"--look-from 0,1,2 --look-at 0,1", "--look-at"},
+      {"--look-from 0,1,2 --look-at 0,1,2", "from and at are the same point"},
+      {"--fov 180", "--fov"},
+      {"--light-radius -1", "--light-radius"},
+      {"--light-radius nan", "--light-radius"},
+      {"--camera nosuch", "--camera"},
+      {"--opacity nosuch=0.5", "cube"},  // the materials that there are
+      {"--opacity cube=2", "cube"},
+      {"--opacity cube=nan", "cube"},
+      {"--opacity cube=", "--opacity cube"},
+      {"--opacity cube", "--opacity cube"},
+  };
+  for (const auto& [arguments, part] : cases) {
+    SCOPED_TRACE(arguments);
+    expect_failure(render(arguments), 2, part);
+    EXPECT_EQ(files_in_folder(), 0u);
+    std::filesystem::remove(path("out.exr"));  // a leftover is this case's fault only
+  }
+}
+
+TEST_F(CommandLine, PictureSizesOutOfRangeNameTheirFlag) {
+  for (const char* flag : {"--width", "--height"}) {
+    for (const char* value : {"0", "-1", "65536", "2147483648", "9e9", "abc"}) {
+      const std::string arguments = std::string(flag) + " " + value;
+      SCOPED_TRACE(arguments);
+      expect_failure(dapple("render scene:demo -o out.exr " + arguments), 2, flag);
+    }
+  }
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(CommandLine, ACommandLineThatLacksSomethingIsAUsageError) {
+  expect_failure(dapple(""), 2, "subcommand");
+  expect_failure(dapple("nosuch"), 2, "nosuch");
+  expect_failure(dapple("render scene:demo"), 2, "--output");
+  expect_failure(dapple("render -o out.exr"), 2, "SCENE");
+  expect_failure(dapple("scene -o x.glb"), 2, "NAME");
+  expect_failure(dapple("scene nosuch -o x.glb"), 2, "nosuch");
+  expect_failure(dapple("scene tree nosuch=1 -o x.glb"), 2, "nosuch");
+  expect_failure(dapple("scene tree leaves=0 -o x.glb"), 2, "leaves");
+  expect_failure(dapple("info scene:cube --opacity nosuch=1"), 2, "cube");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsFoundBeforeTheSceneIsRead) {
+  std::filesystem::create_directory(path("folder"));
+  for (const char* output : {"missing/out.exr", "folder", "folder/x/out.exr"}) {
+    // The scene is missing too: code 2, not 3, says which was looked at first.
+    expect_failure(dapple(std::string("render nosuch.glb -o ") + output), 2, output);
+    expect_failure(dapple(std::string("render nosuch.glb -o a.exr --png ") + output), 2, output);
+    expect_failure(dapple(std::string("render nosuch.glb -o a.exr --stats-json ") + output), 2,
+                   output);
+    expect_failure(dapple(std::string("scene tree -o ") + output), 2, output);
+  }
+  EXPECT_EQ(files_in_folder(), 1u);
+}
+
+TEST_F(CommandLine, AnOutputThatIsAnInputByAnyLinkIsRefusedByItsFlag) {
+  ASSERT_EQ(dapple("scene cube -o scene.glb").code, 0);
+  write_bytes(path("lights.json"), "{\"lights\": []}");
+  std::filesystem::create_symlink("scene.glb", path("soft.exr"));
+  std::filesystem::create_hard_link(path("scene.glb"), path("hard.exr"));
+  std::filesystem::create_symlink("lights.json", path("lights.exr"));
+  const std::string before = bytes_of(path("scene.glb"));
+  const std::string render = "render scene.glb --lights lights.json -o ";
+  for (const char* output : {"scene.glb", "./scene.glb", "soft.exr", "hard.exr"}) {
+    expect_failure(dapple(render + output), 2, "--output");
+    expect_failure(dapple(render + "a.exr --png " + output), 2, "--png");
+    expect_failure(dapple(render + "a.exr --stats-json " + output), 2, "--stats-json");
+  }
+  expect_failure(dapple(render + "lights.json"), 2, "--output");
+  expect_failure(dapple(render + "lights.exr"), 2, "--output");
+  EXPECT_EQ(bytes_of(path("scene.glb")), before);
+  EXPECT_EQ(files_in_folder(), 5u);
+}
+
+TEST_F(CommandLine, AnOutputThatIsTheImageOfADomeInALightsFileIsRefused) {
+  EXPECT_EQ(render("").code, 0);
+  const std::string before = bytes_of(path("out.exr"));
+  write_bytes(path("sky.json"), R"({"lights": [{"type": "dome", "image": "out.exr"}]})");
+  expect_failure(render("--lights sky.json"), 2, "would overwrite");
+  EXPECT_EQ(bytes_of(path("out.exr")), before);
+}
+
+TEST_F(CommandLine, AnOutputThatIsABufferOrImageOfTheSceneIsRefusedByItsFlag) {
+  write_bytes(path("a.bin"), std::string(36, '\0'));
+  write_bytes(path("scene.gltf"), R"({"asset": {"version": "2.0"},
+    "buffers": [{"uri": "a.bin", "byteLength": 36}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}],
+    "images": [{"uri": "leaf.png"}]})");
+  expect_failure(dapple("render scene.gltf -o a.bin"), 2, "--output a.bin: would overwrite");
+  expect_failure(dapple("render scene.gltf -o a.exr --png leaf.png"), 2, "--png leaf.png");
+  EXPECT_EQ(bytes_of(path("a.bin")), std::string(36, '\0'));
+  EXPECT_EQ(files_in_folder(), 2u);
+}
+
+TEST_F(CommandLine, OutputsThatAreOneFileAreRefusedByTheirFlags) {
+  std::filesystem::create_directory(path("folder"));
+  std::filesystem::create_symlink("folder", path("link"));
+  write_bytes(path("old.exr"), "old");
+  std::filesystem::create_hard_link(path("old.exr"), path("same.exr"));
+  expect_failure(render("--png out.exr"), 2, "--png out.exr: is the same file as --output");
+  expect_failure(render("--png ./out.exr"), 2, "--png");
+  expect_failure(render("--png a.png --stats-json a.png"), 2, "--stats-json");
+  expect_failure(render("--png folder/a.png --stats-json link/a.png"), 2, "--stats-json");
+  expect_failure(render("--png old.exr --stats-json same.exr"), 2, "--stats-json");
+  expect_failure(render("--passes ao,visits --png a.png --stats-json a_visits.png"), 2,
+                 "--stats-json");
+  expect_failure(dapple("compare old.exr same.exr --png same.exr"), 2, "--png");
+  EXPECT_EQ(files_in_folder(), 4u);
+}
+
+TEST_F(CommandLine, AnOutputThatIsNoRegularFileIsRefusedByItsFlag) {
+  std::filesystem::create_symlink("nowhere", path("dangling.exr"));
+  std::filesystem::create_symlink("loop.exr", path("loop.exr"));
+  ASSERT_EQ(std::system(("mkfifo '" + path("fifo.exr") + "'").c_str()), 0);
+  for (const char* output : {"/dev/null", "/dev/full", "fifo.exr", "dangling.exr", "loop.exr"}) {
+    expect_failure(dapple(std::string("render scene:cube -o ") + output), 2, "--output");
+    expect_failure(render(std::string("--png ") + output), 2, "--png");
+  }
+  EXPECT_EQ(files_in_folder(), 3u);
+}
+
+TEST_F(CommandLine, AllowOutsideLetsASceneReadBesideItsFolder) {
+  std::filesystem::create_directory(path("scene"));
+  std::string triangle(36, '\0');
+  const float one = 1;
+  triangle.replace(12, 4, reinterpret_cast<const char*>(&one), 4);
+  triangle.replace(28, 4, reinterpret_cast<const char*>(&one), 4);
+  write_bytes(path("a.bin"), triangle);
+  write_bytes(path("scene/scene.gltf"), R"({"asset": {"version": "2.0"},
+    "buffers": [{"uri": "../a.bin", "byteLength": 36}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}]})");
+  expect_failure(dapple("info scene/scene.gltf"), 3, "--allow-outside");
+  EXPECT_EQ(dapple("info scene/scene.gltf --allow-outside").code, 0);
+  const std::string render = "render scene/scene.gltf --width 8 --height 8 --spp 1 -q -o ";
+  expect_failure(dapple(render + "a.exr"), 3, "buffer 0");
+  EXPECT_EQ(dapple(render + "a.exr --allow-outside").code, 0);
+  expect_failure(dapple(render + "a.bin --allow-outside"), 2, "--output a.bin: would overwrite");
+}
+
+TEST_F(CommandLine, ProceduralParametersOutOfRangeAreNamedAtOnce) {
+  for (const char* query :
+       {"leaves=1e12", "leaves=nan", "leaves=-5", "leaves=1e400", "leaves=", "leaves=1.5",
+        "leaves=5&leaves=6", "leaves", "leaves=0x10", "leaves= 5"}) {
+    expect_failure(dapple("render 'scene:tree?" + std::string(query) + "' -o out.exr"), 2,
+                   "leaves");
+  }
+  expect_failure(dapple("render 'scene:tree?height=inf' -o out.exr"), 2, "height");
+  expect_failure(dapple("render 'scene:tree?nosuch=1' -o out.exr"), 2, "nosuch");
+  expect_failure(dapple("render 'scene:tree?=1' -o out.exr"), 2, "scene:tree");
+  expect_failure(dapple("render 'scene:' -o out.exr"), 2, "scene:");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(CommandLine, APictureBeyondTheMachinesMemoryIsRefusedBeforeRendering) {
+  expect_failure(dapple("render scene:cube -o out.exr --width 65535 --height 65535"), 2, "--width");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(CommandLine, InputsThatCannotBeReadAreNamed) {
+  write_bytes(path("text.glb"), "this is no glTF file");
+  write_bytes(path("lights.json"), "{\"lights\": [");
+  expect_failure(dapple("render nosuch.glb -o out.exr"), 3, "nosuch.glb");
+  expect_failure(dapple("render text.glb -o out.exr"), 3, "text.glb");
+  expect_failure(dapple("render . -o out.exr"), 3, ".");
+  expect_failure(dapple("info nosuch.gltf"), 3, "nosuch.gltf");
+  expect_failure(render("--lights nosuch.json"), 3, "nosuch.json");
+  expect_failure(render("--lights lights.json"), 3, "lights.json");
+  expect_failure(render("--opacity cube=0"), 3, "transparent");
+  EXPECT_EQ(files_in_folder(), 2u);
+}
+
+TEST_F(CommandLine, AFailedWriteExitsWith1AndLeavesNothingBehind) {
+  // A limit of one block a file stands in for a full disk; the message still fits.
+  const Outcome run = dapple("scene cube -o x.glb", "trap '' XFSZ && ulimit -f 1 &&");
+  expect_failure(run, 1, "x.glb");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(CommandLine, AQuietRenderPrintsNothingAndWritesItsThreeFiles) {
+  const Outcome run = render("--quiet --png out.png --stats-json out.json --seed 3");
+  EXPECT_EQ(run.code, 0);
+  EXPECT_EQ(run.out + run.err, "");
+  EXPECT_EQ(files_in_folder(), 3u);
+  EXPECT_EQ(read_exr(path("out.exr")).width, 8);
+  EXPECT_EQ(bytes_of(path("out.png")).substr(1, 3), "PNG");
+  const auto json = nlohmann::json::parse(bytes_of(path("out.json")));
+  for (const char* key :
+       {"load", "build", "prefilter", "upload", "kernel_build", "trace", "write", "total"}) {
+    EXPECT_GE(json.at("seconds").at(key).get<double>(), 0) << key;
+  }
+  EXPECT_GE(json["seconds"]["total"].get<double>(), json["seconds"]["trace"].get<double>());
+  EXPECT_EQ(json.at("rays").at("camera"), 64);
+  // Two AO rays and one light ray, the key light's, a sample that hit something.
+  EXPECT_EQ(json.at("rays").at("ao"), 2 * json.at("rays").at("light").get<int>());
+  EXPECT_GT(json["rays"]["light"], 0);
+  EXPECT_LE(json["rays"]["light"], 64);
+  EXPECT_EQ(json.at("triangles"), 12);
+  EXPECT_GT(json.at("nodes"), 0);
+  EXPECT_TRUE(json.at("bytes").is_object());
+  EXPECT_NE(json.at("device"), "");
+  EXPECT_EQ(json.at("estimator"), "prefiltered");
+}
+
+TEST_F(CommandLine, ARenderSaysWhatItMadeAndACropKeepsItsPlace) {
+  const Outcome run = render("--crop 2,3,5,4 --estimator exact --passes ao");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.out, "wrote out.exr")) << run.out;
+  EXPECT_TRUE(contains(run.out, "exact on ")) << run.out;
+  const Film film = read_exr(path("out.exr"));
+  EXPECT_EQ(film.data_window, (PixelRect{2, 3, 5, 4}));
+  EXPECT_EQ(film.width, 8);
+  EXPECT_NE(film.find("ao.R"), nullptr);
+}
+
+TEST_F(CommandLine, VisitsAreALayerAndAHeatMapBesideThePreview) {
+  const Outcome run = render("--passes ao,visits --png out.png --stats-json stats.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(bytes_of(path("out_visits.png")).substr(1, 3), "PNG");
+  const Film film = read_exr(path("out.exr"));
+  const Plane* nodes = film.find("visits.nodes");
+  ASSERT_NE(nodes, nullptr);
+  ASSERT_NE(film.find("visits.triangles"), nullptr);
+  // The camera rays of an item visit the root together; the means add up to what the statistics
+  // count.
+  double sum = 0;
+  for (const float visits : nodes->pixels) sum += visits;
+  EXPECT_GT(sum, 0);
+  const auto json = nlohmann::json::parse(bytes_of(path("stats.json")));
+  const double samples = film.find("samples")->pixels.front();
+  double counted = 0;
+  for (const char* kind : {"camera", "ao"})
+    counted += json["node_visits_per_ray"][kind].get<double>() * json["rays"][kind].get<double>();
+  EXPECT_NEAR(sum * samples, counted, 1e-3 * counted);
+  EXPECT_EQ(render("--passes ao").code, 0);
+  EXPECT_EQ(read_exr(path("out.exr")).find("visits.nodes"), nullptr) << "only when asked for";
+}
+
+TEST_F(CommandLine, OnePixelAndOneColumnArePictures) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 8192}, {8192, 1}}) {
+    const Outcome run = dapple("render 'scene:cube?divisions=1' -o out.exr -q --spp 1 --width " +
+                               std::to_string(width) + " --height " + std::to_string(height));
+    ASSERT_EQ(run.code, 0) << run.err;
+    const Film film = read_exr(path("out.exr"));
+    EXPECT_EQ(film.width, width);
+    EXPECT_EQ(film.height, height);
+  }
+}
+
+TEST_F(CommandLine, AProceduralSceneAsAGlbFileRenders) {
+  const Outcome made = dapple("scene tree leaves=100 -o tree.glb");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_TRUE(contains(made.out, "wrote tree.glb")) << made.out;
+  const Outcome run = dapple(
+      "render tree.glb -o tree.exr --opacity leaf=0.5 --ground --width 8 --height 8 --spp 1 -q");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(read_exr(path("tree.exr")).width, 8);
+}
+
+TEST_F(CommandLine, InfoAndDevicesTellWhatThereIs) {
+  const Outcome json_run = dapple("info 'scene:cube?divisions=2' --json");
+  EXPECT_EQ(json_run.code, 0);
+  const auto json = nlohmann::json::parse(json_run.out);
+  EXPECT_EQ(json.at("triangles").at("total"), 48);
+  EXPECT_EQ(json.at("materials").at(0), "cube");
+  EXPECT_EQ(json.at("bounds").at("max").at(1), 1.0);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(json.at("opacity").at(axis), 0.95);
+  const Outcome text_run = dapple("info 'scene:cube?divisions=2' --opacity cube=0.5");
+  EXPECT_EQ(text_run.code, 0);
+  EXPECT_TRUE(contains(text_run.out, "48")) << text_run.out;
+  EXPECT_TRUE(contains(text_run.out, "48 translucent")) << text_run.out;
+  EXPECT_TRUE(contains(text_run.out, "  a triangle  ")) << text_run.out;
+  const Outcome strands = dapple("info 'scene:hair?strands=10'");
+  EXPECT_TRUE(contains(strands.out, "  a primitive ")) << strands.out;
+  const Outcome devices = dapple("devices");
+  EXPECT_EQ(devices.code, 0);
+  EXPECT_TRUE(contains(devices.out, "compute units")) << devices.out;
+}
+
+}  // namespace
+}  // namespace dapple

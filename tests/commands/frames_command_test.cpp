@@ -1,0 +1,175 @@
+// dapple render --frame and --frames: files by number, what is the same in every frame, and what is
+// refused before anything is rendered.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <thread>
+
+#include "support/gltf_builder.hpp"
+#include "support/program_run.hpp"
+#include "support/running_program.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using namespace program_test;
+
+class FramesCommand : public ProgramRun {
+ protected:
+  /// A square that climbs by 1 m a second from 0 s to 1 s, under the name climb.glb.
+  void write_climb() const {
+    test::GltfBuilder b = test::one_triangle();
+    const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
+    const int values = b.add_positions({0, 0, 0, 0, 1, 0});
+    b.add("animations",
+          {{"name", "climb"},
+           {"samplers", {{{"input", times}, {"output", values}}}},
+           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+    const auto bytes = b.glb();
+    std::ofstream(path("climb.glb"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  }
+  [[nodiscard]] bool is_there(const char* name) const {
+    return std::filesystem::exists(path(name));
+  }
+  [[nodiscard]] Outcome climb(const std::string& arguments) const {
+    return dapple("render climb.glb --width 16 --height 16 --spp 1 --seed 3 " + arguments);
+  }
+  [[nodiscard]] std::vector<float> ao(const char* name) const {
+    return read_exr(path(name)).find("ao.R")->pixels;
+  }
+  /// The mean height of what camera rays hit.
+  [[nodiscard]] double height(const char* name) const {
+    const Film film = read_exr(path(name));
+    double sum = 0, weight = 0;
+    for (std::size_t i = 0; i < film.find("A")->pixels.size(); ++i) {
+      sum += film.find("A")->pixels[i] * film.find("P.Y")->pixels[i];
+      weight += film.find("A")->pixels[i];
+    }
+    return sum / weight;
+  }
+};
+
+TEST_F(FramesCommand, AFrameShowsTheSceneAtItsTime) {
+  write_climb();
+  const std::string camera = " --look-from 0.3,0.8,4 --look-at 0.3,0.8,0 --passes ao -q";
+  ASSERT_EQ(climb("-o rest.exr" + camera).code, 0);
+  ASSERT_EQ(climb("-o half.exr --frame 0.5" + camera).code, 0);
+  ASSERT_EQ(climb("-o late.exr --frame 9 --animation climb" + camera).code, 0);
+  EXPECT_NEAR(height("half.exr") - height("rest.exr"), 0.5, 0.1);
+  EXPECT_NEAR(height("late.exr") - height("rest.exr"), 1.0, 0.1);
+}
+
+TEST_F(FramesCommand, ASequenceWritesAFileOfEveryKindForEachFrame) {
+  write_climb();
+  const Outcome run = climb(
+      "--frames 8-12:2 --fps 10 -o a.####.exr --png a_##.png --stats-json a#.json "
+      "--passes ao,visits");
+  ASSERT_EQ(run.code, 0) << run.err;
+  for (const char* name : {"a.0008.exr", "a.0010.exr", "a.0012.exr", "a_08.png", "a_12.png",
+                           "a_08_visits.png", "a8.json", "a10.json", "a12.json"})
+    EXPECT_TRUE(is_there(name)) << name;
+  EXPECT_EQ(files_in_folder(), 3u * 4 + 1);
+  EXPECT_TRUE(contains(run.out, "frame 1 of 3, at 0.800 s")) << run.out;
+  EXPECT_TRUE(contains(run.out, "frame 3 of 3, at 1.200 s")) << run.out;
+  EXPECT_TRUE(contains(run.out, "wrote a.0012.exr and a_12.png")) << run.out;
+  EXPECT_NEAR(height("a.0010.exr") - height("a.0008.exr"), 0.2, 0.1);
+  EXPECT_NEAR(height("a.0012.exr"), height("a.0010.exr"), 1e-5) << "the animation ends at 1 s";
+}
+
+TEST_F(FramesCommand, AFrameOfASequenceShowsWhatThatFrameAloneShows) {
+  write_climb();
+  const std::string options = " --look-from 1,1,4 --look-at 0,1,0 -q --passes ao -o ";
+  ASSERT_EQ(climb("--frames 0-3 --fps 4" + options + "all.#.exr").code, 0);
+  ASSERT_EQ(climb("--frames 3-3 --fps 4" + options + "one.#.exr").code, 0);
+  ASSERT_EQ(climb("--frame 0.75" + options + "still.exr").code, 0);
+  EXPECT_NEAR(height("all.3.exr"), height("one.3.exr"), 1e-5);
+  EXPECT_NEAR(height("all.3.exr"), height("still.exr"), 1e-5);
+}
+
+TEST_F(FramesCommand, CameraLightAndGroundOfASequenceStandStill) {
+  write_climb();
+  const Outcome run = climb("--frames 0-1 --fps 1 -o a.#.exr --ground");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Film first = read_exr(path("a.0.exr")), last = read_exr(path("a.1.exr"));
+  EXPECT_EQ(first.metadata.world_to_camera, last.metadata.world_to_camera);
+  // The lowest row shows the ground in both, at one height.
+  const std::size_t below = first.find("P.Y")->pixels.size() - 1;
+  EXPECT_EQ(first.find("P.Y")->pixels[below], last.find("P.Y")->pixels[below]);
+  EXPECT_NE(last.find("light.key.R"), nullptr);
+  std::size_t notes = 0;
+  for (std::size_t at = 0; (at = run.err.find("no lights in the scene", at)) != std::string::npos;
+       ++at)
+    ++notes;
+  EXPECT_EQ(notes, 1u) << run.err;
+}
+
+TEST_F(FramesCommand, InfoListsAnimationsWithTheirLengths) {
+  write_climb();
+  const Outcome run = dapple("info climb.glb");
+  EXPECT_TRUE(contains(run.out, "animations  climb (1.00 s)")) << run.out << run.err;
+}
+
+TEST_F(FramesCommand, AWindyTreeMovesFromFrameToFrame) {
+  const Outcome run = dapple(
+      "render 'scene:tree?leaves=300&wind=1' --frames 0-1 --fps 2 -o a.#.exr --width 16 --height "
+      "16 "
+      "--spp 1 -q");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(ao("a.0.exr"), ao("a.1.exr"));
+}
+
+TEST_F(FramesCommand, WhatMakesNoSenseIsRefusedBeforeAnythingIsRendered) {
+  const auto refuses = [&](const std::string& arguments, const std::string& part) {
+    SCOPED_TRACE(arguments);
+    expect_failure(dapple("render scene:cube " + arguments), 2, part);
+  };
+  refuses("--frames 1-2 -o out.exr", "--output out.exr: with --frames its name needs a place");
+  refuses("--frames 1-2 -o 'dir#/out.exr'", "needs a place for the frame's number");
+  refuses("--frames 1-2 -o o.#.exr --png p.png", "--png p.png: with --frames");
+  refuses("--frames 1-2 -o o.#.exr --stats-json s.json", "--stats-json s.json: with --frames");
+  refuses("--frames 1-2 -o o.#.exr --checkpoint c", "--checkpoint is of one picture");
+  refuses("--frames 1-2 -o o.#.exr --resume c", "--resume is of one picture");
+  refuses("--frames 1-2 --frame 1 -o o.#.exr", "--frame");
+  refuses("--fps 24 -o o.exr", "--frames");
+  refuses("--frames 2-1 -o o.#.exr", "--frames 2-1: expected the first frame before the last");
+  refuses("--frames 1-2:0 -o o.#.exr", "--frames 1-2:0: expected numbers");
+  refuses("--frames 1-9999999 -o o.#.exr", "at most 100000 frames");
+  refuses("--frames 1-2-3 -o o.#.exr", "--frames 1-2-3: expected A-B");
+  refuses("--frames a -o o.#.exr", "'a' is not a number");
+  refuses("--frames -1-2 -o o.#.exr", "--frames");
+  refuses("--frames 1-2 --fps 0 -o o.#.exr", "--fps must be a number above 0");
+  refuses("--frame nan -o o.exr", "--frame");
+  refuses("--frame inf -o o.exr", "--frame must be a finite number");
+  refuses("--animation walk -o o.exr", "--animation needs --frame or --frames");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(FramesCommand, OutputsOfNoFrameMayBeAFileThatIsRead) {
+  write_climb();
+  std::filesystem::copy(path("climb.glb"), path("climb.2.glb"));
+  const Outcome run =
+      dapple("render climb.2.glb --frames 1-3 -o 'climb.#.glb' --width 8 --height 8");
+  expect_failure(run, 2, "--output climb.2.glb: would overwrite climb.2.glb, which is read");
+  EXPECT_EQ(files_in_folder(), 2u);
+}
+
+TEST_F(FramesCommand, AnInterruptionEndsTheSequenceWithTheFrameThatItIsIn) {
+  const std::string log = folder_.string() + ".log";
+  for (int delay = 300; !is_there("a.0.exr") && delay < 60'000; delay *= 2) {
+    RunningProgram program({"render", "scene:tree?leaves=2000&wind=1", "--frames", "0-9", "-o",
+                            path("a.#.exr"), "--width", "64", "--height", "64", "--spp", "1048576"},
+                           log);
+    std::this_thread::sleep_for(Milliseconds(delay));
+    program.send(SIGTERM);
+    EXPECT_EQ(program.wait(), 143);
+  }
+  EXPECT_TRUE(is_there("a.0.exr"));
+  EXPECT_FALSE(is_there("a.1.exr"));
+  std::filesystem::remove(log);
+}
+
+}  // namespace
+}  // namespace dapple

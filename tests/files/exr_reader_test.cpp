@@ -1,0 +1,134 @@
+// The EXR reader: files of other programs are understood, damaged ones refused by name,
+// and none of them makes it allocate what the file cannot hold.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfTiledOutputFile.h>
+#include <gtest/gtest.h>
+
+#include "support/film_files.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+
+class ExrReader : public FilmFile {};
+
+Imf::Header foreign_header(Imf::PixelType type) {
+  Imf::Header header(Imath::Box2i({5, 5}, {14, 24}), Imath::Box2i({4, 6}, {7, 8}));
+  header.channels().insert("Y", Imf::Channel(type));
+  return header;
+}
+
+const std::vector<float> kForeignPixels = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+
+TEST_F(ExrReader, TakesHalfAndUnsignedChannelsAndMovedWindows) {
+  const std::vector<half> halves(kForeignPixels.begin(), kForeignPixels.end());
+  const std::vector<unsigned> integers(kForeignPixels.begin(), kForeignPixels.end());
+  for (const Imf::PixelType type : {Imf::HALF, Imf::UINT}) {
+    const void* pixels = type == Imf::HALF ? static_cast<const void*>(halves.data())
+                                           : static_cast<const void*>(integers.data());
+    const Imf::Header header = foreign_header(type);
+    {
+      Imf::OutputFile file(path("a.exr").c_str(), header);
+      Imf::FrameBuffer buffer;
+      buffer.insert("Y", Imf::Slice::Make(type, pixels, header.dataWindow()));
+      file.setFrameBuffer(buffer);
+      file.writePixels(3);
+    }
+    const Film film = read_exr(path("a.exr"));
+    EXPECT_EQ(film.width, 10);
+    EXPECT_EQ(film.height, 20);
+    EXPECT_EQ(film.data_window, (PixelRect{-1, 1, 2, 3}));
+    ASSERT_EQ(film.planes.size(), 1U);
+    EXPECT_EQ(film.planes[0].pixels, kForeignPixels);
+  }
+}
+
+TEST_F(ExrReader, TakesTiles) {
+  Imf::Header header = foreign_header(Imf::FLOAT);
+  header.setTileDescription(Imf::TileDescription(2, 2));
+  {
+    Imf::TiledOutputFile file(path("a.exr").c_str(), header);
+    Imf::FrameBuffer buffer;
+    buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, kForeignPixels.data(), header.dataWindow()));
+    file.setFrameBuffer(buffer);
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+  }
+  EXPECT_EQ(read_exr(path("a.exr")).planes.at(0).pixels, kForeignPixels);
+}
+
+void expect_refused(const std::string& path, const std::string& why) {
+  const Error error = error_of([&] { read_exr(path); });
+  EXPECT_EQ(error.kind(), ErrorKind::input);
+  EXPECT_TRUE(contains(error.what(), path)) << error.what();
+  EXPECT_TRUE(contains(error.what(), why)) << error.what();
+}
+
+TEST_F(ExrReader, RefusesFilesThatAreNone) {
+  write_bytes(path("text.exr"), "this is no picture at all");
+  write_bytes(path("empty.exr"), "");
+  expect_refused(path("text.exr"), "not an EXR file");
+  expect_refused(path("empty.exr"), "");
+  expect_refused(path("missing.exr"), "no such file");
+  expect_refused(folder_.string(), "not a regular file");
+}
+
+TEST_F(ExrReader, RefusesTruncatedFiles) {
+  write_exr(ramp_film(20, 40), path("a.exr"));
+  const std::string whole = bytes_of(path("a.exr"));
+  for (std::size_t length = 0; length < whole.size(); length += 29) {
+    write_bytes(path("cut.exr"), whole.substr(0, length));
+    expect_refused(path("cut.exr"), "");
+  }
+}
+
+TEST_F(ExrReader, SurvivesDamagedBytes) {
+  Film film = ramp_film(20, 40);
+  film.metadata = some_metadata();
+  write_exr(film, path("a.exr"));
+  const std::string whole = bytes_of(path("a.exr"));
+  int refused = 0;
+  // Every byte of the header, some of the pixels.
+  for (std::size_t i = 0; i < whole.size(); i += i < 1200 ? 1 : 13) {
+    std::string damaged = whole;
+    damaged[i] = static_cast<char>(~damaged[i]);
+    write_bytes(path("damaged.exr"), damaged);
+    try {
+      read_exr(path("damaged.exr"));
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input) << "byte " << i;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 100);  // magic, version, types, sizes and ZIP's checksums at the least
+}
+
+// The windows that a header claims, without the pixels.
+std::string with_data_window(std::string exr, const Imath::Box2i& window) {
+  const std::string name("dataWindow\0box2i\0\x10\0\0\0", 21);
+  const std::size_t at = exr.find(name) + name.size();
+  return exr.replace(at, sizeof window, reinterpret_cast<const char*>(&window), sizeof window);
+}
+
+TEST_F(ExrReader, RefusesHugeWindowsBeforeItAllocatesThem) {
+  write_exr(ramp_film(2, 2), path("a.exr"));
+  const std::string small = bytes_of(path("a.exr"));
+  write_bytes(path("b.exr"), with_data_window(small, {{0, 0}, {99'999, 99'999}}));
+  expect_refused(path("b.exr"), "100000 x 100000 pixels is over the limit of 268435456");
+  // Inside the limit, but the file is too short for it.
+  write_bytes(path("c.exr"), with_data_window(small, {{0, 0}, {16'000, 16'000}}));
+  expect_refused(path("c.exr"), "");
+}
+
+TEST_F(ExrReader, RefusesSubsampledChannels) {
+  Imf::Header header(4, 4);
+  header.channels().insert("BY", Imf::Channel(Imf::FLOAT, 2, 2));
+  { Imf::OutputFile file(path("a.exr").c_str(), header); }
+  expect_refused(path("a.exr"), "channel BY is subsampled");
+}
+
+}  // namespace
+}  // namespace dapple

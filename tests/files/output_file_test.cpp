@@ -1,0 +1,147 @@
+// Files that appear whole or not at all: paths refused beforehand, links and permissions kept,
+// and nothing left behind by a write that fails.
+#include "files/output_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+
+#include "support/film_files.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+
+namespace fs = std::filesystem;
+
+class OutputFile : public FilmFile {};
+
+TEST_F(OutputFile, OverwritingLeavesOneFileWithTheOldPermissions) {
+  write_bytes(path("a.exr"), "old");
+  ASSERT_EQ(chmod(path("a.exr").c_str(), 0640), 0);
+  write_exr(ramp_film(2, 2), path("a.exr"));
+  EXPECT_EQ(read_exr(path("a.exr")).width, 2);
+  EXPECT_EQ(files_in_folder(), 1U);
+  EXPECT_EQ(fs::status(path("a.exr")).permissions(), static_cast<fs::perms>(0640));
+}
+
+TEST_F(OutputFile, WritingThroughALinkKeepsTheLink) {
+  write_bytes(path("real.exr"), "old");
+  fs::create_symlink("real.exr", path("link.exr"));
+  write_exr(ramp_film(2, 2), path("link.exr"));
+  EXPECT_TRUE(fs::is_symlink(path("link.exr")));
+  EXPECT_EQ(read_exr(path("real.exr")).width, 2);
+}
+
+TEST_F(OutputFile, TheLongestPossibleNameCanBeWritten) {
+  const std::string name = path(std::string(251, 'a') + ".exr");
+  write_exr(ramp_film(2, 2), name);
+  EXPECT_EQ(read_exr(name).width, 2);
+}
+
+// While it lives, files cannot grow past `bytes`, as on a full disk.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+};
+
+// Large enough to spill out of any buffer, and noise, which ZIP cannot shrink below the limit.
+Film noise_film() {
+  Film film = ramp_film(512, 512);
+  std::uint32_t state = 1;
+  for (Plane& plane : film.planes) {
+    for (float& pixel : plane.pixels) {
+      state = state * 1664525U + 1013904223U;
+      pixel = static_cast<float>(state);
+    }
+  }
+  return film;
+}
+
+TEST_F(OutputFile, AFailedWriteNamesTheReasonAndLeavesTheOldFileAlone) {
+  const Film film = noise_film();
+  for (const rlim_t limit : {rlim_t{0}, rlim_t{100}, rlim_t{1100000}}) {
+    write_bytes(path("a.exr"), "old");
+    const Error error = [&] {
+      const FileSizeLimit full(limit);
+      return error_of([&] { write_exr(film, path("a.exr")); });
+    }();
+    EXPECT_EQ(error.kind(), ErrorKind::failed);
+    EXPECT_EQ(error.what(), "cannot write " + path("a.exr") + ": File too large");
+    EXPECT_EQ(bytes_of(path("a.exr")), "old");
+    EXPECT_EQ(files_in_folder(), 1U);
+  }
+}
+
+TEST_F(OutputFile, AnUncommittedFileVanishes) {
+  {
+    PendingFile file(path("a.bin"));
+    file.write("abc", 3);
+    file.close();
+    EXPECT_EQ(bytes_of(file.temporary_path()), "abc");
+  }
+  EXPECT_EQ(files_in_folder(), 0U);
+}
+
+TEST_F(OutputFile, PendingFileWritesWhereItWasSentTo) {
+  PendingFile file(path("a.bin"));
+  file.write("abcdef", 6);
+  file.seek(1);
+  file.write("XY", 2);
+  EXPECT_EQ(file.position(), 3U);
+  file.close();
+  file.commit();
+  EXPECT_EQ(bytes_of(path("a.bin")), "aXYdef");
+}
+
+TEST_F(OutputFile, WholeFilesHoldWhatWasGiven) {
+  std::string bytes(3'000'000, '\0');  // three buffers
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * i >> 8U);
+  write_whole_file(path("a.bin"), bytes);
+  EXPECT_TRUE(bytes_of(path("a.bin")) == bytes);
+  write_whole_file(path("a.bin"), "");
+  EXPECT_EQ(bytes_of(path("a.bin")), "");
+}
+
+TEST_F(OutputFile, OutputPathsThatCannotBecomeFilesAreRefused) {
+  fs::create_directory(path("folder"));
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  const std::string too_long(256, 'a');
+  for (const std::string& bad :
+       {path("folder"), path("fifo"), path("missing/a.exr"), path("folder/"), path(too_long),
+        std::string(), std::string("/dev/null")}) {
+    const Error error = error_of([&] { check_output_path(bad); });
+    EXPECT_EQ(error.kind(), ErrorKind::usage) << bad;
+    EXPECT_TRUE(contains(error.what(), "cannot write " + bad + ": ")) << error.what();
+    EXPECT_EQ(error_of([&] { write_exr(ramp_film(1, 1), bad); }).kind(), ErrorKind::failed) << bad;
+  }
+  EXPECT_EQ(files_in_folder(), 2U);
+}
+
+TEST_F(OutputFile, OutputPathsThatCanBecomeFilesAreAcceptedAndUntouched) {
+  write_bytes(path("there.exr"), "old");
+  EXPECT_NO_THROW(check_output_path(path("there.exr")));
+  EXPECT_NO_THROW(check_output_path(path("new.exr")));
+  EXPECT_EQ(bytes_of(path("there.exr")), "old");
+  EXPECT_EQ(files_in_folder(), 1U);
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,248 @@
+// Irradiance of each kind of light against its closed form, and of emissive meshes, which
+// never occlude their own samples but do occlude AO.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/point_on_ground.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+using namespace point_on_ground_test;
+
+// Irradiance at the origin, facing +Y, of a polygon of radiance 1 above the horizon: Lambert's
+// sum over its edges (Arvo, "The Irradiance Jacobian for Partially Occluded Polyhedral
+// Sources", 1994, equation 2). Positive whichever way the polygon winds.
+double polygon_irradiance(const std::vector<V3f>& corners) {
+  double sum = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const V3d a = V3d(corners[i]).normalized();
+    const V3d b = V3d(corners[(i + 1) % corners.size()]).normalized();
+    sum += std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * a.cross(b).normalized().y;
+  }
+  return std::fabs(sum) / 2;
+}
+
+double rect_irradiance(const Light& light) {
+  const V3f& p = light.position;
+  const V3f u = light.edge_u * 0.5f, v = light.edge_v * 0.5f;
+  return polygon_irradiance({p - u - v, p + u - v, p + u + v, p - u + v});
+}
+
+Light rect(const std::string& name, V3f position, V3f edge_u, V3f edge_v, V3f direction) {
+  Light light;
+  light.name = name;
+  light.position = position;
+  light.edge_u = edge_u;
+  light.edge_v = edge_v;
+  light.direction = direction.normalized();
+  return light;
+}
+
+Light sphere(const std::string& name, V3f position, float radius) {
+  Light light;
+  light.name = name;
+  light.kind = LightKind::sphere;
+  light.position = position;
+  light.radius = radius;
+  return light;
+}
+
+Light sun(const std::string& name, V3f towards, float angular_radius) {
+  Light light;
+  light.name = name;
+  light.kind = LightKind::sun;
+  light.direction = -towards.normalized();
+  light.angular_radius = angular_radius;
+  return light;
+}
+
+TEST(Light, IrradianceOfRectsSpheresAndSunsIsTheirClosedForm) {
+  Scene scene = point_on_ground();
+  std::vector<double> expected;
+  const auto add = [&](Light light, double irradiance) {
+    scene.lights.push_back(std::move(light));
+    expected.push_back(irradiance);
+  };
+  // Parallel to the ground and centred above: Howell's form factor catalogue, B-3 times 4.
+  const auto parallel = [](double x, double y) {
+    const double p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+    return 2 * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
+  };
+  add(rect("parallel", {0, 2, 0}, {1, 0, 0}, {0, 0, 3}, {0, -1, 0}), parallel(0.25, 0.75));
+  add(rect("large", {0, 1, 0}, {8, 0, 0}, {0, 0, 6}, {0, -1, 0}), parallel(4, 3));
+  const Light wall = rect("perpendicular", {0, 1, -2}, {3, 0, 0}, {0, 2, 0}, {0, 0, 1});
+  add(wall, rect_irradiance(wall));
+  const Light tilted =
+      rect("tilted", {1, 2, -1}, {1, 0.5f, 0}, {0, 0.7f, 1.2f}, {-0.6f, 1.2f, -0.7f});
+  Light facing = tilted;
+  facing.direction = tilted.edge_u.cross(tilted.edge_v).normalized();
+  if (facing.direction.dot(facing.position) > 0) facing.direction = -facing.direction;
+  add(facing, rect_irradiance(facing));
+  // Only the side it faces emits.
+  Light away = facing;
+  away.name = "away";
+  away.direction = -away.direction;
+  add(away, 0);
+  // A whole sphere above the horizon: pi (r / d)^2 cos.
+  const V3f there(1, 2, -1);
+  const double cosine = 2 / std::sqrt(6.0);
+  add(sphere("sphere", there, 0.5f), kPi * 0.25 / 6 * cosine);
+  add(sphere("near", {0, 1.2f, 0}, 1), kPi / 1.44);
+  add(sphere("tiny", there, 1e-3f), kPi * 1e-6 / 6 * cosine);
+  // KHR spot cones scale it: 1 inside the inner, ((c - outer) / (inner - outer))^2 between.
+  Light spot = sphere("spot", {0, 2, 0}, 0.1f);
+  spot.direction = V3f(0, -1, 1).normalized();
+  spot.cos_outer = 0.5f;
+  spot.cos_inner = 0.9f;
+  const double edge = (std::sqrt(0.5) - 0.5) / 0.4;
+  add(spot, kPi * 0.01 / 4 * edge * edge);
+  for (const double radius : {0.00465, 0.2, 1.0}) {
+    // Above the horizon whole; facing up for the widest.
+    const V3f up = radius < 0.5 ? there : V3f(0, 1, 0);
+    const double sine = std::sin(radius);
+    add(sun("sun" + std::to_string(scene.lights.size()), up, static_cast<float>(radius)),
+        kPi * sine * sine * (radius < 0.5 ? cosine : 1.0));
+  }
+
+  // Radiance multiplies what comes out, a channel at a time.
+  for (Light& light : scene.lights) light.radiance = V3f(1, 2, 0.25f);
+  RenderOptions options = one_pixel();
+  options.ao = false;
+  const Film film = render(scene, options).film;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const std::string layer = "light." + layer_name(scene.lights[i].name);
+    SCOPED_TRACE(layer);
+    // The film's fixed point has steps of 2^-26, beside the sampling.
+    const double error = kSampling * expected[i] + 2e-8;
+    EXPECT_NEAR(value(film, layer + ".R"), expected[i], error);
+    EXPECT_NEAR(value(film, layer + ".G"), 2 * expected[i], 2 * error);
+    EXPECT_NEAR(value(film, layer + ".B"), expected[i] / 4, error / 4);
+  }
+}
+
+TEST(Light, AnOccluderBetweenTakesItsOpacityFromEveryKind) {
+  Scene scene = point_on_ground();
+  scene.lights = {rect("rect", {0, 2, 0}, {1, 0, 0}, {0, 0, 1}, {0, -1, 0}),
+                  sphere("sphere", {0, 2, 0}, 0.5f), sun("sun", {0, 1, 0}, 0.1f)};
+  RenderOptions options = one_pixel();
+  options.ao = false;
+  const Film free = render(scene, options).film;
+  scene.materials.push_back(material_of(0.25f));
+  place(scene, square_mesh(6, 1.25f, 1, 1));  // above the camera, below the lights
+  const Film shaded = render(scene, options).film;
+  for (const char* channel : {"light.rect.R", "light.sphere.R", "light.sun.R"}) {
+    // The same rays: only fixed point and the quad's diagonal, which few rays meet, differ.
+    EXPECT_NEAR(value(shaded, channel), 0.75 * value(free, channel), 1e-3 * value(free, channel));
+  }
+}
+
+// The six faces of a box of side 1 around `centre`, `divisions` squares a side, facing out.
+Mesh box_mesh(const V3f& centre, int divisions, std::uint32_t material) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    V3f out(0.0f), u(0.0f), v(0.0f);
+    out[axis] = 1;
+    u[(axis + 1) % 3] = 1;
+    v[(axis + 2) % 3] = 1;  // u x v = out
+    append_grid(mesh, centre + (out - u - v) * 0.5f, u, v, divisions, material);
+    append_grid(mesh, centre + (-out - v - u) * 0.5f, v, u, divisions, material);
+  }
+  return mesh;
+}
+
+// The box's faces that look at the origin see all of it: their irradiances add up.
+double box_irradiance(const V3f& centre) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    V3f u(0.0f), v(0.0f), out(0.0f);
+    u[(axis + 1) % 3] = 0.5f;
+    v[(axis + 2) % 3] = 0.5f;
+    for (const float side : {-0.5f, 0.5f}) {
+      out[axis] = side;
+      const V3f middle = centre + out;
+      if (out.dot(middle) >= 0) continue;
+      sum += polygon_irradiance({middle - u - v, middle + u - v, middle + u + v, middle - u + v});
+    }
+  }
+  return sum;
+}
+
+Light mesh_light(bool double_sided = false) {
+  Light light;
+  light.name = "glow";
+  light.kind = LightKind::mesh;
+  light.double_sided = double_sided;
+  return light;
+}
+
+TEST(EmissiveMesh, NeverOccludesItsOwnSamplesAndDoesOccludeAo) {
+  for (const V3f& centre : {V3f(0, 1.7f, 0), V3f(1.5f, 2, -0.8f)}) {
+    Scene scene = point_on_ground();
+    scene.lights.push_back(mesh_light());
+    place(scene, box_mesh(centre, 8, 0), {}, 0);
+    const double expected = box_irradiance(centre);
+    for (const auto& [estimator, footprint] : {std::pair{Estimator::exact, 1.0f},
+                                               {Estimator::prefiltered, 1.0f},
+                                               {Estimator::prefiltered, 1000.0f}}) {
+      SCOPED_TRACE(testing::Message() << "box at " << centre << ", footprint " << footprint);
+      const Film film = render(scene, one_pixel(estimator, footprint)).film;
+      // Half of the samples lie on faces turned away: noisier, 4 / sqrt(4096) of it at random.
+      const float glow = value(film, "light.glow.R");
+      EXPECT_NEAR(glow, expected, 0.01 * expected);
+      // Opaque and convex: it hides what it would light. Wide footprints blur its outline,
+      // for which SolidCube has the bounds.
+      if (footprint > 1) continue;
+      EXPECT_NEAR(value(film, "ao.R"), 1 - expected / kPi, 0.003);
+    }
+  }
+}
+
+TEST(EmissiveMesh, ItsFrontPartDoesNotShadeThePartBehind) {
+  Scene scene = point_on_ground();
+  scene.lights.push_back(mesh_light());
+  Mesh two_squares;
+  double expected = 0;
+  for (const float height : {1.5f, 2.5f}) {
+    append_grid(two_squares, {-1, height, -1}, {2, 0, 0}, {0, 0, 2}, 4, 0);  // facing down
+    expected +=
+        polygon_irradiance({{-1, height, -1}, {1, height, -1}, {1, height, 1}, {-1, height, 1}});
+  }
+  place(scene, std::move(two_squares), {}, 0);
+  for (const float footprint : {0.0f, 1.0f, 1000.0f}) {
+    const Film film = render(scene, one_pixel(Estimator::prefiltered, footprint)).film;
+    EXPECT_NEAR(value(film, "light.glow.R"), expected, 0.01 * expected) << footprint;
+  }
+}
+
+TEST(EmissiveMesh, EmitsFromItsFrontUnlessDoubleSidedAlsoWhenPlacedMirrored) {
+  struct Side {
+    bool mirrored, faces_down, double_sided, lit;
+  };
+  M44f mirror;
+  mirror.setScale(V3f(-1, 1, 1));
+  for (const Side& side : {Side{false, true, false, true},
+                           {false, false, false, false},
+                           {false, false, true, true},
+                           {true, true, false, true},
+                           {true, false, false, false}}) {
+    Scene scene = point_on_ground();
+    scene.lights.push_back(mesh_light(side.double_sided));
+    Mesh square;
+    const V3f x(2, 0, 0), z(0, 0, 2);
+    append_grid(square, {-1, 2, -1}, side.faces_down ? x : z, side.faces_down ? z : x, 1, 0);
+    place(scene, std::move(square), side.mirrored ? mirror : M44f{}, 0);
+    RenderOptions options = one_pixel();
+    options.ao = false;
+    const double expected =
+        side.lit ? polygon_irradiance({{-1, 2, -1}, {1, 2, -1}, {1, 2, 1}, {-1, 2, 1}}) : 0.0;
+    EXPECT_NEAR(value(render(scene, options).film, "light.glow.R"), expected, 0.01 * expected)
+        << "mirrored " << side.mirrored << " faces down " << side.faces_down << " double sided "
+        << side.double_sided;
+  }
+}
+
+}  // namespace
+}  // namespace dapple

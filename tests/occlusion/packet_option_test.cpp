@@ -1,0 +1,52 @@
+// Whom rays are traced with can be chosen, and what they find does not depend on it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/program_run.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+// Borders of boxes and triangles are met or not by roundings, which differ between the kernels: a
+// few rays in ten thousand. The others agree to what packets round optical depths to.
+TEST(TraceWith, ExactRaysFindTheSameWithWhomeverTheyAreTraced) {
+  const Scene scene = make_procedural("scene:tree?leaves=2000");
+  const SceneBvh bvh = build_bvh(scene);
+  const auto rays = rays_through(bvh.bounds, 10'000, bvh.bounds.size().length(), 0, 5);
+  std::vector<Occlusion> alone;
+  for (const Company company : {Company::alone, Company::neighbours, Company::point}) {
+    const Device chosen("", "", company);
+    const DeviceScene uploaded = upload(chosen, scene, bvh);
+    const auto found = trace(chosen, uploaded, rays, Estimator::exact);
+    if (alone.empty()) alone = found;
+    int different = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      different += std::fabs(found[i].transmittance - alone[i].transmittance) > 1e-4f;
+    EXPECT_LE(different, 10);
+  }
+}
+
+class TraceWithOption : public program_test::ProgramRun {};
+
+TEST_F(TraceWithOption, IsKnownToRenderAndWrittenDown) {
+  expect_failure(render("--trace-with nobody"), 2, "--trace-with nobody: it is auto, alone");
+  for (const char* company : {"auto", "alone", "neighbours", "point"})
+    EXPECT_EQ(render(std::string("-q --trace-with ") + company).code, 0) << company;
+}
+
+TEST_F(TraceWithOption, DevicesSayWhetherTheyCanRunEveryKernelAndHow) {
+  const auto run = dapple("devices");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(film_test::contains(run.out, "runs every kernel; ")) << run.out;
+  film_test::write_bytes(path("kernels/occlusion/packet.cl"), "this is no OpenCL C\n");
+  const auto broken = dapple("devices --kernel-dir kernels");
+  EXPECT_EQ(broken.code, 4) << broken.err;
+  EXPECT_TRUE(film_test::contains(broken.out, "cannot be used: packet.cl: ")) << broken.out;
+}
+
+}  // namespace
+}  // namespace dapple

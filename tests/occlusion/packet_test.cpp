@@ -1,0 +1,319 @@
+// Packets: the rays of a point traced together find what each would find alone. Exact ones, and
+// prefiltered ones as the footprint goes to 0, closed forms, any number of rays.
+#include <gtest/gtest.h>
+
+#include "dapple/error.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+// `rays` cosine-weighted rays from each of `points` places in `box`, as the AO pass makes them.
+std::vector<Ray> ao_rays(const Box3f& box, std::size_t points, std::size_t rays,
+                         std::uint32_t seed) {
+  Points random(seed);
+  std::vector<Ray> result;
+  for (std::size_t p = 0; p < points; ++p) {
+    const V3f origin = box.center() + V3f(box.size() * random.in_cube(0.5f));
+    const V3f normal = random.on_sphere();
+    for (std::size_t r = 0; r < rays; ++r) {
+      const V3f direction = normal + random.on_sphere() * 0.9999f;
+      const float cosine = direction.normalized().dot(normal);
+      Ray ray = make_ray(origin, direction,
+                         static_cast<float>(kPi) / (static_cast<float>(rays) * cosine));
+      ray.key = static_cast<std::uint32_t>(result.size()) * 0x9e3779b9u;
+      result.push_back(ray);
+    }
+  }
+  return result;
+}
+
+std::vector<Occlusion> packets(const SceneOnDevice& scene, const std::vector<Ray>& rays,
+                               float footprint, std::size_t rays_per_point) {
+  return trace(device(), scene.uploaded, rays, Estimator::packet, footprint, rays_per_point);
+}
+
+std::vector<Occlusion> exact_packets(const SceneOnDevice& scene, const std::vector<Ray>& rays,
+                                     std::size_t rays_per_point) {
+  return trace(device(), scene.uploaded, rays, Estimator::exact, 1, rays_per_point);
+}
+
+int count_different(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b) {
+  int different = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    different += std::fabs(a[i].transmittance - b[i].transmittance) > 1e-4f;
+  }
+  return different;
+}
+
+// Node visits of all rays.
+double sum_of_visits(const std::vector<Occlusion>& found) {
+  double sum = 0;
+  for (const Occlusion& one : found) sum += one.visits & 65535u;
+  return sum;
+}
+
+// Cards turned about the vertical, with a chequered alpha: every other one is cut out.
+Scene textured_cards() {
+  Scene scene;
+  scene.source = "cards";
+  Texture chequers;
+  chequers.width = chequers.height = 8;
+  for (int i = 0; i < 64; ++i) chequers.alpha.push_back((i + i / 8) % 2 ? 220 : 30);
+  scene.textures.push_back(chequers);
+  for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
+    Material material = material_of(1);
+    material.alpha_mode = mode;
+    material.alpha_texture = 0;
+    scene.materials.push_back(material);
+  }
+  Points random(4);
+  Mesh mesh;
+  for (std::uint32_t card = 0; card < 200; ++card) {
+    const V3f corner = random.in_cube(2), side = random.on_sphere();
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const V2f& uv : {V2f(0, 0), V2f(1, 0), V2f(1, 1), V2f(0, 1)}) {
+      mesh.positions.push_back(corner + side * uv.x + V3f(0, uv.y, 0));
+      mesh.uvs.push_back(uv);
+    }
+    mesh.indices.insert(mesh.indices.end(),
+                        {first, first + 1, first + 2, first, first + 2, first + 3});
+    mesh.materials.insert(mesh.materials.end(), {card % 2, card % 2});
+  }
+  place(scene, std::move(mesh));
+  return scene;
+}
+
+// Some trees as they come, others squeezed, mirrored and stretched.
+Scene forest_of_uneven_trees() {
+  Scene scene = make_procedural("scene:forest?trees=9&leaves=500&opacity=0.5");
+  M44f uneven;
+  uneven.setScale(V3f(-3, 1, 2));
+  for (std::size_t i = 0; i < scene.instances.size(); i += 2) {
+    scene.instances[i].to_world = uneven * scene.instances[i].to_world;
+  }
+  return scene;
+}
+
+// The products that decide which side of an edge a ray passes are taken in another order, so that
+// a ray within roundings of an edge may fall on the other side of it: 1 in 1000 at the very most
+// (reference_traversal_test.cpp).
+TEST(Packet, EqualsExactRayByRayWhenExactAndAsTheFootprintGoesToZero) {
+  std::vector<Scene> scenes;
+  scenes.push_back(make_procedural("scene:tree?leaves=2000"));
+  scenes.push_back(forest_of_uneven_trees());
+  scenes.push_back(textured_cards());
+  for (Scene& made : scenes) {
+    const SceneOnDevice scene(std::move(made));
+    const Box3f box = scene.bvh.bounds;
+    for (const std::size_t rays : {4u, 9u, 25u, 64u, 65u, 200u}) {
+      std::vector<Ray> queue = ao_rays(box, 6400 / rays, rays, 21);
+      // Rays end somewhere, as on a light, nowhere, or before they start.
+      for (std::size_t i = 0; i < queue.size(); ++i) {
+        if (i % 3 == 0) queue[i].t_max = 0.01f * static_cast<float>(i % 100);
+        if (i % 17 == 0) queue[i].t_max = -1;
+      }
+      const std::vector<Occlusion> exact = scene.trace(queue, Estimator::exact);
+      EXPECT_LT(mean_transmittance(exact), 0.97) << "nothing in the way";
+      for (const float footprint : {0.0f, 1e-7f}) {
+        const int different = count_different(packets(scene, queue, footprint, rays), exact);
+        std::printf("%s, %zu rays, footprint %g: %d differ\n", scene.scene.source.c_str(), rays,
+                    footprint, different);
+        EXPECT_LE(different, 6) << rays;
+      }
+      const std::vector<Occlusion> together = exact_packets(scene, queue, rays);
+      EXPECT_LE(count_different(together, exact), 6) << rays;
+      EXPECT_LT(sum_of_visits(together), 0.9 * sum_of_visits(exact)) << rays;
+    }
+  }
+}
+
+// Points on surfaces of the scene, as a baker has them.
+struct BakedPoints {
+  std::vector<V3f> positions, normals;
+};
+
+BakedPoints points_on(const SceneOnDevice& scene, std::size_t count) {
+  BakedPoints points;
+  std::vector<Ray> rays = rays_across(scene.bvh.bounds, 24 * count, 0, 31);
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i].key = static_cast<uint>(i) * 0x9e3779b9u;
+  for (const SurfacePoint& hit : closest_hits(device(), scene.uploaded, rays)) {
+    if (hit.t < 0 || points.positions.size() == count) continue;
+    points.positions.emplace_back(hit.position[0], hit.position[1], hit.position[2]);
+    points.normals.emplace_back(hit.normal[0], hit.normal[1], hit.normal[2]);
+  }
+  return points;
+}
+
+std::vector<float> bake(const SceneOnDevice& scene, const BakedPoints& points, Estimator estimator,
+                        float footprint, int rays = 64) {
+  OcclusionOptions options;
+  options.rays = rays;
+  options.estimator = estimator;
+  options.footprint = footprint;
+  return occlusion(device(), scene.uploaded, points.positions, points.normals, options);
+}
+
+struct Difference {
+  double mean, standard_error, rms;
+};
+
+// Of the same rays, so that the noise of where they go cancels.
+Difference difference(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0, square = 0;
+  const auto n = static_cast<double>(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    sum += d;
+    square += d * d;
+  }
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, square / n - mean * mean) / n), std::sqrt(square / n)};
+}
+
+TEST(Packet, AgreesWithPrefilteredAndConvergesToExact) {
+  std::vector<Scene> scenes;
+  scenes.push_back(make_procedural("scene:tree?leaves=20000"));
+  scenes.push_back(make_procedural("scene:cloud?leaves=50000&opacity=0.2"));
+  scenes.push_back(make_procedural("scene:forest?trees=40&leaves=2000"));
+  scenes.push_back(forest_of_uneven_trees());
+  for (Scene& made : scenes) {
+    const SceneOnDevice scene(std::move(made));
+    const char* name = scene.scene.source.c_str();
+    const BakedPoints points = points_on(scene, 1500);
+    ASSERT_GT(points.positions.size(), 300u);
+    const std::vector<float> exact = bake(scene, points, Estimator::exact, 0);
+    Difference coarser{1, 0, 1};
+    for (const float footprint : {4.0f, 1.0f, 0.25f, 1.0f / 16}) {
+      const std::vector<float> packet = bake(scene, points, Estimator::packet, footprint);
+      const Difference error = difference(packet, exact);
+      const Difference apart =
+          difference(packet, bake(scene, points, Estimator::prefiltered, footprint));
+      std::printf(
+          "%s, footprint %g: packet - exact %+.4f (+-%.4f), packet - prefiltered %+.4f "
+          "(rms %.4f)\n",
+          name, footprint, error.mean, error.standard_error, apart.mean, apart.rms);
+      // All that differs is the direction along which a covered child's depth is taken.
+      EXPECT_NEAR(apart.mean, 0, 0.003) << name << " at " << footprint;
+      EXPECT_LT(apart.rms, 0.005) << name << " at " << footprint;
+      const double noise = 3 * std::hypot(error.standard_error, coarser.standard_error);
+      EXPECT_LE(std::fabs(error.mean), std::fabs(coarser.mean) + noise) << name << " " << footprint;
+      coarser = error;
+    }
+    // Far below the leaves: hardly a node is covered any more.
+    EXPECT_NEAR(difference(bake(scene, points, Estimator::packet, 1e-5f), exact).mean, 0, 2e-4)
+        << name;
+  }
+}
+
+// As in closed_form_test.cpp and ao_distance_test.cpp, which say where the tolerances come from.
+OcclusionOptions many_rays(float footprint) {
+  OcclusionOptions options;
+  options.rays = 1 << 16;
+  options.estimator = Estimator::packet;
+  options.footprint = footprint;
+  return options;
+}
+
+constexpr V3f kOrigin(0, 0, 0), kUp(0, 1, 0);
+
+TEST(Packet, ADiskAStackAndAPlaneThatFallsOffAreTheirClosedForms) {
+  const SceneOnDevice disk(make_procedural("scene:disk?radius=2&height=1&opacity=0.85"));
+  EXPECT_NEAR(disk.occlusion_at(kOrigin, kUp, many_rays(1)), 1 - 0.85 * 0.8, 1.5e-3);
+  EXPECT_NEAR(disk.occlusion_at(kOrigin, kUp, many_rays(1024)), 1 - 0.85 * 0.8, 0.03);
+
+  // Sheets so wide that less than 1e-3 of the cosine-weighted hemisphere passes beside them.
+  Scene sheets;
+  sheets.materials.push_back(material_of(0.25f));
+  Mesh mesh;
+  for (int i = 0; i < 4; ++i) {
+    append_grid(mesh, {-40, 1 + 0.1f * static_cast<float>(i), -40}, {80, 0, 0}, {0, 0, 80}, 160, 0);
+  }
+  place(sheets, std::move(mesh));
+  const SceneOnDevice stack(std::move(sheets));
+  EXPECT_NEAR(stack.occlusion_at(kOrigin, kUp, many_rays(1)), std::pow(0.75, 4), 2.5e-3);
+
+  Scene ceiling;
+  ceiling.materials.push_back(material_of(0.4f));
+  place(ceiling, square_mesh(64, 1, 128, 0));
+  const SceneOnDevice plane(std::move(ceiling));
+  for (const double distance : {1.5, 3.0, 7.5}) {
+    const double k = 1 / distance;
+    for (const auto& [power, part] : {std::pair{0.0f, 1 - k * k}, {1.0f, (1 - k) * (1 - k)}}) {
+      SCOPED_TRACE(testing::Message() << "distance " << distance << " power " << power);
+      OcclusionOptions options = many_rays(1);
+      options.distance = static_cast<float>(distance);
+      options.falloff = power;
+      EXPECT_NEAR(plane.occlusion_at(kOrigin, kUp, options), 1 - 0.4 * part, 2e-3);
+      // Strips of the plane reach from overhead to far away, where they look small: a ray that
+      // meets one overhead must not take it for small.
+      options.footprint = 1024;
+      const float together = plane.occlusion_at(kOrigin, kUp, options);
+      options.estimator = Estimator::prefiltered;
+      const float alone = plane.occlusion_at(kOrigin, kUp, options);
+      std::printf("plane: closed form %.4f, packet %.4f, prefiltered %.4f\n", 1 - 0.4 * part,
+                  together, alone);
+      EXPECT_NEAR(together, alone, 0.01);
+      EXPECT_NEAR(together, 1 - 0.4 * part, 0.04);
+    }
+  }
+}
+
+// One slanted square that the rays meet just beyond their end: its node holds the end, so that
+// however wide the footprint it has to be opened and the square be found not to count.
+TEST(Packet, ANodeThatHoldsTheRaysEndIsOpened) {
+  for (const float distance : {0.5f, 1.0f, 3.0f, 10.0f, 30.0f}) {
+    Scene scene;
+    scene.materials.push_back(material_of(1));
+    Mesh mesh;
+    const float half = 0.05f * distance, tilt = 0.02f * distance;
+    append_grid(mesh, {-half, 1.001f * distance - tilt, -half}, {2 * half, 2 * tilt, 0},
+                {0, 0, 2 * half}, 1, 0);
+    place(scene, std::move(mesh));
+    const SceneOnDevice traced(std::move(scene));
+    const V3f origin(1e-3f * half, 0, 2e-3f * half);
+    const std::vector<Ray> ending(8, make_ray(origin, {0, 1, 0}, 6, distance));
+    const std::vector<Ray> endless(8, make_ray(origin, {0, 1, 0}, 6));
+    for (int i = 0; i < 8; ++i) {
+      EXPECT_EQ(packets(traced, ending, 1e6f, 8)[i].transmittance, 1.0f) << distance;
+      EXPECT_LT(packets(traced, endless, 1e6f, 8)[i].transmittance, 0.9f) << distance;
+    }
+  }
+}
+
+TEST(Packet, TooFewRaysAreTracedOneByOneAndStrangersAreRefused) {
+  const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
+  const BakedPoints points = points_on(scene, 200);
+  for (const int rays : {1, 2, 3}) {
+    EXPECT_EQ(bake(scene, points, Estimator::packet, 1, rays),
+              bake(scene, points, Estimator::prefiltered, 1, rays))
+        << rays;
+  }
+  if (device().info().kind == "CPU") {
+    EXPECT_EQ(bake(scene, points, Estimator::packet, 1, 8),
+              bake(scene, points, Estimator::prefiltered, 1, 8));
+  }
+
+  std::vector<Ray> rays = ao_rays(scene.bvh.bounds, 100, 64, 3);
+  const std::vector<Occlusion> alone = scene.trace(rays, Estimator::prefiltered);
+  EXPECT_EQ(count_different(scene.trace(rays, Estimator::packet), alone), 0);
+  // Counted once a packet and shared: in all fewer than a third of each ray's own.
+  const double shared_visits = sum_of_visits(packets(scene, rays, 1, 64));
+  const double own_visits = sum_of_visits(alone);
+  std::printf("visits a ray: %.2f together, %.2f alone\n", shared_visits / 6400, own_visits / 6400);
+  EXPECT_GT(shared_visits, 0);
+  EXPECT_LT(shared_visits, own_visits / 3);
+
+  EXPECT_THROW(packets(scene, rays, 1, 63), Error);  // 6400 is no multiple
+  EXPECT_THROW(packets(scene, rays, 1, 0), Error);
+  rays[70].origin[1] += 1;
+  EXPECT_THROW(packets(scene, rays, 1, 64), Error);
+  rays[70] = rays[71];
+  rays[70].light = 1;
+  EXPECT_THROW(packets(scene, rays, 1, 64), Error);
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,117 @@
+// Nothing pops: when a point or the camera moves by a little, prefiltered occlusion changes by
+// hardly more than exact occlusion does. dapple-bench accuracy --line does the same at full
+// size.
+#include <gtest/gtest.h>
+
+#include "support/line_of_points.hpp"
+#include "support/receding_camera.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace popping;
+using scene_test::SceneOnDevice;
+
+constexpr float kFootprints[] = {0.5f, 1, 2, 4};
+
+/// What nobody sees, beyond the change that exact shows.
+constexpr double kInvisible = 0.01;
+
+/// Standard errors by which noise may add to that in pictures. Some 80 steps are compared: of
+/// normal errors one beyond four would turn up in one of 400 such tests.
+constexpr double kNoise = 4;
+
+/// Points have the spacing of a thousand from side to side.
+constexpr int kPoints = 150, kWholeLine = 1000;
+constexpr Strata kStrata{64, 64};
+
+/// `errors`: by how many standard errors a step may go beyond that.
+void expect_steady(const std::vector<Step>& found, const std::string& what, double errors) {
+  const LargestSteps most = largest(found);
+  std::printf("%s: largest step exact %.4f, prefiltered %.4f, beyond exact %+.4f (+- %.4f)\n",
+              what.c_str(), most.exact, most.prefiltered, most.excess, most.error);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ASSERT_LE(found[i].excess(), kInvisible + errors * found[i].error)
+        << what << ", step " << i << ": exact " << found[i].exact << ", prefiltered "
+        << found[i].prefiltered;
+  }
+}
+
+class Line {
+ public:
+  Line(const SceneOnDevice& scene, std::vector<Ray> rays)
+      : scene_(scene),
+        points_(line_through(scene.bvh.bounds, kPoints, kWholeLine)),
+        rays_(std::move(rays)),
+        exact_(traced(Estimator::exact, 0)) {}
+
+  [[nodiscard]] std::vector<Step> steps_at(float footprint) const {
+    return steps(exact_, traced(Estimator::prefiltered, footprint), rays_.size());
+  }
+
+  /// Every other point with another footprint: as if all nodes were switched at once.
+  [[nodiscard]] std::vector<Step> steps_between(float footprint, float other) const {
+    std::vector<float> values = traced(Estimator::prefiltered, footprint);
+    const std::vector<float> others = traced(Estimator::prefiltered, other);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i / rays_.size() % 2) values[i] = others[i];
+    }
+    return steps(exact_, values, rays_.size());
+  }
+
+ private:
+  [[nodiscard]] std::vector<float> traced(Estimator estimator, float footprint) const {
+    return transmittances(scene_test::device(), scene_.uploaded, points_, rays_, estimator,
+                          footprint);
+  }
+  const SceneOnDevice& scene_;
+  std::vector<V3f> points_;
+  std::vector<Ray> rays_;
+  std::vector<float> exact_;
+};
+
+void expect_steady_line(const char* name) {
+  const SceneOnDevice scene(make_procedural(name));
+  const Line hemisphere(scene, hemisphere_rays(kStrata, kStrata.count()));
+  const Line sphere(scene, sphere_rays(kStrata, kStrata.count()));
+  for (const float footprint : kFootprints) {
+    const std::string at = std::string(name) + ", footprint " + std::to_string(footprint);
+    expect_steady(hemisphere.steps_at(footprint), at + ", hemisphere", 0);
+    expect_steady(sphere.steps_at(footprint), at + ", sphere", 0);
+  }
+  // Otherwise all of this has shown nothing.
+  EXPECT_GT(largest(sphere.steps_between(1, 1024)).excess, 2 * kInvisible) << name;
+}
+
+TEST(Popping, OcclusionAlongALineThroughATreeChangesLittleMoreThanExactDoes) {
+  expect_steady_line("scene:tree");
+}
+
+TEST(Popping, OcclusionAlongALineThroughACloudChangesLittleMoreThanExactDoes) {
+  expect_steady_line("scene:cloud");
+}
+
+// Wider pixels make wider footprints, at every point of the picture at once.
+TEST(Popping, OcclusionOfATreeChangesLittleMoreThanExactDoesAsTheCameraIsPulledBack) {
+  const SceneOnDevice scene(make_procedural("scene:tree"));
+  const PulledBackCamera path(scene.bvh.bounds, 20, 2);
+  const FrameTracer tracer(scene_test::device(), scene.uploaded, scene.bvh.bounds, RenderOptions{},
+                           32, 12);
+  const std::vector<Frame> exact = tracer.frames(path, Estimator::exact, 0);
+  const auto traced = [&](float footprint) {
+    return tracer.frames(path, Estimator::prefiltered, footprint);
+  };
+  for (const float footprint : kFootprints)
+    expect_steady(steps(exact, traced(footprint)), "camera, footprint " + std::to_string(footprint),
+                  kNoise);
+  // Every other frame with far larger footprints must be seen, or all of this has shown nothing.
+  std::vector<Frame> unsteady = traced(1);
+  const std::vector<Frame> others = traced(65536);
+  for (std::size_t i = 1; i < unsteady.size(); i += 2) unsteady[i] = others[i];
+  const LargestSteps most = largest(steps(exact, unsteady));
+  EXPECT_GT(most.excess, kInvisible);
+}
+
+}  // namespace
+}  // namespace dapple

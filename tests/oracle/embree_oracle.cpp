@@ -1,0 +1,399 @@
+// Embree does the traversal, with its robust intersectors and filters that reject every hit
+// that lets light through; the hit is then computed again in double from the triangle itself.
+#include "oracle/embree_oracle.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+namespace dapple::oracle {
+namespace {
+
+/// Darker rays count as black: a hundredth of the least difference that tests look for.
+constexpr double kBlack = 1e-6;
+
+std::uint64_t mix(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+/// A triangle in world space with what decides its opacity.
+struct Triangle {
+  V3f corner[3];
+  Imath::V2d uv[3];
+  double vertex_alpha[3];
+  std::uint32_t material;
+};
+
+/// A segment of a strand in world space, as Embree's curves take it.
+struct Curve {
+  V3f end[2];
+  float radius[2];
+  double vertex_alpha;  ///< mean of both ends'
+  std::uint32_t material;
+  bool goes_on;  ///< the next one begins where this one ends
+};
+
+/// Barycentric weights of the three corners, where a line meets the triangle's plane.
+struct Weights {
+  double of[3];
+};
+
+V3d normal_of(const Triangle& triangle) {
+  const V3d a(triangle.corner[0]), b(triangle.corner[1]), c(triangle.corner[2]);
+  return (b - a).cross(c - a);
+}
+
+/// Areas of the three parts into which the point cuts the triangle, seen along its normal.
+Weights weights_at(const Triangle& triangle, const V3d& origin, const V3d& direction) {
+  const V3d normal = normal_of(triangle);
+  const V3d corner[3] = {V3d(triangle.corner[0]), V3d(triangle.corner[1]), V3d(triangle.corner[2])};
+  const double t = (corner[0] - origin).dot(normal) / direction.dot(normal);
+  const V3d point = origin + direction * t;
+  Weights weights{};
+  for (int k = 0; k < 3; ++k) {
+    const V3d& from = corner[(k + 1) % 3];
+    const V3d& to = corner[(k + 2) % 3];
+    weights.of[k] = (to - from).cross(point - from).dot(normal) / normal.length2();
+  }
+  return weights;
+}
+
+template <class Value>
+Value interpolate(const Weights& weights, const Value (&values)[3]) {
+  return values[0] * weights.of[0] + values[1] * weights.of[1] + values[2] * weights.of[2];
+}
+
+std::int64_t remainder(std::int64_t value, std::int64_t modulus) {
+  const std::int64_t r = value % modulus;
+  return r < 0 ? r + modulus : r;
+}
+
+/// The OpenGL 4.6 specification's section 8.14.2, table 8.21, which glTF's samplers refer to.
+std::size_t wrapped(std::int64_t i, std::int64_t size, Wrap wrap) {
+  const auto mirror = [](std::int64_t a) { return a >= 0 ? a : -(1 + a); };
+  switch (wrap) {
+    case Wrap::repeat:
+      i = remainder(i, size);
+      break;
+    case Wrap::clamp:
+      i = std::clamp<std::int64_t>(i, 0, size - 1);
+      break;
+    case Wrap::mirror:
+      i = (size - 1) - mirror(remainder(i, 2 * size) - size);
+      break;
+  }
+  return static_cast<std::size_t>(i);
+}
+
+double texel(const Texture& texture, std::int64_t column, std::int64_t row) {
+  const std::size_t x = wrapped(column, texture.width, texture.wrap_s);
+  const std::size_t y = wrapped(row, texture.height, texture.wrap_t);
+  return texture.alpha[y * texture.width + x] / 255.0;
+}
+
+double texture_alpha(const Texture& texture, const Imath::V2d& uv) {
+  const double x = uv.x * texture.width;
+  const double y = uv.y * texture.height;
+  const auto cell = [](double a) { return static_cast<std::int64_t>(std::floor(a)); };
+  if (texture.nearest) return texel(texture, cell(x), cell(y));
+  const std::int64_t column = cell(x - 0.5);
+  const std::int64_t row = cell(y - 0.5);
+  double alpha = 0;
+  for (int dy = 0; dy < 2; ++dy) {
+    for (int dx = 0; dx < 2; ++dx) {
+      const double share_x = 1 - std::fabs(x - 0.5 - static_cast<double>(column + dx));
+      const double share_y = 1 - std::fabs(y - 0.5 - static_cast<double>(row + dy));
+      alpha += share_x * share_y * texel(texture, column + dx, row + dy);
+    }
+  }
+  return alpha;
+}
+
+double opacity_of(double alpha, const Material& material) {
+  switch (material.alpha_mode) {
+    case AlphaMode::opaque:
+      return 1;
+    case AlphaMode::mask:
+      return alpha >= material.alpha_cutoff ? 1 : 0;
+    case AlphaMode::blend:
+      break;
+  }
+  return alpha;
+}
+
+Triangle place(const Mesh& mesh, std::size_t index, const Instance& instance) {
+  const Imath::M44d to_world(instance.to_world);
+  Triangle triangle{};
+  triangle.material = mesh.materials[index];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t vertex = mesh.indices[3 * index + k];
+    triangle.corner[k] = V3f(V3d(mesh.positions[vertex]) * to_world);
+    if (!mesh.uvs.empty()) triangle.uv[k] = Imath::V2d(mesh.uvs[vertex]);
+    triangle.vertex_alpha[k] = mesh.vertex_alpha.empty() ? 1.0 : mesh.vertex_alpha[vertex];
+  }
+  return triangle;
+}
+
+std::vector<Triangle> flatten(const Scene& scene) {
+  std::vector<Triangle> triangles;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (std::size_t i = 0; !mesh.has_strands() && i < mesh.primitive_count(); ++i) {
+      triangles.push_back(place(mesh, i, instance));
+    }
+  }
+  return triangles;
+}
+
+/// Placements of strands must scale uniformly.
+std::vector<Curve> flatten_strands(const Scene& scene) {
+  std::vector<Curve> curves;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const Imath::M44d to_world(instance.to_world);
+    const double scale = std::cbrt(std::fabs(to_world.determinant()));
+    for (std::size_t i = 0; mesh.has_strands() && i < mesh.primitive_count(); ++i) {
+      const std::uint32_t* at = &mesh.indices[2 * i];
+      Curve curve{};
+      for (int k = 0; k < 2; ++k) {
+        curve.end[k] = V3f(V3d(mesh.positions[at[k]]) * to_world);
+        curve.radius[k] = static_cast<float>(mesh.radii[at[k]] * scale);
+        curve.vertex_alpha += mesh.vertex_alpha.empty() ? 0.5 : 0.5 * mesh.vertex_alpha[at[k]];
+      }
+      curve.material = mesh.materials[i];
+      curve.goes_on = i + 1 < mesh.primitive_count() && at[1] == at[2];
+      curves.push_back(curve);
+    }
+  }
+  return curves;
+}
+
+/// Embree sees that segments belong together where their first vertices follow each other.
+RTCGeometry strand_geometry(RTCDevice device, const std::vector<Curve>& curves) {
+  std::vector<float> vertices;
+  std::vector<unsigned> first;
+  const auto add = [&](const Curve& curve, int k) {
+    vertices.insert(vertices.end(),
+                    {curve.end[k].x, curve.end[k].y, curve.end[k].z, curve.radius[k]});
+  };
+  for (const Curve& curve : curves) {
+    first.push_back(static_cast<unsigned>(vertices.size() / 4));
+    add(curve, 0);
+    if (!curve.goes_on) add(curve, 1);
+  }
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  void* const to = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                           4 * sizeof(float), vertices.size() / 4);
+  void* const indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                                                sizeof(unsigned), first.size());
+  if (!to || !indices) throw std::runtime_error("Embree: no memory for the strands");
+  std::memcpy(to, vertices.data(), vertices.size() * sizeof(float));
+  std::memcpy(indices, first.data(), first.size() * sizeof(unsigned));
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+RTCRay embree_ray(const Segment& segment) {
+  RTCRay ray{};
+  ray.org_x = segment.origin.x;
+  ray.org_y = segment.origin.y;
+  ray.org_z = segment.origin.z;
+  ray.dir_x = segment.direction.x;
+  ray.dir_y = segment.direction.y;
+  ray.dir_z = segment.direction.z;
+  ray.tnear = 0;
+  ray.tfar = segment.t_max;
+  ray.mask = 0xffffffffu;
+  return ray;
+}
+
+/// A whole triangle soup as Embree's one geometry; primitive numbers are places in it.
+RTCGeometry soup_geometry(RTCDevice device, const std::vector<Triangle>& triangles) {
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                              RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                              3 * triangles.size()));
+  auto* indices = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(unsigned), triangles.size()));
+  if (!corners || !indices) throw std::runtime_error("Embree: no memory for the triangles");
+  for (std::size_t i = 0; i < 3 * triangles.size(); ++i) {
+    const V3f& corner = triangles[i / 3].corner[i % 3];
+    for (int axis = 0; axis < 3; ++axis) *corners++ = corner[axis];
+    indices[i] = static_cast<unsigned>(i);
+  }
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+}  // namespace
+
+std::uint64_t Random::bits() { return mix(state_ += 0x9e3779b97f4a7c15u); }
+
+V3d Random::direction() {
+  const double height = between(-1, 1);
+  const double angle = between(0, 2 * std::numbers::pi);
+  const double radius = std::sqrt(1 - height * height);
+  return {radius * std::cos(angle), radius * std::sin(angle), height};
+}
+
+struct EmbreeOracle::Embree {
+  explicit Embree(const Scene& scene)
+      : triangles(flatten(scene)),
+        curves(flatten_strands(scene)),
+        materials(scene.materials),
+        textures(scene.textures),
+        device(rtcNewDevice(nullptr)),
+        rtc_scene(rtcNewScene(device)) {
+    // No spatial splits (they come with high quality): a triangle has one place in the tree.
+    rtcSetSceneBuildQuality(rtc_scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(rtc_scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
+                                                           RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    if (!triangles.empty()) attach(soup_geometry(device, triangles), kTriangles);
+    if (!curves.empty()) attach(strand_geometry(device, curves), kStrands);
+    rtcCommitScene(rtc_scene);
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree failed");
+  }
+  ~Embree() {
+    rtcReleaseScene(rtc_scene);
+    rtcReleaseDevice(device);
+  }
+  Embree(const Embree&) = delete;
+  Embree& operator=(const Embree&) = delete;
+
+  static constexpr unsigned kTriangles = 0, kStrands = 1;
+
+  void attach(RTCGeometry geometry, unsigned number) {
+    rtcAttachGeometryByID(rtc_scene, geometry, number);
+    rtcReleaseGeometry(geometry);
+  }
+
+  /// `primitive` counts all triangles, then all segments.
+  [[nodiscard]] double opacity(unsigned primitive, const Segment& segment) const {
+    if (primitive >= triangles.size()) {
+      const Curve& curve = curves[primitive - triangles.size()];
+      const Material& material = materials[curve.material];
+      return opacity_of(material.alpha * (material.uses_vertex_alpha ? curve.vertex_alpha : 1.0),
+                        material);
+    }
+    const Triangle& triangle = triangles[primitive];
+    const Material& material = materials[triangle.material];
+    const Weights weights = weights_at(triangle, V3d(segment.origin), V3d(segment.direction));
+    double alpha = material.alpha;
+    if (material.uses_vertex_alpha) alpha *= interpolate(weights, triangle.vertex_alpha);
+    if (material.alpha_texture >= 0) {
+      alpha *= texture_alpha(textures[static_cast<std::size_t>(material.alpha_texture)],
+                             interpolate(weights, triangle.uv));
+    }
+    return opacity_of(alpha, material);
+  }
+
+  std::vector<Triangle> triangles;
+  std::vector<Curve> curves;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  RTCDevice device;
+  RTCScene rtc_scene;
+
+  /// What a filter sees of its query. Embree hands back the pointer to `context`, the first
+  /// member, which is therefore a pointer to the whole.
+  struct Query {
+    RTCIntersectContext context;
+    const Embree* embree;
+    const Segment* segment;
+    std::uint64_t key;
+    double transmittance;
+    std::vector<unsigned> met;
+  };
+
+  static Query& query_of(const RTCFilterFunctionNArguments* arguments) {
+    return *reinterpret_cast<Query*>(arguments->context);
+  }
+  [[nodiscard]] unsigned primitive_of(const RTCFilterFunctionNArguments* arguments) const {
+    const unsigned number = RTCHitN_primID(arguments->hit, arguments->N, 0);
+    const bool strand = RTCHitN_geomID(arguments->hit, arguments->N, 0) == kStrands;
+    return number + (strand ? static_cast<unsigned>(triangles.size()) : 0);
+  }
+
+  /// Strands are closed, and stop what enters them.
+  static bool leaves_strand(const RTCFilterFunctionNArguments* arguments) {
+    RTCHitN* const hit = arguments->hit;
+    RTCRayN* const ray = arguments->ray;
+    if (RTCHitN_geomID(hit, 1, 0) != kStrands) return false;
+    return RTCHitN_Ng_x(hit, 1, 0) * RTCRayN_dir_x(ray, 1, 0) +
+               RTCHitN_Ng_y(hit, 1, 0) * RTCRayN_dir_y(ray, 1, 0) +
+               RTCHitN_Ng_z(hit, 1, 0) * RTCRayN_dir_z(ray, 1, 0) >=
+           0;
+  }
+
+  /// Embree allows itself to report a hit twice, so the triangles met are remembered.
+  static void composite(const RTCFilterFunctionNArguments* arguments) {
+    Query& query = query_of(arguments);
+    arguments->valid[0] = 0;
+    if (leaves_strand(arguments)) return;
+    const unsigned primitive = query.embree->primitive_of(arguments);
+    if (std::find(query.met.begin(), query.met.end(), primitive) == query.met.end()) {
+      query.met.push_back(primitive);
+      query.transmittance *= 1 - query.embree->opacity(primitive, *query.segment);
+    }
+    if (query.transmittance < kBlack) arguments->valid[0] = -1;
+  }
+
+  /// A hash instead of a random stream: a triangle reported twice gets the same answer.
+  static void stop_by_chance(const RTCFilterFunctionNArguments* arguments) {
+    const Query& query = query_of(arguments);
+    const unsigned primitive = query.embree->primitive_of(arguments);
+    if (leaves_strand(arguments)) {
+      arguments->valid[0] = 0;
+      return;
+    }
+    Random chance(mix(query.key + 0x632be59bd9b4e019u * (primitive + 1)));
+    if (chance.real() >= query.embree->opacity(primitive, *query.segment)) arguments->valid[0] = 0;
+  }
+
+  Query query(const Segment& segment, RTCFilterFunctionN filter) const {
+    Query query{{}, this, &segment, 0, 1.0, {}};
+    rtcInitIntersectContext(&query.context);
+    query.context.filter = filter;
+    return query;
+  }
+};
+
+EmbreeOracle::EmbreeOracle(const Scene& scene) : embree_(std::make_unique<Embree>(scene)) {}
+EmbreeOracle::~EmbreeOracle() = default;
+
+double EmbreeOracle::transmittance(const Segment& segment) const {
+  Embree::Query query = embree_->query(segment, &Embree::composite);
+  RTCRay ray = embree_ray(segment);
+  rtcOccluded1(embree_->rtc_scene, &query.context, &ray);
+  return query.transmittance < kBlack ? 0 : query.transmittance;
+}
+
+std::optional<Hit> EmbreeOracle::first_hit(const Segment& segment, std::uint64_t key) const {
+  Embree::Query query = embree_->query(segment, &Embree::stop_by_chance);
+  query.key = key;
+  RTCRayHit found{embree_ray(segment), {}};
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(embree_->rtc_scene, &query.context, &found);
+  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  if (found.hit.geomID == Embree::kStrands) {
+    const V3d normal(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
+    return Hit{V3d(segment.origin) + V3d(segment.direction) * double{found.ray.tfar},
+               normal.normalized()};
+  }
+  const Triangle& triangle = embree_->triangles[found.hit.primID];
+  const V3d direction(segment.direction);
+  const V3d corner[3] = {V3d(triangle.corner[0]), V3d(triangle.corner[1]), V3d(triangle.corner[2])};
+  V3d normal = normal_of(triangle).normalized();
+  if (normal.dot(direction) > 0) normal = -normal;
+  return Hit{interpolate(weights_at(triangle, V3d(segment.origin), direction), corner), normal};
+}
+
+}  // namespace dapple::oracle

@@ -1,0 +1,101 @@
+// Files of checkpoints: what comes back is what was written, and damage, or a state that does not
+// fit its picture, is refused by name.
+#include "render/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "support/film_files.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+
+class CheckpointFile : public FilmFile {};
+
+/// A file of a few hundred bytes.
+std::string small_checkpoint(const std::string& path) {
+  Checkpoint checkpoint;
+  checkpoint.options = {{"--seed", "1"}};
+  TraceState state;
+  state.slice_samples = 64;
+  state.sums = {1, 2, 3, 4};
+  state.squares = {0.5f, 0.25f};
+  state.samples = {8, 8};
+  state.round.groups = {{4, {{0, 4}, {1, 4}}}};
+  write_checkpoint(path, checkpoint, state);
+  return bytes_of(path);
+}
+
+void expect_refused(const std::string& path) {
+  const Error error = error_of([&] { read_checkpoint(path); });
+  EXPECT_EQ(error.kind(), ErrorKind::failed);
+  EXPECT_TRUE(contains(error.what(), "--resume " + path + ": ")) << error.what();
+}
+
+TEST_F(CheckpointFile, ComesBackAsItWasWritten) {
+  small_checkpoint(path("a.ckpt"));
+  const Checkpoint read = read_checkpoint(path("a.ckpt"));
+  EXPECT_EQ(read.options, (Settings{{"--seed", "1"}}));
+  EXPECT_EQ(read.state.sums, (std::vector<std::int64_t>{1, 2, 3, 4}));
+  EXPECT_EQ(read.state.squares, (std::vector<float>{0.5f, 0.25f}));
+  EXPECT_EQ(read.state.samples, (std::vector<std::uint32_t>{8, 8}));
+  ASSERT_EQ(read.state.round.groups.size(), 1u);
+  EXPECT_EQ(read.state.round.groups[0].work[1].first_sample, 4u);
+  check_state("", read.state, {2, 4, 2});
+}
+
+// Every bit of a sealed file is tested beside those; here, one of each byte.
+TEST_F(CheckpointFile, AFlippedBitAndAnotherLengthIsRefusedByName) {
+  const std::string whole = small_checkpoint(path("a.ckpt"));
+  for (std::size_t bit = 0; bit < 8 * whole.size(); bit += 9) {
+    std::string bytes = whole;
+    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ (1 << (bit % 8)));
+    write_bytes(path("b.ckpt"), bytes);
+    SCOPED_TRACE(bit);
+    expect_refused(path("b.ckpt"));
+  }
+  for (std::size_t length = 0; length < whole.size(); length += 37) {
+    write_bytes(path("b.ckpt"), whole.substr(0, length));
+    expect_refused(path("b.ckpt"));
+  }
+  write_bytes(path("b.ckpt"), whole + "x");
+  expect_refused(path("b.ckpt"));
+  expect_refused(path("nosuch.ckpt"));
+  expect_refused(folder_.string());
+}
+
+TEST_F(CheckpointFile, StatesThatDoNotFitThePictureAreRefused) {
+  small_checkpoint(path("a.ckpt"));
+  const TraceState good = read_checkpoint(path("a.ckpt")).state;
+  using Change = std::function<void(TraceState&)>;
+  const Change changes[] = {
+      [](auto& s) { s.sums.pop_back(); },
+      [](auto& s) { s.squares.clear(); },
+      [](auto& s) { s.samples.push_back(1); },
+      [](auto& s) { s.samples[0] = 3; },
+      [](auto& s) { s.samples[0] = ~0u; },
+      [](auto& s) { s.slice_samples = 0; },
+      [](auto& s) { s.slice_samples = ~0u; },
+      [](auto& s) { s.round.groups[0].samples = 0; },
+      [](auto& s) { s.round.groups[0].samples = ~0u; },
+      [](auto& s) { s.round.groups[0].work[1].pixel = 2; },
+      [](auto& s) { s.round.groups[0].work.clear(); },
+      [](auto& s) { s.round.groups[0].work.resize(3); },
+      [](auto& s) { s.round.entry = 1; },
+      [](auto& s) { s.round.entry = 2; },
+      [](auto& s) { s.round.sample = 1; },
+      [](auto& s) { s.round.sample = 4; },
+  };
+  for (const Change& change : changes) {
+    TraceState state = good;
+    change(state);
+    const Error error = error_of([&] { check_state("a.ckpt", state, {2, 4, 2}); });
+    EXPECT_TRUE(contains(error.what(), "--resume a.ckpt: ")) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,192 @@
+// Renders that signals end, as programs: exit codes, a picture and a checkpoint that are whole, and
+// a next run that goes on to the same file. Killed at any moment, nothing is lost but time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "support/film_files.hpp"
+#include "support/running_program.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using namespace program_test;
+using std::chrono::steady_clock;
+
+constexpr Milliseconds kLong{60'000};
+
+class Interruption : public FilmFile {
+ protected:
+  ~Interruption() override { std::filesystem::remove(log()); }
+
+  [[nodiscard]] std::vector<std::string> render(int spp, std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"render",   "scene:tree?leaves=2000",
+                                       "-o",       path("out.exr"),
+                                       "--width",  "96",
+                                       "--height", "80",
+                                       "--spp",    std::to_string(spp)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  [[nodiscard]] std::vector<std::string> with_checkpoint(int spp, const std::string& every) const {
+    return render(spp, {"--checkpoint", path("a.ckpt"), "--checkpoint-every", every});
+  }
+  int run(std::vector<std::string> arguments, const std::string& more = "",
+          const std::string& value = "") const {
+    if (!more.empty()) arguments.insert(arguments.end(), {more, value});
+    return RunningProgram(arguments, log()).wait();
+  }
+  /// Beside the folder, so that it does not count as a file left behind.
+  [[nodiscard]] std::string log() const { return folder_.string() + ".log"; }
+  [[nodiscard]] bool is_there(const char* name) const {
+    return std::filesystem::exists(path(name));
+  }
+};
+
+// Far more samples than there is time for: 2^20 a pixel.
+constexpr int kEndless = 1 << 20;
+
+TEST_F(Interruption, ASignalEndsWithItsCodeAPictureAndACheckpointThatGoesOn) {
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
+    std::filesystem::remove(path("a.ckpt"));
+    RunningProgram program(with_checkpoint(kEndless, "0.05"), log());
+    ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLong)) << bytes_of(log());
+    const auto sent = steady_clock::now();
+    program.send(signal);
+    EXPECT_EQ(program.wait(), code) << bytes_of(log());
+    // Of a picture that small it is a matter of tenths; a loaded machine may take its time.
+    EXPECT_LT(steady_clock::now() - sent, Milliseconds(10'000));
+    const std::string said = bytes_of(log());
+    EXPECT_TRUE(contains(said, "interrupted after ")) << said;
+    EXPECT_TRUE(contains(said, "--resume " + path("a.ckpt") + " goes on")) << said;
+    const Film film = read_exr(path("out.exr"));
+    const auto& samples = film.find("samples")->pixels;
+    // The first pass of sixteen, two of which share a camera ray.
+    EXPECT_GE(*std::min_element(samples.begin(), samples.end()), 8);
+    EXPECT_EQ(files_in_folder(), 2u);
+  }
+  RunningProgram again(render(kEndless, {"--resume", path("a.ckpt"), "-q"}), log());
+  std::this_thread::sleep_for(Milliseconds(300));
+  EXPECT_FALSE(again.has_ended()) << bytes_of(log());
+}
+
+TEST_F(Interruption, WithoutACheckpointThePictureSoFarIsWritten) {
+  for (int delay = 300; !is_there("out.exr") && delay < 60'000; delay *= 2) {
+    RunningProgram program(render(kEndless, {}), log());
+    std::this_thread::sleep_for(Milliseconds(delay));
+    program.send(SIGTERM);
+    EXPECT_EQ(program.wait(), 143);
+  }
+  const Film film = read_exr(path("out.exr"));
+  const auto& samples = film.find("samples")->pixels;
+  EXPECT_EQ(*std::min_element(samples.begin(), samples.end()), 0) << "rows that were not reached";
+  EXPECT_TRUE(contains(bytes_of(log()), "--checkpoint F")) << bytes_of(log());
+  EXPECT_EQ(files_in_folder(), 1u);
+}
+
+TEST_F(Interruption, BeforeThereAreSamplesItEndsAtOnceAndLeavesNothing) {
+  std::vector<std::string> arguments = render(kEndless, {});
+  arguments[1] = "scene:tree?leaves=2000000";
+  RunningProgram program(arguments, log());
+  std::this_thread::sleep_for(Milliseconds(200));
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait(), 130);
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(Interruption, ASecondInterruptEndsAtOnceAndTheNextRunCleansUp) {
+  RunningProgram program(with_checkpoint(kEndless, "0.02"), log());
+  ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLong)) << bytes_of(log());
+  program.send(SIGINT);
+  std::this_thread::sleep_for(Milliseconds(5));
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait(), 130);
+  EXPECT_EQ(run(with_checkpoint(32, "60")), 0) << bytes_of(log());
+  EXPECT_EQ(files_in_folder(), 2u);
+}
+
+TEST_F(Interruption, IgnoredSignalsStayIgnored) {
+  std::signal(SIGINT, SIG_IGN);
+  RunningProgram program(with_checkpoint(256, "0.02"), log());
+  std::signal(SIGINT, SIG_DFL);
+  wait_until([&] { return is_there("a.ckpt") || program.has_ended(); }, kLong);
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait(), 0) << bytes_of(log());
+}
+
+// A picture so large that files of the OpenCL compiler are smaller, so that they fit.
+TEST_F(Interruption, ACheckpointTooLargeForTheDiskIsAnErrorAndTheOneBeforeIsKept) {
+  std::vector<std::string> arguments = with_checkpoint(4, "1h");
+  arguments.insert(arguments.end(), {"--crop", "0,100,799,499"});
+  arguments[5] = "800";
+  arguments[7] = "600";
+  ASSERT_EQ(run(arguments), 0) << bytes_of(log());
+  const std::string before = bytes_of(path("a.ckpt"));
+  const std::size_t picture = bytes_of(path("out.exr")).size();
+  ASSERT_GT(before.size(), picture + picture / 20) << "what the limit is between";
+  std::filesystem::remove(path("out.exr"));
+  const std::string blocks = std::to_string((picture + before.size()) / 2 / 512);
+  std::string command = "trap '' XFSZ && ulimit -f " + blocks + " && '" DAPPLE_PROGRAM "'";
+  for (const std::string& argument : arguments) command += " '" + argument + "'";
+  const int status = std::system((command + " >'" + log() + "' 2>&1").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_TRUE(contains(bytes_of(log()), "cannot write " + path("a.ckpt") + ": File too large"))
+      << bytes_of(log());
+  EXPECT_TRUE(bytes_of(path("a.ckpt")) == before);
+  EXPECT_EQ(read_exr(path("out.exr")).width, 800) << "the picture is not lost";
+  EXPECT_EQ(files_in_folder(), 2u);
+}
+
+TEST_F(Interruption, ADamagedCheckpointExitsWith1AndTimesThatAreNoneWith2) {
+  ASSERT_EQ(run(with_checkpoint(4, "1h")), 0) << bytes_of(log());
+  std::string bytes = bytes_of(path("a.ckpt"));
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 16);
+  write_bytes(path("b.ckpt"), bytes);
+  EXPECT_EQ(run(render(4, {}), "--resume", path("b.ckpt")), 1);
+  EXPECT_TRUE(contains(bytes_of(log()), "--resume " + path("b.ckpt") + ": damaged"))
+      << bytes_of(log());
+  write_bytes(path("c.ckpt"), bytes_of(path("out.exr")));
+  EXPECT_EQ(run(render(4, {}), "--resume", path("c.ckpt")), 1);
+  EXPECT_EQ(run(render(4, {}), "--resume", path("out.exr")), 2) << "an output is no input";
+  EXPECT_EQ(run(render(3, {}), "--resume", path("a.ckpt")), 2);
+  EXPECT_EQ(run(render(4, {}), "--checkpoint-every", "5s"), 2) << "without --checkpoint";
+  EXPECT_EQ(run(render(4, {}), "--checkpoint", path("missing/a.ckpt")), 2);
+  for (const char* every : {"0", "-1", "x", "5d", "", "s", "nan", "1e99"}) {
+    EXPECT_EQ(run(with_checkpoint(4, every)), 2) << every;
+    EXPECT_TRUE(contains(bytes_of(log()), "--checkpoint-every")) << bytes_of(log());
+  }
+  for (const char* every : {"30", "0.5s", "5m", "1h"})
+    EXPECT_EQ(run(with_checkpoint(4, every)), 0) << bytes_of(log());
+}
+
+class KilledRender : public Interruption {};
+
+TEST_F(KilledRender, GoesOnFromTheLastWholeCheckpointToTheSameFile) {
+  constexpr int kSamples = 600;
+  ASSERT_EQ(run(with_checkpoint(kSamples, "1h")), 0) << bytes_of(log());
+  const std::string whole = bytes_of(path("out.exr"));
+  std::filesystem::remove(path("a.ckpt"));
+  std::mt19937 random(7);
+  int killed = 0;
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    std::vector<std::string> arguments = with_checkpoint(kSamples, "0.01");
+    if (is_there("a.ckpt")) arguments.insert(arguments.end(), {"--resume", path("a.ckpt")});
+    RunningProgram program(arguments, log());
+    std::this_thread::sleep_for(Milliseconds(100 + random() % 600));
+    program.send(SIGKILL);
+    const int code = program.wait();
+    EXPECT_TRUE(code == 0 || code == 128 + SIGKILL) << bytes_of(log());
+    killed += code != 0;
+  }
+  EXPECT_GT(killed, 4);
+  std::vector<std::string> last = with_checkpoint(kSamples, "1h");
+  if (is_there("a.ckpt")) last.insert(last.end(), {"--resume", path("a.ckpt")});
+  ASSERT_EQ(run(last), 0) << bytes_of(log());
+  EXPECT_TRUE(bytes_of(path("out.exr")) == whole);
+  EXPECT_EQ(files_in_folder(), 2u) << "nothing is left of those that were killed";
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,254 @@
+// --target-error and --target-rmse: pixels are sampled until the estimated error of each, or of
+// all, is below the target, the picture is as far from the truth as that says, and its bits are
+// the same on every run.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <numeric>
+
+#include "dapple/error.hpp"
+#include "dapple/shared/pass_params.h"
+#include "dapple/wavefront.hpp"
+#include "sampling/batch_variance.hpp"
+
+namespace dapple {
+namespace {
+
+RenderOptions small_picture() {
+  RenderOptions options;
+  options.width = 48;
+  options.height = 40;
+  return options;
+}
+
+RenderResult draw(const RenderOptions& options) {
+  return render(make_procedural("scene:tree?leaves=2000"), options);
+}
+
+const std::vector<float>& channel(const RenderResult& result, const char* name) {
+  const Plane* plane = result.film.find(name);
+  EXPECT_NE(plane, nullptr) << name;
+  return plane->pixels;
+}
+
+double mean(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+TEST(AdaptiveSampling, EveryPixelEndsBelowTheTargetOrAtTheMost) {
+  RenderOptions options = small_picture();
+  options.target_error = 0.03f;
+  options.max_spp = 512;
+  const RenderResult result = draw(options);
+  const auto& samples = channel(result, "samples");
+  const auto &ao = channel(result, "error.ao"), &light = channel(result, "error.light.key");
+  std::uint64_t total = 0;
+  float least = 1e9f, most = 0;
+  for (std::size_t p = 0; p < samples.size(); ++p) {
+    EXPECT_EQ(std::fmod(samples[p], static_cast<float>(DAPPLE_BATCH)), 0) << p;
+    EXPECT_TRUE(samples[p] >= 512 || (ao[p] <= 0.0301f && light[p] <= 0.0301f)) << p;
+    least = std::min(least, samples[p]);
+    most = std::max(most, samples[p]);
+    total += static_cast<std::uint64_t>(samples[p]);
+  }
+  EXPECT_EQ(least, 16) << "sky needs no more than the least";
+  EXPECT_GT(most, 64) << "leaves do";
+  EXPECT_LE(most, 512);
+  EXPECT_EQ(result.statistics.rays.camera, total) << "the samples layer tells the truth";
+}
+
+TEST(AdaptiveSampling, ThePictureIsAsFarFromTheTruthAsTheErrorLayersSay) {
+  RenderOptions options = small_picture();
+  options.target_error = 0.03f;
+  const RenderResult adaptive = draw(options);
+  RenderOptions many = small_picture();
+  many.spp = 4096;
+  many.footprint_spp = footprint_samples(options);  // the same truth needs the same footprints
+  const RenderResult truth = draw(many);
+  const auto &a = channel(adaptive, "ao.R"), &b = channel(truth, "ao.R"),
+             &e = channel(adaptive, "error.ao");
+  double square = 0, predicted = 0;
+  for (std::size_t p = 0; p < a.size(); ++p) {
+    square += (a[p] - b[p]) * (a[p] - b[p]);
+    predicted += e[p] * e[p];
+  }
+  // 1,900 pixels: their sum of squares is known to 5 %; batches of 2 are stratified each, all
+  // samples together more so, and errors come out smaller than the batches say.
+  EXPECT_LT(square, 1.2 * predicted);
+  EXPECT_GT(square, 0.2 * predicted);
+  EXPECT_NEAR(mean(a), mean(b), 0.003);
+}
+
+// Relative to the largest irradiance unoccluded, which R, G, B are divided by.
+double irradiance_scale(const RenderOptions& of_picture) {
+  RenderOptions options = of_picture;
+  options.ao = false;
+  const RenderResult result = draw(options);
+  return mean(channel(result, "light.key.R")) / mean(channel(result, "R"));
+}
+
+TEST(AdaptiveSampling, ByRmseThePictureIsAsFarFromTheTruthAsWasAsked) {
+  RenderOptions options = small_picture();
+  options.spp = 8;
+  options.target_rmse = 0.015f;
+  const RenderResult adaptive = draw(options);
+  RenderOptions many = small_picture();
+  many.spp = 4096;
+  many.footprint_spp = footprint_samples(options);
+  const RenderResult truth = draw(many);
+  for (const char* pass : {"ao", "light.key"}) {
+    const std::string name(pass);
+    const double scale = name == "ao" ? 1.0 : irradiance_scale(many);
+    const auto &a = channel(adaptive, (name + ".R").c_str()),
+               &b = channel(truth, (name + ".R").c_str()),
+               &e = channel(adaptive, ("error." + name).c_str());
+    double square = 0, predicted = 0;
+    for (std::size_t p = 0; p < a.size(); ++p) {
+      square += (a[p] - b[p]) * (a[p] - b[p]) / (scale * scale);
+      predicted += e[p] * e[p];
+    }
+    const double rmse = std::sqrt(square / static_cast<double>(a.size()));
+    const double estimate = std::sqrt(predicted / static_cast<double>(a.size()));
+    EXPECT_LE(estimate, 0.015) << name;
+    EXPECT_NEAR(adaptive.statistics.rmse.at(name), estimate, 1e-6) << name;
+    // 1,900 pixels know their RMSE to 3 %; stratification over more than a batch lowers it.
+    EXPECT_LT(rmse, 1.1 * estimate) << name;
+    EXPECT_GT(rmse, 0.6 * estimate) << name;
+    EXPECT_NEAR(mean(a) / scale, mean(b) / scale, 0.001) << name;
+  }
+}
+
+TEST(AdaptiveSampling, ByRmseTheSamplesLayerTellsTheTruthAndTheSkyHasTheLeast) {
+  RenderOptions options = small_picture();
+  options.spp = 8;
+  options.target_rmse = 0.01f;
+  const RenderResult result = draw(options);
+  const auto& samples = channel(result, "samples");
+  const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
+  EXPECT_EQ(*least, 8);
+  EXPECT_GT(*most, 100);
+  EXPECT_EQ(result.statistics.rays.camera,
+            static_cast<std::uint64_t>(std::accumulate(samples.begin(), samples.end(), 0.0)));
+}
+
+/// Of all rays, which is most of what a picture costs.
+double node_visits(const RenderStatistics& s) {
+  return s.camera.visits * static_cast<double>(s.rays.camera) +
+         s.ao.visits * static_cast<double>(s.rays.ao);
+}
+
+TEST(AdaptiveSampling, ByRmseTheSameErrorCostsLess) {
+  RenderOptions options = small_picture();
+  options.spp = 8;
+  options.light = false;
+  options.footprint_spp = 16;
+  options.target_error = 0.02f;
+  const RenderStatistics equal = draw(options).statistics;
+  options.target_error = 0;
+  options.target_rmse = static_cast<float>(equal.rmse.at("ao"));
+  EXPECT_LT(node_visits(draw(options).statistics), 0.95 * node_visits(equal));
+}
+
+TEST(AdaptiveSampling, TheSameCommandGivesTheSameBits) {
+  RenderOptions options = small_picture();
+  for (float RenderOptions::*target : {&RenderOptions::target_error, &RenderOptions::target_rmse}) {
+    options.target_error = options.target_rmse = 0;
+    options.*target = 0.03f;
+    const RenderResult first = draw(options), again = draw(options);
+    ASSERT_EQ(first.film.planes.size(), again.film.planes.size());
+    for (std::size_t i = 0; i < first.film.planes.size(); ++i) {
+      const auto &a = first.film.planes[i].pixels, &b = again.film.planes[i].pixels;
+      EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0)
+          << first.film.planes[i].channel;
+    }
+  }
+}
+
+TEST(AdaptiveSampling, AHalvedTargetTakesAboutFourTimesTheSamples) {
+  RenderOptions options = small_picture();
+  options.light = false;
+  options.target_error = 0.04f;
+  const double coarse = static_cast<double>(draw(options).statistics.rays.camera);
+  options.target_error = 0.02f;
+  const double fine = static_cast<double>(draw(options).statistics.rays.camera);
+  const double least = 16.0 * options.width * options.height;
+  EXPECT_GT((fine - least) / (coarse - least), 3.0);
+  EXPECT_LT((fine - least) / (coarse - least), 8.0);
+}
+
+TEST(AdaptiveSampling, OptionsThatCannotBeAreRefused) {
+  RenderOptions options;
+  options.target_error = -0.1f;
+  EXPECT_THROW(validate(options), Error);
+  options.target_error = 0.1f;
+  options.max_spp = 4;
+  EXPECT_THROW(validate(options), Error) << "less than --spp";
+  options.max_spp = 64;
+  validate(options);
+  options.target_rmse = 0.1f;
+  EXPECT_THROW(validate(options), Error) << "both targets";
+  options.target_error = 0;
+  validate(options);
+  options.max_spp = 4;
+  EXPECT_THROW(validate(options), Error) << "less than --spp";
+}
+
+TEST(BatchVariances, OfKnownBatchesAreTheirSampleVariance) {
+  // Sixty-four pixels alike, of two batches with means 0.2 and 0.6: variance 0.08.
+  const std::vector<std::uint32_t> samples(64, 2 * DAPPLE_BATCH);
+  const auto moments = [](std::size_t) { return BatchMoments{0.4f, 0.4f}; };
+  for (const float variance : batch_variances(samples, 8, moments)) {
+    EXPECT_NEAR(variance, 0.08f, 1e-6f);
+  }
+}
+
+TEST(BatchVariances, FromTwoPairsOnPairsTell) {
+  // Means of batches 0, 2, 1, 3: of pairs 1 and 2, so of a pair's mean 0.5, of a batch's twice
+  // that.
+  const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_BATCH);
+  const auto moments = [](std::size_t) { return BatchMoments{1.5f, 14.0f, 5.0f}; };
+  for (const float variance : batch_variances(samples, 8, moments)) EXPECT_NEAR(variance, 1, 1e-6f);
+}
+
+TEST(BatchVariances, TwoPairsAndABatchAloneTell) {
+  // Means of batches 0 and 2, 3 and 5, and 5 alone: of pairs 1 and 4, and half of 25. The mean
+  // is 3.
+  const std::vector<std::uint32_t> samples(64, 5 * DAPPLE_BATCH);
+  const auto moments = [](std::size_t) { return BatchMoments{3.0f, 63.0f, 29.5f}; };
+  for (const float variance : batch_variances(samples, 8, moments))
+    EXPECT_NEAR(variance, (59.0f - 45.0f) / 2, 1e-5f);
+}
+
+TEST(BatchVariances, WherePairsAreUnknownBatchesTell) {
+  const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_BATCH);
+  const auto moments = [](std::size_t) { return BatchMoments{1.5f, 14.0f}; };
+  for (const float variance : batch_variances(samples, 8, moments))
+    EXPECT_NEAR(variance, 5.0f / 3, 1e-6f);
+}
+
+TEST(BatchVariances, PixelsWithoutSamplesCountForNothing) {
+  // Of the middle pixel batches of 1 and 3, of the others none.
+  const auto moments = [](std::size_t p) {
+    return p == 4 ? BatchMoments{2.0f, 10.0f} : BatchMoments{std::nanf(""), 0.0f};
+  };
+  std::vector<std::uint32_t> samples(9);
+  samples[4] = 2 * DAPPLE_BATCH;
+  const std::vector<float> variances = batch_variances(samples, 3, moments);
+  for (std::size_t p = 0; p < 9; ++p) EXPECT_EQ(variances[p], p == 4 ? 2.0f : 0.0f) << p;
+}
+
+TEST(BatchVariances, NeighboursStandInWhereAPixelKnowsLittle) {
+  const std::vector<std::uint32_t> samples(9, 2 * DAPPLE_BATCH);
+  // The middle pixel alone saw its batches differ: 0 and 1.
+  const auto moments = [](std::size_t p) { return BatchMoments{0.5f, p == 4 ? 1.0f : 0.5f}; };
+  const std::vector<float> variances = batch_variances(samples, 3, moments);
+  // Its own 0.5 with weight 1, the neighbourhood's 0.5 / 9 with weight 16.
+  EXPECT_NEAR(variances[4], (0.5f + 16 * 0.5f / 9) / 17, 1e-6f);
+  EXPECT_NEAR(variances[0], 16 * 0.5f / 4 / 17, 1e-6f) << "a corner has four in its neighbourhood";
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,140 @@
+// What adaptive sampling reads off a picture's sums.
+#include "sampling/film_moments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/scene_on_device.hpp"
+#include "render/picture.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr int kSide = 8;
+
+/// A picture with one light, every sample of which hits something unlit; batches' means have the
+/// variance `of_batch`.
+class UnlitPicture {
+ public:
+  UnlitPicture(std::vector<std::uint32_t> samples, float of_batch)
+      : of_batch_(of_batch),
+        samples_(std::move(samples)),
+        layout_(view(), options_, box(), {Light{}}) {
+    sums_.resize(std::size_t{layout_.pixels} * layout_.plane_count);
+    for (std::uint32_t p = 0; p < layout_.pixels; ++p) sums_[p] = samples_[p];
+    add_squares(DAPPLE_BATCH, of_batch_);
+    add_squares(2 * DAPPLE_BATCH, of_batch_ / 2);
+  }
+
+  void set_unoccluded(std::uint32_t pixel, double irradiance) {
+    sums_[std::size_t{layout_.lights[0].unoccluded()} * layout_.pixels + pixel] =
+        std::llround(irradiance * samples_[pixel] * layout_.light_scale);
+  }
+
+  /// By which the light's errors are divided.
+  [[nodiscard]] double largest_unoccluded() const {
+    const HostView sums(nullptr, std::as_bytes(std::span(sums_)));
+    const HostView squares(nullptr, std::as_bytes(std::span(squares_)));
+    const FilmMoments moments(sums, squares, layout_, options_, samples_, kSide);
+    return std::sqrt(of_batch_ / moments.variances().at(0).at(0));
+  }
+
+ private:
+  /// A plane of them: means of so many samples, around 0, have that variance.
+  void add_squares(std::uint32_t samples, float variance) {
+    for (const std::uint32_t of_pixel : samples_) {
+      const auto means = static_cast<float>(of_pixel / samples);
+      squares_.push_back(variance * std::max(0.0f, means - 1));
+    }
+  }
+  static RenderOptions unlit_options() {
+    RenderOptions options;
+    options.ao = false;
+    return options;
+  }
+  static View view() {
+    View view;
+    view.width = view.height = kSide;
+    view.crop = {0, 0, kSide - 1, kSide - 1};
+    return view;
+  }
+  static Box3f box() { return {V3f(-1.0f), V3f(1.0f)}; }
+
+  float of_batch_;
+  RenderOptions options_ = unlit_options();
+  std::vector<std::uint32_t> samples_;
+  FilmLayout layout_;
+  std::vector<std::int64_t> sums_;
+  std::vector<float> squares_;
+};
+
+std::vector<std::uint32_t> alike(std::uint32_t samples) {
+  return std::vector<std::uint32_t>(kSide * kSide, samples);
+}
+
+constexpr std::uint32_t kBright = 3 * kSide + 3, kBesideIt = 3 * kSide + 2;
+
+TEST(FilmMoments, LightsErrorsAreRelativeToTheLargestUnoccludedIrradianceLessItsStandardError) {
+  UnlitPicture picture(alike(16), 0.25f);
+  picture.set_unoccluded(kBright, 4);
+  picture.set_unoccluded(kBesideIt, 2);
+  // Four batches of variance 1/4: 1/4.
+  EXPECT_NEAR(picture.largest_unoccluded(), 4 - 0.25, 1e-5);
+}
+
+TEST(FilmMoments, WhatIsMostlyNoiseIsTakenFromTheNeighbours) {
+  UnlitPicture picture(alike(16), 100);
+  picture.set_unoccluded(kBright, 4);
+  picture.set_unoccluded(kBesideIt, 2);
+  EXPECT_NEAR(picture.largest_unoccluded(), 6.0 / 9, 1e-5);
+}
+
+TEST(FilmMoments, ScoutsStandForWhatTheyDontSee) {
+  std::vector<std::uint32_t> samples = alike(8);
+  for (int p = kSide * kSide / 2; p < kSide * kSide; ++p) samples[p] = 0;
+  UnlitPicture picture(samples, 0.25f);
+  picture.set_unoccluded(kBright, 4);
+  picture.set_unoccluded(kBesideIt, 2);
+  EXPECT_NEAR(picture.largest_unoccluded(), 4, 1e-5);
+}
+
+// Of numbers whose sum is known the squares' sum is least when they are equal, and means of pairs
+// lie closer together than what they are of.
+TEST(FilmMoments, KernelsSquareTheMeansOfBatchesAndOfPairs) {
+  const scene_test::SceneOnDevice cloud(make_procedural("scene:cloud?leaves=300"));
+  RenderOptions options;
+  options.light = false;
+  options.width = options.height = 16;
+  options.spp = 28;  // of seven batches one is alone
+  options.depths = 1;
+  std::vector<std::string> notes;
+  const View view = choose_view(cloud.scene, options, notes);
+  const FilmLayout layout(view, options, cloud.bvh.bounds, {});
+  TraceState state;
+  TraceControl control;
+  control.save = [&](const TraceState& now) { state = now; };
+  control.save_every = 1e9;
+  (void)trace_picture(scene_test::device(), cloud.uploaded, view, options, layout, control);
+  ASSERT_EQ(state.squares.size(), 2u * layout.pixels);
+  const double scale = 1.0 / (double{layout.unit_scale} * options.ao_rays);
+  double least = 0, pairs = 0, batches = 0;
+  for (std::uint32_t p = 0; p < layout.pixels; ++p) {
+    const double sum = static_cast<double>(state.sums[p]) -
+                       static_cast<double>(state.sums[layout.ao * layout.pixels + p]) * scale;
+    const double of_pixel[] = {3.5 * std::pow(sum / options.spp, 2),
+                               state.squares[layout.pixels + p], 0.5 * state.squares[p]};
+    EXPECT_LE(of_pixel[0], of_pixel[1] + 1e-5) << p;
+    EXPECT_LE(of_pixel[1], of_pixel[2] + 1e-5) << p;
+    least += of_pixel[0];
+    pairs += of_pixel[1];
+    batches += of_pixel[2];
+  }
+  // Batches differ by six differences, pairs and the one alone by three.
+  EXPECT_LT(1.01 * least, pairs);
+  EXPECT_LT(pairs - least, 0.6 * (batches - least));
+  EXPECT_GT(pairs - least, 0.2 * (batches - least));
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,388 @@
+// Who gets samples, without a renderer: allocations on known deviations, and the rounds of a plan
+// on pixels whose samples are Gaussian.
+#include "sampling/sample_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <utility>
+
+#include "dapple/shared/pass_params.h"
+#include "sampling/batch_variance.hpp"
+#include "sampling/sample_allocation.hpp"
+#include "sampling/pilot_samples.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr AllocationLimits kFree{1, 1u << 20};
+
+double rmse(const std::vector<float>& variances, const BatchCounts& batches) {
+  double sum = 0;
+  for (std::size_t p = 0; p < batches.size(); ++p) sum += double{variances[p]} / batches[p];
+  return std::sqrt(sum / static_cast<double>(batches.size()));
+}
+
+std::vector<float> rising_variances(std::size_t pixels) {
+  std::vector<float> variances;
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const float deviation = 0.05f + 0.9f * static_cast<float>(p) / static_cast<float>(pixels);
+    variances.push_back(deviation * deviation);
+  }
+  return variances;
+}
+
+std::vector<float> equal_costs(const std::vector<float>& variances) {
+  return std::vector<float>(variances.size(), 7.0f);
+}
+
+void want_mean(const std::vector<float>& variances, const std::vector<float>& costs, double target,
+               const BatchCounts& have, const AllocationLimits& limits, BatchCounts& wanted) {
+  const double enough = target * target * static_cast<double>(variances.size());
+  want_rmse(variances, costs, enough, have, limits, wanted);
+  EXPECT_TRUE(wanted.back() == limits.most || squared_errors(variances, wanted) <= enough);
+}
+
+TEST(WantRmse, GivesInProportionToTheDeviationAndReachesTheTarget) {
+  const std::vector<float> variances = rising_variances(500);
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts wanted = have;
+  want_mean(variances, equal_costs(variances), 0.01, have, kFree, wanted);
+  EXPECT_LE(rmse(variances, wanted), 0.01);
+  EXPECT_GT(rmse(variances, wanted), 0.00999);
+  const double density = wanted.back() / std::sqrt(double{variances.back()});
+  for (std::size_t p = 0; p < wanted.size(); ++p)
+    EXPECT_NEAR(wanted[p], density * std::sqrt(double{variances[p]}), 1.0) << p;
+}
+
+TEST(WantRmse, TakesFewerThanEqualErrorsDoByWhatDeviationsDiffer) {
+  const std::vector<float> variances = rising_variances(500);
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts by_rmse = have, by_error = have;
+  want_mean(variances, equal_costs(variances), 0.01, have, kFree, by_rmse);
+  want_error(variances, 0.01f, have, kFree, by_error);
+  double samples = 0, equal = 0, deviation = 0, variance = 0;
+  for (std::size_t p = 0; p < variances.size(); ++p) {
+    samples += by_rmse[p];
+    equal += by_error[p];
+    deviation += std::sqrt(variances[p]) / 500;
+    variance += variances[p] / 500;
+  }
+  EXPECT_NEAR(equal / samples, variance / (deviation * deviation), 0.01);
+}
+
+TEST(WantRmse, GivesFewerWhereSamplesCostMore) {
+  const std::vector<float> variances(400, 0.25f);
+  std::vector<float> costs(variances.size(), 1.0f);
+  for (std::size_t p = 0; p < costs.size(); p += 4) costs[p] = 16.0f;
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts wanted = have;
+  want_mean(variances, costs, 0.01, have, kFree, wanted);
+  EXPECT_LE(rmse(variances, wanted), 0.01);
+  EXPECT_GT(rmse(variances, wanted), 0.00999);
+  for (std::size_t p = 0; p < wanted.size(); ++p)
+    EXPECT_NEAR(wanted[p], wanted[0] * (p % 4 ? 4.0 : 1.0), 4.0) << p;
+}
+
+// What little it could save an allocation loses by estimates that are off.
+TEST(WantRmse, NearlyEqualDeviationsGetTheSame) {
+  std::vector<float> variances(300);
+  for (std::size_t p = 0; p < variances.size(); ++p)
+    variances[p] = p % 3 ? 0.2f + 0.001f * static_cast<float>(p) : 0.0f;
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts wanted = have;
+  want_mean(variances, equal_costs(variances), 0.01, have, kFree, wanted);
+  EXPECT_LE(rmse(variances, wanted), 0.01);
+  for (std::size_t p = 0; p < wanted.size(); ++p) EXPECT_EQ(wanted[p], p % 3 ? wanted[1] : 2u) << p;
+}
+
+TEST(WantRmse, WhatAnotherPassWantsCounts) {
+  const std::vector<float> variances = rising_variances(100);
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts once = have;
+  want_mean(variances, equal_costs(variances), 0.02, have, kFree, once);
+  BatchCounts again = once;
+  want_mean(variances, equal_costs(variances), 0.02, have, kFree, again);
+  EXPECT_EQ(again, once);
+  want_mean(variances, equal_costs(variances), 0.03, have, kFree, again);
+  EXPECT_EQ(again, once) << "an easier target is reached already";
+}
+
+TEST(WantRmse, OutOfReachEveryPixelThatVariesWantsTheMost) {
+  std::vector<float> variances = rising_variances(50);
+  variances[7] = 0;
+  const BatchCounts have(variances.size(), 2);
+  BatchCounts wanted = have;
+  want_mean(variances, equal_costs(variances), 1e-4f, have, {4, 100}, wanted);
+  for (std::size_t p = 0; p < wanted.size(); ++p) EXPECT_EQ(wanted[p], p == 7 ? 2u : 100u) << p;
+}
+
+TEST(WantError, RoundsUpToWholeUnits) {
+  const std::vector<float> variances{0.01f, 0.05f, 0.1f, 0.0f};
+  const BatchCounts have(4, 2);
+  BatchCounts wanted = have;
+  want_error(variances, 0.1f, have, {4, 9}, wanted);  // 1, 5, 10 and no batches are enough
+  EXPECT_EQ(wanted, (BatchCounts{2, 6, 9, 2}));
+}
+
+// Pixels whose batches' means are Gaussian around 0.
+class GaussianPixels {
+ public:
+  explicit GaussianPixels(std::vector<float> variances)
+      : variances_(std::move(variances)),
+        sums_(variances_.size()),
+        squares_(variances_.size()),
+        batches_(variances_.size()) {}
+
+  void trace(const WorkGroup& group) {
+    for (const PixelWork& work : group.work) {
+      EXPECT_EQ(work.first_sample, batches_[work.pixel] * DAPPLE_BATCH);
+      for (std::uint32_t s = 0; s < group.samples; s += DAPPLE_BATCH) {
+        const double value = normal_(random_) * std::sqrt(variances_[work.pixel]);
+        sums_[work.pixel] += value;
+        squares_[work.pixel] += value * value;
+        ++batches_[work.pixel];
+      }
+    }
+  }
+  [[nodiscard]] double mean(std::size_t p) const { return sums_[p] / batches_[p]; }
+  [[nodiscard]] std::vector<float> variances(int width) const {
+    std::vector<std::uint32_t> samples;
+    for (const std::uint32_t batches : batches_) samples.push_back(batches * DAPPLE_BATCH);
+    return batch_variances(samples, width, [&](std::size_t p) {
+      return BatchMoments{static_cast<float>(mean(p)), static_cast<float>(squares_[p])};
+    });
+  }
+
+ private:
+  std::vector<float> variances_;
+  std::vector<double> sums_, squares_;
+  std::vector<std::uint32_t> batches_;
+  std::mt19937 random_{1};
+  std::normal_distribution<double> normal_;
+};
+
+RenderOptions by_rmse(float target) {
+  RenderOptions options;
+  options.spp = 8;
+  options.target_rmse = target;
+  return options;
+}
+
+struct Drawn {
+  double rmse = 0;
+  int rounds = 0;
+  std::vector<std::uint32_t> samples;
+};
+
+Drawn draw(int width, int height, const RenderOptions& options) {
+  const std::size_t count = static_cast<std::size_t>(width) * height;
+  GaussianPixels pixels(rising_variances(count));
+  const auto costs = [&] { return std::vector<float>(count, 1.0f); };
+  SamplePlan plan(width, height, options);
+  const auto trace = [&](const std::vector<WorkGroup>& groups) {
+    for (const WorkGroup& group : groups) pixels.trace(group);
+  };
+  trace(plan.scouts());
+  if (plan.only_scouts_have_samples()) trace(plan.after_scouts({pixels.variances(width)}));
+  for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) trace(first);
+  Drawn drawn;
+  for (; drawn.rounds < 30; ++drawn.rounds) {
+    const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)}, costs);
+    if (groups.empty()) break;
+    trace(groups);
+  }
+  double squares = 0;
+  for (std::size_t p = 0; p < count; ++p) squares += pixels.mean(p) * pixels.mean(p);
+  drawn.rmse = std::sqrt(squares / static_cast<double>(count));
+  drawn.samples = plan.samples();
+  return drawn;
+}
+
+TEST(SamplePlan, GaussianPixelsReachTheRmseInFewRounds) {
+  const Drawn drawn = draw(64, 64, by_rmse(0.05f));
+  // 4,096 pixels know their RMSE to 1.1 %.
+  EXPECT_NEAR(drawn.rmse, 0.05, 0.05 * 0.05);
+  EXPECT_LE(drawn.rounds, 8);
+  EXPECT_EQ(draw(64, 64, by_rmse(0.05f)).samples, drawn.samples);
+}
+
+TEST(SamplePlan, EveryPixelHasTheLeastAndNoneMoreThanTheMost) {
+  RenderOptions options = by_rmse(0.01f);
+  options.spp = 20;
+  options.max_spp = 200;
+  const Drawn drawn = draw(16, 16, options);
+  for (const std::uint32_t samples : drawn.samples) {
+    EXPECT_GE(samples, 20u);
+    EXPECT_LE(samples, 200u);
+  }
+  EXPECT_EQ(drawn.samples.back(), 200u);
+}
+
+TEST(SamplePlan, PixelsOfABlockGetTheSame) {
+  const int width = 11, height = 7;  // blocks at the right and below are cut
+  const Drawn drawn = draw(width, height, by_rmse(0.05f));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t corner = static_cast<std::size_t>(y / 2 * 2) * width + x / 2 * 2;
+      EXPECT_EQ(drawn.samples[static_cast<std::size_t>(y) * width + x], drawn.samples[corner]);
+    }
+  }
+}
+
+TEST(SamplePlan, NoPixelGetsMoreThanEightTimesWhatItHasAndAllEndAtTheMost) {
+  RenderOptions options;
+  options.target_error = 0.01f;
+  options.max_spp = 200;
+  SamplePlan plan(5, 2, options);
+  EXPECT_EQ(plan.least().at(0).samples, 16u);
+  const std::vector<std::vector<float>> variances{std::vector<float>(10, 1.0f)};
+  const auto costs = [] { return std::vector<float>(10, 1.0f); };
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<std::uint32_t> before = plan.samples();
+    if (plan.next(variances, costs).empty()) break;
+    for (std::size_t p = 0; p < before.size(); ++p) {
+      EXPECT_LE(plan.samples()[p], 9 * before[p]);
+      EXPECT_GT(plan.samples()[p], before[p]);
+    }
+  }
+  for (const std::uint32_t samples : plan.samples()) EXPECT_EQ(samples, 200u);
+  EXPECT_EQ(plan.fraction_done(), 1.0);
+}
+
+std::size_t count_of(const std::vector<std::uint32_t>& samples, std::uint32_t count) {
+  return static_cast<std::size_t>(std::count(samples.begin(), samples.end(), count));
+}
+
+TEST(ScoutPixels, AreSquaresAllOverThePicture) {
+  const int width = 130, height = 75;
+  const std::vector<bool> scouts = scout_pixels(width, height);
+  ASSERT_EQ(scouts.size(), 130u * 75u);
+  std::set<std::pair<int, int>> places;
+  for (int top = 0; top + 8 <= height; top += 8) {
+    for (int left = 0; left + 8 <= width; left += 8) {
+      std::vector<std::pair<int, int>> of_cell;
+      for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x)
+          if (scouts[static_cast<std::size_t>(top + y) * width + left + x])
+            of_cell.push_back({x, y});
+      ASSERT_EQ(of_cell.size(), 16u);
+      EXPECT_EQ(of_cell.back().first - of_cell.front().first, 3);
+      EXPECT_EQ(of_cell.back().second - of_cell.front().second, 3);
+      places.insert(of_cell.front());
+    }
+  }
+  EXPECT_EQ(places.size(), 4u) << "no grid that a scene could hide from";
+}
+
+TEST(ScoutPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {
+  EXPECT_TRUE(scout_pixels(63, 64).empty());
+  EXPECT_TRUE(scout_pixels(100'000, 7).empty());
+  for (const auto& [width, height] : {std::pair{64, 64}, {256, 256}, {1920, 1080}, {3840, 2160}}) {
+    const std::vector<bool> scouts = scout_pixels(width, height);
+    const auto count = std::count(scouts.begin(), scouts.end(), true);
+    EXPECT_GE(count, 64 * 16) << width;
+    EXPECT_LE(count, 1024 * 16) << width;
+  }
+}
+
+TEST(ScoutPixels, HaveAQuarterOfThemInTheVanguard) {
+  const std::vector<bool> all = scout_pixels(130, 130);
+  const std::vector<bool> first = scout_pixels(130, 130, Scouts::vanguard);
+  ASSERT_EQ(first.size(), all.size());
+  EXPECT_EQ(4 * std::count(first.begin(), first.end(), true),
+            std::count(all.begin(), all.end(), true));
+  for (std::size_t p = 0; p < all.size(); ++p) EXPECT_TRUE(!first[p] || all[p]) << p;
+}
+
+TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
+  RenderOptions options = by_rmse(0.1f);
+  SamplePlan plan(128, 128, options);
+  const std::vector<WorkGroup> scouts = plan.scouts();
+  EXPECT_EQ(count_of(plan.samples(), 8), 1600u);
+  EXPECT_EQ(count_of(plan.samples(), 0), 16384u - 1600u);
+  ASSERT_TRUE(plan.only_scouts_have_samples());
+  // Batches of variance 0.041: the squared error is 0.01 at 4.1, of powers of two at 8.
+  const std::vector<WorkGroup> all = plan.after_scouts({std::vector<float>(16384, 0.041f)});
+  EXPECT_EQ(count_of(plan.samples(), 8 * DAPPLE_BATCH), 16384u);
+  EXPECT_FALSE(plan.only_scouts_have_samples());
+  GaussianPixels pixels(std::vector<float>(16384, 1.0f));
+  for (const auto& groups : {scouts, all})
+    for (const WorkGroup& group : groups) pixels.trace(group);  // begins where it ended, or fails
+  EXPECT_TRUE(plan.least().empty());
+}
+
+TEST(SamplePlan, AfterTheScoutsNothingIsGivenToBeSure) {
+  // What is missing should the scouts be wrong is less than the doubling that being sure may cost.
+  SamplePlan plan(128, 128, by_rmse(0.1f));
+  plan.scouts();
+  plan.after_scouts({std::vector<float>(16384, 0.0399f)});
+  EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_BATCH), 16384u);
+}
+
+TEST(SamplePlan, AfterTheScoutsNoPixelGetsMoreThanFourTimesTheLeast) {
+  SamplePlan plan(128, 128, by_rmse(0.001f));
+  plan.scouts();
+  plan.after_scouts({std::vector<float>(16384, 1.0f)});
+  EXPECT_EQ(count_of(plan.samples(), 32), 16384u);
+  EXPECT_NEAR(plan.fraction_done(), 32.0 / 4096, 1e-6) << "of the most";
+}
+
+TEST(SamplePlan, ByErrorTheScoutsSayWhatThreeQuartersOfThePixelsWant) {
+  RenderOptions options;
+  options.spp = 8;
+  options.target_error = 0.1f;
+  SamplePlan plan(128, 128, options);
+  plan.scouts();
+  std::vector<float> variances;  // a fifth see nothing, the others want 3 or 6 batches
+  for (int p = 0; p < 16384; ++p)
+    variances.push_back(p % 128 < 26 ? 0.0f : p < 8192 ? 0.03f : 0.06f);
+  plan.after_scouts({variances});
+  EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_BATCH), 16384u) << "and better stratified than 3";
+}
+
+TEST(SamplePlan, ScoutsThatSeeNothingAskForTheLeast) {
+  SamplePlan plan(128, 128, by_rmse(0.1f));
+  plan.scouts();
+  plan.after_scouts({std::vector<float>(16384, 0.0f)});
+  EXPECT_EQ(count_of(plan.samples(), 8), 16384u);
+  EXPECT_EQ(plan.fraction_done(), 1);
+}
+
+TEST(SamplePlan, GoesOnFromScoutsAsIfItHadSentThem) {
+  const std::vector<float> variances(16384, 0.09f);
+  SamplePlan plan(128, 128, by_rmse(0.1f));
+  plan.scouts();
+  SamplePlan later(128, 128, by_rmse(0.1f), plan.samples());
+  EXPECT_TRUE(later.scouts().empty());
+  ASSERT_TRUE(later.only_scouts_have_samples());
+  plan.after_scouts({variances});
+  later.after_scouts({variances});
+  EXPECT_EQ(plan.samples(), later.samples());
+}
+
+TEST(SamplePlan, LargePicturesReachTheRmseInFewRounds) {
+  const Drawn drawn = draw(128, 128, by_rmse(0.05f));
+  EXPECT_NEAR(drawn.rmse, 0.05, 0.05 * 0.05);
+  EXPECT_LE(drawn.rounds, 6);
+}
+
+TEST(SamplePlan, ListsEveryPixelOnceTileByTile) {
+  SamplePlan plan(19, 11, RenderOptions{});
+  const WorkGroup all = plan.least().at(0);
+  ASSERT_EQ(all.work.size(), 19u * 11u);
+  std::map<std::uint32_t, int> seen;
+  for (const PixelWork& work : all.work) ++seen[work.pixel];
+  EXPECT_EQ(seen.size(), all.work.size());
+  for (std::size_t i = 0; i < 64; ++i) {
+    EXPECT_LT(all.work[i].pixel % 19, 8u);
+    EXPECT_LT(all.work[i].pixel / 19, 8u);
+  }
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,393 @@
+// Random points are as evenly spread as promised, their mappings keep measure, and the light
+// samplers integrate to irradiances known in closed form.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "device/upload/light_upload.hpp"
+#include "support/test_kernel.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace kernel_test;
+
+constexpr double kPi = std::numbers::pi;
+
+std::vector<V2f> sobol_points(uint pixel, uint pair, uint seed, uint first, uint count) {
+  const Buffer points = device().allocate(count * sizeof(V2f));
+  run("sampling", "sobol_points", count, {points, pixel, pair, seed, first, count});
+  return download<V2f>(points, count);
+}
+
+/// Whether each box of 2^-a by 2^-(k - a), for every a, holds exactly one of the 2^k points.
+bool is_net(const std::vector<V2f>& points) {
+  const auto k = static_cast<int>(std::lround(std::log2(points.size())));
+  for (int a = 0; a <= k; ++a) {
+    std::set<std::pair<int, int>> boxes;
+    for (const V2f& p : points) {
+      boxes.emplace(static_cast<int>(std::ldexp(p.x, a)), static_cast<int>(std::ldexp(p.y, k - a)));
+    }
+    if (boxes.size() != points.size()) return false;
+  }
+  return true;
+}
+
+bool in_unit_square(const std::vector<V2f>& points) {
+  return std::all_of(points.begin(), points.end(),
+                     [](const V2f& p) { return p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1; });
+}
+
+TEST(Sampling, APixelsPointsAreNetsInEveryAlignedBlock) {
+  for (const auto& [pixel, pair, seed] :
+       {std::tuple{0u, 0u, 0u}, {1u, 1u, 0u}, {518399u, 2u, 7u}, {4294836224u, 9u, 0xffffffffu}}) {
+    const auto points = sobol_points(pixel, pair, seed, 0, 1024);
+    EXPECT_TRUE(in_unit_square(points));
+    for (std::size_t size = 2; size <= points.size(); size *= 2) {
+      for (std::size_t first = 0; first < points.size(); first += size) {
+        EXPECT_TRUE(is_net({points.begin() + first, points.begin() + first + size}))
+            << size << " points from " << first << " of pixel " << pixel;
+      }
+    }
+    // Far into the sequence too, where merging continues.
+    EXPECT_TRUE(is_net(sobol_points(pixel, pair, seed, 1u << 20, 256)));
+  }
+}
+
+TEST(Sampling, PixelsPairsAndSeedsHaveUnrelatedPoints) {
+  const auto base = sobol_points(5, 0, 1, 0, 4096);
+  for (const auto& [pixel, pair, seed] : {std::tuple{6u, 0u, 1u}, {5u, 1u, 1u}, {5u, 0u, 2u}}) {
+    const auto other = sobol_points(pixel, pair, seed, 0, 4096);
+    double xx = 0, yy = 0;
+    for (std::size_t i = 0; i < base.size(); ++i) {
+      xx += (base[i].x - 0.5) * (other[i].x - 0.5) * 12;
+      yy += (base[i].y - 0.5) * (other[i].y - 0.5) * 12;
+    }
+    // Correlations of 4,096 independent pairs have a deviation of 1/64; five of them.
+    EXPECT_LT(std::fabs(xx / 4096), 5.0 / 64);
+    EXPECT_LT(std::fabs(yy / 4096), 5.0 / 64);
+  }
+}
+
+TEST(Sampling, TheFirstPointOverPixelsIsUniform) {
+  // What one sample a pixel makes of a picture: 64 boxes, 2,048 pixels.
+  std::vector<int> boxes(64, 0);
+  for (uint pixel = 0; pixel < 2048; ++pixel) {
+    const V2f p = sobol_points(pixel, 1, 0, 0, 1)[0];
+    ++boxes[static_cast<std::size_t>(static_cast<int>(p.x * 8) * 8 + static_cast<int>(p.y * 8))];
+  }
+  double chi_square = 0;
+  for (const int count : boxes) chi_square += (count - 32.0) * (count - 32.0) / 32;
+  // Mean 63, deviation sqrt(126) = 11; five of them.
+  EXPECT_LT(chi_square, 63 + 56);
+}
+
+std::vector<V2f> square_grid(int side) {
+  std::vector<V2f> squares;
+  for (int i = 0; i < side * side; ++i) {
+    squares.push_back({(static_cast<float>(i % side) + 0.5f) / static_cast<float>(side),
+                       (static_cast<float>(i / side) + 0.5f) / static_cast<float>(side)});
+  }
+  return squares;
+}
+
+std::vector<V2f> disk_points(const std::vector<V2f>& squares) {
+  const Buffer disk = device().allocate(squares.size() * sizeof(V2f));
+  run("sampling", "disk_points", squares.size(),
+      {upload(squares), disk, static_cast<uint>(squares.size())});
+  return download<V2f>(disk, squares.size());
+}
+
+TEST(Sampling, TheConcentricMapKeepsAreas) {
+  const int side = 256;
+  double moments[5] = {};
+  for (const V2f& p : disk_points(square_grid(side))) {
+    const double x = p.x, y = p.y, square = x * x + y * y;
+    EXPECT_LE(square, 1 + 1e-6);
+    const double values[5] = {x, y, x * x, y * y, square * square};
+    for (int m = 0; m < 5; ++m) moments[m] += values[m] / (side * side);
+  }
+  // The uniform disk's: 0, 0, 1/4, 1/4, 1/3. Midpoints of squares 1/256 wide are off by
+  // curvature times 1/256^2 / 24, under 1e-5.
+  const double expected[5] = {0, 0, 0.25, 0.25, 1.0 / 3};
+  for (int m = 0; m < 5; ++m) EXPECT_NEAR(moments[m], expected[m], 1e-4) << "moment " << m;
+  // Locally too: a step in each coordinate spans pi / 4 of its square's share of [-1, 1]^2.
+  const float h = 1e-2f;
+  for (const V2f& at : square_grid(7)) {
+    const auto p =
+        disk_points({{at.x - h, at.y}, {at.x + h, at.y}, {at.x, at.y - h}, {at.x, at.y + h}});
+    const double area =
+        std::fabs((p[1].x - p[0].x) * (p[3].y - p[2].y) - (p[1].y - p[0].y) * (p[3].x - p[2].x)) /
+        (4 * h * h);
+    // The middle column and row lie on the creases of the map.
+    if (std::fabs(at.x - at.y) > 2 * h && std::fabs(at.x + at.y - 1) > 2 * h) {
+      EXPECT_NEAR(area, kPi, 0.02) << at;
+    }
+  }
+}
+
+TEST(Sampling, TheConcentricMapIsDefinedInTheCornersAndTheMiddle) {
+  const float s = std::sqrt(0.5f);
+  const auto p = disk_points({{0.5f, 0.5f}, {1, 1}, {0, 0}, {0, 1}, {1, 0.5f}, {0.5f, 0}});
+  const V2f expected[6] = {{0, 0}, {s, s}, {-s, -s}, {-s, s}, {1, 0}, {0, -1}};
+  for (int i = 0; i < 6; ++i) EXPECT_LT((p[i] - expected[i]).length(), 1e-6f) << p[i];
+}
+
+TEST(Sampling, ASunflowersPlacesAreAGoldenAngleApartInRingsOfOneArea) {
+  constexpr uint kCount = 3000;
+  const double golden = kPi * (3 - std::sqrt(5.0));
+  const Buffer disk = device().allocate(kCount * sizeof(V2f));
+  for (const auto& [jitter, turn] :
+       {std::pair{0.0f, 0u}, {0.5f, 0x20000000u}, {0.999f, 0xdfffffffu}, {0.25f, 0x7fffffffu}}) {
+    run("sampling", "sunflower_points", kCount, {disk, jitter, turn, kCount});
+    const auto places = download<V2f>(disk, kCount);
+    for (uint k = 0; k < kCount; ++k) {
+      const double radius = std::sqrt((k + double{jitter}) / kCount);
+      const double angle = turn / 0x1p32 * 2 * kPi + golden * k;
+      // The angle in 2^-32 of a turn is off by 0.43 of one.
+      const double off = 1e-6 + k * 1e-9;
+      ASSERT_NEAR(places[k].x, radius * std::cos(angle), off) << k << " turned by " << turn;
+      ASSERT_NEAR(places[k].y, radius * std::sin(angle), off) << k << " turned by " << turn;
+    }
+  }
+}
+
+V3f random_direction(std::mt19937& random) {
+  std::normal_distribution<float> normal;
+  V3f d(normal(random), normal(random), normal(random));
+  return d.normalized();
+}
+
+TEST(Sampling, FramesAreOrthonormalAndRightHandedForEveryNormal) {
+  std::vector<V3f> normals{{0, 0, 1},     {0, 0, -1},     {1, 0, 0},       {0, -1, 0},
+                           {1, 0, -0.0f}, {1e-5f, 0, -1}, {0, 1e-20f, -1}, {0.6f, 0.8f, 0}};
+  std::mt19937 random(1);
+  for (int i = 0; i < 2000; ++i) normals.push_back(random_direction(random));
+  for (int i = 0; i < 2000; ++i) {
+    normals.push_back((V3f(0, 0, -1) + random_direction(random) * 1e-3f).normalized());
+  }
+  const Buffer tangents = device().allocate(normals.size() * sizeof(V3f));
+  const Buffer bitangents = device().allocate(normals.size() * sizeof(V3f));
+  for (const char* kernel : {"frames", "lane_frames"}) {
+    run("sampling", kernel, normals.size(),
+        {upload(normals), tangents, bitangents, static_cast<uint>(normals.size())});
+    const auto t = download<V3f>(tangents, normals.size());
+    const auto b = download<V3f>(bitangents, normals.size());
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      // A handful of roundings of numbers up to 1.
+      EXPECT_NEAR(t[i].length(), 1, 2e-6f) << kernel << normals[i];
+      EXPECT_NEAR(b[i].length(), 1, 2e-6f) << kernel << normals[i];
+      EXPECT_LT((t[i].cross(b[i]) - normals[i]).length(), 2e-6f) << kernel << normals[i];
+    }
+  }
+}
+
+TEST(Sampling, ConeDirectionsStayInTheConeAndFillItEvenly) {
+  const auto squares = square_grid(64);
+  std::mt19937 random(2);
+  for (const float one_minus_cos : {1.08e-5f, 0.01f, 0.5f, 1.0f, 2.0f}) {
+    const V3f axis = random_direction(random);
+    const std::vector<V3f> axes(squares.size(), axis);
+    const Buffer directions = device().allocate(squares.size() * sizeof(V3f));
+    run("sampling", "cone_directions", squares.size(),
+        {upload(squares), upload(axes), directions, one_minus_cos,
+         static_cast<uint>(squares.size())});
+    double height = 0;
+    V3d sum(0, 0, 0);
+    for (const V3f& d : download<V3f>(directions, squares.size())) {
+      EXPECT_NEAR(d.length(), 1, 1e-6f);
+      // 1 - cos from the chord, since a cosine near 1 has no digits left.
+      const double from_axis = V3d(V3d(d) - V3d(axis)).length2() / 2;
+      EXPECT_LE(from_axis, one_minus_cos * (1 + 1e-4) + 1e-7);
+      height += from_axis / static_cast<double>(squares.size());
+      sum += V3d(d) / static_cast<double>(squares.size());
+    }
+    // Uniform in solid angle is uniform in the cosine: the mean height is half. A chord of
+    // the thinnest cone, 0.005, has an error of 1e-7 in it.
+    EXPECT_NEAR(height, 0.5 * one_minus_cos, 1e-3 * one_minus_cos);
+    const V3d aside = sum - V3d(axis) * sum.dot(V3d(axis));
+    EXPECT_LT(aside.length(), 1e-3 * std::sqrt(one_minus_cos)) << "the mean is off the axis";
+  }
+}
+
+/// Lambert's formula: irradiance at the origin, normal +Y, of a polygon of radiance 1 that
+/// lies wholly above the horizon (Baum et al., "Improving Radiosity Solutions Through the
+/// Use of Analytically Determined Form-Factors", 1989).
+double polygon_irradiance(std::vector<V3d> corners) {
+  for (V3d& c : corners) c.normalize();
+  double sum = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const V3d& a = corners[i];
+    const V3d& b = corners[(i + 1) % corners.size()];
+    const V3d edge = a.cross(b);
+    sum += std::atan2(edge.length(), a.dot(b)) * edge.y / edge.length();
+  }
+  return std::fabs(sum) / 2;
+}
+
+struct Samples {
+  std::vector<V3f> directions;
+  std::vector<float> distances, solid_angles;
+
+  /// Mean of weight times cosine: irradiance at the origin, normal +Y, radiance 1.
+  [[nodiscard]] double irradiance() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      sum += solid_angles[i] * std::max(0.0f, directions[i].y);
+    }
+    return sum / static_cast<double>(directions.size());
+  }
+};
+
+constexpr uint kLightSamples = 1u << 14;
+
+Samples light_samples(const Scene& scene) {
+  std::vector<LightRecord> records;
+  std::vector<EmitterTriangle> emitters;
+  pack_lights(scene, records, emitters);
+  const Buffer directions = device().allocate(kLightSamples * sizeof(V3f));
+  const Buffer distances = device().allocate(kLightSamples * sizeof(float));
+  const Buffer solid_angles = device().allocate(kLightSamples * sizeof(float));
+  run("sampling", "light_samples", kLightSamples,
+      {upload(records), upload(emitters), directions, distances, solid_angles, 0u, kLightSamples});
+  return {download<V3f>(directions, kLightSamples), download<float>(distances, kLightSamples),
+          download<float>(solid_angles, kLightSamples)};
+}
+
+/// 16,384 points of a (0,2)-sequence on a smooth integrand: far better than 1 / 16,384.
+constexpr double kIntegrationError = 3e-4;
+
+Scene rect_scene(const V3f& position, const V3f& edge_u, const V3f& edge_v, const V3f& direction) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::rect;
+  light.position = position;
+  light.edge_u = edge_u;
+  light.edge_v = edge_v;
+  light.direction = direction.normalized();
+  scene.lights.push_back(light);
+  return scene;
+}
+
+TEST(LightSampling, ARectIntegratesToItsFormFactor) {
+  for (const V3f& at : {V3f(0, 2, 0), V3f(1.5f, 1, -0.5f), V3f(0.3f, 20, 4)}) {
+    const V3f u(2, 0, 0), v(0, 0.5f, 0.8f);
+    const V3f down = u.cross(v).y < 0 ? u.cross(v) : v.cross(u);
+    const V3f c[4] = {at - u * 0.5f - v * 0.5f, at + u * 0.5f - v * 0.5f, at + u * 0.5f + v * 0.5f,
+                      at - u * 0.5f + v * 0.5f};
+    const double expected = polygon_irradiance({V3d(c[0]), V3d(c[1]), V3d(c[2]), V3d(c[3])});
+    // `way` points from the light to the receiver: lit only on the side it emits to.
+    const bool lit = down.dot(-at) > 0;
+    const double front = light_samples(rect_scene(at, u, v, down)).irradiance();
+    const double back = light_samples(rect_scene(at, u, v, -down)).irradiance();
+    EXPECT_NEAR(lit ? front : back, expected, kIntegrationError * expected) << at;
+    EXPECT_EQ(lit ? back : front, 0) << at;
+  }
+}
+
+TEST(LightSampling, RectSamplesEndOnTheRect) {
+  const V3f at(1, 3, -1);
+  const Samples samples = light_samples(rect_scene(at, {2, 0, 0}, {0, 0, 1}, {0, -1, 0}));
+  for (uint i = 0; i < kLightSamples; ++i) {
+    const V3f p = samples.directions[i] * samples.distances[i] - at;
+    ASSERT_TRUE(std::fabs(p.x) <= 1.0001f && std::fabs(p.y) <= 1e-5f && std::fabs(p.z) <= 0.5001f);
+  }
+}
+
+TEST(LightSampling, ASphereIntegratesToPiTimesTheSquaredSineOfItsRadius) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::sphere;
+  for (const auto& [position, radius] :
+       {std::pair{V3f(0, 2, 0), 1.0f}, {V3f(3, 4, 0), 0.01f}, {V3f(1, 2, 2), 1.9f}}) {
+    light.position = position;
+    light.radius = radius;
+    scene.lights = {light};
+    const Samples samples = light_samples(scene);
+    // Wholly above the horizon: pi sin^2(angular radius) times the cosine to the centre.
+    const double distance = position.length(), sine = radius / distance;
+    const double expected = kPi * sine * sine * position.y / distance;
+    EXPECT_NEAR(samples.irradiance(), expected, kIntegrationError * expected);
+    for (uint i = 0; i < kLightSamples; ++i) {
+      // A tangent ray's distance is known to sqrt(roundings of distance^2) only.
+      const V3f from_centre = samples.directions[i] * samples.distances[i] - position;
+      ASSERT_NEAR(from_centre.length(), radius, 1e-3 * distance);
+      ASSERT_LE(from_centre.dot(samples.directions[i]), 1e-3 * distance) << "the far side";
+    }
+  }
+}
+
+TEST(LightSampling, FromInsideASphereEveryDirectionIsLit) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::sphere;
+  light.position = V3f(0.3f, -0.2f, 0.1f);
+  light.radius = 1;
+  scene.lights = {light};
+  const Samples samples = light_samples(scene);
+  EXPECT_NEAR(samples.irradiance(), kPi, kIntegrationError * kPi);
+  for (uint i = 0; i < kLightSamples; ++i) {
+    ASSERT_NEAR((samples.directions[i] * samples.distances[i] - light.position).length(), 1, 1e-5f);
+  }
+}
+
+TEST(LightSampling, ASunIntegratesToPiTimesTheSquaredSineOfItsRadius) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::sun;
+  light.direction = V3f(0.6f, -0.8f, 0);
+  for (const float radius : {0.00465f, 0.2f, 0.6f}) {
+    light.angular_radius = radius;
+    scene.lights = {light};
+    const Samples samples = light_samples(scene);
+    const double expected = kPi * std::pow(std::sin(radius), 2) * 0.8;
+    EXPECT_NEAR(samples.irradiance(), expected, kIntegrationError * expected);
+    EXPECT_TRUE(std::isinf(samples.distances[0]));
+  }
+}
+
+/// A light of two triangles of unlike size, placed by `to_world`; front faces look down.
+Scene mesh_light_scene(const M44f& to_world, bool double_sided) {
+  Scene scene;
+  scene.materials.emplace_back();
+  Mesh mesh;
+  mesh.positions = {{-1, 2, -1},     {2, 2, -1},      {-1, 2, 1},
+                    {0.5f, 1.5f, 0}, {0.8f, 1.5f, 0}, {0.5f, 1.6f, 0.4f}};
+  mesh.indices = {0, 1, 2, 3, 4, 5};
+  mesh.materials = {0, 0};
+  scene.meshes.push_back(mesh);
+  scene.instances.push_back({0, to_world, 0});
+  Light light;
+  light.kind = LightKind::mesh;
+  light.double_sided = double_sided;
+  scene.lights.push_back(light);
+  return scene;
+}
+
+TEST(LightSampling, AMeshIntegratesToTheSumOfItsTriangles) {
+  const M44f mirrored = M44f().setScale(V3f(-1, 1, 1)),
+             sheared = M44f(1, 0, 0.3f, 0, 0, 1.5f, 0, 0, 0.2f, 0, 2, 0, 0.1f, 0.2f, 0, 1);
+  for (const M44f& to_world : {M44f(), mirrored, sheared}) {
+    const Scene scene = mesh_light_scene(to_world, false);
+    const Mesh& mesh = scene.meshes[0];
+    double expected = 0;
+    for (std::size_t t = 0; t < 2; ++t) {
+      std::vector<V3d> corners;
+      for (std::size_t c = 0; c < 3; ++c)
+        corners.emplace_back(mesh.positions[3 * t + c] * to_world);
+      expected += polygon_irradiance(corners);
+    }
+    // Two pieces of a stretched sequence: a little less even than one.
+    EXPECT_NEAR(light_samples(scene).irradiance(), expected, 10 * kIntegrationError * expected);
+    EXPECT_NEAR(light_samples(mesh_light_scene(to_world, true)).irradiance(), expected,
+                10 * kIntegrationError * expected);
+  }
+}
+
+}  // namespace
+}  // namespace dapple

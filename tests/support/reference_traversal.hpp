@@ -1,0 +1,219 @@
+// A scalar traversal on the host that shares only the shared headers with the kernels: the
+// node's decoding, the opacity model, the records. One child and one triangle at a time, by
+// recursion; for scenes without opacity textures.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "dapple/bvh.hpp"
+#include "dapple/options.hpp"
+#include "dapple/shared/opacity.h"
+#include "dapple/shared/ray.h"
+
+namespace dapple {
+
+class ReferenceTraversal {
+ public:
+  struct Result {
+    float transmittance = 1;
+    uint visits = 0, tests = 0;
+  };
+
+  ReferenceTraversal(const SceneBvh& bvh, Estimator estimator, float footprint)
+      : bvh_(bvh), prefiltered_(estimator == Estimator::prefiltered), footprint_(footprint) {}
+
+  [[nodiscard]] Result trace(const Ray& ray) const {
+    Walk walk{ray, {}, false};
+    const float scale = footprint_ * footprint_spread(ray.key);
+    const Space world{{ray.origin[0], ray.origin[1], ray.origin[2]},
+                      {ray.direction[0], ray.direction[1], ray.direction[2]},
+                      scale * ray.first_area,
+                      scale * ray.solid_angle};
+    visit(walk, world, bvh_.root, bvh_.has_top);
+    if (walk.result.transmittance < kOpaqueEnough) walk.result.transmittance = 0;
+    return walk.result;
+  }
+
+ private:
+  /// As DAPPLE_OPAQUE_ENOUGH in kernels/occlusion/traverse.clh: rays stop there, and visits with them.
+  static constexpr float kOpaqueEnough = 5e-5f;
+
+  struct Walk {
+    const Ray& ray;
+    Result result;
+    bool finished;
+  };
+
+  /// The ray and its footprint in world or object space; t is the world's in both.
+  struct Space {
+    V3f origin, direction;
+    float first_area, solid_angle;
+  };
+
+  struct Crossing {
+    bool hit = false;
+    float enter = 0, leave = 0;
+    V3f size, centre;  ///< of the box; the centre from the ray's origin
+  };
+
+  /// The slab test of Kay and Kajiya ("Ray Tracing Complex Scenes", 1986) for one child, its
+  /// far side pushed out as the kernels' is.
+  static Crossing cross(const BvhNode& node, unsigned slot, const Space& space, float t_max) {
+    Crossing crossing;
+    if (node.lower[0][slot] > node.upper[0][slot]) return crossing;
+    crossing.leave = t_max * 0.9999995f;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float scale = bvh_scale(node.exponent[axis]);
+      const float lower = static_cast<float>(node.lower[axis][slot]) * scale;
+      const float upper = static_cast<float>(node.upper[axis][slot]) * scale;
+      const float along = space.direction[axis];
+      const float inverse =
+          1.0f / (std::fabs(along) > 1e-18f ? along : std::copysign(1e-18f, along));
+      const float offset = node.origin[axis] - space.origin[axis];
+      const float a = (offset + lower) * inverse, b = (offset + upper) * inverse;
+      crossing.enter = std::max(crossing.enter, std::min(a, b));
+      crossing.leave = std::min(crossing.leave, std::max(a, b));
+      crossing.size[axis] = upper - lower;
+      crossing.centre[axis] = offset + 0.5f * (lower + upper);
+    }
+    crossing.leave *= 1.0000005f;
+    crossing.hit = crossing.enter <= crossing.leave;
+    return crossing;
+  }
+
+  /// Projected area of the child's box, split by the axis that its faces look along.
+  static V3f facing_areas(const V3f& size, const V3f& direction) {
+    return {size.y * size.z * std::fabs(direction.x), size.x * size.z * std::fabs(direction.y),
+            size.x * size.y * std::fabs(direction.z)};
+  }
+
+  static bool is_covered(const Crossing& c, const V3f& facing, const Space& space, float t_max) {
+    const float middle = 0.5f * (c.enter + c.leave);
+    const float footprint = space.first_area + space.solid_angle * middle * middle;
+    return facing.x + facing.y + facing.z < footprint && c.enter > 0 && c.leave < t_max * 0.999999f;
+  }
+
+  /// box_depth(), chord_depth() and centre_weight() of opacity.h.
+  static float depth(const BvhNode& node, unsigned slot, const Crossing& c, const V3f& facing,
+                     const V3f& direction) {
+    const float sum = facing.x + facing.y + facing.z;
+    const float mean_chord = c.size.x * c.size.y * c.size.z / (sum + 1e-37f);
+    const float longest = sum / (std::max({facing.x, facing.y, facing.z}) + 1e-37f);
+    const bool thin = mean_chord <= DAPPLE_THINNEST * c.leave;
+    const float chord =
+        thin ? 1.0f : std::min((c.leave - c.enter) / (mean_chord + 1e-37f), longest);
+    float depths[3], correlations[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const int next = (axis + 1) % 3;
+      depths[axis] = depth_decode(node.depth[axis][slot]);
+      correlations[axis] = std::copysign(1.0f, direction[axis] * direction[next]) *
+                           correlation_decode(node.correlation[axis][slot]);
+    }
+    const float weight =
+        thin ? 1.0f
+             : centre_weight(bvh_concentration(node.leaf_end, slot), off_centre(c, direction));
+    return weight *
+           chord_depth(box_depth(depths[0], depths[1], depths[2], correlations[0], correlations[1],
+                                 correlations[2], facing.x, facing.y, facing.z),
+                       chord);
+  }
+
+  static float off_centre(const Crossing& c, const V3f& direction) {
+    float sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float away = (0.5f * (c.enter + c.leave) * direction[axis] - c.centre[axis]) /
+                         (0.5f * c.size[axis] + 1e-37f);
+      sum += away * away;
+    }
+    return sum;
+  }
+
+  /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+  static bool meets(const TriangleBlock& block, unsigned lane, const Space& space, float t_max) {
+    const auto at = [&](const float(&a)[3][8]) { return V3f(a[0][lane], a[1][lane], a[2][lane]); };
+    const V3f edge1 = at(block.edge1), edge2 = at(block.edge2);
+    const V3f p = space.direction.cross(edge2);
+    const float inverse = 1.0f / edge1.dot(p);
+    const V3f s = space.origin - at(block.vertex);
+    const float u = s.dot(p) * inverse;
+    const V3f q = s.cross(edge1);
+    const float v = space.direction.dot(q) * inverse;
+    const float t = edge2.dot(q) * inverse;
+    return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < t_max;
+  }
+
+  /// True when so little is left that the ray ends here.
+  static bool is_opaque(Walk& walk) {
+    walk.finished |= walk.result.transmittance < kOpaqueEnough;
+    return walk.finished;
+  }
+
+  void visit(Walk& walk, const Space& space, uint index, bool in_top) const {
+    const BvhNode& node = bvh_.nodes[index];
+    const float t_max = walk.ray.t_max;
+    ++walk.result.visits;
+    std::array<bool, DAPPLE_BVH_WIDTH> open{};
+    for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
+      const Crossing crossing = cross(node, slot, space, t_max);
+      open[slot] = crossing.hit;
+      if (!crossing.hit || !prefiltered_) continue;
+      const V3f facing = facing_areas(crossing.size, space.direction);
+      if (!is_covered(crossing, facing, space, t_max)) continue;
+      open[slot] = false;
+      walk.result.transmittance *= std::exp(-depth(node, slot, crossing, facing, space.direction));
+    }
+    if (prefiltered_ && is_opaque(walk)) return;
+    if (!in_top) test_leaves(walk, space, node, open);
+    if (is_opaque(walk)) return;
+    // What was pushed last comes first from the kernels' stack.
+    for (unsigned slot = DAPPLE_BVH_WIDTH; slot-- > 0 && !walk.finished;) {
+      if (!open[slot]) continue;
+      if (node.inner_mask >> slot & 1) {
+        uint child = node.child_base;
+        for (unsigned before = 0; before < slot; ++before) child += node.inner_mask >> before & 1;
+        visit(walk, space, child, in_top);
+      } else if (in_top) {
+        enter(walk, space, bvh_.instances[node.prim_base + bvh_leaf_end(node.leaf_end, slot) - 1u]);
+      }
+    }
+  }
+
+  void test_leaves(Walk& walk, const Space& space, const BvhNode& node,
+                   const std::array<bool, DAPPLE_BVH_WIDTH>& open) const {
+    for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
+      if (!open[slot] || (node.inner_mask >> slot & 1)) continue;
+      for (uint i = bvh_leaf_begin(node.leaf_end, slot); i < bvh_leaf_end(node.leaf_end, slot);
+           ++i) {
+        const TriangleBlock& block = bvh_.blocks[node.prim_base + i / 8];
+        const float opacity = block.opacity[i % 8];
+        if (opacity < 0) std::abort();  // textured: not for this reference
+        ++walk.result.tests;
+        if (meets(block, i % 8, space, walk.ray.t_max)) walk.result.transmittance *= 1 - opacity;
+      }
+    }
+  }
+
+  /// From the world into an instance: areas shrink by |det|, directions keep t.
+  void enter(Walk& walk, const Space& world, const InstanceRecord& instance) const {
+    if (instance.light && instance.light == walk.ray.light) return;
+    const float* m = instance.to_object;
+    Space object = world;
+    for (int row = 0; row < 3; ++row) {
+      const V3f r(m[4 * row], m[4 * row + 1], m[4 * row + 2]);
+      object.direction[row] = r.dot(world.direction);
+      object.origin[row] = r.dot(world.origin) + m[4 * row + 3];
+    }
+    object.first_area *= instance.inverse_area_scale;
+    object.solid_angle *= instance.inverse_area_scale;
+    visit(walk, object, instance.root, false);
+  }
+
+  const SceneBvh& bvh_;
+  bool prefiltered_;
+  float footprint_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,82 @@
+// Comparisons' lanes as bits, and back, and what is pushed by them: of every pattern, in each way
+// in which kernels/vectors/lanes.clh may be compiled.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "dapple/shared/bvh_node.h"
+#include "support/test_kernel.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace kernel_test;
+
+class Lanes : public testing::TestWithParam<const char*> {};
+
+TEST_P(Lanes, AreBitsOfEveryPattern) {
+  constexpr uint kPatterns = 65536, kValues = 6;
+  const Buffer results = device().allocate(kPatterns * kValues * sizeof(uint));
+  run(GetParam(), "lanes_of_patterns", kPatterns, {results});
+  const auto found = download<uint>(results, kPatterns * kValues);
+  for (uint pattern = 0; pattern < kPatterns; ++pattern) {
+    const uint lowest = pattern ? static_cast<uint>(std::countr_zero(pattern)) : 16u;
+    const std::vector<uint> expected{pattern,           pattern, (pattern & 255u) != 0,
+                                     pattern >> 8 != 0, pattern, lowest};
+    const auto* at = &found[kValues * pattern];
+    ASSERT_EQ(std::vector<uint>(at, at + kValues), expected) << "pattern " << pattern;
+  }
+}
+
+TEST_P(Lanes, OpenedNodesArePushedInOrderAndLeavesAreNot) {
+  constexpr uint kPatterns = 65536, kValues = 17;
+  const Buffer nodes = device().allocate(kPatterns * sizeof(BvhNode));
+  const Buffer results = device().allocate(kPatterns * kValues * sizeof(uint));
+  run(GetParam(), "children_of_patterns", kPatterns, {nodes, results});
+  const auto found = download<uint>(results, kPatterns * kValues);
+  for (uint pattern = 0; pattern < kPatterns; ++pattern) {
+    std::vector<uint> expected(kValues);
+    uint next = 100;
+    for (uint slot = 0; slot < 8; ++slot) {
+      const bool inner = pattern >> slot & 1, opened = pattern >> (8 + slot) & 1;
+      if (inner && opened) {
+        const uint place = expected[0]++;
+        expected[1 + place] = next;
+        expected[9 + place] = slot + 1;
+      }
+      next += inner;
+    }
+    const auto* at = &found[kValues * pattern];
+    ASSERT_EQ(std::vector<uint>(at, at + kValues), expected) << "pattern " << pattern;
+  }
+}
+
+TEST_P(Lanes, AreRoundedAsOnTheHost) {
+  std::vector<float> numbers;
+  for (float x = 0.0f; x < 4.0f; x += 0.125f) {  // halves among them, to the even ones
+    for (const float at :
+         {x, 1000.0f + x, std::nextafter(x, 9.0f), 8388608.0f + x, 1e18f * x, 2e8f * x})
+      numbers.insert(numbers.end(), {at, -at});
+  }
+  const auto count = static_cast<uint>(numbers.size());
+  ASSERT_EQ(count % 16, 0u);
+  const Buffer in = upload(numbers), floors = device().allocate(count * sizeof(float)),
+               wholes = device().allocate(count * sizeof(std::int64_t));
+  run(GetParam(), "rounded", count / 16, {in, floors, wholes, count / 16});
+  const auto floored = download<float>(floors, count);
+  const auto whole = download<std::int64_t>(wholes, count);
+  for (uint i = 0; i < count; ++i) {
+    EXPECT_EQ(floored[i], std::floor(numbers[i])) << numbers[i];
+    EXPECT_EQ(whole[i], std::llrint(numbers[i])) << numbers[i];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ByCompiler, Lanes,
+                         testing::Values("lanes", "lanes_without_avx512", "lanes_without_builtins"),
+                         [](const auto& file) { return std::string(file.param); });
+
+}  // namespace
+}  // namespace dapple
