@@ -89,7 +89,7 @@ const Scene& BenchScene::scene() {
   view_ = choose_view(scene, options, notes);
   merge_single_instances(scene);
   scene.lights = {sky()};
-  settle_domes(scene);
+  finalize_domes(scene);
   return scene_.emplace(std::move(scene));
 }
 

@@ -19,17 +19,17 @@ float face(const Box3f& box, int axis) {
 }
 
 /// A box and how opaque it is, all over the same.
-struct EvenBox {
+struct UniformBox {
   Box3f box;
   V3f opacity;
 };
 
 /// Opacity of `whole` along `axis` when the parts' opacities multiply where they overlap:
 /// summed over the cells into which the parts' sides cut it.
-float rectangle_opacity(const Box3f& whole, const std::vector<EvenBox>& parts, int axis) {
+float rectangle_opacity(const Box3f& whole, const std::vector<UniformBox>& parts, int axis) {
   const int u = first_across(axis), v = second_across(axis);
   std::vector<float> columns, rows;
-  for (const EvenBox& part : parts) {
+  for (const UniformBox& part : parts) {
     columns.insert(columns.end(), {part.box.min[u], part.box.max[u]});
     rows.insert(rows.end(), {part.box.min[v], part.box.max[v]});
   }
@@ -40,7 +40,7 @@ float rectangle_opacity(const Box3f& whole, const std::vector<EvenBox>& parts, i
     for (std::size_t j = 0; j + 1 < rows.size(); ++j) {
       const float x = 0.5f * (columns[i] + columns[i + 1]), y = 0.5f * (rows[j] + rows[j + 1]);
       float transmittance = 1.0f;
-      for (const EvenBox& part : parts) {
+      for (const UniformBox& part : parts) {
         const bool inside = x > part.box.min[u] && x < part.box.max[u] && y > part.box.min[v] &&
                             y < part.box.max[v];
         if (inside) transmittance *= 1.0f - part.opacity[axis];
@@ -71,7 +71,7 @@ class Composer {
     const std::uint32_t below = child_node(node, slot);
     this->node(below);
     Composition made;
-    std::vector<EvenBox> parts;
+    std::vector<UniformBox> parts;
     for (unsigned s = 0; s < DAPPLE_BVH_WIDTH; ++s) {
       const Composition& part = out_[below][s];
       for (std::size_t k = 0; k < made.moments.size(); ++k) made.moments[k] += part.moments[k];

@@ -47,7 +47,7 @@ void measure_points(const Uploaded& scene, const std::string& what, const std::v
 
 void measure_camera(const Uploaded& scene, const LineAccuracyOptions& options,
                     std::vector<LineAccuracyRow>& rows) {
-  const popping::PulledBackCamera path(scene.bvh.bounds, options.frames, 4);
+  const popping::RecedingCamera path(scene.bvh.bounds, options.frames, 4);
   const popping::FrameTracer tracer(scene.device, scene.on_device, scene.bvh.bounds, options.render,
                                     options.size, options.seeds);
   const std::vector<popping::Frame> exact = tracer.frames(path, Estimator::exact, 0);

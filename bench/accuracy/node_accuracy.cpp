@@ -178,7 +178,7 @@ class NodeJudge {
     JudgedNode judged;
     judged.box = child_box(node, subtree.slot);
     judged.stored.size = judged.box.size();
-    judged.stored.concentration = bvh_concentration(node.leaf_end, subtree.slot);
+    judged.stored.mass_concentration = bvh_mass_concentration(node.leaf_end, subtree.slot);
     judged.rectangles = composition.rectangles;
     for (int axis = 0; axis < 3; ++axis) {
       judged.stored.opacity[axis] = 1.0f - std::exp(-depth_decode(node.depth[axis][subtree.slot]));

@@ -44,7 +44,7 @@ float model_depth(const DirectionalModel& model, const NodeOpacity& node, const 
   const V3f area = node.opacity * faces;
   const V3f correlation = model.matrix ? node.correlation : V3f(0.0f);
   const float silhouette = ellipsoid(area, direction, correlation) * inverse;
-  const float weight = model.centred ? centre_weight(node.concentration, off_centre) : 1.0f;
+  const float weight = model.centred ? centre_weight(node.mass_concentration, off_centre) : 1.0f;
   const auto with_chord = [&](float depth) {
     return weight * depth_with_chord(depth, model.chord, chord, faces);
   };

@@ -8,10 +8,10 @@ namespace dapple::bench {
 
 /// What a model may know of a node.
 struct NodeOpacity {
-  V3f size;                 ///< of the grown box, metres
-  V3f opacity;              ///< along each axis, [0,1]
-  V3f correlation{0.0f};    ///< of the normals' components xy, yz, zx, [-1,1]
-  float concentration = 0;  ///< around the box's centre, [0,1]
+  V3f size;                      ///< of the grown box, metres
+  V3f opacity;                   ///< along each axis, [0,1]
+  V3f correlation{0.0f};         ///< of the normals' components xy, yz, zx, [-1,1]
+  float mass_concentration = 0;  ///< around the box's centre, [0,1]
 };
 
 /// How opacities along the axes become one along a direction.
@@ -36,7 +36,7 @@ struct DirectionalModel {
   bool centred = true;  ///< rays that pass the box's centre meet more
 };
 
-/// kernels/opacity/footprint.clh's child_depths(), one lane.
+/// kernels/opacity/footprint.clh's child_optical_depths(), one lane.
 inline constexpr DirectionalModel kRendererModel{Blend::depths, Chord::scaled, true};
 
 /// Optical depth of the node along a unit direction for a ray whose chord is `chord` times

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "device/context.hpp"
-#include "camera/camera_splitting.hpp"
 #include "passes/passes.hpp"
 #include "render/picture.hpp"
 
@@ -90,7 +90,7 @@ std::string PictureScene::device_name() {
 
 Picture PictureScene::render(const RenderOptions& asked) {
   RenderOptions chosen = asked;
-  chosen.depths = choose_depths(asked, scene_, view_);
+  chosen.camera_splitting = choose_camera_splitting(asked, scene_, view_);
   const RenderOptions options = by_sample(chosen);
   open();
   for (const KernelName& kernel :

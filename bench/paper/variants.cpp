@@ -9,7 +9,7 @@ namespace dapple::bench {
 namespace {
 
 constexpr int kRayCounts[] = {4, 9, 25};
-constexpr int kMostRays = 25;
+constexpr int kMaxRays = 25;
 
 RenderOptions with(RenderOptions options, const PaperVariant& variant, int seed) {
   options.estimator = variant.estimator;
@@ -27,7 +27,7 @@ struct Reference {
 
 Reference make_reference(PictureScene& scene, const RenderOptions& options, int pictures,
                          const Picture& shape) {
-  const PaperVariant exact{"", Estimator::exact, kMostRays, 0.0f};
+  const PaperVariant exact{"", Estimator::exact, kMaxRays, 0.0f};
   Reference reference;
   std::vector<PixelStatistics> statistics(2, PixelStatistics(shape.visible));
   for (auto& pixels : reference.pixels) pixels.resize(shape.visible.size());
@@ -97,7 +97,7 @@ std::vector<PaperVariant> paper_variants(int primary_samples) {
 
 std::vector<PaperRow> measure_paper(PictureScene& scene, const RenderOptions& options,
                                     int repeats) {
-  const PaperVariant exact{"", Estimator::exact, kMostRays, 0.0f};
+  const PaperVariant exact{"", Estimator::exact, kMaxRays, 0.0f};
   const Picture shape = scene.render(with(options, exact, 999'999));
   scene.set_largest(shape.largest);
   const Reference reference = make_reference(scene, options, repeats, shape);

@@ -79,7 +79,7 @@ void filter_multiplicative(const RTCFilterFunctionNArguments& a, const AlphaCont
       a.valid[lane] = 0;
       continue;
     }
-    if (!context.met || context.met[hit.ray % kMostLanes].add(hit.triangle()))
+    if (!context.met || context.met[hit.ray % kMaxLanes].add(hit.triangle()))
       transmittance *= 1.0f - hit.opacity;
     if (transmittance >= context.black) a.valid[lane] = 0;
   }

@@ -14,7 +14,7 @@ enum class Alpha : std::uint8_t {
 };
 
 /// Rays of the widest packet.
-inline constexpr unsigned kMostLanes = 16;
+inline constexpr unsigned kMaxLanes = 16;
 
 /// Triangles that a ray has met already. Spatial splits put a triangle into several leaves, and
 /// multiplying by it twice squares its transmittance. Of more than kCapacity the oldest are
@@ -41,7 +41,7 @@ struct AlphaContext {
   float black;                  ///< a transmittance below this ends a ray
   const std::uint32_t* keys;    ///< random bits a ray; stochastic
   float* transmittance;         ///< set to 1 by the caller; multiplicative
-  MetTriangles* met = nullptr;  ///< by the ray's id modulo kMostLanes, emptied by the caller
+  MetTriangles* met = nullptr;  ///< by the ray's id modulo kMaxLanes, emptied by the caller
                                 ///< before each packet; nullptr: no triangle comes twice
 };
 

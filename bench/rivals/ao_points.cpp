@@ -69,7 +69,7 @@ void fill_ao_rays(std::span<const Surface> points, std::size_t rays, std::size_t
   sample_squares(pixel, index, count, kAoPair, seed, x, y);
   const float* const about[3] = {normal[0], normal[1], normal[2]};
   float* const into[3] = {batch.direction[0], batch.direction[1], batch.direction[2]};
-  sunflower_places(pixel, index, count, rays, seed, x, y);
+  vogel_places(pixel, index, count, rays, seed, x, y);
   lift_to_directions(x, y, about, count, into);
   ray_keys(pixel, index, count, kAoPair, seed, batch.key);
 }

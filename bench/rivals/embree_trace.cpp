@@ -58,7 +58,7 @@ void load(const RayBatch& rays, unsigned first, typename PacketTypes<kWidth>::Ra
 
 void forget_met(AlphaContext& context) {
   if (!context.met) return;
-  for (unsigned i = 0; i < kMostLanes; ++i) context.met[i].count = 0;
+  for (unsigned i = 0; i < kMaxLanes; ++i) context.met[i].count = 0;
 }
 
 /// Embree says that a ray was stopped by a negative end.

@@ -56,7 +56,7 @@ class EmbreeTracer {
 
   const EmbreeScenes& scenes_;
   float black_;
-  MetTriangles met_[kMostLanes];
+  MetTriangles met_[kMaxLanes];
 };
 
 /// Denormals count as zero on this thread while it lives, as Embree advises.

@@ -130,9 +130,8 @@ std::vector<Contestant> ImageStudy::contestants() {
   contestants.push_back(by_dapple("prefiltered", changes));
   if (pass_ == Pass::ao) {
     // With few rays a sample there is little to share: this trades camera rays for AO rays.
-    changes.estimator = Estimator::packet;
     changes.ao_rays = kPacketRays;
-    contestants.push_back(by_dapple("packet, 16 rays a sample", changes));
+    contestants.push_back(by_dapple("prefiltered, 16 rays a sample", changes));
   }
   contestants.push_back(adaptive("adaptive", &RenderOptions::target_error, 5));
   contestants.push_back(adaptive("adaptive, least RMSE", &RenderOptions::target_rmse, 10));

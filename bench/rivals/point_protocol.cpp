@@ -58,7 +58,7 @@ Truth point_truth(const RivalScene& scene, std::span<const Surface> points, std:
 
 std::vector<Contestant> point_contestants(const RivalScene& scene, std::span<const Surface> points,
                                           const std::vector<EmbreeMethod>& methods,
-                                          std::size_t most_rays) {
+                                          std::size_t max_rays) {
   auto baked = std::make_shared<BakedPoints>();
   for (const Surface& point : points) {
     baked->positions.push_back(point.position);
@@ -69,9 +69,8 @@ std::vector<Contestant> point_contestants(const RivalScene& scene, std::span<con
     contestants.push_back(by_embree(scene, points, method));
   contestants.push_back(by_dapple(scene, baked, "exact", Estimator::exact));
   contestants.push_back(by_dapple(scene, baked, "prefiltered", Estimator::prefiltered));
-  contestants.push_back(by_dapple(scene, baked, "packet", Estimator::packet));
   for (Contestant& contestant : contestants)
-    for (std::size_t rays = 1; rays <= most_rays; rays *= 2)
+    for (std::size_t rays = 1; rays <= max_rays; rays *= 2)
       contestant.ladder.push_back(static_cast<double>(rays));
   return contestants;
 }

@@ -7,7 +7,7 @@
 namespace dapple::bench {
 
 struct PointOptions {
-  std::size_t most_rays = 1024;       ///< a point: the ladder's end
+  std::size_t max_rays = 1024;        ///< a point: the ladder's end
   std::size_t reference_rays = 4096;  ///< a point
 };
 
@@ -17,6 +17,6 @@ Truth point_truth(const RivalScene& scene, std::span<const Surface> points, std:
 /// Embree's `methods` and dapple's exact, prefiltered and packet, at 1, 2, 4... rays a point.
 std::vector<Contestant> point_contestants(const RivalScene& scene, std::span<const Surface> points,
                                           const std::vector<EmbreeMethod>& methods,
-                                          std::size_t most_rays);
+                                          std::size_t max_rays);
 
 }  // namespace dapple::bench

@@ -13,8 +13,8 @@
 
 #include "accuracy/pixel_statistics.hpp"
 #include "device/context.hpp"
-#include "rivals/stratified.hpp"
 #include "passes/passes.hpp"
+#include "rivals/stratified.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -166,7 +166,7 @@ std::vector<RayRow> measure_rays(RivalScene& scene, const PreparedRays& rays,
     add("exact", Estimator::exact, 1);
     add("exact packet", Estimator::exact, kRaysAPoint);
     add("prefiltered", Estimator::prefiltered, 1);
-    add("packet", Estimator::packet, kRaysAPoint);
+    add("prefiltered packet", Estimator::prefiltered, kRaysAPoint);
   }
   // The first round fills caches and compiles kernels.
   for (int round = 0; round <= repeats; ++round) {

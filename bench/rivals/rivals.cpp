@@ -30,7 +30,7 @@ struct Arguments {
   std::vector<std::string> scenes, opacity;
   std::string protocol = "all", pass = "all", cache = default_cache_folder(), json, svg;
   int size = 256, repeats = 5, reference_spp = 4096, most_spp = 256;
-  std::size_t points = 1000, most_rays = 1024, ray_points = kRayPoints;
+  std::size_t points = 1000, max_rays = 1024, ray_points = kRayPoints;
   bool quick = false;
   RenderOptions render;
 
@@ -61,7 +61,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--pass", a.pass, "Of pictures: which pass")
       ->capture_default_str()
       ->check(CLI::IsMember({"ao", "light", "all"}));
-  app.add_option("--depths", a.render.depths,
+  app.add_option("--camera-splitting", a.render.camera_splitting,
                  "Of dapple's pictures: samples that share a camera ray; 0: as the scene suits");
   app.add_option("--footprint", a.render.footprint,
                  "dapple's footprint scale, of pictures and points")
@@ -79,7 +79,7 @@ void make_quick(Arguments& a) {
   a.repeats = std::min(a.repeats, 3);
   a.reference_spp = std::min(a.reference_spp, 1024);
   a.most_spp = 64;
-  a.most_rays = 256;
+  a.max_rays = 256;
   a.ray_points = 2048;
 }
 
@@ -146,7 +146,7 @@ class SceneRun {
     for (std::size_t i = 0; i < count; ++i) points.push_back(points_[i * points_.size() / count]);
     show_progress("points: reference");
     const Truth truth = point_truth(scene_, points, static_cast<std::size_t>(a_.reference_spp));
-    report(hold_contest(point_contestants(scene_, points, methods, a_.most_rays), truth,
+    report(hold_contest(point_contestants(scene_, points, methods, a_.max_rays), truth,
                         {a_.repeats, 0, show_progress}),
            kPointTargets, "points", fmt::format("AO at {} points", count), "rays a point");
   }

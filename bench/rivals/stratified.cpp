@@ -124,13 +124,13 @@ void lift_to_directions(const float* x, const float* y, const float* const norma
 }
 
 DAPPLE_MULTIVERSION
-void sunflower_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
-                      std::size_t rays, std::uint32_t seed, float* x, float* y) {
+void vogel_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
+                  std::size_t rays, std::uint32_t seed, float* x, float* y) {
   constexpr float kQuarterTurn = std::numbers::pi_v<float> / 2;
   constexpr float kQuarter = 0x1p30f;
   const float inverse_count = 1.0f / static_cast<float>(rays);
   for (unsigned i = 0; i < count; ++i) {
-    const std::uint32_t turn = hash_pair(hash_pair(point[i], kAoTurnPair), seed);
+    const std::uint32_t turn = hash_pair(hash_pair(point[i], kAoRotationPair), seed);
     const std::uint32_t from_corner = turn + index[i] * 1640531527u + 0x20000000u;
     const std::uint32_t quarter = from_corner >> 30;
     const auto along = static_cast<std::int32_t>(from_corner & 0x3fffffffu) - 0x20000000;

@@ -1,7 +1,7 @@
 // Stratified random points and directions for the Embree side: the sequences that
-// kernels/sampling/random.clh documents (a Sobol (0,2) sequence a pixel and dimension pair, Owen-scrambled
-// by hashing), so that both sides pay for the same quality. Plain loops over floats, which the
-// compiler turns into vector code.
+// kernels/sampling/random.clh documents (a Sobol (0,2) sequence a pixel and dimension pair,
+// Owen-scrambled by hashing), so that both sides pay for the same quality. Plain loops over floats,
+// which the compiler turns into vector code.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace dapple::bench {
 
 /// Dimension pairs of a pixel or shading point; light l uses kLightPair + l.
 inline constexpr std::uint32_t kPixelPair = 0, kAoPair = 1, kLightPair = 2,
-                               kAoTurnPair = 0xfffffffeu;
+                               kAoRotationPair = 0xfffffffeu;
 
 /// 32 bits with full avalanche (the lowbias32 constants found by C. Wellons).
 inline std::uint32_t hash_uint(std::uint32_t x) {
@@ -44,10 +44,10 @@ void ray_keys(const std::uint32_t* pixel, const std::uint32_t* index, unsigned c
               std::uint32_t pair, std::uint32_t seed, std::uint32_t* keys);
 
 /// Places of the unit disk in sets of `rays` each, place `index[i]` of the set of `point[i]`, as
-/// sunflower_disk() of kernels/sampling/direction.clh has them; `x` is in the unit square at first, for
+/// vogel_disk() of kernels/sampling/direction.clh has them; `x` is in the unit square at first, for
 /// where in its ring a place lies.
-void sunflower_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
-                      std::size_t rays, std::uint32_t seed, float* x, float* y);
+void vogel_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
+                  std::size_t rays, std::uint32_t seed, float* x, float* y);
 
 /// Points of the unit disk -> unit directions about unit normals, cosine-weighted. The arrays must
 /// not overlap.

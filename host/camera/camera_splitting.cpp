@@ -95,7 +95,7 @@ struct Part {
 
 using Parts = std::map<std::uint32_t, Part>;  ///< by material
 
-Parts parts_of(const Scene& scene, const Mesh& mesh) {
+Parts ceil_div(const Scene& scene, const Mesh& mesh) {
   Parts parts;
   Part* part = nullptr;
   bool textured = false;
@@ -139,7 +139,7 @@ Counts count_surfaces(const Scene& scene, const View& view, float spread) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     auto& of_mesh = parts[instance.mesh];
-    if (!of_mesh) of_mesh = parts_of(scene, mesh);
+    if (!of_mesh) of_mesh = ceil_div(scene, mesh);
     for (auto& [material, part] : *of_mesh) {
       const int level = seen_level(part, instance, mesh, view, spread);
       const auto [at, is_new] = part.counts.try_emplace(level);
@@ -151,32 +151,32 @@ Counts count_surfaces(const Scene& scene, const View& view, float spread) {
 }
 
 /// Samples of a pixel that it may have, whatever of them share a camera ray.
-double most_samples(const RenderOptions& options) {
-  return double{kMostRaysOfPixel} / std::max(options.ao_rays, options.light_rays);
+double max_samples(const RenderOptions& options) {
+  return double{kMaxRaysOfPixel} / std::max(options.ao_rays, options.light_rays);
 }
 
 }  // namespace
 
-int choose_depths(const RenderOptions& options, const Scene& scene, const View& view) {
-  if (options.depths > 0) return options.depths;
+int choose_camera_splitting(const RenderOptions& options, const Scene& scene, const View& view) {
+  if (options.camera_splitting > 0) return options.camera_splitting;
   RenderOptions with_taps = options;
-  with_taps.depths = DAPPLE_MOST_DEPTHS;
+  with_taps.camera_splitting = DAPPLE_MAX_CAMERA_SPLITTING;
   const Counts counts = count_surfaces(scene, view, texel_footprint(with_taps, kSamples).spread);
-  int depths = counts.for_four > kPartOfFour * counts.all ? 4
+  int factor = counts.for_four > kPartOfFour * counts.all ? 4
                : counts.for_two > kPartOfTwo * counts.all ? 2
                                                           : 1;
   const double rays = is_adaptive(options) ? options.max_spp : options.spp;
-  while (depths > 1 && rays * depths > most_samples(options)) depths /= 2;
-  return depths;
+  while (factor > 1 && rays * factor > max_samples(options)) factor /= 2;
+  return factor;
 }
 
 RenderOptions by_sample(const RenderOptions& options) {
   RenderOptions out = options;
-  out.spp *= out.depths;
-  out.max_spp *= out.depths;
+  out.spp *= out.camera_splitting;
+  out.max_spp *= out.camera_splitting;
   out.footprint_spp = footprint_samples(options);
   out.footprint_ao_rays = footprint_ao_rays(options);
-  out.ao_rays = (options.ao_rays + out.depths - 1) / out.depths;
+  out.ao_rays = (options.ao_rays + out.camera_splitting - 1) / out.camera_splitting;
   return out;
 }
 

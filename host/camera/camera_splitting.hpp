@@ -4,15 +4,15 @@
 
 #include <cstdint>
 
+#include "camera/view.hpp"
 #include "dapple/options.hpp"
 #include "dapple/scene.hpp"
-#include "camera/view.hpp"
 
 namespace dapple {
 
-/// `options.depths`, or where that is 0 what suits the scene's opacities: those of textures as the
-/// view's camera rays average them.
-int choose_depths(const RenderOptions& options, const Scene& scene, const View& view);
+/// `options.camera_splitting`, or where that is 0 what suits the scene's opacities: those of
+/// textures as the view's camera rays average them.
+int choose_camera_splitting(const RenderOptions& options, const Scene& scene, const View& view);
 
 /// What tracing takes: `spp` and `max_spp` count samples, of which each camera ray has `depths`,
 /// which must be chosen, and `ao_rays` those of one sample. Footprints stay what they are without
@@ -21,7 +21,7 @@ RenderOptions by_sample(const RenderOptions& options);
 
 /// Samples of a camera ray, of options by_sample(); of others 1.
 inline std::uint32_t depth_count(const RenderOptions& options) {
-  return options.depths > 0 ? static_cast<std::uint32_t>(options.depths) : 1u;
+  return options.camera_splitting > 0 ? static_cast<std::uint32_t>(options.camera_splitting) : 1u;
 }
 
 }  // namespace dapple

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "dapple/error.hpp"
 #include "camera/camera_splitting.hpp"
+#include "dapple/error.hpp"
 
 namespace dapple {
 namespace {
@@ -115,7 +115,7 @@ constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.35f;
 constexpr float kTapShare = 1.5f;
 
 /// Of a pixel, however large footprints are.
-constexpr float kMostTexelShare = 0.25f, kMostTapShare = 0.75f;
+constexpr float kMaxTexelShare = 0.25f, kMaxTapShare = 0.75f;
 
 /// Variances, in each axis and those of places all over a square of area 1: of taps in the middle
 /// of its quarters, and of bilinear look-ups among squares of texels that are no larger than it (a
@@ -125,14 +125,14 @@ constexpr float kTapVariance = 0.75f, kTexelVariance = 1.6f;
 /// Of footprint_rmse(), the part by which what one box of haze hides of a pixel may deviate. There
 /// may be some behind each other; but AO differs by a part of that only, for what is in haze is
 /// hardly occluded.
-constexpr float kHazeError = 0.5f;
+constexpr float kMediumError = 0.5f;
 
 /// Without a target pictures are as good as rays make them. Errors of lights are relative to the
 /// largest irradiance, which haze has little of.
-float haze_error(const RenderOptions& options) {
+float medium_error(const RenderOptions& options) {
   const bool exact = options.estimator == Estimator::exact || options.footprint == 0;
   if (exact || options.light || !is_adaptive(options)) return 0;
-  return kHazeError * footprint_rmse(options);
+  return kMediumError * footprint_rmse(options);
 }
 
 }  // namespace
@@ -155,11 +155,11 @@ TexelFootprint texel_footprint(const RenderOptions& options, int spp) {
     texels.share = texels.spread = kTexelShare * footprint;
     return texels;
   }
-  texels.share = std::min(kTexelShareOfTap * footprint, kMostTexelShare);
-  const float taps = std::min(kTapShare * footprint, kMostTapShare);
-  texels.tap_reach = 0.25f * std::sqrt(taps);
+  texels.share = std::min(kTexelShareOfTap * footprint, kMaxTexelShare);
+  const float taps = std::min(kTapShare * footprint, kMaxTapShare);
+  texels.tap_offset = 0.25f * std::sqrt(taps);
   texels.spread = kTapVariance * taps + kTexelVariance * texels.share;
-  texels.tap_pull = 1.0f - std::sqrt(1.0f - texels.spread);
+  texels.tap_centring = 1.0f - std::sqrt(1.0f - texels.spread);
   return texels;
 }
 
@@ -188,10 +188,10 @@ CameraParams camera_params(const View& view, const RenderOptions& options, const
   params.inverse_spp = 1.0f / static_cast<float>(footprint_samples(options));
   const TexelFootprint texels = texel_footprint(options, footprint_samples(options));
   params.texel_share = texels.share;
-  params.tap_reach = texels.tap_reach;
-  params.tap_pull = texels.tap_pull;
-  params.haze_error = haze_error(options);
-  params.depth_bits = static_cast<uint>(std::countr_zero(depth_count(options)));
+  params.tap_offset = texels.tap_offset;
+  params.tap_centring = texels.tap_centring;
+  params.medium_error = medium_error(options);
+  params.splitting_bits = static_cast<uint>(std::countr_zero(depth_count(options)));
   set_seen(view, bounds, params);
   return params;
 }

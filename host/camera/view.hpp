@@ -28,7 +28,7 @@ CameraParams camera_params(const View& view, const RenderOptions& options, const
 
 /// How a camera ray averages textures, as CameraParams has it; zeros: not at all.
 struct TexelFootprint {
-  float share = 0, tap_reach = 0, tap_pull = 0;
+  float share = 0, tap_offset = 0, tap_centring = 0;
   float spread = 0;  ///< of a pixel's area, a square over which places spread as far
 };
 

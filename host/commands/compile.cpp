@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "commands/command.hpp"
-#include "device/programs/compiler_processes.hpp"
 #include "device/context.hpp"
+#include "device/programs/compiler_processes.hpp"
 #include "passes/warm_up.hpp"
 
 namespace dapple {
@@ -32,7 +32,7 @@ void run_compile(const CompileArguments& a) {
   std::vector<KernelName> kernels;
   for (const std::string& text : a.kernels) kernels.push_back(parse_kernel(text));
   const Device device(a.device, a.kernel_dir);
-  if (!a.programs) return rehearse(device, kernels);
+  if (!a.programs) return warm_up(device, kernels);
   for (const KernelName& kernel : kernels) device.context().prepare(kernel);
 }
 
@@ -45,7 +45,7 @@ Run add_compile_command(CLI::App& app) {
   app.add_option("--kernel-dir", a->kernel_dir, "Read OpenCL kernels from this folder");
   app.add_option("--parent", a->parent, "The process that waits for it");
   app.add_flag("--programs", a->programs, "No machine code, as kernels get at their first launch");
-  app.add_option("KERNEL", a->kernels, "NAME/FILE/PREFILTERED/ONE_POINT")->required();
+  app.add_option("KERNEL", a->kernels, "NAME:FILE:PREFILTERED:SHARED_ORIGIN")->required();
   return [a] { run_compile(*a); };
 }
 

@@ -9,16 +9,14 @@
 namespace dapple {
 namespace {
 
-const char* describe(Company company) {
-  switch (company) {
-    case Company::neighbours:
-      return "rays are traced with their neighbours, 16 and more of a point with each other, exact "
-             "ones 32 and more";
-    case Company::point:
-      return "rays of a point are traced with each other";
+const char* describe(Packets packets) {
+  switch (packets) {
+    case Packets::pixel:
+      return "occlusion rays in pixel packets, from 16 rays a point (exact: 32) in point packets";
+    case Packets::point:
+      return "occlusion rays in point packets";
     default:
-      return "every ray is traced alone, with --estimator packet 4 and more of a point with each "
-             "other";
+      return "single occlusion rays";
   }
 }
 
@@ -28,7 +26,7 @@ bool print_device(const DeviceInfo& info, const DeviceCheck& check) {
              info.platform, info.driver, info.compute_units,
              bytes_text(static_cast<double>(info.memory_bytes)));
   for (const std::string& refusal : check.refusals) fmt::print("  cannot be used: {}\n", refusal);
-  if (check.refusals.empty()) fmt::print("  runs every kernel; {}\n", describe(check.trace_with));
+  if (check.refusals.empty()) fmt::print("  runs every kernel; {}\n", describe(check.packets));
   return check.refusals.empty();
 }
 
@@ -55,7 +53,7 @@ Run add_devices_command(CLI::App& app) {
                  "Read OpenCL kernels from this folder (for developers)");
   app.footer(
       "Example:\n  dapple devices\n\nThe first is used unless --device names part of another's "
-      "name; render --trace-with overrides whom rays are traced with.");
+      "name; render --packets chooses other ray packets.");
   return [kernel_dir] { run_devices(*kernel_dir); };
 }
 

@@ -65,7 +65,7 @@ std::pair<std::string, float> parse_opacity(const std::string& text) {
 }
 
 FrameRange parse_frames(const std::string& text) {
-  constexpr std::int64_t kMostFrames = 100'000, kLargestNumber = 1'000'000'000;
+  constexpr std::int64_t kMaxFrames = 100'000, kLargestNumber = 1'000'000'000;
   const auto fail = [&](const char* expected) {
     throw Error(ErrorKind::usage, fmt::format("--frames {}: expected {}", text, expected));
   };
@@ -79,16 +79,14 @@ FrameRange parse_frames(const std::string& text) {
   if (range.last < range.first) fail("the first frame before the last");
   if (range.last > kLargestNumber || range.step < 1 || range.step > kLargestNumber)
     fail("numbers up to 1000000000, and a step of 1 or more");
-  if (range.count() > kMostFrames) fail("at most 100000 frames");
+  if (range.count() > kMaxFrames) fail("at most 100000 frames");
   return range;
 }
 
 Estimator parse_estimator(const std::string& text) {
   if (text == "exact") return Estimator::exact;
   if (text == "prefiltered") return Estimator::prefiltered;
-  if (text == "packet") return Estimator::packet;
-  throw Error(ErrorKind::usage,
-              fmt::format("--estimator {}: there are exact, prefiltered and packet", text));
+  throw Error(ErrorKind::usage, fmt::format("--estimator {}: it is exact or prefiltered", text));
 }
 
 double parse_seconds(const std::string& flag, const std::string& text) {
@@ -102,13 +100,13 @@ double parse_seconds(const std::string& flag, const std::string& text) {
               fmt::format("{} {}: expected a time above 0, as in 30, 30s, 5m or 1h", flag, text));
 }
 
-Company parse_company(const std::string& text) {
-  if (text == "auto") return Company::automatic;
-  if (text == "alone") return Company::alone;
-  if (text == "neighbours") return Company::neighbours;
-  if (text == "point") return Company::point;
+Packets parse_packets(const std::string& text) {
+  if (text == "auto") return Packets::automatic;
+  if (text == "none") return Packets::none;
+  if (text == "pixel") return Packets::pixel;
+  if (text == "point") return Packets::point;
   throw Error(ErrorKind::usage,
-              fmt::format("--trace-with {}: it is auto, alone, neighbours or point", text));
+              fmt::format("--packets {}: it is auto, none, pixel or point", text));
 }
 
 void parse_passes(const std::string& text, RenderOptions& options) {

@@ -15,10 +15,10 @@ V3f parse_vector(const std::string& flag, const std::string& text);
 PixelRect parse_crop(const std::string& text);
 /// "leaf=0.85"; the name may contain '='
 std::pair<std::string, float> parse_opacity(const std::string& text);
-/// "exact", "prefiltered" or "packet"
+/// "exact" or "prefiltered"
 Estimator parse_estimator(const std::string& text);
-/// "auto", "alone", "neighbours" or "point"
-Company parse_company(const std::string& text);
+/// "auto", "none", "pixel" or "point"
+Packets parse_packets(const std::string& text);
 /// "ao", "light", "ao,light"
 void parse_passes(const std::string& text, RenderOptions& options);
 

@@ -49,11 +49,11 @@ void write_pictures(const RenderResult& result, const Frame& frame) {
 class NotePrinter {
  public:
   void print(const std::vector<std::string>& notes) {
-    constexpr std::size_t kMost = 20;
+    constexpr std::size_t kMax = 20;
     std::size_t printed = 0, left = 0;
     for (const std::string& note : notes) {
       if (!told_.insert(note).second) continue;
-      if (printed++ < kMost) {
+      if (printed++ < kMax) {
         fmt::print(stderr, "note: {}\n", note);
       } else {
         ++left;

@@ -33,19 +33,21 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option("--max-spp", o.max_spp, "With a target the most samples a pixel")
       ->capture_default_str();
-  app.add_option("--depths", o.depths,
-                 "Surfaces at which a camera sample is shaded, 1, 2 or 4, each chosen among those "
-                 "that it slips through; 0: by the scene's opacities, more for thin leaves")
+  app.add_option(
+         "--camera-splitting", o.camera_splitting,
+         "Samples that share a camera ray, 1, 2 or 4: each is shaded at a surface of its own "
+         "among those that the ray crosses. More suit thin leaves and hair; 0: chosen by the "
+         "scene's opacities")
       ->capture_default_str();
-  app.add_option("--ao-rays", o.ao_rays, "AO rays a camera sample, at least one a depth")
+  app.add_option("--ao-rays", o.ao_rays,
+                 "AO rays a camera ray, shared out among its samples, at least one each")
       ->capture_default_str();
   app.add_option("--light-rays", o.light_rays, "Rays a light and camera sample")
       ->capture_default_str();
   app.add_option(
          "--estimator", a.estimator,
-         "exact: every surface counts; prefiltered: stop at BVH nodes the ray's footprint covers; "
-         "packet: prefiltered, with 4 --ao-rays and more those of a camera sample at once on GPUs "
-         "too, as CPUs do anyway")
+         "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the ray's "
+         "footprint covers")
       ->capture_default_str();
   app.add_option(
          "--footprint", o.footprint,
@@ -142,9 +144,9 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
   add_checkpoint_options(app, a);
   app.add_option("--device", a.options.device,
                  "OpenCL device, by part of its name (see dapple devices)");
-  app.add_option("--trace-with", a.trace_with,
-                 "Whom a ray is traced with, for devices that do better than dapple guesses: auto; "
-                 "alone; neighbours; point: the rays of its own point")
+  app.add_option("--packets", a.packets,
+                 "Which occlusion rays are traversed together: auto, by the device; none, single "
+                 "rays; pixel, rays of neighbouring pixels; point, rays of one point")
       ->capture_default_str();
   app.add_option("--kernel-dir", a.options.kernel_dir,
                  "Read OpenCL kernels from this folder (for developers)");
@@ -160,7 +162,7 @@ RenderOptions to_options(const RenderArguments& a) {
   if (a.spp) o.spp = *a.spp;
   if (!a.spp && o.target_rmse > 0) o.spp = 1;
   o.estimator = parse_estimator(a.estimator);
-  o.trace_with = parse_company(a.trace_with);
+  o.packets = parse_packets(a.packets);
   parse_passes(a.passes, o);
   if (!a.crop.empty()) o.crop = parse_crop(a.crop);
   if (!a.look_from.empty() || !a.look_at.empty()) {

@@ -15,7 +15,7 @@ namespace dapple {
 struct RenderArguments {
   std::string scene, output, png, stats_json, lights, dome;
   double dome_rotation = 0;
-  std::string estimator = "prefiltered", passes = "ao,light", trace_with = "auto";
+  std::string estimator = "prefiltered", passes = "ao,light", packets = "auto";
   std::string look_from, look_at, up, crop;
   std::vector<std::string> opacity;
   std::optional<double> frame;

@@ -6,11 +6,11 @@
 #include <memory>
 #include <utility>
 
-#include "device/programs/kernel_cache.hpp"
-#include "device/programs/kernel_source.hpp"
 #include "device/opencl.hpp"
 #include "device/page_pool.hpp"
 #include "device/platforms.hpp"
+#include "device/programs/kernel_cache.hpp"
+#include "device/programs/kernel_source.hpp"
 
 namespace dapple {
 namespace {
@@ -20,11 +20,11 @@ constexpr std::size_t kEventsHeld = 256;
 
 /// Work-groups of a compute unit that take turns, if there are as many pieces: enough for each of
 /// PoCL's threads to get one, though the first ones take many at once.
-constexpr std::size_t kGroupsTakingTurns = 32;
+constexpr std::size_t kGroupsTakingTickets = 32;
 
 /// Turns are counted modulo 2^32, from here on, so that every process soon comes to where they
 /// start again.
-constexpr cl_uint kFirstTurn = 0xfffff000u;
+constexpr cl_uint kFirstTicket = 0xfffff000u;
 
 /// What buffers are cleared with: PoCL stores one pattern after the other, and a film of a
 /// megapixel cleared byte by byte took as long as its rays.
@@ -78,7 +78,7 @@ struct DeviceContext::State {
   DeviceInfo info;
   std::string chosen_by;
   std::string kernel_dir;
-  Company trace_with = Company::automatic;
+  Packets packets = Packets::automatic;
   cl::Device device;
   bool shares_memory = false;  ///< with the host
   std::shared_ptr<PagePool> page_pool = std::make_shared<PagePool>();
@@ -89,9 +89,9 @@ struct DeviceContext::State {
   std::vector<std::string> known_programs;  ///< what KernelCache knows programs by
   std::vector<std::pair<std::string, cl::Event>> events;
   std::map<std::string, double> pass_seconds;
-  Buffer turns;  ///< counts those taken; none before the first launch, or after one that failed
-  cl_uint next_turn = kFirstTurn;
-  bool rehearsing = false;
+  Buffer tickets;  ///< counts those taken; none before the first launch, or after one that failed
+  cl_uint next_turn = kFirstTicket;
+  bool warming_up = false;
 
   /// What KernelCache knows a program by, of that source.
   [[nodiscard]] std::string known_by(const std::string& source, const Variant& variant) const;
@@ -101,8 +101,8 @@ struct DeviceContext::State {
 };
 
 std::string Variant::options() const {
-  return fmt::format("-cl-std=CL1.2 -DDAPPLE_PREFILTERED={} -DDAPPLE_ONE_POINT={}",
-                     prefiltered ? 1 : 0, one_point ? 1 : 0);
+  return fmt::format("-cl-std=CL1.2 -DDAPPLE_PREFILTERED={} -DDAPPLE_SHARED_ORIGIN={}",
+                     prefiltered ? 1 : 0, shared_origin ? 1 : 0);
 }
 
 std::string DeviceContext::State::known_by(const std::string& source,
@@ -146,12 +146,12 @@ void DeviceContext::State::collect_events() {
   events.clear();
 }
 
-DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Company trace_with)
+DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Packets packets)
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.chosen_by = name;
   s.kernel_dir = std::move(kernel_dir);
-  s.trace_with = trace_with;
+  s.packets = packets;
   s.device = choose_device(name);
   s.info = describe(s.device);
   in_opencl("opening " + s.info.name, [&] {
@@ -174,7 +174,7 @@ const std::string& DeviceContext::kernel_dir() const { return state_->kernel_dir
 
 bool DeviceContext::shares_memory() const { return state_->shares_memory; }
 
-Company DeviceContext::trace_with() const { return state_->trace_with; }
+Packets DeviceContext::packets() const { return state_->packets; }
 
 std::vector<std::string> DeviceContext::notes() const {
   const std::string& refusals = KernelCache::of_process().refusals();
@@ -288,7 +288,7 @@ bool DeviceContext::is_compiled(const KernelName& kernel, CompileTo to) const {
                                        to == CompileTo::machine_code ? kernel.name : "");
 }
 
-void DeviceContext::rehearse() { state_->rehearsing = true; }
+void DeviceContext::warm_up() { state_->warming_up = true; }
 
 std::size_t DeviceContext::largest_group(const KernelName& kernel) {
   return in_opencl("compiling kernel " + kernel.name, [&] {
@@ -298,7 +298,7 @@ std::size_t DeviceContext::largest_group(const KernelName& kernel) {
 
 void DeviceContext::launch(const KernelName& name, const std::string& label, std::size_t items,
                            const std::vector<KernelArgument>& arguments, std::size_t group) {
-  if (items == 0 && !state_->rehearsing) return;
+  if (items == 0 && !state_->warming_up) return;
   in_opencl("running pass " + label, [&] {
     cl::Kernel& kernel = state_->kernel(name);
     cl_uint index = 0;
@@ -318,29 +318,29 @@ void DeviceContext::launch(const KernelName& name, const std::string& label, std
   if (state_->events.size() >= kEventsHeld) finish();
 }
 
-std::size_t DeviceContext::groups_in_turns(std::size_t pieces) const {
-  return std::min(pieces, kGroupsTakingTurns * state_->info.compute_units);
+std::size_t DeviceContext::groups_with_tickets(std::size_t ticket_count) const {
+  return std::min(ticket_count, kGroupsTakingTickets * state_->info.compute_units);
 }
 
-void DeviceContext::launch_in_turns(const KernelName& name, const std::string& label,
-                                    std::size_t pieces, std::vector<KernelArgument> arguments,
-                                    std::size_t group) {
+void DeviceContext::launch_with_tickets(const KernelName& name, const std::string& label,
+                                        std::size_t ticket_count,
+                                        std::vector<KernelArgument> arguments, std::size_t group) {
   State& s = *state_;
-  if (pieces == 0 && !s.rehearsing) return;
+  if (ticket_count == 0 && !s.warming_up) return;
   // Whatever is thrown from here on, the next launch has a count of its own.
-  Buffer turns = std::exchange(s.turns, {});
-  if (!turns.bytes()) {
-    turns = allocate(sizeof s.next_turn);
-    s.next_turn = kFirstTurn;
-    write(turns, &s.next_turn, sizeof s.next_turn);
+  Buffer tickets = std::exchange(s.tickets, {});
+  if (!tickets.bytes()) {
+    tickets = allocate(sizeof s.next_turn);
+    s.next_turn = kFirstTicket;
+    write(tickets, &s.next_turn, sizeof s.next_turn);
   }
-  const std::size_t groups = std::max<std::size_t>(groups_in_turns(pieces), 1);
-  const auto count = static_cast<cl_uint>(pieces);
-  arguments.insert(arguments.end(), {turns, s.next_turn, count});
+  const std::size_t groups = std::max<std::size_t>(groups_with_tickets(ticket_count), 1);
+  const auto count = static_cast<cl_uint>(ticket_count);
+  arguments.insert(arguments.end(), {tickets, s.next_turn, count});
   launch(name, label, groups * group, arguments, group);
   // Each piece was a turn, and each item has asked once more than there were pieces for it.
-  s.next_turn += static_cast<cl_uint>(pieces + groups * group);
-  s.turns = std::move(turns);
+  s.next_turn += static_cast<cl_uint>(ticket_count + groups * group);
+  s.tickets = std::move(tickets);
 }
 
 void DeviceContext::finish() {

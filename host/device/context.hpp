@@ -63,7 +63,7 @@ struct KernelArgument {
 /// What a program is compiled for. Few of these, integers only.
 struct Variant {
   bool prefiltered = false;
-  bool one_point = false;  ///< rays traced together start from one point
+  bool shared_origin = false;  ///< rays traced together start from one point
   [[nodiscard]] std::string options() const;
   auto operator<=>(const Variant&) const = default;
 };
@@ -85,7 +85,7 @@ enum class CompileTo { programs, machine_code };
 class DeviceContext {
  public:
   DeviceContext(const std::string& name, std::string kernel_dir,
-                Company trace_with = Company::automatic);
+                Packets packets = Packets::automatic);
   ~DeviceContext();
   DeviceContext(const DeviceContext&) = delete;
   DeviceContext& operator=(const DeviceContext&) = delete;
@@ -97,7 +97,7 @@ class DeviceContext {
   /// With the host: share() makes no copies.
   [[nodiscard]] bool shares_memory() const;
   /// Whom whoever opened the device wants rays to be traced with.
-  [[nodiscard]] Company trace_with() const;
+  [[nodiscard]] Packets packets() const;
   /// What users should know of how it works here: "compiled kernels are not kept: ...".
   [[nodiscard]] std::vector<std::string> notes() const;
 
@@ -130,7 +130,7 @@ class DeviceContext {
   [[nodiscard]] bool is_compiled(const KernelName& kernel, CompileTo to) const;
   /// From here on launches of nothing are of one group, which finds nothing to do: drivers compile
   /// some of a kernel when it is first launched.
-  void rehearse();
+  void warm_up();
   /// The most items a work-group of the kernel can have here.
   std::size_t largest_group(const KernelName& kernel);
   /// Enqueues `items` work-items, rounded up to whole groups of `group`: kernels check
@@ -138,11 +138,12 @@ class DeviceContext {
   void launch(const KernelName& name, const std::string& label, std::size_t items,
               const std::vector<KernelArgument>& arguments, std::size_t group = 64);
   /// Enqueues work-items enough to keep the device busy, which take `pieces` pieces of work, below
-  /// 2^31, by turns: take_turn() of kernels/vectors/tickets.clh. Three arguments are added here.
-  void launch_in_turns(const KernelName& name, const std::string& label, std::size_t pieces,
-                       std::vector<KernelArgument> arguments, std::size_t group = 64);
+  /// 2^31, by turns: take_ticket() of kernels/vectors/tickets.clh. Three arguments are added here.
+  void launch_with_tickets(const KernelName& name, const std::string& label,
+                           std::size_t ticket_count, std::vector<KernelArgument> arguments,
+                           std::size_t group = 64);
   /// Work-groups that take so many pieces by turns.
-  [[nodiscard]] std::size_t groups_in_turns(std::size_t pieces) const;
+  [[nodiscard]] std::size_t groups_with_tickets(std::size_t ticket_count) const;
   void finish();
   /// Waits like finish(), but whatever has become of the launches.
   void wait() noexcept;

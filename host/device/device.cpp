@@ -11,8 +11,8 @@ std::vector<DeviceInfo> list_devices() {
   return infos;
 }
 
-Device::Device(const std::string& name, const std::string& kernel_dir, Company trace_with)
-    : context_(std::make_shared<DeviceContext>(name, kernel_dir, trace_with)) {}
+Device::Device(const std::string& name, const std::string& kernel_dir, Packets packets)
+    : context_(std::make_shared<DeviceContext>(name, kernel_dir, packets)) {}
 
 const DeviceInfo& Device::info() const { return context_->info(); }
 

@@ -93,7 +93,7 @@ void PagePool::give_back(std::unique_ptr<Pages> pages) noexcept {
   } catch (const std::bad_alloc&) {
     return;
   }
-  for (kept_bytes_ += bytes; kept_bytes_ > kMostKept; kept_.pop_front())
+  for (kept_bytes_ += bytes; kept_bytes_ > kMaxKept; kept_.pop_front())
     kept_bytes_ -= kept_.front()->bytes();
 }
 

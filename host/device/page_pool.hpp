@@ -29,7 +29,7 @@ class Pages {
 class PagePool {
  public:
   /// Bytes kept at most; beyond, those kept longest go.
-  static constexpr std::size_t kMostKept = std::size_t{512} << 20;
+  static constexpr std::size_t kMaxKept = std::size_t{512} << 20;
 
   /// `bytes` or up to an eighth more: pages that were given back, or new ones. Throws Error device.
   std::unique_ptr<Pages> take(std::size_t bytes);

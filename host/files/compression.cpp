@@ -17,7 +17,7 @@ constexpr std::size_t kFrame = std::size_t{1} << 20;
 constexpr int kLevel = 1;
 
 /// A block of zeros, 128 KiB, takes 4 bytes: no frame can become more than this times its size.
-constexpr std::size_t kMostGrowth = std::size_t{1} << 16;
+constexpr std::size_t kMaxGrowth = std::size_t{1} << 16;
 
 /// What one thread works with from frame to frame: fresh memory for each takes longer than zstd.
 struct Workshop {
@@ -57,7 +57,7 @@ std::size_t decompressed_size(Section frames) {
   while (!frames.empty()) {
     const std::size_t size = ZSTD_findFrameCompressedSize(frames.data(), frames.size());
     const unsigned long long becomes = ZSTD_getFrameContentSize(frames.data(), frames.size());
-    if (ZSTD_isError(size) || size > frames.size() || becomes > size * kMostGrowth) return 0;
+    if (ZSTD_isError(size) || size > frames.size() || becomes > size * kMaxGrowth) return 0;
     all += becomes;
     frames = frames.subspan(size);
   }

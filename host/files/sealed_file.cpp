@@ -50,12 +50,12 @@ std::uint64_t aligned(std::uint64_t bytes) {
 
 /// The pieces of a file in the order they lie in it, with the zeros that align the next one.
 template <class Take>
-void for_each_piece(const Header& header, std::span<const std::uint64_t> sizes,
-                    std::span<const Section> sections, const Take& take) {
+void for_each_ticket(const Header& header, std::span<const std::uint64_t> sizes,
+                     std::span<const Section> sections, const Take& take) {
   static constexpr std::array<std::byte, kSectionAlignment> kZeros{};
-  const auto take_aligned = [&](Section piece) {
-    take(piece);
-    take(Section(kZeros).first(aligned(piece.size()) - piece.size()));
+  const auto take_aligned = [&](Section ticket) {
+    take(ticket);
+    take(Section(kZeros).first(aligned(ticket.size()) - ticket.size()));
   };
   take_aligned(std::as_bytes(std::span(&header, 1)));
   take_aligned(std::as_bytes(sizes));
@@ -72,7 +72,7 @@ Header sealed_header(const SealedKind& kind, std::span<const std::uint64_t> size
   header.file_bytes = sizeof header + aligned(sizes.size_bytes());
   for (const std::uint64_t size : sizes) header.file_bytes += aligned(size);
   ChecksumStream checksum;
-  for_each_piece(header, sizes, sections, [&](Section piece) { checksum.add(piece); });
+  for_each_ticket(header, sizes, sections, [&](Section ticket) { checksum.add(ticket); });
   header.checksum = checksum.value();
   return header;
 }
@@ -148,7 +148,7 @@ void check_checksum(const std::string& path, Header header, Section bytes) {
 std::vector<Section> split(const std::string& path, const Header& header, Section bytes) {
   const std::uint64_t count = header.section_count;
   const std::uint64_t table_end = sizeof header + aligned(count * sizeof(std::uint64_t));
-  bool fits = count <= kMostSections && table_end <= bytes.size();
+  bool fits = count <= kMaxSections && table_end <= bytes.size();
   std::vector<Section> sections;
   std::uint64_t offset = table_end;
   for (std::uint64_t i = 0; fits && i < count; ++i) {
@@ -166,16 +166,16 @@ std::vector<Section> split(const std::string& path, const Header& header, Sectio
 
 void write_sealed_file(const std::string& path, const SealedKind& kind,
                        std::span<const Section> sections, Durable durable) {
-  if (sections.size() > kMostSections) {
+  if (sections.size() > kMaxSections) {
     throw Error(ErrorKind::failed, fmt::format("cannot write {}: {} sections, and at most {} fit",
-                                               path, sections.size(), kMostSections));
+                                               path, sections.size(), kMaxSections));
   }
   std::vector<std::uint64_t> sizes;
   for (const Section& section : sections) sizes.push_back(section.size());
   const Header header = sealed_header(kind, sizes, sections);
   PendingFile file(path);
-  for_each_piece(header, sizes, sections, [&](Section piece) {
-    file.write(reinterpret_cast<const char*>(piece.data()), piece.size());
+  for_each_ticket(header, sizes, sections, [&](Section ticket) {
+    file.write(reinterpret_cast<const char*>(ticket.data()), ticket.size());
   });
   file.close(durable);
   try {

@@ -27,7 +27,7 @@ struct SealedKind {
 using Section = std::span<const std::byte>;
 
 /// Sections of a file at most.
-inline constexpr std::size_t kMostSections = 1024;
+inline constexpr std::size_t kMaxSections = 1024;
 
 /// Sections begin at multiples of this many bytes.
 inline constexpr std::size_t kSectionAlignment = 128;

@@ -4,8 +4,8 @@
 
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
-#include "device/programs/compiler_processes.hpp"
 #include "device/context.hpp"
+#include "device/programs/compiler_processes.hpp"
 #include "passes/passes.hpp"
 
 namespace dapple {
@@ -25,7 +25,7 @@ DeviceCheck check_device(const Device& device) {
   DeviceContext& context = device.context();
   compile_ahead(context);
   DeviceCheck check;
-  check.trace_with = company_in_picture(context, Estimator::prefiltered, 1);
+  check.packets = packets_in_picture(context, Estimator::prefiltered, 1);
   for (const auto& [kernel, group] : every_kernel(context)) {
     try {
       const std::size_t largest = context.largest_group(kernel);

@@ -12,24 +12,24 @@ constexpr std::size_t kScanItems = 256;
 
 /// Rays of a point from which on they go together: of AO rays 2 took up to a seventh longer than
 /// one by one, 4 were 1.15 to 1.4 times as fast, exact or prefiltered (sapling, tree, cards).
-constexpr uint kLeastPacket = 4;
+constexpr uint kMinPacketRays = 4;
 
 /// And from which on they go without those of other points, with arithmetic for one origin: 16 rays
 /// of points in space took 0.8 (tree, forest) to 0.98 times as long (cards).
-constexpr uint kLeastOfPoint = 16;
+constexpr uint kMinPointPacketRays = 16;
 
 /// The same of exact rays, whose time goes into triangles: with 16 packets of 64 that are full, of
 /// several points, took 0.89 (sapling), 0.97 (forest) and 0.84 of the time (cards).
-constexpr uint kLeastOfExactPoint = 32;
+constexpr uint kMinExactPointPacketRays = 32;
 
 /// Part of the chunks of neighbours that are whole. What is left when threads take the last ones is
 /// short then: AO of sapling and forest took 0.94 of the time that it took in fixed shares, and
 /// with no small chunks 0.96.
-constexpr uint kWholeOfFour = 3;
+constexpr uint kLargeBatchQuarters = 3;
 
 /// Rays of points that are a piece of work on a CPU, at most, but for a point that has more:
 /// threads that take turns point by point all look at the same nodes.
-constexpr uint kPieceRays = 256;
+constexpr uint kRaysPerTicket = 256;
 
 /// Items a work-group: few where each has much to do.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kCameraGroup = 1, kPointGroup = 1;
@@ -40,46 +40,47 @@ constexpr std::size_t kRayLanes = 16;
 
 /// Parts of at most `size` that hold `count`.
 template <class T>
-T parts_of(T count, T size) {
+T ceil_div(T count, T size) {
   return (count + size - 1) / size;
 }
 
 std::size_t hit_records(std::size_t samples) {
-  return parts_of<std::size_t>(samples, DAPPLE_HIT_BITS);
+  return ceil_div<std::size_t>(samples, DAPPLE_HIT_BITS);
 }
 
 /// Never a question of how many rays there are in all: kernels differ in roundings, and a crop must
 /// make the bits of the whole picture.
-Company company(Estimator estimator, uint rays_per_point, RayOrder order,
-                const DeviceContext& context) {
-  if (context.trace_with() != Company::automatic) return context.trace_with();
-  const bool share = rays_per_point >= kLeastPacket;
-  if (context.info().kind != "CPU")
-    return share && estimator == Estimator::packet ? Company::point : Company::alone;
-  const uint least_of_point = estimator == Estimator::exact ? kLeastOfExactPoint : kLeastOfPoint;
-  if (rays_per_point >= least_of_point) return Company::point;
-  return share || order == RayOrder::by_pixel ? Company::neighbours : Company::alone;
+Packets choose_packets(Estimator estimator, uint rays_per_point, RayOrder order,
+                       const DeviceContext& context) {
+  if (context.packets() != Packets::automatic) return context.packets();
+  if (context.info().kind != "CPU") return Packets::none;
+  const uint min_of_point =
+      estimator == Estimator::exact ? kMinExactPointPacketRays : kMinPointPacketRays;
+  if (rays_per_point >= min_of_point) return Packets::point;
+  return rays_per_point >= kMinPacketRays || order == RayOrder::by_pixel ? Packets::pixel
+                                                                         : Packets::none;
 }
 
 /// Cuts a queue of neighbours into chunks, of which there are as many as it says. Not a question of
 /// how many threads there are: who travels together decides what is counted as visits.
-uint cut_neighbours(OcclusionParams& params) {
-  params.large_chunks = params.ray_count / DAPPLE_NEIGHBOUR_CHUNK * kWholeOfFour / 4;
-  const uint rest = params.ray_count - params.large_chunks * DAPPLE_NEIGHBOUR_CHUNK;
-  return params.large_chunks + parts_of<uint>(rest, DAPPLE_SMALL_CHUNK);
+uint split_pixel_rays(OcclusionParams& params) {
+  params.large_batches = params.ray_count / DAPPLE_PIXEL_RAY_BATCH * kLargeBatchQuarters / 4;
+  const uint rest = params.ray_count - params.large_batches * DAPPLE_PIXEL_RAY_BATCH;
+  return params.large_batches + ceil_div<uint>(rest, DAPPLE_SMALL_RAY_BATCH);
 }
 
 /// The same of points, and puts chunks together to pieces, of which it says the number.
-uint cut_points(bool on_cpu, OcclusionParams& params) {
-  const uint chunks = parts_of<uint>(params.rays_per_point, DAPPLE_POINT_CHUNK);
-  params.piece_chunks = on_cpu ? std::max(1u, kPieceRays / params.rays_per_point) : 1u;
-  return parts_of<uint>(params.ray_count / params.rays_per_point * chunks, params.piece_chunks);
+uint split_point_rays(bool on_cpu, OcclusionParams& params) {
+  const uint chunks = ceil_div<uint>(params.rays_per_point, DAPPLE_POINT_RAY_BATCH);
+  params.batches_per_ticket = on_cpu ? std::max(1u, kRaysPerTicket / params.rays_per_point) : 1u;
+  return ceil_div<uint>(params.ray_count / params.rays_per_point * chunks,
+                        params.batches_per_ticket);
 }
 
-KernelName occlusion_kernel(Estimator estimator, Company with) {
+KernelName occlusion_kernel(Estimator estimator, Packets with) {
   const bool prefiltered = estimator != Estimator::exact;
-  if (with == Company::alone) return {"occlusion", "occlusion/occlusion", {prefiltered}};
-  return {"packet", "occlusion/packet", {prefiltered, with == Company::point}};
+  if (with == Packets::none) return {"occlusion", "occlusion/occlusion", {prefiltered}};
+  return {"packet", "occlusion/packet", {prefiltered, with == Packets::point}};
 }
 
 KernelName point_ao_kernel(Estimator estimator) {
@@ -92,8 +93,8 @@ KernelName camera_kernel(bool orthographic) {
 
 /// Several only where items of a group run side by side: packets take so much memory that Intel's
 /// CPU runtime refuses groups of 16.
-std::size_t packet_group(const DeviceContext& context, Company with) {
-  return with == Company::point && context.info().kind != "CPU" ? kPacketGroup : 1;
+std::size_t packet_group(const DeviceContext& context, Packets with) {
+  return with == Packets::point && context.info().kind != "CPU" ? kPacketGroup : 1;
 }
 
 const KernelName kClosestHit{"closest_hit", "camera/closest_hit", {}};
@@ -124,7 +125,7 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
 }
 
 Queues make_point_queues(DeviceContext& context, std::size_t points, std::size_t rays_per_point) {
-  const std::size_t at_work = context.groups_in_turns(points);
+  const std::size_t at_work = context.groups_with_tickets(points);
   Queues queues;
   queues.rays = context.allocate(at_work * rays_per_point * sizeof(Ray));
   queues.occlusions = context.allocate(points * sizeof(float));
@@ -134,12 +135,13 @@ Queues make_point_queues(DeviceContext& context, std::size_t points, std::size_t
 void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                  const CameraParams& params) {
   const std::size_t rays =
-      std::size_t{params.slice.pixel_count} * (params.slice.sample_count >> params.depth_bits);
+      std::size_t{params.slice.pixel_count} * (params.slice.sample_count >> params.splitting_bits);
   CameraParams camera = params;
   camera.scene = scene.params;
-  constexpr std::size_t kPieceOfRays = std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_PIECE_ITEMS;
-  context.launch_in_turns(
-      camera_kernel(params.orthographic != 0), "camera", parts_of(rays, kPieceOfRays),
+  constexpr std::size_t kCameraRaysPerTicket =
+      std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_ITEMS_PER_TICKET;
+  context.launch_with_tickets(
+      camera_kernel(params.orthographic != 0), "camera", ceil_div(rays, kCameraRaysPerTicket),
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.work, queues.points, queues.sample_hits, camera},
       kCameraGroup);
@@ -167,14 +169,14 @@ std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::si
 
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  context.launch(kAoRays, "ao rays", parts_of(rays, kRayLanes),
+  context.launch(kAoRays, "ao rays", ceil_div(rays, kRayLanes),
                  {queues.points, queues.active, queues.rays, params}, kPacketGroup);
 }
 
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  context.launch(kLightRays, "light rays", parts_of(rays, kRayLanes),
+  context.launch(kLightRays, "light rays", ceil_div(rays, kRayLanes),
                  {queues.points, queues.active, scene.lights, scene.emitters, scene.environments,
                   queues.rays, params},
                  kPacketGroup);
@@ -183,11 +185,11 @@ void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Qu
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order) {
-  occlusion_pass_with(company(estimator, params.rays_per_point, order, context), context, queues,
-                      scene, label, estimator, params);
+  occlusion_pass_with(choose_packets(estimator, params.rays_per_point, order, context), context,
+                      queues, scene, label, estimator, params);
 }
 
-void occlusion_pass_with(Company with, DeviceContext& context, const Queues& queues,
+void occlusion_pass_with(Packets with, DeviceContext& context, const Queues& queues,
                          const DeviceBuffers& scene, const std::string& label, Estimator estimator,
                          const OcclusionParams& params) {
   OcclusionParams launched = params;
@@ -195,28 +197,29 @@ void occlusion_pass_with(Company with, DeviceContext& context, const Queues& que
   const std::vector<KernelArgument> arguments{
       scene.nodes,  scene.blocks,    scene.segments, scene.textured,    scene.materials,
       scene.texels, scene.instances, queues.rays,    queues.occlusions, launched};
-  if (with == Company::alone) {
+  if (with == Packets::none) {
     context.launch(kernel, label, params.ray_count, arguments, kRayGroup);
   } else {
-    const uint pieces = with == Company::neighbours
-                            ? cut_neighbours(launched)
-                            : cut_points(context.info().kind == "CPU", launched);
-    context.launch_in_turns(kernel, label, pieces, arguments, packet_group(context, with));
+    const uint ticket_count = with == Packets::pixel
+                                  ? split_pixel_rays(launched)
+                                  : split_point_rays(context.info().kind == "CPU", launched);
+    context.launch_with_tickets(kernel, label, ticket_count, arguments,
+                                packet_group(context, with));
   }
 }
 
 bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays_per_point) {
-  return context.info().kind == "CPU" && rays_per_point <= DAPPLE_POINT_CHUNK &&
-         company(estimator, static_cast<uint>(rays_per_point), RayOrder::any, context) ==
-             Company::point;
+  return context.info().kind == "CPU" && rays_per_point <= DAPPLE_POINT_RAY_BATCH &&
+         choose_packets(estimator, static_cast<uint>(rays_per_point), RayOrder::any, context) ==
+             Packets::point;
 }
 
 void point_ao_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                    Estimator estimator, const AoParams& ao_params, const OcclusionParams& params) {
   OcclusionParams launched = params;
-  const uint pieces = cut_points(true, launched);
-  context.launch_in_turns(
-      point_ao_kernel(estimator), "ao", pieces,
+  const uint ticket_count = split_point_rays(true, launched);
+  context.launch_with_tickets(
+      point_ao_kernel(estimator), "ao", ticket_count,
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.points, queues.rays, queues.occlusions, ao_params, launched},
       kPointGroup);
@@ -251,16 +254,16 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   for (const bool orthographic : {false, true})
     kernels.push_back({camera_kernel(orthographic), kCameraGroup});
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
-    kernels.push_back({occlusion_kernel(estimator, Company::alone), kRayGroup});
+    kernels.push_back({occlusion_kernel(estimator, Packets::none), kRayGroup});
     kernels.push_back({point_ao_kernel(estimator), kPointGroup});
-    for (const Company with : {Company::neighbours, Company::point})
+    for (const Packets with : {Packets::pixel, Packets::point})
       kernels.push_back({occlusion_kernel(estimator, with), packet_group(context, with)});
   }
   return kernels;
 }
 
-Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays) {
-  return company(estimator, static_cast<uint>(rays), RayOrder::by_pixel, context);
+Packets packets_in_picture(const DeviceContext& context, Estimator estimator, int rays) {
+  return choose_packets(estimator, static_cast<uint>(rays), RayOrder::by_pixel, context);
 }
 
 void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -276,7 +279,7 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
                                   kCompactHits, kResolveSurface};
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(
-        occlusion_kernel(options.estimator, company_in_picture(context, options.estimator, rays)));
+        occlusion_kernel(options.estimator, packets_in_picture(context, options.estimator, rays)));
   };
   if (options.ao) {
     add_occlusion(options.ao_rays);

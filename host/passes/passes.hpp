@@ -66,7 +66,7 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                     RayOrder order = RayOrder::any);
 
 /// The same in the company that it says.
-void occlusion_pass_with(Company with, DeviceContext& context, const Queues& queues,
+void occlusion_pass_with(Packets with, DeviceContext& context, const Queues& queues,
                          const DeviceBuffers& scene, const std::string& label, Estimator estimator,
                          const OcclusionParams& params);
 
@@ -98,7 +98,7 @@ struct KernelShape {
 std::vector<KernelShape> every_kernel(const DeviceContext& context);
 
 /// Whom the occlusion rays of a picture are traced with, that many of each sample.
-Company company_in_picture(const DeviceContext& context, Estimator estimator, int rays);
+Packets packets_in_picture(const DeviceContext& context, Estimator estimator, int rays);
 
 /// What a picture with these options, camera and lights needs.
 std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,

@@ -31,7 +31,7 @@ Estimator estimator_of(const Variant& variant) {
   return variant.prefiltered ? Estimator::prefiltered : Estimator::exact;
 }
 
-void occlude_nothing(EmptyStage& s, Company with, const Variant& variant) {
+void occlude_nothing(EmptyStage& s, Packets with, const Variant& variant) {
   OcclusionParams params{};
   params.rays_per_point = 1;
   occlusion_pass_with(with, s.context, s.queues, s.scene, "occlusion", estimator_of(variant),
@@ -40,7 +40,7 @@ void occlude_nothing(EmptyStage& s, Company with, const Variant& variant) {
 
 void find_nothing(EmptyStage& s, const Variant& variant) {
   CameraParams params{};
-  params.orthographic = !variant.one_point;
+  params.orthographic = !variant.shared_origin;
   camera_pass(s.context, s.scene, s.queues, params);
 }
 
@@ -61,10 +61,10 @@ const std::map<std::string, Pass>& passes() {
       {"ao_rays", [](EmptyStage& s, const Variant&) { ao_ray_pass(s.context, s.queues, {}); }},
       {"light_rays",
        [](EmptyStage& s, const Variant&) { light_ray_pass(s.context, s.scene, s.queues, {}); }},
-      {"occlusion", [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Company::alone, v); }},
+      {"occlusion", [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::none, v); }},
       {"packet",
        [](EmptyStage& s, const Variant& v) {
-         occlude_nothing(s, v.one_point ? Company::point : Company::neighbours, v);
+         occlude_nothing(s, v.shared_origin ? Packets::point : Packets::pixel, v);
        }},
       {"point_ao", average_nothing},
       {"resolve_surface",
@@ -85,9 +85,9 @@ const std::map<std::string, Pass>& passes() {
 
 }  // namespace
 
-void rehearse(const Device& device, const std::vector<KernelName>& kernels) {
+void warm_up(const Device& device, const std::vector<KernelName>& kernels) {
   EmptyStage stage(device);
-  stage.context.rehearse();
+  stage.context.warm_up();
   for (const KernelName& kernel : kernels) {
     const auto pass = passes().find(kernel.name);
     if (pass == passes().end()) throw Error(ErrorKind::usage, "no kernel: '" + kernel.name + "'");

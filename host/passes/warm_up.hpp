@@ -7,6 +7,6 @@
 namespace dapple {
 
 /// One of every_kernel(). Throws Error usage for any other.
-void rehearse(const Device& device, const std::vector<KernelName>& kernels);
+void warm_up(const Device& device, const std::vector<KernelName>& kernels);
 
 }  // namespace dapple

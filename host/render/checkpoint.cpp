@@ -21,7 +21,7 @@ constexpr SealedKind kKind{"checkpoint", 2};
 constexpr std::size_t kFirstGroup = 4;  ///< its section
 
 /// Nothing asks for more than 2^20 samples a pixel, and no device takes larger slices.
-constexpr std::uint32_t kMostSamples = DAPPLE_MOST_DEPTHS << 20;
+constexpr std::uint32_t kMaxSamples = DAPPLE_MAX_CAMERA_SPLITTING << 20;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
   throw Error(ErrorKind::failed, fmt::format("--resume {}: {}", path, reason));
@@ -91,10 +91,10 @@ Checkpoint checkpoint_of(const SealedFile& file) {
 
 bool fits(const Round& round, std::uint32_t slice_samples, std::size_t pixels) {
   for (const WorkGroup& group : round.groups) {
-    if (group.samples < 1 || group.samples > kMostSamples) return false;
+    if (group.samples < 1 || group.samples > kMaxSamples) return false;
     if (group.work.empty() || group.work.size() > pixels) return false;
     for (const PixelWork& work : group.work)
-      if (work.pixel >= pixels || work.first_sample > kMostSamples) return false;
+      if (work.pixel >= pixels || work.first_sample > kMaxSamples) return false;
   }
   if (round.is_done()) return true;
   if (round.entry >= round.groups[round.group].work.size()) return false;
@@ -144,8 +144,8 @@ void check_state(const std::string& path, const TraceState& state, const StateSh
                              shape.sums, shape.squares, shape.pixels));
   }
   const bool too_many = std::any_of(state.samples.begin(), state.samples.end(),
-                                    [](std::uint32_t samples) { return samples > kMostSamples; });
-  if (too_many || state.slice_samples < DAPPLE_BATCH || state.slice_samples > kMostSamples ||
+                                    [](std::uint32_t samples) { return samples > kMaxSamples; });
+  if (too_many || state.slice_samples < DAPPLE_SAMPLE_BATCH || state.slice_samples > kMaxSamples ||
       !fits(state.round, state.slice_samples, shape.pixels)) {
     refuse(path, "damaged: its list of work is not of this picture");
   }

@@ -43,17 +43,18 @@ void check_crop(const RenderOptions& options) {
 void check_sample_product(const char* flag, const RenderOptions& options, int rays) {
   const bool adaptive = is_adaptive(options);
   const int spp = adaptive ? options.max_spp : options.spp;
-  if (static_cast<double>(spp) * rays <= kMostRaysOfPixel) return;
+  if (static_cast<double>(spp) * rays <= kMaxRaysOfPixel) return;
   throw Error(ErrorKind::usage,
               fmt::format("{} {} times {} {} is more than {} rays a pixel",
-                          adaptive ? "--max-spp" : "--spp", spp, flag, rays, kMostRaysOfPixel));
+                          adaptive ? "--max-spp" : "--spp", spp, flag, rays, kMaxRaysOfPixel));
 }
 
-void check_depths(int depths) {
-  if (depths == 0 || depths == 1 || depths == 2 || depths == 4) return;
+void check_camera_splitting(int factor) {
+  if (factor == 0 || factor == 1 || factor == 2 || factor == 4) return;
   throw Error(
       ErrorKind::usage,
-      fmt::format("--depths is {}; it must be 1, 2 or 4, or 0 for what suits the scene", depths));
+      fmt::format("--camera-splitting is {}; it must be 1, 2 or 4, or 0 for what suits the scene",
+                  factor));
 }
 
 void check_targets(const RenderOptions& options) {
@@ -79,21 +80,19 @@ std::string name_of(Estimator estimator) {
       return "exact";
     case Estimator::prefiltered:
       return "prefiltered";
-    case Estimator::packet:
-      return "packet";
   }
   return "";
 }
 
-std::string name_of(Company company) {
-  switch (company) {
-    case Company::automatic:
+std::string name_of(Packets packets) {
+  switch (packets) {
+    case Packets::automatic:
       return "auto";
-    case Company::alone:
-      return "alone";
-    case Company::neighbours:
-      return "neighbours";
-    case Company::point:
+    case Packets::none:
+      return "none";
+    case Packets::pixel:
+      return "pixel";
+    case Packets::point:
       return "point";
   }
   return "";
@@ -132,7 +131,7 @@ void validate(const RenderOptions& options) {
   check_range("footprint_spp", options.footprint_spp, 0, 1 << 20);
   check_range("footprint_ao_rays", options.footprint_ao_rays, 0, 4096);
   check_targets(options);
-  check_depths(options.depths);
+  check_camera_splitting(options.camera_splitting);
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);
   check_range("--footprint", options.footprint, 0, 1e6);
@@ -148,9 +147,9 @@ void validate(const RenderOptions& options) {
     check_point("--up", options.look->up);
   }
   check_crop(options);
-  const int depths = std::max(1, options.depths);
-  check_sample_product("--ao-rays", options, std::max(options.ao_rays, depths));
-  check_sample_product("--light-rays", options, options.light_rays * depths);
+  const int splitting = std::max(1, options.camera_splitting);
+  check_sample_product("--ao-rays", options, std::max(options.ao_rays, splitting));
+  check_sample_product("--light-rays", options, options.light_rays * splitting);
 }
 
 }  // namespace dapple

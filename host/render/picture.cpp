@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "camera/camera_splitting.hpp"
-#include "sampling/film_moments.hpp"
 #include "passes/passes.hpp"
+#include "sampling/film_moments.hpp"
 #include "sampling/sample_plan.hpp"
 
 namespace dapple {
@@ -32,7 +32,7 @@ std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& op
   const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
                            lights * static_cast<std::size_t>(options.light_rays);
   const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);
-  return std::max(DAPPLE_BATCH, static_cast<uint>(samples));
+  return std::max(DAPPLE_SAMPLE_BATCH, static_cast<uint>(samples));
 }
 
 class PictureTracer {
@@ -86,7 +86,7 @@ class PictureTracer {
   /// Whether some pixels have the two batches that tell a variance, and all others one.
   [[nodiscard]] bool all_know_errors(const std::vector<std::uint32_t>& samples) const {
     const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
-    return *least >= DAPPLE_BATCH && *most >= 2 * DAPPLE_BATCH;
+    return *least >= DAPPLE_SAMPLE_BATCH && *most >= 2 * DAPPLE_SAMPLE_BATCH;
   }
 
   /// Onto the device, where from now on they are.
@@ -133,16 +133,16 @@ class PictureTracer {
   }
 
   std::vector<WorkGroup> next_for_target(SamplePlan& plan) {
-    std::vector<WorkGroup> groups = plan.scouts();
+    std::vector<WorkGroup> groups = plan.pilot();
     if (!groups.empty()) return groups;
-    const bool only_scouts = plan.only_scouts_have_samples();
+    const bool only_pilot = plan.only_pilot_has_samples();
     // Errors depend on the order, by roundings: with a target it is always the same.
-    if (!only_scouts && !(groups = plan.least()).empty()) return groups;
+    if (!only_pilot && !(groups = plan.least()).empty()) return groups;
     const std::vector<std::uint32_t>& samples = plan.samples();
     const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
     const FilmMoments moments(sums, squares, layout_, options_, samples, width_);
     std::vector<std::vector<float>> variances = moments.variances();
-    if (only_scouts) return plan.after_scouts(variances);
+    if (only_pilot) return plan.after_pilot(variances);
     groups = plan.next(variances, [&] { return moments.costs(); });
     if (groups.empty()) variances_ = std::move(variances);
     return groups;
@@ -188,7 +188,7 @@ class PictureTracer {
     }
     for (std::vector<float>& pass : errors) {
       tbb::parallel_for(std::size_t{0}, pass.size(), [&](std::size_t p) {
-        pass[p] = std::sqrt(pass[p] * DAPPLE_BATCH / static_cast<float>(samples[p]));
+        pass[p] = std::sqrt(pass[p] * DAPPLE_SAMPLE_BATCH / static_cast<float>(samples[p]));
       });
     }
     return errors;
@@ -197,7 +197,7 @@ class PictureTracer {
   ResolveParams resolve_params(const View& view) const {
     ResolveParams params{};
     params.film_pixels = layout_.pixels;
-    params.depth_bits = camera_.depth_bits;
+    params.splitting_bits = camera_.splitting_bits;
     params.position_scale = layout_.position_scale;
     params.depth_scale = layout_.depth_scale;
     const M44f& m = view.camera.to_world;

@@ -7,12 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "dapple/wavefront.hpp"
-#include "device/programs/compiler_processes.hpp"
 #include "device/context.hpp"
+#include "device/programs/compiler_processes.hpp"
 #include "device/upload/memory_need.hpp"
-#include "camera/camera_splitting.hpp"
 #include "film/film_memory.hpp"
 #include "passes/passes.hpp"
 #include "render/picture.hpp"
@@ -24,7 +24,7 @@ namespace {
 
 /// Overrides, lights and ground, in the order that framing needs: the camera sees the
 /// scene as it came, without the ground.
-View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
+View prepare_rooms(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   View view = choose_view(scene, options, notes);
   if (options.light && scene.lights.empty()) {
@@ -35,7 +35,7 @@ View furnish(Scene& scene, const RenderOptions& options, std::vector<std::string
   check_film_memory(view, options.light ? scene.lights.size() : 0);
   if (options.ground) add_ground(scene);
   merge_single_instances(scene);
-  settle_domes(scene);
+  finalize_domes(scene);
   return view;
 }
 
@@ -54,12 +54,12 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   };
   set("estimator", name_of(options.estimator));
   set("footprint", options.footprint);
-  if (options.trace_with != Company::automatic) set("trace_with", name_of(options.trace_with));
+  if (options.packets != Packets::automatic) set("packets", name_of(options.packets));
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
   if (footprint_samples(options) != options.spp) set("footprint_spp", footprint_samples(options));
-  set("depths", options.depths);
+  set("camera_splitting", options.camera_splitting);
   set("ao_rays", options.ao_rays);
   set("light_rays", options.light_rays);
   set("ao_distance", options.ao_distance);
@@ -111,7 +111,7 @@ void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
 
 /// What a device was opened with.
 std::array<std::string, 3> device_key(const RenderOptions& options) {
-  return {options.device, options.kernel_dir, name_of(options.trace_with)};
+  return {options.device, options.kernel_dir, name_of(options.packets)};
 }
 
 }  // namespace
@@ -133,7 +133,7 @@ void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statis
   if (!device || key != device_key) {
     *this = {};
     device_key = key;
-    device.emplace(options.device, options.kernel_dir, options.trace_with);
+    device.emplace(options.device, options.kernel_dir, options.packets);
   }
   statistics.device = device->info().name;
   for (std::string& note : device->context().notes()) statistics.notes.push_back(std::move(note));
@@ -180,8 +180,8 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   RenderStatistics& statistics = result.statistics;
   statistics.estimator = name_of(options.estimator);
 
-  const View view = furnish(scene, options, statistics.notes);
-  options.depths = choose_depths(options, scene, view);
+  const View view = prepare_rooms(scene, options, statistics.notes);
+  options.camera_splitting = choose_camera_splitting(options, scene, view);
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);
   const RenderOptions sampled = by_sample(options);
@@ -189,7 +189,7 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   Kept kept = std::exchange(*kept_, {});
   kept.open(options, statistics);
   const Device& device = *kept.device;
-  check_memory(device.info(), least_need(scene), "needs at least");
+  check_memory(device.info(), min_need(scene), "needs at least");
   const auto kernels = picture_kernels(device.context(), sampled, view.camera, scene.lights);
   CompilerProcesses processes;
   processes.start(device.context(), kernels, CompileTo::machine_code);

@@ -12,7 +12,7 @@
 
 namespace dapple {
 
-/// Of one pixel in one pass. A batch is DAPPLE_BATCH samples, a pair two batches in a row.
+/// Of one pixel in one pass. A batch is DAPPLE_SAMPLE_BATCH samples, a pair two batches in a row.
 struct BatchMoments {
   float mean = 0;           ///< of all samples
   float squares = 0;        ///< of the batches' means, summed
@@ -52,7 +52,9 @@ inline float batch_variance(const BatchMoments& of_pixel, std::uint32_t batches)
 template <class Moments>
 std::vector<float> batch_variances(const std::vector<std::uint32_t>& samples, int width,
                                    const Moments& moments) {
-  const auto batches = [&](std::size_t p) { return samples[p] / DAPPLE_BATCH; };  // whole ones
+  const auto batches = [&](std::size_t p) {
+    return samples[p] / DAPPLE_SAMPLE_BATCH;
+  };  // whole ones
   const auto own = [&](std::size_t p) -> std::array<float, 2> {
     if (batches(p) < 2) return {};
     return {batch_variance(moments(p), batches(p)), 1.0f};
@@ -76,12 +78,12 @@ std::vector<float> batch_variances(const std::vector<std::uint32_t>& samples, in
 template <class Moments>
 void add_variances_of_single_batches(const std::vector<std::uint32_t>& samples, int width,
                                      const Moments& moments, std::vector<float>& variances) {
-  const auto is_single = [](std::uint32_t s) { return s / DAPPLE_BATCH == 1; };
+  const auto is_single = [](std::uint32_t s) { return s / DAPPLE_SAMPLE_BATCH == 1; };
   if (std::none_of(samples.begin(), samples.end(), is_single)) return;
   const auto own = [&](std::size_t p) -> std::array<float, 4> {
     if (samples[p] == 0) return {};
     const float mean = moments(p).mean;
-    return {mean, mean * mean, 1.0f, DAPPLE_BATCH / static_cast<float>(samples[p])};
+    return {mean, mean * mean, 1.0f, DAPPLE_SAMPLE_BATCH / static_cast<float>(samples[p])};
   };
   std::vector<float> spreads(samples.size());
   visit_neighbourhoods(samples.size(), width, own,
@@ -95,7 +97,7 @@ void add_variances_of_single_batches(const std::vector<std::uint32_t>& samples, 
                        });
   double known = 0, spread = 0;
   for (std::size_t p = 0; p < samples.size(); ++p) {
-    if (samples[p] < 2 * DAPPLE_BATCH) continue;
+    if (samples[p] < 2 * DAPPLE_SAMPLE_BATCH) continue;
     known += variances[p];
     spread += spreads[p];
   }

@@ -63,7 +63,7 @@ std::vector<float> FilmMoments::light_variances(std::size_t light) const {
 // sapling.) Of scouts it is the largest mean: what they don't see is larger by about as much.
 double FilmMoments::largest_unoccluded(const LightPlaneRange& planes, double scale,
                                        const std::vector<float>& variances) const {
-  const bool only_scouts = std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
+  const bool only_pilot = std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
   const auto unoccluded = [&](std::size_t p) -> std::array<float, 2> {
     if (samples_[p] == 0) return {};
     const auto pixel = static_cast<std::uint32_t>(p);
@@ -77,7 +77,8 @@ double FilmMoments::largest_unoccluded(const LightPlaneRange& planes, double sca
         if (own[1] == 0) return;
         const auto samples = static_cast<float>(samples_[p]);
         const float mean = own[0] / samples, by_others = around[0] / around[1] * own[1] / samples;
-        const float error = only_scouts ? 0.0f : std::sqrt(variances[p] * DAPPLE_BATCH / samples);
+        const float error =
+            only_pilot ? 0.0f : std::sqrt(variances[p] * DAPPLE_SAMPLE_BATCH / samples);
         float& most = of_rows[p / static_cast<std::size_t>(width_)];
         most = std::max({most, mean - error, std::min(mean, by_others)});
       });

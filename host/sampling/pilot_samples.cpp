@@ -31,23 +31,23 @@ int cell_side(int width, int height) {
 
 }  // namespace
 
-std::vector<bool> scout_pixels(int width, int height, Scouts which) {
+std::vector<bool> pilot_pixels(int width, int height, PilotPass which) {
   const int cell = cell_side(width, height);
   if (squares_of(width, height, cell) < kFewest) return {};
-  std::vector<bool> scouts(static_cast<std::size_t>(width) * height, false);
+  std::vector<bool> pilot(static_cast<std::size_t>(width) * height, false);
   std::mt19937 random;  // the same everywhere
   const auto place = [&] { return static_cast<int>(random() % (cell / kSquare)) * kSquare; };
   for (int row = 0; row < height / cell; ++row) {
     for (int column = 0; column < width / cell; ++column) {
       const int left = column * cell + place(), top = row * cell + place();
-      if (which == Scouts::vanguard && (row % 2 != 0 || column % 2 != 0)) continue;
+      if (which == PilotPass::first_pass && (row % 2 != 0 || column % 2 != 0)) continue;
       for (int y = top; y < top + kSquare; ++y) {
-        const auto begin = scouts.begin() + static_cast<std::ptrdiff_t>(y) * width + left;
+        const auto begin = pilot.begin() + static_cast<std::ptrdiff_t>(y) * width + left;
         std::fill_n(begin, kSquare, true);
       }
     }
   }
-  return scouts;
+  return pilot;
 }
 
 }  // namespace dapple

@@ -10,15 +10,15 @@ namespace {
 /// Samples a pixel and slice: all if they fit, else whole pairs of batches, or one batch.
 std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
   if (group.samples <= slice_samples) return group.samples;
-  const std::uint32_t pairs = slice_samples / (2 * DAPPLE_BATCH);
-  return pairs ? pairs * 2 * DAPPLE_BATCH : DAPPLE_BATCH;
+  const std::uint32_t pairs = slice_samples / (2 * DAPPLE_SAMPLE_BATCH);
+  return pairs ? pairs * 2 * DAPPLE_SAMPLE_BATCH : DAPPLE_SAMPLE_BATCH;
 }
 
 /// Pixels a slice: of 65,535 work-items and more PoCL compiles kernels once again.
-constexpr std::uint32_t kMostEntries = 65'472;
+constexpr std::uint32_t kMaxEntries = 65'472;
 
 std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
-  return std::min(slice_samples / samples_at_once(group, slice_samples), kMostEntries);
+  return std::min(slice_samples / samples_at_once(group, slice_samples), kMaxEntries);
 }
 
 void take_back(std::uint32_t& samples, std::uint32_t pending) {

@@ -20,7 +20,7 @@ constexpr int kHalvings = 10;
 /// deviations must save to be taken. It goes by estimates of these, and what is off in them costs.
 /// Of pictures with two batches a pixel those for which 0.06 to 0.2 was promised took 3 to 25 %
 /// more time than with equal ones, those for which 0.2 to 0.23, up to 13 % less.
-constexpr double kLeastSaved = 0.41;
+constexpr double kMinSaved = 0.41;
 
 /// Doublings after which all that vary want the most.
 constexpr int kDoublings = 60;
@@ -84,7 +84,7 @@ class ByDeviation {
 };
 
 /// The least density whose squared errors add up to no more than `enough`.
-double least_density(const ByDeviation& pass, double enough) {
+double min_density(const ByDeviation& pass, double enough) {
   double high = pass.free_error_sum() / enough, low = 0;
   for (int i = 0; i < kDoublings && pass.squared_error_sum(high) > enough; ++i) {
     low = high;
@@ -102,7 +102,7 @@ BatchCounts wanted_by_deviation(const std::vector<float>& variances,
                                 const BatchCounts& have, const AllocationLimits& limits,
                                 const BatchCounts& wanted) {
   const ByDeviation pass(variances, costs, have, limits, wanted);
-  const double density = least_density(pass, enough);
+  const double density = min_density(pass, enough);
   BatchCounts raised(wanted.size());
   for (std::size_t pixel = 0; pixel < raised.size(); ++pixel)
     raised[pixel] = pass.batches(pixel, density);
@@ -169,7 +169,7 @@ void want_rmse(const std::vector<float>& variances, const std::vector<float>& co
   BatchCounts by_deviation = wanted_by_deviation(variances, costs, enough, have, limits, wanted);
   const double batches = batches_alike(variances, enough, limits);
   const double saved = saved_by(by_deviation, batches, variances, costs, wanted);
-  if (saved * batches_where_varied(variances, have) >= kLeastSaved)
+  if (saved * batches_where_varied(variances, have) >= kMinSaved)
     wanted = std::move(by_deviation);
   else
     wanted = wanted_alike(variances, batches, wanted);

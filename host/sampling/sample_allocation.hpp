@@ -6,7 +6,7 @@
 
 namespace dapple {
 
-/// Batches of DAPPLE_BATCH samples that each pixel, or block of pixels, has or should have.
+/// Batches of DAPPLE_SAMPLE_BATCH samples that each pixel, or block of pixels, has or should have.
 using BatchCounts = std::vector<std::uint32_t>;
 
 /// What allocations keep to.

@@ -24,7 +24,7 @@ constexpr int kBlock = 2;
 /// Times the samples that it has, a pixel may get more in a round. With 3 in its place pictures
 /// took 4 to 10 % more time to the same error (sapling, tree, forest): their rays lay farther
 /// apart.
-constexpr std::uint32_t kMostMore = 8;
+constexpr std::uint32_t kMaxMore = 8;
 
 /// Batches that a pixel gets more at a time. Half of it fits each pixel's wants better, and takes 3
 /// to 10 % more time.
@@ -39,21 +39,22 @@ constexpr double kAim = 0.95;
 constexpr double kAimOfOne = 0.8;
 
 /// The same as the vanguard tells it, which knows it to a half.
-constexpr double kAimOfVanguard = 0.25;
+constexpr double kAimOfFirstPass = 0.25;
 
 /// Times the least that all pixels get at most after the scouts: of those that see nothing most
 /// samples are for nothing, and packets of more are hardly narrower.
-constexpr std::uint32_t kMostAfterScouts = 4;
+constexpr std::uint32_t kMaxAfterPilot = 4;
 
 /// Groups that get all their samples at once; of more, what is small is better traced together.
-constexpr std::size_t kMostGroups = 4;
+constexpr std::size_t kMaxGroups = 4;
 
 /// Samples that in passes every pixel has before any has more, and times what it has that it then
 /// gets more.
 constexpr std::uint32_t kFirst = 16, kPassGrowth = 3;
 
 std::uint32_t whole_batches(int samples) {
-  return (static_cast<std::uint32_t>(samples) + DAPPLE_BATCH - 1) / DAPPLE_BATCH * DAPPLE_BATCH;
+  return (static_cast<std::uint32_t>(samples) + DAPPLE_SAMPLE_BATCH - 1) / DAPPLE_SAMPLE_BATCH *
+         DAPPLE_SAMPLE_BATCH;
 }
 
 /// So many or more, of which the points of a sequence are best stratified: pictures of 6 and 12
@@ -139,7 +140,7 @@ double part_above_0(const std::vector<float>& values) {
 /// Batches that each block has.
 BatchCounts block_batches(const std::vector<std::uint32_t>& samples, int width) {
   BatchCounts counts = block_most(samples, width);
-  for (std::uint32_t& count : counts) count /= DAPPLE_BATCH;
+  for (std::uint32_t& count : counts) count /= DAPPLE_SAMPLE_BATCH;
   return counts;
 }
 
@@ -190,25 +191,25 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
     : width_(width),
       order_(tile_order(width, height)),
       samples_(std::move(samples)),
-      least_(static_cast<std::uint32_t>(options.spp)),
-      most_(least_),
-      one_may_do_(options.target_rmse > 0 && least_ <= DAPPLE_BATCH),
+      min_(static_cast<std::uint32_t>(options.spp)),
+      max_(min_),
+      one_may_do_(options.target_rmse > 0 && min_ <= DAPPLE_SAMPLE_BATCH),
       // Lights' errors are relative to the largest irradiance, of which few pixels know little.
-      vanguard_(one_may_do_ && !options.light),
+      first_pass_(one_may_do_ && !options.light),
       target_error_(options.target_error),
       target_rmse_(options.target_rmse) {
   samples_.resize(order_.size(), 0);
   if (!is_adaptive()) return;
   // Two batches are the least that tell a variance.
-  least_ = std::max(2 * DAPPLE_BATCH, whole_batches(options.spp));
-  most_ = std::max(least_, whole_batches(options.max_spp));
+  min_ = std::max(2 * DAPPLE_SAMPLE_BATCH, whole_batches(options.spp));
+  max_ = std::max(min_, whole_batches(options.max_spp));
   // What an earlier plan left at one batch is judged again by next().
-  if (one_may_do_ && fewest(samples_) == DAPPLE_BATCH) least_ = DAPPLE_BATCH;
+  if (one_may_do_ && fewest(samples_) == DAPPLE_SAMPLE_BATCH) min_ = DAPPLE_SAMPLE_BATCH;
 }
 
 std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
-  if (fewest(samples_) >= least_) return {};
-  if (all_equal(samples_)) return least_of_all(order);
+  if (fewest(samples_) >= min_) return {};
+  if (all_equal(samples_)) return min_of_all(order);
   std::map<std::uint32_t, WorkGroup> groups;
   WorkGroup* group = nullptr;  // neighbours mostly lack the same
   for (const std::uint32_t pixel : order_) {
@@ -227,11 +228,11 @@ std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
 }
 
 std::uint32_t SamplePlan::lacks(std::uint32_t has, SampleOrder order) const {
-  const std::uint32_t more = least_ - std::min(has, least_);
+  const std::uint32_t more = min_ - std::min(has, min_);
   return order == SampleOrder::passes ? std::min(more, std::max(kPassGrowth * has, kFirst)) : more;
 }
 
-std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
+std::vector<WorkGroup> SamplePlan::min_of_all(SampleOrder order) {
   const std::uint32_t has = samples_.front(), more = lacks(has, order);
   if (more == 0) return {};
   std::vector<WorkGroup> groups(1);
@@ -250,7 +251,7 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
 BatchCounts SamplePlan::wanted(const std::vector<std::vector<float>>& variances,
                                const BatchCounts& have, const Costs& costs) const {
   BatchCounts wanted = have;
-  const AllocationLimits limits{kUnit, most_ / DAPPLE_BATCH};
+  const AllocationLimits limits{kUnit, max_ / DAPPLE_SAMPLE_BATCH};
   if (target_rmse_ > 0) {
     const double enough = enough_of(samples_.size());
     std::vector<float> block_costs;
@@ -271,19 +272,19 @@ double SamplePlan::enough_of(std::size_t pixels) const {
   return double{target_rmse_} * target_rmse_ * static_cast<double>(pixels);
 }
 
-std::vector<WorkGroup> SamplePlan::scouts() {
+std::vector<WorkGroup> SamplePlan::pilot() {
   if (!is_adaptive() || samples_.front() > 0 || !all_equal(samples_)) return {};
-  return send(scout_pixels(width_, height(), vanguard_ ? Scouts::vanguard : Scouts::all));
+  return send(pilot_pixels(width_, height(), first_pass_ ? PilotPass::first_pass : PilotPass::all));
 }
 
-std::vector<WorkGroup> SamplePlan::send(const std::vector<bool>& scouts) {
-  if (scouts.empty()) return {};
+std::vector<WorkGroup> SamplePlan::send(const std::vector<bool>& pilot) {
+  if (pilot.empty()) return {};
   std::vector<WorkGroup> groups(1);
-  groups.front().samples = least_;
+  groups.front().samples = min_;
   for (const std::uint32_t pixel : order_) {
-    if (!scouts[pixel] || samples_[pixel] > 0) continue;
+    if (!pilot[pixel] || samples_[pixel] > 0) continue;
     groups.front().work.push_back({pixel, 0});
-    samples_[pixel] = least_;
+    samples_[pixel] = min_;
   }
   return groups;
 }
@@ -295,7 +296,7 @@ std::vector<std::uint32_t> SamplePlan::sampled() const {
   return pixels;
 }
 
-bool SamplePlan::only_scouts_have_samples() const {
+bool SamplePlan::only_pilot_has_samples() const {
   return is_adaptive() && !all_equal(samples_) &&
          std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();
 }
@@ -307,7 +308,7 @@ bool SamplePlan::one_batch_does(const std::vector<std::vector<float>>& variances
   for (const std::vector<float>& pass : variances) {
     double error = 0, enough = 0;
     for (const std::uint32_t pixel : pixels) {
-      if (samples_[pixel] <= DAPPLE_BATCH) continue;
+      if (samples_[pixel] <= DAPPLE_SAMPLE_BATCH) continue;
       error += pass[pixel];
       enough += double{target_rmse_} * target_rmse_;
     }
@@ -317,43 +318,43 @@ bool SamplePlan::one_batch_does(const std::vector<std::vector<float>>& variances
   return any_varies;
 }
 
-std::vector<WorkGroup> SamplePlan::after_scouts(const std::vector<std::vector<float>>& variances) {
-  const std::vector<std::uint32_t> scouts = sampled();
-  const std::vector<bool> all = scout_pixels(width_, height());
-  const bool is_vanguard = scouts.size() < static_cast<std::size_t>(std::ranges::count(all, true));
-  if (one_batch_does(variances, scouts, is_vanguard ? kAimOfVanguard : kAimOfOne)) {
-    least_ = DAPPLE_BATCH;
+std::vector<WorkGroup> SamplePlan::after_pilot(const std::vector<std::vector<float>>& variances) {
+  const std::vector<std::uint32_t> pilot = sampled();
+  const std::vector<bool> all = pilot_pixels(width_, height());
+  const bool is_first_pass = pilot.size() < static_cast<std::size_t>(std::ranges::count(all, true));
+  if (one_batch_does(variances, pilot, is_first_pass ? kAimOfFirstPass : kAimOfOne)) {
+    min_ = DAPPLE_SAMPLE_BATCH;
     fraction_done_ = 1;
     return least();
   }
-  if (is_vanguard) return send(all);
-  const double enough = enough_of(scouts.size());
+  if (is_first_pass) return send(all);
+  const double enough = enough_of(pilot.size());
   double batches = 0, varied = 0;
   for (const std::vector<float>& pass : variances) {
     const auto most = [](float a, float b) { return std::max(a, b); };
-    const std::vector<float> most_of_block = of_blocks_among(scouts, pass, most);
-    varied = std::max(varied, part_above_0(most_of_block));
+    const std::vector<float> max_of_block = of_blocks_among(pilot, pass, most);
+    varied = std::max(varied, part_above_0(max_of_block));
     if (target_rmse_ > 0) {
-      const std::vector<float> sums = of_blocks_among(scouts, pass, std::plus<>());
+      const std::vector<float> sums = of_blocks_among(pilot, pass, std::plus<>());
       batches = std::max(batches, squared_errors(sums, BatchCounts(sums.size(), 1)) / enough);
     } else {
       const double enough_of_block = double{target_error_} * target_error_;
-      batches = std::max(batches, lower_quartile(most_of_block) / enough_of_block);
+      batches = std::max(batches, lower_quartile(max_of_block) / enough_of_block);
     }
   }
-  const double samples = std::min<double>(batches * DAPPLE_BATCH, most_);
+  const double samples = std::min<double>(batches * DAPPLE_SAMPLE_BATCH, max_);
   const std::uint32_t given = well_stratified(samples);
-  least_ = std::max(least_, std::min({given, kMostAfterScouts * least_, most_}));
-  fraction_done_ = least_ / (least_ + varied * std::max(0.0, samples - least_));
+  min_ = std::max(min_, std::min({given, kMaxAfterPilot * min_, max_}));
+  fraction_done_ = min_ / (min_ + varied * std::max(0.0, samples - min_));
   return least();
 }
 
 std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& variances,
                                         const Costs& costs) {
-  if (fewest(samples_) < 2 * DAPPLE_BATCH) {
+  if (fewest(samples_) < 2 * DAPPLE_SAMPLE_BATCH) {
     fraction_done_ = 1;
     if (one_batch_does(variances, order_, 1.0)) return {};
-    least_ = 2 * DAPPLE_BATCH;
+    min_ = 2 * DAPPLE_SAMPLE_BATCH;
     return least();
   }
   const BatchCounts have = block_batches(samples_, width_);
@@ -368,19 +369,19 @@ std::vector<WorkGroup> SamplePlan::next(const std::vector<std::vector<float>>& v
   std::vector<std::uint32_t> more(all.size());
   double done = 0, missing = 0;
   for (std::size_t pixel = 0; pixel < more.size(); ++pixel) {
-    const std::uint32_t has = samples_[pixel] / DAPPLE_BATCH;
-    more[pixel] = std::min(all[pixel] - has, kMostMore * has / kUnit * kUnit);
+    const std::uint32_t has = samples_[pixel] / DAPPLE_SAMPLE_BATCH;
+    more[pixel] = std::min(all[pixel] - has, kMaxMore * has / kUnit * kUnit);
     done += has + more[pixel];
     missing += all[pixel] - has - more[pixel];
   }
   std::map<std::uint32_t, WorkGroup> groups;
-  const bool whole = count_values(more) <= kMostGroups;
+  const bool whole = count_values(more) <= kMaxGroups;
   for (const std::uint32_t pixel : order_) {
     // In parts of powers of two there are few groups whatever pixels want.
     for (std::uint32_t left = more[pixel], part = 0; left; left -= part) {
       part = whole ? left : left & -left;
       WorkGroup& group = groups[part];
-      group.samples = part * DAPPLE_BATCH;
+      group.samples = part * DAPPLE_SAMPLE_BATCH;
       group.work.push_back({pixel, samples_[pixel]});
       samples_[pixel] += group.samples;
     }

@@ -29,22 +29,22 @@ class SamplePlan {
              std::vector<std::uint32_t> samples = {});
 
   [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
-  /// With a target and a picture large enough, before it has samples: the least for scout_pixels(),
+  /// With a target and a picture large enough, before it has samples: the least for pilot_pixels(),
   /// where one batch may be enough first for their vanguard; else empty.
-  std::vector<WorkGroup> scouts();
-  [[nodiscard]] bool only_scouts_have_samples() const;
+  std::vector<WorkGroup> pilot();
+  [[nodiscard]] bool only_pilot_has_samples() const;
   /// Raises the least, to at most four times what it is, to what equal samples would take for an
   /// RMSE, or what three quarters of the pixels that vary want, going by the scouts, and is least()
   /// then: rounds are few, and packets narrow in the first. Where one batch is enough for the RMSE,
   /// and no more were asked for, others than scouts get one. Where so far only the vanguard has
   /// samples, and one batch is not by far enough, the other scouts'. `variances` as for next().
-  std::vector<WorkGroup> after_scouts(const std::vector<std::vector<float>>& variances);
+  std::vector<WorkGroup> after_pilot(const std::vector<std::vector<float>>& variances);
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
   /// With a target: what is missing for it, in eights but for the most. `variances`: of a batch's
   /// mean, by pass and pixel, batch_variances(); `costs`: sample_costs(), asked for where an RMSE
   /// is missed. No pixel gets more than eight times what it has, so that the next decision rests on
-  /// more, and blocks of 2x2 pixels get the same; empty when all are done. What after_scouts() left
+  /// more, and blocks of 2x2 pixels get the same; empty when all are done. What after_pilot() left
   /// at one batch is brought to two only where by now that is missed: the largest irradiance, which
   /// lights' errors are relative to, is known better. A pixel may be in several groups, to be
   /// traced in their order.
@@ -58,7 +58,7 @@ class SamplePlan {
 
  private:
   /// The least for those of `scouts` that have no samples.
-  std::vector<WorkGroup> send(const std::vector<bool>& scouts);
+  std::vector<WorkGroup> send(const std::vector<bool>& pilot);
   /// Pixels that have samples, in order.
   [[nodiscard]] std::vector<std::uint32_t> sampled() const;
   /// Whether one batch a pixel leaves at most that part of the squared error asked for, by the
@@ -68,7 +68,7 @@ class SamplePlan {
   /// Samples more that least() gives a pixel.
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() where all pixels have the same.
-  std::vector<WorkGroup> least_of_all(SampleOrder order);
+  std::vector<WorkGroup> min_of_all(SampleOrder order);
   /// Batches that the pixels of every block should have in all, where they have so many.
   [[nodiscard]] BatchCounts wanted(const std::vector<std::vector<float>>& variances,
                                    const BatchCounts& have, const Costs& costs) const;
@@ -80,9 +80,9 @@ class SamplePlan {
   int width_;
   std::vector<std::uint32_t> order_;  ///< pixels, tile by tile and in these block by block
   std::vector<std::uint32_t> samples_;
-  std::uint32_t least_, most_;
+  std::uint32_t min_, max_;
   bool one_may_do_;  ///< one batch a pixel, if it is enough
-  bool vanguard_;    ///< goes before the other scouts
+  bool first_pass_;  ///< goes before the other scouts
   float target_error_, target_rmse_;
   double fraction_done_ = 0;
 };

@@ -11,10 +11,10 @@ namespace dapple {
 namespace {
 
 void check_radius(const char* flag, float radius, const char* otherwise) {
-  constexpr float kLeast = 1e-6f, kMost = 1e6f;
-  if (radius >= kLeast && radius <= kMost) return;
+  constexpr float kMin = 1e-6f, kMax = 1e6f;
+  if (radius >= kMin && radius <= kMax) return;
   throw Error(ErrorKind::usage, fmt::format("{} is {:g}; it must be {}from {:g} to {:g}", flag,
-                                            radius, otherwise, kLeast, kMost));
+                                            radius, otherwise, kMin, kMax));
 }
 
 }  // namespace

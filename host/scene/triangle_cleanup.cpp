@@ -17,10 +17,10 @@ namespace {
 constexpr std::uint32_t kUnused = 0xffffffffu;
 // Twice an area, in square metres. Below it a normal's squared length leaves float's range;
 // a triangle of a nanometre's sides is larger.
-constexpr double kLeastDoubleArea = 1e-19;
+constexpr double kMinDoubleArea = 1e-19;
 
 // Of segments, in metres.
-constexpr double kLeastLength = 1e-15;
+constexpr double kMinLength = 1e-15;
 
 enum class Fault : std::uint8_t { none, not_finite, no_area, no_length, no_radius };
 
@@ -31,7 +31,7 @@ Fault fault_of_segment(const Mesh& mesh, std::size_t segment) {
   if (!std::isfinite(sum.x + sum.y + sum.z + radii)) return Fault::not_finite;
   // Strands may come to a point.
   if (mesh.radii[begin] < 0 || mesh.radii[end] < 0 || radii <= 0) return Fault::no_radius;
-  return (b - a).length() > kLeastLength ? Fault::none : Fault::no_length;
+  return (b - a).length() > kMinLength ? Fault::none : Fault::no_length;
 }
 
 Fault fault_of(const Mesh& mesh, std::size_t triangle) {
@@ -44,7 +44,7 @@ Fault fault_of(const Mesh& mesh, std::size_t triangle) {
   const Imath::V3d sum = corner[0] + corner[1] + corner[2];
   if (!std::isfinite(sum.x + sum.y + sum.z)) return Fault::not_finite;
   const Imath::V3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  return normal.length() > kLeastDoubleArea ? Fault::none : Fault::no_area;
+  return normal.length() > kMinDoubleArea ? Fault::none : Fault::no_area;
 }
 
 struct Faults {

@@ -10,14 +10,13 @@
 
 namespace dapple {
 
-/// Whom an occlusion ray is traced with, which is a question of time: roundings apart all find the
-/// same, but that prefiltered rays of a point may stop at other nodes.
-enum class Company : std::uint8_t {
-  automatic,  ///< what suits the device: on CPUs neighbours, or from 16 rays a point up (exact ones
-              ///< 32) point; else alone
-  alone,      ///< every ray is a work-item
-  neighbours,  ///< up to 64 rays that start near each other
-  point,       ///< the rays of one point
+/// Which occlusion rays are traversed together. It changes the time of a render. It changes results
+/// only by rounding, except that prefiltered rays in point packets may stop at other nodes.
+enum class Packets : std::uint8_t {
+  automatic,  ///< on CPUs pixel, or point from 16 rays a point (exact rays: 32); elsewhere none
+  none,       ///< single rays: one work-item a ray
+  pixel,      ///< coherent packets: up to 64 rays that start on neighbouring pixels
+  point,      ///< shared-origin packets: up to 64 rays of one point
 };
 
 struct DeviceInfo {
@@ -39,7 +38,7 @@ class Device {
   /// Opens the best device whose name or platform contains `name` (any case), the best
   /// of all when `name` is empty. Throws Error device, listing what there is.
   explicit Device(const std::string& name = "", const std::string& kernel_dir = "",
-                  Company trace_with = Company::automatic);
+                  Packets packets = Packets::automatic);
 
   [[nodiscard]] const DeviceInfo& info() const;
   [[nodiscard]] DeviceContext& context() const { return *context_; }

@@ -21,16 +21,15 @@ inline constexpr float kDefaultFootprint = 4.0f;
 enum class Estimator : std::uint8_t {
   exact,        ///< every surface on the ray is composited
   prefiltered,  ///< stops at BVH nodes that the ray's footprint covers
-  packet,       ///< prefiltered; from 4 rays a point up all at once on GPUs too, as CPUs do anyway
 };
 
 /// As the command line spells it.
 std::string name_of(Estimator estimator);
-std::string name_of(Company company);
+std::string name_of(Packets packets);
 
 /// Rays of one kind that a pixel may have at most, `spp` or `max_spp` times those of a sample: sums
 /// are kept in 64-bit fixed point with 24 bits to spare.
-inline constexpr int kMostRaysOfPixel = 1 << 24;
+inline constexpr int kMaxRaysOfPixel = 1 << 24;
 
 /// A pixel rectangle, inclusive at both ends as in EXR windows; (0,0) is top left.
 struct PixelRect {
@@ -65,7 +64,7 @@ struct RenderOptions {
   /// Samples that share a camera ray, 1, 2 or 4: each is shaded at a surface of its own, as what
   /// the ray slips through is decided for each. More suit thin leaves and hair, which a ray crosses
   /// many of; 0: by the scene's opacities. `spp` and `max_spp` count camera rays.
-  int depths = 0;
+  int camera_splitting = 0;
   /// AO rays a primary sample, [1, 4096], at least one for each of its depths. Two reach an RMSE up
   /// to 1.4 times sooner than one.
   int ao_rays = 2;
@@ -83,7 +82,7 @@ struct RenderOptions {
   std::optional<PixelRect> crop;
   std::uint32_t seed = 0;
   std::string device;  ///< part of an OpenCL device's name; empty: the best one
-  Company trace_with = Company::automatic;
+  Packets packets = Packets::automatic;
   std::string kernel_dir;  ///< read kernels from this folder instead of the built-in ones
   std::string cache;       ///< keep built BVHs in this folder and reuse them; empty: don't
   bool ground = false;     ///< put an opaque plane under the scene

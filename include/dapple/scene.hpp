@@ -165,7 +165,7 @@ std::shared_ptr<const Environment> load_environment(const std::string& path);
 
 /// What domes are sampled by: images of more than 2048 x 1024 pixels are averaged down, and all are
 /// divided by their mean luminance, by which the lights' radiances are multiplied instead.
-void settle_domes(Scene& scene);
+void finalize_domes(Scene& scene);
 
 /// Writes meshes, instances, materials (no textures), cameras as one GLB file. Throws Error.
 void write_glb(const Scene& scene, const std::string& path);

@@ -109,8 +109,8 @@ RenderResult render(Scene scene, const RenderOptions& options, const Progress& p
 
 /// Whether a device can do all that dapple asks of devices, found out by compiling every kernel.
 struct DeviceCheck {
-  std::vector<std::string> refusals;        ///< a line a kernel that cannot run; empty: none
-  Company trace_with = Company::automatic;  ///< of a picture's occlusion rays, never automatic
+  std::vector<std::string> refusals;     ///< a line a kernel that cannot run; empty: none
+  Packets packets = Packets::automatic;  ///< of a picture's occlusion rays, never automatic
 };
 DeviceCheck check_device(const Device& device);
 
@@ -138,8 +138,8 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              float footprint = kDefaultFootprint, std::size_t rays_per_point = 1);
 
 /// The surface that stops each ray: of the rays that come to a surface of opacity a, the share a.
-/// Which these are is hashed from origin, direction and key (kernels/camera/closest_hit.cl): the same ray
-/// finds the same. Where t < 0 there is none.
+/// Which these are is hashed from origin, direction and key (kernels/camera/closest_hit.cl): the
+/// same ray finds the same. Where t < 0 there is none.
 std::vector<SurfacePoint> closest_hits(const Device& device, const DeviceScene& scene,
                                        std::span<const Ray> rays);
 

@@ -1,24 +1,24 @@
 /* The camera pass: where the slice's camera rays meet the scene, a packet of them an item: from one
-   point (DAPPLE_ONE_POINT 1), or side by side (0). */
+   point (DAPPLE_SHARED_ORIGIN 1), or side by side (0). */
 #include "camera/surface_points16.clh"
 #include "camera/camera.clh"
 #include "camera/closest_search.clh"
 #include "vectors/tickets.clh"
 
-#define DAPPLE_MOST_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MOST_DEPTHS / DAPPLE_HIT_BITS)
+#define DAPPLE_MAX_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MAX_CAMERA_SPLITTING / DAPPLE_HIT_BITS)
 
 /* What an item found: bits of the samples that hit, by SampleHits, and what that cost. */
 typedef struct ItemHits {
-  uint hits[DAPPLE_MOST_RECORDS];
+  uint hits[DAPPLE_MAX_RECORDS];
   uint visits, tests;  /* as SampleHits has them */
 } ItemHits;
 
 /* The item's rays from `first` on as a beam: those that are not among its `count` have ended. */
-inline void start_beam(CameraParams params, const CameraSamples* chosen, uint first, uint count,
-                       BeamNearest* nearest, Stops* stops) {
-  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i)
-    nearest->t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
-  stops->count = 1u << params.depth_bits;
+inline void start_group(CameraParams params, const CameraSamples* chosen, uint first, uint count,
+                       ClosestHits16* closest, StochasticHits* stops) {
+  for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i)
+    closest->t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
+  stops->count = 1u << params.splitting_bits;
   float16 least = (float16)(1.0f);
   for (uint d = 0; d < stops->count; ++d) {
     stops->threshold[d] = vload16(0, chosen->threshold[d] + first);
@@ -26,13 +26,13 @@ inline void start_beam(CameraParams params, const CameraSamples* chosen, uint fi
     stops->primitive[d].v = stops->instance[d].v = (int16)(0);
     least = min(least, stops->threshold[d]);
   }
-  start_layers(least, &nearest->layers);
-  nearest->primitive.v = nearest->instance.v = (int16)(0);
+  start_k_buffer(least, &closest->k_buffer);
+  closest->primitive.v = closest->instance.v = (int16)(0);
 }
 
 /* Of the ray in lane `ray` of the points; `of_item` is its place in `chosen`. */
-inline void store_stop(const CameraSamples* chosen, uint of_item, uint sample, uint ray, float t,
-                       float area, const BeamPoints* at, __global SurfacePoint* point) {
+inline void store_stochastic_hit(const CameraSamples* chosen, uint of_item, uint sample, uint ray, float t,
+                       float area, const SurfacePoints16* at, __global SurfacePoint* point) {
   vstore4((float4)(at->position[0].f[ray], at->position[1].f[ray], at->position[2].f[ray], t), 0,
           point->position);
   vstore4((float4)(at->normal[0].f[ray], at->normal[1].f[ray], at->normal[2].f[ray],
@@ -43,10 +43,10 @@ inline void store_stop(const CameraSamples* chosen, uint of_item, uint sample, u
 }
 
 /* What the beam met whose first ray is that, sample by sample; `points` are those of the item. */
-inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, const BeamRays* beam,
-                       const BeamShares* shares, const uint* keys, const Stops* stops,
+inline void store_group(Scene scene, const CameraSamples* chosen, uint first, const Rays16* group,
+                       const CameraShares16* shares, const uint* keys, const StochasticHits* stops,
                        __global SurfacePoint* points, ItemHits* found) {
-  BeamPoints at;
+  SurfacePoints16 at;
   clear_points(&at);
   for (uint d = 0; d < stops->count; ++d) {
     const float16 t = stops->t[d].v;
@@ -57,29 +57,29 @@ inline void store_beam(Scene scene, const CameraSamples* chosen, uint first, con
     if (d)
       others &= bits_of_16((stops->primitive[d].v != stops->primitive[d - 1u].v) |
                            (stops->instance[d].v != stops->instance[d - 1u].v));
-    if (others) place_stops(scene, beam, keys, stops, d, hits, &at);
+    if (others) store_hit_points(scene, group, keys, stops, d, hits, &at);
     Floats16 area;
     area.v = shares->first_area.v + shares->solid_angle.v * t * t;
     for (uint left = hits; left; left &= left - 1u) {
       const uint ray = lowest_bit(left);
       const uint place = chosen->place[first + ray] * stops->count + d;
-      store_stop(chosen, first + ray, d, ray, stops->t[d].f[ray], area.f[ray], &at, points + place);
+      store_stochastic_hit(chosen, first + ray, d, ray, stops->t[d].f[ray], area.f[ray], &at, points + place);
       found->hits[place / DAPPLE_HIT_BITS] |= 1u << place % DAPPLE_HIT_BITS;
     }
   }
 }
 
 /* How much a box of haze may cover varies as footprints do, so that nothing pops. */
-inline void set_haze(CameraParams params, const BeamShares* shares, NearestPacket* packet) {
-  packet->haze_error = params.haze_error;
-  packet->share_of_sample = 1.0f / (1u << params.depth_bits);
-  for (uint b = 0; b < DAPPLE_PACKET_BEAMS; ++b) {
-    const float16 scale = DAPPLE_HAZE_PIXELS / params.inverse_spp * shares[b].spread.v;
+inline void set_medium(CameraParams params, const CameraShares16* shares, ClosestPacket* packet) {
+  packet->medium_error = params.medium_error;
+  packet->share_of_sample = 1.0f / (1u << params.splitting_bits);
+  for (uint b = 0; b < DAPPLE_PACKET_GROUPS; ++b) {
+    const float16 scale = DAPPLE_MAX_MEDIUM_PIXELS / params.inverse_spp * shares[b].spread.v;
     Floats16 first_area, solid_angle;
     first_area.v = scale * shares[b].first_area.v;
     solid_angle.v = 0.25f * scale * shares[b].solid_angle.v; /* a quarter, as PacketRay has it */
-    PacketRay* rays = packet->world.rays + b * DAPPLE_BEAM_RAYS;
-    for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
+    PacketRay* rays = packet->world.rays + b * DAPPLE_GROUP_RAYS;
+    for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i) {
       rays[i].first_area = first_area.f[i];
       rays[i].solid_angle = solid_angle.f[i];
     }
@@ -90,22 +90,22 @@ inline void set_haze(CameraParams params, const BeamShares* shares, NearestPacke
 inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* chosen,
                        const Entries* entries, uint count, __global SurfacePoint* points,
                        ItemHits* found) {
-  BeamRays beams[DAPPLE_PACKET_BEAMS];
-  PixelTaps taps[DAPPLE_PACKET_BEAMS];
-  BeamShares shares[DAPPLE_PACKET_BEAMS];
-  Stops stops[DAPPLE_PACKET_BEAMS];
-  NearestPacket packet;
-  packet.beams = beams;
-  for (uint b = 0; b < DAPPLE_PACKET_BEAMS; ++b) {
-    const uint first = b * DAPPLE_BEAM_RAYS;
-    aim(params, chosen, first, taps + b, beams + b, shares + b, packet.key + first);
-    start_beam(params, chosen, first, count, packet.nearest + b, stops + b);
+  Rays16 groups[DAPPLE_PACKET_GROUPS];
+  FilterTaps taps[DAPPLE_PACKET_GROUPS];
+  CameraShares16 shares[DAPPLE_PACKET_GROUPS];
+  StochasticHits stops[DAPPLE_PACKET_GROUPS];
+  ClosestPacket packet;
+  packet.groups = groups;
+  for (uint b = 0; b < DAPPLE_PACKET_GROUPS; ++b) {
+    const uint first = b * DAPPLE_GROUP_RAYS;
+    aim(params, chosen, first, taps + b, groups + b, shares + b, packet.key + first);
+    start_group(params, chosen, first, count, packet.closest + b, stops + b);
   }
-  set_haze(params, shares, &packet);
-  find_nearest(scene, params.scene, entries, &packet, stops);
-  for (uint b = 0; b < DAPPLE_PACKET_BEAMS; ++b) {
-    const uint first = b * DAPPLE_BEAM_RAYS;
-    store_beam(scene, chosen, first, beams + b, shares + b, packet.key + first, stops + b, points,
+  set_medium(params, shares, &packet);
+  find_closest(scene, params.scene, entries, &packet, stops);
+  for (uint b = 0; b < DAPPLE_PACKET_GROUPS; ++b) {
+    const uint first = b * DAPPLE_GROUP_RAYS;
+    store_group(scene, chosen, first, groups + b, shares + b, packet.key + first, stops + b, points,
                found);
   }
   found->visits += packet.visits;
@@ -122,21 +122,21 @@ DAPPLE_INLINE void trace_item(Scene scene, CameraParams params, uint item, uint 
   entries.count = entries.visits = 0u;
   const PixelBounds pixels = pixels_of_rays(work, params, begin, count);
   if (may_see_scene(params, pixels)) {
-    BeamBounds bounds;
+    IntervalBounds bounds;
     bound_pixels(params, pixels, &bounds);
-    find_entries(scene, params.scene, params.haze_error > 0.0f, &bounds, &entries);
+    find_entries(scene, params.scene, params.medium_error > 0.0f, &bounds, &entries);
   }
-  const uint first_sample = begin << params.depth_bits;
-  const uint rays_of_record = DAPPLE_HIT_BITS >> params.depth_bits;
+  const uint first_sample = begin << params.splitting_bits;
+  const uint rays_of_record = DAPPLE_HIT_BITS >> params.splitting_bits;
   const uint records = (count + rays_of_record - 1u) / rays_of_record;
   ItemHits found;
-  for (uint record = 0; record < DAPPLE_MOST_RECORDS; ++record) found.hits[record] = 0u;
+  for (uint record = 0; record < DAPPLE_MAX_RECORDS; ++record) found.hits[record] = 0u;
   found.visits = entries.visits;
   found.tests = 0u;
   if (entries.count) {
     CameraSamples chosen, sorted;
     choose_samples(work, params, begin, count, &chosen);
-    sort_samples(&chosen, 1u << params.depth_bits, &sorted);
+    sort_samples(&chosen, 1u << params.splitting_bits, &sorted);
     trace_rays(scene, params, &sorted, &entries, count, points + first_sample, &found);
   }
   for (uint record = 0; record < records; ++record) {
@@ -152,13 +152,13 @@ __kernel void camera_hits(__global const BvhNode* nodes, __global const Triangle
                           __global const InstanceRecord* instances,
                           __global const PixelWork* work, __global SurfacePoint* points,
                           __global SampleHits* sample_hits, CameraParams params,
-                          __global uint* turns, uint first_turn, uint pieces) {
+                          __global uint* tickets, uint first_ticket, uint ticket_count) {
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   const uint rays = params.slice.pixel_count * rays_of_pixel(params);
   const uint items = (rays + DAPPLE_ITEM_RAYS - 1u) / DAPPLE_ITEM_RAYS;
-  for (uint piece; (piece = take_turn(turns, first_turn)) < pieces;) {
-    const uint end = min((piece + 1u) * DAPPLE_PIECE_ITEMS, items);
-    for (uint item = piece * DAPPLE_PIECE_ITEMS; item < end; ++item)
+  for (uint ticket; (ticket = take_ticket(tickets, first_ticket)) < ticket_count;) {
+    const uint end = min((ticket + 1u) * DAPPLE_ITEMS_PER_TICKET, items);
+    for (uint item = ticket * DAPPLE_ITEMS_PER_TICKET; item < end; ++item)
       trace_item(scene, params, item, rays, work, points, sample_hits);
   }
 }

@@ -24,24 +24,24 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   const Ray ray = rays[item];
   const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
-  BeamNearest nearest; /* only the first ray's is used */
-  LoneRay lone;
+  ClosestHits16 closest; /* only the first ray's is used */
+  SingleRay lone;
   const TexelArea covers = {0.0f, 0.0f};
-  start_layers((float16)(threshold_of(rays + item)), &nearest.layers);
-  nearest.visits = nearest.tests = 0u;
+  start_k_buffer((float16)(threshold_of(rays + item)), &closest.k_buffer);
+  closest.visits = closest.tests = 0u;
   do {
-    nearest.t.v = (float16)(ray.t_max);
-    nearest.primitive.v = nearest.instance.v = (int16)(-1);
-    start_lone(span, covers, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
-    ask_for_entry(scene, params.scene.root, 0.0f, &lone);
-    while (go_down(scene, &lone, &nearest)) {
+    closest.t.v = (float16)(ray.t_max);
+    closest.primitive.v = closest.instance.v = (int16)(-1);
+    start_single(span, covers, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
+    prefetch_entry(scene, params.scene.root, 0.0f, &lone);
+    while (go_down(scene, &lone, &closest)) {
     }
-  } while (pass_layers(&nearest.layers).s0);
+  } while (advance_k_buffer(&closest.k_buffer).s0);
   __global SurfacePoint* point = points + item;
-  point->visits = min(nearest.visits, 65535u) | min(nearest.tests, 65535u) << 16;
-  const float t = nearest.t.f[0];
+  point->visits = min(closest.visits, 65535u) | min(closest.tests, 65535u) << 16;
+  const float t = closest.t.f[0];
   if (t < ray.t_max) {
-    store_point(scene, hit_of_ray(&nearest, 0u), span.origin, span.direction,
+    store_point(scene, hit_of_ray(&closest, 0u), span.origin, span.direction,
                 ray.first_area + ray.solid_angle * t * t, point);
   } else {
     point->t = -1.0f;

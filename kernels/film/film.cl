@@ -35,7 +35,7 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
   for (uint r = begin / DAPPLE_HIT_BITS; r * DAPPLE_HIT_BITS < end; ++r) {
     const SampleHits record = sample_hits[r];
     const uint range = range_of_samples(r, begin, end);
-    const uint rays = popcount(range) >> params.depth_bits;
+    const uint rays = popcount(range) >> params.splitting_bits;
     visits += (long)record.visits * rays;
     tests += (long)record.tests * rays;
     for (uint left = record.hits & range; left; left &= left - 1u)

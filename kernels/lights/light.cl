@@ -159,16 +159,16 @@ inline void sample_light(__global const LightRecord* light,
 
 /* A ray that can bring nothing is not traced: it ends before it starts. */
 inline void aim_light_rays(const PointRays* rays, const LightSamples* samples, float inverse_count,
-                           RayWays* ways) {
+                           RayDirections* signs) {
   float16 cosine = (float16)(0.0f);
   DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
-    ways->direction[axis].v = samples->direction[axis].v;
+    signs->direction[axis].v = samples->direction[axis].v;
     cosine += rays->normal[axis].v * samples->direction[axis].v;
   }
   const float16 solid_angle = samples->solid_angle.v;
-  ways->weight.v = solid_angle * at_least_0(cosine) * samples->radiance.v;
-  ways->t_max.v = ways->weight.v > 0.0f ? samples->distance.v : (float16)(-1.0f);
-  ways->solid_angle.v = min(solid_angle * inverse_count, 2.0f * M_PI_F);
+  signs->weight.v = solid_angle * at_least_0(cosine) * samples->radiance.v;
+  signs->t_max.v = signs->weight.v > 0.0f ? samples->distance.v : (float16)(-1.0f);
+  signs->solid_angle.v = min(solid_angle * inverse_count, 2.0f * M_PI_F);
 }
 
 __kernel void light_rays(__global const SurfacePoint* points, __global const uint* active_list,
@@ -182,10 +182,10 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   __global const LightRecord* light = lights + params.light;
   PointRays rays;
   LightSamples samples;
-  RayWays ways;
+  RayDirections signs;
   load_points(points, active_list, first, end, params.rays, &rays);
-  choose_places(DAPPLE_PAIR_LIGHT + params.light, params.seed, &rays);
+  choose_points(DAPPLE_PAIR_LIGHT + params.light, params.seed, &rays);
   sample_light(light, emitters, environments, &rays, &samples);
-  aim_light_rays(&rays, &samples, params.inverse_count, &ways);
-  store_rays(&rays, &ways, light->id, queue + first);
+  aim_light_rays(&rays, &samples, params.inverse_count, &signs);
+  store_rays(&rays, &signs, light->id, queue + first);
 }

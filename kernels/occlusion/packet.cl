@@ -40,11 +40,11 @@ inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray
   }
 }
 
-/* `count` rays from the first one on, at most DAPPLE_PACKET_CHUNK. */
-inline void trace_chunk(Scene scene, OcclusionParams params, __global const Ray* rays, uint count,
+/* `count` rays from the first one on, at most DAPPLE_RAY_BATCH. */
+inline void trace_batch(Scene scene, OcclusionParams params, __global const Ray* rays, uint count,
                         __global Occlusion* results) {
-  ushort order[DAPPLE_PACKET_CHUNK];
-  const uint traced = order_chunk(rays, count, order);
+  ushort order[DAPPLE_RAY_BATCH];
+  const uint traced = order_batch(rays, count, order);
   for (uint i = 0; i < traced; i += DAPPLE_PACKET_RAYS)
     trace_packet(scene, params, rays, order + i, min(traced - i, DAPPLE_PACKET_RAYS), results);
   for (uint i = traced; i < count; ++i) {
@@ -53,35 +53,35 @@ inline void trace_chunk(Scene scene, OcclusionParams params, __global const Ray*
   }
 }
 
-#if DAPPLE_ONE_POINT
+#if DAPPLE_SHARED_ORIGIN
 /* Rays lie as points * rays_per_point; each point's are cut into chunks of about the same size, and
    a piece is some of these in a row. */
-inline void trace_piece(Scene scene, OcclusionParams params, uint piece, __global const Ray* rays,
+inline void trace_ticket(Scene scene, OcclusionParams params, uint ticket, __global const Ray* rays,
                         __global Occlusion* results) {
-  const uint of_point = (params.rays_per_point + DAPPLE_PACKET_CHUNK - 1u) / DAPPLE_PACKET_CHUNK;
+  const uint of_point = (params.rays_per_point + DAPPLE_RAY_BATCH - 1u) / DAPPLE_RAY_BATCH;
   const uint size = (params.rays_per_point + of_point - 1u) / of_point;
   const uint chunks = params.ray_count / params.rays_per_point * of_point;
-  const uint end = min((piece + 1u) * params.piece_chunks, chunks);
-  for (uint chunk = piece * params.piece_chunks; chunk < end; ++chunk) {
+  const uint end = min((ticket + 1u) * params.batches_per_ticket, chunks);
+  for (uint chunk = ticket * params.batches_per_ticket; chunk < end; ++chunk) {
     const uint skipped = chunk % of_point * size;
     const uint first = chunk / of_point * params.rays_per_point + skipped;
     const uint count = min(size, params.rays_per_point - skipped);
     if (chunk + 1u < end) prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
-    trace_chunk(scene, params, rays + first, count, results + first);
+    trace_batch(scene, params, rays + first, count, results + first);
   }
 }
 #else
 /* A chunk of neighbours is a piece; the last ones are small, so that all who take turns end at
    about the same time. */
-inline uint start_of_piece(OcclusionParams params, uint piece) {
-  const uint large = min(piece, params.large_chunks);
-  return min(large * DAPPLE_PACKET_CHUNK + (piece - large) * DAPPLE_SMALL_CHUNK, params.ray_count);
+inline uint start_of_ticket(OcclusionParams params, uint ticket) {
+  const uint large = min(ticket, params.large_batches);
+  return min(large * DAPPLE_RAY_BATCH + (ticket - large) * DAPPLE_SMALL_RAY_BATCH, params.ray_count);
 }
 
-inline void trace_piece(Scene scene, OcclusionParams params, uint piece, __global const Ray* rays,
+inline void trace_ticket(Scene scene, OcclusionParams params, uint ticket, __global const Ray* rays,
                         __global Occlusion* results) {
-  const uint first = start_of_piece(params, piece);
-  trace_chunk(scene, params, rays + first, start_of_piece(params, piece + 1u) - first,
+  const uint first = start_of_ticket(params, ticket);
+  trace_batch(scene, params, rays + first, start_of_ticket(params, ticket + 1u) - first,
               results + first);
 }
 #endif
@@ -91,9 +91,9 @@ __kernel void packet(__global const BvhNode* nodes, __global const TriangleBlock
                      __global const TexturedTriangle* textured,
                      __global const MaterialRecord* materials, __global const uchar* texels,
                      __global const InstanceRecord* instances, __global const Ray* rays,
-                     __global Occlusion* results, OcclusionParams params, __global uint* turns,
-                     uint first_turn, uint pieces) {
+                     __global Occlusion* results, OcclusionParams params, __global uint* tickets,
+                     uint first_ticket, uint ticket_count) {
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
-  for (uint piece; (piece = take_turn(turns, first_turn)) < pieces;)
-    trace_piece(scene, params, piece, rays, results);
+  for (uint ticket; (ticket = take_ticket(tickets, first_ticket)) < ticket_count;)
+    trace_ticket(scene, params, ticket, rays, results);
 }

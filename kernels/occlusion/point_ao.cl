@@ -23,8 +23,8 @@ inline long sum_transmittances(const Packet* packet, uint count) {
 /* Of a point's rays, [0,1]. */
 inline float mean_transmittance(Scene scene, OcclusionParams params, __global const Ray* rays,
                                 uint count) {
-  ushort order[DAPPLE_PACKET_CHUNK];
-  const uint traced = order_chunk(rays, count, order);
+  ushort order[DAPPLE_RAY_BATCH];
+  const uint traced = order_batch(rays, count, order);
   long sum = (count - traced) * (long)DAPPLE_AO_STEPS;
   for (uint i = 0; i < traced; i += DAPPLE_PACKET_RAYS) {
     const uint together = min(traced - i, DAPPLE_PACKET_RAYS);
@@ -44,7 +44,7 @@ inline void make_rays_of(__global const SurfacePoint* point, AoParams params,
   }
 }
 
-/* `scratch` holds a point's rays for each work-group, of one item; `params.piece_chunks` points are
+/* `scratch` holds a point's rays for each work-group, of one item; `params.batches_per_ticket` points are
    a piece. */
 __kernel void point_ao(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                        __global const SegmentBlock* segments,
@@ -53,12 +53,12 @@ __kernel void point_ao(__global const BvhNode* nodes, __global const TriangleBlo
                        __global const InstanceRecord* instances,
                        __global const SurfacePoint* points, __global Ray* scratch,
                        __global float* ao, AoParams ao_params, OcclusionParams params,
-                       __global uint* turns, uint first_turn, uint pieces) {
+                       __global uint* tickets, uint first_ticket, uint ticket_count) {
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   __global Ray* rays = scratch + get_group_id(0) * ao_params.rays;
-  for (uint piece; (piece = take_turn(turns, first_turn)) < pieces;) {
-    const uint end = min((piece + 1u) * params.piece_chunks, ao_params.point_count);
-    for (uint point = piece * params.piece_chunks; point < end; ++point) {
+  for (uint ticket; (ticket = take_ticket(tickets, first_ticket)) < ticket_count;) {
+    const uint end = min((ticket + 1u) * params.batches_per_ticket, ao_params.point_count);
+    for (uint point = ticket * params.batches_per_ticket; point < end; ++point) {
       make_rays_of(points + point, ao_params, rays);
       ao[point] = mean_transmittance(scene, params, rays, ao_params.rays);
     }

@@ -60,7 +60,7 @@ std::pair<float, float> widest(const Places& places, const std::vector<uint>& or
   return widest;
 }
 
-TEST(CameraOrder, EachSampleIsTakenOnce) {
+TEST(CameraRayOrder, EachSampleIsTakenOnce) {
   for (const Places& places :
        {grid(8, 16, 8, 1), grid(64, 3, 5, 1.0f / 64), grid(4, 250, 300, 0.7f),
         Places{std::vector<float>(kItem, 7.5f), std::vector<float>(kItem, 1.0f)}}) {
@@ -70,7 +70,7 @@ TEST(CameraOrder, EachSampleIsTakenOnce) {
   }
 }
 
-TEST(CameraOrder, SixteenInARowFillASquareOfATileAndAQuarterOfAPixel) {
+TEST(CameraRayOrder, SixteenInARowFillASquareOfATileAndAQuarterOfAPixel) {
   for (const float cell : {1.0f, 1.0f / 8}) {
     const Places places = grid(8, 24, 16, cell);
     const auto [width, height] = widest(places, order_of(places));
@@ -169,7 +169,7 @@ TEST(FixedPoints, RoundToEvenSaturateAndTakeNanAsZero) {
   run("film_and_camera", "to_fixed_points", items, {in, out, items});
   const auto sums = download<std::int64_t>(out, values.size());
   // The greatest float below 2^63.
-  constexpr std::int64_t kMost = 9223371487098961920;
+  constexpr std::int64_t kMax = 9223371487098961920;
   const std::vector<std::int64_t> expected{0,
                                            2,
                                            2,
@@ -178,10 +178,10 @@ TEST(FixedPoints, RoundToEvenSaturateAndTakeNanAsZero) {
                                            static_cast<std::int64_t>(1e18f),
                                            static_cast<std::int64_t>(-3e18f),
                                            8388608,
-                                           kMost,
-                                           -kMost,
-                                           kMost,
-                                           -kMost,
+                                           kMax,
+                                           -kMax,
+                                           kMax,
+                                           -kMax,
                                            0,
                                            0,
                                            0,

@@ -24,7 +24,7 @@ RenderOptions small_picture(int depths) {
   RenderOptions options;
   options.width = 48;
   options.height = 40;
-  options.depths = depths;
+  options.camera_splitting = depths;
   return options;
 }
 
@@ -44,15 +44,15 @@ double rmse(const std::vector<float>& a, const std::vector<float>& b) {
 
 int depths_of(const RenderOptions& options, const Scene& scene) {
   std::vector<std::string> notes;
-  return choose_depths(options, scene, choose_view(scene, options, notes));
+  return choose_camera_splitting(options, scene, choose_view(scene, options, notes));
 }
 
-TEST(Depths, AreMoreTheMoreRaysSlipThrough) {
+TEST(CameraSplitting, AreMoreTheMoreRaysSlipThrough) {
   for (const auto& [opacity, depths] :
        {std::pair(1.0f, 1), {0.9f, 1}, {0.85f, 2}, {0.5f, 2}, {0.2f, 4}})
     EXPECT_EQ(depths_of({}, tree(opacity)), depths) << opacity;
   RenderOptions options;
-  options.depths = 2;
+  options.camera_splitting = 2;
   EXPECT_EQ(depths_of(options, tree(0.2f)), 2) << "as asked for";
 }
 
@@ -65,13 +65,13 @@ Scene cards(std::uint8_t left, std::uint8_t right) {
   return scene;
 }
 
-TEST(Depths, OfTexturesAreThoseOfWhatTheyLetThrough) {
+TEST(CameraSplitting, OfTexturesAreThoseOfWhatTheyLetThrough) {
   EXPECT_EQ(depths_of({}, cards(0, 255)), 1) << "holes and opaque leaf";
   EXPECT_EQ(depths_of({}, cards(51, 51)), 4) << "as an opacity of 0.2";
   EXPECT_EQ(depths_of({}, cards(0, 128)), 2) << "what is not there doesn't count";
 }
 
-TEST(Depths, OfTexturesAreThoseOfThemAsTheyAreSeen) {
+TEST(CameraSplitting, OfTexturesAreThoseOfThemAsTheyAreSeen) {
   Scene scene = cards(0, 255);
   // Far finer than a pixel of the default picture: as an opacity of one half.
   for (Mesh& mesh : scene.meshes) {
@@ -99,13 +99,13 @@ Scene partly_thin(double part) {
   return scene;
 }
 
-TEST(Depths, AreNotForAFewThinSurfaces) {
+TEST(CameraSplitting, AreNotForAFewThinSurfaces) {
   EXPECT_EQ(depths_of({}, partly_thin(0.05)), 1);
   EXPECT_EQ(depths_of({}, partly_thin(0.15)), 2);
   EXPECT_EQ(depths_of({}, partly_thin(0.3)), 4);
 }
 
-TEST(Depths, LeaveRoomForAllSamples) {
+TEST(CameraSplitting, LeaveRoomForAllSamples) {
   RenderOptions options;
   options.spp = 1 << 20;
   options.ao_rays = 8;
@@ -114,7 +114,7 @@ TEST(Depths, LeaveRoomForAllSamples) {
   EXPECT_EQ(depths_of(options, tree(0.2f)), 1);
 }
 
-TEST(Depths, AreOfTheSamePictureWithLessNoise) {
+TEST(CameraSplitting, AreOfTheSamePictureWithLessNoise) {
   // As many AO rays a camera sample for all, and footprints that cover nothing.
   RenderOptions many = small_picture(1);
   many.spp = 1024;
@@ -124,7 +124,7 @@ TEST(Depths, AreOfTheSamePictureWithLessNoise) {
   std::vector<double> errors;
   for (const int depths : {1, 2, 4}) {
     RenderOptions options = many;
-    options.depths = depths;
+    options.camera_splitting = depths;
     options.spp = 16;
     const RenderResult result = render(tree(0.2f), options);
     for (const char* name : {"A", "ao.R", "light.key.G", "N.Y", "bent.Y"}) {
@@ -139,7 +139,7 @@ TEST(Depths, AreOfTheSamePictureWithLessNoise) {
   EXPECT_LT(errors[2], 0.9 * errors[0]);
 }
 
-TEST(Depths, CountCameraSamplesAndTheirRays) {
+TEST(CameraSplitting, CountCameraSamplesAndTheirRays) {
   RenderOptions options = small_picture(4);
   options.spp = 3;
   options.light_rays = 2;
@@ -152,7 +152,7 @@ TEST(Depths, CountCameraSamplesAndTheirRays) {
   EXPECT_NEAR(static_cast<double>(rays.ao), hits, 1e-4 * hits);
 }
 
-TEST(Depths, WithATargetErrorsAreThoseOfWholeCameraRays) {
+TEST(CameraSplitting, WithATargetErrorsAreThoseOfWholeCameraRays) {
   RenderOptions many = small_picture(1);
   many.spp = 2048;
   const std::vector<float> truth = channel(render(tree(0.2f), many), "ao.R");
@@ -172,7 +172,7 @@ TEST(Depths, WithATargetErrorsAreThoseOfWholeCameraRays) {
   }
 }
 
-TEST(Depths, APicturesPartIsThePictureThere) {
+TEST(CameraSplitting, APicturesPartIsThePictureThere) {
   RenderOptions options = small_picture(4);
   options.spp = 5;
   const RenderResult whole = render(tree(0.2f), options);

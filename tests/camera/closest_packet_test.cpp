@@ -41,7 +41,7 @@ void expect_alike(const std::vector<float>& a, const std::vector<float>& b) {
   EXPECT_LE(different, 2u);
 }
 
-TEST(CameraPackets, StopWhereTheyDoInAnInstance) {
+TEST(ClosestPacketOnDevice, StopWhereTheyDoInAnInstance) {
   RenderOptions options;
   options.width = options.height = 96;
   options.spp = 8;

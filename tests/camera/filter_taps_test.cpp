@@ -89,7 +89,7 @@ RenderOptions picture(int size, int spp) {
   RenderOptions options;
   options.width = options.height = size;
   options.spp = spp;
-  options.depths = 4;
+  options.camera_splitting = 4;
   options.ao = options.light = false;
   return options;
 }
@@ -148,7 +148,7 @@ Scene large_card(V3f degrees, Camera::Kind kind, bool sharp, float scale = 1) {
 
 // With right and left or up and down exchanged, or taps about the hits and not pulled to the
 // middles, biases are from 0.036 to 0.09.
-TEST(PixelTaps, AreLessNoisyThanRaysOneByOneAndShowThePixelAndNoMore) {
+TEST(FilterTaps, AreLessNoisyThanRaysOneByOneAndShowThePixelAndNoMore) {
   const Scene scenes[] = {
       large_card(V3f(0, 0, 30), Camera::Kind::orthographic, true),
       large_card(V3f(50, 20, 10), Camera::Kind::orthographic, true, 0.25f),
@@ -175,7 +175,7 @@ Texture disk() {
 
 // Taps that leave the card find nothing there, and far foliage would fade: 0.19 of it would be left
 // at 0.4 pixels.
-TEST(PixelTaps, OfCardsSmallerThanPixelsStayOnThem) {
+TEST(FilterTaps, OfCardsSmallerThanPixelsStayOnThem) {
   Points points(5);
   // Mixing of four squares reaches beyond cards of a pixel: 0.97, 0.95 and 1.01 are left.
   for (const auto& [pixels, tolerance] :
@@ -224,7 +224,7 @@ Scene scattered_cards() {
   return scene;
 }
 
-TEST(PixelTaps, OfARayAreTheSameInAnyCompany) {
+TEST(FilterTaps, OfARayAreTheSameInAnyCompany) {
   for (const Camera::Kind kind : {Camera::Kind::orthographic, Camera::Kind::perspective}) {
     Scene scene = scattered_cards();
     add_camera(kind, scene);

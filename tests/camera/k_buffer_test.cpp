@@ -55,7 +55,7 @@ std::vector<Ray> rays_down(std::uint32_t count) {
   return rays;
 }
 
-TEST(Layers, StackedSheetsStopTheShareOfRaysThatTheirOpacitySays) {
+TEST(KBufferOnDevice, StackedSheetsStopTheShareOfRaysThatTheirOpacitySays) {
   constexpr std::uint32_t kRays = 40'000;
   // The second and third have more sheets than there are layers.
   for (const auto& [count, opacity] : {std::pair(6, 0.3f), {40, 0.05f}, {30, 0.02f}, {3, 1.0f}}) {
@@ -127,7 +127,7 @@ std::vector<std::pair<double, double>> crossed_by(const Ray& ray,
   return met;
 }
 
-TEST(Layers, WhatStopsARayIsWhatSortingAllItsSurfacesSays) {
+TEST(KBufferOnDevice, WhatStopsARayIsWhatSortingAllItsSurfacesSays) {
   std::size_t deepest = 0;
   for (const std::vector<Triangle>& soup : {dense_soup(), thin_soup()}) {
     const SceneOnDevice scene(scene_of(soup));
@@ -163,7 +163,7 @@ RenderResult seen_from_above(Scene scene, int spp, std::optional<PixelRect> crop
   return render(std::move(scene), options);
 }
 
-TEST(Layers, EveryPixelOfSheetsIsCoveredAsOpacitySaysToAStratum) {
+TEST(KBufferOnDevice, EveryPixelOfSheetsIsCoveredAsOpacitySaysToAStratum) {
   for (const auto& [count, opacity] : {std::pair(1, 0.5f), {1, 0.3f}, {3, 0.2f}, {24, 0.04f}}) {
     const RenderResult result = seen_from_above(sheets(count, opacity), 16);
     const double covered = 1 - std::pow(1 - opacity, count);
@@ -177,7 +177,7 @@ TEST(Layers, EveryPixelOfSheetsIsCoveredAsOpacitySaysToAStratum) {
   }
 }
 
-TEST(Layers, APictureIsCoveredAndAsFarAwayAsSortingSays) {
+TEST(KBufferOnDevice, APictureIsCoveredAndAsFarAwayAsSortingSays) {
   constexpr int kSide = 100;
   const float half = std::tan(2.5f * static_cast<float>(kPi) / 180);
   for (const std::vector<Triangle>& soup : {dense_soup(), thin_soup()}) {
@@ -209,7 +209,7 @@ TEST(Layers, APictureIsCoveredAndAsFarAwayAsSortingSays) {
   }
 }
 
-TEST(Layers, APicturesPartIsThePictureThere) {
+TEST(KBufferOnDevice, APicturesPartIsThePictureThere) {
   // Other samples share a packet, and surfaces come in another order.
   const RenderResult all = seen_from_above(scene_of(thin_soup()), 5);
   const RenderResult part = seen_from_above(scene_of(thin_soup()), 5, PixelRect{7, 5, 40, 30});

@@ -7,12 +7,12 @@
 #include <numeric>
 #include <random>
 
-#include "bvh/opacity/node_opacity.hpp"
 #include "bvh/build/object_bvh.hpp"
 #include "bvh/build/quantize.hpp"
+#include "bvh/opacity/node_opacity.hpp"
+#include "camera/view.hpp"
 #include "dapple/shared/opacity.h"
 #include "dapple/wavefront.hpp"
-#include "camera/view.hpp"
 
 namespace dapple {
 namespace {
@@ -84,21 +84,21 @@ void expect_shows_the_same(const Scene& scene, RenderOptions with) {
   EXPECT_NEAR((pixels - sum(channel(haze, "ao.R"))) / occlusion, 1, 0.25);
 }
 
-TEST(Haze, ShowsAsMuchAsRaysFindInFarFewerNodes) {
+TEST(MediumOnDevice, ShowsAsMuchAsRaysFindInFarFewerNodes) {
   expect_shows_the_same(cloud(), well_sampled(true));
 }
 
-TEST(Haze, ShowsTheSameHoweverManySamplesShareARay) {
+TEST(MediumOnDevice, ShowsTheSameHoweverManySamplesShareARay) {
   for (const int depths : {1, 2, 4}) {
     SCOPED_TRACE(depths);
     RenderOptions options = well_sampled(true);
-    options.depths = depths;
+    options.camera_splitting = depths;
     options.spp = options.max_spp = 128 / depths;
     expect_shows_the_same(cloud(), options);
   }
 }
 
-TEST(Haze, ShowsTheSameInPlacedMeshes) {
+TEST(MediumOnDevice, ShowsTheSameInPlacedMeshes) {
   Scene scene = cloud();
   for (V3f& position : scene.meshes[0].positions) position *= 10;
   M44f one, other;
@@ -112,7 +112,7 @@ TEST(Haze, ShowsTheSameInPlacedMeshes) {
   expect_shows_the_same(scene, well_sampled(true));
 }
 
-TEST(Haze, ShowsTheSameToParallelRays) {
+TEST(MediumOnDevice, ShowsTheSameToParallelRays) {
   Scene scene = cloud();
   Camera camera;
   camera.kind = Camera::Kind::orthographic;
@@ -140,9 +140,9 @@ void expect_same_normals(const Scene& scene) {
   }
 }
 
-TEST(Haze, IsSeenWithTheNormalsThatRaysWouldMeet) { expect_same_normals(flakes()); }
+TEST(MediumOnDevice, IsSeenWithTheNormalsThatRaysWouldMeet) { expect_same_normals(flakes()); }
 
-TEST(Haze, IsSeenWithTheNormalsOfPlacedMeshes) {
+TEST(MediumOnDevice, IsSeenWithTheNormalsOfPlacedMeshes) {
   Scene scene = flakes();
   M44f flat;
   flat.rotate(V3f(0.5f, 0, 0.9f));  // and across that:
@@ -157,7 +157,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-TEST(Haze, OfACropIsThatOfTheWholePictureBitForBit) {
+TEST(MediumOnDevice, OfACropIsThatOfTheWholePictureBitForBit) {
   const Scene scene = cloud();
   RenderOptions options = well_sampled(true);
   options.spp = options.max_spp = 8;
@@ -174,11 +174,11 @@ TEST(Haze, OfACropIsThatOfTheWholePictureBitForBit) {
   }
 }
 
-TEST(Haze, IsOnlyWhereAPictureMayErr) {
+TEST(MediumOnDevice, IsOnlyWhereAPictureMayErr) {
   const Scene scene = cloud(100);
   std::vector<std::string> notes;
   const auto error_of = [&](const RenderOptions& options) {
-    return camera_params(choose_view(scene, options, notes), options, {}).haze_error;
+    return camera_params(choose_view(scene, options, notes), options, {}).medium_error;
   };
   RenderOptions options = well_sampled(true);
   EXPECT_GT(error_of(options), 0);
@@ -196,7 +196,7 @@ TEST(Haze, IsOnlyWhereAPictureMayErr) {
   EXPECT_EQ(error_of(options), 0) << "exact";
 }
 
-TEST(Haze, FadesWithTheErrorThatIsAskedFor) {
+TEST(MediumOnDevice, FadesWithTheErrorThatIsAskedFor) {
   const Scene scene = cloud(100);
   std::vector<std::string> notes;
   RenderOptions options = well_sampled(true);
@@ -206,7 +206,7 @@ TEST(Haze, FadesWithTheErrorThatIsAskedFor) {
   for (const float target : {0.05f, 0.02f, 0.005f}) {
     options.target_rmse = target;
     const View view = choose_view(scene, options, notes);
-    EXPECT_NEAR(camera_params(view, options, {}).haze_error, 0.5f * target, 0.1f * target);
+    EXPECT_NEAR(camera_params(view, options, {}).medium_error, 0.5f * target, 0.1f * target);
   }
 }
 
@@ -217,20 +217,20 @@ NodeOpacity opacity_of(float axes, float clumping) {
   return opacity;
 }
 
-TEST(Unevenness, IsOfDeviationsAndOfWhatHidesItself) {
-  EXPECT_EQ(unevenness_class(opacity_of(0, 0)), 0u);
-  EXPECT_EQ(unevenness_class(opacity_of(0.06f, 0)), 0u) << "0.06^2 is below 2^-8";
-  EXPECT_EQ(unevenness_class(opacity_of(0.065f, 0)), 1u);
-  EXPECT_EQ(unevenness_class(opacity_of(0.18f, 0)), 7u);
-  EXPECT_EQ(unevenness_class(opacity_of(1, 0)), 7u);
+TEST(OpacityVariance, IsOfDeviationsAndOfWhatHidesItself) {
+  EXPECT_EQ(variance_class(opacity_of(0, 0)), 0u);
+  EXPECT_EQ(variance_class(opacity_of(0.06f, 0)), 0u) << "0.06^2 is below 2^-8";
+  EXPECT_EQ(variance_class(opacity_of(0.065f, 0)), 1u);
+  EXPECT_EQ(variance_class(opacity_of(0.18f, 0)), 7u);
+  EXPECT_EQ(variance_class(opacity_of(1, 0)), 7u);
   // A hundredth of it hides everything: it deviates by the root of 0.01 * 0.99.
-  EXPECT_EQ(unevenness_class(opacity_of(0.01f, 1)), 7u);
+  EXPECT_EQ(variance_class(opacity_of(0.01f, 1)), 7u);
   // The root of 0.01 * 0.99 * 0.01 is 0.00995: between 2^(2/2 - 8) and 2^(3/2 - 8).
-  EXPECT_EQ(unevenness_class(opacity_of(0.01f, 0.01f)), 3u);
-  EXPECT_EQ(unevenness_class(opacity_of(0.01f, std::nanf(""))), 7u);
+  EXPECT_EQ(variance_class(opacity_of(0.01f, 0.01f)), 3u);
+  EXPECT_EQ(variance_class(opacity_of(0.01f, std::nanf(""))), 7u);
 }
 
-TEST(Unevenness, TakesOnlyTheLeastBitsOfCorrelations) {
+TEST(OpacityVariance, TakesOnlyTheLeastBitsOfCorrelations) {
   BvhNode node{};
   const Box3f box(V3f(0), V3f(1));
   set_grid(node, box);
@@ -244,7 +244,7 @@ TEST(Unevenness, TakesOnlyTheLeastBitsOfCorrelations) {
     opacity.normals.add(n, 1);
     if (i % 3 == 0) opacity.normals.add(V3f(any(random), any(random), any(random)), 1);
     set_child_opacity(node, 3, opacity, box);
-    EXPECT_EQ(unevenness_of_child(node, 3), unevenness_class(opacity));
+    EXPECT_EQ(variance_of_child(node, 3), variance_class(opacity));
     for (int pair = 0; pair < 3; ++pair) {
       const float stored = correlation_decode(node.correlation[pair][3]);
       EXPECT_LE(std::fabs(stored), 1.0f);

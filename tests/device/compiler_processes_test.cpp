@@ -10,9 +10,9 @@
 #include "dapple/error.hpp"
 #include "device/cpus.hpp"
 #include "device/environment_while.hpp"
+#include "passes/passes.hpp"
 #include "support/program_run.hpp"
 #include "support/running_program.hpp"
-#include "passes/passes.hpp"
 
 namespace dapple {
 namespace {
@@ -101,7 +101,7 @@ TEST_F(CompilingProcessesCold, PicturesFindNothingLeftToCompile) {
   EXPECT_EQ(files.size(), every_kernel(Device().context()).size());
   const std::string small = "--width 8 --height 8 ";
   for (const std::string& options :
-       {small + "--passes ao,light", small + "--estimator exact --trace-with alone",
+       {small + "--passes ao,light", small + "--estimator exact --packets none",
         small + "--estimator packet --ao-rays 32", std::string("--width 257 --height 256")}) {
     const Outcome run = with_cache("render scene:cube -o out.exr --spp 1 " + options);
     EXPECT_EQ(run.code, 0) << run.err;

@@ -24,8 +24,8 @@ struct Found {
 };
 
 Found find(const std::string& name, const Scene& scene, const SceneBvh& bvh,
-           const std::vector<Ray>& rays, Estimator estimator, Company company) {
-  const Device device(name, "", company);
+           const std::vector<Ray>& rays, Estimator estimator, Packets packets) {
+  const Device device(name, "", packets);
   const DeviceScene uploaded = upload(device, scene, bvh);
   return {trace(device, uploaded, rays, estimator), closest_hits(device, uploaded, rays)};
 }
@@ -57,13 +57,13 @@ TEST(DeviceAgreement, EachRayFindsTheSameOnEveryDevice) {
     const SceneBvh bvh = build_bvh(scene);
     const auto rays = rays_through(bvh.bounds, 5000, bvh.bounds.size().length(), 1e-3f, 5);
     for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
-      for (const Company company : {Company::alone, Company::neighbours, Company::point}) {
+      for (const Packets packets : {Packets::none, Packets::pixel, Packets::point}) {
         SCOPED_TRACE(testing::Message() << name << ", estimator " << static_cast<int>(estimator)
-                                        << ", company " << static_cast<int>(company));
-        const Found first = find(devices[0].name, scene, bvh, rays, estimator, company);
+                                        << ", company " << static_cast<int>(packets));
+        const Found first = find(devices[0].name, scene, bvh, rays, estimator, packets);
         for (std::size_t d = 1; d < devices.size(); ++d) {
           SCOPED_TRACE(devices[0].name + " and " + devices[d].name);
-          expect_the_same(first, find(devices[d].name, scene, bvh, rays, estimator, company));
+          expect_the_same(first, find(devices[d].name, scene, bvh, rays, estimator, packets));
         }
       }
     }

@@ -10,8 +10,8 @@
 
 #include "dapple/error.hpp"
 #include "device/context.hpp"
-#include "device/upload/memory_need.hpp"
 #include "device/page_pool.hpp"
+#include "device/upload/memory_need.hpp"
 #include "support/failing_opencl.hpp"
 #include "support/film_files.hpp"
 #include "support/scene_on_device.hpp"
@@ -56,8 +56,8 @@ TEST_F(DeviceMemory, TheLeastNeedIsNeverMoreThanWhatIsUploaded) {
                            "scene:cloud?leaves=3000", "scene:forest?trees=9&leaves=500"}) {
     const Scene scene = make_procedural(name);
     const scene_test::SceneOnDevice on_device(scene);
-    EXPECT_LE(least_need(scene).total, on_device.uploaded.bytes) << name;
-    EXPECT_GT(least_need(scene).total * 4, on_device.uploaded.bytes) << name;
+    EXPECT_LE(min_need(scene).total, on_device.uploaded.bytes) << name;
+    EXPECT_GT(min_need(scene).total * 4, on_device.uploaded.bytes) << name;
   }
 }
 
@@ -97,7 +97,7 @@ TEST(PagePool, WhatWasGivenBackFirstGoesFirst) {
   std::unique_ptr<Pages> marked = pool.take(4096);
   std::memset(marked->data(), 7, marked->bytes());
   pool.give_back(std::move(marked));
-  constexpr std::size_t kHalf = PagePool::kMostKept / 2 - (std::size_t{1} << 20);
+  constexpr std::size_t kHalf = PagePool::kMaxKept / 2 - (std::size_t{1} << 20);
   pool.give_back(std::make_unique<Pages>(kHalf));  // not written to: no memory yet
   pool.give_back(std::make_unique<Pages>(kHalf));
   marked = pool.take(4096);

@@ -101,7 +101,7 @@ TEST_F(DriverStart, WithoutSysPoclStillKnowsItsMemory) {
 TEST_F(DriverStart, AKernelThatDoesNotCompileNamesFileAndLine) {
   write_bytes(path("kernels/film/compact.cl"), "int fine;\nthis is no OpenCL C\n");
   const Outcome run = render("--kernel-dir kernels");
-  expect_failure(run, 4, "passes.cl: the OpenCL compiler of ");
+  expect_failure(run, 4, "queue_kernels.cl: the OpenCL compiler of ");
   EXPECT_TRUE(contains(run.err, "compact.cl:2:")) << run.err;
   EXPECT_EQ(files_in_folder(), 1u);
 }

@@ -111,7 +111,7 @@ TEST_F(OpenclFailure, LeavesTurnsInStep) {
     return found;
   };
   const auto on_new_device = [&](int failing) {
-    const Device device("", "", Company::neighbours);
+    const Device device("", "", Packets::pixel);
     const DeviceScene uploaded = upload(device, scene, bvh);
     fail_call(failing);
     if (failing) film_test::error_of([&] { static_cast<void>(find(device, uploaded)); });

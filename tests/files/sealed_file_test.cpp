@@ -65,7 +65,7 @@ TEST_F(SealedFileOnDisk, AFileWithoutSectionsIsAFile) {
 }
 
 TEST_F(SealedFileOnDisk, TooManySectionsAreRefusedBeforeAnythingIsWritten) {
-  const std::vector<Section> sections(kMostSections + 1);
+  const std::vector<Section> sections(kMaxSections + 1);
   try {
     write_sealed_file(path("a.bin"), kKind, sections);
     FAIL() << "written";
@@ -73,8 +73,8 @@ TEST_F(SealedFileOnDisk, TooManySectionsAreRefusedBeforeAnythingIsWritten) {
     EXPECT_NE(std::string(error.what()).find("1025 sections"), std::string::npos) << error.what();
   }
   EXPECT_FALSE(std::filesystem::exists(path("a.bin")));
-  write_sealed_file(path("a.bin"), kKind, std::span(sections).first(kMostSections));
-  EXPECT_EQ(open_sealed_file(path("a.bin"), kKind).section_count(), kMostSections);
+  write_sealed_file(path("a.bin"), kKind, std::span(sections).first(kMaxSections));
+  EXPECT_EQ(open_sealed_file(path("a.bin"), kKind).section_count(), kMaxSections);
 }
 
 TEST_F(SealedFileOnDisk, AnyFlippedBitIsRefusedByName) {

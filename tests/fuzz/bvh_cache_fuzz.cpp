@@ -17,7 +17,7 @@ namespace {
 using namespace dapple;
 
 constexpr Checksum kKey = {1, 2};
-constexpr std::size_t kMostVisits = 100'000;
+constexpr std::size_t kMaxVisits = 100'000;
 
 const std::string& folder() {
   static const std::string name = [] {
@@ -73,7 +73,7 @@ CachedObject small_object() {
 void walk(const FinishedObject& object, std::uint32_t index, std::size_t& visits) {
   require(index < object.nodes.size());
   const BvhNode& node = object.nodes[index];
-  if (++visits > kMostVisits) return;  // children may be shared
+  if (++visits > kMaxVisits) return;  // children may be shared
   for (uint slot = 0, inner = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
     if (node.inner_mask >> slot & 1) {
       require(node.child_base + inner > index);
@@ -143,7 +143,7 @@ void write_edited(FuzzedDataProvider& data) {
 
 void write_any_sections(FuzzedDataProvider& data) {
   std::vector<std::string> contents;
-  while (data.remaining_bytes() > 0 && contents.size() < kMostSections)
+  while (data.remaining_bytes() > 0 && contents.size() < kMaxSections)
     contents.push_back(data.ConsumeRandomLengthString());
   if (contents.size() > 1 && data.ConsumeBool()) contents[1] = std::string(builder_version());
   std::vector<Section> sections;

@@ -18,7 +18,7 @@ namespace {
 using namespace dapple;
 
 constexpr std::size_t kPixels = 6;
-constexpr int kMostSlices = 10'000;
+constexpr int kMaxSlices = 10'000;
 
 const std::string& path() {
   static const std::string name =
@@ -32,7 +32,7 @@ void require(bool condition) {
 
 /// Goes over the rest of the round as tracing does.
 void trace(Round round, std::uint32_t slice_samples) {
-  for (int slices = 0; !round.is_done() && slices < kMostSlices; ++slices) {
+  for (int slices = 0; !round.is_done() && slices < kMaxSlices; ++slices) {
     const SliceParams slice = next_slice(round, slice_samples);
     const WorkGroup& group = round.groups[round.group];
     require(slice.pixel_count > 0 && slice.sample_count > 0);

@@ -34,25 +34,25 @@ __kernel void placed_points(__global const TriangleBlock* blocks,
                             __global float* together, __global float* alone) {
   if (get_global_id(0) > 0) return;
   const Scene scene = {0, blocks, segments, 0, 0, 0, instances};
-  BeamRays beam;
-  Stops stops;
-  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
+  Rays16 group;
+  StochasticHits stops;
+  for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i) {
     for (uint axis = 0; axis < 3u; ++axis) {
-      ((float*)(beam.origin + axis))[i] = rays[7u * i + axis];
-      ((float*)(beam.direction + axis))[i] = rays[7u * i + 3u + axis];
+      ((float*)(group.origin + axis))[i] = rays[7u * i + axis];
+      ((float*)(group.direction + axis))[i] = rays[7u * i + 3u + axis];
     }
     stops.t[0].f[i] = rays[7u * i + 6u];
     stops.primitive[0].i[i] = (int)primitives[i];
     stops.instance[0].i[i] = (int)placements[i];
   }
-  BeamPoints at;
+  SurfacePoints16 at;
   clear_points(&at);
-  const uint keys[DAPPLE_BEAM_RAYS] = {0};
-  place_stops(scene, &beam, keys, &stops, 0u, 65535u, &at);
-  for (uint i = 0; i < DAPPLE_BEAM_RAYS; ++i) {
+  const uint keys[DAPPLE_GROUP_RAYS] = {0};
+  store_hit_points(scene, &group, keys, &stops, 0u, 65535u, &at);
+  for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i) {
     const float3 origin = vload3(0, rays + 7u * i), direction = vload3(0, rays + 7u * i + 3u);
     const SurfaceHit hit = {rays[7u * i + 6u], primitives[i], placements[i]};
-    const WorldPlace place = place_of_hit(scene, hit, origin, direction);
+    const WorldPoint place = point_of_hit(scene, hit, origin, direction);
     float3 normal = normalize(place.normal);
     if (dot(normal, direction) > 0.0f) normal = -normal;
     vstore3(place.position, 0, alone + 7u * i);

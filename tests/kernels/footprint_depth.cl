@@ -15,7 +15,7 @@ __kernel void depths(__global const BvhNode* nodes, __global const float* direct
   hits.enter = (float8)(0.0f);
   hits.leave = chords * sizes.x * sizes.y * sizes.z / facing.sum;
   const Span span = make_span((float3)(0.0f), direction, INFINITY);
-  vstore8(child_depths(nodes + item, hits, sizes, facing, span), item, results);
+  vstore8(child_optical_depths(nodes + item, hits, sizes, facing, span), item, results);
 }
 
 /* minus_log(), eight values an item. */

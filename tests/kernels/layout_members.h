@@ -63,7 +63,7 @@
   MEMBER(OcclusionParams, scene) MEMBER(OcclusionParams, ray_count)                          \
   MEMBER(OcclusionParams, footprint) MEMBER(OcclusionParams, inverse_distance)               \
   MEMBER(OcclusionParams, falloff) MEMBER(OcclusionParams, rays_per_point)                   \
-  MEMBER(OcclusionParams, large_chunks) MEMBER(OcclusionParams, piece_chunks)                \
+  MEMBER(OcclusionParams, large_batches) MEMBER(OcclusionParams, batches_per_ticket)                \
   STRUCT(PixelWork) MEMBER(PixelWork, pixel) MEMBER(PixelWork, first_sample)                 \
   STRUCT(SliceParams)                                                                        \
   MEMBER(SliceParams, first_work) MEMBER(SliceParams, pixel_count)                          \
@@ -75,8 +75,8 @@
   MEMBER(CameraParams, height) MEMBER(CameraParams, crop_x) MEMBER(CameraParams, crop_y)     \
   MEMBER(CameraParams, crop_width) MEMBER(CameraParams, seed)                                \
   MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, texel_share)                        \
-  MEMBER(CameraParams, tap_reach) MEMBER(CameraParams, tap_pull) MEMBER(CameraParams, haze_error)                             \
-  MEMBER(CameraParams, depth_bits)                                                           \
+  MEMBER(CameraParams, tap_offset) MEMBER(CameraParams, tap_centring) MEMBER(CameraParams, medium_error)                             \
+  MEMBER(CameraParams, splitting_bits)                                                           \
   MEMBER(CameraParams, seen_left)                                                            \
   MEMBER(CameraParams, seen_above) MEMBER(CameraParams, seen_right)                          \
   MEMBER(CameraParams, seen_below)                                                           \
@@ -89,7 +89,7 @@
   STRUCT(ResolveParams)                                                                      \
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \
-  MEMBER(ResolveParams, depth_bits)                                                          \
+  MEMBER(ResolveParams, splitting_bits)                                                          \
   MEMBER(ResolveParams, scale)                                                               \
   MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
   MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)

@@ -8,7 +8,7 @@ __kernel void look_up(__global const TextureRecord* textures, __global const uch
   if (item >= count) return;
   const TextureRecord record = textures[texture];
   const TextureShapes shapes = {record.width, record.height, record.flags};
-  const TexelPlaces places = find_texels(&shapes, uvs[2u * item], uvs[2u * item + 1u]);
+  const TexelAddresses places = find_texels(&shapes, uvs[2u * item], uvs[2u * item + 1u]);
   __global const uchar* first = texels + (ulong)record.offset * 16u;
   float16 texel[4];
   for (uint k = 0; k < 4u; ++k) texel[k] = first[places.index[k].s0];

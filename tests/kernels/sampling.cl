@@ -16,11 +16,11 @@ __kernel void disk_points(__global const float* squares, __global float* disk, u
   vstore2((float2)(x, y), item, disk);
 }
 
-__kernel void sunflower_points(__global float* disk, float jitter, uint turn, uint count) {
+__kernel void vogel_points(__global float* disk, float jitter, uint turn, uint count) {
   const uint item = get_global_id(0);
   if (item >= count) return;
   float x, y;
-  sunflower_disk(item, 1.0f / count, jitter, turn, &x, &y);
+  vogel_disk(item, 1.0f / count, jitter, turn, &x, &y);
   vstore2((float2)(x, y), item, disk);
 }
 

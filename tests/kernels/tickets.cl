@@ -1,7 +1,7 @@
 #include "vectors/tickets.clh"
 
 /* How often each piece is taken. */
-__kernel void take_pieces(__global uint* taken, __global uint* turns, uint first_turn,
-                          uint pieces) {
-  for (uint piece; (piece = take_turn(turns, first_turn)) < pieces;) atomic_inc(taken + piece);
+__kernel void take_tickets(__global uint* taken, __global uint* tickets, uint first_ticket,
+                          uint ticket_count) {
+  for (uint ticket; (ticket = take_ticket(tickets, first_ticket)) < ticket_count;) atomic_inc(taken + ticket);
 }

@@ -5,10 +5,10 @@
 
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
-#include "support/film_files.hpp"
-#include "support/point_on_ground.hpp"
 #include "scene/images/dome_image.hpp"
 #include "scene/images/radiance_hdr.hpp"
+#include "support/film_files.hpp"
+#include "support/point_on_ground.hpp"
 
 namespace dapple {
 namespace {
@@ -144,7 +144,7 @@ TEST(Dome, SettlingKeepsIrradianceAndMakesTheMeanLuminanceOne) {
   for (std::uint32_t y = 0; y < 3; ++y)
     for (std::uint32_t x = 0; x < 6000; ++x) image->radiance.emplace_back(x < 3000 ? 8 : 2, y, 1);
   scene.lights.push_back(dome(image));
-  settle_domes(scene);
+  finalize_domes(scene);
   const Light& light = scene.lights[0];
   ASSERT_TRUE(light.environment);
   EXPECT_LE(light.environment->width, 2048u);

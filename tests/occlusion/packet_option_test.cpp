@@ -13,13 +13,13 @@ using namespace scene_test;
 
 // Borders of boxes and triangles are met or not by roundings, which differ between the kernels: a
 // few rays in ten thousand. The others agree to what packets round optical depths to.
-TEST(TraceWith, ExactRaysFindTheSameWithWhomeverTheyAreTraced) {
+TEST(PacketGroupings, ExactRaysFindTheSameWithWhomeverTheyAreTraced) {
   const Scene scene = make_procedural("scene:tree?leaves=2000");
   const SceneBvh bvh = build_bvh(scene);
   const auto rays = rays_through(bvh.bounds, 10'000, bvh.bounds.size().length(), 0, 5);
   std::vector<Occlusion> alone;
-  for (const Company company : {Company::alone, Company::neighbours, Company::point}) {
-    const Device chosen("", "", company);
+  for (const Packets packets : {Packets::none, Packets::pixel, Packets::point}) {
+    const Device chosen("", "", packets);
     const DeviceScene uploaded = upload(chosen, scene, bvh);
     const auto found = trace(chosen, uploaded, rays, Estimator::exact);
     if (alone.empty()) alone = found;
@@ -30,22 +30,23 @@ TEST(TraceWith, ExactRaysFindTheSameWithWhomeverTheyAreTraced) {
   }
 }
 
-class TraceWithOption : public program_test::ProgramRun {};
+class PacketsOption : public program_test::ProgramRun {};
 
-TEST_F(TraceWithOption, IsKnownToRenderAndWrittenDown) {
-  expect_failure(render("--trace-with nobody"), 2, "--trace-with nobody: it is auto, alone");
-  for (const char* company : {"auto", "alone", "neighbours", "point"})
-    EXPECT_EQ(render(std::string("-q --trace-with ") + company).code, 0) << company;
+TEST_F(PacketsOption, IsKnownToRenderAndWrittenDown) {
+  expect_failure(render("--packets nobody"), 2, "--packets nobody: it is auto, none");
+  for (const char* packets : {"auto", "none", "pixel", "point"})
+    EXPECT_EQ(render(std::string("-q --packets ") + packets).code, 0) << packets;
 }
 
-TEST_F(TraceWithOption, DevicesSayWhetherTheyCanRunEveryKernelAndHow) {
+TEST_F(PacketsOption, DevicesSayWhetherTheyCanRunEveryKernelAndHow) {
   const auto run = dapple("devices");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(film_test::contains(run.out, "runs every kernel; ")) << run.out;
   film_test::write_bytes(path("kernels/occlusion/packet.cl"), "this is no OpenCL C\n");
   const auto broken = dapple("devices --kernel-dir kernels");
   EXPECT_EQ(broken.code, 4) << broken.err;
-  EXPECT_TRUE(film_test::contains(broken.out, "cannot be used: packet.cl: ")) << broken.out;
+  EXPECT_TRUE(film_test::contains(broken.out, "cannot be used: occlusion/packet.cl: "))
+      << broken.out;
 }
 
 }  // namespace

@@ -50,18 +50,21 @@ TEST(PacketPicture, LightAndAoPassesMakeThePictureOfTheExactOnesAndEmittersNever
   options.ground = true;
   options.estimator = Estimator::exact;
   const Film exact = render(scene, options).film;
-  options.estimator = Estimator::packet;
+  options.estimator = Estimator::prefiltered;
+  options.packets = Packets::point;
   options.footprint = 0;
   const RenderResult zero = render(scene, options);
-  EXPECT_EQ(zero.statistics.estimator, "packet");
+  EXPECT_EQ(zero.statistics.estimator, "prefiltered");
   options.footprint = 1;
   const Film packet = render(scene, options).film;
-  options.estimator = Estimator::prefiltered;
+  options.packets = Packets::none;
   const Film prefiltered = render(scene, options).film;
   for (const char* channel : {"ao.R", "light.glow.R", "light.sun.R"}) {
     const float truth = sum_of(exact, channel);
-    std::printf("%s: exact %.4f, packet at 0 %.4f, packet %.4f, prefiltered %.4f\n", channel, truth,
-                sum_of(zero.film, channel), sum_of(packet, channel), sum_of(prefiltered, channel));
+    std::printf(
+        "%s: exact %.4f, point packets at footprint 0 %.4f, point packets %.4f, single rays %.4f\n",
+        channel, truth, sum_of(zero.film, channel), sum_of(packet, channel),
+        sum_of(prefiltered, channel));
     // At most one ray in a thousand falls on the other side of an edge.
     EXPECT_NEAR(sum_of(zero.film, channel), truth, 1e-3 * truth) << channel;
     EXPECT_NEAR(sum_of(packet, channel), sum_of(prefiltered, channel), 0.01 * truth) << channel;
@@ -84,7 +87,7 @@ std::string rendered_bytes(const std::string& environment, const std::string& es
 }
 
 TEST(PacketPicture, TheProgramWritesTheSameBytesWithAnyNumberOfDeviceThreads) {
-  for (const char* estimator : {"packet", "exact"}) {
+  for (const char* estimator : {"prefiltered", "exact"}) {
     const std::string one = rendered_bytes("POCL_MAX_PTHREAD_COUNT=1", estimator);
     EXPECT_GT(one.size(), 5000u);
     EXPECT_EQ(rendered_bytes("POCL_MAX_PTHREAD_COUNT=2", estimator), one) << estimator;

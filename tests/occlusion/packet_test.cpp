@@ -32,7 +32,7 @@ std::vector<Ray> ao_rays(const Box3f& box, std::size_t points, std::size_t rays,
 
 std::vector<Occlusion> packets(const SceneOnDevice& scene, const std::vector<Ray>& rays,
                                float footprint, std::size_t rays_per_point) {
-  return trace(device(), scene.uploaded, rays, Estimator::packet, footprint, rays_per_point);
+  return trace(device(), scene.uploaded, rays, Estimator::prefiltered, footprint, rays_per_point);
 }
 
 std::vector<Occlusion> exact_packets(const SceneOnDevice& scene, const std::vector<Ray>& rays,
@@ -187,7 +187,7 @@ TEST(Packet, AgreesWithPrefilteredAndConvergesToExact) {
     const std::vector<float> exact = bake(scene, points, Estimator::exact, 0);
     Difference coarser{1, 0, 1};
     for (const float footprint : {4.0f, 1.0f, 0.25f, 1.0f / 16}) {
-      const std::vector<float> packet = bake(scene, points, Estimator::packet, footprint);
+      const std::vector<float> packet = bake(scene, points, Estimator::prefiltered, footprint);
       const Difference error = difference(packet, exact);
       const Difference apart =
           difference(packet, bake(scene, points, Estimator::prefiltered, footprint));
@@ -203,7 +203,7 @@ TEST(Packet, AgreesWithPrefilteredAndConvergesToExact) {
       coarser = error;
     }
     // Far below the leaves: hardly a node is covered any more.
-    EXPECT_NEAR(difference(bake(scene, points, Estimator::packet, 1e-5f), exact).mean, 0, 2e-4)
+    EXPECT_NEAR(difference(bake(scene, points, Estimator::prefiltered, 1e-5f), exact).mean, 0, 2e-4)
         << name;
   }
 }
@@ -212,7 +212,7 @@ TEST(Packet, AgreesWithPrefilteredAndConvergesToExact) {
 OcclusionOptions many_rays(float footprint) {
   OcclusionOptions options;
   options.rays = 1 << 16;
-  options.estimator = Estimator::packet;
+  options.estimator = Estimator::prefiltered;
   options.footprint = footprint;
   return options;
 }
@@ -287,18 +287,18 @@ TEST(Packet, TooFewRaysAreTracedOneByOneAndStrangersAreRefused) {
   const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
   const BakedPoints points = points_on(scene, 200);
   for (const int rays : {1, 2, 3}) {
-    EXPECT_EQ(bake(scene, points, Estimator::packet, 1, rays),
+    EXPECT_EQ(bake(scene, points, Estimator::prefiltered, 1, rays),
               bake(scene, points, Estimator::prefiltered, 1, rays))
         << rays;
   }
   if (device().info().kind == "CPU") {
-    EXPECT_EQ(bake(scene, points, Estimator::packet, 1, 8),
+    EXPECT_EQ(bake(scene, points, Estimator::prefiltered, 1, 8),
               bake(scene, points, Estimator::prefiltered, 1, 8));
   }
 
   std::vector<Ray> rays = ao_rays(scene.bvh.bounds, 100, 64, 3);
   const std::vector<Occlusion> alone = scene.trace(rays, Estimator::prefiltered);
-  EXPECT_EQ(count_different(scene.trace(rays, Estimator::packet), alone), 0);
+  EXPECT_EQ(count_different(scene.trace(rays, Estimator::prefiltered), alone), 0);
   // Counted once a packet and shared: in all fewer than a third of each ray's own.
   const double shared_visits = sum_of_visits(packets(scene, rays, 1, 64));
   const double own_visits = sum_of_visits(alone);

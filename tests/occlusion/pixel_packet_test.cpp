@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/curly_strands.hpp"
 #include "device/upload/scene_upload.hpp"
+#include "support/curly_strands.hpp"
 #include "support/queued_rays.hpp"
 
 namespace dapple {
@@ -58,7 +58,7 @@ Scene scene_named(const std::string& name) {
   return name == "strands and leaves" ? strands_and_leaves() : make_procedural(name);
 }
 
-class NeighbouringRays : public testing::TestWithParam<const char*> {
+class PixelPacketRays : public testing::TestWithParam<const char*> {
  protected:
   const SceneOnDevice scene_{scene_named(GetParam())};
   const std::vector<Ray> rays_ = make_rays();
@@ -84,7 +84,7 @@ class NeighbouringRays : public testing::TestWithParam<const char*> {
 };
 
 // Borders of boxes and triangles are met or not by roundings, which differ between the kernels.
-TEST_P(NeighbouringRays, FindTogetherWhatTheyFindAlone) {
+TEST_P(PixelPacketRays, FindTogetherWhatTheyFindAlone) {
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     const auto alone = scene_.trace(rays_, estimator);
     const auto found = together(scene_, rays_, estimator);
@@ -99,7 +99,7 @@ TEST_P(NeighbouringRays, FindTogetherWhatTheyFindAlone) {
   }
 }
 
-TEST_P(NeighbouringRays, FindTheSameBitsInAnyCompany) {
+TEST_P(PixelPacketRays, FindTheSameBitsInAnyCompany) {
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     std::vector<float> found = transmittances(together(scene_, rays_, estimator));
     std::vector<Ray> reversed(rays_.rbegin(), rays_.rend());
@@ -127,7 +127,7 @@ std::pair<std::vector<Ray>, std::vector<float>> of_way(int way, const std::vecto
 }
 
 // Packets whose rays all go one way along each axis have loops of their own.
-TEST_P(NeighbouringRays, FindTheSameBitsAmongThoseThatGoTheirWay) {
+TEST_P(PixelPacketRays, FindTheSameBitsAmongThoseThatGoTheirWay) {
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     const std::vector<float> found = transmittances(together(scene_, rays_, estimator));
     for (int way = 0; way < 8; ++way) {
@@ -139,7 +139,7 @@ TEST_P(NeighbouringRays, FindTheSameBitsAmongThoseThatGoTheirWay) {
 }
 
 // The same of rays of one point, which are measured from it.
-TEST_P(NeighbouringRays, OfOnePointFindTheSameBitsAmongThoseThatGoTheirWay) {
+TEST_P(PixelPacketRays, OfOnePointFindTheSameBitsAmongThoseThatGoTheirWay) {
   std::vector<Ray> rays(rays_.begin(), rays_.begin() + 512);
   for (Ray& ray : rays) {
     std::copy_n(rays_[1].origin, 3, ray.origin);
@@ -159,7 +159,7 @@ TEST_P(NeighbouringRays, OfOnePointFindTheSameBitsAmongThoseThatGoTheirWay) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, NeighbouringRays,
+INSTANTIATE_TEST_SUITE_P(Scenes, PixelPacketRays,
                          testing::Values("scene:tree?leaves=3000",
                                          "scene:cloud?leaves=3000&opacity=0.2",
                                          "scene:forest?trees=9&leaves=500", "sheared", "strands",
@@ -187,7 +187,7 @@ Scene far_sheets(float half) {
   return scene;
 }
 
-TEST(NeighbouringRaysFarAway, FindFlatBoxesAsDeepAsAlone) {
+TEST(PixelPacketRaysFarAway, FindFlatBoxesAsDeepAsAlone) {
   const SceneOnDevice scene(far_sheets(0.04f));
   const std::vector<Ray> rays = rays_through(scene.bvh.bounds, 5003, 1, 0.02f, 7);
   double difference = 0, hidden = 0;
@@ -220,7 +220,7 @@ Ray ray_inside_edge(const V3f* corner, Points& random) {
 }
 
 // Boxes end where squares do: without a margin for roundings rays would pass them by.
-TEST(NeighbouringRaysFarAway, MeetSquaresAtTheirEdges) {
+TEST(PixelPacketRaysFarAway, MeetSquaresAtTheirEdges) {
   const SceneOnDevice scene(far_sheets(0.001f));
   const std::vector<V3f>& corners = scene.scene.meshes[0].positions;
   Points random(9);

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <random>
 
-#include "support/scene_on_device.hpp"
 #include "passes/point_order.hpp"
+#include "support/scene_on_device.hpp"
 
 namespace dapple {
 namespace {
@@ -126,13 +126,13 @@ class AtOnce : public testing::Test {
  private:
   const Scene scene_ = make_procedural("scene:forest?trees=20&leaves=500");
   const SceneBvh bvh_ = build_bvh(scene_);
-  const Device at_once_{"", "", Company::point}, alone_{"", "", Company::alone};
+  const Device at_once_{"", "", Packets::point}, alone_{"", "", Packets::none};
   const DeviceScene on_at_once_ = upload(at_once_, scene_, bvh_);
   const DeviceScene on_alone_ = upload(alone_, scene_, bvh_);
   const Ground ground_ = ground_below_a_tree(60);
 };
 
-TEST_F(AtOnce, ExactPointsAreThoseOfQueues) {
+TEST_F(PointAo, ExactPointsAreThoseOfQueues) {
   for (const int rays : {5, 32, 63, 100, 512}) {
     for (const float distance : {0.0f, 6.0f}) {
       SCOPED_TRACE(std::to_string(rays) + " rays, distance " + std::to_string(distance));
@@ -150,7 +150,7 @@ TEST_F(AtOnce, ExactPointsAreThoseOfQueues) {
 }
 
 /// Depths of nodes are those along the way to their middles here, and along each ray there.
-TEST_F(AtOnce, PrefilteredPointsAreNearThoseOfQueues) {
+TEST_F(PointAo, PrefilteredPointsAreNearThoseOfQueues) {
   for (const int rays : {16, 100}) {
     for (const float distance : {0.0f, 6.0f}) {
       SCOPED_TRACE(std::to_string(rays) + " rays, distance " + std::to_string(distance));

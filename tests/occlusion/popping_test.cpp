@@ -95,7 +95,7 @@ TEST(Popping, OcclusionAlongALineThroughACloudChangesLittleMoreThanExactDoes) {
 // Wider pixels make wider footprints, at every point of the picture at once.
 TEST(Popping, OcclusionOfATreeChangesLittleMoreThanExactDoesAsTheCameraIsPulledBack) {
   const SceneOnDevice scene(make_procedural("scene:tree"));
-  const PulledBackCamera path(scene.bvh.bounds, 20, 2);
+  const RecedingCamera path(scene.bvh.bounds, 20, 2);
   const FrameTracer tracer(scene_test::device(), scene.uploaded, scene.bvh.bounds, RenderOptions{},
                            32, 12);
   const std::vector<Frame> exact = tracer.frames(path, Estimator::exact, 0);

@@ -26,14 +26,14 @@ std::vector<Ray> first_of(const std::vector<Ray>& rays, std::size_t count) {
   return {rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-class Pieces : public testing::Test {
+class QueueSplit : public testing::Test {
  protected:
   const SceneOnDevice scene_{make_procedural("scene:tree?leaves=2000&opacity=0.5")};
   const std::vector<Ray> rays_ =
       rays_through(scene_.bvh.bounds, 9000, scene_.bvh.bounds.size().length(), 0.01f, 7);
 };
 
-TEST_F(Pieces, OfNeighboursHoldEveryRay) {
+TEST_F(QueueSplit, OfNeighboursHoldEveryRay) {
   const std::vector<float> all = transmittances(scene_, rays_, 1, RayOrder::by_pixel);
   for (const std::size_t count : {1, 63, 255, 256, 257, 1023, 1025, 2047, 2048, 2049, 4096, 8191}) {
     const auto found = transmittances(scene_, first_of(rays_, count), 1, RayOrder::by_pixel);
@@ -42,7 +42,7 @@ TEST_F(Pieces, OfNeighboursHoldEveryRay) {
 }
 
 // From 513 rays on a point is cut into chunks; of few rays several points are a piece.
-TEST_F(Pieces, OfPointsHoldEveryRay) {
+TEST_F(QueueSplit, OfPointsHoldEveryRay) {
   constexpr std::size_t kPoints = 7;
   for (const std::size_t each : {16, 33, 96, 255, 257, 512, 513, 600, 1100}) {
     std::vector<Ray> rays = first_of(rays_, kPoints * each);

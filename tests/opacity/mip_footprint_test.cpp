@@ -83,9 +83,9 @@ float expected_opacity(const OpacityPyramid& pyramid, const Ray& ray, int level,
 
 constexpr double kCode = 0.5 / 255 + 1e-4;  // of 8-bit means, and of optical depths in packets
 
-TEST(AveragedTexels, AreOfTheLargestSquareThatTheFootprintCovers) {
-  for (const Company company : {Company::alone, Company::neighbours, Company::point}) {
-    const Device chosen("", "", company);
+TEST(MipFootprint, AreOfTheLargestSquareThatTheFootprintCovers) {
+  for (const Packets packets : {Packets::none, Packets::pixel, Packets::point}) {
+    const Device chosen("", "", packets);
     for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
       const Scene scene = card(mode);
       const SceneBvh bvh = build_bvh(scene);
@@ -99,14 +99,14 @@ TEST(AveragedTexels, AreOfTheLargestSquareThatTheFootprintCovers) {
         for (std::size_t i = 0; i < rays.size(); ++i) {
           const float opacity = (blended ? 0.9f : 1.0f) * expected_opacity(pyramid, rays[i], level);
           ASSERT_NEAR(found[i].transmittance, 1 - opacity, kCode)
-              << "level " << level << ", traced " << static_cast<int>(company);
+              << "level " << level << ", traced " << static_cast<int>(packets);
         }
       }
     }
   }
 }
 
-TEST(AveragedTexels, AreAtMostAnEighthOfTheirTriangle) {
+TEST(MipFootprint, AreAtMostAnEighthOfTheirTriangle) {
   const SceneOnDevice scene(card(AlphaMode::blend));
   const OpacityPyramid pyramid(scene.scene.textures[0], 1, -1);
   const auto rays = rays_at_texels(5);  // 1024 texels, where a triangle has 2048
@@ -115,7 +115,7 @@ TEST(AveragedTexels, AreAtMostAnEighthOfTheirTriangle) {
     ASSERT_NEAR(found[i].transmittance, 1 - 0.9 * expected_opacity(pyramid, rays[i], 4), kCode);
 }
 
-TEST(AveragedTexels, AreNotForExactRaysNorForFootprintsOfNoSize) {
+TEST(MipFootprint, AreNotForExactRaysNorForFootprintsOfNoSize) {
   const SceneOnDevice scene(card(AlphaMode::mask));
   const auto rays = rays_at_texels(3), narrow = rays_at_texels(-8);
   const auto exact = scene.trace(rays, Estimator::exact);
@@ -133,7 +133,7 @@ TEST(AveragedTexels, AreNotForExactRaysNorForFootprintsOfNoSize) {
   EXPECT_EQ(between, 400) << "or the others show nothing";
 }
 
-TEST(AveragedTexels, AreMeasuredInTheSpaceOfInstances) {
+TEST(MipFootprint, AreMeasuredInTheSpaceOfInstances) {
   Scene placed = card(AlphaMode::blend);
   const float scale = 8;
   placed.instances[0].to_world.setScale(scale);
@@ -158,14 +158,14 @@ void expect_full_resolution(Scene scene) {
     ASSERT_EQ(found[i].transmittance, exact[i].transmittance);
 }
 
-TEST(AveragedTexels, AreNotForCutOutsWhoseVerticesChangeTheThreshold) {
+TEST(MipFootprint, AreNotForCutOutsWhoseVerticesChangeTheThreshold) {
   Scene varying = card(AlphaMode::mask);
   varying.materials[0].uses_vertex_alpha = true;
   varying.meshes[0].vertex_alpha = {1, 0.5f, 1, 0.5f};
   expect_full_resolution(std::move(varying));
 }
 
-TEST(AveragedTexels, AreNotForCardsThatLieOnEachOther) {
+TEST(MipFootprint, AreNotForCardsThatLieOnEachOther) {
   Scene doubled = card(AlphaMode::mask);
   Mesh& mesh = doubled.meshes[0];
   for (const std::uint32_t corner : {2u, 1u, 0u, 3u, 2u, 0u}) mesh.indices.push_back(corner);
@@ -173,7 +173,7 @@ TEST(AveragedTexels, AreNotForCardsThatLieOnEachOther) {
   expect_full_resolution(std::move(doubled));
 }
 
-TEST(AveragedTexels, CoincidentTrianglesAreFoundInAnyOrderOfTheirCorners) {
+TEST(MipFootprint, CoincidentTrianglesAreFoundInAnyOrderOfTheirCorners) {
   Mesh mesh = square();
   mesh.positions.push_back({-0.0f, 0, 0});  // beside corner 0
   mesh.indices.insert(mesh.indices.end(), {2, 4, 1, 1, 2, 3});
@@ -216,10 +216,10 @@ std::set<float> coverages(RenderOptions options, float instance_scale) {
 
 // Half of four thresholds, stratified, are below a half: with a coverage of one half in every
 // square the same two of four samples stop everywhere.
-TEST(AveragedTexels, OfACameraRayAreThoseOfItsPixel) {
+TEST(MipFootprint, OfACameraRayAreThoseOfItsPixel) {
   for (const float scale : {1.0f, 0.02f}) {
     RenderOptions options;
-    options.depths = 1;
+    options.camera_splitting = 1;
     EXPECT_EQ(coverages(options, scale), (std::set<float>{0.5f})) << scale;
     options.estimator = Estimator::exact;
     EXPECT_GT(coverages(options, scale).size(), 1u) << "texels are black or white";

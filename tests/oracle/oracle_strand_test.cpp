@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "support/curly_strands.hpp"
 #include "oracle/oracle_rays.hpp"
 #include "oracle/oracle_scenes.hpp"
+#include "support/curly_strands.hpp"
 
 namespace dapple::oracle {
 namespace {
@@ -48,7 +48,7 @@ TEST(OracleStrands, CurlsLetThroughWhatEmbreeSays) {
 }
 
 TEST(OracleStrands, StrandsThatComeToAPointLetThroughWhatEmbreeSays) {
-  expect_equal(strand_scene(curly_strands({.tip = 0, .turns = 3}), 0.3f), "pointed");
+  expect_equal(strand_scene(curly_strands({.tip = 0, .tickets = 3}), 0.3f), "pointed");
 }
 
 TEST(OracleStrands, OpaqueOnesHideWhatEmbreeSays) {

@@ -7,10 +7,10 @@
 #include <cstring>
 #include <numeric>
 
-#include "support/film_files.hpp"
-#include "support/scene_on_device.hpp"
 #include "render/checkpoint.hpp"
 #include "render/picture.hpp"
+#include "support/film_files.hpp"
+#include "support/scene_on_device.hpp"
 
 namespace dapple {
 namespace {
@@ -179,7 +179,7 @@ void expect_same_film(const Film& a, const Film& b) {
 
 TEST_F(Resume, AnInterruptedPictureIsWhatThereIsAndItsFileTheRest) {
   RenderOptions options = small_picture();
-  options.depths = 1;
+  options.camera_splitting = 1;
   const RenderResult whole = draw(options);
   EXPECT_FALSE(whole.interrupted);
   RenderControl control;

@@ -48,7 +48,7 @@ TEST(AdaptiveSampling, EveryPixelEndsBelowTheTargetOrAtTheMost) {
   std::uint64_t total = 0;
   float least = 1e9f, most = 0;
   for (std::size_t p = 0; p < samples.size(); ++p) {
-    EXPECT_EQ(std::fmod(samples[p], static_cast<float>(DAPPLE_BATCH)), 0) << p;
+    EXPECT_EQ(std::fmod(samples[p], static_cast<float>(DAPPLE_SAMPLE_BATCH)), 0) << p;
     EXPECT_TRUE(samples[p] >= 512 || (ao[p] <= 0.0301f && light[p] <= 0.0301f)) << p;
     least = std::min(least, samples[p]);
     most = std::max(most, samples[p]);
@@ -198,7 +198,7 @@ TEST(AdaptiveSampling, OptionsThatCannotBeAreRefused) {
 
 TEST(BatchVariances, OfKnownBatchesAreTheirSampleVariance) {
   // Sixty-four pixels alike, of two batches with means 0.2 and 0.6: variance 0.08.
-  const std::vector<std::uint32_t> samples(64, 2 * DAPPLE_BATCH);
+  const std::vector<std::uint32_t> samples(64, 2 * DAPPLE_SAMPLE_BATCH);
   const auto moments = [](std::size_t) { return BatchMoments{0.4f, 0.4f}; };
   for (const float variance : batch_variances(samples, 8, moments)) {
     EXPECT_NEAR(variance, 0.08f, 1e-6f);
@@ -208,7 +208,7 @@ TEST(BatchVariances, OfKnownBatchesAreTheirSampleVariance) {
 TEST(BatchVariances, FromTwoPairsOnPairsTell) {
   // Means of batches 0, 2, 1, 3: of pairs 1 and 2, so of a pair's mean 0.5, of a batch's twice
   // that.
-  const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_BATCH);
+  const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_SAMPLE_BATCH);
   const auto moments = [](std::size_t) { return BatchMoments{1.5f, 14.0f, 5.0f}; };
   for (const float variance : batch_variances(samples, 8, moments)) EXPECT_NEAR(variance, 1, 1e-6f);
 }
@@ -216,14 +216,14 @@ TEST(BatchVariances, FromTwoPairsOnPairsTell) {
 TEST(BatchVariances, TwoPairsAndABatchAloneTell) {
   // Means of batches 0 and 2, 3 and 5, and 5 alone: of pairs 1 and 4, and half of 25. The mean
   // is 3.
-  const std::vector<std::uint32_t> samples(64, 5 * DAPPLE_BATCH);
+  const std::vector<std::uint32_t> samples(64, 5 * DAPPLE_SAMPLE_BATCH);
   const auto moments = [](std::size_t) { return BatchMoments{3.0f, 63.0f, 29.5f}; };
   for (const float variance : batch_variances(samples, 8, moments))
     EXPECT_NEAR(variance, (59.0f - 45.0f) / 2, 1e-5f);
 }
 
 TEST(BatchVariances, WherePairsAreUnknownBatchesTell) {
-  const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_BATCH);
+  const std::vector<std::uint32_t> samples(64, 4 * DAPPLE_SAMPLE_BATCH);
   const auto moments = [](std::size_t) { return BatchMoments{1.5f, 14.0f}; };
   for (const float variance : batch_variances(samples, 8, moments))
     EXPECT_NEAR(variance, 5.0f / 3, 1e-6f);
@@ -235,13 +235,13 @@ TEST(BatchVariances, PixelsWithoutSamplesCountForNothing) {
     return p == 4 ? BatchMoments{2.0f, 10.0f} : BatchMoments{std::nanf(""), 0.0f};
   };
   std::vector<std::uint32_t> samples(9);
-  samples[4] = 2 * DAPPLE_BATCH;
+  samples[4] = 2 * DAPPLE_SAMPLE_BATCH;
   const std::vector<float> variances = batch_variances(samples, 3, moments);
   for (std::size_t p = 0; p < 9; ++p) EXPECT_EQ(variances[p], p == 4 ? 2.0f : 0.0f) << p;
 }
 
 TEST(BatchVariances, NeighboursStandInWhereAPixelKnowsLittle) {
-  const std::vector<std::uint32_t> samples(9, 2 * DAPPLE_BATCH);
+  const std::vector<std::uint32_t> samples(9, 2 * DAPPLE_SAMPLE_BATCH);
   // The middle pixel alone saw its batches differ: 0 and 1.
   const auto moments = [](std::size_t p) { return BatchMoments{0.5f, p == 4 ? 1.0f : 0.5f}; };
   const std::vector<float> variances = batch_variances(samples, 3, moments);

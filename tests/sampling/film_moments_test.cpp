@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "support/scene_on_device.hpp"
 #include "render/picture.hpp"
+#include "support/scene_on_device.hpp"
 
 namespace dapple {
 namespace {
@@ -23,8 +23,8 @@ class UnlitPicture {
         layout_(view(), options_, box(), {Light{}}) {
     sums_.resize(std::size_t{layout_.pixels} * layout_.plane_count);
     for (std::uint32_t p = 0; p < layout_.pixels; ++p) sums_[p] = samples_[p];
-    add_squares(DAPPLE_BATCH, of_batch_);
-    add_squares(2 * DAPPLE_BATCH, of_batch_ / 2);
+    add_squares(DAPPLE_SAMPLE_BATCH, of_batch_);
+    add_squares(2 * DAPPLE_SAMPLE_BATCH, of_batch_ / 2);
   }
 
   void set_unoccluded(std::uint32_t pixel, double irradiance) {
@@ -107,7 +107,7 @@ TEST(FilmMoments, KernelsSquareTheMeansOfBatchesAndOfPairs) {
   options.light = false;
   options.width = options.height = 16;
   options.spp = 28;  // of seven batches one is alone
-  options.depths = 1;
+  options.camera_splitting = 1;
   std::vector<std::string> notes;
   const View view = choose_view(cloud.scene, options, notes);
   const FilmLayout layout(view, options, cloud.bvh.bounds, {});

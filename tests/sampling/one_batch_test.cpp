@@ -16,7 +16,7 @@ namespace dapple {
 namespace {
 
 constexpr int kSide = 128;
-constexpr std::size_t kPixels = std::size_t{kSide} * kSide, kScouts = 1600;
+constexpr std::size_t kPixels = std::size_t{kSide} * kSide, kPilot = 1600;
 
 RenderOptions by_rmse(float target, int spp = 1) {
   RenderOptions options;
@@ -34,44 +34,44 @@ std::vector<float> no_costs() { return std::vector<float>(kPixels, 1.0f); }
 std::size_t with_batches(const SamplePlan& plan, std::uint32_t batches) {
   const auto& samples = plan.samples();
   return static_cast<std::size_t>(
-      std::count(samples.begin(), samples.end(), batches * DAPPLE_BATCH));
+      std::count(samples.begin(), samples.end(), batches * DAPPLE_SAMPLE_BATCH));
 }
 
-SamplePlan after_scouts(const RenderOptions& options, const Variances& variances) {
+SamplePlan after_pilot(const RenderOptions& options, const Variances& variances) {
   SamplePlan plan(kSide, kSide, options);
-  plan.scouts();
-  plan.after_scouts(variances);
+  plan.pilot();
+  plan.after_pilot(variances);
   return plan;
 }
 
 TEST(OneBatch, IsAllThatOthersThanScoutsGetWhereItIsEnough) {
-  SamplePlan plan = after_scouts(by_rmse(0.1f), all_equal(0.0079f));
-  EXPECT_EQ(with_batches(plan, 1), kPixels - kScouts);
-  EXPECT_EQ(with_batches(plan, 2), kScouts);
+  SamplePlan plan = after_pilot(by_rmse(0.1f), all_equal(0.0079f));
+  EXPECT_EQ(with_batches(plan, 1), kPixels - kPilot);
+  EXPECT_EQ(with_batches(plan, 2), kPilot);
   EXPECT_TRUE(plan.least().empty());
   EXPECT_TRUE(plan.next(all_equal(0.0079f), no_costs).empty());
   EXPECT_EQ(plan.fraction_done(), 1);
 }
 
 TEST(OneBatch, NeedsAMarginAndEveryPass) {
-  EXPECT_EQ(with_batches(after_scouts(by_rmse(0.1f), all_equal(0.0081f)), 2), kPixels);
+  EXPECT_EQ(with_batches(after_pilot(by_rmse(0.1f), all_equal(0.0081f)), 2), kPixels);
   const Variances two_passes{all_equal(0.001f)[0], all_equal(0.02f)[0]};
-  EXPECT_EQ(with_batches(after_scouts(by_rmse(0.1f), two_passes), 2), kPixels);
+  EXPECT_EQ(with_batches(after_pilot(by_rmse(0.1f), two_passes), 2), kPixels);
   const Variances one_sees_nothing{all_equal(0.001f)[0], all_equal(0.0f)[0]};
-  EXPECT_EQ(with_batches(after_scouts(by_rmse(0.1f), one_sees_nothing), 1), kPixels - kScouts);
+  EXPECT_EQ(with_batches(after_pilot(by_rmse(0.1f), one_sees_nothing), 1), kPixels - kPilot);
 }
 
 TEST(OneBatch, IsNotTakenForGrantedBySightlessScouts) {
-  EXPECT_EQ(with_batches(after_scouts(by_rmse(0.1f), all_equal(0.0f)), 2), kPixels);
+  EXPECT_EQ(with_batches(after_pilot(by_rmse(0.1f), all_equal(0.0f)), 2), kPixels);
 }
 
 TEST(OneBatch, IsNotEnoughWhereMoreAreAskedForOrEachPixelHasATarget) {
-  const auto two = static_cast<int>(2 * DAPPLE_BATCH);
-  EXPECT_EQ(with_batches(after_scouts(by_rmse(0.1f, two), all_equal(0.001f)), 2), kPixels);
+  const auto two = static_cast<int>(2 * DAPPLE_SAMPLE_BATCH);
+  EXPECT_EQ(with_batches(after_pilot(by_rmse(0.1f, two), all_equal(0.001f)), 2), kPixels);
   RenderOptions by_error;
   by_error.spp = 1;
   by_error.target_error = 0.1f;
-  EXPECT_EQ(with_batches(after_scouts(by_error, all_equal(0.001f)), 2), kPixels);
+  EXPECT_EQ(with_batches(after_pilot(by_error, all_equal(0.001f)), 2), kPixels);
 }
 
 /// Of AO alone, for which a quarter of the scouts goes first.
@@ -79,40 +79,40 @@ SamplePlan after_vanguard(float target, const Variances& variances) {
   RenderOptions options = by_rmse(target);
   options.light = false;
   SamplePlan plan(kSide, kSide, options);
-  plan.scouts();
-  EXPECT_EQ(with_batches(plan, 2), kScouts / 4);
-  EXPECT_TRUE(plan.only_scouts_have_samples());
-  plan.after_scouts(variances);
+  plan.pilot();
+  EXPECT_EQ(with_batches(plan, 2), kPilot / 4);
+  EXPECT_TRUE(plan.only_pilot_has_samples());
+  plan.after_pilot(variances);
   return plan;
 }
 
 TEST(OneBatch, IsTakenFromTheVanguardWhereItIsByFarEnough) {
   SamplePlan plan = after_vanguard(0.1f, all_equal(0.0024f));
-  EXPECT_EQ(with_batches(plan, 1), kPixels - kScouts / 4);
+  EXPECT_EQ(with_batches(plan, 1), kPixels - kPilot / 4);
   EXPECT_TRUE(plan.next(all_equal(0.0024f), no_costs).empty());
 }
 
 TEST(OneBatch, IsLeftToAllScoutsElsewhere) {
   for (const float variance : {0.0026f, 0.0079f, 0.0081f, 0.0f}) {
     SamplePlan plan = after_vanguard(0.1f, all_equal(variance));
-    EXPECT_EQ(with_batches(plan, 2), kScouts) << variance;
-    EXPECT_EQ(with_batches(plan, 0), kPixels - kScouts);
+    EXPECT_EQ(with_batches(plan, 2), kPilot) << variance;
+    EXPECT_EQ(with_batches(plan, 0), kPixels - kPilot);
     // As it is after a checkpoint, too.
     RenderOptions options = by_rmse(0.1f);
     options.light = false;
     SamplePlan resumed(kSide, kSide, options, plan.samples());
-    EXPECT_TRUE(resumed.scouts().empty());
+    EXPECT_TRUE(resumed.pilot().empty());
     for (SamplePlan* goes_on : {&plan, &resumed}) {
-      goes_on->after_scouts(all_equal(variance));
+      goes_on->after_pilot(all_equal(variance));
       const bool one = variance > 0 && variance < 0.008f;
-      EXPECT_EQ(with_batches(*goes_on, 1), one ? kPixels - kScouts : 0u) << variance;
-      EXPECT_EQ(with_batches(*goes_on, 2), one ? kScouts : kPixels) << variance;
+      EXPECT_EQ(with_batches(*goes_on, 1), one ? kPixels - kPilot : 0u) << variance;
+      EXPECT_EQ(with_batches(*goes_on, 2), one ? kPilot : kPixels) << variance;
     }
   }
 }
 
 TEST(OneBatch, IsJudgedAgainByWhoeverGoesOn) {
-  const SamplePlan plan = after_scouts(by_rmse(0.1f), all_equal(0.005f));
+  const SamplePlan plan = after_pilot(by_rmse(0.1f), all_equal(0.005f));
   SamplePlan same(kSide, kSide, by_rmse(0.1f), plan.samples());
   EXPECT_TRUE(same.least().empty());
   EXPECT_TRUE(same.next(all_equal(0.005f), no_costs).empty());
@@ -120,7 +120,7 @@ TEST(OneBatch, IsJudgedAgainByWhoeverGoesOn) {
   EXPECT_TRUE(tighter.least().empty());
   EXPECT_FALSE(tighter.next(all_equal(0.005f), no_costs).empty());
   EXPECT_EQ(with_batches(tighter, 2), kPixels);
-  SamplePlan more(kSide, kSide, by_rmse(0.1f, 4 * DAPPLE_BATCH), plan.samples());
+  SamplePlan more(kSide, kSide, by_rmse(0.1f, 4 * DAPPLE_SAMPLE_BATCH), plan.samples());
   EXPECT_FALSE(more.least().empty());
   EXPECT_EQ(with_batches(more, 4), kPixels);
 }
@@ -129,13 +129,13 @@ TEST(OneBatch, IsJudgedAgainByWhoeverGoesOn) {
 TEST(OneBatch, VariancesOfSinglesAreAsLargeAsThoseOfTheOthers) {
   std::mt19937 random(3);
   std::normal_distribution<float> noise(0.0f, 0.1f);
-  std::vector<std::uint32_t> samples(kPixels, DAPPLE_BATCH);
+  std::vector<std::uint32_t> samples(kPixels, DAPPLE_SAMPLE_BATCH);
   std::vector<BatchMoments> moments(kPixels);
   for (std::size_t p = 0; p < kPixels; ++p) {
     const float slope = 0.2f * static_cast<float>(p % kSide);
     const float first = slope + noise(random), second = slope + noise(random);
     const bool scout = p % 16 < 4 && p / kSide % 16 < 4;  // squares of them
-    samples[p] = scout ? 2 * DAPPLE_BATCH : DAPPLE_BATCH;
+    samples[p] = scout ? 2 * DAPPLE_SAMPLE_BATCH : DAPPLE_SAMPLE_BATCH;
     moments[p] = scout ? BatchMoments{0.5f * (first + second), first * first + second * second}
                        : BatchMoments{first, first * first};
   }
@@ -143,10 +143,10 @@ TEST(OneBatch, VariancesOfSinglesAreAsLargeAsThoseOfTheOthers) {
   std::vector<float> variances = batch_variances(samples, kSide, of);
   double sum[2] = {0, 0}, count[2] = {0, 0};
   for (std::size_t p = 0; p < kPixels; ++p)
-    if (samples[p] == DAPPLE_BATCH) variances[p] = 1;  // which nobody may look at
+    if (samples[p] == DAPPLE_SAMPLE_BATCH) variances[p] = 1;  // which nobody may look at
   add_variances_of_single_batches(samples, kSide, of, variances);
   for (std::size_t p = 0; p < kPixels; ++p) {
-    const bool single = samples[p] == DAPPLE_BATCH;
+    const bool single = samples[p] == DAPPLE_SAMPLE_BATCH;
     sum[single] += variances[p];
     count[single] += 1;
   }
@@ -170,8 +170,9 @@ TEST(OneBatch, ADraftIsAsFarFromTheTruthAsWasAskedAndSaysSo) {
   const RenderOptions options = draft();
   const RenderResult result = render(scene, options);
   const auto& samples = channel(result, "samples");
-  EXPECT_EQ(*std::min_element(samples.begin(), samples.end()), DAPPLE_BATCH / 2) << "two depths";
-  EXPECT_EQ(*std::max_element(samples.begin(), samples.end()), DAPPLE_BATCH);
+  EXPECT_EQ(*std::min_element(samples.begin(), samples.end()), DAPPLE_SAMPLE_BATCH / 2)
+      << "two depths";
+  EXPECT_EQ(*std::max_element(samples.begin(), samples.end()), DAPPLE_SAMPLE_BATCH);
   RenderOptions many = options;
   many.target_rmse = 0;
   many.spp = 512;

@@ -42,8 +42,8 @@ TEST(Round, EverySampleIsTracedOnceInOrderAndCountedWhereverItIsLeft) {
         EXPECT_GT(slice.pixel_count * slice.sample_count, 0u);
         const WorkGroup& group = round.groups[round.group];
         const bool ends = slice.first_sample + slice.sample_count == group.samples;
-        const std::uint32_t whole = slice_samples < 2 * DAPPLE_BATCH ? 1 : 2;
-        EXPECT_TRUE(ends || slice.sample_count % (whole * DAPPLE_BATCH) == 0)
+        const std::uint32_t whole = slice_samples < 2 * DAPPLE_SAMPLE_BATCH ? 1 : 2;
+        EXPECT_TRUE(ends || slice.sample_count % (whole * DAPPLE_SAMPLE_BATCH) == 0)
             << "batches, or pairs";
         for (std::uint32_t i = 0; i < slice.pixel_count; ++i) {
           const PixelWork& work = group.work[slice.first_work + i];

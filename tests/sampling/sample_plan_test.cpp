@@ -13,8 +13,8 @@
 
 #include "dapple/shared/pass_params.h"
 #include "sampling/batch_variance.hpp"
-#include "sampling/sample_allocation.hpp"
 #include "sampling/pilot_samples.hpp"
+#include "sampling/sample_allocation.hpp"
 
 namespace dapple {
 namespace {
@@ -140,8 +140,8 @@ class GaussianPixels {
 
   void trace(const WorkGroup& group) {
     for (const PixelWork& work : group.work) {
-      EXPECT_EQ(work.first_sample, batches_[work.pixel] * DAPPLE_BATCH);
-      for (std::uint32_t s = 0; s < group.samples; s += DAPPLE_BATCH) {
+      EXPECT_EQ(work.first_sample, batches_[work.pixel] * DAPPLE_SAMPLE_BATCH);
+      for (std::uint32_t s = 0; s < group.samples; s += DAPPLE_SAMPLE_BATCH) {
         const double value = normal_(random_) * std::sqrt(variances_[work.pixel]);
         sums_[work.pixel] += value;
         squares_[work.pixel] += value * value;
@@ -152,7 +152,7 @@ class GaussianPixels {
   [[nodiscard]] double mean(std::size_t p) const { return sums_[p] / batches_[p]; }
   [[nodiscard]] std::vector<float> variances(int width) const {
     std::vector<std::uint32_t> samples;
-    for (const std::uint32_t batches : batches_) samples.push_back(batches * DAPPLE_BATCH);
+    for (const std::uint32_t batches : batches_) samples.push_back(batches * DAPPLE_SAMPLE_BATCH);
     return batch_variances(samples, width, [&](std::size_t p) {
       return BatchMoments{static_cast<float>(mean(p)), static_cast<float>(squares_[p])};
     });
@@ -187,8 +187,8 @@ Drawn draw(int width, int height, const RenderOptions& options) {
   const auto trace = [&](const std::vector<WorkGroup>& groups) {
     for (const WorkGroup& group : groups) pixels.trace(group);
   };
-  trace(plan.scouts());
-  if (plan.only_scouts_have_samples()) trace(plan.after_scouts({pixels.variances(width)}));
+  trace(plan.pilot());
+  if (plan.only_pilot_has_samples()) trace(plan.after_pilot({pixels.variances(width)}));
   for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) trace(first);
   Drawn drawn;
   for (; drawn.rounds < 30; ++drawn.rounds) {
@@ -258,17 +258,17 @@ std::size_t count_of(const std::vector<std::uint32_t>& samples, std::uint32_t co
   return static_cast<std::size_t>(std::count(samples.begin(), samples.end(), count));
 }
 
-TEST(ScoutPixels, AreSquaresAllOverThePicture) {
+TEST(PilotPixels, AreSquaresAllOverThePicture) {
   const int width = 130, height = 75;
-  const std::vector<bool> scouts = scout_pixels(width, height);
-  ASSERT_EQ(scouts.size(), 130u * 75u);
+  const std::vector<bool> pilot = pilot_pixels(width, height);
+  ASSERT_EQ(pilot.size(), 130u * 75u);
   std::set<std::pair<int, int>> places;
   for (int top = 0; top + 8 <= height; top += 8) {
     for (int left = 0; left + 8 <= width; left += 8) {
       std::vector<std::pair<int, int>> of_cell;
       for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x)
-          if (scouts[static_cast<std::size_t>(top + y) * width + left + x])
+          if (pilot[static_cast<std::size_t>(top + y) * width + left + x])
             of_cell.push_back({x, y});
       ASSERT_EQ(of_cell.size(), 16u);
       EXPECT_EQ(of_cell.back().first - of_cell.front().first, 3);
@@ -279,20 +279,20 @@ TEST(ScoutPixels, AreSquaresAllOverThePicture) {
   EXPECT_EQ(places.size(), 4u) << "no grid that a scene could hide from";
 }
 
-TEST(ScoutPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {
-  EXPECT_TRUE(scout_pixels(63, 64).empty());
-  EXPECT_TRUE(scout_pixels(100'000, 7).empty());
+TEST(PilotPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {
+  EXPECT_TRUE(pilot_pixels(63, 64).empty());
+  EXPECT_TRUE(pilot_pixels(100'000, 7).empty());
   for (const auto& [width, height] : {std::pair{64, 64}, {256, 256}, {1920, 1080}, {3840, 2160}}) {
-    const std::vector<bool> scouts = scout_pixels(width, height);
-    const auto count = std::count(scouts.begin(), scouts.end(), true);
+    const std::vector<bool> pilot = pilot_pixels(width, height);
+    const auto count = std::count(pilot.begin(), pilot.end(), true);
     EXPECT_GE(count, 64 * 16) << width;
     EXPECT_LE(count, 1024 * 16) << width;
   }
 }
 
-TEST(ScoutPixels, HaveAQuarterOfThemInTheVanguard) {
-  const std::vector<bool> all = scout_pixels(130, 130);
-  const std::vector<bool> first = scout_pixels(130, 130, Scouts::vanguard);
+TEST(PilotPixels, HaveAQuarterOfThemInTheVanguard) {
+  const std::vector<bool> all = pilot_pixels(130, 130);
+  const std::vector<bool> first = pilot_pixels(130, 130, PilotPass::first_pass);
   ASSERT_EQ(first.size(), all.size());
   EXPECT_EQ(4 * std::count(first.begin(), first.end(), true),
             std::count(all.begin(), all.end(), true));
@@ -302,16 +302,16 @@ TEST(ScoutPixels, HaveAQuarterOfThemInTheVanguard) {
 TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
   RenderOptions options = by_rmse(0.1f);
   SamplePlan plan(128, 128, options);
-  const std::vector<WorkGroup> scouts = plan.scouts();
+  const std::vector<WorkGroup> pilot = plan.pilot();
   EXPECT_EQ(count_of(plan.samples(), 8), 1600u);
   EXPECT_EQ(count_of(plan.samples(), 0), 16384u - 1600u);
-  ASSERT_TRUE(plan.only_scouts_have_samples());
+  ASSERT_TRUE(plan.only_pilot_has_samples());
   // Batches of variance 0.041: the squared error is 0.01 at 4.1, of powers of two at 8.
-  const std::vector<WorkGroup> all = plan.after_scouts({std::vector<float>(16384, 0.041f)});
-  EXPECT_EQ(count_of(plan.samples(), 8 * DAPPLE_BATCH), 16384u);
-  EXPECT_FALSE(plan.only_scouts_have_samples());
+  const std::vector<WorkGroup> all = plan.after_pilot({std::vector<float>(16384, 0.041f)});
+  EXPECT_EQ(count_of(plan.samples(), 8 * DAPPLE_SAMPLE_BATCH), 16384u);
+  EXPECT_FALSE(plan.only_pilot_has_samples());
   GaussianPixels pixels(std::vector<float>(16384, 1.0f));
-  for (const auto& groups : {scouts, all})
+  for (const auto& groups : {pilot, all})
     for (const WorkGroup& group : groups) pixels.trace(group);  // begins where it ended, or fails
   EXPECT_TRUE(plan.least().empty());
 }
@@ -319,15 +319,15 @@ TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
 TEST(SamplePlan, AfterTheScoutsNothingIsGivenToBeSure) {
   // What is missing should the scouts be wrong is less than the doubling that being sure may cost.
   SamplePlan plan(128, 128, by_rmse(0.1f));
-  plan.scouts();
-  plan.after_scouts({std::vector<float>(16384, 0.0399f)});
-  EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_BATCH), 16384u);
+  plan.pilot();
+  plan.after_pilot({std::vector<float>(16384, 0.0399f)});
+  EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_SAMPLE_BATCH), 16384u);
 }
 
 TEST(SamplePlan, AfterTheScoutsNoPixelGetsMoreThanFourTimesTheLeast) {
   SamplePlan plan(128, 128, by_rmse(0.001f));
-  plan.scouts();
-  plan.after_scouts({std::vector<float>(16384, 1.0f)});
+  plan.pilot();
+  plan.after_pilot({std::vector<float>(16384, 1.0f)});
   EXPECT_EQ(count_of(plan.samples(), 32), 16384u);
   EXPECT_NEAR(plan.fraction_done(), 32.0 / 4096, 1e-6) << "of the most";
 }
@@ -337,18 +337,19 @@ TEST(SamplePlan, ByErrorTheScoutsSayWhatThreeQuartersOfThePixelsWant) {
   options.spp = 8;
   options.target_error = 0.1f;
   SamplePlan plan(128, 128, options);
-  plan.scouts();
+  plan.pilot();
   std::vector<float> variances;  // a fifth see nothing, the others want 3 or 6 batches
   for (int p = 0; p < 16384; ++p)
     variances.push_back(p % 128 < 26 ? 0.0f : p < 8192 ? 0.03f : 0.06f);
-  plan.after_scouts({variances});
-  EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_BATCH), 16384u) << "and better stratified than 3";
+  plan.after_pilot({variances});
+  EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_SAMPLE_BATCH), 16384u)
+      << "and better stratified than 3";
 }
 
 TEST(SamplePlan, ScoutsThatSeeNothingAskForTheLeast) {
   SamplePlan plan(128, 128, by_rmse(0.1f));
-  plan.scouts();
-  plan.after_scouts({std::vector<float>(16384, 0.0f)});
+  plan.pilot();
+  plan.after_pilot({std::vector<float>(16384, 0.0f)});
   EXPECT_EQ(count_of(plan.samples(), 8), 16384u);
   EXPECT_EQ(plan.fraction_done(), 1);
 }
@@ -356,12 +357,12 @@ TEST(SamplePlan, ScoutsThatSeeNothingAskForTheLeast) {
 TEST(SamplePlan, GoesOnFromScoutsAsIfItHadSentThem) {
   const std::vector<float> variances(16384, 0.09f);
   SamplePlan plan(128, 128, by_rmse(0.1f));
-  plan.scouts();
+  plan.pilot();
   SamplePlan later(128, 128, by_rmse(0.1f), plan.samples());
-  EXPECT_TRUE(later.scouts().empty());
-  ASSERT_TRUE(later.only_scouts_have_samples());
-  plan.after_scouts({variances});
-  later.after_scouts({variances});
+  EXPECT_TRUE(later.pilot().empty());
+  ASSERT_TRUE(later.only_pilot_has_samples());
+  plan.after_pilot({variances});
+  later.after_pilot({variances});
   EXPECT_EQ(plan.samples(), later.samples());
 }
 

@@ -13,7 +13,7 @@ struct Curls {
   std::size_t segments = 16;  ///< of each
   float radius = 0.002f;      ///< at the root, metres; the tip has `tip` of it
   float tip = 1.0f;
-  float turns = 2;  ///< of a strand around its way
+  float tickets = 2;  ///< of a strand around its way
   std::uint32_t seed = 1;
 };
 
@@ -27,7 +27,7 @@ inline Mesh curly_strands(const Curls& curls, std::uint32_t material = 0) {
     const float length = 0.3f + 0.4f * random.unit(), curl = 0.02f + 0.04f * random.unit();
     for (std::size_t i = 0; i <= curls.segments; ++i) {
       const float share = static_cast<float>(i) / static_cast<float>(curls.segments);
-      const float angle = 2 * static_cast<float>(kPi) * curls.turns * share;
+      const float angle = 2 * static_cast<float>(kPi) * curls.tickets * share;
       const auto at = static_cast<std::uint32_t>(mesh.positions.size());
       mesh.positions.push_back(way * (0.3f + length * share) +
                                (side * std::sin(angle) + up * (std::cos(angle) - 1)) * curl);

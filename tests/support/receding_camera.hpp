@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "dapple/wavefront.hpp"
-#include "support/line_of_points.hpp"
 #include "render/picture.hpp"
+#include "support/line_of_points.hpp"
 
 namespace dapple::popping {
 
 /// Distances grow evenly in ratio, from one at which the ball fills the picture to `times` it.
-class PulledBackCamera {
+class RecedingCamera {
  public:
-  PulledBackCamera(const Box3f& box, int frame_count, float times)
+  RecedingCamera(const Box3f& box, int frame_count, float times)
       : centre_(box.min + box.size() * V3f(0.5f, 0.65f, 0.5f)),
         radius_(0.2f * box.size().length()),
         times_(times),
@@ -76,7 +76,7 @@ class FrameTracer {
     options_.light = false;
   }
 
-  [[nodiscard]] std::vector<Frame> frames(const PulledBackCamera& path, Estimator estimator,
+  [[nodiscard]] std::vector<Frame> frames(const RecedingCamera& path, Estimator estimator,
                                           float footprint) const {
     std::vector<Frame> frames(static_cast<std::size_t>(path.frame_count()));
     for (int f = 0; f < path.frame_count(); ++f) {

@@ -38,7 +38,8 @@ class ReferenceTraversal {
   }
 
  private:
-  /// As DAPPLE_OPAQUE_ENOUGH in kernels/occlusion/traverse.clh: rays stop there, and visits with them.
+  /// As DAPPLE_OPAQUE_ENOUGH in kernels/occlusion/traverse.clh: rays stop there, and visits with
+  /// them.
   static constexpr float kOpaqueEnough = 5e-5f;
 
   struct Walk {
@@ -114,7 +115,7 @@ class ReferenceTraversal {
     }
     const float weight =
         thin ? 1.0f
-             : centre_weight(bvh_concentration(node.leaf_end, slot), off_centre(c, direction));
+             : centre_weight(bvh_mass_concentration(node.leaf_end, slot), off_centre(c, direction));
     return weight *
            chord_depth(box_depth(depths[0], depths[1], depths[2], correlations[0], correlations[1],
                                  correlations[2], facing.x, facing.y, facing.z),

@@ -11,32 +11,34 @@ namespace {
 
 using namespace kernel_test;
 
-std::vector<uint> times_taken(DeviceContext& context, uint pieces, std::size_t group) {
-  const Buffer taken = context.allocate_zeros(pieces * sizeof(uint));
-  context.launch_in_turns({"take_pieces", "tickets", {}}, "turns", pieces, {taken}, group);
-  std::vector<uint> times(pieces);
-  context.read(taken, times.data(), pieces * sizeof(uint));
+std::vector<uint> times_taken(DeviceContext& context, uint ticket_count, std::size_t group) {
+  const Buffer taken = context.allocate_zeros(ticket_count * sizeof(uint));
+  context.launch_with_tickets({"take_pieces", "tickets", {}}, "turns", ticket_count, {taken},
+                              group);
+  std::vector<uint> times(ticket_count);
+  context.read(taken, times.data(), ticket_count * sizeof(uint));
   return times;
 }
 
-TEST(Turns, EveryPieceIsTakenOnce) {
+TEST(Tickets, EveryPieceIsTakenOnce) {
   for (const std::size_t group : {1u, 16u}) {
-    for (const uint pieces : {1u, 2u, 15u, 16u, 17u, 100u, 5000u})
-      EXPECT_EQ(times_taken(device(), pieces, group), std::vector<uint>(pieces, 1u)) << pieces;
+    for (const uint ticket_count : {1u, 2u, 15u, 16u, 17u, 100u, 5000u})
+      EXPECT_EQ(times_taken(device(), ticket_count, group), std::vector<uint>(ticket_count, 1u))
+          << ticket_count;
   }
 }
 
 /// Turns are counted from 4096 below 2^32 on.
-TEST(Turns, CountingStartsAgain) {
+TEST(Tickets, CountingStartsAgain) {
   DeviceContext context("", DAPPLE_TEST_KERNELS);
   for (int launch = 0; launch < 20; ++launch)
     EXPECT_EQ(times_taken(context, 1000, 1), std::vector<uint>(1000, 1u)) << launch;
 }
 
-TEST(Turns, NothingIsLaunchedForNoPieces) {
+TEST(Tickets, NothingIsLaunchedForNoPieces) {
   DeviceContext context("", DAPPLE_TEST_KERNELS);
   const Buffer taken = context.allocate_zeros(sizeof(uint));
-  context.launch_in_turns({"take_pieces", "tickets", {}}, "nothing", 0, {taken}, 1);
+  context.launch_with_tickets({"take_pieces", "tickets", {}}, "nothing", 0, {taken}, 1);
   context.finish();
   EXPECT_FALSE(context.pass_seconds().contains("nothing"));
 }

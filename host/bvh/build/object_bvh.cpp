@@ -11,15 +11,15 @@
 #include <span>
 
 #include "bvh/build/coincident_triangles.hpp"
-#include "bvh/storage/packed_strands.hpp"
 #include "bvh/build/quantize.hpp"
+#include "bvh/storage/packed_strands.hpp"
 
 namespace dapple {
 namespace {
 
 /// Primitives a leaf may hold.
 constexpr std::uint32_t kLeafSize = 4;
-static_assert(kLeafSize * DAPPLE_BVH_WIDTH <= DAPPLE_MOST_PRIMITIVES);
+static_assert(kLeafSize * DAPPLE_BVH_WIDTH <= DAPPLE_MAX_PRIMITIVES);
 
 /// Triangles to a task of one pass over them all.
 constexpr std::uint32_t kGrain = 1u << 14;

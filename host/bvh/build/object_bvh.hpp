@@ -4,10 +4,10 @@
 
 #include <vector>
 
+#include "bvh/build/wide_tree.hpp"
 #include "bvh/opacity/coverage_map.hpp"
 #include "bvh/opacity/node_opacity.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
-#include "bvh/build/wide_tree.hpp"
 #include "dapple/shared/geometry.h"
 
 namespace dapple {
@@ -65,8 +65,8 @@ NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, co
 float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
                         const Box3f& exact);
 
-/// unevenness_class() as stored with it.
-unsigned unevenness_of_child(const BvhNode& node, unsigned slot);
+/// variance_class() as stored with it.
+unsigned variance_of_child(const BvhNode& node, unsigned slot);
 
 /// A triangle of the mesh into a lane; `opacity` in [0,1], or the code of a textured one.
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,

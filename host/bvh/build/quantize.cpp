@@ -15,12 +15,12 @@ double margin(float coordinate, double step) {
 
 /// Steps are 2^-100 at least: sides made of smaller ones may be denormal numbers, which kernels
 /// multiply slowly (AO in a forest on flat ground took 1.1 times as long).
-constexpr int kLeastPower = -100;
+constexpr int kMinPower = -100;
 
 /// The smallest power of two with which [lower, upper] and the margins on both sides fit 255 steps
 /// from an origin rounded down to a float. 253 steps is where to begin.
 void choose_axis(float lower, float upper, float& origin, uchar& exponent) {
-  int power = kLeastPower;
+  int power = kMinPower;
   const double size = static_cast<double>(upper) - lower;
   if (size > 0) power = std::max(power, static_cast<int>(std::ceil(std::log2(size / 253.0))));
   for (;; ++power) {

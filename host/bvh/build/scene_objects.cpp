@@ -13,7 +13,7 @@ namespace {
 
 /// Smaller objects are not worth a file. At this size building takes 240 us, writing 100 and
 /// reading 16; scenes with many smaller ones have them merged anyway.
-constexpr std::size_t kLeastCachedTriangles = 256;
+constexpr std::size_t kMinCachedTriangles = 256;
 
 /// A mesh on its way to a finished object.
 struct Work {
@@ -37,7 +37,7 @@ void read_from_cache(const Scene& scene, const std::string& folder, std::vector<
                      BvhStatistics& statistics) {
   statistics.cache.read_seconds = for_each(works, [&](Work& work, std::size_t m) {
     const Mesh& mesh = scene.meshes[m];
-    work.is_cached = mesh.primitive_count() >= kLeastCachedTriangles;
+    work.is_cached = mesh.primitive_count() >= kMinCachedTriangles;
     if (!work.is_cached) return;
     work.key = object_key(scene, mesh);
     auto found = read_cached_object(folder, work.key, scene, work.note);

@@ -11,9 +11,9 @@ namespace {
 constexpr float kOpenShare = 0.1f;
 
 /// Vertices that triangles connect, as a forest with one root a piece.
-class Pieces {
+class QueueSplit {
  public:
-  explicit Pieces(std::size_t vertices) : parent_(vertices) {
+  explicit QueueSplit(std::size_t vertices) : parent_(vertices) {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
   /// Halves the path on the way (Tarjan and van Leeuwen, "Worst-case Analysis of Set Union
@@ -44,12 +44,12 @@ std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opac
   if (std::none_of(opacities.begin(), opacities.end(), [](float o) { return o == 1.0f; })) {
     return {};
   }
-  Pieces pieces(mesh.positions.size());
+  QueueSplit ticket_count(mesh.positions.size());
   for (std::size_t t = 0; t < opacities.size(); ++t) {
     if (!opaque(t)) continue;
     const std::uint32_t* index = &mesh.indices[3 * t];
-    pieces.join(index[0], index[1]);
-    pieces.join(index[0], index[2]);
+    ticket_count.join(index[0], index[1]);
+    ticket_count.join(index[0], index[2]);
   }
   struct Sums {
     V3f vector{0, 0, 0};
@@ -60,16 +60,16 @@ std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opac
     if (!opaque(t)) continue;
     const std::uint32_t* index = &mesh.indices[3 * t];
     const V3f vector = area_vector(mesh, index);
-    Sums& piece = sums[pieces.root(index[0])];
-    piece.vector += vector;
-    piece.area += vector.length();
+    Sums& ticket = sums[ticket_count.root(index[0])];
+    ticket.vector += vector;
+    ticket.area += vector.length();
   }
   std::vector<bool> closed(opacities.size());
   bool any = false;
   for (std::size_t t = 0; t < opacities.size(); ++t) {
     if (!opaque(t)) continue;
-    const Sums& piece = sums[pieces.root(mesh.indices[3 * t])];
-    closed[t] = piece.vector.length() < kOpenShare * piece.area;
+    const Sums& ticket = sums[ticket_count.root(mesh.indices[3 * t])];
+    closed[t] = ticket.vector.length() < kOpenShare * ticket.area;
     any |= closed[t];
   }
   return any ? closed : std::vector<bool>{};

@@ -108,13 +108,13 @@ Four chord_variances(const FourVectors& facing) {
 /// Variances of the depths that chord_depth() and centre_weight() give rays, over the squares of
 /// their means `depth`. Sampled for boxes of any shape, to a tenth: long chords are those through
 /// the middle.
-Four depth_variances(Four depth, Four chords, float concentration) {
+Four depth_variances(Four depth, Four chords, float mass_concentration) {
   // How much of a chord's deviation from the mean one counts: chord_depth().
   constexpr float kPerDepth = 1.0f / (DAPPLE_FILLED_DEPTH - DAPPLE_SPARSE_DEPTH);
   const Four counted =
       least(largest((DAPPLE_FILLED_DEPTH - depth) * kPerDepth, all(0.0f)), all(1.0f));
-  return chords * counted * counted * (1.0f + 1.3f * concentration) +
-         0.17f * concentration * concentration;
+  return chords * counted * counted * (1.0f + 1.3f * mass_concentration) +
+         0.17f * mass_concentration * mass_concentration;
 }
 
 /// Of rays whose depths have these means and variances, as if gamma distributed.
@@ -126,7 +126,7 @@ Four mean_transmittances(Four depth, Four variance) {
 
 }  // namespace
 
-unsigned unevenness_class(const NodeOpacity& opacity) {
+unsigned variance_class(const NodeOpacity& opacity) {
   float greatest = 0, most = 0;
   for (int axis = 0; axis < 3; ++axis) {
     greatest += opacity.axes[axis] * (1.0f - opacity.axes[axis]);
@@ -134,21 +134,21 @@ unsigned unevenness_class(const NodeOpacity& opacity) {
   }
   const float square = std::max(opacity.clumping * greatest / 3, std::pow(most, 4.0f));
   unsigned of_seven = 0;
-  for (float limit = DAPPLE_EVENEST_SQUARE; of_seven < DAPPLE_UNEVEN && !(square <= limit);
+  for (float limit = DAPPLE_MIN_VARIANCE; of_seven < DAPPLE_NOT_UNIFORM && !(square <= limit);
        limit *= 2)
     ++of_seven;
   return of_seven;
 }
 
 float depth_of(float opacity) {
-  return -std::log(std::max(1.0f - opacity, DAPPLE_LEAST_TRANSMITTANCE));
+  return -std::log(std::max(1.0f - opacity, DAPPLE_MIN_TRANSMITTANCE));
 }
 
 float chord_variance(const V3f& facing) {
   return chord_variances({all(facing.x), all(facing.y), all(facing.z)})[0];
 }
 
-float concentration_of(float off_centre) {
+float mass_concentration_of(float off_centre) {
   // Where opacity falls as 1 + c (2/3 - r), r has mean 2/3 - c times its variance over a square.
   constexpr float kVariance = 8.0f / 45.0f;
   return std::clamp((2.0f / 3.0f - off_centre) / kVariance, 0.0f, 1.0f);
@@ -173,8 +173,8 @@ class DirectionalOpacity {
         depths_(depth_of(axes_.x), depth_of(axes_.y), depth_of(axes_.z)),
         correlation_(opacity.normals.correlation()),
         clumping_(opacity.clumping),
-        concentration_(opacity.concentration),
-        compensated_(opacity.concentration * compensation(opacity.triangles)) {}
+        mass_concentration_(opacity.mass_concentration),
+        compensated_(opacity.mass_concentration * compensation(opacity.triangles)) {}
 
   struct Views {
     Four facing;   ///< projected area of the box
@@ -192,7 +192,7 @@ class DirectionalOpacity {
     const Four chords = chord_variances(facing);
     Views views = meet(area, depth, chords);
     // What gathers around the middle is no less opaque for the box's empty corners.
-    const Four even = 1.0f - mean_transmittances(depth, (1.0f - concentration_) *
+    const Four even = 1.0f - mean_transmittances(depth, (1.0f - mass_concentration_) *
                                                             depth_variances(depth, chords, 0.0f));
     const Four clump = least(blend(axes_, seen, area), all(1.0f));
     views.opacity = even + clumping_ * (clump - even);
@@ -225,7 +225,7 @@ class DirectionalOpacity {
   }
 
   V3f faces_, axes_, depths_, correlation_;
-  float clumping_, concentration_;
+  float clumping_, mass_concentration_;
   float compensated_;  ///< the concentration that is made up for
 };
 

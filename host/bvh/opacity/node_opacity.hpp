@@ -28,18 +28,18 @@ struct NormalMoments {
 struct NodeOpacity {
   V3f axes{0, 0, 0};  ///< opacity along x, y, z, [0,1]
   NormalMoments normals;
-  float clumping = 0;         ///< CoverageMap::clumping()
-  float concentration = 0;    ///< concentration_of(), [0,1]
-  std::size_t triangles = 0;  ///< in the whole subtree; 0: many
+  float clumping = 0;            ///< CoverageMap::clumping()
+  float mass_concentration = 0;  ///< mass_concentration_of(), [0,1]
+  std::size_t triangles = 0;     ///< in the whole subtree; 0: many
 };
 
 /// The concentration that makes centre_weight() of dapple/shared/opacity.h fit: from the mean
 /// squared distance of what hides from the centre of the box, seen along the axes, in half
 /// sizes. 2/3 and more, as of things that fill the box evenly or stay away from its middle: 0.
-float concentration_of(float off_centre);
+float mass_concentration_of(float off_centre);
 
 /// How unevenly a box is filled, as nodes store it: dapple/shared/opacity.h.
-unsigned unevenness_class(const NodeOpacity& opacity);
+unsigned variance_class(const NodeOpacity& opacity);
 
 /// -log(1 - opacity), at most the greatest depth that a node can store.
 float depth_of(float opacity);

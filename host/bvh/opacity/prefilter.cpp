@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "bvh/build/quantize.hpp"
-#include "bvh/storage/segment_block.hpp"
 #include "bvh/opacity/strand_coverage.hpp"
+#include "bvh/storage/segment_block.hpp"
 #include "dapple/shared/opacity.h"
 
 namespace dapple {
@@ -25,12 +25,12 @@ uchar encode_depth(float depth) {
 }
 
 /// Primitives that a leaf holds at most.
-constexpr std::size_t kMostInLeaf = 8;
+constexpr std::size_t kMaxInLeaf = 8;
 
 /// A leaf's primitives, as what they hide, and what adds up over them.
 struct Leaf {
   /// Triangles once for all axes; or along each the strips of segments, two triangles each.
-  std::array<CoveringTriangle, 3 * 2 * kMostInLeaf> storage;
+  std::array<CoveringTriangle, 3 * 2 * kMaxInLeaf> storage;
   std::size_t count = 0;  ///< primitives
   std::size_t drawn = 0;  ///< triangles along an axis
   bool facing = false;    ///< each axis has its own
@@ -79,7 +79,7 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
     greatest += hidden * (1.0f - hidden);
   }
   if (greatest > 1e-6f) opacity.clumping = std::min(1.0f, variance / greatest);
-  if (total > 0.0f) opacity.concentration = concentration_of(off_centre / total);
+  if (total > 0.0f) opacity.mass_concentration = mass_concentration_of(off_centre / total);
   return opacity;
 }
 
@@ -172,7 +172,7 @@ class Prefilter {
 
   Leaf load_strands(const BvhNode& node, unsigned slot) const {
     Leaf leaf;
-    std::array<StrandSegment, kMostInLeaf> segments;
+    std::array<StrandSegment, kMaxInLeaf> segments;
     for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
          i < bvh_leaf_end(node.leaf_end, slot); ++i) {
       const std::uint32_t block = bvh_block_index(node.prim_base) + i / 8;
@@ -243,7 +243,7 @@ NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, co
     off_centre += face_area(box, axis) * map.opacity_off_centre(axis);
     total += face_area(box, axis) * opacity.axes[axis];
   }
-  if (total > 0.0f) opacity.concentration = concentration_of(off_centre / total);
+  if (total > 0.0f) opacity.mass_concentration = mass_concentration_of(off_centre / total);
   return opacity;
 }
 
@@ -271,11 +271,12 @@ schar encode_correlation(float correlation, unsigned bit) {
 }
 
 void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
-                  const V3f& correlation, unsigned unevenness) {
+                  const V3f& correlation, unsigned opacity_variance) {
   for (int axis = 0; axis < 3; ++axis) {
     node.depth[axis][slot] =
         encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_GREATEST_DEPTH));
-    node.correlation[axis][slot] = encode_correlation(correlation[axis], unevenness >> axis & 1u);
+    node.correlation[axis][slot] =
+        encode_correlation(correlation[axis], opacity_variance >> axis & 1u);
   }
 }
 
@@ -288,13 +289,13 @@ float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity
   grown.axes = grown_opacity(opacity.axes, exact, box);
   const float factor = clumping_factor(grown, box.max - box.min);
   store_depths(node, slot, grown.axes, factor, opacity.normals.correlation(),
-               unevenness_class(opacity));
-  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.concentration));
+               variance_class(opacity));
+  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.mass_concentration));
   node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
   return factor;
 }
 
-unsigned unevenness_of_child(const BvhNode& node, unsigned slot) {
+unsigned variance_of_child(const BvhNode& node, unsigned slot) {
   unsigned bits = 0;
   for (unsigned pair = 0; pair < 3; ++pair)
     bits |= (static_cast<unsigned>(node.correlation[pair][slot]) & 1u) << pair;
@@ -308,7 +309,7 @@ void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
     axes[axis] = std::min(1.0f, axes[axis] * kept.share(axis, slot));
   store_depths(node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
                normals.correlation(),
-               std::max(unevenness_of_child(node, slot), unevenness_class({axes, {}})));
+               std::max(variance_of_child(node, slot), variance_class({axes, {}})));
 }
 
 namespace {

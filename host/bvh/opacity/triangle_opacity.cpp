@@ -23,12 +23,12 @@ std::array<float, 3> vertex_alphas(const Material& material, const Mesh& mesh,
 }
 
 void check_material(const Scene& scene, std::uint32_t material) {
-  if (material < DAPPLE_MOST_TEXTURED_MATERIALS) return;
+  if (material < DAPPLE_MAX_TEXTURED_MATERIALS) return;
   throw Error(ErrorKind::failed,
               fmt::format("{}: the opacity of material {} ({}) varies over triangles, which only "
                           "the first {} materials' may; merge materials that are equal",
                           scene.source, material, scene.materials[material].name,
-                          DAPPLE_MOST_TEXTURED_MATERIALS));
+                          DAPPLE_MAX_TEXTURED_MATERIALS));
 }
 
 }  // namespace

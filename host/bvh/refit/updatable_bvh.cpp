@@ -6,11 +6,11 @@
 #include <chrono>
 
 #include "bvh/build/joined_objects.hpp"
-#include "bvh/storage/object_key.hpp"
-#include "bvh/refit/refit_object.hpp"
 #include "bvh/build/scene_bvh.hpp"
 #include "bvh/build/scene_objects.hpp"
 #include "bvh/build/top_level.hpp"
+#include "bvh/refit/refit_object.hpp"
+#include "bvh/storage/object_key.hpp"
 #include "dapple/bvh.hpp"
 
 namespace dapple {
@@ -36,7 +36,7 @@ std::vector<MeshKey> keys_of(const Scene& scene) {
 }
 
 /// Nodes that the top level may take: each but a lone root has at least two instances below.
-std::size_t most_top_nodes(const Scene& scene) { return scene.instances.size() + 1; }
+std::size_t max_top_nodes(const Scene& scene) { return scene.instances.size() + 1; }
 
 bool is_placed_alike(const Instance& a, const Instance& b) {
   return a.mesh == b.mesh && a.light == b.light && a.to_world == b.to_world;
@@ -106,7 +106,7 @@ std::vector<FinishedObject> UpdatableBvh::State::separated(const std::vector<boo
 void UpdatableBvh::State::put_together(const Scene& scene, std::vector<FinishedObject> finished) {
   objects.assign(finished.begin(), finished.end());
   offsets = lay_out(finished, scene.source);
-  arrays = join_changeable(bvh, finished, offsets, most_top_nodes(scene));
+  arrays = join_changeable(bvh, finished, offsets, max_top_nodes(scene));
   BvhUpdate everything;
   place(scene, everything);
   bvh.statistics.lane_use = lane_use(bvh);
@@ -177,12 +177,12 @@ void UpdatableBvh::State::update(const Scene& scene, const std::vector<MeshKey>&
   update.objects_kept = now.size() - update.objects_refitted - update.objects_rebuilt;
   const bool is_placed = std::equal(instances.begin(), instances.end(), scene.instances.begin(),
                                     scene.instances.end(), is_placed_alike);
-  const std::size_t most_nodes = offsets.back().node + most_top_nodes(scene);
+  const std::size_t max_nodes = offsets.back().node + max_top_nodes(scene);
   if (update.objects_rebuilt > 0) {
     rebuild(scene, is_kept);
     update.is_new = true;
   } else if (!moved.empty() || !is_placed) {
-    update.is_new = arrays.nodes.size() < most_nodes;
+    update.is_new = arrays.nodes.size() < max_nodes;
     if (update.is_new) put_together(scene, separated(is_kept));
     if (!update.is_new) place(scene, update);
   }

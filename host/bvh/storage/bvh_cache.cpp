@@ -37,7 +37,7 @@ struct ObjectRecord {
   std::array<BoxRecord, DAPPLE_BVH_WIDTH> parts;
   std::array<float, 3> axes;
   std::array<float, 6> normals;
-  float clumping, concentration;
+  float clumping, mass_concentration;
   std::uint32_t part_count, stack, spare;
 };
 static_assert(sizeof(ObjectRecord) == 2 * 8 + 7 * 8 + (6 + 8 * 6 + 3 + 6 + 2) * 4 + 3 * 4);
@@ -64,7 +64,7 @@ ObjectRecord record_of(const CachedObject& cached, const Checksum& key) {
   for (int axis = 0; axis < 3; ++axis) record.axes[axis] = object.opacity.axes[axis];
   record.normals = object.opacity.normals.sum;
   record.clumping = object.opacity.clumping;
-  record.concentration = object.opacity.concentration;
+  record.mass_concentration = object.opacity.mass_concentration;
   record.part_count = static_cast<std::uint32_t>(object.parts.size());
   record.stack = object.stack;
   return record;
@@ -84,7 +84,7 @@ ObjectSummary summary_of(const ObjectRecord& record) {
   summary.opacity.axes = V3f(record.axes[0], record.axes[1], record.axes[2]);
   summary.opacity.normals.sum = record.normals;
   summary.opacity.clumping = record.clumping;
-  summary.opacity.concentration = record.concentration;
+  summary.opacity.mass_concentration = record.mass_concentration;
   summary.stack = record.stack;
   return summary;
 }

@@ -8,10 +8,10 @@ namespace {
 
 /// Strands that turn by more than a right angle, cosine below this, are cut across: the plane
 /// between the two sides would cut off a long spike.
-constexpr float kLeastTurnCosine = 0.0f;
+constexpr float kMinTurnCosine = 0.0f;
 
 /// Change of radius by length up to which neighbouring cones meet well enough in a plane.
-constexpr float kMostTaper = 0.5f;
+constexpr float kMaxTaper = 0.5f;
 
 V3f axis_of(const Mesh& mesh, std::uint32_t index) {
   const std::uint32_t* at = &mesh.indices[2 * std::size_t{index}];
@@ -39,7 +39,7 @@ V3f reach_of_cut(const V3f& axis, const V3f& plane) {
 
 Box3f bounds(const StrandSegment& segment) {
   const V3f axis = (segment.point[1] - segment.point[0]).normalized();
-  const float taper = std::min(taper_of(segment), kMostTaper);
+  const float taper = std::min(taper_of(segment), kMaxTaper);
   Box3f box;
   for (int end = 0; end < 2; ++end) {
     const V3f& plane = segment.plane[end];
@@ -80,7 +80,7 @@ StrandSegment StrandJoints::segment(const Mesh& mesh, std::uint32_t index) const
     segment.radius[end] = mesh.radii[at[end]];
     segment.plane[end] = axis;
   }
-  const bool flares = taper_of(segment) > kMostTaper;
+  const bool flares = taper_of(segment) > kMaxTaper;
   for (int end = 0; end < 2; ++end) {
     const std::uint32_t other = neighbour(mesh, index, end);
     segment.cap[end] = other == kNone;
@@ -88,7 +88,7 @@ StrandSegment StrandJoints::segment(const Mesh& mesh, std::uint32_t index) const
     // Turned to go the same way along the strand, whichever end it has here.
     const bool same_way = mesh.indices[2 * std::size_t{other} + (1 - end)] == at[end];
     const V3f along = axis_of(mesh, other) * (same_way ? 1.0f : -1.0f);
-    if (axis.dot(along) > kLeastTurnCosine) segment.plane[end] = axis + along;
+    if (axis.dot(along) > kMinTurnCosine) segment.plane[end] = axis + along;
   }
   return segment;
 }

@@ -74,7 +74,7 @@ std::uint32_t texel_size_code(float size) {
 }  // namespace
 
 TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t) {
-  assert(corners.material < DAPPLE_MOST_TEXTURED_MATERIALS);
+  assert(corners.material < DAPPLE_MAX_TEXTURED_MATERIALS);
   const Coordinates uv = without_whole_tiles(corners, wrap_s, wrap_t);
   const Steps steps = steps_for(uv);
   std::array<std::uint32_t, 3> alpha{};

@@ -1,5 +1,6 @@
 // Textured triangles packed for the kernels, and the one accessor that unpacks them on the host;
-// kernels/opacity/opacity_lookup.clh decodes the same bits (include/dapple/shared/textured_triangle.h).
+// kernels/opacity/opacity_lookup.clh decodes the same bits
+// (include/dapple/shared/textured_triangle.h).
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ struct TexturedCorners {
 /// six are in [0,1), of 2^-20 in [0,2) and so on, twice that where one is negative; alphas to half
 /// of 1/4080, and 0, 1 and 8-bit colours not at all; sizes of texels to powers of two, and beyond
 /// [2^-24, 2^6] to not known. What is not a number becomes 0, beyond 2^60
-/// that. `corners.material` is below DAPPLE_MOST_TEXTURED_MATERIALS.
+/// that. `corners.material` is below DAPPLE_MAX_TEXTURED_MATERIALS.
 TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t);
 
 TexturedCorners unpack_textured(const TexturedTriangle& triangle);

@@ -21,7 +21,7 @@ namespace dapple {
 namespace {
 
 /// Each takes some 230 MB.
-constexpr std::size_t kMostProcesses = 4;
+constexpr std::size_t kMaxProcesses = 4;
 
 using Arguments = std::vector<std::string>;
 
@@ -95,17 +95,17 @@ std::vector<Share> deal(std::vector<Share> programs, std::size_t count) {
 
 std::string text_of(const KernelName& kernel) {
   return fmt::format("{}:{}:{:d}:{:d}", kernel.name, kernel.file, kernel.variant.prefiltered,
-                     kernel.variant.one_point);
+                     kernel.variant.shared_origin);
 }
 
 KernelName parse_kernel(const std::string& text) {
   char name[64], file[64];
-  int prefiltered = 0, one_point = 0, end = 0;
+  int prefiltered = 0, shared_origin = 0, end = 0;
   if (std::sscanf(text.c_str(), "%63[a-z_]:%63[a-z_/]:%1d:%1d%n", name, file, &prefiltered,
-                  &one_point, &end) != 4 ||
+                  &shared_origin, &end) != 4 ||
       static_cast<std::size_t>(end) != text.size())
     throw Error(ErrorKind::usage, "no kernel: '" + text + "'");
-  return {name, file, {prefiltered != 0, one_point != 0}};
+  return {name, file, {prefiltered != 0, shared_origin != 0}};
 }
 
 void CompilerProcesses::use(const std::string& program) { program_in_use() = program; }
@@ -128,7 +128,7 @@ void CompilerProcesses::start(const DeviceContext& context, const std::vector<Ke
   add_option("--device", context.chosen_by());
   add_option("--kernel-dir", context.kernel_dir());
   const auto programs = by_program(context, {kernels.begin(), kernels.end()}, to);
-  for (const Share& share : deal(programs, std::min(cpus, kMostProcesses))) {
+  for (const Share& share : deal(programs, std::min(cpus, kMaxProcesses))) {
     Arguments arguments = common;
     for (const KernelName& kernel : share.kernels) arguments.push_back(text_of(kernel));
     if (const pid_t process = start_process(program_in_use(), std::move(arguments)))

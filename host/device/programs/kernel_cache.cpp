@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Programs kept, each of some 300 kB; the least recently used go first.
-constexpr std::size_t kMostPrograms = 96;
+constexpr std::size_t kMaxPrograms = 96;
 
 /// What compiling every kernel may take on the disk, several times over.
 constexpr std::uint64_t kBytesNeeded = 8u << 20;
@@ -188,7 +188,7 @@ void KernelCache::forget_oldest() const {
       entries.emplace_back(entry.last_write_time(ignored), entry.path());
   }
   std::sort(entries.begin(), entries.end());
-  for (std::size_t i = 0; i + kMostPrograms < entries.size(); ++i)
+  for (std::size_t i = 0; i + kMaxPrograms < entries.size(); ++i)
     fs::remove_all(entries[i].second, ignored);
 }
 

@@ -9,7 +9,7 @@
 
 namespace dapple {
 
-MemoryNeed least_need(const Scene& scene) {
+MemoryNeed min_need(const Scene& scene) {
   std::size_t triangles = 0, segments = 0, texels = 0;
   for (const Mesh& mesh : scene.meshes)
     (mesh.has_strands() ? segments : triangles) += mesh.primitive_count();

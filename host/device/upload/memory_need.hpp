@@ -16,7 +16,7 @@ struct MemoryNeed {
 
 /// The least that a scene can take, whatever is built of it: its triangles in blocks without a gap,
 /// its textures and instances. A tenth to a half more is usual.
-MemoryNeed least_need(const Scene& scene);
+MemoryNeed min_need(const Scene& scene);
 
 /// Throws Error device with needed and available bytes; `how` is "needs" or "needs at least".
 void check_memory(const DeviceInfo& device, const MemoryNeed& need, const char* how);

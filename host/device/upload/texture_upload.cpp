@@ -36,7 +36,7 @@ std::vector<uint> pack_mips(const Texture& texture, float factor, float cutoff,
   const OpacityPyramid pyramid(texture, factor, cutoff);
   std::vector<uint> offsets;
   for (std::size_t level = 1; level < pyramid.levels().size(); ++level) {
-    if (offsets.size() == DAPPLE_MOST_MIPS) break;
+    if (offsets.size() == DAPPLE_MAX_MIPS) break;
     offsets.push_back(next_offset(texels));
     for (const float opacity : pyramid.levels()[level].opacity)
       texels.push_back(static_cast<uchar>(std::lround(255.0f * opacity)));

@@ -14,7 +14,7 @@ using Imath::V3d;
 using Imath::V4d;
 
 /// Samplers may share accessors, and weights be of many targets: what a small file can ask for.
-std::uint64_t most_numbers(const Document& document) {
+std::uint64_t max_numbers(const Document& document) {
   return (std::uint64_t{1} << 24) + document.bytes;
 }
 
@@ -201,10 +201,10 @@ void Player::choose(const std::string& animation) {
 
 void Player::count(std::uint64_t& numbers, std::uint64_t more, const std::string& who) const {
   numbers += more;
-  if (numbers <= most_numbers(document_)) return;
+  if (numbers <= max_numbers(document_)) return;
   fail(document_.file,
        "{} brings the numbers of its motion to {} (at most {} in a scene of {} bytes)", who,
-       grouped(numbers), grouped(most_numbers(document_)), grouped(document_.bytes));
+       grouped(numbers), grouped(max_numbers(document_)), grouped(document_.bytes));
 }
 
 void Player::read_times(const std::string& who, int accessor, std::uint64_t& numbers) {

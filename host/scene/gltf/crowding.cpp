@@ -10,7 +10,7 @@
 namespace dapple::gltf {
 namespace {
 
-constexpr std::uint32_t kMostInOnePlace = 1000;
+constexpr std::uint32_t kMaxInOnePlace = 1000;
 
 /// FNV-1a over 32-bit words. That two of some million placements differ and have the same hash
 /// is unlikely, and would have to happen a thousand times to matter.
@@ -27,13 +27,13 @@ std::uint64_t hash(const Instance& instance) {
 }  // namespace
 
 void check_crowding(const Scene& scene) {
-  if (scene.instances.size() <= kMostInOnePlace) return;
+  if (scene.instances.size() <= kMaxInOnePlace) return;
   std::unordered_map<std::uint64_t, std::uint32_t> placed;
   placed.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
-    if (++placed[hash(instance)] <= kMostInOnePlace) continue;
+    if (++placed[hash(instance)] <= kMaxInOnePlace) continue;
     fail(scene.source, "mesh \"{}\" is placed more than {} times in one place",
-         excerpt(scene.meshes[instance.mesh].name), grouped(kMostInOnePlace));
+         excerpt(scene.meshes[instance.mesh].name), grouped(kMaxInOnePlace));
   }
 }
 

@@ -19,9 +19,9 @@ using Imath::V4d;
 
 /// Nodes may share accessors of instances: what a file can ask for is bounded by its size,
 /// above a number that is built in seconds.
-std::uint64_t most_instances(const Document& document) {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 25;
-  return std::min(kMost, (std::uint64_t{1} << 22) + document.bytes);
+std::uint64_t max_instances(const Document& document) {
+  constexpr std::uint64_t kMax = std::uint64_t{1} << 25;
+  return std::min(kMax, (std::uint64_t{1} << 22) + document.bytes);
 }
 
 /// EXT_mesh_gpu_instancing's accessors, each of which may be absent.
@@ -94,9 +94,9 @@ std::vector<M44d> node_placements(const Document& document, const PlacedNode& pl
   const std::string who = element("node", static_cast<std::size_t>(placed.node), node.name);
   const Placements placements =
       read_placements(document, instancing->second.Get("attributes"), who);
-  if (so_far + placements.count > most_instances(document)) {
+  if (so_far + placements.count > max_instances(document)) {
     fail(document.file, "{} brings the instances to {} (at most {} in a scene of {} bytes)", who,
-         grouped(so_far + placements.count), grouped(most_instances(document)),
+         grouped(so_far + placements.count), grouped(max_instances(document)),
          grouped(document.bytes));
   }
   std::vector<M44d> matrices;

@@ -14,13 +14,13 @@ namespace {
 
 /// Primitives may share accessors, so that a small file could ask for any number of them:
 /// it gets as many as are built in seconds, and no more than its bytes can hold beyond that.
-std::uint64_t most_elements(const Document& document) {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 28;
-  return std::min(kMost, (std::uint64_t{1} << 22) + document.bytes / 2);
+std::uint64_t max_elements(const Document& document) {
+  constexpr std::uint64_t kMax = std::uint64_t{1} << 28;
+  return std::min(kMax, (std::uint64_t{1} << 22) + document.bytes / 2);
 }
 
 /// The same for sparse values, which are read again for every primitive.
-std::uint64_t most_sparse_values(const Document& document) {
+std::uint64_t max_sparse_values(const Document& document) {
   return (std::uint64_t{1} << 24) + 4 * document.bytes;
 }
 
@@ -101,16 +101,16 @@ bool is_shown(const tinygltf::Primitive& primitive, float line_radius, MeshTotal
 }
 
 /// And for what deforms vertices, which may be shared by primitives and nodes.
-constexpr std::uint64_t kMostDeformed = std::uint64_t{1} << 28;
+constexpr std::uint64_t kMaxDeformed = std::uint64_t{1} << 28;
 
 void count_work(const Document& document, const tinygltf::Primitive& primitive,
                 const Deformation& deformation, const std::string& who, MeshTotals& totals) {
   const std::uint64_t elements = element_count(document, primitive, who);
   totals.elements += elements;
-  if (totals.elements > most_elements(document)) {
+  if (totals.elements > max_elements(document)) {
     fail(document.file,
          "{} brings the triangles and segments to {} (at most {} in a scene of {} bytes)", who,
-         grouped(totals.elements), grouped(most_elements(document)), grouped(document.bytes));
+         grouped(totals.elements), grouped(max_elements(document)), grouped(document.bytes));
   }
   totals.sparse_values += sparse_count(document, primitive.indices);
   for (const auto& [name, accessor] : primitive.attributes) {
@@ -121,13 +121,13 @@ void count_work(const Document& document, const tinygltf::Primitive& primitive,
       3 * elements,
       document.model.accessors[static_cast<std::size_t>(attribute(primitive, "POSITION"))].count);
   totals.deformed += deformation_cost(document, primitive, deformation, vertices);
-  if (totals.deformed > kMostDeformed) {
+  if (totals.deformed > kMaxDeformed) {
     fail(document.file, "{} brings the numbers that deform vertices to {} (at most {})", who,
-         grouped(totals.deformed), grouped(kMostDeformed));
+         grouped(totals.deformed), grouped(kMaxDeformed));
   }
-  if (totals.sparse_values > most_sparse_values(document)) {
+  if (totals.sparse_values > max_sparse_values(document)) {
     fail(document.file, "{} brings the sparse values to {} (at most {} in a scene of {} bytes)",
-         who, grouped(totals.sparse_values), grouped(most_sparse_values(document)),
+         who, grouped(totals.sparse_values), grouped(max_sparse_values(document)),
          grouped(document.bytes));
   }
 }

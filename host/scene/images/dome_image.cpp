@@ -17,7 +17,7 @@ namespace {
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 31;
 
 /// Images are averaged down to this: finer detail than a sixth of a degree lights nothing.
-constexpr std::uint32_t kMostWidth = 2048, kMostHeight = 1024;
+constexpr std::uint32_t kMaxWidth = 2048, kMaxHeight = 1024;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw Error(ErrorKind::input, path + ": " + why);
@@ -87,10 +87,10 @@ double mean_luminance(const Environment& environment) {
   return sum / weights;
 }
 
-void settle_dome(Light& light) {
+void finalize_dome(Light& light) {
   Environment environment = *light.environment;
-  const std::uint32_t across = (environment.width + kMostWidth - 1) / kMostWidth;
-  const std::uint32_t down = (environment.height + kMostHeight - 1) / kMostHeight;
+  const std::uint32_t across = (environment.width + kMaxWidth - 1) / kMaxWidth;
+  const std::uint32_t down = (environment.height + kMaxHeight - 1) / kMaxHeight;
   if (across > 1 || down > 1) environment = averaged(environment, across, down);
   const double mean = mean_luminance(environment);
   light.radiance *= static_cast<float>(mean);
@@ -119,9 +119,9 @@ std::shared_ptr<const Environment> load_environment(const std::string& path) {
   return std::make_shared<const Environment>(std::move(environment));
 }
 
-void settle_domes(Scene& scene) {
+void finalize_domes(Scene& scene) {
   for (Light& light : scene.lights)
-    if (light.kind == LightKind::dome && light.environment) settle_dome(light);
+    if (light.kind == LightKind::dome && light.environment) finalize_dome(light);
 }
 
 }  // namespace dapple

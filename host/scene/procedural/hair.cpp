@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t kHairMaterial = 0;
 constexpr std::uint32_t kSkinMaterial = 1;
-constexpr std::uint32_t kMostSegments = 1u << 26;
+constexpr std::uint32_t kMaxSegments = 1u << 26;
 constexpr std::uint64_t kLockStreams = std::uint64_t{1} << 40;  // beyond the strands' own
 
 const V3f kHeadCentre(0, 0.12f, 0);
@@ -78,8 +78,8 @@ V3f pushed_out(V3f point, float scale) {
 
 /// The turn of a curl from one segment to the next: no more than a sixth, whatever the segments.
 V2f curl_step(const HairShape& shape) {
-  const double turns = 6.0 * shape.curl;
-  const double angle = 2 * std::numbers::pi * std::min(turns / shape.segments, 1.0 / 6);
+  const double tickets = 6.0 * shape.curl;
+  const double angle = 2 * std::numbers::pi * std::min(tickets / shape.segments, 1.0 / 6);
   // In double and then rounded, so that libm's last bit does not reach the mesh.
   return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
 }
@@ -232,10 +232,10 @@ Scene make_hair_scene(const ProceduralParameters& parameters) {
   shape.seed = parameters.whole("seed");
   shape.radius = radius_of(parameters);
   shape.curl = parameters.real("curl");
-  if (std::uint64_t{shape.strands} * shape.segments > kMostSegments) {
+  if (std::uint64_t{shape.strands} * shape.segments > kMaxSegments) {
     throw Error(ErrorKind::usage, fmt::format("scene:hair: {} strands of {} segments are too many "
                                               "(at most {} segments in all)",
-                                              shape.strands, shape.segments, kMostSegments));
+                                              shape.strands, shape.segments, kMaxSegments));
   }
   Scene scene;
   scene.materials.push_back(blend_material("hair", parameters.real("opacity")));

@@ -14,9 +14,9 @@ namespace {
 using Imath::Quatd;
 using Imath::V3d;
 
-constexpr double kBend = 1.1;         // radians over a tree's height, of the thinnest limb
-constexpr double kFlutter = 0.22;     // radians
-constexpr double kMostFlutter = 0.6;  // radians: beyond, leaves would spin
+constexpr double kBend = 1.1;        // radians over a tree's height, of the thinnest limb
+constexpr double kFlutter = 0.22;    // radians
+constexpr double kMaxFlutter = 0.6;  // radians: beyond, leaves would spin
 constexpr std::uint64_t kFlutterStreams = std::uint64_t{1} << 41;  // beyond the leaves' own
 
 /// A wave that runs through the crown.
@@ -60,39 +60,39 @@ V3d rotated(const Quatd& turn, const V3d& v) {
 }  // namespace
 
 SwayingSkeleton::SwayingSkeleton(const TreeSkeleton& rest, float height_m, const Wind& wind)
-    : rest_(rest), positions_(rest.size()), turns_(rest.size()) {
+    : rest_(rest), positions_(rest.size()), tickets_(rest.size()) {
   positions_[0] = V3d(rest.positions[0]);
   for (std::size_t node = 1; node < rest.size(); ++node) {
     const std::uint32_t parent = rest.parents[node];
     const V3d limb = V3d(rest.positions[node]) - V3d(rest.positions[parent]);
-    const V3d now = rotated(turns_[parent], limb);
+    const V3d now = rotated(tickets_[parent], limb);
     // A branch is stiff at the trunk and gives way at its tips; it streams with the wind, which has
     // no hold on it where it points along it already.
     const double thinness =
         std::clamp(1.0 - double{rest.radii[node]} / double{rest.radii[0]}, 0.0, 1.0);
     const double give = kBend * (0.06 + 0.94 * thinness * thinness) / double{height_m};
     const V3d force = wind_force(V3d(rest.positions[node]) / double{height_m}, thinness, wind);
-    turns_[node] = (turn_by(now.cross(force) * give) * turns_[parent]).normalized();
-    positions_[node] = positions_[parent] + rotated(turns_[node], limb);
+    tickets_[node] = (turn_by(now.cross(force) * give) * tickets_[parent]).normalized();
+    positions_[node] = positions_[parent] + rotated(tickets_[node], limb);
   }
 }
 
 V3f SwayingSkeleton::moved(std::uint32_t node, V3f rest) const {
-  return V3f(positions_[node] + rotated(turns_[node], V3d(rest) - V3d(rest_.positions[node])));
+  return V3f(positions_[node] + rotated(tickets_[node], V3d(rest) - V3d(rest_.positions[node])));
 }
 
 V3f SwayingSkeleton::turned(std::uint32_t node, V3f rest) const {
-  return V3f(rotated(turns_[node], V3d(rest)).normalized());
+  return V3f(rotated(tickets_[node], V3d(rest)).normalized());
 }
 
 Blade flutter(const Blade& blade, const Wind& wind, std::uint32_t seed, std::uint32_t leaf) {
   Pcg32 rng(seed, kFlutterStreams + leaf);
-  const auto wave = [&](double least_hertz, double most_hertz) {
-    const double hertz = least_hertz + (most_hertz - least_hertz) * double{rng.unit()};
+  const auto wave = [&](double min_hertz, double max_hertz) {
+    const double hertz = min_hertz + (max_hertz - min_hertz) * double{rng.unit()};
     const double phase = double{rng.unit()};
     return std::sin(2 * std::numbers::pi * (hertz * wind.seconds + phase));
   };
-  const double amplitude = std::min(kFlutter * wind.strength, kMostFlutter);
+  const double amplitude = std::min(kFlutter * wind.strength, kMaxFlutter);
   const double twist = amplitude * wave(1.1, 2.3), nod = 0.6 * amplitude * wave(0.7, 1.7);
   const V3d axis(blade.axis), side = axis.cross(V3d(blade.normal));
   const Quatd turn = turn_by(side * nod) * turn_by(axis * twist);

@@ -33,7 +33,7 @@ class SwayingSkeleton {
  private:
   const TreeSkeleton& rest_;
   std::vector<Imath::V3d> positions_;
-  std::vector<Imath::Quatd> turns_;
+  std::vector<Imath::Quatd> tickets_;
 };
 
 /// A leaf, where its twig carries it, turned about its axis and nodding, each in its own way.

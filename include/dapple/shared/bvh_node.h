@@ -41,7 +41,7 @@ DAPPLE_FUNCTION float bvh_scale(uchar exponent) {
   return dapple_bits_to_float((uint)exponent << 23);
 }
 
-#define DAPPLE_MOST_PRIMITIVES 63 /* a node owns */
+#define DAPPLE_MAX_PRIMITIVES 63 /* a node owns */
 
 DAPPLE_FUNCTION uint bvh_leaf_end(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
   return (uint)leaf_end[slot] & 63u;
@@ -52,7 +52,7 @@ DAPPLE_FUNCTION uint bvh_leaf_begin(DAPPLE_GLOBAL const uchar* leaf_end, uint sl
 }
 
 /* How far what is in child `slot` gathers around its middle, [0,1]: centre_weight(). */
-DAPPLE_FUNCTION float bvh_concentration(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
+DAPPLE_FUNCTION float bvh_mass_concentration(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
   return (float)(leaf_end[slot] >> 6) * (1.0f / 3.0f);
 }
 

@@ -34,7 +34,7 @@ typedef struct TextureRecord {
 } TextureRecord;
 
 /* Coarser levels of a texture at most: of 65,536 texels along either axis the last is one. */
-#define DAPPLE_MOST_MIPS 16
+#define DAPPLE_MAX_MIPS 16
 
 /* What textured triangles share: opacity = vertex alpha (interpolated) * alpha * texture alpha,
    then 1 where >= cutoff and 0 below if cutoff >= 0. Where a footprint covers many texels their
@@ -46,7 +46,7 @@ typedef struct MaterialRecord {
   float cutoff;           /* < 0: blended */
   uint mips;              /* levels above the texture itself */
   uint spare;
-  uint mip_offset[DAPPLE_MOST_MIPS];  /* of level 1 and up, as TextureRecord::offset */
+  uint mip_offset[DAPPLE_MAX_MIPS];  /* of level 1 and up, as TextureRecord::offset */
 } MaterialRecord;
 
 /* A placed object. p_object = to_object * (p_world, 1), rows of a 3x4 matrix; rays keep

@@ -5,6 +5,9 @@
 #define DAPPLE_SHARED_LANGUAGE_H
 
 #ifdef __OPENCL_VERSION__
+#if !defined(DAPPLE_PREFILTERED) || !defined(DAPPLE_SHARED_ORIGIN)
+#error "a kernel is compiled for a Variant: both of its options must be defined"
+#endif
 #define DAPPLE_GLOBAL __global
 typedef char schar; /* signed in OpenCL C */
 #define DAPPLE_FUNCTION inline

@@ -12,7 +12,7 @@ using std::sqrt;
 #endif
 
 /* Transmittances below this count as none: -log(1e-4) is the greatest depth stored. */
-#define DAPPLE_LEAST_TRANSMITTANCE 1e-4f
+#define DAPPLE_MIN_TRANSMITTANCE 1e-4f
 #define DAPPLE_GREATEST_DEPTH 9.2103404f
 
 /* Chords are not measured in boxes whose mean chord is below this part of the distance:
@@ -23,7 +23,7 @@ using std::sqrt;
    half sizes from the box's centre. Its mean over rays that fill the box evenly is 2/3 along
    the axes and 0.70 across; below this weight nothing is taken as empty. */
 #define DAPPLE_MEAN_OFF_CENTRE 0.68f
-#define DAPPLE_LEAST_CENTRE_WEIGHT 0.1f
+#define DAPPLE_MIN_CENTRE_WEIGHT 0.1f
 
 /* From the first of these depths on to the second, a box is taken as filled: how long the
    ray's way through it is counts less and less, so that solid boxes don't leak at edges. */
@@ -41,8 +41,8 @@ DAPPLE_FUNCTION float depth_decode(uchar code) {
    need: class c from 0 to 6 where the opacities of a sixteenth by a sixteenth of the box's sides,
    seen along the axes, deviate from their mean by 2^(c/2 - 8) at most (rms), and the mean squared is
    no more than that either; 7: all others. */
-#define DAPPLE_UNEVEN 7u
-#define DAPPLE_EVENEST_SQUARE 1.52587890625e-5f /* 2^-16 */
+#define DAPPLE_NOT_UNIFORM 7u
+#define DAPPLE_MIN_VARIANCE 1.52587890625e-5f /* 2^-16 */
 
 DAPPLE_FUNCTION float correlation_decode(schar code) { return (float)code * (1.0f / 127.0f); }
 
@@ -71,9 +71,9 @@ DAPPLE_FUNCTION float chord_depth(float depth, float chord) {
 
 /* Boxes hold less in their corners than in their middle, the more so the fewer things they
    bound: what the depth of a ray is multiplied by whose way's middle lies off_centre. */
-DAPPLE_FUNCTION float centre_weight(float concentration, float off_centre) {
-  const float weight = 1.0f + concentration * (DAPPLE_MEAN_OFF_CENTRE - off_centre);
-  return weight > DAPPLE_LEAST_CENTRE_WEIGHT ? weight : DAPPLE_LEAST_CENTRE_WEIGHT;
+DAPPLE_FUNCTION float centre_weight(float mass_concentration, float off_centre) {
+  const float weight = 1.0f + mass_concentration * (DAPPLE_MEAN_OFF_CENTRE - off_centre);
+  return weight > DAPPLE_MIN_CENTRE_WEIGHT ? weight : DAPPLE_MIN_CENTRE_WEIGHT;
 }
 
 #ifndef __OPENCL_VERSION__

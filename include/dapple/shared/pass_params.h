@@ -17,9 +17,9 @@ typedef struct SceneParams {
 
 /* Rays of a chunk, which are sorted together before they go as packets: at most so many of one
    point; of neighbours so many, and fewer in the last chunks of a queue. */
-#define DAPPLE_POINT_CHUNK 512u
-#define DAPPLE_NEIGHBOUR_CHUNK 1024u
-#define DAPPLE_SMALL_CHUNK 256u
+#define DAPPLE_POINT_RAY_BATCH 512u
+#define DAPPLE_PIXEL_RAY_BATCH 1024u
+#define DAPPLE_SMALL_RAY_BATCH 256u
 
 typedef struct OcclusionParams {
   SceneParams scene;
@@ -29,15 +29,15 @@ typedef struct OcclusionParams {
   float falloff;              /* AO: the power p; 0: none */
   uint rays_per_point;        /* packets: rays in a row that share their origin */
   /* Packets; set by occlusion_pass() and point_ao_pass(). */
-  uint large_chunks;          /* of neighbours: the first ones, of DAPPLE_NEIGHBOUR_CHUNK rays */
-  uint piece_chunks;          /* of points: how many are a piece of work */
+  uint large_batches;          /* of neighbours: the first ones, of DAPPLE_PIXEL_RAY_BATCH rays */
+  uint batches_per_ticket;          /* of points: how many are a piece of work */
 } OcclusionParams;
 
 /* Samples of a pixel whose mean counts once in the sum of squares that errors come from: those of one
    camera ray at least, or some would be more alike than others. Means of two in place of four, less
    stratified than a pixel's samples are, made errors of AO 1.04 to 1.23 times what they were at 16
    samples. */
-#define DAPPLE_BATCH 4u
+#define DAPPLE_SAMPLE_BATCH 4u
 
 /* A pixel of the crop (row-major) that is to be sampled, and how many samples it has. */
 typedef struct PixelWork {
@@ -68,10 +68,10 @@ typedef struct CameraParams {
   uint seed;
   float inverse_spp;    /* 1 / samples a pixel that were asked for */
   float texel_share;    /* of a pixel's area that each look-up in a texture averages; 0: none */
-  float tap_reach;      /* as in PixelTaps; 0: no taps */
-  float tap_pull;       /* how far the middle of a ray's taps is towards the pixel's middle, [0,1] */
-  float haze_error;     /* by which what a box of haze hides of a pixel may deviate; 0: no haze */
-  uint depth_bits;      /* two to these samples in a row share a camera ray */
+  float tap_offset;      /* as in FilterTaps; 0: no taps */
+  float tap_centring;       /* how far the middle of a ray's taps is towards the pixel's middle, [0,1] */
+  float medium_error;     /* by which what a box of haze hides of a pixel may deviate; 0: no haze */
+  uint splitting_bits;      /* two to these samples in a row share a camera ray */
   /* Pixels in which the scene may be: columns [left, right), rows [above, below). */
   uint seen_left, seen_above, seen_right, seen_below;
 } CameraParams;
@@ -103,7 +103,7 @@ typedef struct ResolveParams {
   uint plane;           /* first plane to add to */
   uint rays;            /* rays a sample */
   uint squares;         /* first of two planes of squares to add to */
-  uint depth_bits;      /* as in CameraParams */
+  uint splitting_bits;      /* as in CameraParams */
   float scale;          /* of unit-range values */
   float position_scale;
   float depth_scale;
@@ -112,7 +112,7 @@ typedef struct ResolveParams {
 } ResolveParams;
 
 #ifndef __OPENCL_VERSION__
-static_assert(DAPPLE_BATCH % DAPPLE_MOST_DEPTHS == 0, "batches are whole camera rays");
+static_assert(DAPPLE_SAMPLE_BATCH % DAPPLE_MAX_CAMERA_SPLITTING == 0, "batches are whole camera rays");
 }  // namespace dapple
 #endif
 

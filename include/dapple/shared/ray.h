@@ -38,13 +38,13 @@ typedef struct Occlusion {
 #define DAPPLE_ITEM_RAYS 64u
 
 /* Of these, side by side in a vector. */
-#define DAPPLE_BEAM_RAYS 16u
+#define DAPPLE_GROUP_RAYS 16u
 
 /* Samples at most that share a camera ray: powers of two. */
-#define DAPPLE_MOST_DEPTHS 4u
+#define DAPPLE_MAX_CAMERA_SPLITTING 4u
 
 /* Items in a row that are a piece of work, taken in one turn: they see much the same. */
-#define DAPPLE_PIECE_ITEMS 4u
+#define DAPPLE_ITEMS_PER_TICKET 4u
 
 /* Samples of a SampleHits. */
 #define DAPPLE_HIT_BITS 16u

@@ -31,7 +31,7 @@ typedef struct TexturedTriangle {
 /* Steps of vertex alphas: those of 8-bit colours are among them, 16 apart. */
 #define DAPPLE_ALPHA_ONE 4080
 
-#define DAPPLE_MOST_TEXTURED_MATERIALS 0x8000u
+#define DAPPLE_MAX_TEXTURED_MATERIALS 0x8000u
 
 /* The texel is 2^(code - bias) wide, in the object's units; code 0: not known. */
 #define DAPPLE_TEXEL_SIZE_BIAS 25

@@ -90,7 +90,7 @@ float cost_of(const std::vector<BinaryNode>& tree, const CheapestNodes& nodes, s
   return sum;
 }
 
-TEST(CheapestNodes, NoOtherNodesAreCheaper) {
+TEST(WideCollapse, NoOtherNodesAreCheaper) {
   std::mt19937 random(11);
   bool several_levels = false;
   for (int i = 0; i < 300; ++i) {
@@ -107,7 +107,7 @@ TEST(CheapestNodes, NoOtherNodesAreCheaper) {
   EXPECT_TRUE(several_levels) << "trees too small to tell";
 }
 
-TEST(CheapestNodes, InfiniteAreasMakeNoLargeLeaves) {
+TEST(WideCollapse, InfiniteAreasMakeNoLargeLeaves) {
   std::mt19937 random(2);
   std::vector<BinaryNode> tree;
   grow(0, 1000, std::numeric_limits<float>::infinity(), random, tree);
@@ -129,7 +129,7 @@ TEST(CheapestNodes, InfiniteAreasMakeNoLargeLeaves) {
   EXPECT_EQ(in_leaves, 1000u);
 }
 
-TEST(CheapestNodes, ALeafIsItsOwnOnlyChild) {
+TEST(WideCollapse, ALeafIsItsOwnOnlyChild) {
   std::mt19937 random(1);
   std::vector<BinaryNode> tree;
   grow(0, 1, 1.0f, random, tree);

@@ -87,7 +87,7 @@ TEST(OpacityModel, FactorsOfClumpsAreThoseOfTheirMirrorImagesAndOfAxesRenamed) {
   for (int i = 0; i < 1000; ++i) {
     NodeOpacity clump = random_opacity(random);
     clump.clumping = part(random);
-    clump.concentration = part(random);
+    clump.mass_concentration = part(random);
     clump.triangles = 100;
     const V3f size(1, 2, 0.5f);
     const float factor = clumping_factor(clump, size);
@@ -316,7 +316,7 @@ TEST(OpacityModel, ASparseBoxDeepensWithTheChordUpToALimitAndAFullOneDoesNot) {
 TEST(OpacityModel, CentreWeightsKeepTheMeanDepthOfRaysThatFillTheBox) {
   std::mt19937 random(9);
   std::uniform_real_distribution<float> unit(-1, 1);
-  for (const float concentration : {1 / 3.0f, 2 / 3.0f, 1.0f}) {
+  for (const float mass_concentration : {1 / 3.0f, 2 / 3.0f, 1.0f}) {
     for (int d = 0; d < 20; ++d) {
       const V3f direction = random_direction(random);
       double weights = 0;
@@ -331,10 +331,10 @@ TEST(OpacityModel, CentreWeightsKeepTheMeanDepthOfRaysThatFillTheBox) {
           leave = std::min(leave, std::max(a, b));
         }
         weights +=
-            centre_weight(concentration, (p + direction * (0.5f * (enter + leave))).length2());
+            centre_weight(mass_concentration, (p + direction * (0.5f * (enter + leave))).length2());
       }
       // 0.667 to 0.707 off centre in the mean, 0.68 in the model; and the least weight.
-      EXPECT_NEAR(weights / kPoints, 1, 0.045 * concentration + 0.005) << direction;
+      EXPECT_NEAR(weights / kPoints, 1, 0.045 * mass_concentration + 0.005) << direction;
     }
   }
 }
@@ -350,9 +350,9 @@ TEST(OpacityModel, ThingsAcrossTheMiddleOfABoxAreFoundConcentrated) {
       corners.transmittance[axis][cell] = 0.2f;
   }
   const Box3f box(V3f(0, 0, 0), V3f(1, 2, 3));
-  EXPECT_EQ(map_opacity(middle, {}, box).concentration, 1);
-  EXPECT_NEAR(map_opacity(even, {}, box).concentration, 0, 0.02f);
-  EXPECT_EQ(map_opacity(corners, {}, box).concentration, 0);
+  EXPECT_EQ(map_opacity(middle, {}, box).mass_concentration, 1);
+  EXPECT_NEAR(map_opacity(even, {}, box).mass_concentration, 0, 0.02f);
+  EXPECT_EQ(map_opacity(corners, {}, box).mass_concentration, 0);
 }
 
 }  // namespace

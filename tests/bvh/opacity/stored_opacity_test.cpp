@@ -38,7 +38,7 @@ TEST(OpacityCode, DecodingIsWithinHalfACodeAndKeepsSmallOpacities) {
     ASSERT_TRUE(node.depth[0][0] > 0 || opacity < 2 * half * half) << opacity;
   }
   EXPECT_EQ(stored_opacity(node, 1), 0.0f);
-  EXPECT_NEAR(stored_opacity(node, 2), 1 - DAPPLE_LEAST_TRANSMITTANCE, 1e-6f);
+  EXPECT_NEAR(stored_opacity(node, 2), 1 - DAPPLE_MIN_TRANSMITTANCE, 1e-6f);
 }
 
 TEST(OpacityCode, TheStoredOpacityIsThatOfTheGrownBox) {

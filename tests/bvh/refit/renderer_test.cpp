@@ -162,7 +162,7 @@ TEST(SwayingTree, AHundredFramesDontPop) {
   UpdatableBvh updatable(still);
   const CrownOcclusion crown(updatable.bvh().bounds);
   DeviceScene on_device = upload(scene_test::device(), still, updatable.bvh());
-  double last_exact = 0, last = 0, most = 0, most_exact = 0, most_bias = 0;
+  double last_exact = 0, last = 0, most = 0, max_exact = 0, max_bias = 0;
   for (int frame = 0; frame < 100; ++frame) {
     const Scene moved = swayed(still, kFrameSeconds * static_cast<float>(frame));
     update(scene_test::device(), on_device, updatable, moved);
@@ -170,16 +170,16 @@ TEST(SwayingTree, AHundredFramesDontPop) {
     const double prefiltered = crown.mean(on_device, Estimator::prefiltered);
     if (frame > 0) {
       most = std::max(most, std::fabs(prefiltered - last));
-      most_exact = std::max(most_exact, std::fabs(exact - last_exact));
+      max_exact = std::max(max_exact, std::fabs(exact - last_exact));
     }
-    most_bias = std::max(most_bias, std::fabs(prefiltered - exact));
+    max_bias = std::max(max_bias, std::fabs(prefiltered - exact));
     last_exact = exact;
     last = prefiltered;
   }
   std::printf("largest step of mean AO exact %.5f, prefiltered %.5f; largest bias %.5f\n",
-              most_exact, most, most_bias);
-  EXPECT_LT(most, most_exact + 0.001);
-  EXPECT_LT(most_bias, 0.01);
+              max_exact, most, max_bias);
+  EXPECT_LT(most, max_exact + 0.001);
+  EXPECT_LT(max_bias, 0.01);
 }
 
 TEST(SwayingTree, OcclusionInARefittedBvhIsThatInAFreshOne) {

@@ -148,10 +148,10 @@ TEST(TexturedTriangle, AlphasHaveTwelveBitsAndThoseOf8BitColoursAreExact) {
 TEST(TexturedTriangle, SizesOfTexelsComeBackAsPowersOfTwo) {
   const auto held = [](float size) {
     TexturedCorners corners = corners_at({0, 0}, {1, 0}, {0, 1});
-    corners.material = DAPPLE_MOST_TEXTURED_MATERIALS - 1;
+    corners.material = DAPPLE_MAX_TEXTURED_MATERIALS - 1;
     corners.texel_size = size;
     const TexturedCorners back = packed(corners, Wrap::repeat, Wrap::repeat);
-    EXPECT_EQ(back.material, DAPPLE_MOST_TEXTURED_MATERIALS - 1);
+    EXPECT_EQ(back.material, DAPPLE_MAX_TEXTURED_MATERIALS - 1);
     return back.texel_size;
   };
   for (int exponent = -24; exponent <= 6; ++exponent) {
@@ -169,7 +169,7 @@ TEST(TexturedTriangle, MaterialsAndWhetherTexturesCountComeBack) {
   TexturedCorners corners = corners_at({0.99f, 0.01f}, {0.5f, 0.9f}, {-7, 1});
   corners.alpha = {0.1f, 0.9f, 0.5f};
   for (const std::uint32_t material :
-       {0u, 1u, 1023u, 1024u, 7777u, DAPPLE_MOST_TEXTURED_MATERIALS - 1u}) {
+       {0u, 1u, 1023u, 1024u, 7777u, DAPPLE_MAX_TEXTURED_MATERIALS - 1u}) {
     for (const bool has_texture : {false, true}) {
       corners.material = material;
       corners.has_texture = has_texture;
@@ -190,7 +190,7 @@ std::vector<TexturedCorners> many_corners() {
       TexturedCorners corners =
           corners_at({at(random), at(random)}, {at(random), at(random)}, {at(random), at(random)});
       corners.alpha = {share(random), share(random), share(random)};
-      corners.material = random() % DAPPLE_MOST_TEXTURED_MATERIALS;
+      corners.material = random() % DAPPLE_MAX_TEXTURED_MATERIALS;
       corners.has_texture = i % 5 != 0;
       many.push_back(corners);
     }
@@ -248,11 +248,11 @@ Scene scene_of_materials(std::size_t materials) {
 }
 
 TEST(TexturedTriangle, AMaterialTooManyIsRefusedByName) {
-  const Scene most = scene_of_materials(DAPPLE_MOST_TEXTURED_MATERIALS);
+  const Scene most = scene_of_materials(DAPPLE_MAX_TEXTURED_MATERIALS);
   EXPECT_EQ(unpack_textured(build_bvh(most).textured[0]).material,
-            DAPPLE_MOST_TEXTURED_MATERIALS - 1u);
+            DAPPLE_MAX_TEXTURED_MATERIALS - 1u);
   try {
-    build_bvh(scene_of_materials(DAPPLE_MOST_TEXTURED_MATERIALS + 1));
+    build_bvh(scene_of_materials(DAPPLE_MAX_TEXTURED_MATERIALS + 1));
     FAIL() << "not refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::failed);
