@@ -112,7 +112,7 @@ TEST(PointSets, APointsRaysDoNotHangOnTheOthers) {
 
 /// Points whose rays are made, traced and added up at once beside those whose rays go through
 /// queues and are traced each by itself.
-class AtOnce : public testing::Test {
+class PointAo : public testing::Test {
  protected:
   using Found = std::pair<std::vector<float>, std::vector<float>>;
   Found found(const OcclusionOptions& options) const {
