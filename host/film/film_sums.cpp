@@ -11,7 +11,7 @@
 #include <span>
 
 #include "camera/camera_splitting.hpp"
-#include "render/picture.hpp"
+#include "film/traced_picture.hpp"
 
 namespace dapple {
 namespace {

@@ -4,21 +4,11 @@
 #include "dapple/wavefront.hpp"
 #include "device/upload/scene_upload.hpp"
 #include "film/film_sums.hpp"
+#include "film/traced_picture.hpp"
 #include "sampling/sample_plan.hpp"
 #include "render/trace_state.hpp"
 
 namespace dapple {
-
-struct TracedPicture {
-  HostView sums;                       ///< std::int64_t, as FilmLayout says
-  std::vector<std::uint32_t> samples;  ///< of each pixel; 0 only where interrupted
-  /// With a target, unless interrupted before they are known: standard errors by pass (AO, then the
-  /// lights, these relative to their largest unoccluded irradiance) and pixel.
-  std::vector<std::vector<float>> errors;
-  std::map<std::string, double> pass_seconds;  ///< device seconds by label, earlier runs' too
-  std::size_t queue_bytes = 0;
-  bool interrupted = false;
-};
 
 /// How tracing is watched and left; any of the functions may be empty.
 struct TraceControl {
