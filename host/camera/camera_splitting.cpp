@@ -95,7 +95,7 @@ struct Part {
 
 using Parts = std::map<std::uint32_t, Part>;  ///< by material
 
-Parts ceil_div(const Scene& scene, const Mesh& mesh) {
+Parts parts_by_material(const Scene& scene, const Mesh& mesh) {
   Parts parts;
   Part* part = nullptr;
   bool textured = false;
@@ -139,7 +139,7 @@ Counts count_surfaces(const Scene& scene, const View& view, float spread) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     auto& of_mesh = parts[instance.mesh];
-    if (!of_mesh) of_mesh = ceil_div(scene, mesh);
+    if (!of_mesh) of_mesh = parts_by_material(scene, mesh);
     for (auto& [material, part] : *of_mesh) {
       const int level = seen_level(part, instance, mesh, view, spread);
       const auto [at, is_new] = part.counts.try_emplace(level);

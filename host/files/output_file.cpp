@@ -71,15 +71,15 @@ void copy_permissions(const std::string& from, int to) {
 }
 
 // Whether the file is these pieces and nothing else.
-bool holds(const std::string& path, std::span<const std::string_view> ticket_count) {
+bool holds(const std::string& path, std::span<const std::string_view> sections) {
   std::ifstream file(path, std::ios::binary);
   std::string block(kBufferBytes, '\0');
-  for (std::string_view ticket : ticket_count) {
-    while (!ticket.empty()) {
-      const std::size_t step = std::min(ticket.size(), block.size());
+  for (std::string_view section : sections) {
+    while (!section.empty()) {
+      const std::size_t step = std::min(section.size(), block.size());
       file.read(block.data(), static_cast<std::streamsize>(step));
-      if (!file || ticket.substr(0, step) != std::string_view(block.data(), step)) return false;
-      ticket.remove_prefix(step);
+      if (!file || section.substr(0, step) != std::string_view(block.data(), step)) return false;
+      section.remove_prefix(step);
     }
   }
   return file.peek() == std::ifstream::traits_type::eof();
@@ -170,11 +170,11 @@ void write_whole_file(const std::string& path, std::string_view bytes) {
   write_whole_file(path, std::span(&bytes, 1));
 }
 
-void write_whole_file(const std::string& path, std::span<const std::string_view> ticket_count) {
+void write_whole_file(const std::string& path, std::span<const std::string_view> sections) {
   PendingFile file(path);
-  for (const std::string_view ticket : ticket_count) file.write(ticket.data(), ticket.size());
+  for (const std::string_view section : sections) file.write(section.data(), section.size());
   file.close();
-  if (!holds(file.temporary_path(), ticket_count)) {
+  if (!holds(file.temporary_path(), sections)) {
     file.fail("what was read back differs from what was written");
   }
   file.commit();

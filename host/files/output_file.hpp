@@ -63,6 +63,6 @@ class PendingFile {
 /// All of `bytes`, or of the pieces one after the other, as the file `path`, read back before it
 /// takes the name. Throws Error failed.
 void write_whole_file(const std::string& path, std::string_view bytes);
-void write_whole_file(const std::string& path, std::span<const std::string_view> ticket_count);
+void write_whole_file(const std::string& path, std::span<const std::string_view> sections);
 
 }  // namespace dapple

@@ -50,12 +50,12 @@ std::uint64_t aligned(std::uint64_t bytes) {
 
 /// The pieces of a file in the order they lie in it, with the zeros that align the next one.
 template <class Take>
-void for_each_ticket(const Header& header, std::span<const std::uint64_t> sizes,
-                     std::span<const Section> sections, const Take& take) {
+void for_each_section(const Header& header, std::span<const std::uint64_t> sizes,
+                      std::span<const Section> sections, const Take& take) {
   static constexpr std::array<std::byte, kSectionAlignment> kZeros{};
-  const auto take_aligned = [&](Section ticket) {
-    take(ticket);
-    take(Section(kZeros).first(aligned(ticket.size()) - ticket.size()));
+  const auto take_aligned = [&](Section section) {
+    take(section);
+    take(Section(kZeros).first(aligned(section.size()) - section.size()));
   };
   take_aligned(std::as_bytes(std::span(&header, 1)));
   take_aligned(std::as_bytes(sizes));
@@ -72,7 +72,7 @@ Header sealed_header(const SealedKind& kind, std::span<const std::uint64_t> size
   header.file_bytes = sizeof header + aligned(sizes.size_bytes());
   for (const std::uint64_t size : sizes) header.file_bytes += aligned(size);
   ChecksumStream checksum;
-  for_each_ticket(header, sizes, sections, [&](Section ticket) { checksum.add(ticket); });
+  for_each_section(header, sizes, sections, [&](Section section) { checksum.add(section); });
   header.checksum = checksum.value();
   return header;
 }
@@ -174,8 +174,8 @@ void write_sealed_file(const std::string& path, const SealedKind& kind,
   for (const Section& section : sections) sizes.push_back(section.size());
   const Header header = sealed_header(kind, sizes, sections);
   PendingFile file(path);
-  for_each_ticket(header, sizes, sections, [&](Section ticket) {
-    file.write(reinterpret_cast<const char*>(ticket.data()), ticket.size());
+  for_each_section(header, sizes, sections, [&](Section section) {
+    file.write(reinterpret_cast<const char*>(section.data()), section.size());
   });
   file.close(durable);
   try {

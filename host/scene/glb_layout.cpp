@@ -122,7 +122,7 @@ class Describer {
                                     {"byteOffset", layout_.byte_count},
                                     {"byteLength", bytes.size()},
                                     {"target", target}});
-    layout_.ticket_count.push_back(bytes);
+    layout_.sections.push_back(bytes);
     layout_.byte_count += bytes.size();
     Json entry = accessor;
     entry["bufferView"] = json_["bufferViews"].size() - 1;

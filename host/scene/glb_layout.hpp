@@ -14,7 +14,7 @@ namespace dapple {
 /// The binary chunk, in order. Pieces point into the scene or into `made`.
 struct GlbLayout {
   std::string json;
-  std::vector<std::span<const std::byte>> ticket_count;
+  std::vector<std::span<const std::byte>> sections;
   std::size_t byte_count = 0;  ///< of all pieces; a multiple of 4
   std::vector<std::vector<std::uint32_t>> made_indices;
   std::vector<std::vector<float>> made_colours;

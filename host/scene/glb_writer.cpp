@@ -43,16 +43,16 @@ void write_glb(const Scene& scene, const std::string& path) {
                                  layout.json.size(), std::size_t{kJsonChunk}}) {
     append_word(header, word);
   }
-  std::vector<std::string_view> ticket_count{header, layout.json};
+  std::vector<std::string_view> sections{header, layout.json};
   if (layout.byte_count > 0) {
     append_word(binary_header, layout.byte_count);
     append_word(binary_header, kBinChunk);
-    ticket_count.push_back(binary_header);
+    sections.push_back(binary_header);
   }
-  for (const auto& ticket : layout.ticket_count) {
-    ticket_count.emplace_back(reinterpret_cast<const char*>(ticket.data()), ticket.size());
+  for (const auto& section : layout.sections) {
+    sections.emplace_back(reinterpret_cast<const char*>(section.data()), section.size());
   }
-  write_whole_file(path, ticket_count);
+  write_whole_file(path, sections);
 }
 
 }  // namespace dapple

@@ -1,7 +1,7 @@
 /* What stops each ray of a queue. */
 #include "camera/closest_ray.clh"
 #include "dapple/shared/pass_params.h"
-#include "geometry/surface_point.clh"
+#include "camera/surface_point.clh"
 
 /* Different rays have unrelated thresholds even where their keys are equal. */
 inline float threshold_of(__global const Ray* ray) {

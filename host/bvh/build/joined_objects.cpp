@@ -58,8 +58,8 @@ ConstArray<T> joined(std::span<ConstArray<T>* const> parts,
 }
 
 template <class T>
-std::vector<ConstArray<T>*> ceil_div(std::vector<FinishedObject>& objects,
-                                     ConstArray<T> FinishedObject::*array) {
+std::vector<ConstArray<T>*> arrays_of(std::vector<FinishedObject>& objects,
+                                      ConstArray<T> FinishedObject::*array) {
   std::vector<ConstArray<T>*> parts;
   for (FinishedObject& object : objects) parts.push_back(&(object.*array));
   return parts;
@@ -76,8 +76,8 @@ ConstArray<T> part_of(const ConstArray<T>& all, std::size_t first, std::size_t e
 /// What refitting does not change: strands that move are built anew.
 void join_constant(SceneBvh& bvh, std::vector<FinishedObject>& objects,
                    const std::vector<ObjectOffsets>& offsets) {
-  bvh.segments = joined<SegmentBlock>(ceil_div(objects, &FinishedObject::segments), offsets);
-  bvh.textured = joined<TexturedTriangle>(ceil_div(objects, &FinishedObject::textured), offsets);
+  bvh.segments = joined<SegmentBlock>(arrays_of(objects, &FinishedObject::segments), offsets);
+  bvh.textured = joined<TexturedTriangle>(arrays_of(objects, &FinishedObject::textured), offsets);
 }
 
 }  // namespace
@@ -112,21 +112,21 @@ std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
 void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
           const std::vector<ObjectOffsets>& offsets, std::vector<BvhNode> top) {
   ConstArray<BvhNode> top_nodes(std::move(top));
-  std::vector<ConstArray<BvhNode>*> nodes = ceil_div(objects, &FinishedObject::nodes);
+  std::vector<ConstArray<BvhNode>*> nodes = arrays_of(objects, &FinishedObject::nodes);
   nodes.push_back(&top_nodes);
   std::vector<ObjectOffsets> node_offsets = offsets;
   node_offsets.back() = {};  // the top level's indices already count so
   bvh.nodes = joined<BvhNode>(nodes, node_offsets);
-  bvh.blocks = joined<TriangleBlock>(ceil_div(objects, &FinishedObject::blocks), offsets);
+  bvh.blocks = joined<TriangleBlock>(arrays_of(objects, &FinishedObject::blocks), offsets);
   join_constant(bvh, objects, offsets);
 }
 
 ChangeableArrays join_changeable(SceneBvh& bvh, std::vector<FinishedObject>& objects,
                                  const std::vector<ObjectOffsets>& offsets, std::size_t spare) {
   const auto nodes = std::make_shared<std::vector<BvhNode>>(
-      values_of<BvhNode>(ceil_div(objects, &FinishedObject::nodes), offsets, spare));
+      values_of<BvhNode>(arrays_of(objects, &FinishedObject::nodes), offsets, spare));
   const auto blocks = std::make_shared<std::vector<TriangleBlock>>(
-      values_of<TriangleBlock>(ceil_div(objects, &FinishedObject::blocks), offsets, 0));
+      values_of<TriangleBlock>(arrays_of(objects, &FinishedObject::blocks), offsets, 0));
   bvh.nodes = {*nodes, nodes};
   bvh.blocks = {*blocks, blocks};
   join_constant(bvh, objects, offsets);

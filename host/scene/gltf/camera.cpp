@@ -25,8 +25,7 @@ std::optional<M44f> rigid(const M44d& m) {
                    m[3][0], m[3][1], m[3][2], 1));
 }
 
-void check_camera_splitting(double near, double far, const std::string& who,
-                            const std::string& file) {
+void check_clip_planes(double near, double far, const std::string& who, const std::string& file) {
   const bool unlimited = far == 0;  // tinygltf's word for an absent zfar
   if (unlimited || far > near) return;
   fail(file, "{} has zfar {:g} and znear {:g}; zfar must be larger", who, far, near);
@@ -40,7 +39,7 @@ Camera perspective(const tinygltf::PerspectiveCamera& given, const std::string& 
   if (!(camera.fov_y > 0 && given.yfov < std::numbers::pi)) {
     fail(file, "{} has yfov {}; it must be between 0 and pi", who, given.yfov);
   }
-  check_camera_splitting(given.znear, given.zfar, who, file);
+  check_clip_planes(given.znear, given.zfar, who, file);
   return camera;
 }
 
@@ -51,7 +50,7 @@ Camera orthographic(const tinygltf::OrthographicCamera& given, const std::string
   camera.half_height = static_cast<float>(std::abs(given.ymag));
   if (!(camera.half_height > 0)) fail(file, "{} has ymag 0", who);
   if (given.xmag == 0) fail(file, "{} has xmag 0", who);
-  check_camera_splitting(given.znear, given.zfar, who, file);
+  check_clip_planes(given.znear, given.zfar, who, file);
   return camera;
 }
 

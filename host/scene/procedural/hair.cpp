@@ -78,8 +78,8 @@ V3f pushed_out(V3f point, float scale) {
 
 /// The turn of a curl from one segment to the next: no more than a sixth, whatever the segments.
 V2f curl_step(const HairShape& shape) {
-  const double tickets = 6.0 * shape.curl;
-  const double angle = 2 * std::numbers::pi * std::min(tickets / shape.segments, 1.0 / 6);
+  const double turns = 6.0 * shape.curl;
+  const double angle = 2 * std::numbers::pi * std::min(turns / shape.segments, 1.0 / 6);
   // In double and then rounded, so that libm's last bit does not reach the mesh.
   return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
 }

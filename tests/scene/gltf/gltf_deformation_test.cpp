@@ -179,11 +179,11 @@ TEST(GltfSkin, JointsThatAreAnimatedCarryTheMesh) {
   Bar bar = make_bar();
   const auto h = static_cast<float>(kHalfRoot);
   const int times = bar.b.add_accessor(std::vector<float>{0, 1}, kFloat, "SCALAR");
-  const int tickets =
+  const int rotations =
       bar.b.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 0, h, h}, kFloat, "VEC4");
   bar.b.add(
       "animations",
-      {{"samplers", {{{"input", times}, {"output", tickets}}}},
+      {{"samplers", {{{"input", times}, {"output", rotations}}}},
        {"channels", {{{"sampler", 0}, {"target", {{"node", bar.upper}, {"path", "rotation"}}}}}}});
   const TempFolder folder;
   const MovingScene moving(folder.write("scene.glb", bar.b.glb()));
