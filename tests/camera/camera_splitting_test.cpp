@@ -20,11 +20,11 @@ Scene tree(float opacity) {
   return scene;
 }
 
-RenderOptions small_picture(int depths) {
+RenderOptions small_picture(int splitting) {
   RenderOptions options;
   options.width = 48;
   options.height = 40;
-  options.camera_splitting = depths;
+  options.camera_splitting = splitting;
   return options;
 }
 
@@ -124,7 +124,7 @@ TEST(CameraSplitting, AreOfTheSamePictureWithLessNoise) {
   std::vector<double> errors;
   for (const int depths : {1, 2, 4}) {
     RenderOptions options = many;
-    options.camera_splitting = depths;
+    options.camera_splitting = splitting;
     options.spp = 16;
     const RenderResult result = render(tree(0.2f), options);
     for (const char* name : {"A", "ao.R", "light.key.G", "N.Y", "bent.Y"}) {

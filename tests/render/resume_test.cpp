@@ -97,13 +97,13 @@ class Resume : public FilmFile {};
 
 TEST_F(Resume, ARenderLeftAfterAnySliceGoesOnToTheSameBits) {
   const SceneOnDevice tree(lit_tree());
-  RenderOptions deep = with(&RenderOptions::target_error, 0.04f);
-  deep.depths = 4;
-  RenderOptions scouted = with(&RenderOptions::target_rmse, 0.03f);
-  scouted.width = 72;
-  scouted.height = 64;
+  RenderOptions split = with(&RenderOptions::target_error, 0.04f);
+  split.camera_splitting = 4;
+  RenderOptions piloted = with(&RenderOptions::target_rmse, 0.03f);
+  piloted.width = 72;
+  piloted.height = 64;
   for (const RenderOptions& options : {small_picture(), with(&RenderOptions::target_error, 0.05f),
-                                       with(&RenderOptions::target_rmse, 0.02f), deep, scouted}) {
+                                       with(&RenderOptions::target_rmse, 0.02f), split, piloted}) {
     const Tracing tracing(tree, options);
     int slices = 0;
     TraceControl count;
