@@ -12,7 +12,7 @@ namespace dapple {
 namespace {
 
 /// Opacities up to which that part of all surfaces must be for so many samples a camera ray
-/// (figures in the README). More than suit cost up to a fifth of the time, fewer up to half of it.
+/// (docs/performance.md, experiment 401). More than suit cost up to a fifth of the time, fewer up to half of it.
 /// What textures average comes in all opacities, and four suit it from where two do.
 constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.85f;
 constexpr double kPartOfFour = 0.25, kPartOfTwo = 0.1;

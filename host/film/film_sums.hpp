@@ -57,7 +57,7 @@ struct FilmLayout {
 
 struct TracedPicture;
 
-/// Means of the sums as the planes an EXR gets (channel names as the README lists them);
+/// Means of the sums as the planes an EXR gets (channel names as docs/layers.md lists them);
 /// also the visit counts, into `statistics`.
 std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layout,
                            const RenderOptions& options, const std::vector<Light>& lights,

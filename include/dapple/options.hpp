@@ -13,8 +13,8 @@
 
 namespace dapple {
 
-/// Footprint scale of all defaults, from a curve of bias, noise and time (README, "Exact and
-/// prefiltered"): mean biases of AO are within 0.006 here, but for the outside of dense hair.
+/// Footprint scale of all defaults, from a curve of bias, noise and time (docs/accuracy.md): mean
+/// biases of AO are within 0.006 here, but for the outside of dense hair.
 inline constexpr float kDefaultFootprint = 4.0f;
 
 /// How an occlusion ray is estimated.

@@ -156,7 +156,7 @@ Scene load_gltf(const std::string& path, const SceneOptions& options = {});
 /// SceneOptions. Throws Error: usage.
 Scene make_procedural(const std::string& name, std::optional<double> time = {});
 
-/// Reads a JSON file of lights (README, "Lights"). Throws Error: input.
+/// Reads a JSON file of lights (docs/formats.md). Throws Error: input.
 std::vector<Light> load_lights(const std::string& path);
 
 /// Reads a latitude-longitude image for a dome light: OpenEXR (channels R, G, B or Y) or Radiance
