@@ -1,4 +1,4 @@
-// Building on the host, by wall time, and what the result weighs.
+// Building on the host, by wall time, and the bytes of the result.
 #include <benchmark/benchmark.h>
 
 #include <chrono>

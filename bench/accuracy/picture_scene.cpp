@@ -13,7 +13,7 @@
 namespace dapple::bench {
 namespace {
 
-Scene furnished(const std::string& spec, const RenderOptions& options, View& view) {
+Scene prepared_scene(const std::string& spec, const RenderOptions& options, View& view) {
   Scene scene = load_scene(spec);
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   std::vector<std::string> notes;
@@ -75,7 +75,7 @@ std::pair<std::string, float> parse_material_opacity(const std::string& text) {
 }
 
 PictureScene::PictureScene(const std::string& spec, const RenderOptions& options)
-    : options_(options), scene_(furnished(spec, options, view_)), bvh_(build_bvh(scene_)) {}
+    : options_(options), scene_(prepared_scene(spec, options, view_)), bvh_(build_bvh(scene_)) {}
 
 void PictureScene::open() {
   if (device_) return;

@@ -122,13 +122,13 @@ constexpr float kMaxTexelShare = 0.25f, kMaxTapShare = 0.75f;
 /// power of two, so 0.54 of it in the mean).
 constexpr float kTapVariance = 0.75f, kTexelVariance = 1.6f;
 
-/// Of footprint_rmse(), the part by which what one box of haze hides of a pixel may deviate. There
-/// may be some behind each other; but AO differs by a part of that only, for what is in haze is
-/// hardly occluded.
+/// Of footprint_rmse(), the part by which the opacity of one medium's box may deviate in a pixel.
+/// There may be some behind each other; but AO differs by a part of that only, for the inside of a
+/// medium is hardly occluded.
 constexpr float kMediumError = 0.5f;
 
 /// Without a target pictures are as good as rays make them. Errors of lights are relative to the
-/// largest irradiance, which haze has little of.
+/// largest irradiance, which media have little of.
 float medium_error(const RenderOptions& options) {
   const bool exact = options.estimator == Estimator::exact || options.footprint == 0;
   if (exact || options.light || !is_adaptive(options)) return 0;

@@ -20,7 +20,7 @@ struct CompileArguments {
   std::vector<std::string> kernels;
 };
 
-/// Ends with whoever waits for it, however that ends.
+/// Ends when its parent process ends, for whatever reason.
 void end_with(int parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) std::raise(SIGKILL);

@@ -96,7 +96,7 @@ class DeviceContext {
   [[nodiscard]] const std::string& kernel_dir() const;
   /// With the host: share() makes no copies.
   [[nodiscard]] bool shares_memory() const;
-  /// Whom whoever opened the device wants rays to be traced with.
+  /// The ray packets that the device was opened with.
   [[nodiscard]] Packets packets() const;
   /// What users should know of how it works here: "compiled kernels are not kept: ...".
   [[nodiscard]] std::vector<std::string> notes() const;
@@ -138,11 +138,12 @@ class DeviceContext {
   void launch(const KernelName& name, const std::string& label, std::size_t items,
               const std::vector<KernelArgument>& arguments, std::size_t group = 64);
   /// Enqueues work-items enough to keep the device busy, which take `pieces` pieces of work, below
-  /// 2^31, by turns: take_ticket() of kernels/vectors/tickets.clh. Three arguments are added here.
+  /// 2^31, by tickets: take_ticket() of kernels/vectors/tickets.clh. Three arguments are added
+  /// here.
   void launch_with_tickets(const KernelName& name, const std::string& label,
                            std::size_t ticket_count, std::vector<KernelArgument> arguments,
                            std::size_t group = 64);
-  /// Work-groups that take so many pieces by turns.
+  /// Number of work-groups that are launched for so many tickets.
   [[nodiscard]] std::size_t groups_with_tickets(std::size_t ticket_count) const;
   void finish();
   /// Waits like finish(), but whatever has become of the launches.

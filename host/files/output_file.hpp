@@ -1,6 +1,6 @@
 // Files that appear whole or not at all. A PendingFile is written beside its target, read
-// back by whoever knows what it should hold, and only then renamed over the target; without
-// commit() it vanishes and the target stays as it was. For every writer.
+// back by the caller, which knows what it should hold, and only then renamed over the target;
+// without commit() it vanishes and the target stays as it was. For every writer.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // A lock, not the process id in the name, says whether the maker lives: ids come again, and mean
-// nothing in another container. Whoever removes a file holds its lock, and a maker that got the
-// lock only after that sees it and takes another name.
+// nothing in another container. A process that removes a file holds its lock, and a maker that got
+// the lock only after that sees it and takes another name.
 #include "files/temporary_file.hpp"
 
 #include <fcntl.h>

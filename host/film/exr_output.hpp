@@ -12,7 +12,7 @@ namespace dapple {
 /// For programs, not for libraries in somebody else's. Files are the same whatever the number.
 void use_exr_threads(int count);
 
-/// write_exr(), which is durable. Whoever waits for an interrupted render waits for no slow disk.
+/// write_exr(), which is durable. An interrupted render does not wait for a slow disk.
 void write_exr(const Film& film, const std::string& path, Durable durable);
 
 }  // namespace dapple

@@ -1,4 +1,4 @@
-// The steps of a preview, for whoever needs them apart: how a layer's values become shades,
+// The steps of a preview, for callers that need them apart: how a layer's values become shades,
 // the shades as bytes, and the bytes as a PNG.
 #pragma once
 

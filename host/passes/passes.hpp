@@ -65,7 +65,7 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order = RayOrder::any);
 
-/// The same in the company that it says.
+/// The same with the given ray packets.
 void occlusion_pass_with(Packets with, DeviceContext& context, const Queues& queues,
                          const DeviceBuffers& scene, const std::string& label, Estimator estimator,
                          const OcclusionParams& params);
@@ -97,7 +97,7 @@ struct KernelShape {
 /// All that any picture or query needs.
 std::vector<KernelShape> every_kernel(const DeviceContext& context);
 
-/// Whom the occlusion rays of a picture are traced with, that many of each sample.
+/// The packets of a picture's occlusion rays; `rays`: of each sample.
 Packets packets_in_picture(const DeviceContext& context, Estimator estimator, int rays);
 
 /// What a picture with these options, camera and lights needs.

@@ -119,7 +119,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
   std::vector<Section> sections{as_section(about)};
   for (const std::vector<std::byte>& bytes : packed) sections.emplace_back(bytes);
   // Not forced onto the disk: that takes many times as long, and a checksum tells after a power
-  // failure. Whoever is killed loses nothing by it.
+  // failure. A process that is killed loses nothing by it.
   write_sealed_file(path, kKind, sections, Durable::no);
 }
 

@@ -12,7 +12,7 @@ constexpr int kSquare = 4, kSmallCell = 8, kCell = 12;
 
 /// Squares that are enough: of those of a plant that fills a fifth of the picture the mean variance
 /// is known to a tenth. In pictures of fewer a ninth of all pixels, or a quarter of small pictures,
-/// are scouts: what these lack after that is traced in wide packets.
+/// are pilot pixels: what these lack after that is traced in wide packets.
 constexpr int kEnough = 256;
 
 /// With fewer a picture's need is not known better than by a guess.

@@ -34,15 +34,15 @@ constexpr std::uint32_t kUnit = 2;
 /// round for a few more takes as long as a tenth of the picture.
 constexpr double kAim = 0.95;
 
-/// Part of the squared error asked for that one batch a pixel may leave, as scouts tell it: they
-/// know it to a tenth, and hardly more is known later.
+/// Part of the squared error asked for that one batch a pixel may leave, by the estimate of the
+/// pilot pixels: they know it to a tenth, and hardly more is known later.
 constexpr double kAimOfOne = 0.8;
 
-/// The same as the vanguard tells it, which knows it to a half.
+/// The same by the estimate of the first pilot pass, which is known to a half.
 constexpr double kAimOfFirstPass = 0.25;
 
-/// Times the least that all pixels get at most after the scouts: of those that see nothing most
-/// samples are for nothing, and packets of more are hardly narrower.
+/// Times the least that all pixels get at most after the pilot samples: of those that see nothing
+/// most samples are for nothing, and packets of more are hardly narrower.
 constexpr std::uint32_t kMaxAfterPilot = 4;
 
 /// Groups that get all their samples at once; of more, what is small is better traced together.

@@ -19,7 +19,7 @@ enum class SampleOrder {
 };
 
 /// What is decided depends on the pixels' values, with target_rmse also on what samples cost (which
-/// hangs on slices and on whom rays are traced with), never on threads.
+/// depends on slices and on ray packets), never on threads.
 class SamplePlan {
  public:
   using Costs = std::function<std::vector<float>()>;
@@ -30,14 +30,15 @@ class SamplePlan {
 
   [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
   /// With a target and a picture large enough, before it has samples: the least for pilot_pixels(),
-  /// where one batch may be enough first for their vanguard; else empty.
+  /// where one batch may be enough in a first pilot pass; else empty.
   std::vector<WorkGroup> pilot();
   [[nodiscard]] bool only_pilot_has_samples() const;
   /// Raises the least, to at most four times what it is, to what equal samples would take for an
-  /// RMSE, or what three quarters of the pixels that vary want, going by the scouts, and is least()
-  /// then: rounds are few, and packets narrow in the first. Where one batch is enough for the RMSE,
-  /// and no more were asked for, others than scouts get one. Where so far only the vanguard has
-  /// samples, and one batch is not by far enough, the other scouts'. `variances` as for next().
+  /// RMSE, or what three quarters of the pixels that vary want, by the pilot samples, and is
+  /// least() then: rounds are few, and packets narrow in the first. Where one batch is enough for
+  /// the RMSE, and no more were asked for, other pixels than the pilot's get one. Where so far only
+  /// the first pilot pass has samples, and one batch is not by far enough, the remaining pilot
+  /// pixels'. `variances` as for next().
   std::vector<WorkGroup> after_pilot(const std::vector<std::vector<float>>& variances);
   /// What pixels lack to the samples that each gets, with a target the least; empty when none do.
   std::vector<WorkGroup> least(SampleOrder order = SampleOrder::pixels);
@@ -57,7 +58,7 @@ class SamplePlan {
   [[nodiscard]] double fraction_done() const { return fraction_done_; }
 
  private:
-  /// The least for those of `scouts` that have no samples.
+  /// The least number of samples for those pilot pixels that have none.
   std::vector<WorkGroup> send(const std::vector<bool>& pilot);
   /// Pixels that have samples, in order.
   [[nodiscard]] std::vector<std::uint32_t> sampled() const;
@@ -82,7 +83,7 @@ class SamplePlan {
   std::vector<std::uint32_t> samples_;
   std::uint32_t min_, max_;
   bool one_may_do_;  ///< one batch a pixel, if it is enough
-  bool first_pass_;  ///< goes before the other scouts
+  bool first_pass_;  ///< a quarter of the pilot pixels goes first
   float target_error_, target_rmse_;
   double fraction_done_ = 0;
 };

@@ -1,4 +1,4 @@
-/* The camera pass: where the slice's camera rays meet the scene, a packet of them an item: from one
+/* The camera pass: intersects the slice's camera rays with the scene, one packet an item: from one
    point (DAPPLE_SHARED_ORIGIN 1), or side by side (0). */
 #include "camera/surface_points16.clh"
 #include "camera/camera.clh"
@@ -13,7 +13,7 @@ typedef struct ItemHits {
   uint visits, tests;  /* as SampleHits has them */
 } ItemHits;
 
-/* The item's rays from `first` on as a beam: those that are not among its `count` have ended. */
+/* The sixteen rays of the item from `first` on. Rays beyond its `count` end before they start. */
 inline void start_group(CameraParams params, const CameraSamples* chosen, uint first, uint count,
                        ClosestHits16* closest, StochasticHits* stops) {
   for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i)
@@ -42,7 +42,7 @@ inline void store_stochastic_hit(const CameraSamples* chosen, uint of_item, uint
           (__global uint*)&point->area);
 }
 
-/* What the beam met whose first ray is that, sample by sample; `points` are those of the item. */
+/* Stores the hits of the group whose first ray is `first`, sample by sample; `points`: of the item. */
 inline void store_group(Scene scene, const CameraSamples* chosen, uint first, const Rays16* group,
                        const CameraShares16* shares, const uint* keys, const StochasticHits* stops,
                        __global SurfacePoint* points, ItemHits* found) {
@@ -69,7 +69,7 @@ inline void store_group(Scene scene, const CameraSamples* chosen, uint first, co
   }
 }
 
-/* How much a box of haze may cover varies as footprints do, so that nothing pops. */
+/* How many pixels a medium's box may cover varies as footprints do, so that nothing pops. */
 inline void set_medium(CameraParams params, const CameraShares16* shares, ClosestPacket* packet) {
   packet->medium_error = params.medium_error;
   packet->share_of_sample = 1.0f / (1u << params.splitting_bits);
@@ -86,7 +86,7 @@ inline void set_medium(CameraParams params, const CameraShares16* shares, Closes
   }
 }
 
-/* Where the item's rays, `count` of them, meet the scene. */
+/* Intersects the item's rays, `count` of them, with the scene. */
 inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* chosen,
                        const Entries* entries, uint count, __global SurfacePoint* points,
                        ItemHits* found) {

@@ -54,25 +54,25 @@ inline void trace_batch(Scene scene, OcclusionParams params, __global const Ray*
 }
 
 #if DAPPLE_SHARED_ORIGIN
-/* Rays lie as points * rays_per_point; each point's are cut into chunks of about the same size, and
-   a piece is some of these in a row. */
+/* Rays lie as points * rays_per_point. The rays of a point are cut into batches of about the same size; a
+   ticket stands for several batches in a row. */
 inline void trace_ticket(Scene scene, OcclusionParams params, uint ticket, __global const Ray* rays,
                         __global Occlusion* results) {
   const uint of_point = (params.rays_per_point + DAPPLE_RAY_BATCH - 1u) / DAPPLE_RAY_BATCH;
   const uint size = (params.rays_per_point + of_point - 1u) / of_point;
-  const uint chunks = params.ray_count / params.rays_per_point * of_point;
-  const uint end = min((ticket + 1u) * params.batches_per_ticket, chunks);
-  for (uint chunk = ticket * params.batches_per_ticket; chunk < end; ++chunk) {
-    const uint skipped = chunk % of_point * size;
-    const uint first = chunk / of_point * params.rays_per_point + skipped;
+  const uint batches = params.ray_count / params.rays_per_point * of_point;
+  const uint end = min((ticket + 1u) * params.batches_per_ticket, batches);
+  for (uint batch = ticket * params.batches_per_ticket; batch < end; ++batch) {
+    const uint skipped = batch % of_point * size;
+    const uint first = batch / of_point * params.rays_per_point + skipped;
     const uint count = min(size, params.rays_per_point - skipped);
-    if (chunk + 1u < end) prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
+    if (batch + 1u < end) prefetch_rays(rays + first + count, min(count, DAPPLE_PACKET_RAYS));
     trace_batch(scene, params, rays + first, count, results + first);
   }
 }
 #else
-/* A chunk of neighbours is a piece; the last ones are small, so that all who take turns end at
-   about the same time. */
+/* A ticket stands for one batch of rays of neighbouring pixels. The last batches are small, so that all
+   work-items end at about the same time. */
 inline uint start_of_ticket(OcclusionParams params, uint ticket) {
   const uint large = min(ticket, params.large_batches);
   return min(large * DAPPLE_RAY_BATCH + (ticket - large) * DAPPLE_SMALL_RAY_BATCH, params.ray_count);

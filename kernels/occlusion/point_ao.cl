@@ -1,4 +1,4 @@
-/* AO of points whose rays are few: whoever takes a point makes its rays, traces them together and
+/* AO of points with few rays: the work-item that takes a point makes its rays, traces them together and
    adds them up, with no queue between. What a ray finds is what packet.cl finds. */
 #include "occlusion/ao_rays.clh"
 #include "occlusion/packet.clh"

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kFirstSeed = 1000;
 
 /// Takes effort times the round's seconds and is off by the round's error over the root of the
-/// effort, up and down by turns.
+/// effort, up and down alternately.
 Contestant by_table(std::string name, std::vector<double> ladder, std::vector<double> seconds,
                     std::vector<double> errors) {
   const auto run = [seconds, errors](double effort, std::uint32_t seed) {

@@ -1,5 +1,6 @@
-// Haze: sparse, even nodes that camera rays meet as media where the picture may err. It shows what
-// rays find in them, whatever shares a ray, however the mesh is placed, whoever travels along.
+// Media: sparse, uniform nodes that camera rays pass as homogeneous media, within the error of the
+// picture. It shows what rays find in them, whatever shares a ray, however the mesh is placed, and
+// whatever other rays share the packet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,14 +51,14 @@ Scene flakes() {
   return scene;
 }
 
-/// Of a picture that may err much, but is sampled well, with haze or without.
-RenderOptions well_sampled(bool haze) {
+/// Of a picture that may err much, but is sampled well, with medium or without.
+RenderOptions well_sampled(bool medium) {
   RenderOptions options;
   options.width = options.height = 48;
   options.light = false;
   options.spp = options.max_spp = 64;
   options.footprint_spp = 1;
-  if (haze) options.target_rmse = 0.05f;
+  if (medium) options.target_rmse = 0.05f;
   return options;
 }
 
@@ -69,19 +70,19 @@ double sum(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Means of alpha and of occlusion, over the picture, as parts of what they are without haze. Nodes
-/// that are as large and alike have depths that are rounded to the same code, up to 3 % off; and
-/// what stands for a surface may be outside of what hides it.
+/// Means of alpha and of occlusion, over the picture, as parts of what they are without medium.
+/// Nodes that are as large and alike have depths that are rounded to the same code, up to 3 % off;
+/// and what stands for a surface may be outside of what hides it.
 void expect_shows_the_same(const Scene& scene, RenderOptions with) {
   RenderOptions without = with;
   without.target_rmse = 0;
-  const RenderResult haze = render(scene, with), rays = render(scene, without);
-  EXPECT_LT(haze.statistics.camera.visits, 0.15 * rays.statistics.camera.visits) << "no haze";
-  EXPECT_NEAR(sum(channel(haze, "A")) / sum(channel(rays, "A")), 1, 0.035);
+  const RenderResult medium = render(scene, with), rays = render(scene, without);
+  EXPECT_LT(medium.statistics.camera.visits, 0.15 * rays.statistics.camera.visits) << "no medium";
+  EXPECT_NEAR(sum(channel(medium, "A")) / sum(channel(rays, "A")), 1, 0.035);
   const double pixels = with.width * with.height;
   const double occlusion = pixels - sum(channel(rays, "ao.R"));
   EXPECT_GT(occlusion, 0.001 * pixels) << "nothing to see";
-  EXPECT_NEAR((pixels - sum(channel(haze, "ao.R"))) / occlusion, 1, 0.25);
+  EXPECT_NEAR((pixels - sum(channel(medium, "ao.R"))) / occlusion, 1, 0.25);
 }
 
 TEST(MediumOnDevice, ShowsAsMuchAsRaysFindInFarFewerNodes) {
@@ -123,20 +124,20 @@ TEST(MediumOnDevice, ShowsTheSameToParallelRays) {
 }
 
 void expect_same_normals(const Scene& scene) {
-  const RenderResult haze = render(scene, well_sampled(true));
+  const RenderResult medium = render(scene, well_sampled(true));
   const RenderResult rays = render(scene, well_sampled(false));
-  EXPECT_LT(haze.statistics.camera.visits, 0.5 * rays.statistics.camera.visits) << "no haze";
-  const auto &a = channel(haze, "A"), &b = channel(rays, "A");
+  EXPECT_LT(medium.statistics.camera.visits, 0.5 * rays.statistics.camera.visits) << "no medium";
+  const auto &a = channel(medium, "A"), &b = channel(rays, "A");
   for (const char* name : {"N.X", "N.Y", "N.Z"}) {
-    double of_haze = 0, of_rays = 0, count = 0;
+    double of_medium = 0, of_rays = 0, count = 0;
     for (std::size_t p = 0; p < a.size(); ++p) {
       if (a[p] < 0.02f || b[p] < 0.02f) continue;  // of few samples
-      of_haze += channel(haze, name)[p];
+      of_medium += channel(medium, name)[p];
       of_rays += channel(rays, name)[p];
       count += 1;
     }
     ASSERT_GT(count, 100);
-    EXPECT_NEAR(of_haze / count, of_rays / count, 0.03) << name;
+    EXPECT_NEAR(of_medium / count, of_rays / count, 0.03) << name;
   }
 }
 

@@ -1,5 +1,6 @@
 // dapple render --cache as its users meet it: the second run makes the same picture without
-// building, whoever else runs, whatever happened to the folder, and killed at any moment.
+// building, with other processes running, whatever happened to the folder, and killed at any
+// moment.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>

@@ -133,7 +133,7 @@ TEST_F(CompilingProcessesCold, MachineCodeThatIsMissingIsMadeByProcessesToo) {
   EXPECT_EQ(compilers_of(arguments), 1u) << "rays to lights, and resolving them";
 }
 
-TEST_F(CompilingProcesses, WhoeverWaitsForThemTakesThemAlong) {
+TEST_F(CompilingProcesses, EndWithTheProcessThatWaitsForThem) {
   const EnvironmentWhile cache("POCL_CACHE_DIR", path("cache"));
   RunningProgram program({"render", "scene:cube", "-o", path("out.exr"), "-q"}, path("log"));
   std::set<std::string> compilers;

@@ -59,7 +59,7 @@ TEST(DeviceAgreement, EachRayFindsTheSameOnEveryDevice) {
     for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
       for (const Packets packets : {Packets::none, Packets::pixel, Packets::point}) {
         SCOPED_TRACE(testing::Message() << name << ", estimator " << static_cast<int>(estimator)
-                                        << ", company " << static_cast<int>(packets));
+                                        << ", packets " << static_cast<int>(packets));
         const Found first = find(devices[0].name, scene, bvh, rays, estimator, packets);
         for (std::size_t d = 1; d < devices.size(); ++d) {
           SCOPED_TRACE(devices[0].name + " and " + devices[d].name);

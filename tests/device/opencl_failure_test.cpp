@@ -98,8 +98,8 @@ TEST_F(OpenclFailure, LeavesTheDeviceUsable) {
   }
 }
 
-// Neighbours take their work by turns, which host and device count: a failure must not put them out
-// of step, that of the count's own first write neither.
+// Pixel packets take their work by tickets, which host and device count: a failure must not put
+// them out of step, that of the count's own first write neither.
 TEST_F(OpenclFailure, LeavesTurnsInStep) {
   const Scene scene = make_procedural("scene:cloud?leaves=300&opacity=0.5");
   const SceneBvh bvh = build_bvh(scene);

@@ -75,7 +75,7 @@ TEST_F(ThreadAffinity, FewerThreadsThanCpusRunWhereTheSystemPutsThem) {
   EXPECT_EQ(taken_cpus(), std::vector<std::string>{});
 }
 
-TEST_F(ThreadAffinity, WhoeverSetsItDecides) {
+TEST_F(ThreadAffinity, AVariableThatIsSetDecides) {
   const EnvironmentWhile refused("POCL_AFFINITY", "0");
   EXPECT_EQ(taken_cpus(), std::vector<std::string>{});
 }

@@ -1,4 +1,4 @@
-// Whom rays are traced with can be chosen, and what they find does not depend on it.
+// Ray packets can be chosen by an option, and the results do not depend on it.
 #include <gtest/gtest.h>
 
 #include <cmath>

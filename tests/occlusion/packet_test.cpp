@@ -87,12 +87,12 @@ Scene textured_cards() {
 }
 
 // Some trees as they come, others squeezed, mirrored and stretched.
-Scene forest_of_uneven_trees() {
+Scene forest_scaled_non_uniformly() {
   Scene scene = make_procedural("scene:forest?trees=9&leaves=500&opacity=0.5");
-  M44f uneven;
-  uneven.setScale(V3f(-3, 1, 2));
+  M44f scale;
+  scale.setScale(V3f(-3, 1, 2));
   for (std::size_t i = 0; i < scene.instances.size(); i += 2) {
-    scene.instances[i].to_world = uneven * scene.instances[i].to_world;
+    scene.instances[i].to_world = scale * scene.instances[i].to_world;
   }
   return scene;
 }
@@ -103,7 +103,7 @@ Scene forest_of_uneven_trees() {
 TEST(Packet, EqualsExactRayByRayWhenExactAndAsTheFootprintGoesToZero) {
   std::vector<Scene> scenes;
   scenes.push_back(make_procedural("scene:tree?leaves=2000"));
-  scenes.push_back(forest_of_uneven_trees());
+  scenes.push_back(forest_scaled_non_uniformly());
   scenes.push_back(textured_cards());
   for (Scene& made : scenes) {
     const SceneOnDevice scene(std::move(made));
@@ -178,7 +178,7 @@ TEST(Packet, AgreesWithPrefilteredAndConvergesToExact) {
   scenes.push_back(make_procedural("scene:tree?leaves=20000"));
   scenes.push_back(make_procedural("scene:cloud?leaves=50000&opacity=0.2"));
   scenes.push_back(make_procedural("scene:forest?trees=40&leaves=2000"));
-  scenes.push_back(forest_of_uneven_trees());
+  scenes.push_back(forest_scaled_non_uniformly());
   for (Scene& made : scenes) {
     const SceneOnDevice scene(std::move(made));
     const char* name = scene.scene.source.c_str();

@@ -1,5 +1,5 @@
 // Rays that start near each other, traced together: each finds what it finds alone, and the same
-// bits in any company.
+// bits in any packet.
 #include <gtest/gtest.h>
 
 #include <algorithm>

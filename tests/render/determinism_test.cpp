@@ -84,7 +84,7 @@ std::vector<float> cropped(const Film& film, const Plane& plane, const PixelRect
   return pixels;
 }
 
-// A ray that has no company is traced as one that has.
+// A ray alone in its packet is traced as one among others.
 TEST(Crop, OfASinglePixelAndSampleEqualsThatOfTheWholePicture) {
   Scene scene = make_procedural("scene:tree?leaves=3000");
   RenderOptions options;

@@ -141,8 +141,8 @@ void expect_passes_to_add_up(const Scene& scene) {
   const TracedPicture a = tracing.trace(), b = tracing.trace(passes);
   EXPECT_EQ(a.samples, b.samples);
   const std::size_t pixels = a.samples.size();
-  // What rays visit depends on whom they travel with: planes 8 and 9 of the camera's, the last
-  // two of AO and lights.
+  // What rays visit depends on the other rays of their packets: planes 8 and 9 of the camera's, the
+  // last two of AO and lights.
   const auto without_visits = [pixels](const TracedPicture& picture) {
     std::vector<std::int64_t> sums = sums_of(picture);
     for (const std::size_t plane : {8, 9, 14, 15, 18, 19})

@@ -90,7 +90,7 @@ TEST(FilmMoments, WhatIsMostlyNoiseIsTakenFromTheNeighbours) {
   EXPECT_NEAR(picture.largest_unoccluded(), 6.0 / 9, 1e-5);
 }
 
-TEST(FilmMoments, ScoutsStandForWhatTheyDontSee) {
+TEST(FilmMoments, PilotPixelsStandForOthers) {
   std::vector<std::uint32_t> samples = alike(8);
   for (int p = kSide * kSide / 2; p < kSide * kSide; ++p) samples[p] = 0;
   UnlitPicture picture(samples, 0.25f);

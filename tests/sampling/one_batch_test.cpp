@@ -44,7 +44,7 @@ SamplePlan after_pilot(const RenderOptions& options, const Variances& variances)
   return plan;
 }
 
-TEST(OneBatch, IsAllThatOthersThanScoutsGetWhereItIsEnough) {
+TEST(OneBatch, IsAllThatOtherPixelsThanThePilotsGetWhereItIsEnough) {
   SamplePlan plan = after_pilot(by_rmse(0.1f), all_equal(0.0079f));
   EXPECT_EQ(with_batches(plan, 1), kPixels - kPilot);
   EXPECT_EQ(with_batches(plan, 2), kPilot);
@@ -61,7 +61,7 @@ TEST(OneBatch, NeedsAMarginAndEveryPass) {
   EXPECT_EQ(with_batches(after_pilot(by_rmse(0.1f), one_sees_nothing), 1), kPixels - kPilot);
 }
 
-TEST(OneBatch, IsNotTakenForGrantedBySightlessScouts) {
+TEST(OneBatch, IsNotTakenForGrantedByPilotPixelsWithoutHits) {
   EXPECT_EQ(with_batches(after_pilot(by_rmse(0.1f), all_equal(0.0f)), 2), kPixels);
 }
 
@@ -74,8 +74,8 @@ TEST(OneBatch, IsNotEnoughWhereMoreAreAskedForOrEachPixelHasATarget) {
   EXPECT_EQ(with_batches(after_pilot(by_error, all_equal(0.001f)), 2), kPixels);
 }
 
-/// Of AO alone, for which a quarter of the scouts goes first.
-SamplePlan after_vanguard(float target, const Variances& variances) {
+/// Of AO alone, for which a quarter of the pilot pixels goes first.
+SamplePlan after_first_pass(float target, const Variances& variances) {
   RenderOptions options = by_rmse(target);
   options.light = false;
   SamplePlan plan(kSide, kSide, options);
@@ -86,15 +86,15 @@ SamplePlan after_vanguard(float target, const Variances& variances) {
   return plan;
 }
 
-TEST(OneBatch, IsTakenFromTheVanguardWhereItIsByFarEnough) {
-  SamplePlan plan = after_vanguard(0.1f, all_equal(0.0024f));
+TEST(OneBatch, IsTakenFromTheFirstPilotPassWhereItIsByFarEnough) {
+  SamplePlan plan = after_first_pass(0.1f, all_equal(0.0024f));
   EXPECT_EQ(with_batches(plan, 1), kPixels - kPilot / 4);
   EXPECT_TRUE(plan.next(all_equal(0.0024f), no_costs).empty());
 }
 
-TEST(OneBatch, IsLeftToAllScoutsElsewhere) {
+TEST(OneBatch, IsLeftToAllPilotPixelsElsewhere) {
   for (const float variance : {0.0026f, 0.0079f, 0.0081f, 0.0f}) {
-    SamplePlan plan = after_vanguard(0.1f, all_equal(variance));
+    SamplePlan plan = after_first_pass(0.1f, all_equal(variance));
     EXPECT_EQ(with_batches(plan, 2), kPilot) << variance;
     EXPECT_EQ(with_batches(plan, 0), kPixels - kPilot);
     // As it is after a checkpoint, too.
@@ -134,10 +134,10 @@ TEST(OneBatch, VariancesOfSinglesAreAsLargeAsThoseOfTheOthers) {
   for (std::size_t p = 0; p < kPixels; ++p) {
     const float slope = 0.2f * static_cast<float>(p % kSide);
     const float first = slope + noise(random), second = slope + noise(random);
-    const bool scout = p % 16 < 4 && p / kSide % 16 < 4;  // squares of them
-    samples[p] = scout ? 2 * DAPPLE_SAMPLE_BATCH : DAPPLE_SAMPLE_BATCH;
-    moments[p] = scout ? BatchMoments{0.5f * (first + second), first * first + second * second}
-                       : BatchMoments{first, first * first};
+    const bool is_pilot = p % 16 < 4 && p / kSide % 16 < 4;  // squares of them
+    samples[p] = is_pilot ? 2 * DAPPLE_SAMPLE_BATCH : DAPPLE_SAMPLE_BATCH;
+    moments[p] = is_pilot ? BatchMoments{0.5f * (first + second), first * first + second * second}
+                          : BatchMoments{first, first * first};
   }
   const auto of = [&](std::size_t p) { return moments[p]; };
   std::vector<float> variances = batch_variances(samples, kSide, of);
@@ -198,7 +198,7 @@ TEST(OneBatch, AnInterruptedDraftEndsWithTheSameBits) {
   const std::string path = (std::filesystem::path(testing::TempDir()) / "one_batch.ckpt").string();
   std::filesystem::remove(path);
   const RenderResult whole = render(scene, draft());
-  for (int calls = 0; calls <= 1; ++calls) {  // before the scouts, and after
+  for (int calls = 0; calls <= 1; ++calls) {  // before the pilot samples, and after
     int left = calls;
     RenderControl control;
     control.checkpoint = path;

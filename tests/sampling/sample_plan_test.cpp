@@ -290,7 +290,7 @@ TEST(PilotPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {
   }
 }
 
-TEST(PilotPixels, HaveAQuarterOfThemInTheVanguard) {
+TEST(PilotPixels, HaveAQuarterOfThemInTheFirstPass) {
   const std::vector<bool> all = pilot_pixels(130, 130);
   const std::vector<bool> first = pilot_pixels(130, 130, PilotPass::first_pass);
   ASSERT_EQ(first.size(), all.size());
@@ -299,7 +299,7 @@ TEST(PilotPixels, HaveAQuarterOfThemInTheVanguard) {
   for (std::size_t p = 0; p < all.size(); ++p) EXPECT_TRUE(!first[p] || all[p]) << p;
 }
 
-TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
+TEST(SamplePlan, AfterThePilotAllPixelsGetWhatMostWant) {
   RenderOptions options = by_rmse(0.1f);
   SamplePlan plan(128, 128, options);
   const std::vector<WorkGroup> pilot = plan.pilot();
@@ -316,15 +316,15 @@ TEST(SamplePlan, AfterTheScoutsAllPixelsGetWhatMostWant) {
   EXPECT_TRUE(plan.least().empty());
 }
 
-TEST(SamplePlan, AfterTheScoutsNothingIsGivenToBeSure) {
-  // What is missing should the scouts be wrong is less than the doubling that being sure may cost.
+TEST(SamplePlan, AfterThePilotNothingIsGivenToBeSure) {
+  // What is missing should the pilot be wrong is less than the doubling that being sure may cost.
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.pilot();
   plan.after_pilot({std::vector<float>(16384, 0.0399f)});
   EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_SAMPLE_BATCH), 16384u);
 }
 
-TEST(SamplePlan, AfterTheScoutsNoPixelGetsMoreThanFourTimesTheLeast) {
+TEST(SamplePlan, AfterThePilotNoPixelGetsMoreThanFourTimesTheLeast) {
   SamplePlan plan(128, 128, by_rmse(0.001f));
   plan.pilot();
   plan.after_pilot({std::vector<float>(16384, 1.0f)});
@@ -332,7 +332,7 @@ TEST(SamplePlan, AfterTheScoutsNoPixelGetsMoreThanFourTimesTheLeast) {
   EXPECT_NEAR(plan.fraction_done(), 32.0 / 4096, 1e-6) << "of the most";
 }
 
-TEST(SamplePlan, ByErrorTheScoutsSayWhatThreeQuartersOfThePixelsWant) {
+TEST(SamplePlan, ByErrorThePilotSaysWhatThreeQuartersOfThePixelsWant) {
   RenderOptions options;
   options.spp = 8;
   options.target_error = 0.1f;
@@ -346,7 +346,7 @@ TEST(SamplePlan, ByErrorTheScoutsSayWhatThreeQuartersOfThePixelsWant) {
       << "and better stratified than 3";
 }
 
-TEST(SamplePlan, ScoutsThatSeeNothingAskForTheLeast) {
+TEST(SamplePlan, APilotWithoutHitsAsksForTheLeast) {
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.pilot();
   plan.after_pilot({std::vector<float>(16384, 0.0f)});
@@ -354,7 +354,7 @@ TEST(SamplePlan, ScoutsThatSeeNothingAskForTheLeast) {
   EXPECT_EQ(plan.fraction_done(), 1);
 }
 
-TEST(SamplePlan, GoesOnFromScoutsAsIfItHadSentThem) {
+TEST(SamplePlan, GoesOnFromAPilotAsIfItHadTakenIt) {
   const std::vector<float> variances(16384, 0.09f);
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.pilot();

@@ -138,13 +138,13 @@ TEST(Sampling, TheConcentricMapIsDefinedInTheCornersAndTheMiddle) {
   for (int i = 0; i < 6; ++i) EXPECT_LT((p[i] - expected[i]).length(), 1e-6f) << p[i];
 }
 
-TEST(Sampling, ASunflowersPlacesAreAGoldenAngleApartInRingsOfOneArea) {
+TEST(Sampling, AVogelSpiralsPointsAreAGoldenAngleApartInRingsOfOneArea) {
   constexpr uint kCount = 3000;
   const double golden = kPi * (3 - std::sqrt(5.0));
   const Buffer disk = device().allocate(kCount * sizeof(V2f));
   for (const auto& [jitter, turn] :
        {std::pair{0.0f, 0u}, {0.5f, 0x20000000u}, {0.999f, 0xdfffffffu}, {0.25f, 0x7fffffffu}}) {
-    run("sampling", "sunflower_points", kCount, {disk, jitter, turn, kCount});
+    run("sampling", "vogel_points", kCount, {disk, jitter, turn, kCount});
     const auto places = download<V2f>(disk, kCount);
     for (uint k = 0; k < kCount; ++k) {
       const double radius = std::sqrt((k + double{jitter}) / kCount);

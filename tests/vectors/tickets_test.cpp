@@ -1,4 +1,4 @@
-// Work that is taken by turns: each piece once, whoever takes it, launch after launch.
+// Work taken by tickets: each ticket is drawn exactly once, launch after launch.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -13,7 +13,7 @@ using namespace kernel_test;
 
 std::vector<uint> times_taken(DeviceContext& context, uint ticket_count, std::size_t group) {
   const Buffer taken = context.allocate_zeros(ticket_count * sizeof(uint));
-  context.launch_with_tickets({"take_pieces", "tickets", {}}, "turns", ticket_count, {taken},
+  context.launch_with_tickets({"take_tickets", "tickets", {}}, "tickets", ticket_count, {taken},
                               group);
   std::vector<uint> times(ticket_count);
   context.read(taken, times.data(), ticket_count * sizeof(uint));
@@ -38,7 +38,7 @@ TEST(Tickets, CountingStartsAgain) {
 TEST(Tickets, NothingIsLaunchedForNoPieces) {
   DeviceContext context("", DAPPLE_TEST_KERNELS);
   const Buffer taken = context.allocate_zeros(sizeof(uint));
-  context.launch_with_tickets({"take_pieces", "tickets", {}}, "nothing", 0, {taken}, 1);
+  context.launch_with_tickets({"take_tickets", "tickets", {}}, "nothing", 0, {taken}, 1);
   context.finish();
   EXPECT_FALSE(context.pass_seconds().contains("nothing"));
 }

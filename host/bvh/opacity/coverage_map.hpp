@@ -40,8 +40,8 @@ struct CoverageMap {
   /// Mean over the cells of opacity times the squared distance from the middle in half sizes;
   /// 2/3 of the mean opacity where it lies evenly.
   [[nodiscard]] float opacity_off_centre(int axis) const;
-  /// How unevenly the box is filled: variance of the cells over the greatest that their mean
-  /// allows, all axes together. 0: all alike; 1: each cell is clear or hides everything.
+  /// Relative variance of opacity over the box: variance of the cells over the greatest that their
+  /// mean allows, all axes together. 0: all alike; 1: each cell is clear or hides everything.
   [[nodiscard]] float clumping() const;
 };
 

@@ -38,7 +38,7 @@ struct NodeOpacity {
 /// sizes. 2/3 and more, as of things that fill the box evenly or stay away from its middle: 0.
 float mass_concentration_of(float off_centre);
 
-/// How unevenly a box is filled, as nodes store it: dapple/shared/opacity.h.
+/// Variance class of a box's opacity, as nodes store it: dapple/shared/opacity.h.
 unsigned variance_class(const NodeOpacity& opacity);
 
 /// -log(1 - opacity), at most the greatest depth that a node can store.

@@ -1,5 +1,5 @@
 // Whether kernels may walk an object that came out of a file. A checksum shows damage; this shows
-// that whoever wrote the file, no ray leaves the object's arrays or the traversal stack.
+// so that no ray of any file, damaged or not, leaves the object's arrays or the traversal stack.
 #pragma once
 
 #include "bvh/storage/bvh_cache.hpp"

@@ -47,7 +47,7 @@ pid_t start_process(const std::string& program, Arguments arguments) {
   return process;
 }
 
-/// Whoever asks for a kernel without a source is told why then.
+/// A kernel without a source counts as compiled here; preparing it throws the error.
 bool is_missing(const DeviceContext& context, const KernelName& kernel, CompileTo to) {
   try {
     return !context.is_compiled(kernel, to);
@@ -77,8 +77,8 @@ std::vector<Share> by_program(const DeviceContext& context, const std::set<Kerne
   return shares;
 }
 
-/// The same in `count` shares of about the same size: the largest goes first, each to whom has
-/// least.
+/// The same in `count` shares of about the same size: the largest goes first, each to the share
+/// that has least.
 std::vector<Share> deal(std::vector<Share> programs, std::size_t count) {
   const auto less = [](const Share& a, const Share& b) { return a.source_size < b.source_size; };
   std::vector<Share> hands(std::min(count, programs.size()));

@@ -174,7 +174,7 @@ void KernelCache::publish(const Files& files, const fs::path& entry) const {
     if (ignored) fs::copy_file(folder() / file, staged / file);
   }
   if (!seal(staged, {files.begin(), files.end()})) return;
-  // Whoever reads the former entry meanwhile finds a file missing, and compiles.
+  // A process that reads the former entry meanwhile finds a file missing, and compiles.
   fs::rename(entry, former, ignored);
   fs::rename(staged, entry, ignored);
   fs::remove_all(former, ignored);

@@ -20,7 +20,7 @@ class ElementCheck {
   void index(const std::string& who, const char* kind, int index, std::size_t count) const;
 
   void range(const std::string& who, std::uint64_t needs, std::uint64_t has,
-             const std::string& whom) const;
+             const std::string& container) const;
 
   [[nodiscard]] const std::string& file() const { return file_; }
 

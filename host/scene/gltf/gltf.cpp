@@ -31,18 +31,18 @@ namespace gltf {
 MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, bool plays)
     : options_(options), document_(load_document(path, options.allow_outside)) {
   if (plays) player_.emplace(document_, options.animation);
-  furnished_.source = path;
-  furnished_.files = document_.files;
-  furnished_.animations = list_animations(document_);
+  timeless_.source = path;
+  timeless_.files = document_.files;
+  timeless_.animations = list_animations(document_);
   // Which materials and images are needed does not depend on where nodes stand.
   materials_ =
-      read_materials(document_, place_nodes(document_), options.line_radius > 0, furnished_);
+      read_materials(document_, place_nodes(document_), options.line_radius > 0, timeless_);
 }
 
 Scene MovingGltf::at(std::optional<double> seconds) const {
   const Pose pose = seconds && player_ ? player_->at(*seconds) : Pose{};
   const std::vector<PlacedNode> placed = place_nodes(document_, pose);
-  Scene scene = furnished_;
+  Scene scene = timeless_;
   add_instances(document_, placed, materials_, pose, options_, scene);
   check_crowding(scene);
   add_punctual_lights(document_, placed, options_, scene);

@@ -27,7 +27,7 @@ class MovingGltf {
   SceneOptions options_;
   Document document_;
   std::optional<Player> player_;
-  Scene furnished_;  ///< what does not depend on the time: materials and textures
+  Scene timeless_;  ///< what does not depend on the time: materials and textures
   MaterialSet materials_;
 };
 

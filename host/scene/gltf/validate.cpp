@@ -163,9 +163,10 @@ void ElementCheck::index(const std::string& who, const char* kind, int index,
 }
 
 void ElementCheck::range(const std::string& who, std::uint64_t needs, std::uint64_t has,
-                         const std::string& whom) const {
+                         const std::string& container) const {
   if (needs <= has) return;
-  fail(file_, "{} reads past {} (needs {} bytes, has {})", who, whom, grouped(needs), grouped(has));
+  fail(file_, "{} reads past {} (needs {} bytes, has {})", who, container, grouped(needs),
+       grouped(has));
 }
 
 void validate(const Document& document) { Validator(document).run(); }

@@ -11,16 +11,13 @@
 #define DAPPLE_GLOBAL __global
 typedef char schar; /* signed in OpenCL C */
 #define DAPPLE_FUNCTION inline
-/* For functions whose vectors would otherwise be passed through memory, and those that loops are
-   made vectors over. Not for all: with the triangle tests inlined too, exact rays lost a tenth to
-   spilled registers. */
+/* For functions whose vectors would otherwise be passed through memory, and for bodies of loops that are
+   to be vectorized. Not for the triangle tests, which then spill registers: experiment 708. */
 #define DAPPLE_INLINE __attribute__((always_inline)) inline
-/* For loops over axes: as loops they keep arrays of vectors in memory. PoCL's compiler made hair 1.26
-   times as fast with it. */
+/* For loops over axes, which otherwise keep arrays of vectors in memory: experiment 709. */
 #define DAPPLE_UNROLL _Pragma("unroll")
 /* For loops over sixteen lanes or more, of scalars that nothing else may point to: without it
-   PoCL's compiler makes vectors of four. Rays to lights are made in 0.92 of the time with it,
-   camera rays traced in 0.96. */
+   PoCL's compiler makes vectors of four: experiment 710. */
 #if defined(__clang__)
 #define DAPPLE_SIXTEEN_LANES _Pragma("clang loop vectorize_width(16) interleave(disable)")
 #else

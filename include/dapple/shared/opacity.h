@@ -37,7 +37,7 @@ DAPPLE_FUNCTION float depth_decode(uchar code) {
   return root * root * DAPPLE_GREATEST_DEPTH;
 }
 
-/* How unevenly a child is filled, in the least bits of its three correlations, which they don't
+/* Variance class of a child's opacity, in the least bits of its three correlations, which they don't
    need: class c from 0 to 6 where the opacities of a sixteenth by a sixteenth of the box's sides,
    seen along the axes, deviate from their mean by 2^(c/2 - 8) at most (rms), and the mean squared is
    no more than that either; 7: all others. */
@@ -62,7 +62,7 @@ DAPPLE_FUNCTION float box_depth(float depth_x, float depth_y, float depth_z, flo
   return sqrt(square > 0.0f ? square : 0.0f) / (facing_x + facing_y + facing_z + 1e-37f);
 }
 
-/* The depth that a ray meets whose chord is `chord` times the mean chord of the box. */
+/* Optical depth of a ray whose chord is `chord` times the mean chord of the box. */
 DAPPLE_FUNCTION float chord_depth(float depth, float chord) {
   float filled = (depth - DAPPLE_SPARSE_DEPTH) / (DAPPLE_FILLED_DEPTH - DAPPLE_SPARSE_DEPTH);
   filled = filled < 0.0f ? 0.0f : filled > 1.0f ? 1.0f : filled;

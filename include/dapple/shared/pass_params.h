@@ -15,8 +15,8 @@ typedef struct SceneParams {
   uint has_top;      /* 1: root is top-level; 0: it is the only object's, in world space */
 } SceneParams;
 
-/* Rays of a chunk, which are sorted together before they go as packets: at most so many of one
-   point; of neighbours so many, and fewer in the last chunks of a queue. */
+/* Rays of a batch: they are sorted together and then cut into packets. At most so many rays of one point;
+   so many rays of neighbouring pixels, and small batches at the end of a queue (experiment 304). */
 #define DAPPLE_POINT_RAY_BATCH 512u
 #define DAPPLE_PIXEL_RAY_BATCH 1024u
 #define DAPPLE_SMALL_RAY_BATCH 256u
@@ -30,7 +30,7 @@ typedef struct OcclusionParams {
   uint rays_per_point;        /* packets: rays in a row that share their origin */
   /* Packets; set by occlusion_pass() and point_ao_pass(). */
   uint large_batches;          /* of neighbours: the first ones, of DAPPLE_PIXEL_RAY_BATCH rays */
-  uint batches_per_ticket;          /* of points: how many are a piece of work */
+  uint batches_per_ticket;          /* of points: batches that one ticket stands for */
 } OcclusionParams;
 
 /* Samples of a pixel whose mean counts once in the sum of squares that errors come from: those of one
@@ -68,9 +68,9 @@ typedef struct CameraParams {
   uint seed;
   float inverse_spp;    /* 1 / samples a pixel that were asked for */
   float texel_share;    /* of a pixel's area that each look-up in a texture averages; 0: none */
-  float tap_offset;      /* as in FilterTaps; 0: no taps */
-  float tap_centring;       /* how far the middle of a ray's taps is towards the pixel's middle, [0,1] */
-  float medium_error;     /* by which what a box of haze hides of a pixel may deviate; 0: no haze */
+  float tap_offset;      /* as in FilterTaps; 0: no filter taps */
+  float tap_centring;       /* how far the taps' centre moves from the hit to the pixel's centre, [0,1] */
+  float medium_error;     /* by which the opacity of a medium's box in a pixel may deviate; 0: no media */
   uint splitting_bits;      /* two to these samples in a row share a camera ray */
   /* Pixels in which the scene may be: columns [left, right), rows [above, below). */
   uint seen_left, seen_above, seen_right, seen_below;

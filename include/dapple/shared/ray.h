@@ -43,7 +43,7 @@ typedef struct Occlusion {
 /* Samples at most that share a camera ray: powers of two. */
 #define DAPPLE_MAX_CAMERA_SPLITTING 4u
 
-/* Items in a row that are a piece of work, taken in one turn: they see much the same. */
+/* Consecutive items that one ticket stands for: neighbours read much the same memory. */
 #define DAPPLE_ITEMS_PER_TICKET 4u
 
 /* Samples of a SampleHits. */
@@ -51,14 +51,14 @@ typedef struct Occlusion {
 
 /* What became of DAPPLE_HIT_BITS samples in a row of a slice. */
 typedef struct SampleHits {
-  uint hits;        /* bit i: sample i of these met a surface */
+  uint hits;        /* bit i: sample i of these hit a surface */
   uint first_slot;  /* place of the first hit among all hits of the slice */
   /* Of the item that the samples were in: nodes that its rays visited together, and pairs of a ray
      and a triangle or segment. */
   uint visits, tests;
 } SampleHits;
 
-/* Where a camera ray met a surface; t < 0: it met none. */
+/* Where a camera ray hit a surface; t < 0: it hit none. */
 typedef struct SurfacePoint {
   float position[3];
   float t;

@@ -1,5 +1,5 @@
 // An instance must occlude as the same triangles put into world space would: turned, mirrored,
-// scaled unevenly, sheared, and several at once.
+// scaled non-uniformly, sheared, and several at once.
 #include <gtest/gtest.h>
 
 #include "support/scene_on_device.hpp"

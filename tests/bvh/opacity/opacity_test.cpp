@@ -292,7 +292,7 @@ TEST(OpacityModel, TheShortLogarithmIsWithin1e5OfTheResult) {
   }
 }
 
-TEST(OpacityModel, ASparseBoxDeepensWithTheChordUpToALimitAndAFullOneDoesNot) {
+TEST(OpacityModel, ASparseBoxsDepthGrowsWithTheChordUpToALimitAndAFullOneDoesNot) {
   const auto directions = random_directions(200);
   const auto sparse = random_nodes(200, 0.5f);
   const auto one = device_depths(sparse, directions, 1),

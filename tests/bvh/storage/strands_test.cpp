@@ -1,5 +1,5 @@
 // Strands: every segment in one lane inside its boxes, entered once by each ray that crosses, the
-// same alone and in company, prefiltered as exact where footprints vanish.
+// same as single rays and in packets, prefiltered as exact where footprints vanish.
 #include <gtest/gtest.h>
 
 #include <algorithm>
