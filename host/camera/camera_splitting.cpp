@@ -12,16 +12,16 @@ namespace dapple {
 namespace {
 
 /// Opacities up to which that part of all surfaces must be for so many samples a camera ray
-/// (docs/performance.md, experiment 401). More than suit cost up to a fifth of the time, fewer up to half of it.
+/// (experiment 401).
 /// What textures average comes in all opacities, and four suit it from where two do.
 constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.85f;
 constexpr double kPartOfFour = 0.25, kPartOfTwo = 0.1;
 
-/// What of a texture is looked at: squares, and texels of one, along each axis.
+/// Squares of a texture that are looked at, and texels of each, along each axis.
 constexpr int kSquares = 64, kTexels = 4;
 
 /// Samples a pixel for which textures are averaged here, whatever the picture's: with more samples
-/// a picture must keep its depths, for renders that are gone on with.
+/// a picture must keep its splitting factor, for renders that are resumed.
 constexpr int kSamples = 16;
 
 float mean_vertex_alpha(const Mesh& mesh) {

@@ -1,5 +1,7 @@
-// How many samples share a camera ray, each stopped by a threshold of its own: what a ray through
-// thin leaves passes is found once, and shaded at several of its surfaces.
+// Camera splitting: how many samples share a camera ray (Arvo and Kirk, "Particle Transport and
+// Image Synthesis", 1990). A ray through thin leaves is traced once and shaded at several of its
+// surfaces, each chosen by a threshold of its own. In: options and scene; out: the splitting
+// factor.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +16,9 @@ namespace dapple {
 /// textures as the view's camera rays average them.
 int choose_camera_splitting(const RenderOptions& options, const Scene& scene, const View& view);
 
-/// What tracing takes: `spp` and `max_spp` count samples, of which each camera ray has `depths`,
-/// which must be chosen, and `ao_rays` those of one sample. Footprints stay what they are without
-/// depths.
+/// The options as tracing uses them: `spp` and `max_spp` count samples, of which each camera ray
+/// has `camera_splitting` (which must not be 0), and `ao_rays` counts those of one sample.
+/// Footprints are those without splitting.
 RenderOptions by_sample(const RenderOptions& options);
 
 /// Samples of a camera ray, of options by_sample(); of others 1.

@@ -107,7 +107,7 @@ void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
 }
 
 /// Of a camera sample's footprint, what a look-up in a texture averages: by itself, and as one of
-/// four taps.
+/// four filter taps.
 constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.35f;
 
 /// What the taps stand for together. Of cards an RMSE of 0.02 takes 0.8 (AO) and 0.5 (light) of the

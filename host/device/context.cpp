@@ -18,7 +18,7 @@ namespace {
 /// Events are collected every so many launches, so that long renders hold few of them.
 constexpr std::size_t kEventsHeld = 256;
 
-/// Work-groups of a compute unit that take turns, if there are as many pieces: enough for each of
+/// Work-groups of a compute unit that take tickets, if there are as many: enough for each of
 /// PoCL's threads to get one, though the first ones take many at once.
 constexpr std::size_t kGroupsTakingTickets = 32;
 
@@ -338,7 +338,7 @@ void DeviceContext::launch_with_tickets(const KernelName& name, const std::strin
   const auto count = static_cast<cl_uint>(ticket_count);
   arguments.insert(arguments.end(), {tickets, s.next_turn, count});
   launch(name, label, groups * group, arguments, group);
-  // Each piece was a turn, and each item has asked once more than there were pieces for it.
+  // Every ticket was taken, and every item has taken one more that was beyond the last.
   s.next_turn += static_cast<cl_uint>(ticket_count + groups * group);
   s.tickets = std::move(tickets);
 }

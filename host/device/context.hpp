@@ -137,9 +137,9 @@ class DeviceContext {
   /// bounds. `label` names the pass in pass_seconds().
   void launch(const KernelName& name, const std::string& label, std::size_t items,
               const std::vector<KernelArgument>& arguments, std::size_t group = 64);
-  /// Enqueues work-items enough to keep the device busy, which take `pieces` pieces of work, below
-  /// 2^31, by tickets: take_ticket() of kernels/vectors/tickets.clh. Three arguments are added
-  /// here.
+  /// Enqueues work-items enough to keep the device busy, which take tickets for `ticket_count`
+  /// parts of the work, below 2^31, by tickets: take_ticket() of kernels/vectors/tickets.clh. Three
+  /// arguments are added here.
   void launch_with_tickets(const KernelName& name, const std::string& label,
                            std::size_t ticket_count, std::vector<KernelArgument> arguments,
                            std::size_t group = 64);

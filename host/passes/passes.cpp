@@ -1,3 +1,6 @@
+// Launches of the passes: which kernel, which ray packets, how many work-items. In: queues and
+// parameters; out: what kernels write. Queues between small kernels: Laine, Karras and Aila,
+// "Megakernels Considered Harmful", 2013.
 #include "passes/passes.hpp"
 
 #include <algorithm>
@@ -10,35 +13,33 @@ namespace {
 /// Work-items of the one group that compacts; DAPPLE_SCAN_ITEMS in kernels/film/compact.cl.
 constexpr std::size_t kScanItems = 256;
 
-/// Rays of a point from which on they go together: of AO rays 2 took up to a seventh longer than
-/// one by one, 4 were 1.15 to 1.4 times as fast, exact or prefiltered (sapling, tree, cards).
+/// Smallest number of rays of a point for which packets pay: experiment 301.
 constexpr uint kMinPacketRays = 4;
 
-/// And from which on they go without those of other points, with arithmetic for one origin: 16 rays
-/// of points in space took 0.8 (tree, forest) to 0.98 times as long (cards).
+/// Smallest number of rays of a point for which a packet of their own, with a shared origin, pays:
+/// experiment 302.
 constexpr uint kMinPointPacketRays = 16;
 
-/// The same of exact rays, whose time goes into triangles: with 16 packets of 64 that are full, of
-/// several points, took 0.89 (sapling), 0.97 (forest) and 0.84 of the time (cards).
+/// The same for exact rays, which spend their time on triangles: with fewer rays full packets over
+/// several points are faster (experiment 303).
 constexpr uint kMinExactPointPacketRays = 32;
 
-/// Part of the chunks of neighbours that are whole. What is left when threads take the last ones is
-/// short then: AO of sapling and forest took 0.94 of the time that it took in fixed shares, and
-/// with no small chunks 0.96.
+/// Quarters of the pixel rays that go in large batches. The rest goes in small ones, so that
+/// threads end at about the same time: experiment 304.
 constexpr uint kLargeBatchQuarters = 3;
 
-/// Rays of points that are a piece of work on a CPU, at most, but for a point that has more:
-/// threads that take turns point by point all look at the same nodes.
+/// Most rays of points that one ticket stands for on a CPU, unless a single point has more. With a
+/// ticket a point all threads would read the same nodes (experiment 601).
 constexpr uint kRaysPerTicket = 256;
 
-/// Items a work-group: few where each has much to do.
+/// Work-items a work-group: few where an item does much work.
 constexpr std::size_t kRayGroup = 64, kPacketGroup = 16, kCameraGroup = 1, kPointGroup = 1;
 
-/// Rays that one item of the kernels that make them makes; DAPPLE_RAY_LANES in
+/// Rays that one work-item of the ray-generating kernels makes; DAPPLE_RAY_LANES in
 /// kernels/occlusion/point_rays.clh.
 constexpr std::size_t kRayLanes = 16;
 
-/// Parts of at most `size` that hold `count`.
+/// `count` / `size`, rounded up.
 template <class T>
 T ceil_div(T count, T size) {
   return (count + size - 1) / size;
@@ -48,8 +49,8 @@ std::size_t hit_records(std::size_t samples) {
   return ceil_div<std::size_t>(samples, DAPPLE_HIT_BITS);
 }
 
-/// Never a question of how many rays there are in all: kernels differ in roundings, and a crop must
-/// make the bits of the whole picture.
+/// Independent of the number of rays, so that a crop reproduces the full picture bit for bit (the
+/// kernels round differently).
 Packets choose_packets(Estimator estimator, uint rays_per_point, RayOrder order,
                        const DeviceContext& context) {
   if (context.packets() != Packets::automatic) return context.packets();
@@ -61,15 +62,16 @@ Packets choose_packets(Estimator estimator, uint rays_per_point, RayOrder order,
                                                                          : Packets::none;
 }
 
-/// Cuts a queue of neighbours into chunks, of which there are as many as it says. Not a question of
-/// how many threads there are: who travels together decides what is counted as visits.
+/// Cuts a queue of pixel rays into batches and returns their number. Independent of the number of
+/// threads, since batches decide how visits are counted.
 uint split_pixel_rays(OcclusionParams& params) {
   params.large_batches = params.ray_count / DAPPLE_PIXEL_RAY_BATCH * kLargeBatchQuarters / 4;
   const uint rest = params.ray_count - params.large_batches * DAPPLE_PIXEL_RAY_BATCH;
   return params.large_batches + ceil_div<uint>(rest, DAPPLE_SMALL_RAY_BATCH);
 }
 
-/// The same of points, and puts chunks together to pieces, of which it says the number.
+/// Cuts a queue of point rays into batches, combines batches into tickets, and returns the number
+/// of tickets.
 uint split_point_rays(bool on_cpu, OcclusionParams& params) {
   const uint chunks = ceil_div<uint>(params.rays_per_point, DAPPLE_POINT_RAY_BATCH);
   params.batches_per_ticket = on_cpu ? std::max(1u, kRaysPerTicket / params.rays_per_point) : 1u;

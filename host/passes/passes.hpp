@@ -8,13 +8,13 @@
 
 namespace dapple {
 
-/// What rays next to each other in a queue have in common.
+/// What consecutive rays of a queue have in common.
 enum class RayOrder {
-  any,       ///< nothing, but that rays_per_point in a row start from one point
-  by_pixel,  ///< they start near each other: CPUs trace them together
+  any,       ///< groups of rays_per_point rays share an origin
+  by_pixel,  ///< they start on neighbouring pixels: CPUs trace them in pixel packets
 };
 
-/// Rays of queries a launch, so that no launch runs long enough to trip a watchdog.
+/// Rays a launch of queries, so that no launch trips a driver's watchdog.
 inline constexpr std::size_t kQueryRays = 1u << 18;
 
 /// Queues for one slice; sized once, reused by every slice.
@@ -58,9 +58,9 @@ void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& p
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params);
 
-/// Transmittance of each ray in `rays` into `occlusions`. On CPUs rays of one point, where
-/// `params.rays_per_point` is large enough for that to pay, and neighbours are traced together; on
-/// other devices those of a point if the estimator is packet.
+/// Transmittance of each ray in `rays` into `occlusions`. On CPUs in point packets, where
+/// `params.rays_per_point` is large enough for that to pay, else in pixel packets; on other devices
+/// as single rays, unless the device was opened with other packets.
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order = RayOrder::any);
@@ -70,8 +70,8 @@ void occlusion_pass_with(Packets with, DeviceContext& context, const Queues& que
                          const DeviceBuffers& scene, const std::string& label, Estimator estimator,
                          const OcclusionParams& params);
 
-/// Whether so many AO rays of each point are best made, traced and averaged at once: on CPUs, where
-/// points have packets of their own, and one chunk holds a point's rays.
+/// Whether AO rays of points are generated, traced and averaged by one kernel without queues: on
+/// CPUs, with point packets, where one batch holds a point's rays.
 bool at_once(const DeviceContext& context, Estimator estimator, std::size_t rays_per_point);
 
 /// AO in [0,1] of the points in `points` into `occlusions`, where at_once() says so.
@@ -94,13 +94,13 @@ struct KernelShape {
   KernelName kernel;
   std::size_t group = 0;
 };
-/// All that any picture or query needs.
+/// Every kernel that any picture or query launches.
 std::vector<KernelShape> every_kernel(const DeviceContext& context);
 
 /// The packets of a picture's occlusion rays; `rays`: of each sample.
 Packets packets_in_picture(const DeviceContext& context, Estimator estimator, int rays);
 
-/// What a picture with these options, camera and lights needs.
+/// The kernels that a picture with these options, camera and lights launches.
 std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
                                         const Camera& camera, const std::vector<Light>& lights);
 

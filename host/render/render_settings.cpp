@@ -27,7 +27,7 @@ std::string camera_checksum(const Camera& camera) {
   return hex_text(stream.value());
 }
 
-/// What rays meet: with overridden opacities, ground and all.
+/// The scene as rays intersect it, with overridden opacities and ground.
 std::string scene_checksum(const SceneBvh& bvh, const DeviceBuffers& scene) {
   ChecksumStream stream;
   stream.add_range(bvh.nodes);

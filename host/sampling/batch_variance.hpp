@@ -34,7 +34,7 @@ inline float freedom_of(std::uint32_t batches) {
 }
 
 /// Of one batch's mean, by those of the pixel itself. With more than one batch alone, since samples
-/// came in pieces, it is rather too large.
+/// came in several rounds, it is rather too large.
 inline float batch_variance(const BatchMoments& of_pixel, std::uint32_t batches) {
   const auto count = static_cast<float>(batches);
   const float square = count * of_pixel.mean * of_pixel.mean;

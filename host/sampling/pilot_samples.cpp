@@ -10,17 +10,16 @@ namespace {
 /// Side of a square, and of the smallest cells, in pixels.
 constexpr int kSquare = 4, kSmallCell = 8, kCell = 12;
 
-/// Squares that are enough: of those of a plant that fills a fifth of the picture the mean variance
-/// is known to a tenth. In pictures of fewer a ninth of all pixels, or a quarter of small pictures,
-/// are pilot pixels: what these lack after that is traced in wide packets.
+/// Number of squares that is enough to know the mean variance (experiment 504). In pictures with
+/// fewer a ninth of all pixels, or a quarter in small pictures, are pilot pixels.
 constexpr int kEnough = 256;
 
-/// With fewer a picture's need is not known better than by a guess.
+/// With fewer squares there is no pilot.
 constexpr int kFewest = 64;
 
 int squares_of(int width, int height, int cell) { return (width / cell) * (height / cell); }
 
-/// The largest of 12, 16, 24, 32, 48... pixels of which there are enough.
+/// The largest cell of 12, 16, 24, 32, 48... pixels of which the picture has enough.
 int cell_side(int width, int height) {
   int cell = squares_of(width, height, kCell) >= kFewest ? kCell : kSmallCell;
   for (int next = 16; squares_of(width, height, next) >= kEnough;

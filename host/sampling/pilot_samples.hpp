@@ -1,4 +1,6 @@
-// Pixels that are sampled before all others, to tell how many samples a picture needs.
+// Pilot pixels: sampled before all others to estimate how many samples a picture needs (on the bias
+// of reusing such samples: Kirk and Arvo, "Unbiased Sampling Techniques for Image Synthesis",
+// 1991).
 #pragma once
 
 #include <vector>
@@ -10,9 +12,9 @@ enum class PilotPass {
   first_pass,  ///< a quarter of them: those of every other cell of every other row
 };
 
-/// For each pixel, row by row, whether it is one: squares of 4x4, whose packets are as narrow as in
-/// a whole picture, one in every cell of a grid but at another place in each. At least 64 squares
-/// and mostly some hundreds; empty where a picture has room for fewer.
+/// For each pixel, row by row, whether it is a pilot pixel. Pilot pixels are squares of 4x4, one at
+/// a random position in each cell of a grid: at least 64 squares, mostly some hundreds; empty for
+/// smaller pictures.
 std::vector<bool> pilot_pixels(int width, int height, PilotPass which = PilotPass::all);
 
 }  // namespace dapple

@@ -14,42 +14,39 @@
 namespace dapple {
 namespace {
 
-/// Side of the tiles in which work is listed: 64 neighbours see much the same of the scene.
+/// Side in pixels of the tiles in which work is listed: their 64 camera rays are coherent.
 constexpr int kTile = 8;
 
-/// Side of the blocks of pixels that are given the same samples, so that packets of few samples a
-/// pixel are narrow: forests take 3 to 14 % less time, others the same.
+/// Side in pixels of the blocks that get the same number of samples, so that packets of few samples
+/// a pixel stay coherent: experiment 507.
 constexpr int kBlock = 2;
 
-/// Times the samples that it has, a pixel may get more in a round. With 3 in its place pictures
-/// took 4 to 10 % more time to the same error (sapling, tree, forest): their rays lay farther
-/// apart.
+/// In a round a pixel gets at most so many times the samples that it has: experiment 508.
 constexpr std::uint32_t kMaxMore = 8;
 
-/// Batches that a pixel gets more at a time. Half of it fits each pixel's wants better, and takes 3
-/// to 10 % more time.
+/// A pixel gets more sample batches in multiples of this: experiment 509.
 constexpr std::uint32_t kUnit = 2;
 
-/// Part of the squared error asked for that is aimed at: estimates move as samples come, and a
-/// round for a few more takes as long as a tenth of the picture.
+/// Part of the target's squared error that allocations aim at, since estimates change as samples
+/// come: experiment 510.
 constexpr double kAim = 0.95;
 
 /// Part of the squared error asked for that one batch a pixel may leave, by the estimate of the
-/// pilot pixels: they know it to a tenth, and hardly more is known later.
+/// pilot pixels: experiment 511.
 constexpr double kAimOfOne = 0.8;
 
-/// The same by the estimate of the first pilot pass, which is known to a half.
+/// The same by the estimate of the first pilot pass: experiment 512.
 constexpr double kAimOfFirstPass = 0.25;
 
-/// Times the least that all pixels get at most after the pilot samples: of those that see nothing
-/// most samples are for nothing, and packets of more are hardly narrower.
+/// After the pilot all pixels get at most so many times the minimum, since pixels without a hit
+/// need none: experiment 513.
 constexpr std::uint32_t kMaxAfterPilot = 4;
 
-/// Groups that get all their samples at once; of more, what is small is better traced together.
+/// Up to so many groups get all of their samples at once; more groups are split into powers of two.
 constexpr std::size_t kMaxGroups = 4;
 
-/// Samples that in passes every pixel has before any has more, and times what it has that it then
-/// gets more.
+/// With SampleOrder::passes: samples of every pixel in the first pass, and the growth in each later
+/// one.
 constexpr std::uint32_t kFirst = 16, kPassGrowth = 3;
 
 std::uint32_t whole_batches(int samples) {
@@ -57,13 +54,12 @@ std::uint32_t whole_batches(int samples) {
          DAPPLE_SAMPLE_BATCH;
 }
 
-/// So many or more, of which the points of a sequence are best stratified: pictures of 6 and 12
-/// camera rays a pixel take up to 1.4 times as long as those of 8 and 16 for what they show.
+/// The next power of two, at which the sequence is stratified best: experiment 514.
 std::uint32_t well_stratified(double samples) {
   return std::bit_ceil(static_cast<std::uint32_t>(std::ceil(samples)));
 }
 
-/// `take` each pixel of a block.
+/// Calls `take` with each pixel of a block.
 template <class Take>
 void for_block(int left, int top, int width, int height, const Take& take) {
   for (int y = top; y < std::min(top + kBlock, height); ++y)
@@ -102,7 +98,7 @@ void visit_blocks(int width, std::size_t pixels, const Visit& visit) {
   });
 }
 
-/// Values of a block's pixels put together, `none` being those of no pixel.
+/// Joins the values of each block's pixels; `none` is the value of an empty block.
 template <class T, class Join>
 std::vector<T> by_block(const std::vector<T>& values, int width, T none, const Join& join) {
   const std::size_t columns = (width + kBlock - 1) / kBlock;
@@ -144,7 +140,7 @@ BatchCounts block_batches(const std::vector<std::uint32_t>& samples, int width) 
   return counts;
 }
 
-/// Different values but 0.
+/// Number of distinct values other than 0.
 std::size_t count_values(const std::vector<std::uint32_t>& values) {
   std::set<std::uint32_t> different;
   std::uint32_t last = 0;
@@ -155,7 +151,7 @@ std::size_t count_values(const std::vector<std::uint32_t>& values) {
   return different.size();
 }
 
-/// Of `pixels`, a block's in a row, the values put together block by block.
+/// Joins the values of `pixels` block by block; the pixels of a block are consecutive.
 template <class Join>
 std::vector<float> of_blocks_among(const std::vector<std::uint32_t>& pixels,
                                    const std::vector<float>& values, const Join& join) {
@@ -167,7 +163,7 @@ std::vector<float> of_blocks_among(const std::vector<std::uint32_t>& pixels,
   return joined;
 }
 
-/// As std::min_element(), of which compilers make no vectors.
+/// As std::min_element(), which compilers do not vectorize.
 std::uint32_t fewest(const std::vector<std::uint32_t>& values) {
   std::uint32_t least = values.front();
   for (const std::uint32_t value : values) least = std::min(least, value);

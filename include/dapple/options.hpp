@@ -62,7 +62,7 @@ struct RenderOptions {
   int footprint_ao_rays = 0;  ///< the same of AO rays a primary sample, [1, 4096]; 0: ao_rays
   int max_spp = 4096;         ///< with a target the most samples a pixel, [spp, 2^20]
   /// Samples that share a camera ray, 1, 2 or 4: each is shaded at a surface of its own, as what
-  /// the ray slips through is decided for each. More suit thin leaves and hair, which a ray crosses
+  /// the ray passes is decided for each. More suit thin leaves and hair, which a ray crosses
   /// many of; 0: by the scene's opacities. `spp` and `max_spp` count camera rays.
   int camera_splitting = 0;
   /// AO rays a primary sample, [1, 4096], at least one for each of its depths. Two reach an RMSE up
