@@ -1,4 +1,4 @@
-// What strands let through, by the definition in dapple/shared/segment_block.h and in double, for
+// Transmittance of strands, by the definition in dapple/shared/segment_block.h and in double, for
 // the segments of a part of a BVH: cut off where the part ends, they are no strands to Embree.
 #pragma once
 

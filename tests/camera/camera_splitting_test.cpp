@@ -1,5 +1,5 @@
 // Samples that share a camera ray: as many as suit the scene's opacities, of the same picture, with
-// less noise where a ray slips through much.
+// less noise where a ray crosses many thin surfaces.
 #include "camera/camera_splitting.hpp"
 
 #include <gtest/gtest.h>

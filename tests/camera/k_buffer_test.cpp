@@ -1,6 +1,6 @@
-// Which surface stops a ray that slips through others: the one at which what has been let through
-// falls to the ray's threshold, however many are in front of it, and of a pixel's samples the share
-// that opacities say.
+// Stochastic transparency: a ray stops at the surface where the product of transmittances falls to its
+// threshold, however many surfaces are in front, and surfaces stop the share of a pixel's samples that
+// their opacities say.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -91,7 +91,7 @@ std::vector<Triangle> triangle_soup(std::size_t count, float least) {
   return soup;
 }
 
-/// Rays slip through more of the second one's surfaces than there are layers.
+/// In the second one rays pass more surfaces than the k-buffer has entries.
 std::vector<Triangle> dense_soup() { return triangle_soup(1500, 0.1f); }
 std::vector<Triangle> thin_soup() { return triangle_soup(5000, 0.006f); }
 

@@ -102,7 +102,7 @@ TEST_F(CompilingProcessesCold, PicturesFindNothingLeftToCompile) {
   const std::string small = "--width 8 --height 8 ";
   for (const std::string& options :
        {small + "--passes ao,light", small + "--estimator exact --packets none",
-        small + "--estimator packet --ao-rays 32", std::string("--width 257 --height 256")}) {
+        small + "--packets point --ao-rays 32", std::string("--width 257 --height 256")}) {
     const Outcome run = with_cache("render scene:cube -o out.exr --spp 1 " + options);
     EXPECT_EQ(run.code, 0) << run.err;
     EXPECT_EQ(machine_code(), files) << options;

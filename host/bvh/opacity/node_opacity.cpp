@@ -156,7 +156,7 @@ float mass_concentration_of(float off_centre) {
 
 namespace {
 
-/// How much of what concentration takes from the mean opacity is given back: all in nodes of
+/// How much of what mass concentration takes from the mean opacity is given back: all in nodes of
 /// many triangles. Neighbouring small nodes hide the same rays more than independent ones would,
 /// and a little too much light in each sets their product right (measured on trees).
 float compensation(std::size_t triangles) {
@@ -226,7 +226,7 @@ class DirectionalOpacity {
 
   V3f faces_, axes_, depths_, correlation_;
   float clumping_, mass_concentration_;
-  float compensated_;  ///< the concentration that is made up for
+  float compensated_;  ///< the mass concentration that is compensated
 };
 
 }  // namespace

@@ -33,7 +33,7 @@ struct NodeOpacity {
   std::size_t triangles = 0;     ///< in the whole subtree; 0: many
 };
 
-/// The concentration that makes centre_weight() of dapple/shared/opacity.h fit: from the mean
+/// The mass concentration that makes centre_weight() of dapple/shared/opacity.h fit: from the mean
 /// squared distance of what hides from the centre of the box, seen along the axes, in half
 /// sizes. 2/3 and more, as of things that fill the box evenly or stay away from its middle: 0.
 float mass_concentration_of(float off_centre);

@@ -27,7 +27,7 @@ typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   uchar lower[3][8];
   uchar upper[3][8];
   uchar depth[3][8];       /* optical depth of child c's quantized box along each axis */
-  uchar leaf_end[8];       /* bits 0 to 5: where its primitives end; 6 and 7: concentration */
+  uchar leaf_end[8];       /* bits 0 to 5: where its primitives end; 6 and 7: mass concentration */
   schar correlation[3][8]; /* of its normals' components xy, yz, zx; codes: opacity.h, variance */
 } BvhNode;
 
