@@ -106,12 +106,11 @@ void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
   params.seen_below = pixel_at(seen.max.y + 2, view.height);
 }
 
-/// Of a camera sample's footprint, what a look-up in a texture averages: by itself, and as one of
+/// Part of a camera sample's footprint that one texture lookup averages: by itself, and as one of
 /// four filter taps.
 constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.35f;
 
-/// What the taps stand for together. Of cards an RMSE of 0.02 takes 0.8 (AO) and 0.5 (light) of the
-/// time of single look-ups, with the depths that they allow; with half of it, a fifth more.
+/// Part of a camera sample's footprint that the four filter taps cover together: experiment 402.
 constexpr float kTapShare = 1.5f;
 
 /// Of a pixel, however large footprints are.

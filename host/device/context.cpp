@@ -22,12 +22,12 @@ constexpr std::size_t kEventsHeld = 256;
 /// PoCL's threads to get one, though the first ones take many at once.
 constexpr std::size_t kGroupsTakingTickets = 32;
 
-/// Turns are counted modulo 2^32, from here on, so that every process soon comes to where they
-/// start again.
+/// Tickets are counted modulo 2^32. They begin here, so that every process soon reaches the
+/// overflow.
 constexpr cl_uint kFirstTicket = 0xfffff000u;
 
-/// What buffers are cleared with: PoCL stores one pattern after the other, and a film of a
-/// megapixel cleared byte by byte took as long as its rays.
+/// Buffers are cleared with this pattern: PoCL stores one pattern after the other, so a single byte
+/// would be slow (experiment 701).
 constexpr cl_ulong8 kZeros{};
 
 /// `bytes`, rounded up to whole patterns, at least one.

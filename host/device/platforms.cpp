@@ -31,10 +31,10 @@ std::string machine_for_hwloc() {
                      std::max(1u, std::thread::hardware_concurrency()));
 }
 
-/// "1" has each of PoCL's threads keep to a CPU of its own, by number. Left to the system, two that
-/// were woken together shared one CPU while the other stood idle, in one of ten to one of two
-/// launches of a millisecond. Empty where there would be fewer threads than CPUs, which other
-/// programs' threads may have to share, or where not all CPUs are ours.
+/// "1": each of PoCL's threads is bound to a CPU of its own, by number. Unbound threads that wake
+/// together often share one CPU while another is idle (experiment 704). Empty where there would be
+/// fewer threads than CPUs, which other programs' threads may have to share, or where not all CPUs
+/// are ours.
 std::string one_cpu_a_thread() {
   if (std::getenv("POCL_AFFINITY") || std::getenv("POCL_MAX_PTHREAD_COUNT")) return {};
   const std::vector<int> ours = cpus_of_process();

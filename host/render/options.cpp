@@ -101,9 +101,8 @@ std::string name_of(Packets packets) {
 namespace {
 
 /// Of one sample, as footprint_rmse(). Of sixteen samples the bias' RMSE over the pixels that see
-/// something is 0.004 to 0.010 (docs/accuracy.md), and it falls with the root of their number. Pictures have
-/// sky, too, which has none, and with footprints of half the samples take a tenth less time to the
-/// same noise.
+/// something is 0.004 to 0.010 (docs/accuracy.md), and it falls with the root of their number.
+/// Pictures have sky too, which has no bias (experiment 501).
 constexpr double kFootprintRmse = 0.057;
 
 /// The same of a pixel.

@@ -16,9 +16,8 @@
 namespace dapple {
 namespace {
 
-/// Rays in flight: on a CPU few enough for the queues to stay in its caches, and as many as that
-/// waiting for the last ray of a pass takes little (half as many: lights on sapling and cards took
-/// 1.03 times as long, AO as long; twice as many: 1.01); on a GPU enough to fill it.
+/// Rays in flight: on a CPU few enough for the queues to stay in its caches, and enough to hide the
+/// end of each pass (experiment 706); on a GPU enough to fill it.
 constexpr std::size_t kCpuSlice = 1u << 18;
 constexpr std::size_t kGpuSlice = 1u << 19;
 

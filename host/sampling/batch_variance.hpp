@@ -19,10 +19,9 @@ struct BatchMoments {
   float pair_squares = -1;  ///< of the pairs' means, batches alone counting half; below 0: unknown
 };
 
-/// Batches that the neighbourhood counts for. Small weights make samples depend on the pixel's own
-/// values, which biases it, and lose pixels whose first samples missed an edge: at 4 biases of
-/// whole pictures were twice as large as at 16, and a third more pixels off by more than four
-/// times their error. Larger ones take more samples.
+/// Weight of the neighbourhood's variance, in batches. Small weights make the number of samples
+/// depend on the pixel's own values, which biases it, and miss pixels whose first samples missed an
+/// edge; larger ones take more samples (experiment 502).
 inline constexpr float kNeighbourhoodWeight = 16.0f;
 
 /// Batches from which on pairs of them tell a variance.

@@ -57,10 +57,9 @@ std::vector<float> FilmMoments::light_variances(std::size_t light) const {
   return variances;
 }
 
-// The largest of noisy means is too large: in a tree of small leaves 1.4 times at 16 samples, where
-// it is 1.3 times with each less its standard error, which the irradiance with occlusion tells near
-// enough, but no less than what its neighbours have. (Of these means alone 0.85 times on a
-// sapling.) Of pilot pixels it is the largest mean: what they don't see is larger by about as much.
+// The largest of noisy means is biased upwards. So each mean counts less its standard error,
+// estimated from the occluded irradiance, but not less than the mean of its neighbours (experiment
+// 503). Of pilot pixels it is the largest mean, as the pixels in between may be brighter.
 double FilmMoments::largest_unoccluded(const LightPlaneRange& planes, double scale,
                                        const std::vector<float>& variances) const {
   const bool only_pilot = std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();

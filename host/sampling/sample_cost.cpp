@@ -8,8 +8,7 @@
 namespace dapple {
 namespace {
 
-/// Nanoseconds of two cores, from what renders of 100 thousand to 2 million triangles took whose
-/// pixels see mostly sky or mostly leaves.
+/// Nanoseconds of two cores: experiment 506.
 struct Price {
   double ray, visit, test;
 };

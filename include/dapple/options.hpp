@@ -61,12 +61,12 @@ struct RenderOptions {
   int footprint_spp = 0;
   int footprint_ao_rays = 0;  ///< the same of AO rays a primary sample, [1, 4096]; 0: ao_rays
   int max_spp = 4096;         ///< with a target the most samples a pixel, [spp, 2^20]
-  /// Samples that share a camera ray, 1, 2 or 4: each is shaded at a surface of its own, as what
-  /// the ray passes is decided for each. More suit thin leaves and hair, which a ray crosses
-  /// many of; 0: by the scene's opacities. `spp` and `max_spp` count camera rays.
+  /// Samples that share a camera ray, 1, 2 or 4: each is shaded at a surface of its own among those
+  /// that the ray crosses. More suit thin leaves and hair; 0: chosen by the scene's opacities.
+  /// `spp` and `max_spp` count camera rays.
   int camera_splitting = 0;
-  /// AO rays a primary sample, [1, 4096], at least one for each of its depths. Two reach an RMSE up
-  /// to 1.4 times sooner than one.
+  /// AO rays a primary sample, [1, 4096], at least one for each sample that shares a camera ray
+  /// (two: experiment 516).
   int ao_rays = 2;
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
   Estimator estimator = Estimator::prefiltered;

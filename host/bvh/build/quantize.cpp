@@ -13,8 +13,8 @@ double margin(float coordinate, double step) {
   return kGridMargin + kGridRounding * std::fabs(coordinate) / step;
 }
 
-/// Steps are 2^-100 at least: sides made of smaller ones may be denormal numbers, which kernels
-/// multiply slowly (AO in a forest on flat ground took 1.1 times as long).
+/// Steps are at least 2^-100: with smaller steps box sides may be denormal numbers, which kernels
+/// multiply slowly (experiment 101).
 constexpr int kMinPower = -100;
 
 /// The smallest power of two with which [lower, upper] and the margins on both sides fit 255 steps

@@ -16,8 +16,7 @@
 namespace dapple {
 namespace {
 
-/// From here on exact rays visit half as many nodes again as in a fresh tree and take about a third
-/// longer, in scattered leaves; prefiltered ones take no longer by far beyond.
+/// SAH cost over that of the last build from which on an object is built again: experiment 107.
 constexpr double kWorstCost = 1.5;
 
 /// What a mesh was when its object was made.

@@ -33,10 +33,8 @@ typedef struct OcclusionParams {
   uint batches_per_ticket;          /* of points: batches that one ticket stands for */
 } OcclusionParams;
 
-/* Samples of a pixel whose mean counts once in the sum of squares that errors come from: those of one
-   camera ray at least, or some would be more alike than others. Means of two in place of four, less
-   stratified than a pixel's samples are, made errors of AO 1.04 to 1.23 times what they were at 16
-   samples. */
+/* Samples of a sample batch: its mean counts once in the sum of squares that variances come from. At least
+   those of one camera ray, as these are correlated. Not two: experiment 517. */
 #define DAPPLE_SAMPLE_BATCH 4u
 
 /* A pixel of the crop (row-major) that is to be sampled, and how many samples it has. */
