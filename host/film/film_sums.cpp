@@ -174,7 +174,8 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
   s.light = {per_ray(visits, s.rays.light), per_ray(tests, s.rays.light)};
 }
 
-/// What a camera sample and the rays that it brings cost, a pixel's mean.
+/// Node visits and triangle tests of a camera sample and of its AO and light rays, means over a
+/// pixel.
 void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
                 const FilmLayout& layout, const RenderOptions& options) {
   const auto total = [&](std::uint32_t p, std::uint32_t which) {

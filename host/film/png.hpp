@@ -25,8 +25,8 @@ struct ByteImage {
   std::vector<std::uint8_t> bytes;
 };
 
-/// The tone that brings `layer` of `film` into range. Layers are named as in write_png;
-/// throws Error usage when there is no such layer.
+/// The exposure that maps `layer` of `film` into the displayed range. Layers are named as in
+/// write_png; throws Error usage when there is no such layer.
 Tone layer_tone(const Film& film, const std::string& layer);
 
 /// `layer` of a film without defects. Throws as layer_tone does.

@@ -1,5 +1,5 @@
-// Whether a device can run every kernel: each is compiled, by several processes at once where that
-// goes, none launched.
+// Checks whether a device can run every kernel: compiles each, in several processes where possible,
+// and launches none.
 #include <fmt/format.h>
 
 #include "dapple/error.hpp"

@@ -133,7 +133,7 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
     (together ? occlusion_at_once : occlusion_in_passes)(context, queues, *scene.buffers, options,
                                                          found);
     for (std::size_t i = 0; i < chosen.size(); ++i) ao[chosen[i]] = found[i];
-    queues.points = {};  // what it refers to goes
+    queues.points = {};  // `batch` ends here and with it the memory that the buffer refers to
   }
   context.finish();
   return ao;

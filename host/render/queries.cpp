@@ -47,7 +47,7 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              std::size_t rays_per_point) {
   check_points(rays, rays_per_point);
   DeviceContext& context = device.context();
-  // Points traced together share a light: where there are several, each ray goes alone.
+  // Rays of a point packet share a light; with several lights each ray is traced singly.
   const bool one_light = std::all_of(rays.begin(), rays.end(),
                                      [&](const Ray& ray) { return ray.light == rays[0].light; });
   if (!one_light) rays_per_point = 1;

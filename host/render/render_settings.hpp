@@ -1,14 +1,15 @@
-// What decides a picture's bits, as names and values: a checkpoint keeps them, and who goes on from
-// it must have the same. Samples a pixel and targets are not among them: they may grow.
+// The settings that decide a picture's bits, as names and values. A checkpoint stores them, and a
+// resumed render must have the same ones. Samples a pixel and targets are not among them, since
+// they may grow.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "camera/view.hpp"
 #include "dapple/bvh.hpp"
 #include "device/upload/scene_upload.hpp"
-#include "camera/view.hpp"
 
 namespace dapple {
 

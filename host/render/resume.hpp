@@ -1,5 +1,5 @@
-// Between a render and its checkpoints: from which one it goes on, which it writes, and what it
-// says of that.
+// Resuming and checkpointing a render. In: options and the state of an earlier run; out: the state
+// to continue from, checkpoints written on the way, notes for the user.
 #pragma once
 
 #include "render/checkpoint.hpp"

@@ -1,4 +1,5 @@
-// All that tracing a picture has come to between two slices: from here it goes on to the same bits.
+// The state of a render between two slices: sums, samples given out, position in the round. A
+// render that continues from it ends with the same bits as one that was never interrupted.
 #pragma once
 
 #include <cstdint>

@@ -59,7 +59,7 @@ struct DeviceScene {
 /// copied. Throws Error device when it cannot fit.
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh);
 
-/// Makes `bvh`, which `on_device` is of, that of `moved`, and brings over what changed: on devices
+/// Updates `bvh`, from which `on_device` was made, to `moved`, and uploads what changed: on devices
 /// that share the host's memory nothing but lights. Throws as UpdatableBvh::update() and upload().
 BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
                  const Scene& moved);

@@ -56,7 +56,7 @@ struct RenderOptions {
   /// Sample where time lowers the picture's error most, until the estimated root mean square of its
   /// pixels' errors is below this in every pass, [0, 1]; 0: don't. Not together with target_error.
   float target_rmse = 0;
-  /// Samples a pixel that footprints are made for, [1, 2^20]; 0: spp. A render that goes on from a
+  /// Samples a pixel that footprints are made for, [1, 2^20]; 0: spp. A render that resumes from a
   /// checkpoint keeps those of its beginning, so that more samples estimate the same picture.
   int footprint_spp = 0;
   int footprint_ao_rays = 0;  ///< the same of AO rays a primary sample, [1, 4096]; 0: ao_rays

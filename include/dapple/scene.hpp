@@ -114,7 +114,7 @@ struct Camera {
   float half_height = 1;  ///< orthographic: ymag, metres
 };
 
-/// Motion that a scene's file brings.
+/// Motion that a scene's file contains.
 struct Animation {
   std::string name;
   double seconds = 0;  ///< when its last keyframe is
