@@ -124,7 +124,7 @@ TEST(CameraSplitting, AreOfTheSamePictureWithLessNoise) {
   std::vector<double> errors;
   for (const int depths : {1, 2, 4}) {
     RenderOptions options = many;
-    options.camera_splitting = splitting;
+    options.camera_splitting = depths;
     options.spp = 16;
     const RenderResult result = render(tree(0.2f), options);
     for (const char* name : {"A", "ao.R", "light.key.G", "N.Y", "bent.Y"}) {
