@@ -22,7 +22,7 @@ struct Entry {
   std::size_t value;
 };
 
-/// In the order in which kernels/layout.cl reports.
+/// In the order in which tests/kernels/layout.cl reports.
 std::vector<Entry> host_layout() {
   std::vector<Entry> entries;
 #define DAPPLE_HOST_STRUCT(Type) entries.push_back({"sizeof " #Type, sizeof(Type)});
