@@ -1,5 +1,6 @@
-/* The small kernels between the traversal kernels: ray generation, compaction, resolve. They are one program,
-   since every program costs compile time (experiment 713). Domes, which few scenes have, are apart. */
+/* The small kernels between the traversal kernels: ray generation, compaction and resolve. They are one
+   program, since each program costs compile time: experiment 713. Kernels of dome lights are a program
+   of their own (lights/dome.cl), as few scenes need them. */
 #include "occlusion/ao.cl"
 #include "film/compact.cl"
 #include "film/film.cl"

@@ -1,4 +1,6 @@
-/* The occlusion pass: one ray an item, in queue order. Exact or prefiltered by variant. */
+/* The occlusion pass with single rays: each work-item traces one ray. In: the scene and the ray
+   queue. Out: the transmittance and the costs of each ray, in queue order. The variant of the
+   program (DAPPLE_PREFILTERED) decides between the exact and the prefiltered estimator. */
 #include "occlusion/traverse.clh"
 
 __kernel void occlusion(__global const BvhNode* nodes, __global const TriangleBlock* blocks,

@@ -1,10 +1,13 @@
-/* The occlusion pass for packets: rays that follow one another in the queue, those of one point or
-   of neighbours, go 64 at a time, with results as those of occlusion.cl. */
+/* The occlusion pass with ray packets: traces up to 64 rays together, either rays that share their
+   origin (point packets) or rays of neighbouring pixels (pixel packets). In: the scene and the ray
+   queue. Out: the transmittance of each ray in queue order, as occlusion.cl computes it. Work-items
+   take tickets (vectors/tickets.clh); a ticket is one or more ray batches. */
 #include "occlusion/packet.clh"
 #include "occlusion/packet_order.clh"
 #include "vectors/tickets.clh"
 
-/* A count shared over a packet's rays without remainder. */
+/* Divides `total` over the `count` rays of a packet so that the shares add up to the total and
+   differ by at most one. */
 typedef struct Shares {
   uint each, more, over, count;
 } Shares;
@@ -14,6 +17,7 @@ inline Shares make_shares(uint total, uint count) {
   return shares;
 }
 
+/* The share of the next ray, clamped to 65535. */
 inline uint next_share(Shares* shares) {
   shares->over += shares->more;
   const uint one = shares->over >= shares->count;
@@ -21,8 +25,8 @@ inline uint next_share(Shares* shares) {
   return min(shares->each + one, 65535u);
 }
 
-/* Rays queue[order[0]] to queue[order[count - 1]]. Node visits and triangle tests are counted once
-   and shared over them. */
+/* Traces rays queue[order[0]] to queue[order[count - 1]] as one packet. Node visits and triangle tests
+   are counted once for the packet and divided over its rays. */
 inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray* queue,
                          const ushort* order, uint count, __global Occlusion* results) {
   Packet packet;
@@ -40,7 +44,8 @@ inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray
   }
 }
 
-/* `count` rays from the first one on, at most DAPPLE_RAY_BATCH. */
+/* Sorts the batch of `count` rays at `rays`, at most DAPPLE_RAY_BATCH, and traces it packet by packet.
+   Rays with t_max <= 0 get transmittance 1. */
 inline void trace_batch(Scene scene, OcclusionParams params, __global const Ray* rays, uint count,
                         __global Occlusion* results) {
   ushort order[DAPPLE_RAY_BATCH];
@@ -54,8 +59,8 @@ inline void trace_batch(Scene scene, OcclusionParams params, __global const Ray*
 }
 
 #if DAPPLE_SHARED_ORIGIN
-/* Rays lie as points * rays_per_point. The rays of a point are cut into batches of about the same size; a
-   ticket stands for several batches in a row. */
+/* Point packets: the queue holds rays_per_point rays of each point in turn. The rays of a point are
+   split into batches of about the same size; a ticket is batches_per_ticket consecutive batches. */
 inline void trace_ticket(Scene scene, OcclusionParams params, uint ticket, __global const Ray* rays,
                         __global Occlusion* results) {
   const uint of_point = (params.rays_per_point + DAPPLE_RAY_BATCH - 1u) / DAPPLE_RAY_BATCH;
@@ -71,8 +76,8 @@ inline void trace_ticket(Scene scene, OcclusionParams params, uint ticket, __glo
   }
 }
 #else
-/* A ticket stands for one batch of rays of neighbouring pixels. The last batches are small, so that all
-   work-items end at about the same time. */
+/* Pixel packets: a ticket is one batch of rays of neighbouring pixels. Returns the index of its first
+   ray. The last batches are small, so that all work-items end at about the same time. */
 inline uint start_of_ticket(OcclusionParams params, uint ticket) {
   const uint large = min(ticket, params.large_batches);
   return min(large * DAPPLE_RAY_BATCH + (ticket - large) * DAPPLE_SMALL_RAY_BATCH, params.ray_count);

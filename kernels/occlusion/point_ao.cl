@@ -1,14 +1,16 @@
-/* AO of points with few rays: the work-item that takes a point makes its rays, traces them together and
-   adds them up, with no queue between. What a ray finds is what packet.cl finds. */
+/* Ambient occlusion at points with few rays, in one kernel: the work-item that takes a point generates
+   its rays, traces them as packets and averages them, without a queue between the passes. In: the
+   scene and the points. Out: the mean transmittance of each point. A ray has the same transmittance
+   as in packet.cl. */
 #include "occlusion/ao_rays.clh"
 #include "occlusion/packet.clh"
 #include "occlusion/packet_order.clh"
 #include "vectors/tickets.clh"
 
-/* Transmittances are added up in steps of 2^-40, exactly, so in any order. */
+/* Transmittances are added in units of 2^-40; the sum is exact, so it does not depend on the order. */
 #define DAPPLE_AO_STEPS 1099511627776.0f
 
-/* Of the packet's first rays. */
+/* Sum of the transmittances of the packet's first `count` rays, in units of 2^-40. */
 inline long sum_transmittances(const Packet* packet, uint count) {
   long8 sums = (long8)(0);
   for (uint i = 0; i < count; i += 8u) {
@@ -20,7 +22,7 @@ inline long sum_transmittances(const Packet* packet, uint count) {
   return four.x + four.y + four.z + four.w;
 }
 
-/* Of a point's rays, [0,1]. */
+/* Mean transmittance, [0,1], of the `count` rays of a point. */
 inline float mean_transmittance(Scene scene, OcclusionParams params, __global const Ray* rays,
                                 uint count) {
   ushort order[DAPPLE_RAY_BATCH];
@@ -35,6 +37,7 @@ inline float mean_transmittance(Scene scene, OcclusionParams params, __global co
   return (float)sum / (DAPPLE_AO_STEPS * (float)count);
 }
 
+/* Generates all params.rays rays of the point. */
 inline void make_rays_of(__global const SurfacePoint* point, AoParams params,
                          __global Ray* rays) {
   for (uint first = 0; first < params.rays; first += DAPPLE_RAY_LANES) {
@@ -44,8 +47,8 @@ inline void make_rays_of(__global const SurfacePoint* point, AoParams params,
   }
 }
 
-/* `scratch` holds a point's rays for each work-group, of one item; `params.batches_per_ticket` points are
-   a piece. */
+/* A work-group is one item; `scratch` has room for the rays of one point for each work-group. A ticket
+   is params.batches_per_ticket points. */
 __kernel void point_ao(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                        __global const SegmentBlock* segments,
                        __global const TexturedTriangle* textured,
