@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "dapple/error.hpp"
+#include "passes/camera_pass.hpp"
+#include "passes/occlusion_pass.hpp"
 #include "sampling/sample_plan.hpp"
 
 namespace dapple::bench {

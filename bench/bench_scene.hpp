@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "camera/view.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/device.hpp"
 #include "dapple/shared/pass_params.h"
-#include "passes/passes.hpp"
-#include "camera/view.hpp"
+#include "device/upload/scene_upload.hpp"
+#include "passes/queues.hpp"
 
 namespace dapple::bench {
 

@@ -51,15 +51,8 @@ void measure_prefilter(benchmark::State& state, const Scene& scene) {
 
 template <class Measure>
 void add(const std::string& kind, BenchScene& scene, const Measure& measure) {
-  const std::string name = kind + "/" + scene.name();
-  benchmark::RegisterBenchmark(
-      name.c_str(), [&scene, measure](benchmark::State& state) { measure(state, scene.scene()); })
-      ->UseManualTime()
-      ->MeasureProcessCPUTime()
-      ->Unit(benchmark::kMillisecond)
-      ->Iterations(1)
-      ->Repetitions(kRepetitions)
-      ->DisplayAggregatesOnly();
+  register_measured(kind + "/" + scene.name(), kRepetitions,
+                    [&scene, measure](benchmark::State& state) { measure(state, scene.scene()); });
 }
 
 }  // namespace

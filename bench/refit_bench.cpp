@@ -49,13 +49,8 @@ void register_refitting() {
        {std::pair("40k", 16200), std::pair("200k", 96200), std::pair("1M", 496200),
         std::pair("2M", 996200), std::pair("4M", 1996200)}) {
     const std::string spec = "scene:tree?leaves=" + std::to_string(leaves);
-    benchmark::RegisterBenchmark((std::string("Refit/tree-") + name).c_str(),
-                                 [spec](benchmark::State& state) { measure_refit(state, spec); })
-        ->UseManualTime()
-        ->Unit(benchmark::kMillisecond)
-        ->Iterations(1)
-        ->Repetitions(kRepetitions)
-        ->DisplayAggregatesOnly();
+    register_measured(std::string("Refit/tree-") + name, kRepetitions,
+                      [spec](benchmark::State& state) { measure_refit(state, spec); });
   }
 }
 

@@ -4,6 +4,9 @@
 
 #include "benchmarks.hpp"
 #include "device/context.hpp"
+#include "passes/camera_pass.hpp"
+#include "passes/light_pass.hpp"
+#include "passes/occlusion_pass.hpp"
 
 namespace dapple::bench {
 namespace {
@@ -106,36 +109,26 @@ void measure_dome_rays(benchmark::State& state, BenchScene& scene) {
       benchmark::Counter::kIsRate);
 }
 
-template <class Measure>
-void add(const std::string& name, const Measure& measure) {
-  benchmark::RegisterBenchmark(name.c_str(), measure)
-      ->UseManualTime()
-      ->MeasureProcessCPUTime()
-      ->Unit(benchmark::kMillisecond)
-      ->Iterations(1)
-      ->Repetitions(kRepetitions)
-      ->DisplayAggregatesOnly();
-}
-
 }  // namespace
 
 void register_tracing(BenchScene& scene) {
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     const auto add_occlusion = [&](const std::string& kind, uint rays_per_point, RayOrder order) {
-      add(kind + "/" + name_of(estimator) + "/" + scene.name(),
-          [&scene, estimator, rays_per_point, order](benchmark::State& state) {
-            measure_occlusion(state, scene, estimator, rays_per_point, order);
-          });
+      register_measured(kind + "/" + name_of(estimator) + "/" + scene.name(), kRepetitions,
+                        [&scene, estimator, rays_per_point, order](benchmark::State& state) {
+                          measure_occlusion(state, scene, estimator, rays_per_point, order);
+                        });
     };
     add_occlusion("Occlusion", 1, RayOrder::any);
     add_occlusion("OcclusionTogether", 1, RayOrder::by_pixel);
     add_occlusion("OcclusionOfPoints", kRaysPerPoint, RayOrder::any);
   }
   // Before camera passes, which find other points.
-  add("DomeRays/" + scene.name(),
-      [&scene](benchmark::State& state) { measure_dome_rays(state, scene); });
+  register_measured("DomeRays/" + scene.name(), kRepetitions,
+                    [&scene](benchmark::State& state) { measure_dome_rays(state, scene); });
   for (const uint samples : {1u, 16u}) {
-    add("Camera/" + std::to_string(samples) + "/" + scene.name(),
+    register_measured(
+        "Camera/" + std::to_string(samples) + "/" + scene.name(), kRepetitions,
         [&scene, samples](benchmark::State& state) { measure_camera(state, scene, samples); });
   }
 }

@@ -12,8 +12,8 @@
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
 #include "dapple/error.hpp"
-#include "device/programs/compiler_processes.hpp"
 #include "device/driver_crash.hpp"
+#include "device/programs/compiler_processes.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
-// The rooms of the source tree: which folder may include which other folder, and which folders may
-// include a third-party library. In: every source file; out: one failure for each include that
-// breaks a rule, with file and line. docs/design.md draws the same picture.
+// The rooms (folders) of the source tree: which room may include which other room, and which
+// folders may include a third-party library. In: every source file; out: one failure for each
+// include that breaks a rule, with file and line. docs/design.md shows the same order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rooms in the order of the data: a room includes itself and rooms before it.
+/// Rooms in the order in which data passes through them: a room may include itself and earlier
+/// rooms.
 const std::vector<std::string> kHostRooms{"files",  "scene",   "bvh",      "device",
                                           "camera", "film",    "sampling", "passes",
                                           "render", "compare", "commands"};
@@ -27,7 +28,7 @@ const std::vector<std::string> kKernelRooms{"vectors",   "sampling", "geometry",
 struct Library {
   std::string name;
   std::regex header;
-  std::vector<std::string> allowed;  ///< beginnings of paths
+  std::vector<std::string> allowed;  ///< path prefixes
 };
 
 const std::vector<Library> kLibraries{
@@ -48,7 +49,7 @@ const std::vector<Library> kLibraries{
 struct Include {
   std::string file;  ///< path below the source folder
   int line;          ///< counted from 1
-  std::string name;  ///< what stands between the quotes or brackets
+  std::string name;  ///< the text between the quotes or brackets
   [[nodiscard]] std::string place() const { return file + ":" + std::to_string(line); }
 };
 
@@ -78,7 +79,7 @@ std::vector<Include> includes_below(const std::string& folder) {
   return found;
 }
 
-/// "b" of "a/b/c.hpp" for n = 1; empty where there is no such folder.
+/// The n-th folder of a path, counted from 0: "b" of "a/b/c.hpp" for n = 1. Empty if there is none.
 std::string folder_at(const std::string& path, int n) {
   std::size_t begin = 0, end = path.find('/');
   for (; n > 0 && end != std::string::npos; --n) {

@@ -7,7 +7,7 @@
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "device/context.hpp"
-#include "passes/passes.hpp"
+#include "passes/kernel_list.hpp"
 #include "render/picture.hpp"
 
 namespace dapple::bench {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "dapple/wavefront.hpp"
 #include "camera/view.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple::bench {
 

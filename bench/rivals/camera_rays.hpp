@@ -1,8 +1,8 @@
 // Camera rays for Embree, from the very view that dapple renders.
 #pragma once
 
-#include "rivals/ray_batch.hpp"
 #include "camera/view.hpp"
+#include "rivals/ray_batch.hpp"
 
 namespace dapple::bench {
 

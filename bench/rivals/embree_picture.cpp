@@ -17,8 +17,8 @@
 namespace dapple::bench {
 namespace {
 
-/// Roundings of the largest coordinate by which rays start off surfaces; kernels/camera/closest_hit.cl
-/// takes 16 of a sum that is little larger.
+/// Roundings of the largest coordinate by which rays start off surfaces;
+/// kernels/camera/closest_hit.cl takes 16 of a sum that is little larger.
 constexpr float kRoundings = 16;
 
 /// Camera samples, or those of them that met something.

@@ -1,5 +1,5 @@
-// Shadow rays to a light for the Embree side: the same densities as kernels/lights/light.cl, so that the
-// noise is the same.
+// Shadow rays to a light for the Embree side: the same densities as kernels/lights/light.cl, so
+// that the noise is the same.
 #pragma once
 
 #include "dapple/scene.hpp"

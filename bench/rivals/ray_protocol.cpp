@@ -13,7 +13,8 @@
 
 #include "accuracy/pixel_statistics.hpp"
 #include "device/context.hpp"
-#include "passes/passes.hpp"
+#include "passes/occlusion_pass.hpp"
+#include "passes/queues.hpp"
 #include "rivals/stratified.hpp"
 
 namespace dapple::bench {

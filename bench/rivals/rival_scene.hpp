@@ -2,9 +2,9 @@
 #pragma once
 
 #include "accuracy/picture_scene.hpp"
+#include "camera/view.hpp"
 #include "rivals/ao_points.hpp"
 #include "rivals/embree_picture.hpp"
-#include "camera/view.hpp"
 
 namespace dapple::bench {
 

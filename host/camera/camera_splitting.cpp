@@ -11,17 +11,19 @@
 namespace dapple {
 namespace {
 
-/// Opacities up to which that part of all surfaces must be for so many samples a camera ray
-/// (experiment 401).
-/// What textures average comes in all opacities, and four suit it from where two do.
+/// Four samples share a camera ray when more than kPartOfFour of all surfaces have at most the
+/// opacity kOpacityOfFour; two when more than kPartOfTwo have at most kOpacityOfTwo (experiment
+/// 401). For averages of several texels kOpacityOfTwo is the limit of both, as averages take all
+/// values.
 constexpr float kOpacityOfFour = 0.3f, kOpacityOfTwo = 0.85f;
 constexpr double kPartOfFour = 0.25, kPartOfTwo = 0.1;
 
-/// Squares of a texture that are looked at, and texels of each, along each axis.
+/// About how many mip footprints of a texture are examined along each axis, and at most how many
+/// texels of each footprint.
 constexpr int kSquares = 64, kTexels = 4;
 
-/// Samples a pixel for which textures are averaged here, whatever the picture's: with more samples
-/// a picture must keep its splitting factor, for renders that are resumed.
+/// Textures are averaged here for this number of samples a pixel, not for the picture's own: a
+/// render that is resumed with more samples must keep its splitting factor.
 constexpr int kSamples = 16;
 
 float mean_vertex_alpha(const Mesh& mesh) {
@@ -30,7 +32,8 @@ float mean_vertex_alpha(const Mesh& mesh) {
          static_cast<float>(mesh.vertex_alpha.size());
 }
 
-/// Of surfaces that stop anything: all, and those that two and four samples suit.
+/// Numbers of surfaces with an opacity above 0: all of them, and those that suit two and four
+/// samples a camera ray.
 struct Counts {
   double all = 0, for_two = 0, for_four = 0;
 
@@ -41,18 +44,19 @@ struct Counts {
   }
 };
 
-/// Of one surface of that opacity, where four samples suit opacities up to `of_four`.
+/// Counts one surface of that opacity. Four samples suit opacities up to `of_four`.
 Counts count_opacity(float opacity, float of_four) {
   if (opacity <= 0) return {};
   return {1, opacity <= kOpacityOfTwo ? 1.0 : 0.0, opacity <= of_four ? 1.0 : 0.0};
 }
 
-/// What of a material decides an alpha's opacity.
+/// A material's factor of alpha, and its cutoff, below 0 for none: arguments of thresholded().
 struct Factors {
   float factor, cutoff;
 };
 
-/// The mean opacity of the square of texels from (x, y) on.
+/// The mean opacity of the mip footprint of `side` x `side` texels from (x, y) on, from at most
+/// kTexels x kTexels of them.
 float square_opacity(const Texture& texture, Factors factors, std::uint32_t x, std::uint32_t y,
                      std::uint32_t side) {
   const std::uint32_t width = std::min(side, texture.width - x);
@@ -71,7 +75,7 @@ float square_opacity(const Texture& texture, Factors factors, std::uint32_t x, s
   return sum / static_cast<float>(rows * columns);
 }
 
-/// One surface, all squares of its texture together.
+/// Counts one surface: the mean over its texture's mip footprints with an opacity above 0.
 Counts count_squares(const Texture& texture, Factors factors, std::uint32_t side) {
   const std::uint32_t across = side * std::max(1u, texture.width / side / kSquares);
   const std::uint32_t down = side * std::max(1u, texture.height / side / kSquares);
@@ -89,8 +93,8 @@ Counts count_squares(const Texture& texture, Factors factors, std::uint32_t side
 struct Part {
   const Material* material = nullptr;
   double triangles = 0;
-  float texel_size = 0;            ///< object space, of the first triangle that has one
-  std::map<int, Counts> counts{};  ///< of one of them, by the level at which it is seen
+  float texel_size = 0;            ///< object space, of the first triangle that has a texel size
+  std::map<int, Counts> counts{};  ///< of one triangle, by mip level
 };
 
 using Parts = std::map<std::uint32_t, Part>;  ///< by material
@@ -100,7 +104,7 @@ Parts parts_by_material(const Scene& scene, const Mesh& mesh) {
   Part* part = nullptr;
   bool textured = false;
   for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
-    // Most triangles have the material of the one before.
+    // Most triangles have the same material as the triangle before.
     if (i == 0 || mesh.materials[i] != mesh.materials[i - 1]) {
       part = &parts[mesh.materials[i]];
       part->material = &scene.materials[mesh.materials[i]];
@@ -123,7 +127,7 @@ Counts count_part(const Scene& scene, const Mesh& mesh, const Part& part, int le
   return count_squares(scene.textures[material.alpha_texture], factors, 1u << level);
 }
 
-/// The level whose squares are as large as what a camera ray averages of the part's texture.
+/// The mip level whose texels are as wide as the area that a camera ray averages of the texture.
 int seen_level(const Part& part, const Instance& instance, const Mesh& mesh, const View& view,
                float spread) {
   if (part.texel_size == 0 || spread == 0) return 0;
@@ -150,7 +154,7 @@ Counts count_surfaces(const Scene& scene, const View& view, float spread) {
   return counts;
 }
 
-/// Samples of a pixel that it may have, whatever of them share a camera ray.
+/// Maximum number of samples a pixel, whether they share camera rays or not: kMaxRaysOfPixel.
 double max_samples(const RenderOptions& options) {
   return double{kMaxRaysOfPixel} / std::max(options.ao_rays, options.light_rays);
 }

@@ -47,7 +47,8 @@ Camera choose_camera(const Scene& scene, const RenderOptions& options,
                                  : frame_scene(scene, aspect);
 }
 
-/// Half width and half height of the image plane: at distance 1, or in metres.
+/// Half width and half height of the image plane: of perspective cameras at distance 1, of
+/// orthographic ones in metres.
 V2f half_extent(const View& view) {
   const float aspect = static_cast<float>(view.width) / static_cast<float>(view.height);
   const bool orthographic = view.camera.kind == Camera::Kind::orthographic;
@@ -55,11 +56,12 @@ V2f half_extent(const View& view) {
   return {half * aspect, half};
 }
 
-/// Relative to the largest coordinate: what rounding may move a surface by, and more.
+/// Margin around the scene's bounds, relative to the largest coordinate: more than the distance by
+/// which rounding can move a surface.
 constexpr double kBoundsMargin = 1e-5;
 
-/// Where the corners of the scene's bounds are in the picture, in pixels from its top left;
-/// infinite where one is not before the camera.
+/// The rectangle of the picture that contains the projected corners of the scene's bounds, in
+/// pixels from the top left. Infinite when a corner is not in front of the camera.
 Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
   Imath::Box2d everywhere(Imath::V2d(-std::numeric_limits<double>::infinity()),
                           Imath::V2d(std::numeric_limits<double>::infinity()));
@@ -92,12 +94,12 @@ Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
   return seen;
 }
 
-/// The pixel that `at` is in, of `count`; `count` itself if it is beyond them.
+/// The pixel that contains the coordinate `at`, clamped to [0, count].
 uint pixel_at(double at, int count) {
   return static_cast<uint>(std::clamp(at, 0.0, static_cast<double>(count)));
 }
 
-/// A pixel more on each side than the scene's bounds.
+/// Sets the pixels in which the scene may be: picture_bounds() and one more pixel on each side.
 void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
   const Imath::Box2d seen = picture_bounds(view, bounds);
   params.seen_left = pixel_at(seen.min.x - 1, view.width);
@@ -106,28 +108,30 @@ void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
   params.seen_below = pixel_at(seen.max.y + 2, view.height);
 }
 
-/// Part of a camera sample's footprint that one texture lookup averages: by itself, and as one of
-/// four filter taps.
+/// Part of a camera sample's footprint that one texture lookup averages: without filter taps, and
+/// as one of four filter taps.
 constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.35f;
 
 /// Part of a camera sample's footprint that the four filter taps cover together: experiment 402.
 constexpr float kTapShare = 1.5f;
 
-/// Of a pixel, however large footprints are.
+/// With filter taps, the maximum part of a pixel's area that one lookup averages, and that the four
+/// taps cover together, however large footprints are.
 constexpr float kMaxTexelShare = 0.25f, kMaxTapShare = 0.75f;
 
-/// Variances, in each axis and those of places all over a square of area 1: of taps in the middle
-/// of its quarters, and of bilinear look-ups among squares of texels that are no larger than it (a
-/// power of two, so 0.54 of it in the mean).
+/// Variances along one axis, relative to the variance of uniform points in a square of area 1: of
+/// four taps in the middle of its quarters, and of a bilinear lookup in the mip level whose texels
+/// are no larger than it. (Texel widths are powers of two, so the texel's area has a mean of 0.54.)
 constexpr float kTapVariance = 0.75f, kTexelVariance = 1.6f;
 
-/// Of footprint_rmse(), the part by which the opacity of one medium's box may deviate in a pixel.
-/// There may be some behind each other; but AO differs by a part of that only, for the inside of a
+/// Part of footprint_rmse() by which the opacity of one medium's box may deviate in a pixel. A ray
+/// may cross several such boxes; but AO deviates by only a part of it, because the inside of a
 /// medium is hardly occluded.
 constexpr float kMediumError = 0.5f;
 
-/// Without a target pictures are as good as rays make them. Errors of lights are relative to the
-/// largest irradiance, which media have little of.
+/// CameraParams::medium_error. It is 0, which means no media, in exact mode; without a target,
+/// since no tolerance is given then; and with lights, whose errors are relative to the largest
+/// irradiance, of which media receive little.
 float medium_error(const RenderOptions& options) {
   const bool exact = options.estimator == Estimator::exact || options.footprint == 0;
   if (exact || options.light || !is_adaptive(options)) return 0;
@@ -203,7 +207,8 @@ M44f world_to_exr_camera(const Camera& camera) {
 
 M44f world_to_ndc(const View& view) {
   const V2f half = half_extent(view);
-  // Image plane to [0,1], y down; homogeneous, so the halves ride on w.
+  // Maps the image plane to [0,1], y down. Coordinates are homogeneous, so the offsets of 0.5 are
+  // multiplied by w.
   M44f projection;
   projection[0][0] = 0.5f / half.x;
   projection[1][1] = -0.5f / half.y;

@@ -1,4 +1,5 @@
-// From which camera, and through which pixels.
+// The view of a picture: a camera and the pixels to render. In: scene and options. Out: the view,
+// parameters of the camera kernel, matrices for EXR.
 #pragma once
 
 #include <string>
@@ -19,24 +20,28 @@ struct View {
   }
 };
 
-/// The camera that `options` ask for; adds to `notes` when one had to be made up. Throws
-/// Error usage when a named camera is not in the scene, listing those that are.
+/// The view that `options` describe. If `options` choose no camera and the scene does not have
+/// exactly one, adds to `notes` which camera was taken. Throws Error usage when a named camera is
+/// not in the scene, listing those that are.
 View choose_view(const Scene& scene, const RenderOptions& options, std::vector<std::string>& notes);
 
-/// What the camera kernel needs, but for the slice and the scene; `bounds` are the scene's.
+/// The camera kernel's parameters without `slice` and `scene`; `bounds` are the scene's, world
+/// space.
 CameraParams camera_params(const View& view, const RenderOptions& options, const Box3f& bounds);
 
-/// How a camera ray averages textures, as CameraParams has it; zeros: not at all.
+/// How a camera ray averages textures; the fields are those of CameraParams. Zeros: it does not.
 struct TexelFootprint {
   float share = 0, tap_offset = 0, tap_centring = 0;
-  float spread = 0;  ///< of a pixel's area, a square over which places spread as far
+  /// Area, in pixels, of the square in which uniform points have the variance of the lookups.
+  float spread = 0;
 };
 
-/// Where footprints are made for `spp` samples a pixel. With one depth there are no taps: opacities
-/// between 0 and 1 take thresholds, of which there are too few then, and edges would be noisier.
+/// For footprints of `spp` samples a pixel. Without camera splitting there are no filter taps: they
+/// make opacities between 0 and 1, which need several thresholds a ray, and with only one the edges
+/// of leaves would be noisier.
 TexelFootprint texel_footprint(const RenderOptions& options, int spp);
 
-/// In metres, of a pixel at a place.
+/// Width of a pixel at the distance of `at`, a point in world space; metres.
 float pixel_width(const View& view, const V3f& at);
 
 /// World to EXR's camera space: left-handed, x right, y up, +Z forward; row vectors.

@@ -4,7 +4,7 @@
 #include "commands/command.hpp"
 #include "commands/statistics_text.hpp"
 #include "dapple/error.hpp"
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple {
 namespace {

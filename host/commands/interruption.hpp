@@ -2,7 +2,7 @@
 // other ends at once. The process's signal handlers are set here and nowhere else.
 #pragma once
 
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple {
 

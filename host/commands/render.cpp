@@ -1,4 +1,6 @@
 // dapple render: the pipeline from a scene to files, top to bottom, for each frame.
+#include "dapple/render.hpp"
+
 #include <fmt/format.h>
 
 #include <chrono>
@@ -16,7 +18,6 @@
 #include "commands/shot.hpp"
 #include "commands/statistics_text.hpp"
 #include "dapple/error.hpp"
-#include "dapple/wavefront.hpp"
 #include "files/output_file.hpp"
 #include "film/exr_output.hpp"
 

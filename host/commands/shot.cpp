@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include "scene/ground.hpp"
 #include "camera/view.hpp"
+#include "scene/ground.hpp"
 
 namespace dapple {
 namespace {

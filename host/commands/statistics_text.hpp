@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple {
 

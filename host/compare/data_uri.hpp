@@ -1,4 +1,5 @@
-// Bytes as text that an HTML page can hold.
+// Encodes bytes and text for HTML pages. In: bytes, or any text. Out: base64, data URIs, or text
+// with entities.
 #pragma once
 
 #include <string>
@@ -6,13 +7,13 @@
 
 namespace dapple {
 
-/// RFC 4648, section 4, with padding.
+/// The base64 encoding of RFC 4648, section 4, with padding.
 std::string base64(std::string_view bytes);
 
 /// "data:image/png;base64,..." of a PNG file's bytes.
 std::string png_data_uri(std::string_view png);
 
-/// `text` with the characters that mean something in HTML, inside quotes or out, as entities.
+/// `text` with the characters that have a meaning in HTML, also inside quotes, as entities.
 std::string escape_html(std::string_view text);
 
 }  // namespace dapple

@@ -23,7 +23,8 @@ struct Worst {
   std::size_t pixel = 0;
 };
 
-/// One pass over a layer's values; doubles, since a float sum of a million pixels drifts.
+/// Adds up a layer's values in one pass. Sums are doubles, since the rounding errors of floats add
+/// up over a million pixels.
 class Measurement {
  public:
   explicit Measurement(const LayerPair& layer) : squared_(layer.a.front()->pixels.size()) {
@@ -91,7 +92,8 @@ std::string window_text(const Film& film) {
                      w.x0, w.y0, film.width, film.height);
 }
 
-// Distances and sample counts are not shades: how far apart they may be is another question.
+// Distances, positions and sample counts are not in [0,1] like shades, so --max-rmse does not suit
+// them.
 bool is_exempt(const std::string& layer) {
   return layer == "Z" || layer == "P" || layer == "samples";
 }

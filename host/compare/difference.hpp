@@ -1,5 +1,5 @@
-// How far two films are apart, layer by layer. In: the layers that both have. Out: figures
-// of each, and whether they are within what was allowed.
+// Measures the differences of two films, layer by layer. In: the layers that both films have. Out:
+// figures for each layer, and whether they are within the given limit.
 #pragma once
 
 #include <cstddef>
@@ -19,19 +19,19 @@ inline constexpr double kRelativeEpsilon = 0.01;
 /// Positions are pixels of the display window, as `render --crop` takes them.
 struct LayerDifference {
   std::string layer;
-  std::size_t values = 0;  ///< that the figures are over
+  std::size_t values = 0;  ///< number of values that the figures include
   double mean_a = 0.0;
   double mean_b = 0.0;
   double mean_difference = 0.0;  ///< of a - b
   double rmse = 0.0;
   double relative_mse = 0.0;              ///< mean of (a - b)^2 / (b^2 + kRelativeEpsilon)
   double largest_b = 0.0;                 ///< the largest finite value in B
-  std::optional<double> rmse_of_largest;  ///< rmse / largest_b; lights alone, if B is not black
+  std::optional<double> rmse_of_largest;  ///< rmse / largest_b; only for lights, B not black
   double max_difference = 0.0;            ///< of |a - b|
   std::string max_channel;
   int max_x = 0;
   int max_y = 0;
-  PixelRect window;                     ///< the window of kWindowSide that differs most
+  PixelRect window;                     ///< see find_worst_window()
   double window_rmse = 0.0;             ///< values that are not finite count as equal here
   std::size_t infinity_mismatches = 0;  ///< values infinite in one film, not the same in the other
   std::size_t nans = 0;                 ///< values that are NaN in either film
@@ -49,12 +49,12 @@ struct Comparison {
 void require_same_windows(const Film& a, const Film& b, const std::string& name_a,
                           const std::string& name_b);
 
-/// `layer` is from match_layers of films whose data window is `data_window`.
+/// The figures of `layer`, which match_layers() made of two films with this data window.
 LayerDifference measure(const LayerPair& layer, const PixelRect& data_window);
 
-/// What keeps `comparison` from passing, in words; empty when it passes. NaN never passes.
-/// Under a `max_rmse`, neither does a larger RMSE, nor infinity against anything else; Z, P
-/// and samples are exempt from that, unless there are no other layers.
+/// Why `comparison` fails, in words; empty when it passes. It fails if a layer has NaN. With a
+/// `max_rmse` it also fails if a layer has a larger RMSE, or an infinity where the other film has
+/// another value. Z, P and samples are exempt from `max_rmse`, unless there are no other layers.
 std::string failure(const Comparison& comparison, std::optional<double> max_rmse);
 
 }  // namespace dapple

@@ -44,7 +44,8 @@ constexpr FigureColumn kColumns[] = {
 };
 static_assert(kRelativeEpsilon == 0.01 && kWindowSide == 32, "the meanings above say so");
 
-// One column's lines, heading first, padded to one width; the first column to the left.
+// One column's lines, heading first, padded to one width. The first column is aligned left, all
+// others right.
 std::vector<std::string> padded(const FigureColumn& column, const Comparison& comparison) {
   std::vector<std::string> lines{column.heading};
   for (const LayerDifference& layer : comparison.layers) lines.push_back(column.cell(layer));

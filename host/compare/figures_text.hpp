@@ -1,5 +1,5 @@
-// The figures of a comparison as people and as programs read them. Text and HTML show the
-// same columns; one table says what they are.
+// The figures of a comparison as a table of text and as JSON. In: a Comparison. Out: text for
+// people, JSON for programs, and the columns, which the HTML page shows as well.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,14 +17,14 @@ struct FigureColumn {
   bool always;  ///< shown even where every cell is kAbsent
 };
 
-/// A figure that does not apply, or a count of zero.
+/// The text of a figure that does not apply, and of a count of zero.
 inline constexpr const char* kAbsent = "-";
 
-/// The layer's name first.
+/// All columns; the first is the layer's name.
 std::span<const FigureColumn> figure_columns();
 
 std::string comparison_text(const Comparison& comparison);
-/// Names may not be UTF-8: dump it with `error_handler_t::replace`.
+/// Names need not be valid UTF-8, so the caller must dump it with `error_handler_t::replace`.
 nlohmann::ordered_json comparison_json(const Comparison& comparison, const std::string& failure);
 
 }  // namespace dapple

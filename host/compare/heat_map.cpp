@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-// kNoNumber stays: std::max(NaN, x) is NaN, and is asked in that order.
+// A kNoNumber in `so_far` stays, since std::max(NaN, x) is NaN in this order of arguments.
 double larger_difference(double so_far, float a, float b) {
   if (a == b) return so_far;  // infinities included
   if (!std::isfinite(a) || !std::isfinite(b)) return kNoNumber;

@@ -23,7 +23,8 @@ const Plane* find(const std::vector<const Plane*>& planes, const std::string& ch
   return found == planes.end() ? nullptr : *found;
 }
 
-// Names that `all` has and `other` lacks: the layer's when no channel is in both.
+// Adds the channels that are in `all` and not in `other`, or only the layer's name when no channel
+// is in both.
 void list_missing(const std::string& layer, const std::vector<const Plane*>& all,
                   const std::vector<const Plane*>& other, std::vector<std::string>& names) {
   std::vector<std::string> missing;

@@ -1,5 +1,5 @@
-// Channels grouped to layers, and the layers of two films matched by name. In: two films.
-// Out: pairs of planes that point into them.
+// Groups channels into layers, and matches the layers of two films by name. In: two films. Out:
+// pairs of planes, which point into the films.
 #pragma once
 
 #include <string>
@@ -9,8 +9,7 @@
 
 namespace dapple {
 
-/// One layer that both films have; `a[i]` and `b[i]` are the same channel. The planes belong
-/// to the films.
+/// A layer that both films have. `a[i]` and `b[i]` are the same channel. The films own the planes.
 struct LayerPair {
   std::string name;
   std::vector<const Plane*> a, b;
@@ -20,19 +19,19 @@ struct LayerPair {
 
 struct LayerMatch {
   std::vector<LayerPair> pairs;  ///< RGBA first, then by name
-  /// Layers that one film alone has, and single channels that it alone has in a layer of both.
+  /// Layers that only one film has, and single channels that only one film has in a common layer.
   std::vector<std::string> only_a, only_b;
 };
 
-/// What precedes the last dot: "light.key" of "light.key.R". R, G, B and A are the layer
-/// "RGBA"; any other channel without a dot is a layer of its own.
+/// The layer of a channel: its name before the last dot, "light.key" for "light.key.R". R, G, B and
+/// A are the layer "RGBA"; any other channel without a dot is a layer of its own name.
 std::string layer_of(const std::string& channel);
 
-/// Points into `a` and `b`.
+/// Matches the layers of two films, which must outlive the result.
 LayerMatch match_layers(const Film& a, const Film& b);
 
-/// What write_png and layer_tone call the picture of `layer`: its RGB or XYZ, or else its
-/// first channel.
+/// The name by which write_png() and layer_tone() find the picture of `layer`: the layer if it has
+/// RGB or XYZ, else its first channel.
 std::string picture_of(const LayerPair& layer);
 
 }  // namespace dapple

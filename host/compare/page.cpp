@@ -16,7 +16,7 @@ constexpr int kSmallWidth = 512;  // narrower pictures are enlarged pixel by pix
 
 std::string layer_id(std::size_t index) { return fmt::format("layer-{}", index); }
 
-// A policy that forbids every request: the page works offline, and can be seen to.
+// The content security policy forbids every request, which shows that the page works offline.
 std::string head(const Comparison& c) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

@@ -1,5 +1,5 @@
-// Without the script the page shows every layer's pictures one below the other; the script
-// stacks A over B, chooses one layer, and moves the line between them (the CSS variable --at).
+// Without the script the page shows the pictures of every layer, one below the other. The script
+// puts A over B, shows one layer, and moves the line between A and B (the CSS variable --at).
 #include "compare/page_text.hpp"
 
 namespace dapple {

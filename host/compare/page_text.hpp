@@ -1,4 +1,5 @@
-// The parts of the comparison page that never vary.
+// The constant parts of the comparison page: its style sheet (CSS) and its script (JavaScript).
+// page.cpp puts them into each page.
 #pragma once
 
 namespace dapple {

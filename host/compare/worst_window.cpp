@@ -7,7 +7,7 @@
 namespace dapple {
 namespace {
 
-/// sum(x, y): of all values left of x and above y, themselves excluded.
+/// sum(x, y) is the sum of all values in the columns before x and the rows before y.
 class SummedArea {
  public:
   SummedArea(std::vector<double> values, int width, int height)
@@ -34,7 +34,7 @@ class SummedArea {
     return static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x);
   }
 
-  std::vector<double> values_;  // made inclusive sums in place: pictures can be large
+  std::vector<double> values_;  // turned into inclusive sums in place, since pictures can be large
   std::size_t width_;
 };
 

@@ -15,19 +15,19 @@
 namespace dapple {
 namespace {
 
-/// Events are collected every so many launches, so that long renders hold few of them.
+/// Number of launches after which their events are collected: a long render must not hold many.
 constexpr std::size_t kEventsHeld = 256;
 
-/// Work-groups of a compute unit that take tickets, if there are as many: enough for each of
-/// PoCL's threads to get one, though the first ones take many at once.
+/// Maximum number of work-groups of a compute unit that take tickets. PoCL's first threads take
+/// many work-groups at once; with so many, each of its threads still gets one.
 constexpr std::size_t kGroupsTakingTickets = 32;
 
-/// Tickets are counted modulo 2^32. They begin here, so that every process soon reaches the
-/// overflow.
+/// Tickets are counted modulo 2^32. The count begins here, so that it overflows early in every
+/// process, not only in long renders.
 constexpr cl_uint kFirstTicket = 0xfffff000u;
 
-/// Buffers are cleared with this pattern: PoCL stores one pattern after the other, so a single byte
-/// would be slow (experiment 701).
+/// The pattern that buffers are cleared with. PoCL stores one pattern after the other, so a
+/// pattern of one byte would be slow (experiment 701).
 constexpr cl_ulong8 kZeros{};
 
 /// `bytes`, rounded up to whole patterns, at least one.
@@ -42,15 +42,16 @@ std::string first_lines(const std::string& text, int count) {
   return text.substr(0, end);
 }
 
-/// Where memory runs out LLVM throws through PoCL's C, which keeps its locks then: to go on would
-/// be to wait for them for ever. So nothing gets past here, and the process ends.
+/// Returns the result of clBuildProgram(). When memory runs out, LLVM throws an exception through
+/// PoCL's C code, which then keeps its locks: the next call of PoCL would never return. Therefore
+/// `noexcept` ends the process.
 cl_int compile(const cl::Program& program, const cl::Device& device,
                const std::string& options) noexcept {
   return clBuildProgram(program(), 1, &device(), options.c_str(), nullptr, nullptr);
 }
 
-/// Gives `pages` to `buffer`, which uses them until its last command is done; then the pool has
-/// them.
+/// Lends `pages` to `buffer`. They return to `pool` when OpenCL destroys the buffer, which is after
+/// its last command.
 void hand_over(std::unique_ptr<Pages> pages, cl::Buffer& buffer,
                const std::shared_ptr<PagePool>& pool) {
   struct Loan {
@@ -70,7 +71,7 @@ void hand_over(std::unique_ptr<Pages> pages, cl::Buffer& buffer,
 
 struct Buffer::Memory {
   cl::Buffer buffer;
-  bool on_host = false;  ///< it uses the host's memory, and may be mapped
+  bool on_host = false;  ///< uses the host's memory, and may be mapped
 };
 
 struct DeviceContext::State {
@@ -80,20 +81,20 @@ struct DeviceContext::State {
   std::string kernel_dir;
   Packets packets = Packets::automatic;
   cl::Device device;
-  bool shares_memory = false;  ///< with the host
+  bool shares_memory = false;  ///< device and host share one memory
   std::shared_ptr<PagePool> page_pool = std::make_shared<PagePool>();
   cl::Context context;
   cl::CommandQueue queue;
   std::map<std::pair<std::string, Variant>, cl::Program> programs;
   std::map<std::tuple<std::string, std::string, Variant>, cl::Kernel> kernels;
-  std::vector<std::string> known_programs;  ///< what KernelCache knows programs by
+  std::vector<std::string> known_programs;  ///< texts that name them in KernelCache
   std::vector<std::pair<std::string, cl::Event>> events;
   std::map<std::string, double> pass_seconds;
-  Buffer tickets;  ///< counts those taken; none before the first launch, or after one that failed
+  Buffer tickets;  ///< counter; empty before the first launch and after a failed one
   cl_uint next_turn = kFirstTicket;
   bool warming_up = false;
 
-  /// What KernelCache knows a program by, of that source.
+  /// The text that names a program of that source in KernelCache.
   [[nodiscard]] std::string known_by(const std::string& source, const Variant& variant) const;
   cl::Program& program(const std::string& file, const Variant& variant);
   cl::Kernel& kernel(const KernelName& name);
@@ -206,7 +207,7 @@ Buffer DeviceContext::share(const void* data, std::size_t bytes) {
   return in_opencl(fmt::format("uploading {} bytes to {}", bytes, state_->info.name), [&] {
     const cl_mem_flags placing = state_->shares_memory ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
     auto memory = std::make_shared<Buffer::Memory>();
-    // OpenCL wants a mutable pointer but only reads through it: CL_MEM_READ_ONLY.
+    // OpenCL takes a mutable pointer, but only reads through it because of CL_MEM_READ_ONLY.
     memory->buffer =
         cl::Buffer(state_->context, CL_MEM_READ_ONLY | placing, bytes, const_cast<void*>(data));
     memory->on_host = state_->shares_memory;
@@ -234,7 +235,7 @@ std::shared_ptr<void> DeviceContext::map(const Buffer& buffer, bool writes) {
   return {data, [queue = state_->queue, buffer](void* mapped) {
             try {
               queue.enqueueUnmapMemObject(buffer.memory()->buffer, mapped);
-            } catch (const cl::Error&) {  // the memory goes anyway
+            } catch (const cl::Error&) {  // the memory is freed anyway
             }
           }};
 }
@@ -327,7 +328,7 @@ void DeviceContext::launch_with_tickets(const KernelName& name, const std::strin
                                         std::vector<KernelArgument> arguments, std::size_t group) {
   State& s = *state_;
   if (ticket_count == 0 && !s.warming_up) return;
-  // Whatever is thrown from here on, the next launch has a count of its own.
+  // If anything throws from here on, the next launch makes a new counter.
   Buffer tickets = std::exchange(s.tickets, {});
   if (!tickets.bytes()) {
     tickets = allocate(sizeof s.next_turn);
@@ -338,7 +339,7 @@ void DeviceContext::launch_with_tickets(const KernelName& name, const std::strin
   const auto count = static_cast<cl_uint>(ticket_count);
   arguments.insert(arguments.end(), {tickets, s.next_turn, count});
   launch(name, label, groups * group, arguments, group);
-  // Every ticket was taken, and every item has taken one more that was beyond the last.
+  // The launch takes all tickets, and each work-item one more, beyond the last ticket.
   s.next_turn += static_cast<cl_uint>(ticket_count + groups * group);
   s.tickets = std::move(tickets);
 }

@@ -1,5 +1,6 @@
-// One device, one in-order queue: buffers, kernels by file and name, timed launches. What
-// host/wavefront sees of OpenCL; the OpenCL types stay in context.cpp.
+// One OpenCL device with one in-order queue. In: host data, kernel names and arguments. Out:
+// buffers, launches, and the device seconds of each pass. host/passes uses OpenCL through this
+// file alone; OpenCL's own types stay in context.cpp.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +17,7 @@ namespace dapple {
 
 class Pages;
 
-/// Device memory; freed with the last copy.
+/// Device memory. Copies share it; the last one frees it.
 class Buffer {
  public:
   struct Memory;
@@ -31,8 +32,8 @@ class Buffer {
   std::size_t bytes_ = 0;
 };
 
-/// What a buffer holds, for the host to read: the device's own memory where both share one, else a
-/// copy. No kernel may write to the buffer while a view of it lives.
+/// A buffer's contents, for the host to read: the device's own memory when host and device share
+/// it, else a copy. No kernel may write to the buffer while a view of it lives.
 class HostView {
  public:
   HostView() = default;
@@ -48,8 +49,8 @@ class HostView {
   std::span<const std::byte> bytes_;
 };
 
-/// A kernel argument: a buffer, or a struct or number by value. It only points to what it is made
-/// from, which must live until the launch is enqueued.
+/// A kernel argument: a buffer, or a struct or number by value. It points to the original, which
+/// must live until the launch is enqueued.
 struct KernelArgument {
   KernelArgument(const Buffer& b) : buffer(&b) {}  // NOLINT: implicit, so that calls read as lists
   template <class T>
@@ -60,10 +61,10 @@ struct KernelArgument {
   std::size_t size = 0;
 };
 
-/// What a program is compiled for. Few of these, integers only.
+/// The -D options that a program is compiled with: few of them, integers only.
 struct Variant {
   bool prefiltered = false;
-  bool shared_origin = false;  ///< rays traced together start from one point
+  bool shared_origin = false;  ///< the rays of a packet share their origin
   [[nodiscard]] std::string options() const;
   auto operator<=>(const Variant&) const = default;
 };
@@ -73,13 +74,13 @@ struct KernelName {
   std::string name;
   std::string file;
   Variant variant;
-  /// "packet.cl".
+  /// Path below kernels/: "packet.cl".
   [[nodiscard]] std::string source_file() const { return (file.empty() ? name : file) + ".cl"; }
   auto operator<=>(const KernelName&) const = default;
 };
 
-/// How far kernels are compiled: programs alone, which tells whether they can be, or to the machine
-/// code that PoCL makes of each when it is first launched.
+/// How far kernels are compiled: programs only, which shows whether they compile at all, or also
+/// the machine code that PoCL makes of each kernel at its first launch.
 enum class CompileTo { programs, machine_code };
 
 class DeviceContext {
@@ -91,25 +92,25 @@ class DeviceContext {
   DeviceContext& operator=(const DeviceContext&) = delete;
 
   [[nodiscard]] const DeviceInfo& info() const;
-  /// What the device was chosen by, and where kernels are read, as the constructor got them.
+  /// The constructor's `name`, which chose the device, and its folder of kernel sources.
   [[nodiscard]] const std::string& chosen_by() const;
   [[nodiscard]] const std::string& kernel_dir() const;
-  /// With the host: share() makes no copies.
+  /// Whether device and host share one memory; share() makes no copies then.
   [[nodiscard]] bool shares_memory() const;
   /// The ray packets that the device was opened with.
   [[nodiscard]] Packets packets() const;
-  /// What users should know of how it works here: "compiled kernels are not kept: ...".
+  /// Notes for the user, one line each: "compiled kernels are not kept: ...".
   [[nodiscard]] std::vector<std::string> notes() const;
 
-  /// Uninitialized memory, rounded up to whole cache lines. Throws Error device. Where it is shared
-  /// with the host, its pages are kept for later buffers of that size.
+  /// Uninitialized memory, rounded up to whole cache lines. Memory that the host shares keeps its
+  /// pages for later buffers of that size. Throws Error device.
   Buffer allocate(std::size_t bytes);
   /// The same, full of zeros.
   Buffer allocate_zeros(std::size_t bytes);
-  /// Read-only copy of host data; on devices that share memory with the host no copy is
-  /// made and the data must stay where it is.
+  /// A buffer for kernels to read, with a copy of host data. When device and host share memory,
+  /// it uses `data` itself, which must then outlive the buffer unmoved.
   Buffer share(const void* data, std::size_t bytes);
-  /// `offset`: bytes into the buffer.
+  /// Waits until the data is copied. `offset`: bytes into the buffer.
   void write(const Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset = 0);
   /// Waits for all launches before it. `offset`: bytes into the buffer.
   void read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset = 0);
@@ -117,36 +118,39 @@ class DeviceContext {
   /// Waits for all launches before it.
   HostView view(const Buffer& buffer);
 
-  /// While what it returns lives, the host may write to what it shares with the device by this
-  /// buffer, and no kernel may read it; nothing where it shares none. Waits for all launches.
+  /// Lets the host write to the memory that it shares with the device in `buffer`. This ends with
+  /// the last copy of the returned pointer; no kernel may read the buffer until then. Returns null
+  /// when the buffer is not in shared memory. Waits for all launches before it.
   std::shared_ptr<void> lend(const Buffer& buffer);
 
   /// Compiles a kernel ahead of its first launch.
   void prepare(const KernelName& kernel);
-  /// Whether other processes get what is compiled here: PoCL's, if the kernel cache has a place.
+  /// Whether other processes can reuse kernels that this one compiles: true on PoCL when the kernel
+  /// cache has a folder to keep them in.
   [[nodiscard]] bool keeps_compiled() const;
-  /// Whether it has been compiled so far, here or for the kernel cache. Throws Error failed where
-  /// its source cannot be read.
+  /// Whether the kernel's program is compiled in this context, or the kernel is in the kernel
+  /// cache, compiled as far as `to`. Throws Error failed when its source cannot be read.
   [[nodiscard]] bool is_compiled(const KernelName& kernel, CompileTo to) const;
-  /// From here on launches of nothing are of one group, which finds nothing to do: drivers compile
-  /// some of a kernel when it is first launched.
+  /// From now on a launch of 0 items runs one work-group, which finds no work, instead of none:
+  /// drivers finish compiling a kernel at its first launch.
   void warm_up();
-  /// The most items a work-group of the kernel can have here.
+  /// Maximum number of work-items in a work-group of the kernel on this device.
   std::size_t largest_group(const KernelName& kernel);
-  /// Enqueues `items` work-items, rounded up to whole groups of `group`: kernels check
+  /// Enqueues `items` work-items, rounded up to whole work-groups of `group`, so kernels must check
   /// bounds. `label` names the pass in pass_seconds().
   void launch(const KernelName& name, const std::string& label, std::size_t items,
               const std::vector<KernelArgument>& arguments, std::size_t group = 64);
-  /// Enqueues work-items enough to keep the device busy, which take tickets for `ticket_count`
-  /// parts of the work, below 2^31, by tickets: take_ticket() of kernels/vectors/tickets.clh. Three
-  /// arguments are added here.
+  /// Enqueues enough work-items to occupy the device. They share the work by tickets, of which
+  /// there are `ticket_count`, below 2^31: take_ticket() in kernels/vectors/tickets.clh. Adds three
+  /// arguments after the kernel's own: tickets, first_ticket and ticket_count.
   void launch_with_tickets(const KernelName& name, const std::string& label,
                            std::size_t ticket_count, std::vector<KernelArgument> arguments,
                            std::size_t group = 64);
-  /// Number of work-groups that are launched for so many tickets.
+  /// Number of work-groups that launch_with_tickets() starts for so many tickets.
   [[nodiscard]] std::size_t groups_with_tickets(std::size_t ticket_count) const;
+  /// Waits for all launches and adds their times to pass_seconds(). Throws Error device.
   void finish();
-  /// Waits like finish(), but whatever has become of the launches.
+  /// Waits for all launches, and ignores errors.
   void wait() noexcept;
 
   /// Device seconds of all finished launches, by label.
@@ -154,9 +158,9 @@ class DeviceContext {
 
  private:
   struct State;
-  /// A buffer of `bytes` on pages of at least as many.
+  /// A buffer of `bytes` that uses `pages`, which hold at least as many.
   Buffer on_pages(std::unique_ptr<Pages> pages, std::size_t bytes);
-  /// The buffer's memory, which must be on the host; unmapped with the last copy.
+  /// Maps the buffer, which must be in the host's memory. The last copy unmaps it.
   std::shared_ptr<void> map(const Buffer& buffer, bool writes);
 
   std::unique_ptr<State> state_;

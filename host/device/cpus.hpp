@@ -1,4 +1,5 @@
-// The CPUs that this process may run on.
+// The CPUs that this process may run on, by the scheduler's mask. Out: their numbers, by which
+// host/device chooses numbers of threads and processes.
 #pragma once
 
 #include <sched.h>
@@ -7,7 +8,7 @@
 
 namespace dapple {
 
-/// Their numbers, ascending; empty where the system does not tell, as of more than 1,024.
+/// CPU numbers, ascending. Empty when the system call fails, as with more than 1,024 CPUs.
 inline std::vector<int> cpus_of_process() {
   cpu_set_t ours;
   std::vector<int> cpus;

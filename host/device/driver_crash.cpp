@@ -1,4 +1,5 @@
-// Signal handlers call nothing but write() and _exit(); what they say is put together beforehand.
+// The signal handler prints with write() and ends with _exit(). The name of the driver's work is
+// stored before the handler can run.
 #include "device/driver_crash.hpp"
 
 #include <unistd.h>
@@ -18,8 +19,8 @@ std::atomic<bool> reporting{false};
 std::atomic<int> calls_under_way{0};
 std::atomic<int> devices_open{0};
 
-/// What the driver was asked to do last, ended by a zero. A crash while another thread writes here
-/// garbles a message, no more.
+/// The driver's latest task, zero-terminated. If a crash happens while another thread writes here,
+/// only the message is garbled.
 std::array<char, 160> doing{};
 
 void say(const char* text) { (void)!write(STDERR_FILENO, text, std::strlen(text)); }
@@ -35,8 +36,8 @@ const char* name_of(int signal) {
   }
 }
 
-/// An abort is the driver's as long as a device is open: kernels are compiled when they first run,
-/// on threads of its own. Any other crash only while it was asked for something.
+/// An abort counts as the driver's while a device is open, since the driver compiles kernels at
+/// their first launch, on its own threads. Other signals count as its own only during a call.
 void on_crash(int signal) {
   const bool of_driver = calls_under_way > 0 || (signal == SIGABRT && devices_open > 0);
   if (!of_driver) {

@@ -1,20 +1,23 @@
-// What becomes of the process when an OpenCL driver gives up: PoCL and the LLVM inside it abort
-// where memory, disk or their linker fail them, and there is no error to catch.
+// Reports crashes of OpenCL drivers. PoCL and the LLVM inside it abort the process when memory,
+// disk space or their linker fails; no error can be caught. In: signals, and what the driver is
+// doing. Out: one line on standard error, and the exit code.
 #pragma once
 
 #include <string>
 
 namespace dapple {
 
-/// From now on such an end is one line, "dapple: the OpenCL driver crashed while compiling kernel
-/// packet ...", and exit code 4 instead of a signal. For programs: the library never calls it.
+/// From now on a crash of the driver prints one line, "dapple: the OpenCL driver crashed while
+/// compiling kernel packet ...", and ends the process with exit code 4 instead of a signal. For
+/// programs: the library never calls it.
 void report_driver_crashes();
 
-/// Takes the signals back where a driver that was just loaded has taken them for itself, as the
-/// LLVM in PoCL does. Nothing where report_driver_crashes() was never called.
+/// Sets the signal handlers again after a driver was loaded, which may have replaced them, as the
+/// LLVM in PoCL does. Does nothing if report_driver_crashes() was never called.
 void renew_crash_reports();
 
-/// While it lives, a crash in any thread is the driver's; `what` it was asked to do last is named.
+/// While an object lives, a crash in any thread counts as the driver's, and the report names the
+/// latest `what`, the driver's task.
 class DriverAtWork {
  public:
   explicit DriverAtWork(const std::string& what);
@@ -23,7 +26,7 @@ class DriverAtWork {
   DriverAtWork& operator=(const DriverAtWork&) = delete;
 };
 
-/// While it lives, the driver's threads may abort at any time: a device is open.
+/// While an object lives, a device is open, and an abort in any thread counts as the driver's.
 class DriverInUse {
  public:
   DriverInUse();

@@ -1,5 +1,5 @@
-// An environment variable set for a while: what an OpenCL driver reads when it starts, and what
-// processes that we start later must not inherit.
+// An environment variable that is set while an object lives: OpenCL drivers read it when they
+// start, and processes that are started later must not inherit it.
 #pragma once
 
 #include <cstdlib>
@@ -10,7 +10,7 @@ namespace dapple {
 
 class EnvironmentWhile {
  public:
-  /// An empty `value` leaves the variable as it is.
+  /// Sets variable `name`, which must outlive the object. An empty `value` changes nothing.
   EnvironmentWhile(const char* name, const std::string& value) : name_(name) {
     if (value.empty()) return;
     if (const char* former = std::getenv(name)) former_ = former;

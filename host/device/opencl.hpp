@@ -1,4 +1,5 @@
-// The only door to OpenCL: opencl.hpp as we configure it, and its errors in our words.
+// Includes OpenCL's C++ header with dapple's settings, and translates its errors into
+// dapple::Error. Every other file includes OpenCL through this one.
 #pragma once
 
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -18,10 +19,12 @@
 
 namespace dapple {
 
-/// "CL_OUT_OF_RESOURCES" for -5, and so on; the number for codes without a name.
+/// The name of an OpenCL error code, "CL_OUT_OF_RESOURCES" for -5; "error CODE" if it has none
+/// here.
 std::string opencl_error_name(int code);
 
-/// Runs `work`; an OpenCL error becomes Error device: "doing failed (call: CL_NAME)".
+/// Runs `work` and returns its result. An OpenCL error becomes Error device, "DOING failed (CALL:
+/// CL_NAME)".
 template <class Work>
 auto in_opencl(const std::string& doing, const Work& work) -> decltype(work()) {
   const DriverAtWork at_work(doing);

@@ -17,13 +17,14 @@ namespace {
 
 constexpr std::size_t kPage = 4096;
 
-/// Whole pages, in steps of an eighth of a power of two or less, so that sizes come again.
+/// Rounds up to whole pages, and to a sixteenth of the next power of two, so that later requests
+/// often have the same size.
 std::size_t rounded(std::size_t bytes) {
   const std::size_t step = std::max(kPage, std::bit_ceil(bytes) / 16);
   return (bytes + step - 1) / step * step;
 }
 
-/// Bytes that a thread clears in one go.
+/// Bytes that a thread clears at a time.
 constexpr std::size_t kClearedTogether = std::size_t{1} << 18;
 
 void clear(const Pages& pages) {
@@ -84,7 +85,7 @@ std::unique_ptr<Pages> PagePool::take_zeros(std::size_t bytes) {
   return pages;
 }
 
-// Called by OpenCL's threads, through whose C nothing may be thrown.
+// OpenCL's threads call this from C code, so it must not throw.
 void PagePool::give_back(std::unique_ptr<Pages> pages) noexcept {
   const std::size_t bytes = pages->bytes();
   const std::lock_guard lock(mutex_);

@@ -1,5 +1,6 @@
-// Memory that device and host share, kept between pictures: a page that the operating system
-// brings for the first time takes as long as a dozen rays.
+// Memory that device and host share, kept from one picture to the next, because the first access to
+// a new page of the operating system is slow. In: a number of bytes. Out: pages of at least that
+// size.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +13,7 @@ namespace dapple {
 /// Pages of the operating system, mapped for reading and writing.
 class Pages {
  public:
-  /// Zeros, brought as they are first written to. Throws std::bad_alloc.
+  /// Maps `bytes` of zeros; the system allocates each page at its first use. Throws std::bad_alloc.
   explicit Pages(std::size_t bytes);
   Pages(const Pages&) = delete;
   Pages& operator=(const Pages&) = delete;
@@ -25,26 +26,28 @@ class Pages {
   std::size_t bytes_;
 };
 
-/// May be used by several threads.
+/// Several threads may use it at once.
 class PagePool {
  public:
-  /// Bytes kept at most; beyond, those kept longest go.
+  /// Maximum number of bytes kept; beyond, the pages that were kept longest are freed.
   static constexpr std::size_t kMaxKept = std::size_t{512} << 20;
 
-  /// `bytes` or up to an eighth more: pages that were given back, or new ones. Throws Error device.
+  /// At least `bytes`, at most an eighth or a page more: pages that were given back, or new ones.
+  /// Throws Error device.
   std::unique_ptr<Pages> take(std::size_t bytes);
   /// The same, full of zeros.
   std::unique_ptr<Pages> take_zeros(std::size_t bytes);
+  /// Keeps `pages` for later requests.
   void give_back(std::unique_ptr<Pages> pages) noexcept;
 
  private:
-  /// Kept ones of that size; null if there are none.
+  /// Kept pages of that size; null if there are none.
   std::unique_ptr<Pages> find(std::size_t bytes);
-  /// New ones, if need be in place of all that are kept.
+  /// New pages. If memory runs out, frees all kept ones first. Throws Error device.
   std::unique_ptr<Pages> make(std::size_t bytes);
 
   std::mutex mutex_;
-  std::deque<std::unique_ptr<Pages>> kept_;  ///< the last given back at the end
+  std::deque<std::unique_ptr<Pages>> kept_;  ///< in the order in which they were given back
   std::size_t kept_bytes_ = 0;
 };
 

@@ -17,8 +17,9 @@
 namespace dapple {
 namespace {
 
-/// Without /sys, as in some containers, PoCL finds no memory and aborts the process: what it would
-/// have read there is told to hwloc, through which it looks. Empty where /sys is there.
+/// The value of HWLOC_SYNTHETIC: memory and CPUs of the machine. Without /sys, as in some
+/// containers, hwloc tells PoCL of no memory, and PoCL aborts the process. Empty when /sys exists
+/// or the user has told hwloc otherwise.
 std::string machine_for_hwloc() {
   std::error_code ignored;
   if (std::filesystem::exists("/sys/devices/system/cpu", ignored)) return {};
@@ -31,10 +32,10 @@ std::string machine_for_hwloc() {
                      std::max(1u, std::thread::hardware_concurrency()));
 }
 
-/// "1": each of PoCL's threads is bound to a CPU of its own, by number. Unbound threads that wake
-/// together often share one CPU while another is idle (experiment 704). Empty where there would be
-/// fewer threads than CPUs, which other programs' threads may have to share, or where not all CPUs
-/// are ours.
+/// The value of POCL_AFFINITY. "1" binds each of PoCL's threads to its own CPU, by number: unbound
+/// threads that wake together often share one CPU while another is idle (experiment 704). Empty
+/// when the user has set it, or has set the number of threads, which may leave CPUs to other
+/// programs; or when this process may not use all CPUs.
 std::string one_cpu_a_thread() {
   if (std::getenv("POCL_AFFINITY") || std::getenv("POCL_MAX_PTHREAD_COUNT")) return {};
   const std::vector<int> ours = cpus_of_process();
@@ -48,7 +49,7 @@ std::vector<cl::Platform> platforms() {
   try {
     cl::Platform::get(&found);
   } catch (const cl::Error&) {
-    found.clear();  // no ICD loader configuration at all is the same as no platform
+    found.clear();  // without a configuration of the ICD loader there is no platform
   }
   return found;
 }
@@ -58,7 +59,7 @@ bool is_usable(const cl::Device& device) {
          device.getInfo<CL_DEVICE_ENDIAN_LITTLE>();
 }
 
-/// GPUs before CPUs before the rest; more compute units first.
+/// Greater is better: GPUs, then CPUs, then the rest; among equals by the number of compute units.
 std::pair<int, unsigned> rank(const cl::Device& device) {
   const auto type = device.getInfo<CL_DEVICE_TYPE>();
   const int kind = type & CL_DEVICE_TYPE_GPU ? 2 : type & CL_DEVICE_TYPE_CPU ? 1 : 0;
@@ -104,8 +105,9 @@ std::string no_device(const std::vector<cl::Platform>& found, const KernelCache&
   return message;
 }
 
-/// PoCL compiles to files, the largest of some 700 kB; where it cannot write them it refuses the
-/// kernels without a reason, or ends the process.
+/// PoCL compiles kernels to files, the largest of about 700 kB. When it cannot write them, it
+/// refuses the kernels without a reason, or ends the process. Throws Error failed when the limit of
+/// file sizes is too low for it.
 void check_file_limit(const cl::Device& device) {
   constexpr std::uint64_t kBytesNeeded = 2u << 20;
   rlimit limit{};
@@ -140,7 +142,7 @@ DeviceInfo describe(const cl::Device& device) {
 std::vector<cl::Device> usable_devices() {
   const DriverAtWork at_work("looking for devices");
   const KernelCache& cache = KernelCache::of_process();
-  // PoCL reads these when it is first asked for its devices.
+  // PoCL reads these variables when its devices are first listed.
   const EnvironmentWhile cache_folder("POCL_CACHE_DIR", cache.folder().string());
   const EnvironmentWhile machine("HWLOC_SYNTHETIC", machine_for_hwloc());
   const EnvironmentWhile affinity("POCL_AFFINITY", one_cpu_a_thread());
@@ -148,7 +150,7 @@ std::vector<cl::Device> usable_devices() {
   if (found.empty()) throw Error(ErrorKind::device, no_platform());
   std::vector<cl::Device> usable;
   for (const cl::Platform& platform : found) {
-    if (cache.folder().empty() && is_pocl(platform)) continue;  // its builds would fail, or worse
+    if (cache.folder().empty() && is_pocl(platform)) continue;  // its builds would fail or crash
     std::vector<cl::Device> devices;
     try {
       platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);

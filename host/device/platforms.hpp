@@ -1,4 +1,5 @@
-// Finding OpenCL devices and choosing one.
+// Finds OpenCL devices and chooses one. In: part of a device's name. Out: OpenCL devices, best
+// first, and their descriptions.
 #pragma once
 
 #include <string>
@@ -9,16 +10,19 @@
 
 namespace dapple {
 
-/// DeviceInfo::platform of PoCL.
+/// PoCL's platform name, as in DeviceInfo::platform.
 inline constexpr const char* kPoclPlatform = "Portable Computing Language";
 
+/// Throws Error device.
 DeviceInfo describe(const cl::Device& device);
 
-/// Best first: GPUs, then CPUs, by compute units; never empty. Throws Error device.
+/// Devices that can compile kernels, best first: GPUs, then CPUs, then the rest, each by compute
+/// units. Never empty. Throws Error device.
 std::vector<cl::Device> usable_devices();
 
-/// The first usable device whose name or platform contains `name`, in any case. Throws
-/// Error device, listing what there is.
+/// The first usable device whose name or platform contains `name`, in upper or lower case. Throws
+/// Error device, listing the usable devices, when none matches; Error failed when PoCL cannot write
+/// its files.
 cl::Device choose_device(const std::string& name);
 
 }  // namespace dapple

@@ -1,5 +1,5 @@
-// XXH3, 128 bits, of bytes at once or in pieces: for the seals of our files and the names of
-// cached ones. Against damage, not against those who forge.
+// Checksums by XXH3 with 128 bits, for the contents of sealed files and the names of cached ones.
+// In: bytes, all at once or in parts. Out: a checksum. It detects damage, not forgery.
 #pragma once
 
 #include <array>
@@ -29,12 +29,12 @@ class ChecksumStream {
 
   void add(std::span<const std::byte> bytes);
 
-  /// The bits of a plain value without padding.
+  /// Adds the bytes of a plain value without padding.
   template <class T>
   requires std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>
   void add_value(const T& value) { add(std::as_bytes(std::span(&value, 1))); }
 
-  /// How many values there are, and their bits.
+  /// Adds the number of values, and their bytes.
   template <class Range>
   void add_range(const Range& values) {
     add_value(static_cast<std::uint64_t>(std::size(values)));

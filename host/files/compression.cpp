@@ -12,14 +12,17 @@
 namespace dapple {
 namespace {
 
-/// Bytes a frame: enough of them for all processors, and few enough not to matter to the size.
+/// Bytes compressed into one frame: few enough that all processors get frames, and enough that the
+/// number of frames hardly affects the compressed size.
 constexpr std::size_t kFrame = std::size_t{1} << 20;
 constexpr int kLevel = 1;
 
-/// A block of zeros, 128 KiB, takes 4 bytes: no frame can become more than this times its size.
+/// A frame never decompresses to more than this times its size: zstd stores a block of 128 KiB
+/// zeros in 4 bytes.
 constexpr std::size_t kMaxGrowth = std::size_t{1} << 16;
 
-/// What one thread works with from frame to frame: fresh memory for each takes longer than zstd.
+/// One thread's context and output memory, reused for every frame: allocating memory for each takes
+/// longer than compressing it.
 struct Workshop {
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
   std::size_t capacity = ZSTD_compressBound(kFrame);

@@ -1,5 +1,6 @@
-// Sections of our files made smaller by zstd, on all processors, at its fastest: a checkpoint is
-// written while a picture waits, and disks are slower than that.
+// Compresses sections of files with zstd, on all processors, at a fast level: rendering stops while
+// a checkpoint is written, and writing to disks is slower than this compression. In: bytes. Out:
+// zstd frames, or the bytes again.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +10,14 @@
 
 namespace dapple {
 
-/// zstd frames, one after the other.
+/// Compresses `bytes` to zstd frames, one after the other. Throws Error failed.
 std::vector<std::byte> compress(Section bytes);
 
-/// How many bytes `frames` become; none for what are not whole frames that tell.
+/// Number of bytes that `frames` decompress to; 0 unless they are whole frames that state their
+/// size.
 std::size_t decompressed_size(Section frames);
 
-/// Whether `frames` became `bytes`, filling them exactly.
+/// Decompresses `frames` into `bytes`. False when they are damaged or do not fill `bytes` exactly.
 bool decompress(Section frames, std::span<std::byte> bytes);
 
 }  // namespace dapple

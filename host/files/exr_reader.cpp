@@ -1,5 +1,4 @@
-// Reading EXR files: see exr_reader.hpp. Headers are checked before anything of the size that they
-// claim is allocated.
+// Checks the header before it allocates memory of the size that the header claims.
 #include "files/exr_reader.hpp"
 
 #include <ImfChannelList.h>
@@ -44,7 +43,7 @@ void read_rows(Imf::InputFile& file, const std::vector<std::string>& channels, c
   file.readPixels(strip.min.y, strip.max.y);
 }
 
-// The header alone, before OpenEXR allocates anything of the size that it claims.
+// Reads only the header; OpenEXR does not yet allocate memory of the size that it claims.
 Imf::Header peek_header(const std::string& path) {
   Imf::StdIFStream stream(path.c_str());
   std::array<char, 8> opening{};
@@ -103,8 +102,8 @@ ExrImage decode(const std::string& path, const SeeExrHeader& see_header) {
   ExrImage image;
   image.width = static_cast<std::uint32_t>(window.max.x - window.min.x + 1);
   image.height = static_cast<std::uint32_t>(window.max.y - window.min.y + 1);
-  // Reserved memory costs nothing until it is filled: a short file that claims a large
-  // picture fails before it has used any.
+  // The system allocates reserved memory only when it is filled: a short file that claims a large
+  // picture fails before it uses much.
   for (const std::string& channel : channels)
     image.channels[channel].reserve(static_cast<std::size_t>(area(window)));
   for_each_strip(file, channels, [&](std::size_t, const ExrRows& rows) {
@@ -123,7 +122,7 @@ void for_each_strip(
     const std::function<void(std::size_t first_pixel, const ExrRows& rows)>& visit) {
   const Box2i window = file.header().dataWindow();
   std::size_t first_pixel = 0;
-  ExrRows rows(channels.size());  // one memory for all strips: new pages take longer than unzipping
+  ExrRows rows(channels.size());  // reused, not allocated anew: experiment 803
   for (std::int64_t y = window.min.y; y <= window.max.y; y += kStripRows) {
     const int last = static_cast<int>(std::min<std::int64_t>(y + kStripRows - 1, window.max.y));
     const Box2i strip(V2i(window.min.x, static_cast<int>(y)), V2i(window.max.x, last));

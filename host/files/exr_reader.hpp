@@ -1,5 +1,5 @@
-// EXR files as channels of floats, whatever they are of: the images of domes and films are read
-// here. With film/exr.cpp, which writes films, the only place that knows OpenEXR.
+// Reads EXR files: images of dome lights, and films. In: a path. Out: channels of floats, or an
+// Error. Only this file and film/exr_writer.cpp, which writes films, use OpenEXR.
 #pragma once
 
 #include <ImfForward.h>
@@ -20,16 +20,17 @@ struct ExrImage {
   std::map<std::string, std::vector<float>> channels;
 };
 
-/// For what else a header holds.
+/// Called with the header, for what ExrImage does not contain.
 using SeeExrHeader = std::function<void(const Imf::Header&)>;
 
 /// Reads any single-part EXR, scanline or tiled, without subsampling and of at most 2^28 pixels;
 /// HALF and UINT become float. Throws Error input.
 ExrImage read_exr_image(const std::string& path, const SeeExrHeader& see_header = {});
 
-using ExrRows = std::vector<std::vector<float>>;  ///< one vector a channel
+using ExrRows = std::vector<std::vector<float>>;  ///< one vector for each channel
 
-/// Some rows at a time, from the top to the bottom. Throws OpenEXR's exceptions.
+/// Reads `channels` a few rows at a time, from top to bottom, and calls `visit` with each strip and
+/// the index of its first pixel. Throws OpenEXR's exceptions.
 void for_each_strip(Imf::InputFile& file, const std::vector<std::string>& channels,
                     const std::function<void(std::size_t first_pixel, const ExrRows& rows)>& visit);
 

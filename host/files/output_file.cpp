@@ -1,5 +1,5 @@
-// Pending files on POSIX calls: iostreams lose errno, and "No space left on device" is the
-// one thing that the user must be told. In: bytes. Out: a finished file, or an Error.
+// Writes with POSIX calls, because iostreams lose errno, and the user must learn of "No space left
+// on device".
 #include "files/output_file.hpp"
 
 #include <fcntl.h>
@@ -32,19 +32,20 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder.string();
 }
 
-// A path that does not resolve (a loop, an unreadable folder) is left for open() to refuse.
+// The path with symbolic links followed. A path that cannot be resolved (a loop, an unreadable
+// folder) stays as it is; the checks after this refuse it.
 std::string follow_links(const std::string& path) {
   std::error_code ignored;
   const fs::path resolved = fs::canonical(path, ignored);
   return ignored ? path : resolved.string();
 }
 
-// Why `target` cannot become a file of ours; empty when it can.
+// Why `target` cannot be written; empty when it can.
 std::string refusal(const std::string& target) {
   if (target.empty()) return "the name is empty";
   std::error_code problem;
   const fs::file_status status = fs::status(target, problem);
-  // Renaming over it would replace the link; creating what it names is not ours to do.
+  // Renaming over it would replace the link, and dapple does not create the file that it names.
   if (!fs::exists(status) && fs::is_symlink(fs::symlink_status(target, problem)))
     return "it is a symbolic link that leads nowhere";
   if (fs::is_directory(status)) return "it is a folder";
@@ -64,13 +65,13 @@ std::string refusal(const std::string& target) {
   return {};
 }
 
-// An overwritten file keeps its permissions. Where that fails, the umask's are no worse.
+// An overwritten file keeps its permissions. If that fails, it gets the default ones of the umask.
 void copy_permissions(const std::string& from, int to) {
   struct stat existing {};
   if (stat(from.c_str(), &existing) == 0 && fchmod(to, existing.st_mode & 0777) != 0) errno = 0;
 }
 
-// Whether the file is these pieces and nothing else.
+// Whether the file consists of these sections and nothing else.
 bool holds(const std::string& path, std::span<const std::string_view> sections) {
   std::ifstream file(path, std::ios::binary);
   std::string block(kBufferBytes, '\0');
@@ -152,7 +153,7 @@ void PendingFile::seek(std::uint64_t position) {
 
 void PendingFile::close(Durable durable) {
   flush();
-  // EINVAL: some file systems cannot sync, which is theirs to decide.
+  // EINVAL and ENOSYS: the file system cannot sync; this is no error.
   if (durable == Durable::yes && fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOSYS)
     fail_with_errno();
   const int descriptor = descriptor_;

@@ -1,6 +1,7 @@
-// Files that appear whole or not at all. A PendingFile is written beside its target, read
-// back by the caller, which knows what it should hold, and only then renamed over the target;
-// without commit() it vanishes and the target stays as it was. For every writer.
+// Files that appear completely or not at all; every writer uses them. In: bytes. Out: a finished
+// file, or an Error. A PendingFile is written in its target's folder. The caller reads it back and
+// verifies it, and only then renames it over the target. Without commit() the file is removed and
+// the target stays as it was.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +12,13 @@
 
 namespace dapple {
 
-/// Refuses, before any work is done, a path that could not be written: not a regular file,
-/// read-only, or in a folder that is missing or not writable. Removes from that folder what
-/// runs that were killed left there. Throws Error usage.
+/// Refuses a path that cannot be written, before any work is done: not a regular file, read-only,
+/// or in a folder that is missing or not writable. Removes temporary files of killed runs from the
+/// folder. Throws Error usage.
 void check_output_path(const std::string& path);
 
-/// Whether to wait until the disk has it. What can be made again need not: after a power failure
-/// its checksum tells.
+/// Whether to wait until the disk has the file. Files that can be made again need not wait: their
+/// checksum shows damage after a power failure.
 enum class Durable : bool { no, yes };
 
 /// Every member but the destructor throws Error failed, "cannot write PATH: REASON".
@@ -32,18 +33,18 @@ class PendingFile {
   void seek(std::uint64_t position);
   [[nodiscard]] std::uint64_t position() const { return flushed_ + buffer_.size(); }
 
-  /// Hands everything to the system, and to the disk if `durable`. A write that failed earlier
-  /// fails here again, so an encoder that swallows exceptions (OpenEXR's destructor does) cannot
-  /// hide it.
+  /// Writes everything to the system, and to the disk if `durable`. If an earlier write failed,
+  /// fails with its reason, so that an encoder that swallows exceptions (as OpenEXR's destructor
+  /// does) cannot hide it.
   void close(Durable durable = Durable::yes);
 
-  /// The unfinished file, to be verified between close() and commit().
+  /// Path of the unfinished file. The caller verifies it between close() and commit().
   [[nodiscard]] const std::string& temporary_path() const { return temporary_; }
 
-  /// Renames over the target; close() comes first.
+  /// Renames the file over the target. close() must come first.
   void commit();
 
-  /// Throws Error failed in the name of the target.
+  /// Throws Error failed, which names the target and the first reason that was given.
   [[noreturn]] void fail(const std::string& reason);
 
  private:
@@ -57,11 +58,11 @@ class PendingFile {
   std::string buffer_;         // written after the first `flushed_` bytes
   std::uint64_t flushed_ = 0;  // file position at which `buffer_` begins
   int descriptor_ = -1;
-  int lock_ = -1;  // a duplicate: the file stays locked until it has its name
+  int lock_ = -1;  // duplicate that keeps the file locked after close()
 };
 
-/// All of `bytes`, or of the pieces one after the other, as the file `path`, read back before it
-/// takes the name. Throws Error failed.
+/// Writes `bytes`, or the sections one after the other, as the file `path`, and verifies them by
+/// reading them back before the file gets its name. Throws Error failed.
 void write_whole_file(const std::string& path, std::string_view bytes);
 void write_whole_file(const std::string& path, std::span<const std::string_view> sections);
 

@@ -1,6 +1,6 @@
 // Layout: header, table of the sections' sizes, sections. Each begins at a multiple of
-// kSectionAlignment; what is between them is zero. The checksum is of the whole file with zeros in
-// its own place, so no bit can change unseen.
+// kSectionAlignment, and the bytes between them are zero. The checksum covers the whole file, with
+// zeros in place of the checksum itself, so a change of any bit is detected.
 #include "files/sealed_file.hpp"
 
 #include <fcntl.h>
@@ -21,7 +21,8 @@
 namespace dapple {
 namespace {
 
-/// As in PNG's signature, the first byte is no text and the line ends show transfers as text.
+/// As in PNG's signature, the first byte is not text, and the line ends are damaged when a transfer
+/// treats the file as text.
 constexpr std::array<char, 8> kMagic = {'\x89', 'D', 'A', 'P', '\r', '\n', '\x1a', '\n'};
 constexpr std::uint32_t kLayoutVersion = 1;
 constexpr std::uint32_t kByteOrder = 0x01020304;
@@ -39,7 +40,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == kSectionAlignment);
 
-/// Past `bytes` to where the next section begins.
+/// `bytes` rounded up to the beginning of the next section.
 std::uint64_t aligned(std::uint64_t bytes) {
   return (bytes + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
 }
@@ -48,7 +49,8 @@ std::uint64_t aligned(std::uint64_t bytes) {
   throw Error(ErrorKind::input, path + ": " + reason);
 }
 
-/// The pieces of a file in the order they lie in it, with the zeros that align the next one.
+/// Calls `take` with all bytes of the file in order: header, table and sections, each followed by
+/// the zeros that align the next one.
 template <class Take>
 void for_each_section(const Header& header, std::span<const std::uint64_t> sizes,
                       std::span<const Section> sections, const Take& take) {
@@ -83,9 +85,9 @@ struct Mapping {
   Section bytes;
 };
 
-// MAP_POPULATE: all of it is about to be read for the checksum.
+// MAP_POPULATE: the checksum reads the whole file right after this.
 Mapping map_file(const std::string& path) {
-  // O_NONBLOCK: a FIFO in its place must not be waited for.
+  // O_NONBLOCK: if the path names a FIFO, open() must not block.
   const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
   struct stat status {};
@@ -107,7 +109,8 @@ std::string text_of(const std::array<char, 16>& name) {
   return {name.begin(), std::find(name.begin(), name.end(), '\0')};
 }
 
-/// What the file says it is, which damage may have changed: the checksum comes later.
+/// The file's header, which may still be damaged: the checksum is verified later. Throws Error
+/// input when it is of another kind, version or size.
 Header read_header(const std::string& path, const SealedKind& kind, Section bytes) {
   Header header;
   const std::size_t there = std::min(bytes.size(), sizeof header);
@@ -144,7 +147,7 @@ void check_checksum(const std::string& path, Header header, Section bytes) {
   if (checksum.value() != expected) refuse(path, "damaged: its checksum is not that of its bytes");
 }
 
-// The checksum holds, so only a file that something else made can have sizes that do not fit.
+// The checksum is correct here, so sizes that do not fit mean that another program made the file.
 std::vector<Section> split(const std::string& path, const Header& header, Section bytes) {
   const std::uint64_t count = header.section_count;
   const std::uint64_t table_end = sizeof header + aligned(count * sizeof(std::uint64_t));

@@ -1,6 +1,6 @@
-// Files of ours that are read back: caches and checkpoints. A header says what the file is, in
-// which version and how large; a checksum over every byte seals it. In: sections of plain data.
-// Out: the same sections, mapped into memory, or an Error that names the file and its damage.
+// Files that dapple writes and reads back: caches and checkpoints. A header states the kind,
+// version and size of the file; a checksum covers every byte. In: sections of plain data. Out: the
+// same sections, mapped into memory, or an Error that names the file and its damage.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace dapple {
 
-/// What a file holds, at most 15 characters, and the version of its sections' layout.
+/// The name of a kind of file, at most 15 characters, and the version of its sections' layout.
 struct SealedKind {
   std::string_view name;
   std::uint32_t version = 0;
@@ -26,13 +26,13 @@ struct SealedKind {
 /// A section of a sealed file: plain data in this machine's byte order.
 using Section = std::span<const std::byte>;
 
-/// Sections of a file at most.
+/// Maximum number of sections in a file.
 inline constexpr std::size_t kMaxSections = 1024;
 
 /// Sections begin at multiples of this many bytes.
 inline constexpr std::size_t kSectionAlignment = 128;
 
-/// Values that can be copied byte by byte, as a section. They must outlive it.
+/// Plain values as a section, which points to them: they must outlive it.
 template <class Range>
 Section as_section(const Range& values) {
   static_assert(
@@ -40,23 +40,23 @@ Section as_section(const Range& values) {
   return std::as_bytes(std::span(std::data(values), std::size(values)));
 }
 
-/// Written beside, read back and checked, renamed: the old file or the new one is there, never a
-/// part. Throws Error failed, "cannot write PATH: REASON"; before it writes when there are too many
-/// sections.
+/// Writes a temporary file in the same folder, reads it back, checks it and renames it to `path`:
+/// there is always the old file or the whole new one. Throws Error failed, "cannot write PATH:
+/// REASON"; with more than kMaxSections sections it writes nothing.
 void write_sealed_file(const std::string& path, const SealedKind& kind,
                        std::span<const Section> sections, Durable durable = Durable::yes);
 void write_sealed_file(const std::string& path, const SealedKind& kind,
                        std::initializer_list<Section> sections, Durable durable = Durable::yes);
 
-/// A sealed file in memory, which the copies of this share. Replacing or removing the file does
-/// not change what they see.
+/// A sealed file in memory. Copies share the memory. It does not change when the file is replaced
+/// or removed.
 class SealedFile {
  public:
   [[nodiscard]] std::size_t section_count() const { return sections_.size(); }
   [[nodiscard]] Section section(std::size_t index) const;
 
-  /// A section as the values that it was made of. Throws Error input when it is not there or its
-  /// size is no multiple of theirs.
+  /// The values of a section. Throws Error input when there is no such section, or its size is not
+  /// a multiple of a value's.
   template <class T>
   [[nodiscard]] std::span<const T> values(std::size_t index) const {
     static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kSectionAlignment);
@@ -64,7 +64,7 @@ class SealedFile {
     return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
   }
 
-  /// Keeps the sections in memory after this has gone.
+  /// Keeps the sections in memory after the last SealedFile of them is destroyed.
   [[nodiscard]] std::shared_ptr<const void> keeper() const { return mapping_; }
 
  private:
@@ -76,8 +76,8 @@ class SealedFile {
   std::vector<Section> sections_;
 };
 
-/// Opens and checks all of a sealed file. Throws Error input, "PATH: ...", when there is none, or
-/// it is of another kind or version, or damaged.
+/// Opens a sealed file and checks all of it. Throws Error input, "PATH: ...", when the file is
+/// missing, damaged, or of another kind or version.
 SealedFile open_sealed_file(const std::string& path, const SealedKind& kind);
 
 }  // namespace dapple

@@ -1,6 +1,7 @@
-// A lock, not the process id in the name, says whether the maker lives: ids come again, and mean
-// nothing in another container. A process that removes a file holds its lock, and a maker that got
-// the lock only after that sees it and takes another name.
+// A lock shows whether the process that made a file still runs. The process id in the file's name
+// could not: ids are used again, and mean nothing in another container. A process locks an
+// abandoned file before it removes it; a maker that gets its lock only afterwards finds its new
+// file removed, and tries another name.
 #include "files/temporary_file.hpp"
 
 #include <fcntl.h>
@@ -26,7 +27,7 @@ constexpr int kNameAttempts = 100;
 constexpr std::string_view kPrefix = ".dapple-", kSuffix = ".tmp";
 constexpr std::time_t kDay = 24 * 60 * 60;
 
-/// Closes what it was given.
+/// Owns a file descriptor, or -1, and closes it.
 class Descriptor {
  public:
   explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
@@ -47,8 +48,8 @@ std::string host_code() {
   return fmt::format("{:08x}", static_cast<std::uint32_t>(std::hash<std::string>{}(name)));
 }
 
-/// .dapple-HOST-PROCESS-RANDOM.tmp. It does not contain the target's: that may already be as long
-/// as names can be.
+/// ".dapple-HOST-PROCESS-RANDOM.tmp". It does not contain the target's name, which may already have
+/// the maximum length.
 std::string random_name() {
   static thread_local std::random_device random;
   return fmt::format("{}{}-{}-{:08x}{:08x}{}", kPrefix, host_code(), getpid(), random(), random(),
@@ -63,7 +64,8 @@ bool is_our_name(std::string_view name) {
          std::count(name.begin(), name.end(), '-') == 2;
 }
 
-/// False when somebody removed the file before it was locked. File systems without locks: true.
+/// Locks the file. False when another process removed it before it was locked; true on file systems
+/// without locks.
 bool lock_new_file(int descriptor) {
   while (flock(descriptor, LOCK_EX) != 0 && errno == EINTR) {
   }
@@ -71,6 +73,8 @@ bool lock_new_file(int descriptor) {
   return fstat(descriptor, &status) == 0 && status.st_nlink > 0;
 }
 
+/// Removes the file if the process that made it has ended; returns whether it did. Files of other
+/// hosts must also be unchanged for a day.
 bool is_abandoned(const fs::path& path, bool own_host) {
   const Descriptor file(open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status {};
@@ -86,7 +90,7 @@ TemporaryFile create_temporary_file(const std::string& folder) {
   TemporaryFile file;
   for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
     file.path = (fs::path(folder) / random_name()).string();
-    // O_EXCL: whatever already has that name, a link planted in /tmp included, is not ours.
+    // O_EXCL: an existing file of that name, or a link that somebody planted in /tmp, is not used.
     file.descriptor = open(file.path.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
     if (file.descriptor < 0 && errno != EEXIST) break;
     if (file.descriptor < 0) continue;

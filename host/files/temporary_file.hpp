@@ -1,5 +1,6 @@
-// Unfinished files: made beside what they will become under a name of their own, locked as long
-// as their maker lives, so that a later run can tell what a dead one left behind and remove it.
+// Temporary files for output that is not finished. In: a folder. Out: a new file in it, locked as
+// long as the process that made it has it open. So a later run can find the files of runs that were
+// killed, and remove them.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +10,16 @@ namespace dapple {
 
 struct TemporaryFile {
   std::string path;
-  int descriptor = -1;  ///< open for reading and writing; the lock ends with its last duplicate
+  int descriptor = -1;  ///< for reading and writing; closing its last duplicate unlocks
 };
 
-/// A new, empty, locked file in `folder`. Descriptor -1 and errno when that cannot be.
+/// Makes a new, empty, locked file in `folder`. The descriptor is -1, and errno is set, when that
+/// fails.
 TemporaryFile create_temporary_file(const std::string& folder);
 
-/// Removes the temporary files in `folder` whose makers are dead; returns how many. Those of
-/// other hosts, whose locks may not reach here, only when they have not changed for a day. What
-/// cannot be read or removed is left.
+/// Removes the temporary files in `folder` whose processes have ended; returns how many. Locks of
+/// other hosts may not be visible here, so their files must also be unchanged for a day. Files that
+/// cannot be opened or removed stay.
 std::size_t remove_abandoned_files(const std::string& folder);
 
 }  // namespace dapple

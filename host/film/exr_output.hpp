@@ -1,4 +1,5 @@
-// How the program, whose process it is, has EXR files written.
+// Settings of EXR writing for dapple's own program. In: a film, a number of threads, and whether to
+// wait for the disk. Out: an EXR file.
 #pragma once
 
 #include <string>
@@ -8,11 +9,13 @@
 
 namespace dapple {
 
-/// Threads that OpenEXR may use besides the caller's, in the whole process; 0, the default: none.
-/// For programs, not for libraries in somebody else's. Files are the same whatever the number.
+/// Sets how many threads OpenEXR may use besides the caller's, in the whole process; 0 by default.
+/// Programs may call this; a library must not change the process of others. The number does not
+/// change the files.
 void use_exr_threads(int count);
 
-/// write_exr(), which is durable. An interrupted render does not wait for a slow disk.
+/// As write_exr() in film.hpp, which waits until the disk has the file (Durable::yes). An
+/// interrupted render uses Durable::no, in order not to wait for a slow disk.
 void write_exr(const Film& film, const std::string& path, Durable durable);
 
 }  // namespace dapple

@@ -1,6 +1,6 @@
-// Films as OpenEXR files. In: a Film, or any EXR that host/files/exr_reader.hpp reads. Out: a verified file, or a
-// Film. OpenEXR's threads are a setting of the whole process: the program's to make,
-// use_exr_threads(), and otherwise the caller's.
+// Writes films as OpenEXR files, and reads them again. In: a Film, or any EXR file that
+// host/files/exr_reader.hpp reads. Out: a verified file, or a Film. OpenEXR's threads are a setting
+// of the whole process, which only a program may change: use_exr_threads().
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -45,7 +45,7 @@ void insert_text(Imf::Header& header, const std::string& name, const std::string
   header.insert(attribute_name(name), Imf::StringAttribute(value));
 }
 
-// Settings of these names (what was asked for) yield to what was used.
+// Settings of these names are not written: the metadata has the values that were used.
 bool is_reserved(const std::string& setting) {
   constexpr std::array<std::string_view, 5> kReserved = {"scene", "device", "version", "seed",
                                                          "samples"};
@@ -69,7 +69,7 @@ Imf::Header header_of(const Film& film) {
   Imf::Header header(Box2i(V2i(0, 0), V2i(film.width - 1, film.height - 1)),
                      window_of(film.data_window), 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y,
                      Imf::ZIP_COMPRESSION);
-  header.zipCompressionLevel() = 1;  // a fifth sooner than at 4, and 2 % larger
+  header.zipCompressionLevel() = 1;  // not 4: experiment 804
   for (const Plane& plane : film.planes) {
     header.channels().insert(plane.channel, Imf::Channel(Imf::FLOAT));
   }
@@ -103,7 +103,7 @@ void encode(const Film& film, PendingFile& file) {
   out.writePixels(film.data_window.height());
 }
 
-// Bits are compared, not values: NaNs are equal to themselves here.
+// Compares bits, not values, so that equal NaNs are equal.
 void verify(const Film& film, PendingFile& file) {
   Imf::InputFile in(file.temporary_path().c_str(), Imf::globalThreadCount());
   if (in.header().dataWindow() != window_of(film.data_window)) {

@@ -1,5 +1,5 @@
-// The film as a value: looking planes up, finding what would keep it from being written,
-// and making names that EXR layers can carry. No files here.
+// Films as values: finds planes, checks whether a film can be written, and makes names that EXR
+// accepts. Reads and writes no files.
 #include "dapple/film.hpp"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ bool is_name_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-// The second and later bytes of a UTF-8 character: "größe" has one underscore each.
+// The second and later bytes of a UTF-8 character. In "größe" the characters ö and ß become one
+// underscore each.
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What every writer of films asks first.
+// The check of a film that every writer of films makes before it encodes anything. In: a film. Out:
+// its defect, in words.
 #pragma once
 
 #include <string>

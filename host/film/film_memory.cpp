@@ -1,4 +1,3 @@
-// Bytes a pixel, and how many there are: see film_memory.hpp.
 #include "film/film_memory.hpp"
 
 #include <fmt/format.h>
@@ -14,8 +13,8 @@ constexpr std::size_t kSurfaceChannels = 18;  // RGBA, ao, bent, N, P, Z, sample
 constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
 constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if all were domes
 
-/// Sums are on the device, which on a CPU is the same memory, and read back; channels are in
-/// the film and in the file that is being written.
+/// All values count twice. Sums are on the device, which on a CPU uses the same memory, and in the
+/// host's copy; channels are in the film and in the file that is being written.
 std::size_t bytes_per_pixel(std::size_t lights) {
   const std::size_t sums = kSurfacePlanes + kAoPlanes + kLightPlanes * lights;
   const std::size_t channels = kSurfaceChannels + kLightChannels * lights;

@@ -1,5 +1,6 @@
-// What a picture takes while it is rendered, against what the machine has: without this a
-// picture that is too large ends in the operating system's hands.
+// Compares the memory that a picture needs while it is rendered with the memory of the machine.
+// Without this check the operating system would end the process when a picture is too large. In: a
+// view and the number of lights. Out: an Error.
 #pragma once
 
 #include <cstddef>

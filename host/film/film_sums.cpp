@@ -16,7 +16,7 @@
 namespace dapple {
 namespace {
 
-/// Bits of a 63-bit sum that remain for one sample once 2^24 of them must fit.
+/// Bits of one sample's largest value in fixed point: the sum of 2^24 samples must fit 63 bits.
 constexpr int kSampleBits = 38;
 
 float scale_for(double largest) {
@@ -34,7 +34,7 @@ double largest_coordinate(const Box3f& box) {
   return largest;
 }
 
-/// Sums of one pass, pixel by pixel, as reals.
+/// The picture's fixed-point sums, by plane and pixel, as doubles.
 class Sums {
  public:
   Sums(std::span<const std::int64_t> sums, std::uint32_t pixels) : sums_(sums), pixels_(pixels) {}
@@ -52,12 +52,14 @@ class Sums {
   std::uint32_t pixels_;
 };
 
-/// What a pixel's sums are divided by. Without samples they are 0, and it looks as if rays missed.
+/// The number that a pixel's sums are divided by. Without samples the sums are 0 and this is 1: the
+/// pixel looks as if all its rays missed.
 double sample_count(const TracedPicture& picture, std::uint32_t pixel) {
   return std::max(1u, picture.samples[pixel]);
 }
 
-/// The largest unoccluded irradiance of all lights together, a channel at a time the same.
+/// Irradiance of the lights at a pixel, linear RGB: with occlusion, of all lights together or of
+/// one; and the largest without occlusion, of all lights together, over all pixels and channels.
 class LightPlanes {
  public:
   LightPlanes(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
@@ -88,7 +90,7 @@ class LightPlanes {
   }
 
  private:
-  /// Of the light's one channel or its three from `first` on.
+  /// Irradiance from the light's one plane, or its three, from `first` on.
   [[nodiscard]] V3d of_planes(std::size_t light, std::uint32_t first, std::uint32_t pixel) const {
     const std::uint32_t last = layout_.lights[light].channels - 1;
     const V3d sum(sums_.at(first, pixel), sums_.at(first + std::min(1u, last), pixel),
@@ -128,7 +130,7 @@ class Planes {
   std::vector<Plane> planes_;
 };
 
-/// EXR layer of each light, made unique.
+/// Names of the lights' EXR layers, all different.
 std::vector<std::string> light_layers(const std::vector<Light>& lights) {
   std::vector<std::string> names;
   std::set<std::string> taken;
@@ -174,8 +176,8 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
   s.light = {per_ray(visits, s.rays.light), per_ray(tests, s.rays.light)};
 }
 
-/// Node visits and triangle tests of a camera sample and of its AO and light rays, means over a
-/// pixel.
+/// Adds the layers of node visits and triangle tests: those of a camera ray and of the AO and light
+/// rays of its samples, as a mean of each pixel.
 void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
                 const FilmLayout& layout, const RenderOptions& options) {
   const auto total = [&](std::uint32_t p, std::uint32_t which) {
@@ -227,7 +229,7 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
   const double largest = lights.empty() ? 0.0 : light.largest_unoccluded();
 
   Planes planes(layout.pixels);
-  // Premultiplied: pixels and parts of pixels that the scene leaves free are 0.
+  // RGB is premultiplied by A: camera rays that miss the scene count as 0.
   planes.add3("", "RGB", [&](std::uint32_t p) {
     const double covered = ao(p) - (1.0 - hits(p) / spp(p));
     if (lights.empty()) return V3d(covered);

@@ -1,24 +1,26 @@
-// The running sums of a picture on the device: 64-bit fixed point planes, and how they
-// become a Film. The planes' order is that of kernels/film/film.cl.
+// The layout of a picture's running sums on the device, planes of 64-bit fixed point, and their
+// conversion into a film's planes. In: sums and sample counts. Out: planes and statistics. The
+// order of planes is that of kernels/film/film.cl.
 #pragma once
 
 #include <vector>
 
-#include "dapple/film.hpp"
-#include "dapple/wavefront.hpp"
-#include "device/context.hpp"
 #include "camera/view.hpp"
+#include "dapple/film.hpp"
+#include "dapple/render.hpp"
+#include "device/context.hpp"
 
 namespace dapple {
 
 inline constexpr std::uint32_t kSurfacePlanes = 10;
 inline constexpr std::uint32_t kAoPlanes = 6;
 
-/// The plane of camera rays' visits; that of their tests is next, as everywhere.
+/// The plane of node visits of camera rays. Triangle tests are in the plane after it, as for all
+/// other rays.
 inline constexpr std::uint32_t kCameraVisits = 8;
 
-/// A light's planes: irradiance and the same unoccluded, each of 1 channel, of a dome 3; then
-/// visits and tests.
+/// A light's planes: irradiance with occlusion, then without, each of 1 channel (3 for a dome);
+/// then node visits and triangle tests.
 struct LightPlaneRange {
   std::uint32_t first = 0;
   std::uint32_t channels = 1;
@@ -27,23 +29,24 @@ struct LightPlaneRange {
   [[nodiscard]] constexpr std::uint32_t count() const { return 2 * channels + 2; }
 };
 
-/// First plane of each pass, and the powers of two by which values are scaled. A sum of
-/// 2^24 samples of the largest value still fits 63 bits.
+/// The first plane of each pass, and the powers of two that values are multiplied by. The sum of
+/// 2^24 samples of the largest value fits 63 bits.
 struct FilmLayout {
   std::uint32_t pixels = 0;
   std::uint32_t plane_count = 0;
   std::uint32_t ao = 0;  ///< first AO plane
   std::vector<LightPlaneRange> lights;
-  std::uint32_t squares = 0;  ///< planes of squares: two of AO, then two a light
-  float unit_scale = 0;       ///< of values up to 1
-  float light_scale = 0;      ///< of irradiance at radiance 1, up to 1024 pi
+  std::uint32_t squares = 0;  ///< number of planes of squares: two for AO, two for each light
+  float unit_scale = 0;       ///< for values up to 1
+  float light_scale = 0;      ///< for irradiance at radiance 1, up to 1024 pi
   float position_scale = 0;
   float depth_scale = 0;
 
   FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
              const std::vector<Light>& lights);
   [[nodiscard]] std::uint32_t ao_visits() const { return ao + 4; }
-  /// First plane of squares of a light, of batches; that of pairs is next. AO's is 0.
+  /// The plane of a light's squared means of sample batches. The next plane is for pairs of
+  /// batches. AO's planes are 0 and 1.
   [[nodiscard]] std::uint32_t light_squares(std::size_t light) const {
     return 2 * (static_cast<std::uint32_t>(light) + (ao ? 1u : 0u));
   }
@@ -57,8 +60,8 @@ struct FilmLayout {
 
 struct TracedPicture;
 
-/// Means of the sums as the planes an EXR gets (channel names as docs/layers.md lists them);
-/// also the visit counts, into `statistics`.
+/// Makes the film's planes from the means of the sums; docs/layers.md lists their channels. Stores
+/// the numbers of rays, visits and tests, and the errors, in `statistics`.
 std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layout,
                            const RenderOptions& options, const std::vector<Light>& lights,
                            RenderStatistics& statistics);

@@ -1,4 +1,5 @@
-// Colours for how much: black, through purple and orange, to pale yellow.
+// A colour ramp from black, through purple and orange, to pale yellow. In: a value in [0,1]. Out:
+// an RGB colour.
 #pragma once
 
 #include <array>
@@ -8,8 +9,8 @@ namespace dapple {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-/// Every 17th colour of magma, by Nathaniel J. Smith and Stefan van der Walt (CC0): lightness
-/// rises evenly, so that equal steps look equal, in grey and to the colour-blind as well.
+/// Every 17th colour of magma, by Nathaniel J. Smith and Stefan van der Walt (CC0). Its lightness
+/// increases evenly, so that equal steps look equal, also in grey and to colour-blind people.
 inline constexpr std::array<Rgb, 16> kHeatRamp{{{0x00, 0x00, 0x04},
                                                 {0x0B, 0x09, 0x24},
                                                 {0x20, 0x11, 0x4B},

@@ -1,5 +1,5 @@
-// The steps of a preview, for callers that need them apart: how a layer's values become shades,
-// the shades as bytes, and the bytes as a PNG.
+// The steps of writing a preview, for callers that need them separately. In: a film and the name of
+// a layer. Out: the exposure of the layer, its pixels as bytes, and the bytes of a PNG file.
 #pragma once
 
 #include <cstdint>
@@ -25,15 +25,15 @@ struct ByteImage {
   std::vector<std::uint8_t> bytes;
 };
 
-/// The exposure that maps `layer` of `film` into the displayed range. Layers are named as in
-/// write_png; throws Error usage when there is no such layer.
+/// The tone that maps the values of `layer` into [0,1]. Layers are named as in write_png(). Throws
+/// Error usage when there is no such layer.
 Tone layer_tone(const Film& film, const std::string& layer);
 
-/// `layer` of a film without defects. Throws as layer_tone does.
+/// The pixels of `layer`. The film must have no film_defect(). Throws like layer_tone().
 ByteImage layer_image(const Film& film, const std::string& layer, const Tone& tone);
 
-/// A whole PNG file. `name` is for the message alone. Throws Error failed when there are too
-/// many pixels.
+/// The bytes of a PNG file. `name` is used in error messages only. Throws Error failed when there
+/// are too many pixels.
 std::string encode_png(const ByteImage& image, const std::string& name);
 
 }  // namespace dapple

@@ -1,5 +1,5 @@
-// What tracing a picture leaves: its sums, still on the device, and what is known of them. The film is
-// made from it (film_sums.hpp).
+// The result of tracing a picture: sums of its samples, which may still be in device memory,
+// numbers of samples, and errors. film_sums.hpp makes the film from it.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@
 namespace dapple {
 
 struct TracedPicture {
-  HostView sums;                       ///< std::int64_t, as FilmLayout says
-  std::vector<std::uint32_t> samples;  ///< of each pixel; 0 only where interrupted
-  /// With a target, unless interrupted before they are known: standard errors by pass (AO, then the
-  /// lights, these relative to their largest unoccluded irradiance) and pixel.
+  HostView sums;                       ///< values of std::int64_t in the order of FilmLayout
+  std::vector<std::uint32_t> samples;  ///< number of samples of each pixel; 0 only if interrupted
+  /// Standard errors by pass and pixel: AO, then the lights, relative to their largest unoccluded
+  /// irradiance. Empty without a target, or if interrupted before they are known.
   std::vector<std::vector<float>> errors;
-  std::map<std::string, double> pass_seconds;  ///< device seconds by label, earlier runs' too
+  std::map<std::string, double> pass_seconds;  ///< device seconds by label, of all runs
   std::size_t queue_bytes = 0;
   bool interrupted = false;
 };

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include "dapple/error.hpp"
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 #include "device/context.hpp"
 #include "device/programs/compiler_processes.hpp"
-#include "passes/passes.hpp"
+#include "passes/kernel_list.hpp"
+#include "passes/ray_packets.hpp"
 
 namespace dapple {
 namespace {

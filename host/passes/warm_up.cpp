@@ -5,7 +5,11 @@
 
 #include "dapple/error.hpp"
 #include "device/upload/scene_upload.hpp"
-#include "passes/passes.hpp"
+#include "passes/camera_pass.hpp"
+#include "passes/light_pass.hpp"
+#include "passes/occlusion_pass.hpp"
+#include "passes/queues.hpp"
+#include "passes/resolve_pass.hpp"
 
 namespace dapple {
 namespace {

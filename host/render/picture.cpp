@@ -9,7 +9,12 @@
 #include <numeric>
 
 #include "camera/camera_splitting.hpp"
-#include "passes/passes.hpp"
+#include "passes/camera_pass.hpp"
+#include "passes/light_pass.hpp"
+#include "passes/occlusion_pass.hpp"
+#include "passes/queues.hpp"
+#include "passes/ray_packets.hpp"
+#include "passes/resolve_pass.hpp"
 #include "sampling/film_moments.hpp"
 #include "sampling/sample_plan.hpp"
 
@@ -66,7 +71,7 @@ class PictureTracer {
       picture.interrupted = !trace_round(plan, control);
     if (control.save) save(plan, control);
     picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
-    if (plan.is_adaptive() && all_know_errors(picture.samples))
+    if (plan.is_adaptive() && all_have_variances(picture.samples))
       picture.errors = standard_errors(picture.samples);
     picture.sums = context_.view(film_.sums);
     context_.finish();
@@ -82,10 +87,9 @@ class PictureTracer {
     return static_cast<double>(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}));
   }
 
-  /// Whether some pixels have the two batches that tell a variance, and all others one.
-  [[nodiscard]] bool all_know_errors(const std::vector<std::uint32_t>& samples) const {
-    const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
-    return *least >= DAPPLE_SAMPLE_BATCH && *most >= 2 * DAPPLE_SAMPLE_BATCH;
+  /// Whether every pixel has the two batches that a variance needs.
+  static bool all_have_variances(const std::vector<std::uint32_t>& samples) {
+    return *std::min_element(samples.begin(), samples.end()) >= 2 * DAPPLE_SAMPLE_BATCH;
   }
 
   /// Onto the device, where from now on they are.
@@ -142,7 +146,7 @@ class PictureTracer {
     const FilmMoments moments(sums, squares, layout_, options_, samples, width_);
     std::vector<std::vector<float>> variances = moments.variances();
     if (only_pilot) return plan.after_pilot(variances);
-    groups = plan.next(variances, [&] { return moments.costs(); });
+    groups = plan.next(variances);
     if (groups.empty()) variances_ = std::move(variances);
     return groups;
   }

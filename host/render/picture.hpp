@@ -1,12 +1,12 @@
 // Tracing one picture, slice by slice, into its film sums.
 #pragma once
 
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 #include "device/upload/scene_upload.hpp"
 #include "film/film_sums.hpp"
 #include "film/traced_picture.hpp"
-#include "sampling/sample_plan.hpp"
 #include "render/trace_state.hpp"
+#include "sampling/sample_plan.hpp"
 
 namespace dapple {
 

@@ -7,11 +7,12 @@
 #include <numeric>
 
 #include "dapple/error.hpp"
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 #include "device/context.hpp"
 #include "device/upload/scene_upload.hpp"
-#include "passes/passes.hpp"
+#include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
+#include "passes/queues.hpp"
 
 namespace dapple {
 namespace {
@@ -120,7 +121,7 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
   const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), points.size());
-  const bool together = at_once(context, options.estimator, rays);
+  const bool together = has_point_ao_pass(context, options.estimator, rays);
   Queues queues =
       together ? make_point_queues(context, slice, rays) : make_queues(context, slice, rays);
   const std::vector<std::uint32_t> order = order_along_curve(points);

@@ -4,10 +4,12 @@
 #include <algorithm>
 
 #include "dapple/error.hpp"
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 #include "device/context.hpp"
 #include "device/upload/scene_upload.hpp"
-#include "passes/passes.hpp"
+#include "passes/camera_pass.hpp"
+#include "passes/occlusion_pass.hpp"
+#include "passes/queues.hpp"
 
 namespace dapple {
 namespace {

@@ -1,5 +1,7 @@
 // render(): scene and options in, film and statistics out. Read it top to bottom to know
 // what dapple does.
+#include "dapple/render.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,12 +11,11 @@
 
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
-#include "dapple/wavefront.hpp"
 #include "device/context.hpp"
 #include "device/programs/compiler_processes.hpp"
 #include "device/upload/memory_need.hpp"
 #include "film/film_memory.hpp"
-#include "passes/passes.hpp"
+#include "passes/kernel_list.hpp"
 #include "render/picture.hpp"
 #include "render/resume.hpp"
 #include "render/stopwatch.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "dapple/error.hpp"
 #include "camera/camera_splitting.hpp"
+#include "dapple/error.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {

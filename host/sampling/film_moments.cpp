@@ -1,8 +1,5 @@
 #include "sampling/film_moments.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,24 +8,6 @@
 #include "sampling/pixel_neighbourhood.hpp"
 
 namespace dapple {
-namespace {
-
-/// Pixels that a thread goes through in one go.
-constexpr std::uint32_t kPixelGrain = 4096;
-
-template <class OfPixel>
-std::vector<float> of_pixels(std::uint32_t pixels, const OfPixel& value) {
-  std::vector<float> out(pixels);
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, pixels, kPixelGrain),
-                    [&](const tbb::blocked_range<std::uint32_t>& range) {
-                      for (std::uint32_t p = range.begin(); p < range.end(); ++p)
-                        out[p] = static_cast<float>(value(p));
-                    });
-  return out;
-}
-
-}  // namespace
-
 std::vector<std::vector<float>> FilmMoments::variances() const {
   std::vector<std::vector<float>> out;
   if (options_.ao) out.push_back(ao_variances());
@@ -94,27 +73,7 @@ std::vector<float> FilmMoments::variances_of(const Mean& mean, std::uint32_t squ
     const double of_pixel = mean(static_cast<std::uint32_t>(p));
     return BatchMoments{static_cast<float>(of_pixel), squares[p], squares[p + layout_.pixels]};
   };
-  std::vector<float> variances = batch_variances(samples_, width_, moments);
-  add_variances_of_single_batches(samples_, width_, moments, variances);
-  return variances;
-}
-
-std::vector<float> FilmMoments::plane(std::uint32_t number, double factor) const {
-  return of_pixels(layout_.pixels, [&](std::uint32_t p) { return sum(number, p) * factor; });
-}
-
-PassWork FilmMoments::work_of(int rays, std::uint32_t visits) const {
-  return {plane(0, rays), plane(visits, 1.0), plane(visits + 1, 1.0)};
-}
-
-std::vector<float> FilmMoments::costs() const {
-  const PassWork camera{
-      {samples_.begin(), samples_.end()}, plane(kCameraVisits, 1.0), plane(kCameraVisits + 1, 1.0)};
-  std::vector<PassWork> others;
-  if (options_.ao) others.push_back(work_of(options_.ao_rays, layout_.ao_visits()));
-  for (const LightPlaneRange& planes : layout_.lights)
-    others.push_back(work_of(options_.light_rays, planes.visits()));
-  return sample_costs(camera, others, samples_, width_);
+  return batch_variances(samples_, width_, moments);
 }
 
 }  // namespace dapple

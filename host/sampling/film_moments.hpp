@@ -1,5 +1,5 @@
-// What adaptive sampling reads off the sums of a picture that is being traced: how far pixels'
-// samples lie apart, and what they cost.
+// Reads the variances of pixels from the film of a picture that is being traced, for adaptive
+// sampling and error layers. In: sums and squares. Out: variances by pass and pixel.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,13 @@
 
 #include "dapple/options.hpp"
 #include "device/context.hpp"
-#include "scene/images/dome_image.hpp"
 #include "film/film_sums.hpp"
-#include "sampling/sample_cost.hpp"
+#include "scene/images/dome_image.hpp"
 
 namespace dapple {
 
-/// Each pixel has whole batches, or none; `width` pixels a row. What it is made from must
-/// outlive it.
+/// Each pixel has two sample batches or more, or no samples. The arguments of the constructor must
+/// outlive the object.
 class FilmMoments {
  public:
   FilmMoments(const HostView& sums, const HostView& squares, const FilmLayout& layout,
@@ -27,21 +26,19 @@ class FilmMoments {
         samples_(samples),
         width_(width) {}
 
-  /// batch_variances() of every pass, those of single batches added, lights relative to their
-  /// largest unoccluded irradiance.
+  /// batch_variances() of every pass. Those of lights are relative to the square of the largest
+  /// unoccluded irradiance.
   [[nodiscard]] std::vector<std::vector<float>> variances() const;
-  /// sample_costs() so far.
-  [[nodiscard]] std::vector<float> costs() const;
 
  private:
   [[nodiscard]] double sum(std::uint32_t plane, std::uint32_t pixel) const {
     return static_cast<double>(sums_[std::size_t{plane} * layout_.pixels + pixel]);
   }
-  /// Over a pixel's samples, 0 where there are none.
+  /// `sum` over the pixel's number of samples; 0 if it has none.
   [[nodiscard]] double mean(double sum, std::uint32_t pixel) const {
     return samples_[pixel] ? sum / samples_[pixel] : 0.0;
   }
-  /// Of one channel itself, of three their luminance.
+  /// The sum of a plane, or the luminance of three.
   [[nodiscard]] double luminance_sum(std::uint32_t first, std::uint32_t channels,
                                      std::uint32_t pixel) const {
     if (channels == 1) return sum(first, pixel);
@@ -49,17 +46,14 @@ class FilmMoments {
   }
   [[nodiscard]] std::vector<float> ao_variances() const;
   [[nodiscard]] std::vector<float> light_variances(std::size_t light) const;
-  /// Of all pixels, irradiance at radiance 1. `scale`: of the sums; `variances`: batch_variances()
-  /// of the irradiance.
+  /// The largest unoccluded irradiance of all pixels. `scale`: of the sums; `variances`:
+  /// batch_variances() of the irradiance.
   [[nodiscard]] double largest_unoccluded(const LightPlaneRange& planes, double scale,
                                           const std::vector<float>& variances) const;
-  /// batch_variances() of a pass whose samples' values have a pixel's `mean`.
+  /// batch_variances() of a pass. `mean`: returns the mean of a pixel's samples.
   template <class Mean>
   [[nodiscard]] std::vector<float> variances_of(const Mean& mean,
                                                 std::uint32_t squares_plane) const;
-  [[nodiscard]] std::vector<float> plane(std::uint32_t number, double factor) const;
-  /// What `rays` of each hit did, which have planes of visits and tests.
-  [[nodiscard]] PassWork work_of(int rays, std::uint32_t visits) const;
 
   std::span<const std::int64_t> sums_;
   std::span<const float> squares_;

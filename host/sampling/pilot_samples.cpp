@@ -30,7 +30,7 @@ int cell_side(int width, int height) {
 
 }  // namespace
 
-std::vector<bool> pilot_pixels(int width, int height, PilotPass which) {
+std::vector<bool> pilot_pixels(int width, int height) {
   const int cell = cell_side(width, height);
   if (squares_of(width, height, cell) < kFewest) return {};
   std::vector<bool> pilot(static_cast<std::size_t>(width) * height, false);
@@ -39,7 +39,6 @@ std::vector<bool> pilot_pixels(int width, int height, PilotPass which) {
   for (int row = 0; row < height / cell; ++row) {
     for (int column = 0; column < width / cell; ++column) {
       const int left = column * cell + place(), top = row * cell + place();
-      if (which == PilotPass::first_pass && (row % 2 != 0 || column % 2 != 0)) continue;
       for (int y = top; y < top + kSquare; ++y) {
         const auto begin = pilot.begin() + static_cast<std::ptrdiff_t>(y) * width + left;
         std::fill_n(begin, kSquare, true);

@@ -7,14 +7,9 @@
 
 namespace dapple {
 
-enum class PilotPass {
-  all,
-  first_pass,  ///< a quarter of them: those of every other cell of every other row
-};
-
 /// For each pixel, row by row, whether it is a pilot pixel. Pilot pixels are squares of 4x4, one at
 /// a random position in each cell of a grid: at least 64 squares, mostly some hundreds; empty for
 /// smaller pictures.
-std::vector<bool> pilot_pixels(int width, int height, PilotPass which = PilotPass::all);
+std::vector<bool> pilot_pixels(int width, int height);
 
 }  // namespace dapple

@@ -7,5 +7,5 @@
 #include "dapple/film.hpp"
 #include "dapple/moving_scene.hpp"
 #include "dapple/options.hpp"
+#include "dapple/render.hpp"
 #include "dapple/scene.hpp"
-#include "dapple/wavefront.hpp"

@@ -48,8 +48,9 @@ struct LookAt {
 struct RenderOptions {
   int width = 960;   ///< pixels, [1, 65535]
   int height = 540;  ///< pixels, [1, 65535]
-  int spp = 16;  ///< primary samples a pixel, [1, 2^20]; with a target the least, rounded up to two
-                 ///< batches; with target_rmse and one batch or less, to one where that is enough
+  /// Primary samples a pixel, [1, 2^20]; with a target the minimum, rounded up to whole batches of
+  /// four, at least two.
+  int spp = 16;
   /// Sample each pixel until its estimated standard error is below this, [0, 1]; 0: don't. Of AO,
   /// and of lights relative to their largest unoccluded irradiance.
   float target_error = 0;

@@ -1,4 +1,5 @@
-// Who wins in dapple-bench rivals: what is timed, which errors count, and what is read off them.
+// The contest of `dapple-bench rivals`: which times and errors of the contestants count, and the
+// time to an error that is derived from them.
 #include "rivals/contest.hpp"
 
 #include <gtest/gtest.h>
@@ -12,12 +13,12 @@ namespace {
 
 constexpr std::uint32_t kFirstSeed = 1000;
 
-/// Takes effort times the round's seconds and is off by the round's error over the root of the
-/// effort, up and down alternately.
+/// A simulated contestant: a run takes effort times the round's seconds. Its two values are off by
+/// plus and minus the round's error over the root of the effort.
 Contestant by_table(std::string name, std::vector<double> ladder, std::vector<double> seconds,
                     std::vector<double> errors) {
   const auto run = [seconds, errors](double effort, std::uint32_t seed) {
-    if (seed < kFirstSeed) return Outcome{1e9, {9, 9}};  // not measured
+    if (seed < kFirstSeed) return Outcome{1e9, {9, 9}};  // a run that must not be measured
     const double error = errors.at(seed - kFirstSeed) / std::sqrt(effort);
     return Outcome{effort * seconds.at(seed - kFirstSeed), {0.5 + error, 0.5 - error}};
   };
@@ -47,12 +48,12 @@ TEST(Contest, MedianOfAnEvenNumberIsTheMeanOfTheMiddleTwo) {
 TEST(Contest, TruthOfHalvesIsTheirMeanAndItsVariance) {
   const Truth truth = truth_of_halves({1, 2}, {3, 2});
   EXPECT_EQ(truth.values, (std::vector<double>{2, 2}));
-  // Halves differ by twice the standard error of their mean, on average over the values.
+  // On average over the values, halves differ by twice the standard error of their mean.
   EXPECT_DOUBLE_EQ(truth.variance, 0.25 * (4 + 0) / 2);
 }
 
 TEST(Contest, SecondsAndErrorsAreMediansOverTheRounds) {
-  // One slow round in which the error is small must not lend its error to the others' seconds.
+  // The small error of one slow round must not be combined with the seconds of the others.
   const auto standings = hold_contest({by_table("a", {1}, {1, 8, 1}, {0.2, 0.05, 0.2})},
                                       kExactTruth, {.rounds = 3, .stop_below = 0, .progress = {}});
   ASSERT_EQ(standings.size(), 1u);
@@ -72,7 +73,7 @@ TEST(Contest, TruthsOwnVarianceIsTakenOutOfErrors) {
   EXPECT_DOUBLE_EQ(standings[0].rungs[0].rmse, std::sqrt(0.04 - 0.01));
 }
 
-TEST(Contest, WhoHasComeBelowTheErrorMakesNoHigherEffort) {
+TEST(Contest, AContestantStopsBelowTheError) {
   const std::vector<double> ladder{1, 4, 16, 64};
   const auto standings =
       hold_contest({by_table("a", ladder, {1}, {0.2}), by_table("b", ladder, {1}, {0.09})},
@@ -106,14 +107,14 @@ TEST(Contest, OnlyNoiseIsExtrapolatedAndNoFartherThanTwice) {
   EXPECT_TRUE(beyond->extrapolated);
   EXPECT_GT(beyond->seconds, 4);
   EXPECT_FALSE(time_to_error(noise, 0.019));
-  // Errors that fall so slowly end at a bias.
+  // Errors that decrease so slowly approach a bias.
   EXPECT_FALSE(time_to_error(standing_of({rung_of(1, 1, 0.08), rung_of(4, 4, 0.06)}), 0.05));
   EXPECT_FALSE(time_to_error(standing_of({}), 0.05));
 }
 
-TEST(Contest, TheBestOfEmbreeIsTheFirstThatGetsThere) {
+TEST(Contest, BestEmbreeIsTheFastestToReachTheError) {
   const std::vector<Standing> standings{
-      standing_of({rung_of(1, 0.1, 0.5)}, true),  // never gets there
+      standing_of({rung_of(1, 0.1, 0.5)}, true),  // never reaches the error
       standing_of({rung_of(1, 3, 0.01)}, true),   //
       standing_of({rung_of(1, 2, 0.02)}, true),   //
       standing_of({rung_of(1, 0.5, 0.001)})};     // not Embree
@@ -133,7 +134,7 @@ TEST(Contest, ExactContestantsWhoseMeanIsOffAreNamed) {
   Standing biased = standing_of({off});
   biased.is_exact = false;
   EXPECT_EQ(disagreements({biased}, black), "");
-  off.mean_difference = 0.004;  // four standard errors and half of what is cut off explain it
+  off.mean_difference = 0.004;  // within four standard errors and half of the cut-off
   EXPECT_EQ(disagreements({standing_of({off})}, black), "");
 }
 

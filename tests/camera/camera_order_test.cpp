@@ -1,6 +1,6 @@
-// The samples of one camera item are taken in an order in which sixteen in a row lie together,
-// where they stop is the same side by side and one by one, and sums are rounded as OpenCL's own
-// saturating conversion does.
+// Parts of the camera pass: the order of one item's samples, in which each sixteen consecutive ones
+// are close together; hit points of sixteen rays at once and of single rays; and the rounding of
+// sums to fixed point, which must agree with OpenCL's saturating conversion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ std::vector<uint> order_of(const Places& places) {
   return download<uint>(order, kItem);
 }
 
-/// Samples on a grid of cells, row by row, from (left, top) on, each in the middle of its cell.
+/// Samples at the middles of the cells of a grid, row by row; its first corner is (left, top).
 Places grid(int columns, float left, float top, float cell) {
   Places places;
   for (std::size_t i = 0; i < kItem; ++i) {
@@ -43,7 +43,7 @@ Places grid(int columns, float left, float top, float cell) {
   return places;
 }
 
-/// Sides of the box around the widest beam.
+/// The largest width and the largest height of the boxes around the groups of sixteen samples.
 std::pair<float, float> widest(const Places& places, const std::vector<uint>& order) {
   std::pair<float, float> widest{0, 0};
   for (std::size_t beam = 0; beam < kItem; beam += kBeam) {
@@ -70,7 +70,7 @@ TEST(CameraRayOrder, EachSampleIsTakenOnce) {
   }
 }
 
-TEST(CameraRayOrder, SixteenInARowFillASquareOfATileAndAQuarterOfAPixel) {
+TEST(CameraRayOrder, GroupsOfSixteenFillASquareOfATileOrAQuarterOfAPixel) {
   for (const float cell : {1.0f, 1.0f / 8}) {
     const Places places = grid(8, 24, 16, cell);
     const auto [width, height] = widest(places, order_of(places));
@@ -79,12 +79,13 @@ TEST(CameraRayOrder, SixteenInARowFillASquareOfATileAndAQuarterOfAPixel) {
   }
 }
 
-/// A ray through a point of each triangle of two blocks, some of which count as placed.
+/// Sixteen rays, each through a point of one triangle of two blocks. Some of the triangles belong
+/// to an instance.
 class PlacedRays {
  public:
   PlacedRays() : blocks_(2), instances_(1) {
     InstanceRecord& instance = instances_[0];
-    // Twice as large, from x to y, and moved.
+    // Scaled by 2, rotated from x to y, and translated.
     const float to_world[12] = {0, -2, 0, 1, 2, 0, 0, -1, 0, 0, 2, 3};
     const float to_object[12] = {0, 0.5f, 0, 0.5f, -0.5f, 0, 0, 0.5f, 0, 0, 0.5f, -1.5f};
     std::copy_n(to_world, 12, instance.to_world);
@@ -156,7 +157,7 @@ class PlacedRays {
   std::vector<uint> primitives_, placements_;
 };
 
-TEST(CameraPoints, SideBySideAreAsTheyAreOneByOne) { PlacedRays().expect_alike(); }
+TEST(CameraPoints, HitPointsOfSixteenRaysEqualThoseOfSingleRays) { PlacedRays().expect_alike(); }
 
 TEST(FixedPoints, RoundToEvenSaturateAndTakeNanAsZero) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -168,7 +169,7 @@ TEST(FixedPoints, RoundToEvenSaturateAndTakeNanAsZero) {
   const auto items = static_cast<uint>(values.size() / 8);
   run("film_and_camera", "to_fixed_points", items, {in, out, items});
   const auto sums = download<std::int64_t>(out, values.size());
-  // The greatest float below 2^63.
+  // The largest float below 2^63.
   constexpr std::int64_t kMax = 9223371487098961920;
   const std::vector<std::int64_t> expected{0,
                                            2,

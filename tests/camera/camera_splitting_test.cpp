@@ -1,5 +1,6 @@
-// Samples that share a camera ray: as many as suit the scene's opacities, of the same picture, with
-// less noise where a ray crosses many thin surfaces.
+// Camera splitting (Arvo and Kirk 1990): several samples share a camera ray. The splitting factor
+// depends on the scene's opacities; the picture stays the same, with less noise where rays cross
+// many thin surfaces.
 #include "camera/camera_splitting.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 #include <numeric>
 #include <vector>
 
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple {
 namespace {
@@ -47,7 +48,7 @@ int depths_of(const RenderOptions& options, const Scene& scene) {
   return choose_camera_splitting(options, scene, choose_view(scene, options, notes));
 }
 
-TEST(CameraSplitting, AreMoreTheMoreRaysSlipThrough) {
+TEST(CameraSplitting, IncreasesWithTheTransmittanceOfSurfaces) {
   for (const auto& [opacity, depths] :
        {std::pair(1.0f, 1), {0.9f, 1}, {0.85f, 2}, {0.5f, 2}, {0.2f, 4}})
     EXPECT_EQ(depths_of({}, tree(opacity)), depths) << opacity;
@@ -56,7 +57,7 @@ TEST(CameraSplitting, AreMoreTheMoreRaysSlipThrough) {
   EXPECT_EQ(depths_of(options, tree(0.2f)), 2) << "as asked for";
 }
 
-/// Leaves of the alphas of a texture of 2x1 texels.
+/// A tree whose leaves have a texture of 2x1 texels with these alphas.
 Scene cards(std::uint8_t left, std::uint8_t right) {
   Scene scene = tree(1.0f);
   scene.textures.push_back({"alpha", 2, 1, {left, right}});
@@ -65,15 +66,15 @@ Scene cards(std::uint8_t left, std::uint8_t right) {
   return scene;
 }
 
-TEST(CameraSplitting, OfTexturesAreThoseOfWhatTheyLetThrough) {
+TEST(CameraSplitting, DependsOnTheAlphaOfTextures) {
   EXPECT_EQ(depths_of({}, cards(0, 255)), 1) << "holes and opaque leaf";
   EXPECT_EQ(depths_of({}, cards(51, 51)), 4) << "as an opacity of 0.2";
   EXPECT_EQ(depths_of({}, cards(0, 128)), 2) << "what is not there doesn't count";
 }
 
-TEST(CameraSplitting, OfTexturesAreThoseOfThemAsTheyAreSeen) {
+TEST(CameraSplitting, DependsOnTexturesAsThePictureFiltersThem) {
   Scene scene = cards(0, 255);
-  // Far finer than a pixel of the default picture: as an opacity of one half.
+  // Texels far smaller than a pixel of the default picture act as an opacity of one half.
   for (Mesh& mesh : scene.meshes) {
     for (std::size_t v = 0; v < mesh.uvs.size(); ++v)
       mesh.uvs[v] = V2f(mesh.positions[v].x + mesh.positions[v].z, mesh.positions[v].y) * 1e5f;
@@ -84,7 +85,7 @@ TEST(CameraSplitting, OfTexturesAreThoseOfThemAsTheyAreSeen) {
   EXPECT_EQ(depths_of(exact, scene), 1) << "which averages nothing";
 }
 
-/// A tree of which that part of all triangles is thin.
+/// A tree in which a share `part` of all triangles is thin.
 Scene partly_thin(double part) {
   Scene scene = tree(1.0f);
   scene.materials.push_back(scene.materials.front());
@@ -99,13 +100,13 @@ Scene partly_thin(double part) {
   return scene;
 }
 
-TEST(CameraSplitting, AreNotForAFewThinSurfaces) {
+TEST(CameraSplitting, IsNotUsedForAFewThinSurfaces) {
   EXPECT_EQ(depths_of({}, partly_thin(0.05)), 1);
   EXPECT_EQ(depths_of({}, partly_thin(0.15)), 2);
   EXPECT_EQ(depths_of({}, partly_thin(0.3)), 4);
 }
 
-TEST(CameraSplitting, LeaveRoomForAllSamples) {
+TEST(CameraSplitting, LeavesRoomForAllSamples) {
   RenderOptions options;
   options.spp = 1 << 20;
   options.ao_rays = 8;
@@ -114,8 +115,8 @@ TEST(CameraSplitting, LeaveRoomForAllSamples) {
   EXPECT_EQ(depths_of(options, tree(0.2f)), 1);
 }
 
-TEST(CameraSplitting, AreOfTheSamePictureWithLessNoise) {
-  // As many AO rays a camera sample for all, and footprints that cover nothing.
+TEST(CameraSplitting, GivesTheSamePictureWithLessNoise) {
+  // The same number of AO rays a camera sample for all, and no footprints.
   RenderOptions many = small_picture(1);
   many.spp = 1024;
   many.ao_rays = 4;
@@ -139,7 +140,7 @@ TEST(CameraSplitting, AreOfTheSamePictureWithLessNoise) {
   EXPECT_LT(errors[2], 0.9 * errors[0]);
 }
 
-TEST(CameraSplitting, CountCameraSamplesAndTheirRays) {
+TEST(CameraSplitting, CountsCameraSamplesAndTheirRays) {
   RenderOptions options = small_picture(4);
   options.spp = 3;
   options.light_rays = 2;
@@ -152,7 +153,7 @@ TEST(CameraSplitting, CountCameraSamplesAndTheirRays) {
   EXPECT_NEAR(static_cast<double>(rays.ao), hits, 1e-4 * hits);
 }
 
-TEST(CameraSplitting, WithATargetErrorsAreThoseOfWholeCameraRays) {
+TEST(CameraSplitting, ErrorsWithATargetAreThoseOfWholeCameraRays) {
   RenderOptions many = small_picture(1);
   many.spp = 2048;
   const std::vector<float> truth = channel(render(tree(0.2f), many), "ao.R");
@@ -164,7 +165,8 @@ TEST(CameraSplitting, WithATargetErrorsAreThoseOfWholeCameraRays) {
     options.footprint_spp = many.spp;
     const RenderResult result = render(tree(0.2f), options), again = render(tree(0.2f), options);
     const std::vector<float>& ao = channel(result, "ao.R");
-    // Samples of one ray are alike: counted as if they were not, errors would be underestimated.
+    // Samples of one ray are correlated. If they counted as independent, the error would be
+    // underestimated.
     EXPECT_LT(rmse(ao, truth), 0.016) << depths;
     EXPECT_GT(rmse(ao, truth), 0.011) << depths;
     EXPECT_EQ(std::memcmp(ao.data(), channel(again, "ao.R").data(), ao.size() * sizeof(float)), 0);
@@ -172,7 +174,7 @@ TEST(CameraSplitting, WithATargetErrorsAreThoseOfWholeCameraRays) {
   }
 }
 
-TEST(CameraSplitting, APicturesPartIsThePictureThere) {
+TEST(CameraSplitting, ACropEqualsThatPartOfThePicture) {
   RenderOptions options = small_picture(4);
   options.spp = 5;
   const RenderResult whole = render(tree(0.2f), options);

@@ -1,5 +1,5 @@
-// Camera rays that meet boxes together find what rays find that meet them one by one, as they do in
-// instances.
+// Closest-hit packets: camera rays that intersect boxes together find what single rays find. Single
+// rays are used in instances, so the same tree is rendered in the world and as an instance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ Camera camera_at(const V3f& from, const V3f& at, Camera::Kind kind) {
   return camera;
 }
 
-/// A second tree behind the camera, so that neither is a part of the world.
+/// Adds a second instance behind the camera, so that the tree is not merged into the world.
 Scene with_another_far_away(Scene scene) {
   for (std::size_t i = 0, count = scene.instances.size(); i < count; ++i) {
     scene.instances.push_back(scene.instances[i]);
@@ -32,8 +32,8 @@ std::vector<float> channel(const RenderResult& picture, const char* name) {
   return picture.film.find(name)->pixels;
 }
 
-/// But for a sample or two that pass an edge within rounding, on devices that round placed rays
-/// otherwise: on PoCL none does.
+/// Two samples may differ: near edges, on devices that round rays in instances differently. On PoCL
+/// none does.
 void expect_alike(const std::vector<float>& a, const std::vector<float>& b) {
   ASSERT_EQ(a.size(), b.size());
   std::size_t different = 0;
@@ -41,7 +41,7 @@ void expect_alike(const std::vector<float>& a, const std::vector<float>& b) {
   EXPECT_LE(different, 2u);
 }
 
-TEST(ClosestPacketOnDevice, StopWhereTheyDoInAnInstance) {
+TEST(ClosestPacketOnDevice, FindsTheSameHitsAsInAnInstance) {
   RenderOptions options;
   options.width = options.height = 96;
   options.spp = 8;
@@ -51,7 +51,8 @@ TEST(ClosestPacketOnDevice, StopWhereTheyDoInAnInstance) {
   Scene scene = load_scene("scene:tree?leaves=3000&opacity=0.6");
   const V3f middle = scene_bounds(scene).center();
   for (const Camera::Kind kind : {Camera::Kind::perspective, Camera::Kind::orthographic}) {
-    // Straight on, so that rays go both ways along two axes, and askew, so that they go one way.
+    // Along an axis, so that ray directions have both signs on two axes, and obliquely, so that
+    // they have one sign on each axis.
     for (const V3f& way : {V3f(0, 0, 9), V3f(-6, 5, 7)}) {
       scene.cameras = {camera_at(middle + way, middle, kind)};
       const RenderResult one = render(scene, options);

@@ -1,6 +1,6 @@
-// Camera rays look at textures finer than pixels in four places of their pixel: what a pixel shows
-// is what its rays would show one by one, but for noise, however the card lies and the camera
-// looks; and what one ray finds does not hang on those it is traced with.
+// Filter taps: where texels are smaller than pixels, a camera ray looks up the texture at four
+// points of its pixel. The mean of a pixel must be that of exact rays, for every direction of card
+// and camera, with less noise; and a ray's result must not depend on the other rays of its packet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using namespace scene_test;
 
 constexpr int kTexels = 256;  // along each axis of the texture
 
-/// Blots of some texels each, sharp or soft.
+/// A texture of blots, each some texels wide, with sharp or soft edges.
 Texture blots(bool sharp) {
   Texture texture{"blots", kTexels, kTexels, {}};
   std::mt19937 random(1);
@@ -27,7 +27,7 @@ Texture blots(bool sharp) {
     for (int x = 0; x < kTexels; ++x) {
       float sum = 0;
       for (std::size_t k = 0; k < phase.size(); ++k) {
-        // Whole waves, so that tiles fit.
+        // A whole number of waves, so that the texture tiles without seams.
         const float waves_x = static_cast<float>(11 + 7 * k % 23) * (k % 2 ? 1.0f : -1.0f);
         const float waves_y = static_cast<float>(9 + 5 * k % 29);
         const float turn = 2 * static_cast<float>(kPi) / kTexels;
@@ -42,7 +42,7 @@ Texture blots(bool sharp) {
   return texture;
 }
 
-/// Squares of `side` metres at places, turned by degrees, each with the whole texture.
+/// A square of `side` metres around `middle`, rotated by `degrees`, with the whole texture.
 struct Card {
   V3f middle, degrees;
   float side;
@@ -108,10 +108,10 @@ double rmse(const Coverage& a, const Coverage& b) {
 }
 
 struct Errors {
-  double noise, bias;  ///< of one picture, and of the mean of many, over pixels
+  double noise, bias;  ///< rms over pixels: of one picture's noise, and of the mean of many
 };
 
-/// Of 8 samples a pixel against what exact rays show.
+/// Errors of pictures with 8 samples a pixel, compared with many exact rays.
 Errors errors(const Scene& scene, Estimator estimator) {
   constexpr int kSize = 24, kPictures = 12;
   RenderOptions exact = picture(kSize, 512);
@@ -132,8 +132,8 @@ Errors errors(const Scene& scene, Estimator estimator) {
   return {noise, std::sqrt(std::max(0.0, of_mean * of_mean - noise * noise / kPictures))};
 }
 
-/// A card of 4 m, some 8 texels a pixel, that fills the picture; `scale`: of its one placement that
-/// is seen.
+/// A card of 4 m that fills the picture, with some 8 texels a pixel. `scale`: scale of the instance
+/// that is visible; 1: not instanced.
 Scene large_card(V3f degrees, Camera::Kind kind, bool sharp, float scale = 1) {
   Scene scene = cards({{V3f(0, 0, 0), degrees, 4 / scale}}, sharp);
   if (scale != 1) {
@@ -146,9 +146,9 @@ Scene large_card(V3f degrees, Camera::Kind kind, bool sharp, float scale = 1) {
   return scene;
 }
 
-// With right and left or up and down exchanged, or taps about the hits and not pulled to the
-// middles, biases are from 0.036 to 0.09.
-TEST(FilterTaps, AreLessNoisyThanRaysOneByOneAndShowThePixelAndNoMore) {
+// The limit of the bias finds errors in the taps: with right and left or up and down exchanged, or
+// without centring on the pixel, biases are 0.036 to 0.09.
+TEST(FilterTaps, AreLessNoisyThanExactRaysAndHaveLittleBias) {
   const Scene scenes[] = {
       large_card(V3f(0, 0, 30), Camera::Kind::orthographic, true),
       large_card(V3f(50, 20, 10), Camera::Kind::orthographic, true, 0.25f),
@@ -163,7 +163,7 @@ TEST(FilterTaps, AreLessNoisyThanRaysOneByOneAndShowThePixelAndNoMore) {
   }
 }
 
-/// An atlas with one leaf, a disk in the middle sixteenth.
+/// An atlas with one leaf: a disk in the middle sixteenth of the area.
 Texture disk() {
   Texture texture{"disk", kTexels, kTexels, {}};
   for (int y = 0; y < kTexels; ++y)
@@ -173,11 +173,11 @@ Texture disk() {
   return texture;
 }
 
-// Taps that leave the card find nothing there, and far foliage would fade: 0.19 of it would be left
-// at 0.4 pixels.
-TEST(FilterTaps, OfCardsSmallerThanPixelsStayOnThem) {
+// Taps outside the card find nothing, and distant foliage would fade: cards of 0.4 pixels would
+// keep 0.19 of their coverage.
+TEST(FilterTaps, StayOnCardsSmallerThanPixels) {
   Points points(5);
-  // Mixing of four squares reaches beyond cards of a pixel: 0.97, 0.95 and 1.01 are left.
+  // The mean of four mip footprints reaches beyond small cards, hence these tolerances.
   for (const auto& [pixels, tolerance] :
        {std::pair{0.4f, 0.05}, std::pair{1.0f, 0.07}, std::pair{4.0f, 0.02}}) {
     std::vector<Card> places;
@@ -201,7 +201,8 @@ TEST(FilterTaps, OfCardsSmallerThanPixelsStayOnThem) {
   }
 }
 
-/// Cards every way, small and large, two meshes of them: one in the world, one placed twice.
+/// Small and large cards with random directions, in two meshes: one in the world, one in two
+/// instances.
 Scene scattered_cards() {
   Points points(3);
   const auto some = [&](int count, float middle, float side) {
@@ -224,7 +225,7 @@ Scene scattered_cards() {
   return scene;
 }
 
-TEST(FilterTaps, OfARayAreTheSameInAnyCompany) {
+TEST(FilterTaps, DoNotDependOnTheOtherRaysOfThePacket) {
   for (const Camera::Kind kind : {Camera::Kind::orthographic, Camera::Kind::perspective}) {
     Scene scene = scattered_cards();
     add_camera(kind, scene);

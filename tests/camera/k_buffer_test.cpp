@@ -1,6 +1,6 @@
-// Stochastic transparency: a ray stops at the surface where the product of transmittances falls to its
-// threshold, however many surfaces are in front, and surfaces stop the share of a pixel's samples that
-// their opacities say.
+// The k-buffer (Bavoil 2007) and stochastic transparency (Enderton 2010): a ray stops at the
+// surface where the product of transmittances falls to the ray's threshold, for any number of
+// surfaces in front. Each surface stops a share of a pixel's samples that equals its opacity.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::uint32_t hash_of(std::uint32_t x) {
   return x ^ x >> 16;
 }
 
-/// The threshold that closest_hit.cl gives a ray.
+/// The threshold that closest_hit.cl gives the ray, in [0,1).
 float threshold_of(const Ray& ray) {
   std::uint32_t bits = ray.key;
   for (int axis = 0; axis < 3; ++axis)
@@ -45,7 +45,7 @@ Scene sheets(int count, float opacity) {
   return scene;
 }
 
-/// Down through sheets(), off the diagonals.
+/// Rays down through sheets(), not on the quads' diagonals.
 std::vector<Ray> rays_down(std::uint32_t count) {
   std::vector<Ray> rays;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -57,7 +57,7 @@ std::vector<Ray> rays_down(std::uint32_t count) {
 
 TEST(KBufferOnDevice, StackedSheetsStopTheShareOfRaysThatTheirOpacitySays) {
   constexpr std::uint32_t kRays = 40'000;
-  // The second and third have more sheets than there are layers.
+  // The second and third stack have more sheets than the k-buffer has entries.
   for (const auto& [count, opacity] : {std::pair(6, 0.3f), {40, 0.05f}, {30, 0.02f}, {3, 1.0f}}) {
     const SceneOnDevice scene(sheets(count, opacity));
     std::vector<double> stopped(static_cast<std::size_t>(count) + 1);
@@ -79,7 +79,7 @@ struct Triangle {
   float opacity;
 };
 
-/// Of all sizes, in a cube, with opacities from `least` to nine times that.
+/// Triangles of various sizes in a cube, with opacities from `least` to nine times that.
 std::vector<Triangle> triangle_soup(std::size_t count, float least) {
   Points random(11);
   std::vector<Triangle> soup;
@@ -91,7 +91,7 @@ std::vector<Triangle> triangle_soup(std::size_t count, float least) {
   return soup;
 }
 
-/// In the second one rays pass more surfaces than the k-buffer has entries.
+/// In thin_soup() rays pass more surfaces than the k-buffer has entries.
 std::vector<Triangle> dense_soup() { return triangle_soup(1500, 0.1f); }
 std::vector<Triangle> thin_soup() { return triangle_soup(5000, 0.006f); }
 
@@ -110,7 +110,7 @@ Scene scene_of(const std::vector<Triangle>& soup) {
   return scene;
 }
 
-/// Distance and transmittance of all that a ray crosses, sorted.
+/// Distance and transmittance of each triangle that the ray crosses, sorted by distance.
 std::vector<std::pair<double, double>> crossed_by(const Ray& ray,
                                                   const std::vector<Triangle>& soup) {
   const V3d origin(ray.origin[0], ray.origin[1], ray.origin[2]);
@@ -127,7 +127,7 @@ std::vector<std::pair<double, double>> crossed_by(const Ray& ray,
   return met;
 }
 
-TEST(KBufferOnDevice, WhatStopsARayIsWhatSortingAllItsSurfacesSays) {
+TEST(KBufferOnDevice, RaysStopAtTheSurfaceThatSortingFinds) {
   std::size_t deepest = 0;
   for (const std::vector<Triangle>& soup : {dense_soup(), thin_soup()}) {
     const SceneOnDevice scene(scene_of(soup));
@@ -144,7 +144,7 @@ TEST(KBufferOnDevice, WhatStopsARayIsWhatSortingAllItsSurfacesSays) {
       differ += at == met.size() ? hits[i].t >= 0 : std::fabs(hits[i].t - met[at].first) > 1e-4;
     }
     EXPECT_GT(missed, 50u);
-    // Edges that single precision puts on the ray's other side.
+    // Rays that single precision puts on the other side of an edge.
     EXPECT_LE(differ, 4u);
   }
   EXPECT_GT(deepest, 50u) << "more than twice as many as there are layers";
@@ -163,13 +163,14 @@ RenderResult seen_from_above(Scene scene, int spp, std::optional<PixelRect> crop
   return render(std::move(scene), options);
 }
 
-TEST(KBufferOnDevice, EveryPixelOfSheetsIsCoveredAsOpacitySaysToAStratum) {
+TEST(KBufferOnDevice, CoverageOfSheetsEqualsTheirOpacityWithinAStratum) {
   for (const auto& [count, opacity] : {std::pair(1, 0.5f), {1, 0.3f}, {3, 0.2f}, {24, 0.04f}}) {
     const RenderResult result = seen_from_above(sheets(count, opacity), 16);
     const double covered = 1 - std::pow(1 - opacity, count);
     double sum = 0;
     for (const float a : result.film.find("A")->pixels) {
-      // With a coin for each surface the standard deviation would be 1/8 at opacity 0.5.
+      // With an independent random decision a surface, the standard deviation would be 1/8 at
+      // opacity 0.5.
       EXPECT_NEAR(a, covered, 1.0 / 16 + 1e-5) << count << " of " << opacity;
       sum += a;
     }
@@ -177,12 +178,12 @@ TEST(KBufferOnDevice, EveryPixelOfSheetsIsCoveredAsOpacitySaysToAStratum) {
   }
 }
 
-TEST(KBufferOnDevice, APictureIsCoveredAndAsFarAwayAsSortingSays) {
+TEST(KBufferOnDevice, CoverageAndDepthAgreeWithSorting) {
   constexpr int kSide = 100;
   const float half = std::tan(2.5f * static_cast<float>(kPi) / 180);
   for (const std::vector<Triangle>& soup : {dense_soup(), thin_soup()}) {
     const RenderResult result = seen_from_above(scene_of(soup), 64);
-    // What the same 64x48 pixels see, by rays through 100x100 places.
+    // The truth for the same picture: rays through a grid of 100x100 points.
     double covered = 0, depth = 0;
     for (int j = 0; j < kSide; ++j) {
       for (int i = 0; i < kSide; ++i) {
@@ -203,14 +204,14 @@ TEST(KBufferOnDevice, APictureIsCoveredAndAsFarAwayAsSortingSays) {
       found += a[p];
       if (a[p] > 0) found_depth += static_cast<double>(a[p]) * z[p];
     }
-    // What 64 stratified samples a pixel and the 100x100 places leave.
+    // The error of 64 stratified samples a pixel and of 100x100 rays.
     EXPECT_NEAR(found / static_cast<double>(a.size()), covered / (kSide * kSide), 0.002);
     EXPECT_NEAR(found_depth / found, depth / covered, 0.002);
   }
 }
 
-TEST(KBufferOnDevice, APicturesPartIsThePictureThere) {
-  // Other samples share a packet, and surfaces come in another order.
+TEST(KBufferOnDevice, ACropEqualsThatPartOfThePicture) {
+  // In a crop other samples share a packet, and surfaces are found in another order.
   const RenderResult all = seen_from_above(scene_of(thin_soup()), 5);
   const RenderResult part = seen_from_above(scene_of(thin_soup()), 5, PixelRect{7, 5, 40, 30});
   for (const char* name : {"A", "Z", "P.X", "N.Y", "ao.R"}) {

@@ -1,6 +1,6 @@
-// Media: sparse, uniform nodes that camera rays pass as homogeneous media, within the error of the
-// picture. It shows what rays find in them, whatever shares a ray, however the mesh is placed, and
-// whatever other rays share the packet.
+// Media: camera rays treat sparse, uniform nodes as homogeneous media (Loubet and Neyret 2017) when
+// the picture may have errors. Coverage, AO and normals must agree with those of traced rays, for
+// every splitting factor, in instances, and in every packet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +12,8 @@
 #include "bvh/build/quantize.hpp"
 #include "bvh/opacity/node_opacity.hpp"
 #include "camera/view.hpp"
+#include "dapple/render.hpp"
 #include "dapple/shared/opacity.h"
-#include "dapple/wavefront.hpp"
 
 namespace dapple {
 namespace {
@@ -23,7 +23,7 @@ Scene cloud(int leaves = 100'000, float opacity = 0.2f) {
                          "&opacity=" + std::to_string(opacity));
 }
 
-/// Small triangles in a unit cube, their normals nearly upright.
+/// Small triangles in a unit cube, with normals that are nearly vertical.
 Scene flakes() {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> at(0.0f, 1.0f), tilt(-0.3f, 0.3f);
@@ -51,7 +51,8 @@ Scene flakes() {
   return scene;
 }
 
-/// Of a picture that may err much, but is sampled well, with medium or without.
+/// Options of a picture with many samples. With `medium` it has a high target error, so that media
+/// are used.
 RenderOptions well_sampled(bool medium) {
   RenderOptions options;
   options.width = options.height = 48;
@@ -70,9 +71,9 @@ double sum(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Means of alpha and of occlusion, over the picture, as parts of what they are without medium.
-/// Nodes that are as large and alike have depths that are rounded to the same code, up to 3 % off;
-/// and what stands for a surface may be outside of what hides it.
+/// Compares the picture's mean alpha and mean occlusion with those of the same picture without
+/// media. Tolerances: depths of equal nodes are rounded to the same code, up to 3 % off; and a hit
+/// point in a medium may be outside of the surfaces that occlude it.
 void expect_shows_the_same(const Scene& scene, RenderOptions with) {
   RenderOptions without = with;
   without.target_rmse = 0;
@@ -85,7 +86,7 @@ void expect_shows_the_same(const Scene& scene, RenderOptions with) {
   EXPECT_NEAR((pixels - sum(channel(medium, "ao.R"))) / occlusion, 1, 0.25);
 }
 
-TEST(MediumOnDevice, ShowsAsMuchAsRaysFindInFarFewerNodes) {
+TEST(MediumOnDevice, ShowsTheSameWithFewerNodeVisits) {
   expect_shows_the_same(cloud(), well_sampled(true));
 }
 
@@ -131,7 +132,7 @@ void expect_same_normals(const Scene& scene) {
   for (const char* name : {"N.X", "N.Y", "N.Z"}) {
     double of_medium = 0, of_rays = 0, count = 0;
     for (std::size_t p = 0; p < a.size(); ++p) {
-      if (a[p] < 0.02f || b[p] < 0.02f) continue;  // of few samples
+      if (a[p] < 0.02f || b[p] < 0.02f) continue;  // too few samples
       of_medium += channel(medium, name)[p];
       of_rays += channel(rays, name)[p];
       count += 1;
@@ -141,12 +142,12 @@ void expect_same_normals(const Scene& scene) {
   }
 }
 
-TEST(MediumOnDevice, IsSeenWithTheNormalsThatRaysWouldMeet) { expect_same_normals(flakes()); }
+TEST(MediumOnDevice, HasTheNormalsThatRaysFind) { expect_same_normals(flakes()); }
 
-TEST(MediumOnDevice, IsSeenWithTheNormalsOfPlacedMeshes) {
+TEST(MediumOnDevice, HasTheNormalsOfPlacedMeshes) {
   Scene scene = flakes();
   M44f flat;
-  flat.rotate(V3f(0.5f, 0, 0.9f));  // and across that:
+  flat.rotate(V3f(0.5f, 0, 0.9f));  // rotation first, then non-uniform scale
   flat.scale(V3f(1, 0.4f, 1));
   scene.instances[0].to_world = flat;
   scene.instances.push_back(scene.instances[0]);
@@ -158,7 +159,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-TEST(MediumOnDevice, OfACropIsThatOfTheWholePictureBitForBit) {
+TEST(MediumOnDevice, ACropEqualsThatPartOfThePictureBitForBit) {
   const Scene scene = cloud();
   RenderOptions options = well_sampled(true);
   options.spp = options.max_spp = 8;
@@ -175,7 +176,7 @@ TEST(MediumOnDevice, OfACropIsThatOfTheWholePictureBitForBit) {
   }
 }
 
-TEST(MediumOnDevice, IsOnlyWhereAPictureMayErr) {
+TEST(MediumOnDevice, IsUsedOnlyWhereThePictureMayHaveErrors) {
   const Scene scene = cloud(100);
   std::vector<std::string> notes;
   const auto error_of = [&](const RenderOptions& options) {
@@ -197,7 +198,7 @@ TEST(MediumOnDevice, IsOnlyWhereAPictureMayErr) {
   EXPECT_EQ(error_of(options), 0) << "exact";
 }
 
-TEST(MediumOnDevice, FadesWithTheErrorThatIsAskedFor) {
+TEST(MediumOnDevice, ErrorIsHalfOfTheTarget) {
   const Scene scene = cloud(100);
   std::vector<std::string> notes;
   RenderOptions options = well_sampled(true);
@@ -218,20 +219,20 @@ NodeOpacity opacity_of(float axes, float clumping) {
   return opacity;
 }
 
-TEST(OpacityVariance, IsOfDeviationsAndOfWhatHidesItself) {
+TEST(OpacityVariance, CountsDeviationsAndClumping) {
   EXPECT_EQ(variance_class(opacity_of(0, 0)), 0u);
   EXPECT_EQ(variance_class(opacity_of(0.06f, 0)), 0u) << "0.06^2 is below 2^-8";
   EXPECT_EQ(variance_class(opacity_of(0.065f, 0)), 1u);
   EXPECT_EQ(variance_class(opacity_of(0.18f, 0)), 7u);
   EXPECT_EQ(variance_class(opacity_of(1, 0)), 7u);
-  // A hundredth of it hides everything: it deviates by the root of 0.01 * 0.99.
+  // A hundredth of the area is opaque: the standard deviation is the root of 0.01 * 0.99.
   EXPECT_EQ(variance_class(opacity_of(0.01f, 1)), 7u);
   // The root of 0.01 * 0.99 * 0.01 is 0.00995: between 2^(2/2 - 8) and 2^(3/2 - 8).
   EXPECT_EQ(variance_class(opacity_of(0.01f, 0.01f)), 3u);
   EXPECT_EQ(variance_class(opacity_of(0.01f, std::nanf(""))), 7u);
 }
 
-TEST(OpacityVariance, TakesOnlyTheLeastBitsOfCorrelations) {
+TEST(OpacityVariance, IsStoredInTheLowestBitsOfCorrelations) {
   BvhNode node{};
   const Box3f box(V3f(0), V3f(1));
   set_grid(node, box);

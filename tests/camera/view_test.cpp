@@ -1,5 +1,6 @@
-// The matrices that an EXR says its camera with: world to a left-handed camera space that
-// looks along +Z, and world to NDC with (0,0) at the top left of the display window.
+// The camera matrices of an EXR file: world to a left-handed camera space that looks along +Z, and
+// world to NDC with (0,0) at the top left of the display window. Also camera parameters, and the
+// pixels that can see the scene.
 #include "camera/view.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@ void expect_near(const V3f& a, const V3f& b) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(a[axis], b[axis], 1e-5) << a << " and " << b;
 }
 
-// 90 degrees high, so that at distance d the picture reaches d up and, twice as wide, 2 d aside.
+// A view for camera_at(), whose field of view is 90 degrees high: at distance d the picture reaches
+// from -d to d vertically and, since it is twice as wide, from -2 d to 2 d horizontally.
 View view_from(const Camera& camera) { return {camera, 200, 100, {0, 0, 199, 99}}; }
 
 Camera camera_at(const V3f& eye) {
@@ -33,7 +35,7 @@ TEST(View, CameraSpaceHasXRightYUpAndZForward) {
   expect_near(V3f(1, 3, 3) * straight, {0, 1, 0});
   EXPECT_LT(straight.determinant(), 0) << "left-handed";
 
-  // Looking along +X from there: world +Z is right.
+  // A camera at the same point that looks along +X: world +Z is right.
   const M44f turned = world_to_exr_camera(look_at({1, 2, 3}, {5, 2, 3}, {0, 1, 0}, 1));
   expect_near(V3f(8, 2, 3) * turned, {0, 0, 7});
   expect_near(V3f(1, 2, 5) * turned, {2, 0, 0});
@@ -117,7 +119,7 @@ TEST(View, TheSceneIsSeenInThePixelsOfItsBoundsAndOneAround) {
   expect_seen(view, {{-1, -1, 9}, {1, 1, 11}}, 0, 0, 200, 100);
 }
 
-TEST(View, NothingIsLeftOutWhereNumbersEnd) {
+TEST(View, ExtremeBoundsLeaveOutNoPixel) {
   const View view = view_from(camera_at({0, 0, 10}));
   expect_seen(view, {V3f(-1e30f), V3f(1e30f)}, 0, 0, 200, 100);
   expect_seen(view, {{1e6f, 0, 9.99f}, {1e6f, 1, 9.99f}}, 0, 0, 200, 100);

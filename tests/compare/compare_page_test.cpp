@@ -1,5 +1,5 @@
-// What dapple compare writes: the page with its pictures decoded again, JSON, heat map, and
-// the exit codes of the program itself.
+// Output of `dapple compare`: the text, the HTML page with its pictures decoded again, JSON, the
+// heat map, and the program's exit codes.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
@@ -31,7 +31,8 @@ TEST(CompareText, ShowsOneLineALayerAndLeavesOutWhatNeverApplies) {
   a.planes[0].pixels[63] = 1;
   Comparison c = compared(a, b);
   c.only_b = {"ao", "N.X"};
-  // Means 1/64, RMSE 1/8, relative MSE (1 / 0.01) / 64, in the window 1 / sqrt(32).
+  // The mean is 1/64, the RMSE 1/8, the relative MSE (1 / 0.01) / 64, the worst window's RMSE
+  // 1 / sqrt(32).
   const std::string text = comparison_text(c);
   EXPECT_EQ(text,
             "A = a.exr, B = b.exr: 64 x 1 pixels\n"
@@ -92,7 +93,7 @@ std::vector<Pixels> pictures_in(const std::string& html) {
   return pictures;
 }
 
-// Every element that is opened is closed in order; the first that is not, or nothing.
+// Checks that elements are closed in order; returns the first tag that breaks this, or "".
 std::string first_unbalanced_tag(std::string html) {
   html = std::regex_replace(html, std::regex("<script>[^]*</script>"), "");
   static const std::set<std::string> empty{"meta", "link", "img", "input"};
@@ -112,7 +113,7 @@ std::string first_unbalanced_tag(std::string html) {
   return open.empty() ? "" : open.back();
 }
 
-TEST(ComparePage, HoldsPicturesAndFiguresAndAsksForNothing) {
+TEST(ComparePage, HoldsPicturesAndFiguresAndRequestsNoOtherFile) {
   const Film b = film_of(3, 2,
                          {{"B", noise(6, 1)},
                           {"G", noise(6, 2)},
@@ -141,21 +142,22 @@ TEST(ComparePage, HoldsPicturesAndFiguresAndAsksForNothing) {
           << layer.layer << " " << column.heading;
     }
   }
-  // A, B and the heat map of three layers.
+  // Three pictures (A, B and the heat map) of three layers.
   const std::vector<Pixels> pictures = pictures_in(html);
   ASSERT_EQ(pictures.size(), 9U);
   for (const Pixels& picture : pictures) {
     EXPECT_EQ(picture.width, 3);
     EXPECT_EQ(picture.height, 2);
   }
-  // The light is half as strong in A: sRGB 188 of 0.5, under B's tone and not its own.
+  // The light in A is half as strong as in B. Both are shown relative to B's largest value, so A is
+  // 0.5, which is 188 in sRGB.
   EXPECT_EQ(pictures[3].values, std::vector<int>(6, 188));
   EXPECT_EQ(pictures[4].values, std::vector<int>(6, 255));
 }
 
 class CompareProgram : public FilmFile {
  protected:
-  // Its exit code; what it printed is in the files "out" and "err".
+  // Runs `dapple compare`; returns its exit code. What it printed is in the files "out" and "err".
   [[nodiscard]] int run(const std::string& arguments) const {
     const std::string command = "cd '" + folder_.string() + "' && '" DAPPLE_PROGRAM "' compare " +
                                 arguments + " > out 2> err";
@@ -187,7 +189,8 @@ TEST_F(CompareProgram, ExitsWithFiveWhenALayerIsOverTheLimitAndStillWritesEveryt
 }
 
 TEST_F(CompareProgram, PrintsJsonAndWritesTheHeatMapAndThePage) {
-  // 0.125 is added to multiples of 2^-24 below 1: exact below 0.875, rounded by at most 2^-25.
+  // 0.125 is added to multiples of 2^-24 below 1. The sum is exact if it is below 1; larger sums
+  // are rounded by at most 2^-25.
   const Film b = film_of(64, 48, {{"ao.R", noise(3072, 1)}, {"light.key.R", constant(3072, 2)}});
   Film a = b;
   for (float& value : a.planes[0].pixels) value += 0.125f;
@@ -206,9 +209,9 @@ TEST_F(CompareProgram, PrintsJsonAndWritesTheHeatMapAndThePage) {
   const Pixels heat = decode_png(bytes_of(path("h.png")));  // of ao, the first layer
   EXPECT_EQ(heat.width, 64);
   EXPECT_EQ(heat.height, 48);
-  const Rgb hot = kHeatRamp.back();  // 0.125 at scale 8
+  const Rgb hot = kHeatRamp.back();  // the colour of 0.125 at scale 8
   for (std::size_t i = 0; i < heat.values.size(); ++i) {
-    ASSERT_NEAR(heat.values[i], hot[i % 3], 1) << i;  // a rounded difference may fall short
+    ASSERT_NEAR(heat.values[i], hot[i % 3], 1) << i;  // a rounded difference may be smaller
   }
   EXPECT_EQ(pictures_in(bytes_of(path("p.html"))).size(), 6U);
 }

@@ -1,5 +1,5 @@
-// Comparing films: figures against closed forms and brute force, what NaN and infinity do,
-// what passes, and the heat map.
+// Comparing films: figures against closed forms and brute force, effects of NaN and infinity, when
+// a comparison passes, and the heat map.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace film_test;
 using namespace compare_test;
 using Names = std::vector<std::string>;
 
-// The only layer of two films of one channel.
+// The difference of two films of one channel.
 LayerDifference difference(const std::string& channel, int width, int height,
                            const std::vector<float>& a, const std::vector<float>& b) {
   return compared(film_of(width, height, {{channel, a}}), film_of(width, height, {{channel, b}}))
@@ -59,7 +59,8 @@ TEST(CompareFigures, AreZeroForEqualFilms) {
   EXPECT_EQ(failure(compared(film, film), 0.0), "");
 }
 
-// Powers of two: every sum is exact in doubles, so the closed forms are exact as well.
+// All values are sums of few powers of two, so sums are exact in doubles, and so are the closed
+// forms.
 TEST(CompareFigures, OfAConstantOffsetAreThatOffset) {
   const LayerDifference d = difference("ao.R", 40, 50, constant(2000, 0.75f), constant(2000, 0.5f));
   EXPECT_EQ(d.mean_a, 0.75);
@@ -73,7 +74,7 @@ TEST(CompareFigures, OfAConstantOffsetAreThatOffset) {
 }
 
 TEST(CompareFigures, SeparateMeanDifferenceFromRmseAndFindTheLargest) {
-  // Differences -0.5, 0.5, 0, 1 (twice the others' scale, in the second row).
+  // The differences are -0.5, 0.5, 0 and 1; the largest is in the second row.
   const LayerDifference d = difference("ao.R", 2, 2, {0, 1, 0.25f, 1}, {0.5f, 0.5f, 0.25f, 0});
   EXPECT_EQ(d.mean_difference, 0.25);
   EXPECT_EQ(d.rmse, std::sqrt(1.5 / 4));
@@ -91,7 +92,7 @@ TEST(CompareFigures, OfLightsAreAlsoRelativeToTheLargestValueInB) {
 }
 
 TEST(CompareFigures, CountInfinityAndNanApartAndLeaveThemOut) {
-  // Equal infinities; infinity against 1 and against -infinity; NaN on either side or both.
+  // Equal infinities; infinity against 1 and against -infinity; NaN in a, in b and in both.
   const std::vector<float> a{kInfinity, kInfinity, -kInfinity, kNan, 1, kNan, 3};
   const std::vector<float> b{kInfinity, 1, kInfinity, 1, kNan, kNan, 1};
   const LayerDifference d = difference("Z", 7, 1, a, b);
@@ -162,7 +163,7 @@ TEST(CompareFailure, NamesLayerAndFigureAndExemptsDistancesAndCounts) {
   EXPECT_TRUE(contains(failure(only_z, 0.2), "layer Z has RMSE 8"));
 }
 
-TEST(CompareFailure, IsAlwaysForNanAndUnderALimitForInfinity) {
+TEST(CompareFailure, NanAlwaysFailsAndInfinityFailsUnderALimit) {
   const auto one = [](const std::string& channel, float a, float b) {
     return compared(film_of(1, 1, {{channel, {a}}}), film_of(1, 1, {{channel, {b}}}));
   };
@@ -189,7 +190,7 @@ TEST(CompareWindows, ThatDifferAreRefusedWithBothSizes) {
   EXPECT_NO_THROW(require_same_windows(a, a, "a", "a"));
 }
 
-// CIE Y of an sRGB colour; lightness is a rising function of it.
+// CIE luminance Y of an sRGB colour; lightness increases with it.
 double luminance(const Rgb& color) {
   const auto linear = [](std::uint8_t code) {
     const double c = code / 255.0;
@@ -204,9 +205,10 @@ TEST(HeatMap, GetsLighterWithTheDifferenceAndGreenWithoutOne) {
   }
   EXPECT_EQ(heat_color(-1), kHeatRamp.front());
   EXPECT_EQ(heat_color(1e30), kHeatRamp.back());
-  EXPECT_EQ(heat_color(0.5 / 15), (Rgb{6, 5, 20}));  // (0, 0, 4) and (11, 9, 36) halfway, rounded
+  EXPECT_EQ(heat_color(0.5 / 15), (Rgb{6, 5, 20}));  // rounded mean of (0, 0, 4) and (11, 9, 36)
 
-  // Equal, half hot by either channel, hot, beyond, NaN before a number, equal infinities.
+  // The pixels: equal, half of the range in each of the two channels, the whole range, beyond it,
+  // NaN against a number, equal infinities.
   const std::vector<float> one{1, 1, 1, 1, 1, 1, kInfinity};
   const Film a = film_of(7, 1,
                          {{"ao.G", {1, 0.5f, 0.75f, 2, 9, kNan, kInfinity}},

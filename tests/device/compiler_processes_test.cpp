@@ -10,7 +10,7 @@
 #include "dapple/error.hpp"
 #include "device/cpus.hpp"
 #include "device/environment_while.hpp"
-#include "passes/passes.hpp"
+#include "passes/kernel_list.hpp"
 #include "support/program_run.hpp"
 #include "support/running_program.hpp"
 

@@ -1,5 +1,5 @@
-// Films as EXR files: what goes in comes back bit for bit, with windows and metadata where
-// other programs look for them.
+// Films as EXR files: reading a written film returns the same bits, and windows and metadata are in
+// the attributes where other programs look for them.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -20,7 +20,7 @@ using namespace film_test;
 class FilmExr : public FilmFile {};
 
 TEST_F(FilmExr, ReturnsEveryBitOfEveryChannel) {
-  Film film = ramp_film(37, 150);  // more than two strips of 64 rows, no multiple of them
+  Film film = ramp_film(37, 150);  // more than two strips of 64 rows, and no multiple of 64
   film.planes[1].pixels[5] = std::numeric_limits<float>::infinity();
   film.planes[1].pixels[6] = std::bit_cast<float>(0x7fc12345U);  // a NaN with a payload
   film.planes[1].pixels[7] = -0.0f;
@@ -103,7 +103,7 @@ TEST_F(FilmExr, MetadataIsWhereOtherProgramsLookForIt) {
   EXPECT_EQ(header.typedAttribute<Imf::StringAttribute>("dapple:device").value(), "pthread-model");
 }
 
-TEST_F(FilmExr, SettingCannotReplaceWhatWasUsed) {
+TEST_F(FilmExr, SettingsCannotReplaceMetadata) {
   Film film = ramp_film(2, 2);
   film.metadata = some_metadata();
   film.metadata.settings = {{"device", "what was asked for"}, {"samples", "1"}};

@@ -1,5 +1,5 @@
-// What render() puts in the film's channels, on scenes where every value is known: coverage,
-// position, normal, depth along the viewing axis, AO where rays miss, and RGBA.
+// The film's channels after render(), on scenes where every value is known: coverage, position,
+// normal, depth along the viewing axis, AO where rays miss, and RGBA.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace scene_test;
 
 constexpr int kWidth = 24, kHeight = 16;
 
-// Channel values by pixel.
+// A film whose channel values can be read by pixel.
 class Picture {
  public:
   explicit Picture(const RenderResult& result) : film_(result.film) {}
@@ -52,7 +52,8 @@ Scene plane_scene(float side, const Camera& camera) {
   return scene;
 }
 
-// The mean of points seen through a pixel is seen through it: perspective keeps convex sets.
+// The mean position of a pixel's hits must project into that pixel, because perspective maps convex
+// sets to convex sets.
 void expect_seen_through_pixel(const Picture& picture, const V3f& position, int pixel) {
   V3f ndc;
   picture.film().metadata.world_to_ndc.multVecMatrix(position, ndc);
@@ -72,15 +73,15 @@ void expect_plane(const Picture& picture, const Camera& camera) {
     const V3f position = picture.at3("P.", "XYZ", pixel);
     EXPECT_NEAR(position.y, 0, 1e-5);
     expect_seen_through_pixel(picture, position, pixel);
-    // Linear in the position, so that the mean depth is the mean position's.
+    // Depth is linear in the position, so the mean depth is the depth of the mean position.
     EXPECT_NEAR(picture.at("Z", pixel), (position - eye).dot(axis), 2e-5);
   }
 }
 
-TEST(PictureChannels, OfAPlaneAreItsPositionsNormalsAndDepthsAlongTheViewingAxis) {
+TEST(PictureChannels, HoldPositionsNormalsAndDepthsOfAPlane) {
   const Camera perspective = look_at({1, 4, 5}, {0.5f, 0, 0.3f}, {0, 1, 0}, 0.6f);
   expect_plane(Picture(plane_scene(50, perspective), small_picture()), perspective);
-  // From below the normal is turned to the viewer.
+  // Below: seen from there, the normal is flipped towards the viewer.
   Camera orthographic = look_at({1, 4, 5}, {0.5f, 0, 0.3f}, {0, 1, 0}, 0.6f);
   orthographic.kind = Camera::Kind::orthographic;
   orthographic.half_height = 1.5f;
@@ -90,8 +91,9 @@ TEST(PictureChannels, OfAPlaneAreItsPositionsNormalsAndDepthsAlongTheViewingAxis
   EXPECT_NEAR(from_below.at("N.Y", kWidth / 2), -1, 1e-6);
 }
 
-// Straight down on a square of side 4.2 from 10 m, where the picture is 6 m high and 9 m wide.
-TEST(PictureChannels, OfPixelsThatMissAreFreeAndDepthIsNotDistance) {
+// The camera looks straight down from 10 m at a square of side 4.2 m. At that distance the picture
+// is 6 m high and 9 m wide.
+TEST(PictureChannels, AoIsOneWherePixelsMissAndDepthIsNotDistance) {
   const float fov = 2 * std::atan(0.3f);
   const Camera down = look_at({0, 10, 0}, {0, 0, 0}, {0, 0, -1}, fov);
   Scene scene = plane_scene(4.2f, down);
@@ -101,7 +103,7 @@ TEST(PictureChannels, OfPixelsThatMissAreFreeAndDepthIsNotDistance) {
     const float a = picture.at("A", pixel);
     coverage += a / (kWidth * kHeight);
     EXPECT_EQ(picture.at("ao.G", pixel), 1.0f);
-    EXPECT_EQ(picture.at("R", pixel), a);  // ao alone, premultiplied
+    EXPECT_EQ(picture.at("R", pixel), a);  // only AO, premultiplied
     if (a > 0) {
       EXPECT_NEAR(picture.at("Z", pixel), 10, 1e-5);
       EXPECT_NEAR(picture.at("N.Y", pixel), 1, 1e-6);  // mean over hits, however few
@@ -112,7 +114,7 @@ TEST(PictureChannels, OfPixelsThatMissAreFreeAndDepthIsNotDistance) {
       EXPECT_EQ(picture.at3("bent.", "XYZ", pixel), V3f(0.0f));
     }
   }
-  // Each of the 45 or so border pixels errs by less than 1 / 16, most by far less.
+  // Each of the about 45 border pixels is off by less than 1 / 16, most by far less.
   EXPECT_NEAR(coverage, 4.2 * 4.2 / (6.0 * 9.0), 45.0 / 16 / (kWidth * kHeight));
 }
 
@@ -125,7 +127,7 @@ Light rect_above(const std::string& name, const V3f& radiance, float x) {
 }
 
 TEST(PictureChannels, RgbaIsAoTimesLightsOverTheirLargestUnoccludedPremultiplied) {
-  // Seen from the side and partly: sky above, ground below, a translucent sheet over a part.
+  // A view from the side: sky above, ground below.
   Scene scene = plane_scene(8, look_at({0, 2.5f, 9}, {0, 0.5f, 0}, {0, 1, 0}, 0.5f));
   scene.lights = {rect_above("warm", V3f(3, 2, 1), -2), rect_above("cool", V3f(0.5f, 1, 4), 2)};
   RenderOptions options = small_picture();
@@ -141,7 +143,8 @@ TEST(PictureChannels, RgbaIsAoTimesLightsOverTheirLargestUnoccludedPremultiplied
     const V3f sum = light(free, pixel);
     largest = std::max({largest, double{sum.x}, double{sum.y}, double{sum.z}});
   }
-  // Behind the camera's rays but between the ground and the lights: the same camera samples.
+  // A sheet between the ground and the lights that no camera ray crosses, so camera samples stay
+  // the same.
   scene.materials.push_back(material_of(0.5f));
   place(scene, square_mesh(3, 2.75f, 1, 1));
   const Picture shaded(scene, options);

@@ -1,5 +1,5 @@
-// PNG previews, decoded again and compared with the sRGB curve's closed form: which planes a
-// layer means, how each kind of layer is brought into range, what is refused.
+// PNG previews, decoded again and compared with the closed form of the sRGB curve: the planes of a
+// layer, how each kind of layer is scaled to the range of a PNG, and which films are refused.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
@@ -26,7 +26,7 @@ struct Image {
 
 class Png : public FilmFile {
  protected:
-  // What a viewer would see of `layer`.
+  // Writes `layer` as a PNG and decodes it.
   Image shown(const Film& film, const std::string& layer = "") {
     write_png(film, path("a.png"), layer);
     Image image;
@@ -41,7 +41,7 @@ class Png : public FilmFile {
   }
 };
 
-// One row of pixels; each plane's values from left to right.
+// A film of one row of pixels; each plane holds its values from left to right.
 Film row_film(std::vector<Plane> planes) {
   Film film;
   film.width = static_cast<int>(planes.front().pixels.size());
@@ -54,7 +54,7 @@ Film row_film(std::vector<Plane> planes) {
 using Values = std::vector<int>;
 
 TEST_F(Png, ColoursFollowTheSrgbCurve) {
-  // 0.5 is 187.5160 of 255, 0.0031308 is the joint of line and power: 10.3147.
+  // 0.5 becomes 187.5160 of 255; 0.0031308, where the line and the power meet, becomes 10.3147.
   const Film film = row_film(
       {{"A", {0, 1, 1}}, {"B", {0.0031308f, 0, 1}}, {"G", {0.5f, 0, 1}}, {"R", {0.001f, 0, 1}}});
   const Image image = shown(film);
@@ -74,7 +74,7 @@ TEST_F(Png, SrgbDecodesBackToWithinHalfAStep) {
     const auto decode = [](double c) {
       return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
     };
-    // Half a step either way, and 1e-4 for the standard's own mismatch at the joint.
+    // Half a step in both directions, and 1e-4 for the gap between line and power in the standard.
     EXPECT_GE(plane.pixels[i], decode(code - 0.5 / 255) - 1e-4) << i;
     EXPECT_LE(plane.pixels[i], decode(code + 0.5 / 255) + 1e-4) << i;
   }
@@ -95,7 +95,7 @@ TEST_F(Png, LayersOfThreeChannelsAreColour) {
 
 TEST_F(Png, NormalsAreMappedLinearlyFromMinusOneToOne) {
   const Film film = row_film({{"N.X", {-1, 0}}, {"N.Y", {1, 0}}, {"N.Z", {0.5f, 0}}});
-  // (0.5 + 1) / 2 * 255 = 191.25, 0.5 * 255 = 127.5, rounded up
+  // (0.5 + 1) / 2 * 255 = 191.25, and 0.5 * 255 = 127.5, which is rounded up.
   EXPECT_EQ(shown(film, "N").values, (Values{0, 255, 191, 128, 128, 128}));
 }
 
@@ -112,7 +112,7 @@ TEST_F(Png, DistancesWithoutARangeCanStillBeWritten) {
 TEST_F(Png, LightsAreDividedByTheirLargestValue) {
   const Film film =
       row_film({{"light.key.B", {0, 1}}, {"light.key.G", {2, 0}}, {"light.key.R", {4, 0}}});
-  // 0.5 of the largest is 188, 0.25 is 136.9576.
+  // 0.5 of the largest value becomes 188, and 0.25 becomes 136.9576.
   EXPECT_EQ(shown(film, "light.key").values, (Values{255, 188, 0, 0, 0, 137}));
   const Film dark = row_film({{"light.key", {0, 0}}});
   EXPECT_EQ(shown(dark, "light.key").values, (Values{0, 0}));

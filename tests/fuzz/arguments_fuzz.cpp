@@ -3,8 +3,8 @@
 
 #include "commands/option_text.hpp"
 #include "dapple/error.hpp"
-#include "scene/procedural/procedural.hpp"
 #include "scene/procedural/parameters.hpp"
+#include "scene/procedural/procedural.hpp"
 
 namespace {
 

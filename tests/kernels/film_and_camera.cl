@@ -1,9 +1,9 @@
-/* Parts of the camera pass and of resolving as kernels. */
+/* Functions of the camera pass and of resolving, called by kernels for the tests. */
 #include "camera/surface_points16.clh"
 #include "camera/camera_samples.clh"
 #include "film/film.clh"
 
-/* The order in which one item takes its samples, by their places in the picture. */
+/* In: positions of one item's samples in the picture; out: the order in which it takes them. */
 __kernel void camera_order(__global const float* x, __global const float* y,
                            __global uint* order) {
   if (get_global_id(0) > 0) return;
@@ -19,14 +19,15 @@ __kernel void camera_order(__global const float* x, __global const float* y,
   for (uint i = 0; i < DAPPLE_ITEM_RAYS; ++i) order[i] = sorted.place[i];
 }
 
-/* Eight values an item, scaled already. */
+/* Rounds to fixed point: eight values an item, already scaled. */
 __kernel void to_fixed_points(__global const float* values, __global long* sums, uint count) {
   const uint item = get_global_id(0);
   if (item < count) vstore8(fixed_points(vload8(item, values)), item, sums);
 }
 
-/* Sixteen rays, seven numbers each (origin, direction, t), and what they hit: points as they are
-   placed side by side and one by one, seven numbers each. */
+/* In: sixteen rays, seven numbers each (origin, direction, t), and the primitives that they hit.
+   Out: the hit points, seven numbers each (position, normal, offset), computed for all rays at once
+   (together) and one by one (alone). */
 __kernel void placed_points(__global const TriangleBlock* blocks,
                             __global const SegmentBlock* segments,
                             __global const InstanceRecord* instances, __global const float* rays,

@@ -1,6 +1,6 @@
-/* The vectorized opacity model of footprint.clh: optical depths of a node's children along
-   a direction, the ray crossing `chords` mean chords of each box. Where it passes does not
-   count: nothing in the nodes is concentrated. */
+/* The vectorized opacity model of footprint.clh. In: nodes and directions; out: optical depths of
+   each node's children for a ray that crosses `chords` mean chords of each box. The ray's position
+   in the box has no effect, because the nodes have no mass concentration. */
 #include "opacity/footprint.clh"
 
 __kernel void depths(__global const BvhNode* nodes, __global const float* directions,
@@ -18,7 +18,7 @@ __kernel void depths(__global const BvhNode* nodes, __global const float* direct
   vstore8(child_optical_depths(nodes + item, hits, sizes, facing, span), item, results);
 }
 
-/* minus_log(), eight values an item. */
+/* Calls minus_log(), with eight values an item. */
 __kernel void minus_logs(__global const float* values, __global float* results, uint count) {
   const uint item = get_global_id(0);
   if (item < count) vstore8(minus_log(vload8(item, values)), item, results);

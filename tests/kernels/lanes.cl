@@ -1,2 +1,2 @@
-/* As the device's compiler would have it. */
+/* lanes_of_patterns.h as the device's compiler sees it. */
 #include "lanes_of_patterns.h"

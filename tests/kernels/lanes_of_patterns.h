@@ -1,5 +1,6 @@
-/* lanes.clh for patterns of sixteen bits, one an item: what each of its functions makes of them,
-   and which children a packet pushes. Included once for each way in which it can be compiled. */
+/* Kernels that call the functions of lanes.clh. In: patterns of sixteen bits, one an item; out: the
+   result of each function, and which children a packet pushes. Included once for each way in which
+   lanes.clh can be compiled. */
 #include "occlusion/packet_stack.clh"
 
 __kernel void lanes_of_patterns(__global uint* found) {
@@ -20,7 +21,7 @@ __kernel void lanes_of_patterns(__global uint* found) {
   to[5] = pattern ? lowest_bit(pattern) : lowest;
 }
 
-/* Sixteen numbers an item: their floors, and all as whole numbers. */
+/* Sixteen numbers an item: their floors, and their roundings to integers. */
 __kernel void rounded(__global const float* numbers, __global float* floors,
                       __global long* wholes, uint items) {
   const uint item = get_global_id(0);
@@ -31,9 +32,9 @@ __kernel void rounded(__global const float* numbers, __global float* floors,
   vstore8(rounded_longs(x.hi), 2u * item + 1u, wholes);
 }
 
-/* `pattern` names the children that are nodes, from number 100 on, and those that are opened, by as
-   many rays as their slot's number and one; 17 entries each: how many are pushed, which, and their
-   rays. */
+/* The low eight bits of `pattern` are the children that are nodes, numbered from 100 on; the high
+   eight bits are the opened children. Slot s is opened by s + 1 rays. Out: 17 entries an item, the
+   number of pushed nodes, eight node numbers, and eight numbers of rays. */
 __kernel void children_of_patterns(__global BvhNode* nodes, __global uint* found) {
   const uint pattern = get_global_id(0);
   __global BvhNode* node = nodes + pattern;

@@ -1,5 +1,5 @@
-/* Reports the layout of every shared struct as the device's compiler sees it, in the order
-   of layout_members.h: sizes of structs; offset and size of members. */
+/* Reports the layout of every shared struct as the device's compiler sees it, in the order of
+   layout_members.h: the size of each struct, and offset and size of each member. */
 #include "dapple/shared/bvh_node.h"
 #include "dapple/shared/geometry.h"
 #include "layout_members.h"

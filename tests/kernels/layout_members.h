@@ -1,5 +1,5 @@
-/* Every struct that crosses to the device and every member of it, for both languages.
-   tests/device/layout_test.cpp notices a member that is missing here: sizes would not add up. */
+/* Lists every struct that is shared with the device and all its members, for both languages.
+   tests/device/layout_test.cpp fails if a member is missing here, because sizes do not add up. */
 #ifndef DAPPLE_LAYOUT_MEMBERS_H
 #define DAPPLE_LAYOUT_MEMBERS_H
 

@@ -1,7 +1,7 @@
-/* opacity_lookup.clh as kernels. */
+/* Functions of opacity_lookup.clh, called by kernels for the tests. */
 #include "opacity/opacity_lookup.clh"
 
-/* Texture coordinates in, alpha out. */
+/* In: texture coordinates; out: alpha. */
 __kernel void look_up(__global const TextureRecord* textures, __global const uchar* texels,
                       __global const float* uvs, __global float* alphas, uint texture, uint count) {
   const uint item = get_global_id(0);
@@ -15,7 +15,7 @@ __kernel void look_up(__global const TextureRecord* textures, __global const uch
   alphas[item] = mix_texels(texel, &places).s0;
 }
 
-/* Barycentrics in, opacity of textured triangle `triangle` out. */
+/* In: barycentric coordinates; out: opacity of the textured triangle `triangle`. */
 __kernel void look_up_triangle(__global const TexturedTriangle* textured,
                                __global const MaterialRecord* materials,
                                __global const uchar* texels, __global const float* barycentrics,
@@ -25,7 +25,7 @@ __kernel void look_up_triangle(__global const TexturedTriangle* textured,
   const Scene scene = {0, 0, 0, textured, materials, texels, 0};
   TexturedHits hits;
   hits.count = 0u;
-  /* Others before it and after it must not matter. */
+  /* Other lookups before and after it must have no effect. */
   const uint place = item % DAPPLE_LOOKUPS;
   for (uint i = 0; i <= place; ++i) {
     const float2 at = vload2(item - place + i, barycentrics);
@@ -39,11 +39,11 @@ __kernel void look_up_triangle(__global const TexturedTriangle* textured,
   const float of_lane[DAPPLE_LOOKUPS] = {
       alone.s0, alone.s1, alone.s2, alone.s3, alone.s4, alone.s5, alone.s6, alone.s7,
       alone.s8, alone.s9, alone.sa, alone.sb, alone.sc, alone.sd, alone.se, alone.sf};
-  /* Both ways of looking up must agree. */
+  /* The vector and the scalar lookup must agree. */
   opacities[item] = of_lane[place] == opacity[place] ? opacity[place] : NAN;
 }
 
-/* Textured triangles in; u, v and alpha out as they are interpolated at each corner. */
+/* In: textured triangles; out: u, v and alpha, interpolated at each corner. */
 __kernel void unpack_corners(__global const TexturedTriangle* textured, __global float* corners,
                              __global uint* materials, __global uint* textures, uint count) {
   const uint item = get_global_id(0);

@@ -1,4 +1,5 @@
-/* random.clh, direction.clh and the light samplers as kernels: one item, one sample. */
+/* Functions of random.clh, direction.clh and the light samplers, called by kernels for the tests.
+   One item makes one sample. */
 #include "lights/light.cl"
 
 __kernel void sobol_points(__global float* points, uint pixel, uint pair, uint seed, uint first,
@@ -34,7 +35,7 @@ __kernel void frames(__global const float* normals, __global float* tangents,
   vstore3(bitangent, item, bitangents);
 }
 
-/* The same by make_frames(), item by item in the next of its lanes. */
+/* The same by make_frames(); each item uses the next lane. */
 __kernel void lane_frames(__global const float* normals, __global float* tangents,
                           __global float* bitangents, uint count) {
   const uint item = get_global_id(0), lane = item % 16u;
@@ -61,8 +62,8 @@ __kernel void cone_directions(__global const float* squares, __global const floa
   vstore3(sample_cone(vload3(item, axes), one_minus_cos, vload2(item, squares)), item, directions);
 }
 
-/* Direction, distance and solid angle of `count` samples of a light seen from the origin, item by
-   item in the next of sixteen lanes. */
+/* Direction, distance and solid angle of `count` samples of a light seen from the origin. Each item
+   uses the next of sixteen lanes. */
 __kernel void light_samples(__global const LightRecord* lights,
                             __global const EmitterTriangle* emitters, __global float* directions,
                             __global float* distances, __global float* solid_angles, uint light,

@@ -1,5 +1,5 @@
-// Domes against closed forms: a grey one is pi times AO, one bright texel is a sun, and images are
-// what their files say.
+// Dome lights against closed forms: the irradiance of a grey dome is pi times AO, and one bright
+// texel acts as a sun. Also tests the readers of Radiance HDR and EXR images.
 #include <algorithm>
 #include <fstream>
 
@@ -24,7 +24,7 @@ Light dome(std::shared_ptr<const Environment> environment = nullptr, float rotat
   return light;
 }
 
-/// Black, but for one texel.
+/// A black image with one texel of `radiance`.
 std::shared_ptr<Environment> one_texel(std::uint32_t width, std::uint32_t height, std::uint32_t x,
                                        std::uint32_t y, V3f radiance) {
   auto image = std::make_shared<Environment>(Environment{width, height, {}});
@@ -33,7 +33,7 @@ std::shared_ptr<Environment> one_texel(std::uint32_t width, std::uint32_t height
   return image;
 }
 
-/// Integral of the cosine to +Y over a texel of row `y`, all above the horizon.
+/// Integral of the cosine to +Y over a texel of row `y`, which must be above the horizon.
 double texel_cosine(const Environment& image, std::uint32_t y) {
   const auto sine_square = [&](double row) {
     return std::pow(std::sin(kPi * row / image.height), 2);
@@ -46,7 +46,7 @@ V3d irradiance(const Scene& scene, const RenderOptions& options = one_pixel()) {
   return {value(film, "light.dome.R"), value(film, "light.dome.G"), value(film, "light.dome.B")};
 }
 
-TEST(Dome, AGreyOneIsPiTimesAmbientOcclusion) {
+TEST(Dome, IrradianceOfAGreyDomeIsPiTimesAmbientOcclusion) {
   Scene scene = point_on_ground();
   place(scene, square_mesh(1, 0.4f, 1, 0));
   scene.instances.back().to_world.setTranslation(V3f(0.6f, 0, 0));
@@ -77,13 +77,14 @@ TEST(Dome, OneBrightTexelGivesTheIntegralOfItsCosine) {
   scene.lights.push_back(dome(image));
   const double expected = texel_cosine(*image, 5);
   const V3d found = irradiance(scene);
-  // Half of the rays go by the cosine and hardly ever to the texel.
+  // Half of the rays are cosine-weighted and almost never hit the texel.
   EXPECT_NEAR(found.x, 500 * expected, 500 * expected * 0.01);
   EXPECT_NEAR(found.y, 1000 * expected, 1000 * expected * 0.01);
   EXPECT_EQ(found.z, 0);
 }
 
-/// Shadow of a square above the point, moved by `offset`, under one texel at 45 degrees: 1 or 0.
+/// 0 if a square at `offset` shades the point from one bright texel at 45 degrees above the
+/// horizon, 1 if not.
 double lit(std::uint32_t column, float rotation, V3f offset) {
   Scene scene = point_on_ground();
   place(scene, square_mesh(0.6f, 0, 1, 0));
@@ -114,7 +115,7 @@ double rmse(const Film& a, const Film& b, const char* plane) {
   return std::sqrt(sum / static_cast<double>(of_a.size()));
 }
 
-// The samples are the same, so that noise is for the most part, too.
+// Both pictures use the same samples, so most of their noise is the same.
 TEST(Dome, PicturesOfATreeComeNearerToExactAsTheFootprintShrinks) {
   Scene scene = make_procedural("scene:tree?leaves=2000");
   auto image = std::make_shared<Environment>(Environment{16, 8, {}});
@@ -138,7 +139,7 @@ TEST(Dome, PicturesOfATreeComeNearerToExactAsTheFootprintShrinks) {
   EXPECT_LT(last, 0.02);
 }
 
-TEST(Dome, SettlingKeepsIrradianceAndMakesTheMeanLuminanceOne) {
+TEST(Dome, FinalizingKeepsIrradianceAndMakesTheMeanLuminanceOne) {
   Scene scene = point_on_ground();
   auto image = std::make_shared<Environment>(Environment{6000, 3, {}});
   for (std::uint32_t y = 0; y < 3; ++y)
@@ -185,7 +186,7 @@ std::vector<std::uint8_t> hdr_bytes(const std::string& header, std::initializer_
   return bytes;
 }
 
-// Two rows of eight: the first one run of 128s a channel, the second stored.
+// Two rows of eight pixels: the first has one run in each channel, the second also stored values.
 std::vector<std::uint8_t> small_hdr() {
   return hdr_bytes("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n",
                    {2, 2, 0, 8, 136, 128, 136, 64, 136, 32, 136, 129,  //
@@ -218,7 +219,7 @@ TEST(RadianceHdr, DamagedFilesAreRefusedAtEveryLength) {
 
 class LoadEnvironment : public film_test::FilmFile {};
 
-TEST_F(LoadEnvironment, ReadsExrChannelsAndRefusesWhatIsNoRadiance) {
+TEST_F(LoadEnvironment, ReadsExrChannelsAndRefusesInvalidFiles) {
   Film film;
   film.width = 2;
   film.height = 1;

@@ -1,5 +1,5 @@
-// Irradiance of each kind of light against its closed form, and of emissive meshes, which
-// never occlude their own samples but do occlude AO.
+// Compares the irradiance of each kind of light with its closed form. Emissive meshes must not
+// occlude their own samples, but must occlude AO.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace point_on_ground_test;
 
 // Irradiance at the origin, facing +Y, of a polygon of radiance 1 above the horizon: Lambert's
 // sum over its edges (Arvo, "The Irradiance Jacobian for Partially Occluded Polyhedral
-// Sources", 1994, equation 2). Positive whichever way the polygon winds.
+// Sources", 1994, equation 2). Positive for both windings.
 double polygon_irradiance(const std::vector<V3f>& corners) {
   double sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -66,7 +66,8 @@ TEST(Light, IrradianceOfRectsSpheresAndSunsIsTheirClosedForm) {
     scene.lights.push_back(std::move(light));
     expected.push_back(irradiance);
   };
-  // Parallel to the ground and centred above: Howell's form factor catalogue, B-3 times 4.
+  // A rect parallel to the ground, centred above the point: 4 times B-3 of Howell's form factor
+  // catalogue.
   const auto parallel = [](double x, double y) {
     const double p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
     return 2 * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
@@ -81,18 +82,19 @@ TEST(Light, IrradianceOfRectsSpheresAndSunsIsTheirClosedForm) {
   facing.direction = tilted.edge_u.cross(tilted.edge_v).normalized();
   if (facing.direction.dot(facing.position) > 0) facing.direction = -facing.direction;
   add(facing, rect_irradiance(facing));
-  // Only the side it faces emits.
+  // A rect emits only from its front.
   Light away = facing;
   away.name = "away";
   away.direction = -away.direction;
   add(away, 0);
-  // A whole sphere above the horizon: pi (r / d)^2 cos.
+  // A sphere that is completely above the horizon: pi (r / d)^2 cos.
   const V3f there(1, 2, -1);
   const double cosine = 2 / std::sqrt(6.0);
   add(sphere("sphere", there, 0.5f), kPi * 0.25 / 6 * cosine);
   add(sphere("near", {0, 1.2f, 0}, 1), kPi / 1.44);
   add(sphere("tiny", there, 1e-3f), kPi * 1e-6 / 6 * cosine);
-  // KHR spot cones scale it: 1 inside the inner, ((c - outer) / (inner - outer))^2 between.
+  // Spot cones as in KHR_lights_punctual: 1 inside the inner one, between the two
+  // ((c - outer) / (inner - outer))^2.
   Light spot = sphere("spot", {0, 2, 0}, 0.1f);
   spot.direction = V3f(0, -1, 1).normalized();
   spot.cos_outer = 0.5f;
@@ -100,14 +102,14 @@ TEST(Light, IrradianceOfRectsSpheresAndSunsIsTheirClosedForm) {
   const double edge = (std::sqrt(0.5) - 0.5) / 0.4;
   add(spot, kPi * 0.01 / 4 * edge * edge);
   for (const double radius : {0.00465, 0.2, 1.0}) {
-    // Above the horizon whole; facing up for the widest.
+    // Every sun is completely above the horizon; the widest is straight above.
     const V3f up = radius < 0.5 ? there : V3f(0, 1, 0);
     const double sine = std::sin(radius);
     add(sun("sun" + std::to_string(scene.lights.size()), up, static_cast<float>(radius)),
         kPi * sine * sine * (radius < 0.5 ? cosine : 1.0));
   }
 
-  // Radiance multiplies what comes out, a channel at a time.
+  // The radiance multiplies each channel.
   for (Light& light : scene.lights) light.radiance = V3f(1, 2, 0.25f);
   RenderOptions options = one_pixel();
   options.ao = false;
@@ -115,7 +117,7 @@ TEST(Light, IrradianceOfRectsSpheresAndSunsIsTheirClosedForm) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const std::string layer = "light." + layer_name(scene.lights[i].name);
     SCOPED_TRACE(layer);
-    // The film's fixed point has steps of 2^-26, beside the sampling.
+    // The sampling error, and the film's fixed-point steps of 2^-26.
     const double error = kSampling * expected[i] + 2e-8;
     EXPECT_NEAR(value(film, layer + ".R"), expected[i], error);
     EXPECT_NEAR(value(film, layer + ".G"), 2 * expected[i], 2 * error);
@@ -134,12 +136,14 @@ TEST(Light, AnOccluderBetweenTakesItsOpacityFromEveryKind) {
   place(scene, square_mesh(6, 1.25f, 1, 1));  // above the camera, below the lights
   const Film shaded = render(scene, options).film;
   for (const char* channel : {"light.rect.R", "light.sphere.R", "light.sun.R"}) {
-    // The same rays: only fixed point and the quad's diagonal, which few rays meet, differ.
+    // Both films use the same rays; they differ only by fixed point and at the quad's diagonal,
+    // which few rays hit.
     EXPECT_NEAR(value(shaded, channel), 0.75 * value(free, channel), 1e-3 * value(free, channel));
   }
 }
 
-// The six faces of a box of side 1 around `centre`, `divisions` squares a side, facing out.
+// A box of side 1 around `centre` whose faces point outwards, each of `divisions` x `divisions`
+// squares.
 Mesh box_mesh(const V3f& centre, int divisions, std::uint32_t material) {
   Mesh mesh;
   for (int axis = 0; axis < 3; ++axis) {
@@ -153,7 +157,8 @@ Mesh box_mesh(const V3f& centre, int divisions, std::uint32_t material) {
   return mesh;
 }
 
-// The box's faces that look at the origin see all of it: their irradiances add up.
+// Irradiance of the box: the sum over the faces that face the origin, which do not occlude each
+// other.
 double box_irradiance(const V3f& centre) {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -189,11 +194,12 @@ TEST(EmissiveMesh, NeverOccludesItsOwnSamplesAndDoesOccludeAo) {
                                                {Estimator::prefiltered, 1000.0f}}) {
       SCOPED_TRACE(testing::Message() << "box at " << centre << ", footprint " << footprint);
       const Film film = render(scene, one_pixel(estimator, footprint)).film;
-      // Half of the samples lie on faces turned away: noisier, 4 / sqrt(4096) of it at random.
+      // Half of the samples are on faces that point away, so the noise is larger; with independent
+      // random samples it would be about 4 / sqrt(4096).
       const float glow = value(film, "light.glow.R");
       EXPECT_NEAR(glow, expected, 0.01 * expected);
-      // Opaque and convex: it hides what it would light. Wide footprints blur its outline,
-      // for which SolidCube has the bounds.
+      // The box is opaque and convex, so it occludes the directions that it lights. Wide footprints
+      // blur its outline; the SolidCube tests bound that.
       if (footprint > 1) continue;
       EXPECT_NEAR(value(film, "ao.R"), 1 - expected / kPi, 0.003);
     }

@@ -1,5 +1,5 @@
-// AO with a maximum distance and a falloff: what is nearer counts, what is beyond does not,
-// and a plane overhead has its integral.
+// AO with a maximum distance and a falloff: surfaces beyond the distance do not count, nearer ones
+// do, and the AO under an infinite plane equals the closed-form integral.
 #include <gtest/gtest.h>
 
 #include "support/scene_on_device.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace scene_test;
 
-// See closed_form_test.cpp: rms about 2e-4.
+// Enough rays for an rms error of about 2e-4; see closed_form_test.cpp.
 OcclusionOptions many_rays(Estimator estimator, double distance, double falloff) {
   OcclusionOptions options;
   options.rays = 1 << 16;
@@ -19,7 +19,7 @@ OcclusionOptions many_rays(Estimator estimator, double distance, double falloff)
   return options;
 }
 
-TEST(AoDistance, ADiskNearerCountsAndOneBeyondDoesNotAtAll) {
+TEST(AoDistance, OnlyADiskNearerThanTheDistanceOccludes) {
   const SceneOnDevice scene(make_procedural("scene:disk?radius=1&height=1&opacity=1"));
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     const auto ao = [&](double distance) {
@@ -27,12 +27,13 @@ TEST(AoDistance, ADiskNearerCountsAndOneBeyondDoesNotAtAll) {
     };
     EXPECT_EQ(ao(0.999), 1.0f);
     EXPECT_NEAR(ao(1.5), 0.5, 1.5e-3);  // the rim is at sqrt(2)
-    // Only the part within cos > h / D: a disk of radius sqrt(D^2 - h^2) occludes 1 - (h/D)^2.
+    // Only the part with cos > h / D counts: a disk of radius sqrt(D^2 - h^2) occludes 1 - (h/D)^2.
     EXPECT_NEAR(ao(1.25), 1.0 / (1.25 * 1.25), 1.5e-3);
   }
 }
 
-// 1 - a integral from k to 1 of 2 c (1 - k / c)^p dc, with c the cosine and k = h / D.
+// AO under a plane: 1 - a times the integral from k to 1 of 2 c (1 - k / c)^p dc, where a is the
+// opacity, c the cosine and k = h / D.
 double plane_ao(double opacity, double k, int power) {
   const double part = power == 0   ? 1 - k * k
                       : power == 1 ? (1 - k) * (1 - k)
@@ -56,20 +57,20 @@ TEST(AoDistance, APlaneOverheadFallsOffAsItsIntegral) {
           options.footprint = footprint;
           return scene.occlusion_at({0, 0, 0}, {0, 1, 0}, options);
         };
-        // Without falloff the edge at D is sharp: 2e-4 rms; with it smoother still.
+        // Without falloff the edge at D is sharp: 2e-4 rms. With falloff the error is smaller.
         EXPECT_NEAR(ao(Estimator::exact, 1), expected, 9e-4);
         EXPECT_NEAR(ao(Estimator::prefiltered, 1), expected, 2e-3);
-        // As wide as 64 rays would have: nodes count as at their middle. 8-bit bounds grow a
-        // node by up to 2 of its 64 to 127 steps an axis, and its opacity is that of the grown
-        // box: 3 to 6 % less, of which overlapping neighbours make up for a part.
+        // Footprints as of 64 rays: a node counts as if it were at its middle. 8-bit bounds enlarge
+        // a node by up to 2 of its 64 to 127 steps an axis, and its opacity is that of the larger
+        // box: 3 to 6 % less. Overlapping neighbours compensate part of this.
         EXPECT_NEAR(ao(Estimator::prefiltered, 1024), expected, 0.04);
       }
     }
   }
 }
 
-// One slanted square that the ray meets just beyond its end. Its node holds the end, so that
-// however wide the footprint it has to be opened and the square be found not to count.
+// One slanted square that the ray would hit just beyond its end. The square's node contains the
+// ray's end, so it must be opened at every footprint, and the square must not count.
 TEST(AoDistance, ANodeThatHoldsTheRaysEndIsOpenedAtEveryDistance) {
   int wrong = 0;
   const auto check = [&](float distance) {

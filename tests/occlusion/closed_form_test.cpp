@@ -1,5 +1,5 @@
-// Occlusion that is known in closed form: a disk over a point, stacks of sheets, greys, and a
-// solid cube that must stay solid from every side.
+// Occlusion that is known in closed form: a disk over a point, stacks of sheets, two grey sheets,
+// and a solid cube that must be opaque from every side.
 #include <gtest/gtest.h>
 
 #include "support/scene_on_device.hpp"
@@ -9,8 +9,8 @@ namespace {
 
 using namespace scene_test;
 
-// Rays for AO that is compared with a number. The sampler's (0,2)-nets err by at most the
-// strata on the boundary of what occludes: rms about sqrt(3 sqrt(n)) / (2 n) = 2e-4 here.
+// Number of rays for AO that is compared with a number. With (0,2)-nets only the strata on the
+// occluder's boundary cause errors: rms about sqrt(3 sqrt(n)) / (2 n) = 2e-4 here.
 constexpr int kManyRays = 1 << 16;
 
 float ao_below(const SceneOnDevice& scene, Estimator estimator, float footprint) {
@@ -35,12 +35,12 @@ TEST(ClosedForm, ADiskOverAPointOccludesItsFormFactorTimesItsOpacity) {
     const double expected = 1 - c.opacity * r2 / (r2 + c.height * c.height);
     SCOPED_TRACE(testing::Message()
                  << "radius " << c.radius << " height " << c.height << " opacity " << c.opacity);
-    // Four times the sampler's rms, and 1e-4 for the 256 segments: (2 pi / 256)^2 / 6.
+    // Four times the sampler's rms, and 1e-4 for the disk's 256 segments: (2 pi / 256)^2 / 6.
     EXPECT_NEAR(ao_below(scene, Estimator::exact, 1), expected, 9e-4);
     EXPECT_NEAR(ao_below(scene, Estimator::prefiltered, 1), expected, 1.5e-3);
-    // The footprint of 64 rays: nodes of single triangles. Neighbours on the disk have boxes
-    // that overlap, and their factors are multiplied as if independent: two triangles that
-    // fill a square let a quarter through. So up to half of the disk's own part may be lost.
+    // The footprint of 64 rays covers nodes of single triangles. Boxes of neighbouring triangles
+    // overlap, and their transmittances are multiplied as if they were independent: two triangles
+    // that fill a square transmit a quarter. So up to half of the disk's occlusion may be lost.
     const float wide = kManyRays / 64.0f;
     const float prefiltered = ao_below(scene, Estimator::prefiltered, wide);
     std::printf("disk %.2f %.2f %.2f: closed form %.5f, wide prefiltered %.5f\n", c.radius,
@@ -53,7 +53,7 @@ struct StackCase {
   int layers;
   double opacity;
   [[nodiscard]] double transmittance() const { return std::pow(1 - opacity, layers); }
-  // Sheets without the ground under them.
+  // The sheets, without a ground under them.
   [[nodiscard]] Scene scene() const {
     Scene s;
     s.materials.push_back(material_of(static_cast<float>(opacity)));
@@ -69,7 +69,7 @@ struct StackCase {
 constexpr StackCase kStacks[] = {{1, 0.25}, {4, 0.25}, {16, 0.1}, {40, 0.05},
                                  {2, 0.85}, {7, 0.5},  {3, 1.0}};
 
-// Straight down over a square of side `side`, a ray a cell, off the quads' diagonals.
+// Rays straight down over a square of side `side`, one a cell, not on the quads' diagonals.
 std::vector<Ray> rays_down(float side, int cells, float solid_angle) {
   std::vector<Ray> rays;
   for (int j = 0; j < cells; ++j) {
@@ -82,12 +82,12 @@ std::vector<Ray> rays_down(float side, int cells, float solid_angle) {
   return rays;
 }
 
-TEST(ClosedForm, AStackOfSheetsLetsThroughThePowerOfOneSheet) {
+TEST(ClosedForm, AStackOfSheetsTransmitsThePowerOfOneSheet) {
   for (const StackCase& c : kStacks) {
     const SceneOnDevice scene(c.scene());
     const double expected = c.transmittance();
     SCOPED_TRACE(testing::Message() << c.layers << " sheets of opacity " << c.opacity);
-    // 40 factors, each rounded to 2^-24.
+    // At most 40 factors, each rounded to 2^-24.
     for (const Occlusion& found : scene.trace(rays_down(1.98f, 16, 0), Estimator::exact)) {
       ASSERT_NEAR(found.transmittance, expected, 1e-5);
     }
@@ -95,17 +95,17 @@ TEST(ClosedForm, AStackOfSheetsLetsThroughThePowerOfOneSheet) {
     Points points(1);
     for (int i = 0; i < 256; ++i) {
       const V3f low = points.in_cube(0.95f), high = points.in_cube(0.95f);
-      // Enters above the top sheet and leaves below the lowest inside the sheets' square.
+      // The ray starts above the top sheet and crosses all sheets inside their square.
       const V3f from(low.x, 4.5f, low.z), to(high.x, -0.5f, high.z);
       oblique.push_back(make_ray(from, to - from));
     }
     for (const Occlusion& found : scene.trace(oblique, Estimator::exact)) {
       ASSERT_NEAR(found.transmittance, expected, 1e-5);
     }
-    // Prefiltered spreads the sheets over grown boxes, so only the mean over more than the
-    // square says something: opacity * 2^2 / 2.4^2. Opacity codes err by up to 0.004. Boxes
-    // grow by up to 1/64 an axis, and where k sheets are k nodes, k thinner layers over a
-    // larger area occlude more: by k/32 * a * T, at most 0.02 for all of these.
+    // Prefiltering spreads the sheets over boxes that are slightly larger. So the mean over a
+    // larger square is compared: opacity * 2^2 / 2.4^2. Stored opacities are off by up to 0.004.
+    // Boxes grow by up to 1/64 an axis, and where k sheets are k nodes, k thinner layers over a
+    // larger area occlude more: by k/32 * a * T, at most 0.02 in all of these cases.
     const double area = 2.4 * 2.4;
     const double mean =
         mean_transmittance(scene.trace(rays_down(2.4f, 96, 1e3f), Estimator::prefiltered));
@@ -115,7 +115,7 @@ TEST(ClosedForm, AStackOfSheetsLetsThroughThePowerOfOneSheet) {
   }
 }
 
-TEST(ClosedForm, AQuarterAndAHalfGreyLetThroughThreeEighths) {
+TEST(ClosedForm, OpacitiesOfAQuarterAndAHalfTransmitThreeEighths) {
   Scene scene = make_procedural("scene:greys");
   const auto grey_rays = [] {
     std::vector<Ray> rays = rays_down(1.98f, 16, 0);
@@ -135,8 +135,8 @@ TEST(ClosedForm, AQuarterAndAHalfGreyLetThroughThreeEighths) {
   }
 }
 
-// Parallel to `direction`, through places in the cube's inner 90 %: the tenth left out is
-// where boxes that 8-bit bounds grew by up to 1/64 let some of a ray pass at their rim.
+// Rays parallel to `direction` through the inner 90 % of the cube. The rest is left out: there,
+// boxes that 8-bit bounds enlarged by up to 1/64 are not opaque at their edges.
 std::vector<Ray> rays_into_cube(const V3f& direction, float solid_angle) {
   Points points(7);
   std::vector<Ray> rays;
@@ -147,7 +147,7 @@ std::vector<Ray> rays_into_cube(const V3f& direction, float solid_angle) {
   return rays;
 }
 
-// Along faces, edges and diagonals, and 60 more.
+// Directions along faces, edges and diagonals, and 60 random ones.
 std::vector<V3f> directions_all_around() {
   std::vector<V3f> directions;
   for (int i = 0; i < 27; ++i) {
@@ -163,7 +163,7 @@ std::vector<V3f> directions_all_around() {
 TEST(SolidCube, IsOpaqueFromEveryDirectionWhateverTheFootprint) {
   for (const char* name : {"scene:cube", "scene:cube?divisions=3", "scene:cube?divisions=50"}) {
     const SceneOnDevice cube(make_procedural(name));
-    // A twentieth, a fifth, four fifths of a face, and more than all of it.
+    // Footprints of a twentieth, a fifth and four fifths of a face, and of more than a face.
     for (const float scale : {1.0f, 4.0f, 16.0f, 64.0f}) {
       double worst = 0, sum = 0;
       V3f where;
@@ -184,8 +184,8 @@ TEST(SolidCube, IsOpaqueFromEveryDirectionWhateverTheFootprint) {
   }
 }
 
-// What prefiltering has to keep is the area that is hidden, its rim blurred.
-TEST(SolidCube, HidesItsSilhouetteWhateverTheFootprint) {
+// Prefiltering must keep the occluded area; only its edge may be blurred.
+TEST(SolidCube, OccludesItsSilhouetteWhateverTheFootprint) {
   const SceneOnDevice cube(make_procedural("scene:cube"));
   const std::vector<Ray> rays = rays_across(cube.bvh.bounds, 40000, 0.05f / 9, 9);
   // A convex body's mean silhouette is a quarter of its surface (Cauchy): 6/4 of pi (3/4). Four

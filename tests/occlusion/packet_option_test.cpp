@@ -1,4 +1,5 @@
-// Ray packets can be chosen by an option, and the results do not depend on it.
+// The option --packets: each grouping of rays can be chosen, and results do not depend on it but
+// for roundings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,9 +12,9 @@ namespace {
 
 using namespace scene_test;
 
-// Borders of boxes and triangles are met or not by roundings, which differ between the kernels: a
-// few rays in ten thousand. The others agree to what packets round optical depths to.
-TEST(PacketGroupings, ExactRaysFindTheSameWithWhomeverTheyAreTraced) {
+// Kernels round differently, so near borders of boxes and triangles a ray may hit in one and not in
+// another: a few rays in ten thousand. The others agree within the rounding of optical depths.
+TEST(PacketGroupings, ExactTransmittancesAgreeInEveryGrouping) {
   const Scene scene = make_procedural("scene:tree?leaves=2000");
   const SceneBvh bvh = build_bvh(scene);
   const auto rays = rays_through(bvh.bounds, 10'000, bvh.bounds.size().length(), 0, 5);
@@ -32,13 +33,13 @@ TEST(PacketGroupings, ExactRaysFindTheSameWithWhomeverTheyAreTraced) {
 
 class PacketsOption : public program_test::ProgramRun {};
 
-TEST_F(PacketsOption, IsKnownToRenderAndWrittenDown) {
+TEST_F(PacketsOption, RenderAcceptsEveryValueAndRefusesOthers) {
   expect_failure(render("--packets nobody"), 2, "--packets nobody: it is auto, none");
   for (const char* packets : {"auto", "none", "pixel", "point"})
     EXPECT_EQ(render(std::string("-q --packets ") + packets).code, 0) << packets;
 }
 
-TEST_F(PacketsOption, DevicesSayWhetherTheyCanRunEveryKernelAndHow) {
+TEST_F(PacketsOption, DevicesCommandReportsWhetherEveryKernelRuns) {
   const auto run = dapple("devices");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(film_test::contains(run.out, "runs every kernel; ")) << run.out;

@@ -1,5 +1,5 @@
-// Pictures whose rays are traced in packets: those of single rays, and the same bytes whatever the
-// threads.
+// Pictures whose rays are traced in packets: they agree with those of single rays, and their bytes
+// do not depend on the number of threads.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -23,14 +23,14 @@ float sum_of(const Film& film, const std::string& channel) {
   return sum;
 }
 
-TEST(PacketPicture, LightAndAoPassesMakeThePictureOfTheExactOnesAndEmittersNeverOccludeThemselves) {
+TEST(PacketPicture, LightAndAoPassesAgreeWithExactOnesAndEmittersNeverOccludeThemselves) {
   Scene scene = make_procedural("scene:tree?leaves=2000");
   Light glow;
   glow.name = "glow";
   glow.kind = LightKind::mesh;
   glow.double_sided = true;
   scene.lights.push_back(glow);
-  // Folded, so that one half would hide the other from most of the ground.
+  // A folded emitter: one half would occlude the other from most of the ground.
   Mesh folded;
   append_grid(folded, {-3, 9, -1}, {6, 0, 0}, {0, 1.5f, 1}, 6, 0);
   append_grid(folded, {-3, 9, 1}, {6, 0, 0}, {0, 1.5f, -1}, 6, 0);
@@ -65,7 +65,7 @@ TEST(PacketPicture, LightAndAoPassesMakeThePictureOfTheExactOnesAndEmittersNever
         "%s: exact %.4f, point packets at footprint 0 %.4f, point packets %.4f, single rays %.4f\n",
         channel, truth, sum_of(zero.film, channel), sum_of(packet, channel),
         sum_of(prefiltered, channel));
-    // At most one ray in a thousand falls on the other side of an edge.
+    // At most one ray in a thousand passes an edge on the other side.
     EXPECT_NEAR(sum_of(zero.film, channel), truth, 1e-3 * truth) << channel;
     EXPECT_NEAR(sum_of(packet, channel), sum_of(prefiltered, channel), 0.01 * truth) << channel;
   }

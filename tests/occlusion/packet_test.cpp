@@ -1,5 +1,5 @@
-// Packets: the rays of a point traced together find what each would find alone. Exact ones, and
-// prefiltered ones as the footprint goes to 0, closed forms, any number of rays.
+// Point packets: rays of one point that are traced together find what single rays find. Tests exact
+// rays, prefiltered rays as the footprint goes to 0, closed forms, and various numbers of rays.
 #include <gtest/gtest.h>
 
 #include "dapple/error.hpp"
@@ -10,7 +10,8 @@ namespace {
 
 using namespace scene_test;
 
-// `rays` cosine-weighted rays from each of `points` places in `box`, as the AO pass makes them.
+// `rays` cosine-weighted rays from each of `points` random points in `box`, like those of the AO
+// pass.
 std::vector<Ray> ao_rays(const Box3f& box, std::size_t points, std::size_t rays,
                          std::uint32_t seed) {
   Points random(seed);
@@ -28,6 +29,12 @@ std::vector<Ray> ao_rays(const Box3f& box, std::size_t points, std::size_t rays,
     }
   }
   return result;
+}
+
+// A device on which all rays are traced singly.
+const Device& single_ray_device() {
+  static const Device device("", "", Packets::none);
+  return device;
 }
 
 std::vector<Occlusion> packets(const SceneOnDevice& scene, const std::vector<Ray>& rays,
@@ -48,14 +55,14 @@ int count_different(const std::vector<Occlusion>& a, const std::vector<Occlusion
   return different;
 }
 
-// Node visits of all rays.
+// Sum of the node visits of all rays.
 double sum_of_visits(const std::vector<Occlusion>& found) {
   double sum = 0;
   for (const Occlusion& one : found) sum += one.visits & 65535u;
   return sum;
 }
 
-// Cards turned about the vertical, with a chequered alpha: every other one is cut out.
+// Cards rotated about the vertical, with a chequered alpha, both alpha-blended and cut out.
 Scene textured_cards() {
   Scene scene;
   scene.source = "cards";
@@ -86,7 +93,7 @@ Scene textured_cards() {
   return scene;
 }
 
-// Some trees as they come, others squeezed, mirrored and stretched.
+// Trees of which every second one is mirrored and scaled non-uniformly.
 Scene forest_scaled_non_uniformly() {
   Scene scene = make_procedural("scene:forest?trees=9&leaves=500&opacity=0.5");
   M44f scale;
@@ -97,9 +104,8 @@ Scene forest_scaled_non_uniformly() {
   return scene;
 }
 
-// The products that decide which side of an edge a ray passes are taken in another order, so that
-// a ray within roundings of an edge may fall on the other side of it: 1 in 1000 at the very most
-// (reference_traversal_test.cpp).
+// Packets compute the edge functions of triangles in another order. So a ray within rounding of an
+// edge may pass it on the other side: at most 1 ray in 1000 (reference_traversal_test.cpp).
 TEST(Packet, EqualsExactRayByRayWhenExactAndAsTheFootprintGoesToZero) {
   std::vector<Scene> scenes;
   scenes.push_back(make_procedural("scene:tree?leaves=2000"));
@@ -110,7 +116,7 @@ TEST(Packet, EqualsExactRayByRayWhenExactAndAsTheFootprintGoesToZero) {
     const Box3f box = scene.bvh.bounds;
     for (const std::size_t rays : {4u, 9u, 25u, 64u, 65u, 200u}) {
       std::vector<Ray> queue = ao_rays(box, 6400 / rays, rays, 21);
-      // Rays end somewhere, as on a light, nowhere, or before they start.
+      // Some rays end at a distance, as rays to a light do, some never, and some before they start.
       for (std::size_t i = 0; i < queue.size(); ++i) {
         if (i % 3 == 0) queue[i].t_max = 0.01f * static_cast<float>(i % 100);
         if (i % 17 == 0) queue[i].t_max = -1;
@@ -130,7 +136,7 @@ TEST(Packet, EqualsExactRayByRayWhenExactAndAsTheFootprintGoesToZero) {
   }
 }
 
-// Points on surfaces of the scene, as a baker has them.
+// Points on the scene's surfaces with their normals, like those of a baker.
 struct BakedPoints {
   std::vector<V3f> positions, normals;
 };
@@ -147,20 +153,30 @@ BakedPoints points_on(const SceneOnDevice& scene, std::size_t count) {
   return points;
 }
 
-std::vector<float> bake(const SceneOnDevice& scene, const BakedPoints& points, Estimator estimator,
-                        float footprint, int rays = 64) {
+OcclusionOptions bake_options(Estimator estimator, float footprint, int rays = 64) {
   OcclusionOptions options;
   options.rays = rays;
   options.estimator = estimator;
   options.footprint = footprint;
+  return options;
+}
+
+std::vector<float> bake(const SceneOnDevice& scene, const BakedPoints& points,
+                        const OcclusionOptions& options) {
   return occlusion(device(), scene.uploaded, points.positions, points.normals, options);
+}
+
+// The same scene on a device that traces every ray singly.
+std::vector<float> bake_singly(const DeviceScene& scene, const BakedPoints& points,
+                               const OcclusionOptions& options) {
+  return occlusion(single_ray_device(), scene, points.positions, points.normals, options);
 }
 
 struct Difference {
   double mean, standard_error, rms;
 };
 
-// Of the same rays, so that the noise of where they go cancels.
+// Both use the same rays, so that the noise of their directions cancels.
 Difference difference(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0, square = 0;
   const auto n = static_cast<double>(a.size());
@@ -184,31 +200,32 @@ TEST(Packet, AgreesWithPrefilteredAndConvergesToExact) {
     const char* name = scene.scene.source.c_str();
     const BakedPoints points = points_on(scene, 1500);
     ASSERT_GT(points.positions.size(), 300u);
-    const std::vector<float> exact = bake(scene, points, Estimator::exact, 0);
+    const DeviceScene for_single_rays = upload(single_ray_device(), scene.scene, scene.bvh);
+    const std::vector<float> exact = bake(scene, points, bake_options(Estimator::exact, 0));
     Difference coarser{1, 0, 1};
     for (const float footprint : {4.0f, 1.0f, 0.25f, 1.0f / 16}) {
-      const std::vector<float> packet = bake(scene, points, Estimator::prefiltered, footprint);
+      const OcclusionOptions options = bake_options(Estimator::prefiltered, footprint);
+      const std::vector<float> packet = bake(scene, points, options);
       const Difference error = difference(packet, exact);
-      const Difference apart =
-          difference(packet, bake(scene, points, Estimator::prefiltered, footprint));
+      const Difference apart = difference(packet, bake_singly(for_single_rays, points, options));
       std::printf(
-          "%s, footprint %g: packet - exact %+.4f (+-%.4f), packet - prefiltered %+.4f "
+          "%s, footprint %g: packet - exact %+.4f (+-%.4f), packet - single %+.4f "
           "(rms %.4f)\n",
           name, footprint, error.mean, error.standard_error, apart.mean, apart.rms);
-      // All that differs is the direction along which a covered child's depth is taken.
+      // Only the direction along which a covered child's optical depth is taken may differ.
       EXPECT_NEAR(apart.mean, 0, 0.003) << name << " at " << footprint;
       EXPECT_LT(apart.rms, 0.005) << name << " at " << footprint;
       const double noise = 3 * std::hypot(error.standard_error, coarser.standard_error);
       EXPECT_LE(std::fabs(error.mean), std::fabs(coarser.mean) + noise) << name << " " << footprint;
       coarser = error;
     }
-    // Far below the leaves: hardly a node is covered any more.
-    EXPECT_NEAR(difference(bake(scene, points, Estimator::prefiltered, 1e-5f), exact).mean, 0, 2e-4)
-        << name;
+    // Footprints far smaller than leaves cover almost no node.
+    const OcclusionOptions narrow = bake_options(Estimator::prefiltered, 1e-5f);
+    EXPECT_NEAR(difference(bake(scene, points, narrow), exact).mean, 0, 2e-4) << name;
   }
 }
 
-// As in closed_form_test.cpp and ao_distance_test.cpp, which say where the tolerances come from.
+// As in closed_form_test.cpp and ao_distance_test.cpp, which derive the tolerances.
 OcclusionOptions many_rays(float footprint) {
   OcclusionOptions options;
   options.rays = 1 << 16;
@@ -219,7 +236,7 @@ OcclusionOptions many_rays(float footprint) {
 
 constexpr V3f kOrigin(0, 0, 0), kUp(0, 1, 0);
 
-TEST(Packet, ADiskAStackAndAPlaneThatFallsOffAreTheirClosedForms) {
+TEST(Packet, MatchesClosedFormsOfADiskAStackAndAPlaneWithFalloff) {
   const SceneOnDevice disk(make_procedural("scene:disk?radius=2&height=1&opacity=0.85"));
   EXPECT_NEAR(disk.occlusion_at(kOrigin, kUp, many_rays(1)), 1 - 0.85 * 0.8, 1.5e-3);
   EXPECT_NEAR(disk.occlusion_at(kOrigin, kUp, many_rays(1024)), 1 - 0.85 * 0.8, 0.03);
@@ -239,6 +256,7 @@ TEST(Packet, ADiskAStackAndAPlaneThatFallsOffAreTheirClosedForms) {
   ceiling.materials.push_back(material_of(0.4f));
   place(ceiling, square_mesh(64, 1, 128, 0));
   const SceneOnDevice plane(std::move(ceiling));
+  const DeviceScene for_single_rays = upload(single_ray_device(), plane.scene, plane.bvh);
   for (const double distance : {1.5, 3.0, 7.5}) {
     const double k = 1 / distance;
     for (const auto& [power, part] : {std::pair{0.0f, 1 - k * k}, {1.0f, (1 - k) * (1 - k)}}) {
@@ -247,22 +265,22 @@ TEST(Packet, ADiskAStackAndAPlaneThatFallsOffAreTheirClosedForms) {
       options.distance = static_cast<float>(distance);
       options.falloff = power;
       EXPECT_NEAR(plane.occlusion_at(kOrigin, kUp, options), 1 - 0.4 * part, 2e-3);
-      // Strips of the plane reach from overhead to far away, where they look small: a ray that
-      // meets one overhead must not take it for small.
+      // Strips of the plane reach from overhead to far away, where they look small. For a ray that
+      // hits one overhead the strip must not count as small.
       options.footprint = 1024;
       const float together = plane.occlusion_at(kOrigin, kUp, options);
-      options.estimator = Estimator::prefiltered;
-      const float alone = plane.occlusion_at(kOrigin, kUp, options);
-      std::printf("plane: closed form %.4f, packet %.4f, prefiltered %.4f\n", 1 - 0.4 * part,
-                  together, alone);
+      const float alone = occlusion(single_ray_device(), for_single_rays, std::vector{kOrigin},
+                                    std::vector{kUp}, options)[0];
+      std::printf("plane: closed form %.4f, packet %.4f, single %.4f\n", 1 - 0.4 * part, together,
+                  alone);
       EXPECT_NEAR(together, alone, 0.01);
       EXPECT_NEAR(together, 1 - 0.4 * part, 0.04);
     }
   }
 }
 
-// One slanted square that the rays meet just beyond their end: its node holds the end, so that
-// however wide the footprint it has to be opened and the square be found not to count.
+// One slanted square that the rays would hit just beyond their end. The square's node contains that
+// end, so it must be opened at every footprint, and the square must not count.
 TEST(Packet, ANodeThatHoldsTheRaysEndIsOpened) {
   for (const float distance : {0.5f, 1.0f, 3.0f, 10.0f, 30.0f}) {
     Scene scene;
@@ -283,30 +301,25 @@ TEST(Packet, ANodeThatHoldsTheRaysEndIsOpened) {
   }
 }
 
-TEST(Packet, TooFewRaysAreTracedOneByOneAndStrangersAreRefused) {
+TEST(Packet, FewRaysAreTracedSinglyAndRaysOfOtherPointsAreRefused) {
   const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
   const BakedPoints points = points_on(scene, 200);
+  const DeviceScene for_single_rays = upload(single_ray_device(), scene.scene, scene.bvh);
   for (const int rays : {1, 2, 3}) {
-    EXPECT_EQ(bake(scene, points, Estimator::prefiltered, 1, rays),
-              bake(scene, points, Estimator::prefiltered, 1, rays))
-        << rays;
-  }
-  if (device().info().kind == "CPU") {
-    EXPECT_EQ(bake(scene, points, Estimator::prefiltered, 1, 8),
-              bake(scene, points, Estimator::prefiltered, 1, 8));
+    const OcclusionOptions options = bake_options(Estimator::prefiltered, 1, rays);
+    EXPECT_EQ(bake(scene, points, options), bake_singly(for_single_rays, points, options)) << rays;
   }
 
   std::vector<Ray> rays = ao_rays(scene.bvh.bounds, 100, 64, 3);
   const std::vector<Occlusion> alone = scene.trace(rays, Estimator::prefiltered);
-  EXPECT_EQ(count_different(scene.trace(rays, Estimator::prefiltered), alone), 0);
-  // Counted once a packet and shared: in all fewer than a third of each ray's own.
+  // A packet's visits are counted once: fewer than a third of the visits of single rays.
   const double shared_visits = sum_of_visits(packets(scene, rays, 1, 64));
   const double own_visits = sum_of_visits(alone);
   std::printf("visits a ray: %.2f together, %.2f alone\n", shared_visits / 6400, own_visits / 6400);
   EXPECT_GT(shared_visits, 0);
   EXPECT_LT(shared_visits, own_visits / 3);
 
-  EXPECT_THROW(packets(scene, rays, 1, 63), Error);  // 6400 is no multiple
+  EXPECT_THROW(packets(scene, rays, 1, 63), Error);  // 6400 is no multiple of 63
   EXPECT_THROW(packets(scene, rays, 1, 0), Error);
   rays[70].origin[1] += 1;
   EXPECT_THROW(packets(scene, rays, 1, 64), Error);

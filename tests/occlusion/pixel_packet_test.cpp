@@ -1,5 +1,5 @@
-// Rays that start near each other, traced together: each finds what it finds alone, and the same
-// bits in any packet.
+// Pixel packets: rays that start near each other are traced together. Each finds what a single ray
+// finds (within roundings), and the same bits in every packet.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Scene forest_with_sheared_trees() {
   return scene;
 }
 
-/// Strands, one placement of them upside down and smaller, and leaves.
+/// Leaves, and strands in two instances, one of them mirrored and smaller.
 Scene strands_and_leaves() {
   Scene scene = make_procedural("scene:cloud?leaves=500&opacity=0.5");
   scene.materials.push_back(material_of(0.3f));
@@ -44,7 +44,7 @@ Scene strands_and_leaves() {
   return scene;
 }
 
-/// Vertices moved to where floats are sparser.
+/// Moves all vertices away from the origin, where floats are less dense.
 Scene moved(Scene scene, const V3f& by) {
   for (Mesh& mesh : scene.meshes)
     for (V3f& position : mesh.positions) position += by;
@@ -73,18 +73,18 @@ class PixelPacketRays : public testing::TestWithParam<const char*> {
       ray.first_area = 1e-4f;
       if (random.unit() < 0.3f) ray.t_max = radius * 2 * random.unit();
     }
-    // Rays across an axis, by zeros of either sign.
+    // Some rays are perpendicular to an axis, with zeros of both signs.
     for (std::size_t i = 0; i < rays.size(); i += 13)
       rays[i].direction[i % 3] = std::copysign(0.0f, rays[i].direction[i % 3]);
-    // Rays that end before they start, a few and a row of them.
+    // Some rays end before they start, among them a long row.
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (i % 19 == 0 || (i > 1000 && i < 2100)) rays[i].t_max = -1;
     return rays;
   }
 };
 
-// Borders of boxes and triangles are met or not by roundings, which differ between the kernels.
-TEST_P(PixelPacketRays, FindTogetherWhatTheyFindAlone) {
+// Kernels round differently, so near borders of boxes and triangles a ray may hit in one only.
+TEST_P(PixelPacketRays, AgreeWithSingleRays) {
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     const auto alone = scene_.trace(rays_, estimator);
     const auto found = together(scene_, rays_, estimator);
@@ -99,7 +99,7 @@ TEST_P(PixelPacketRays, FindTogetherWhatTheyFindAlone) {
   }
 }
 
-TEST_P(PixelPacketRays, FindTheSameBitsInAnyCompany) {
+TEST_P(PixelPacketRays, FindTheSameBitsInAnyPacket) {
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     std::vector<float> found = transmittances(together(scene_, rays_, estimator));
     std::vector<Ray> reversed(rays_.rbegin(), rays_.rend());
@@ -112,7 +112,7 @@ TEST_P(PixelPacketRays, FindTheSameBitsInAnyCompany) {
   }
 }
 
-/// The rays that go one of eight ways, and what they found.
+/// The rays whose direction has one of the eight combinations of signs, and what they found.
 std::pair<std::vector<Ray>, std::vector<float>> of_way(int way, const std::vector<Ray>& rays,
                                                        const std::vector<float>& found) {
   std::vector<Ray> alike;
@@ -126,8 +126,8 @@ std::pair<std::vector<Ray>, std::vector<float>> of_way(int way, const std::vecto
   return {alike, of_alike};
 }
 
-// Packets whose rays all go one way along each axis have loops of their own.
-TEST_P(PixelPacketRays, FindTheSameBitsAmongThoseThatGoTheirWay) {
+// Packets in which all directions have the same signs are traced by special loops.
+TEST_P(PixelPacketRays, FindTheSameBitsAmongRaysOfTheSameSigns) {
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     const std::vector<float> found = transmittances(together(scene_, rays_, estimator));
     for (int way = 0; way < 8; ++way) {
@@ -138,8 +138,8 @@ TEST_P(PixelPacketRays, FindTheSameBitsAmongThoseThatGoTheirWay) {
   }
 }
 
-// The same of rays of one point, which are measured from it.
-TEST_P(PixelPacketRays, OfOnePointFindTheSameBitsAmongThoseThatGoTheirWay) {
+// The same for point packets, whose coordinates are relative to the shared origin.
+TEST_P(PixelPacketRays, OfOnePointFindTheSameBitsAmongRaysOfTheSameSigns) {
   std::vector<Ray> rays(rays_.begin(), rays_.begin() + 512);
   for (Ray& ray : rays) {
     std::copy_n(rays_[1].origin, 3, ray.origin);
@@ -153,7 +153,7 @@ TEST_P(PixelPacketRays, OfOnePointFindTheSameBitsAmongThoseThatGoTheirWay) {
     const std::vector<float> found = of_point(rays);
     for (int way = 0; way < 8; ++way) {
       const auto [alike, of_all] = of_way(way, rays, found);
-      ASSERT_GE(alike.size(), 32u);  // so many go together
+      ASSERT_GE(alike.size(), 32u);  // enough for a packet
       EXPECT_EQ(of_point(alike), of_all) << "way " << way;
     }
   }
@@ -165,8 +165,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PixelPacketRays,
                                          "scene:forest?trees=9&leaves=500", "sheared", "strands",
                                          "strands and leaves", "far"));
 
-/// Squares of 2 `half` a side across the axes, a kilometre away: boxes around them are as thick as
-/// roundings.
+/// Squares of side 2 `half` perpendicular to the axes, a kilometre away. Their boxes are only as
+/// thick as roundings.
 Scene far_sheets(float half) {
   Scene scene;
   scene.materials.push_back(material_of(0.3f));
@@ -187,7 +187,7 @@ Scene far_sheets(float half) {
   return scene;
 }
 
-TEST(PixelPacketRaysFarAway, FindFlatBoxesAsDeepAsAlone) {
+TEST(PixelPacketRaysFarAway, FlatBoxesAreAsDeepAsForSingleRays) {
   const SceneOnDevice scene(far_sheets(0.04f));
   const std::vector<Ray> rays = rays_through(scene.bvh.bounds, 5003, 1, 0.02f, 7);
   double difference = 0, hidden = 0;
@@ -199,12 +199,12 @@ TEST(PixelPacketRaysFarAway, FindFlatBoxesAsDeepAsAlone) {
   }
   const auto count = static_cast<double>(rays.size());
   EXPECT_GT(hidden / count, 0.2) << "the case does not test much";
-  // Roundings of thousands of depths, of either sign; without chords, for one, it is 0.0012.
+  // Roundings of thousands of depths, with both signs. Without the chord model it would be 0.0012.
   EXPECT_LT(std::fabs(difference), 3e-4 * hidden);
 }
 
-/// A ray from five centimetres away, not along it, through the square with this first corner, a
-/// tenth of a float's last place inside of its edge.
+/// An oblique ray from five centimetres away through the square with this first corner. It crosses
+/// the square a tenth of a float's last digit inside its edge.
 Ray ray_inside_edge(const V3f* corner, Points& random) {
   using V3d = Imath::V3d;
   const V3d edge(corner[1] - corner[0]), other(corner[3] - corner[0]);
@@ -219,8 +219,8 @@ Ray ray_inside_edge(const V3f* corner, Points& random) {
   return make_ray(from, V3f(at - V3d(from)), 0, 0.1f);
 }
 
-// Boxes end where squares do: without a margin for roundings rays would pass them by.
-TEST(PixelPacketRaysFarAway, MeetSquaresAtTheirEdges) {
+// Boxes end where the squares end; without a margin for roundings, rays would miss them.
+TEST(PixelPacketRaysFarAway, HitSquaresAtTheirEdges) {
   const SceneOnDevice scene(far_sheets(0.001f));
   const std::vector<V3f>& corners = scene.scene.meshes[0].positions;
   Points random(9);
@@ -233,7 +233,7 @@ TEST(PixelPacketRaysFarAway, MeetSquaresAtTheirEdges) {
   EXPECT_EQ(missed, 0) << "of " << rays.size();
 }
 
-TEST(Trace, RaysToDifferentLightsAreNeverHiddenByTheirOwn) {
+TEST(Trace, ALightNeverOccludesItsOwnRays) {
   Scene scene;
   scene.materials.push_back(material_of(1));
   Light glow;

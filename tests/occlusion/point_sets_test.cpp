@@ -1,5 +1,5 @@
-// The rays of points that one bakes AO at: a set of its own for each point, made for their number,
-// whatever points it is asked for together with.
+// AO at points, as a baker requests it. Each point has its own set of ray directions, made for that
+// number of rays; the set does not depend on the other points of the call.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::vector<float> occlusion_of(const SceneOnDevice& scene, const Ground& ground
   return occlusion(device(), scene.uploaded, ground.points, ground.normals, options);
 }
 
-/// Of a point's occlusion from seed to seed.
+/// Standard deviation of a point's occlusion between seeds, rms over the points.
 double noise(const SceneOnDevice& scene, const Ground& ground, int rays, Estimator estimator) {
   constexpr int kSeeds = 8;
   std::vector<double> sums(ground.points.size()), squares(ground.points.size());
@@ -58,10 +58,10 @@ double noise(const SceneOnDevice& scene, const Ground& ground, int rays, Estimat
 struct NoiseCase {
   int rays;
   Estimator estimator;
-  double net;  ///< what Owen-scrambled (0,2)-nets through the concentric map had, same seeds
+  double net;  ///< noise of Owen-scrambled (0,2)-nets in the concentric map, with the same seeds
 };
 
-TEST(PointSets, AreLessNoisyThanASequenceThatGoesOn) {
+TEST(PointSets, AreLessNoisyThanNets) {
   const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
   const Ground ground = ground_below_a_tree(400);
   for (const NoiseCase& c : {NoiseCase{12, Estimator::exact, 0.0821},
@@ -71,7 +71,7 @@ TEST(PointSets, AreLessNoisyThanASequenceThatGoesOn) {
                              {64, Estimator::prefiltered, 0.0123}}) {
     const double found = noise(scene, ground, c.rays, c.estimator);
     std::printf("%d rays: %.4f, of nets %.4f\n", c.rays, found, c.net);
-    // What is smooth gains most.
+    // Smooth integrands gain most.
     EXPECT_LT(found, (c.estimator == Estimator::exact ? 0.97 : 0.8) * c.net) << c.rays << " rays";
   }
 }
@@ -96,12 +96,12 @@ TEST(PointSets, AreUnbiased) {
   }
 }
 
-TEST(PointSets, APointsRaysDoNotHangOnTheOthers) {
+TEST(PointSets, RaysOfAPointDoNotDependOnOtherPoints) {
   const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
   Ground ground = ground_below_a_tree(300);
   for (const int rays : {4, 24}) {
     const auto together = occlusion_of(scene, ground, rays, 7, Estimator::prefiltered);
-    // The same points under the same numbers, the rest of them elsewhere.
+    // Points with odd indices stay; the others move.
     Ground moved = ground;
     for (std::size_t i = 0; i < moved.points.size(); i += 2) moved.points[i].y = 3;
     const auto apart = occlusion_of(scene, moved, rays, 7, Estimator::prefiltered);
@@ -110,8 +110,8 @@ TEST(PointSets, APointsRaysDoNotHangOnTheOthers) {
   }
 }
 
-/// Points whose rays are made, traced and added up at once beside those whose rays go through
-/// queues and are traced each by itself.
+/// Compares points whose rays are made, traced and summed by one kernel (point packets) with points
+/// whose rays go through queues and are traced as single rays.
 class PointAo : public testing::Test {
  protected:
   using Found = std::pair<std::vector<float>, std::vector<float>>;
@@ -132,7 +132,7 @@ class PointAo : public testing::Test {
   const Ground ground_ = ground_below_a_tree(60);
 };
 
-TEST_F(PointAo, ExactPointsAreThoseOfQueues) {
+TEST_F(PointAo, ExactOcclusionAgreesWithQueues) {
   for (const int rays : {5, 32, 63, 100, 512}) {
     for (const float distance : {0.0f, 6.0f}) {
       SCOPED_TRACE(std::to_string(rays) + " rays, distance " + std::to_string(distance));
@@ -142,15 +142,16 @@ TEST_F(PointAo, ExactPointsAreThoseOfQueues) {
         EXPECT_NEAR(at_once[i], in_passes[i], 1.5 / rays) << "point " << i;
         apart += std::fabs(at_once[i] - in_passes[i]) > 1e-4f ? 1 : 0;
       }
-      // A ray that goes through an edge may be seen on either side of it.
+      // A ray within rounding of an edge may pass it on either side.
       EXPECT_LE(apart, 3);
       EXPECT_LT(*std::min_element(at_once.begin(), at_once.end()), 0.97f) << "nothing to see";
     }
   }
 }
 
-/// Depths of nodes are those along the way to their middles here, and along each ray there.
-TEST_F(PointAo, PrefilteredPointsAreNearThoseOfQueues) {
+/// Point packets take a node's optical depth along the direction to its middle, single rays along
+/// each ray.
+TEST_F(PointAo, PrefilteredOcclusionIsNearThatOfQueues) {
   for (const int rays : {16, 100}) {
     for (const float distance : {0.0f, 6.0f}) {
       SCOPED_TRACE(std::to_string(rays) + " rays, distance " + std::to_string(distance));
@@ -169,7 +170,7 @@ TEST_F(PointAo, PrefilteredPointsAreNearThoseOfQueues) {
   }
 }
 
-TEST(PointSets, AreOneWhereNothingIsInTheWay) {
+TEST(PointSets, AoIsOneWithoutOccluders) {
   const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
   const V3f below(0, -1, 0);
   for (const int rays : {1, 16, 100, 512, 1000}) {
@@ -179,7 +180,7 @@ TEST(PointSets, AreOneWhereNothingIsInTheWay) {
   }
 }
 
-TEST(PointOrder, IsOfAllPointsAndKeepsNeighboursTogether) {
+TEST(PointOrder, ListsEveryPointOnceAndKeepsNeighboursTogether) {
   Points random(9);
   std::vector<V3f> points;
   for (int i = 0; i < 5000; ++i) points.push_back(random.in_cube(10));
@@ -195,7 +196,7 @@ TEST(PointOrder, IsOfAllPointsAndKeepsNeighboursTogether) {
   EXPECT_LT(ways, 0.15 * unsorted);
   const auto seventh = std::find(order.begin(), order.end(), 7u);
   ASSERT_NE(seventh, order.end());
-  EXPECT_EQ(*(seventh + 1), 5000u);  // which lies there, too
+  EXPECT_EQ(*(seventh + 1), 5000u);  // a copy of point 7
   order = order_along_curve(points);
   std::sort(order.begin(), order.end());
   for (std::uint32_t i = 0; i < points.size(); ++i) ASSERT_EQ(order[i], i);

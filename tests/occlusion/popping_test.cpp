@@ -1,6 +1,5 @@
-// Nothing pops: when a point or the camera moves by a little, prefiltered occlusion changes by
-// hardly more than exact occlusion does. dapple-bench accuracy --line does the same at full
-// size.
+// No popping: when a point or the camera moves slightly, prefiltered occlusion changes by hardly
+// more than exact occlusion does. `dapple-bench accuracy --line` does the same at full size.
 #include <gtest/gtest.h>
 
 #include "support/line_of_points.hpp"
@@ -15,18 +14,19 @@ using scene_test::SceneOnDevice;
 
 constexpr float kFootprints[] = {0.5f, 1, 2, 4};
 
-/// What nobody sees, beyond the change that exact shows.
+/// A change of occlusion, beyond that of exact, that nobody can see.
 constexpr double kInvisible = 0.01;
 
-/// Standard errors by which noise may add to that in pictures. Some 80 steps are compared: of
-/// normal errors one beyond four would turn up in one of 400 such tests.
+/// How many standard errors of noise are added to that in pictures. About 80 steps are compared;
+/// with normal errors, one beyond four would occur in one of 400 such tests.
 constexpr double kNoise = 4;
 
-/// Points have the spacing of a thousand from side to side.
+/// 150 points, spaced as if 1000 of them went from side to side.
 constexpr int kPoints = 150, kWholeLine = 1000;
 constexpr Strata kStrata{64, 64};
 
-/// `errors`: by how many standard errors a step may go beyond that.
+/// Fails if a prefiltered step exceeds the exact one by more than kInvisible and `errors` standard
+/// errors.
 void expect_steady(const std::vector<Step>& found, const std::string& what, double errors) {
   const LargestSteps most = largest(found);
   std::printf("%s: largest step exact %.4f, prefiltered %.4f, beyond exact %+.4f (+- %.4f)\n",
@@ -50,7 +50,7 @@ class Line {
     return steps(exact_, traced(Estimator::prefiltered, footprint), rays_.size());
   }
 
-  /// Every other point with another footprint: as if all nodes were switched at once.
+  /// Every second point uses the footprint `other`, as if all nodes popped at once.
   [[nodiscard]] std::vector<Step> steps_between(float footprint, float other) const {
     std::vector<float> values = traced(Estimator::prefiltered, footprint);
     const std::vector<float> others = traced(Estimator::prefiltered, other);
@@ -80,7 +80,7 @@ void expect_steady_line(const char* name) {
     expect_steady(hemisphere.steps_at(footprint), at + ", hemisphere", 0);
     expect_steady(sphere.steps_at(footprint), at + ", sphere", 0);
   }
-  // Otherwise all of this has shown nothing.
+  // Otherwise this test could not find popping.
   EXPECT_GT(largest(sphere.steps_between(1, 1024)).excess, 2 * kInvisible) << name;
 }
 
@@ -92,7 +92,7 @@ TEST(Popping, OcclusionAlongALineThroughACloudChangesLittleMoreThanExactDoes) {
   expect_steady_line("scene:cloud");
 }
 
-// Wider pixels make wider footprints, at every point of the picture at once.
+// As the camera moves away, pixels and their footprints grow in the whole picture at once.
 TEST(Popping, OcclusionOfATreeChangesLittleMoreThanExactDoesAsTheCameraIsPulledBack) {
   const SceneOnDevice scene(make_procedural("scene:tree"));
   const RecedingCamera path(scene.bvh.bounds, 20, 2);
@@ -105,7 +105,8 @@ TEST(Popping, OcclusionOfATreeChangesLittleMoreThanExactDoesAsTheCameraIsPulledB
   for (const float footprint : kFootprints)
     expect_steady(steps(exact, traced(footprint)), "camera, footprint " + std::to_string(footprint),
                   kNoise);
-  // Every other frame with far larger footprints must be seen, or all of this has shown nothing.
+  // Far larger footprints in every second frame must be found; otherwise this test could not find
+  // popping.
   std::vector<Frame> unsteady = traced(1);
   const std::vector<Frame> others = traced(65536);
   for (std::size_t i = 1; i < unsteady.size(); i += 2) unsteady[i] = others[i];

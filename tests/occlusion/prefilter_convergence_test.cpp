@@ -1,11 +1,11 @@
-// Pictures come nearer to exact each time that the footprint's scale is halved, once noise is
-// taken out; dapple-bench accuracy --images-only shows larger ones.
+// Pictures approach the exact picture each time the footprint's scale is halved, after their noise
+// is removed. `dapple-bench accuracy --images-only` does the same with larger pictures.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "support/scene_on_device.hpp"
 #include "render/picture.hpp"
+#include "support/scene_on_device.hpp"
 
 namespace dapple {
 namespace {
@@ -18,7 +18,7 @@ constexpr int kSeeds = 36;
 
 using Pixels = std::vector<double>;
 
-/// AO sums over a picture's samples, through the camera that render() would choose.
+/// AO of small pictures with the camera that render() would choose.
 class Pictures {
  public:
   explicit Pictures(const SceneOnDevice& scene) : scene_(scene) {
@@ -37,7 +37,7 @@ class Pictures {
     const FilmLayout layout(view_, options, scene_.bvh.bounds, {});
     const TracedPicture picture =
         trace_picture(device(), scene_.uploaded, view_, options, layout, {});
-    // Misses add nothing to the plane, exact or not: they drop out of differences.
+    // Misses add nothing to this plane, exact or prefiltered, so they cancel in differences.
     const auto first =
         picture.sums.values<std::int64_t>().begin() + std::ptrdiff_t{layout.ao} * layout.pixels;
     Pixels pixels(first, first + layout.pixels);
@@ -51,9 +51,9 @@ class Pictures {
   View view_;
 };
 
-/// Mean squares of what the differences of infinitely many seeds would average to. Products of
-/// one seed's differences with another's hold no noise in the mean, so those with its own are
-/// left out; leaving out every seed in turn tells how sure the result is (the jackknife).
+/// Mean square of the differences that infinitely many seeds would give on average. The product of
+/// two seeds' differences has no noise in the mean; products of a seed with itself are left out.
+/// Leaving out each seed in turn gives the standard error (the jackknife).
 class ConvergedSquare {
  public:
   explicit ConvergedSquare(const std::vector<Pixels>& differences) {
@@ -62,7 +62,7 @@ class ConvergedSquare {
     }
   }
 
-  /// Without one seed; with -1 of all.
+  /// The mean square without one seed; with -1, of all seeds.
   [[nodiscard]] double value(int without = -1) const {
     double sum = 0;
     int count = 0;
@@ -83,10 +83,10 @@ class ConvergedSquare {
     return sum / static_cast<double>(a.size());
   }
 
-  std::vector<double> products_;  ///< seed by seed
+  std::vector<double> products_;  ///< one entry per pair of seeds
 };
 
-/// Standard error of one value less another: seeds are the same, so they vary together.
+/// Standard error of the difference of two values. They use the same seeds, so they are correlated.
 double error_of_difference(const ConvergedSquare& a, const ConvergedSquare& b) {
   double sum = 0, squares = 0;
   for (int without = 0; without < kSeeds; ++without) {
@@ -119,8 +119,8 @@ void expect_pictures_converge(const SceneOnDevice& scene, const std::string& nam
     std::printf(" %g: %.4f", footprint, std::sqrt(std::max(0.0, squares.back().value())));
   }
   std::printf("\n");
-  // Rises are looked for from every larger scale on, so that slow ones add up. Of 21 comparisons
-  // a scene one in 200 scenes would have one beyond 3.5 standard errors by noise alone.
+  // Each scale is compared with every larger one, so that slow increases add up. By noise alone,
+  // one of the 21 comparisons is beyond 3.5 standard errors in one of 200 scenes.
   for (std::size_t small = 1; small < squares.size(); ++small) {
     for (std::size_t large = 0; large < small; ++large) {
       EXPECT_LE(squares[small].value(),
@@ -128,13 +128,15 @@ void expect_pictures_converge(const SceneOnDevice& scene, const std::string& nam
           << name << " from footprint " << kFootprints[large] << " to " << kFootprints[small];
     }
   }
-  // All in all half of the square goes, and the first holds something that could.
+  // From the largest scale to the smallest, the mean square must at least halve, and must not be 0
+  // at the largest.
   const double error = error_of_difference(squares.back(), squares.front());
   EXPECT_LE(squares.back().value(), squares.front().value() / 2 + 3 * error) << name;
   EXPECT_GT(squares.front().value(), 0) << name;
 }
 
-/// Rays all through the scene, with footprints of whole twigs that the scale makes nothing.
+/// Rays through the whole scene. Their footprints cover whole twigs; scaled to 0, they must give
+/// exact results.
 void expect_equal_rays(const SceneOnDevice& scene, const std::string& name) {
   const Box3f& box = scene.bvh.bounds;
   const std::vector<Ray> rays =
@@ -150,7 +152,7 @@ void expect_equal_rays(const SceneOnDevice& scene, const std::string& name) {
     return count;
   };
   EXPECT_EQ(count_different(0), 0) << name;
-  // Otherwise the line above has shown nothing.
+  // Otherwise the footprints are too small for this test.
   EXPECT_GT(count_different(1), 2000) << name;
 }
 

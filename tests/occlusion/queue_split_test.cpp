@@ -1,5 +1,5 @@
-// Queues are cut into pieces of work: whatever their lengths, every ray is traced, and finds the
-// bits that it finds among others.
+// Queues are divided into tickets of work. At every length of the queue, every ray is traced and
+// finds the same bits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,8 @@ namespace {
 
 using namespace scene_test;
 
-/// What the rays find, `rays_per_point` in a row from one point; NaN where none is traced.
+/// Transmittances of the rays; each `rays_per_point` consecutive rays start at one point. NaN where
+/// a ray was not traced.
 std::vector<float> transmittances(const SceneOnDevice& scene, const std::vector<Ray>& rays,
                                   std::size_t rays_per_point, RayOrder order) {
   std::vector<float> values;
@@ -33,7 +34,7 @@ class QueueSplit : public testing::Test {
       rays_through(scene_.bvh.bounds, 9000, scene_.bvh.bounds.size().length(), 0.01f, 7);
 };
 
-TEST_F(QueueSplit, OfNeighboursHoldEveryRay) {
+TEST_F(QueueSplit, EveryRayOfPixelPacketsIsTraced) {
   const std::vector<float> all = transmittances(scene_, rays_, 1, RayOrder::by_pixel);
   for (const std::size_t count : {1, 63, 255, 256, 257, 1023, 1025, 2047, 2048, 2049, 4096, 8191}) {
     const auto found = transmittances(scene_, first_of(rays_, count), 1, RayOrder::by_pixel);
@@ -41,8 +42,9 @@ TEST_F(QueueSplit, OfNeighboursHoldEveryRay) {
   }
 }
 
-// From 513 rays on a point is cut into chunks; of few rays several points are a piece.
-TEST_F(QueueSplit, OfPointsHoldEveryRay) {
+// A point with more than 512 rays is divided into several batches; points with few rays share a
+// ticket.
+TEST_F(QueueSplit, EveryRayOfPointPacketsIsTraced) {
   constexpr std::size_t kPoints = 7;
   for (const std::size_t each : {16, 33, 96, 255, 257, 512, 513, 600, 1100}) {
     std::vector<Ray> rays = first_of(rays_, kPoints * each);

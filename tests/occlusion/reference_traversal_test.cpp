@@ -1,5 +1,5 @@
-// The kernels' traversal against a scalar one on the host, ray by ray, and both against every
-// triangle of the scene tried in turn.
+// Compares the kernels' traversal with a scalar one on the host, ray by ray, and with testing every
+// triangle of the scene.
 #include "support/reference_traversal.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 using namespace scene_test;
 
 struct Agreement {
-  int different = 0;  // transmittances more than 1e-4 apart
+  int different = 0;  // number of transmittances that differ by more than 1e-4
   double kernel_visits = 0, host_visits = 0, kernel_tests = 0, host_tests = 0;
   double mean_difference = 0;
 };
@@ -35,8 +35,8 @@ Agreement compare(const SceneOnDevice& scene, const std::vector<Ray>& rays, Esti
   return agreement;
 }
 
-// Rays from outside, and AO-like ones from inside; with ends, first areas and solid angles
-// from those of 4096 rays a point to those of 4.
+// Half of the rays come from outside, half start inside as AO rays do. Solid angles range from
+// those of 4096 rays a point to those of 4; some rays have an end or a first area.
 std::vector<Ray> mixed_rays(const Box3f& box, std::size_t count) {
   std::vector<Ray> rays = rays_through(box, count / 2, box.size().length(), 0, 21);
   Points points(22);
@@ -63,12 +63,12 @@ void PrintTo(const TraversalScene& scene, std::ostream* out) { *out << scene.sou
 
 class TraversalScenes : public ::testing::TestWithParam<TraversalScene> {};
 
-// The two differ in rounding only: compilers for devices may contract a * b + c, and theirs
-// are other exp and log. So a ray within 1e-6 of an edge may meet the triangle in one and not
-// in the other, a child that the footprint just covers may be opened, or a ray grazing a box
-// may visit it. Each happens at about (roundings of 1e-7) x (edges or children near the ray,
-// some hundred) x (their chance to lie that close: 1e-7 of a leaf is 1e-5 of a ray's way):
-// about 1 ray in 1000 at the very most, here at most 20 of 20,000.
+// The two differ only in roundings: device compilers may contract a * b + c, and have another exp
+// and log. So a ray within 1e-6 of an edge may hit the triangle in one and not in the other, a
+// child that the footprint just covers may be opened, and a ray that grazes a box may visit it.
+// Each happens at about (roundings of 1e-7) x (edges or children near the ray, about a hundred) x
+// (their chance to be that close: 1e-7 of a leaf is 1e-5 of a ray's length). That is at most about
+// 1 ray in 1000; here at most 20 of 20,000.
 constexpr std::size_t kRays = 20000;
 constexpr int kFlips = 20;
 
@@ -146,7 +146,7 @@ TEST(Traversal, ExactAgreesWithTryingEveryTriangle) {
       different += std::fabs(found[i].transmittance - expected) > 1e-4;
     }
     std::printf("%s: %d of %zu differ, %d occluded\n", name, different, rays.size(), occluded);
-    EXPECT_LE(different, 2) << name;  // edges within rounding, as above
+    EXPECT_LE(different, 2) << name;  // rays within rounding of an edge, as above
     EXPECT_GT(occluded, 200) << name;
   }
 }

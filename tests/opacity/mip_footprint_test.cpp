@@ -1,6 +1,7 @@
-// A footprint that covers many texels takes their mean: of as large a square as it covers, on every
-// device path, in the space of instances, of camera rays too; exact rays and what would be wrong
-// averaged are looked up at full resolution.
+// Mip footprints (Williams, "Pyramidal Parametrics", 1983): a footprint that covers many texels
+// looks up their mean, over the largest square of texels that it covers. Tests each grouping of
+// rays, instances and camera rays. Exact rays, and surfaces that an average would change, are
+// looked up at full resolution.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +29,7 @@ Texture noise() {
   return texture;
 }
 
-/// A square of 1 m in z = 0, its texture from (0,0) to (1,1).
+/// A square of side 1 m in the plane z = 0, with texture coordinates from (0,0) to (1,1).
 Mesh square() {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -54,11 +55,11 @@ Scene card(AlphaMode mode, Texture texture = noise()) {
   return scene;
 }
 
-/// The bits of which footprint_spread() makes 1.
+/// A ray's key for which footprint_spread() returns 1.
 constexpr std::uint32_t kNoSpread = 0x6a09e667u;
 
-/// Rays down to places in the card, the middles of texels, with a footprint between squares of
-/// 2^level texels and of twice as many. `scale`: of the card in the world.
+/// Rays along -z to texels of the card. Their footprint is twice the area of a square of 2^level
+/// texels a side, half the area of the next larger square. `scale`: the card's side in the world.
 std::vector<Ray> rays_at_texels(int level, float scale = 1) {
   Points points(2);
   std::vector<Ray> rays;
@@ -73,7 +74,7 @@ std::vector<Ray> rays_at_texels(int level, float scale = 1) {
   return rays;
 }
 
-/// What the pyramid's level holds where the ray meets the card.
+/// The opacity of the mip level where the ray hits the card.
 float expected_opacity(const OpacityPyramid& pyramid, const Ray& ray, int level, float scale = 1) {
   const OpacityPyramid::Level& at = pyramid.levels()[static_cast<std::size_t>(level)];
   const int x = static_cast<int>(ray.origin[0] / scale * static_cast<float>(at.width));
@@ -81,16 +82,16 @@ float expected_opacity(const OpacityPyramid& pyramid, const Ray& ray, int level,
   return at.opacity[static_cast<std::size_t>(y) * at.width + x];
 }
 
-constexpr double kCode = 0.5 / 255 + 1e-4;  // of 8-bit means, and of optical depths in packets
+constexpr double kCode = 0.5 / 255 + 1e-4;  // rounding of 8-bit means, and of depths in packets
 
-TEST(MipFootprint, AreOfTheLargestSquareThatTheFootprintCovers) {
+TEST(MipFootprint, IsTheLargestSquareThatTheFootprintCovers) {
   for (const Packets packets : {Packets::none, Packets::pixel, Packets::point}) {
     const Device chosen("", "", packets);
     for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
       const Scene scene = card(mode);
       const SceneBvh bvh = build_bvh(scene);
       const DeviceScene uploaded = upload(chosen, scene, bvh);
-      // Of what is blended the factor comes last, of cut-outs before the threshold.
+      // Blended surfaces multiply by the factor last, cut-outs before the threshold.
       const bool blended = mode == AlphaMode::blend;
       const OpacityPyramid pyramid(scene.textures[0], blended ? 1.0f : 0.9f, blended ? -1 : 0.4f);
       for (const int level : {0, 1, 2, 3, 4}) {
@@ -106,16 +107,16 @@ TEST(MipFootprint, AreOfTheLargestSquareThatTheFootprintCovers) {
   }
 }
 
-TEST(MipFootprint, AreAtMostAnEighthOfTheirTriangle) {
+TEST(MipFootprint, IsAtMostAnEighthOfTheTriangle) {
   const SceneOnDevice scene(card(AlphaMode::blend));
   const OpacityPyramid pyramid(scene.scene.textures[0], 1, -1);
-  const auto rays = rays_at_texels(5);  // 1024 texels, where a triangle has 2048
+  const auto rays = rays_at_texels(5);  // squares of 1024 texels; a triangle has 2048
   const auto found = scene.trace(rays, Estimator::prefiltered);
   for (std::size_t i = 0; i < rays.size(); ++i)
     ASSERT_NEAR(found[i].transmittance, 1 - 0.9 * expected_opacity(pyramid, rays[i], 4), kCode);
 }
 
-TEST(MipFootprint, AreNotForExactRaysNorForFootprintsOfNoSize) {
+TEST(MipFootprint, IsNotUsedForExactRaysNorForZeroFootprints) {
   const SceneOnDevice scene(card(AlphaMode::mask));
   const auto rays = rays_at_texels(3), narrow = rays_at_texels(-8);
   const auto exact = scene.trace(rays, Estimator::exact);
@@ -133,7 +134,7 @@ TEST(MipFootprint, AreNotForExactRaysNorForFootprintsOfNoSize) {
   EXPECT_EQ(between, 400) << "or the others show nothing";
 }
 
-TEST(MipFootprint, AreMeasuredInTheSpaceOfInstances) {
+TEST(MipFootprint, IsMeasuredInTheSpaceOfInstances) {
   Scene placed = card(AlphaMode::blend);
   const float scale = 8;
   placed.instances[0].to_world.setScale(scale);
@@ -148,7 +149,7 @@ TEST(MipFootprint, AreMeasuredInTheSpaceOfInstances) {
   }
 }
 
-/// Of a card whose texels would be averaged by eights, were it not for something in `scene`.
+/// Expects lookups at full resolution, for rays whose footprints cover 8 x 8 texels.
 void expect_full_resolution(Scene scene) {
   const SceneOnDevice on_device(std::move(scene));
   const auto rays = rays_at_texels(3);
@@ -158,14 +159,14 @@ void expect_full_resolution(Scene scene) {
     ASSERT_EQ(found[i].transmittance, exact[i].transmittance);
 }
 
-TEST(MipFootprint, AreNotForCutOutsWhoseVerticesChangeTheThreshold) {
+TEST(MipFootprint, IsNotUsedForCutOutsWithVertexAlpha) {
   Scene varying = card(AlphaMode::mask);
   varying.materials[0].uses_vertex_alpha = true;
   varying.meshes[0].vertex_alpha = {1, 0.5f, 1, 0.5f};
   expect_full_resolution(std::move(varying));
 }
 
-TEST(MipFootprint, AreNotForCardsThatLieOnEachOther) {
+TEST(MipFootprint, IsNotUsedForCoincidentCards) {
   Scene doubled = card(AlphaMode::mask);
   Mesh& mesh = doubled.meshes[0];
   for (const std::uint32_t corner : {2u, 1u, 0u, 3u, 2u, 0u}) mesh.indices.push_back(corner);
@@ -192,12 +193,13 @@ Texture checks() {
   return texture;
 }
 
-/// Coverages of 4x4 pixels, 16 texels wide each, of a checkered card that fills the picture.
+/// The different coverages of 4x4 pixels, each 16 texels wide, of a checkered card that fills the
+/// picture.
 std::set<float> coverages(RenderOptions options, float instance_scale) {
   Scene scene = card(AlphaMode::blend, checks());
   scene.materials[0].alpha = 1;
   scene.instances[0].to_world.setScale(instance_scale);
-  // Two placements, one out of sight: the card stays an instance.
+  // Two instances, one out of sight, so that the card is not merged into the world.
   add_triangles_out_of_sight(scene.meshes[0]);
   scene.instances.push_back(scene.instances[0]);
   scene.instances[1].to_world[3][2] = 50;
@@ -214,9 +216,9 @@ std::set<float> coverages(RenderOptions options, float instance_scale) {
   return {alpha.begin(), alpha.end()};
 }
 
-// Half of four thresholds, stratified, are below a half: with a coverage of one half in every
-// square the same two of four samples stop everywhere.
-TEST(MipFootprint, OfACameraRayAreThoseOfItsPixel) {
+// Of four stratified thresholds two are below one half. Where every mip footprint has an opacity of
+// one half, two of four samples stop in every pixel.
+TEST(MipFootprint, OfACameraRayIsThatOfItsPixel) {
   for (const float scale : {1.0f, 0.02f}) {
     RenderOptions options;
     options.camera_splitting = 1;

@@ -1,5 +1,5 @@
-// kernels/opacity/opacity_lookup.clh on the device against the definition in double precision:
-// bilinear and nearest lookups, all wrap modes, coordinates near and far.
+// Compares kernels/opacity/opacity_lookup.clh on the device with glTF's definition in double
+// precision: bilinear and nearest lookups, all wrap modes, small and large coordinates.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace kernel_test;
 
-constexpr float kFar = 4096.0f;  // beyond, the device takes whole tiles off first
+constexpr float kFar = 4096.0f;  // the device subtracts whole tiles from larger coordinates first
 
 Texture noise_texture(Wrap wrap_s, Wrap wrap_t, bool nearest) {
   Texture texture;
@@ -32,7 +32,7 @@ Texture noise_texture(Wrap wrap_s, Wrap wrap_t, bool nearest) {
   return texture;
 }
 
-/// Texel that `cell` means, as glTF's sampler modes define it.
+/// Index of the texel at `cell`, as glTF's wrap modes define it.
 std::int64_t wrapped(std::int64_t cell, std::int64_t size, Wrap wrap) {
   if (wrap == Wrap::clamp) return std::clamp<std::int64_t>(cell, 0, size - 1);
   const std::int64_t period = wrap == Wrap::repeat ? size : 2 * size;
@@ -55,13 +55,13 @@ double look_up(const Texture& t, const V2f& uv) {
          (texel(t, left, top + 1) * (1 - fx) + texel(t, left + 1, top + 1) * fx) * fy;
 }
 
-/// A float's error in uv, in texels.
+/// The rounding error of the float `uv`, in texels.
 double rounding(float uv, std::uint32_t size) {
   const double held = std::fabs(uv) < kFar ? std::fabs(uv) : 2.0;
   return 2.5e-7 * (held * size + 1);
 }
 
-/// Whether rounding could take a nearest lookup into another texel.
+/// Whether rounding could move a nearest lookup to another texel.
 bool on_a_border(float uv, std::uint32_t size) {
   const double at = static_cast<double>(uv) * size;
   return std::fabs(at - std::round(at)) < rounding(uv, size);
@@ -88,7 +88,7 @@ struct Textures {
   std::vector<uchar> texels;
 };
 
-/// Every wrap mode with every other, bilinear and nearest, packed as the uploader does.
+/// Textures of all pairs of wrap modes, bilinear and nearest, packed as the uploader packs them.
 Textures every_kind() {
   Textures all;
   for (const Wrap s : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
@@ -124,7 +124,7 @@ TEST(OpacityLookup, TheDeviceLooksUpAsGltfDefinesNearAndFar) {
     for (std::size_t k = 0; k < uvs.size(); ++k) {
       const double across = rounding(uvs[k].x, 13), down = rounding(uvs[k].y, 6);
       if (texture.nearest && (on_a_border(uvs[k].x, 13) || on_a_border(uvs[k].y, 6))) continue;
-      // Neighbouring texels differ by at most 1, so a bilinear lookup moves no faster.
+      // Neighbouring texels differ by at most 1, so a bilinear lookup changes by at most 1 a texel.
       const double tolerance = texture.nearest ? 1e-6 : 1e-6 + across + down;
       const double expected = look_up(texture, uvs[k]);
       if (std::fabs(alphas[k] - expected) <= tolerance) continue;
@@ -166,7 +166,7 @@ TEST(OpacityLookup, ATrianglesOpacityIsFactorsTimesTextureThresholdedLast) {
       const double factor = 0.8 * (w + 0.5 * u + 0.25 * v);
       const double alpha = t == 2 ? factor : factor * look_up(texture, uv);
       if (t == 1 && std::fabs(alpha - 0.3) < 1e-5) continue;  // either side may be right
-      // Interpolated coordinates are off by 2^-22 and a few roundings of 1, times 13 texels.
+      // Interpolated coordinates are off by 2^-22 and a few roundings of 1; that times 13 texels.
       EXPECT_NEAR(opacities[i], t == 1 ? (alpha >= 0.3 ? 1.0 : 0.0) : alpha, 1e-5);
     }
   }

@@ -1,5 +1,5 @@
-// Embree does the traversal, with its robust intersectors and filters that reject every hit
-// that lets light through; the hit is then computed again in double from the triangle itself.
+// Embree traverses, with its robust intersectors. Filter functions reject every hit that does not
+// stop the ray. The hit point is then computed again in double from the triangle itself.
 #include "oracle/embree_oracle.hpp"
 
 #include <embree3/rtcore.h>
@@ -14,7 +14,7 @@
 namespace dapple::oracle {
 namespace {
 
-/// Darker rays count as black: a hundredth of the least difference that tests look for.
+/// Smaller transmittances count as 0: a hundredth of the smallest difference that tests look for.
 constexpr double kBlack = 1e-6;
 
 std::uint64_t mix(std::uint64_t z) {
@@ -23,7 +23,7 @@ std::uint64_t mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// A triangle in world space with what decides its opacity.
+/// A triangle in world space, with all that its opacity depends on.
 struct Triangle {
   V3f corner[3];
   Imath::V2d uv[3];
@@ -31,16 +31,16 @@ struct Triangle {
   std::uint32_t material;
 };
 
-/// A segment of a strand in world space, as Embree's curves take it.
+/// A segment of a strand in world space, in the form of Embree's curves.
 struct Curve {
   V3f end[2];
   float radius[2];
-  double vertex_alpha;  ///< mean of both ends'
+  double vertex_alpha;  ///< mean of the two ends
   std::uint32_t material;
-  bool goes_on;  ///< the next one begins where this one ends
+  bool goes_on;  ///< the next segment begins where this one ends
 };
 
-/// Barycentric weights of the three corners, where a line meets the triangle's plane.
+/// Barycentric weights of the three corners at the point where a line hits the triangle's plane.
 struct Weights {
   double of[3];
 };
@@ -50,7 +50,7 @@ V3d normal_of(const Triangle& triangle) {
   return (b - a).cross(c - a);
 }
 
-/// Areas of the three parts into which the point cuts the triangle, seen along its normal.
+/// The weights from the areas of the three triangles that the hit point forms with the edges.
 Weights weights_at(const Triangle& triangle, const V3d& origin, const V3d& direction) {
   const V3d normal = normal_of(triangle);
   const V3d corner[3] = {V3d(triangle.corner[0]), V3d(triangle.corner[1]), V3d(triangle.corner[2])};
@@ -75,7 +75,8 @@ std::int64_t remainder(std::int64_t value, std::int64_t modulus) {
   return r < 0 ? r + modulus : r;
 }
 
-/// The OpenGL 4.6 specification's section 8.14.2, table 8.21, which glTF's samplers refer to.
+/// Wrap modes of the OpenGL 4.6 specification, section 8.14.2, table 8.21, to which glTF's samplers
+/// refer.
 std::size_t wrapped(std::int64_t i, std::int64_t size, Wrap wrap) {
   const auto mirror = [](std::int64_t a) { return a >= 0 ? a : -(1 + a); };
   switch (wrap) {
@@ -152,7 +153,7 @@ std::vector<Triangle> flatten(const Scene& scene) {
   return triangles;
 }
 
-/// Placements of strands must scale uniformly.
+/// All strands of the scene. Instances of strands must scale uniformly.
 std::vector<Curve> flatten_strands(const Scene& scene) {
   std::vector<Curve> curves;
   for (const Instance& instance : scene.instances) {
@@ -175,7 +176,7 @@ std::vector<Curve> flatten_strands(const Scene& scene) {
   return curves;
 }
 
-/// Embree sees that segments belong together where their first vertices follow each other.
+/// Embree joins two segments when their first vertices follow each other in the buffer.
 RTCGeometry strand_geometry(RTCDevice device, const std::vector<Curve>& curves) {
   std::vector<float> vertices;
   std::vector<unsigned> first;
@@ -214,7 +215,7 @@ RTCRay embree_ray(const Segment& segment) {
   return ray;
 }
 
-/// A whole triangle soup as Embree's one geometry; primitive numbers are places in it.
+/// All triangles as one geometry of Embree; primitive numbers are positions in `triangles`.
 RTCGeometry soup_geometry(RTCDevice device, const std::vector<Triangle>& triangles) {
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* corners = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
@@ -252,7 +253,7 @@ struct EmbreeOracle::Embree {
         textures(scene.textures),
         device(rtcNewDevice(nullptr)),
         rtc_scene(rtcNewScene(device)) {
-    // No spatial splits (they come with high quality): a triangle has one place in the tree.
+    // High quality would split triangles in space; here each triangle is in one leaf only.
     rtcSetSceneBuildQuality(rtc_scene, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneFlags(rtc_scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
                                                            RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
@@ -275,7 +276,7 @@ struct EmbreeOracle::Embree {
     rtcReleaseGeometry(geometry);
   }
 
-  /// `primitive` counts all triangles, then all segments.
+  /// Opacity of a primitive where the segment hits it. Primitives: all triangles, then all curves.
   [[nodiscard]] double opacity(unsigned primitive, const Segment& segment) const {
     if (primitive >= triangles.size()) {
       const Curve& curve = curves[primitive - triangles.size()];
@@ -302,8 +303,8 @@ struct EmbreeOracle::Embree {
   RTCDevice device;
   RTCScene rtc_scene;
 
-  /// What a filter sees of its query. Embree hands back the pointer to `context`, the first
-  /// member, which is therefore a pointer to the whole.
+  /// The data of a query, for its filter. Embree passes on the pointer to `context`; that is the
+  /// first member, so the pointer is also one to the Query.
   struct Query {
     RTCIntersectContext context;
     const Embree* embree;
@@ -322,7 +323,7 @@ struct EmbreeOracle::Embree {
     return number + (strand ? static_cast<unsigned>(triangles.size()) : 0);
   }
 
-  /// Strands are closed, and stop what enters them.
+  /// Whether the hit is an exit from a strand. Strands are closed, and only entries count.
   static bool leaves_strand(const RTCFilterFunctionNArguments* arguments) {
     RTCHitN* const hit = arguments->hit;
     RTCRayN* const ray = arguments->ray;
@@ -333,7 +334,7 @@ struct EmbreeOracle::Embree {
            0;
   }
 
-  /// Embree allows itself to report a hit twice, so the triangles met are remembered.
+  /// Multiplies the transmittance. Embree may report a hit twice, so a list of primitives is kept.
   static void composite(const RTCFilterFunctionNArguments* arguments) {
     Query& query = query_of(arguments);
     arguments->valid[0] = 0;
@@ -346,7 +347,8 @@ struct EmbreeOracle::Embree {
     if (query.transmittance < kBlack) arguments->valid[0] = -1;
   }
 
-  /// A hash instead of a random stream: a triangle reported twice gets the same answer.
+  /// Accepts a hit with the probability of its opacity. The random number is a hash of the
+  /// primitive, so a triangle that Embree reports twice gets the same answer.
   static void stop_by_chance(const RTCFilterFunctionNArguments* arguments) {
     const Query& query = query_of(arguments);
     const unsigned primitive = query.embree->primitive_of(arguments);

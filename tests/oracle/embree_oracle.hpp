@@ -1,6 +1,6 @@
-// An independent renderer's view of a scene, for tests to compare with: Embree finds the
-// triangles and strands, all flattened into world space; opacity is looked up here, in double,
-// without a line of the product's own lookup.
+// An independent reference for tests: Embree intersects all triangles and strands in world space,
+// and opacity is looked up here, in double, without any of the product's lookup code.
+// In: a scene and rays; out: transmittances and first hits.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
   std::uint64_t bits();
-  /// In [0,1).
+  /// Uniform in [0,1).
   double real() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
-  /// In [low, high).
+  /// Uniform in [low, high).
   double between(double low, double high) { return low + (high - low) * real(); }
   /// Unit vector, uniform over the sphere.
   V3d direction();
@@ -27,14 +27,14 @@ class Random {
   std::uint64_t state_;
 };
 
-/// From `origin` along unit vector `direction`, both in world space, up to `t_max` metres.
+/// A ray from `origin` along the unit vector `direction`, in world space, up to `t_max` metres.
 struct Segment {
   V3f origin;
   V3f direction;
   float t_max = std::numeric_limits<float>::infinity();
 };
 
-/// Where a segment met a surface; the normal is geometric and turned against the segment.
+/// Where a segment hits a surface. The normal is geometric and points against the segment.
 struct Hit {
   V3d position;
   V3d normal;
@@ -42,16 +42,16 @@ struct Hit {
 
 class EmbreeOracle {
  public:
-  /// Copies what it needs; `scene` may be as it was loaded or with its instances merged.
+  /// Copies what it needs of `scene`, whose instances may be merged or not.
   explicit EmbreeOracle(const Scene& scene);
   ~EmbreeOracle();
 
-  /// Product of (1 - opacity) over the triangles on the segment, each taken once, and the segments
-  /// of strands through which it enters one.
+  /// Product of (1 - opacity) over the triangles that the segment hits, each taken once, and over
+  /// the strand segments through which it enters a strand.
   [[nodiscard]] double transmittance(const Segment& segment) const;
 
-  /// The nearest surface that stops the segment; one of opacity a does so with probability a,
-  /// independently of others and of calls with other values of `key`.
+  /// The closest surface that stops the segment; none: nullopt. A surface of opacity a stops it
+  /// with probability a, independently of other surfaces and of calls with other values of `key`.
   [[nodiscard]] std::optional<Hit> first_hit(const Segment& segment, std::uint64_t key) const;
 
  private:

@@ -1,5 +1,5 @@
-// The prefiltered estimator against the exact one as the footprint's scale goes to 0: the same
-// integral in the limit, and near it at the default scale.
+// Compares the prefiltered estimator with the exact one as the footprint's scale goes to 0: both
+// have the same integral in the limit, and nearly the same at the default scale.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace dapple::oracle {
 namespace {
 
-/// The first is beyond the default of 1, so that there is more of a bias to see shrink.
+/// The first is larger than the default of 1, so that its bias is large enough to see it shrink.
 constexpr float kFootprints[] = {16, 1, 1.0f / 4, 1.0f / 16, 1.0f / 1024, 0};
 
 Film film_of(const Scene& scene, Estimator estimator, float footprint) {
@@ -25,10 +25,10 @@ Film film_of(const Scene& scene, Estimator estimator, float footprint) {
   return render(scene, options).film;
 }
 
-/// How the AO of two pictures of the same camera rays and AO directions differs.
+/// Difference of the AO of two pictures with the same camera rays and AO directions.
 struct Difference {
-  double mean = 0;   ///< over the rays that met the scene: the sky would flatter
-  double error = 0;  ///< standard error of `mean`, as far as pixels tell
+  double mean = 0;   ///< over the rays that hit the scene; the sky would lower it
+  double error = 0;  ///< standard error of `mean`, estimated from the pixels
   double rms = 0;    ///< over all pixels
 };
 
@@ -53,10 +53,10 @@ void expect_convergence_of_pictures(const Scene& scene, const char* name) {
     const Difference found = difference(film_of(scene, Estimator::prefiltered, footprint), exact);
     std::printf("%s, footprint %g: mean AO %+.5f +- %.5f from exact, rms of a pixel %.5f\n", name,
                 footprint, found.mean, found.error, found.rms);
-    // Where a bias passes through zero, its noise may bring it back by three standard errors.
+    // The bias may change its sign; then noise may enlarge it again, by three standard errors.
     EXPECT_LE(std::fabs(found.mean), std::fabs(larger.mean) + 3 * (found.error + larger.error))
         << name << ", footprint " << footprint;
-    // Smaller footprints replace fewer surfaces; a saturated rms may waver by a hundredth.
+    // Smaller footprints replace fewer surfaces. An rms that is at its maximum may vary by 1 %.
     EXPECT_LE(found.rms, 1.01 * larger.rms) << name << ", footprint " << footprint;
     EXPECT_LE(std::fabs(found.mean), footprint > 1 ? 0.1 : 0.02) << name;
     EXPECT_LE(found.rms, footprint > 0 ? 1.0 : 1e-6) << name;
@@ -64,7 +64,7 @@ void expect_convergence_of_pictures(const Scene& scene, const char* name) {
   }
 }
 
-/// Rays whose footprint covers whole twigs, and the same with the footprint scaled to nothing.
+/// Rays whose footprint covers whole twigs: scaled to 0, the footprint must give exact results.
 void expect_equal_rays(const Scene& scene, const char* name) {
   const OnDevice on_device(merged(scene));
   const std::vector<Ray> rays = device_rays(random_segments(scene, 4), 0.1f);
@@ -81,7 +81,7 @@ void expect_equal_rays(const Scene& scene, const char* name) {
     return count;
   };
   EXPECT_EQ(count_different(trace_all(Estimator::prefiltered, 0)), 0u) << name;
-  // Otherwise the line above has shown nothing.
+  // Otherwise the footprints are too small for this test.
   EXPECT_GT(count_different(trace_all(Estimator::prefiltered, 1)), kRays / 10) << name;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 V3d row(const M44f& m, int i) { return {m[i][0], m[i][1], m[i][2]}; }
 
-/// x to the right and y down, in [0,1) over the picture.
+/// The camera ray through (x, y): x to the right and y down, in [0,1) over the picture.
 Segment camera_segment(const Camera& camera, double aspect, double x, double y) {
   const double half_height = std::tan(0.5 * camera.fov_y);
   const V3d direction = row(camera.to_world, 0) * ((2 * x - 1) * half_height * aspect) +
@@ -20,20 +20,20 @@ Segment camera_segment(const Camera& camera, double aspect, double x, double y) 
   return {V3f(row(camera.to_world, 3)), V3f(direction.normalized())};
 }
 
-/// A start off the surface by several roundings of its position to float, so that the surface
-/// does not shade itself; leaves are thousands of times further apart.
+/// An origin above the surface by several roundings of its position to float, so that the surface
+/// does not occlude itself. Leaves are thousands of times further apart.
 V3f start_of(const Hit& hit) {
   const V3d p = hit.position;
   const double largest = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
   return V3f(p + hit.normal * (largest * 1e-6));
 }
 
-/// Cosine-weighted: the normal plus a point of the unit sphere.
+/// A cosine-weighted direction: the normal plus a point of the unit sphere.
 V3d cosine_direction(const V3d& normal, Random& random) {
   return (normal * (1 + 1e-9) + random.direction()).normalized();
 }
 
-/// A / d^2 cos cos' for a uniformly chosen point of the rect; `toward` is set to reach it.
+/// A / d^2 cos cos' for a uniformly chosen point of the rect. Sets `toward` to end at that point.
 double sample_rect(const Light& rect, const Hit& hit, Random& random, Segment& toward) {
   const V3d to = V3d(rect.position) + V3d(rect.edge_u) * (random.real() - 0.5) +
                  V3d(rect.edge_v) * (random.real() - 0.5);

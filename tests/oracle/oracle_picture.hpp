@@ -1,5 +1,5 @@
-// A small renderer on top of Embree: AO and one rect light, every surface composited, with
-// the statistical error of what it says.
+// A small renderer on top of Embree. In: a scene, a camera, one rect light; out: AO and irradiance
+// of each pixel, with an estimate of their statistical error.
 #pragma once
 
 #include <vector>
@@ -20,11 +20,11 @@ struct Estimate {
 struct Picture {
   Estimate ao;           ///< 1 = unoccluded, and where a camera ray meets nothing
   Estimate light;        ///< irradiance of the light at radiance 1, relative to `brightest`
-  double brightest = 0;  ///< largest unoccluded irradiance of a pixel at radiance 1
+  double brightest = 0;  ///< the largest unoccluded irradiance of any pixel at radiance 1
 };
 
-/// `spp` camera rays a pixel through uniformly random places, each with one AO ray and one ray
-/// to the rect light. `camera` is a perspective one.
+/// Traces `spp` camera rays a pixel through uniformly random points of it, and from each hit one AO
+/// ray and one ray to the rect light. `camera` must be a perspective camera.
 Picture draw(const EmbreeOracle& scene, const Camera& camera, int width, int height, int spp,
              const Light& rect, std::uint64_t seed);
 

@@ -1,4 +1,4 @@
-// Whole pictures of the exact estimator against Embree's: AO and the light of a rect.
+// Compares whole pictures of the exact estimator with Embree's: AO and the light of a rect.
 #include "oracle/oracle_picture.hpp"
 
 #include <gtest/gtest.h>
@@ -8,14 +8,14 @@
 #include <cstdio>
 #include <string>
 
-#include "oracle/oracle_scenes.hpp"
 #include "camera/view.hpp"
+#include "oracle/oracle_scenes.hpp"
 
 namespace dapple::oracle {
 namespace {
 
 constexpr int kSide = 96;  // pixels
-constexpr int kBlock = 8;  // pixels, of the squares that are compared one by one
+constexpr int kBlock = 8;  // pixels; side of the squares that are compared one by one
 constexpr int kSpp = 128;
 
 struct OursAndTheirs {
@@ -29,13 +29,13 @@ std::vector<double> scaled(const Plane& plane, double scale) {
   return values;
 }
 
-/// Looking down at the plant so that it and the ground fill the picture: sky tells nothing.
+/// Looks down at the plant, so that plant and ground fill the picture; the sky would test nothing.
 LookAt close_look(const Box3f& box) {
   const float height = box.size().y;
   return {box.center() + V3f(0.2f, 0.7f, 1.0f) * height, box.center() - V3f(0, 0.2f, 0) * height};
 }
 
-/// Beside the plant, near and turned away from it a little, so that both cosines and the
+/// A rect light near the plant's side, turned slightly away from it, so that both cosines and the
 /// distance vary over the picture.
 Light side_light(const Box3f& box) {
   const float radius = box.size().length() / 2;
@@ -68,9 +68,9 @@ OursAndTheirs draw_both(Scene scene) {
           scaled(*film.find("light.rect.R"), 1 / (light.radiance.x * oracle.brightest)), oracle};
 }
 
-/// The largest difference of a block's means, in standard errors of the oracle's. A block that
-/// is nearly empty may differ by a stray sample that its variance does not foresee, so one
-/// sample of full weight is added to it.
+/// The largest difference of a block's means, in standard errors of the oracle's mean. In a nearly
+/// empty block the estimated variance may be too small for a single sample that hits, so the
+/// variance of one sample of full weight is added.
 double worst_block(const std::vector<double>& ours, const Estimate& theirs) {
   constexpr int kBlocks = kSide / kBlock;
   double worst = 0;
@@ -97,8 +97,8 @@ void expect_equal(const char* scene, const char* quantity, const std::vector<dou
               mean(ours) - theirs.mean(), worst);
   EXPECT_LE(theirs.standard_error(), 0.0005) << "too few samples to tell";
   EXPECT_NEAR(mean(ours), theirs.mean(), 0.002) << scene << ", " << quantity;
-  // The difference of two estimates of equal error has 1.4 of its standard errors; the largest
-  // of 144 is beyond 4.5 of them once in a thousand pictures. 3.0 to 4.2 were measured.
+  // The difference of two estimates with equal errors has sqrt(2) times their standard error. The
+  // largest of 144 normal values is beyond 4.5 deviations once in a thousand pictures.
   EXPECT_LE(worst, 4.5 * std::sqrt(2.0)) << scene << ", " << quantity;
 }
 

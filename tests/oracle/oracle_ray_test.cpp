@@ -1,4 +1,4 @@
-// The exact estimator against Embree, ray by ray.
+// Compares the exact estimator with Embree, ray by ray.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -15,13 +15,13 @@ namespace dapple::oracle {
 namespace {
 
 constexpr double kTolerance = 1e-4;
-/// A pine's card spans some 600 texels and alpha goes from 0 to 1 within one of them at a
-/// needle's rim: rounding of 1e-6 in u and v is one of 6e-4 in opacity.
+/// A pine's card spans some 600 texels, and at a needle's edge alpha goes from 0 to 1 within one
+/// texel. So a rounding of 1e-6 in u and v changes the opacity by 6e-4.
 constexpr double kTextureTolerance = 1e-3;
 
-/// Whether a ray no further from `segment` than a kernel's rounding can carry it has
-/// transmittance `ours`, or one has more and another less: some 16 roundings of 2^-24 each, of
-/// the largest number in the ray.
+/// Whether roundings of a kernel can explain `ours`: 256 rays near `segment` have transmittances
+/// whose range contains `ours`. They are 1e-6 of the largest number in the ray away, about 16
+/// roundings of 2^-24 each.
 bool is_a_neighbours(const EmbreeOracle& oracle, const Segment& segment, double ours,
                      double tolerance) {
   constexpr double kRounding = 1e-6;
@@ -41,10 +41,10 @@ bool is_a_neighbours(const EmbreeOracle& oracle, const Segment& segment, double 
 }
 
 struct Disagreement {
-  std::size_t rays = 0;         ///< that differ by more than the tolerance
-  std::size_t unexplained = 0;  ///< of them: not by rounding, as far as neighbours tell
-  double mean = 0;              ///< signed, over all rays
-  double grey = 0;              ///< share of rays of transmittance in (0, 1)
+  std::size_t rays = 0;         ///< number of rays that differ by more than the tolerance
+  std::size_t unexplained = 0;  ///< number of those that is_a_neighbours() does not explain
+  double mean = 0;              ///< mean of the signed differences of all rays
+  double grey = 0;              ///< share of rays with a transmittance in (0, 1)
 };
 
 Disagreement compare(const EmbreeOracle& oracle, const std::vector<Segment>& segments,
@@ -65,15 +65,14 @@ Disagreement compare(const EmbreeOracle& oracle, const std::vector<Segment>& seg
   return found;
 }
 
-/// `loaded` goes to Embree as it is, to the device as `prepared`.
+/// Embree gets the scene `loaded`, the device gets it as `prepared`.
 ///
-/// Kernels compute in float and test triangles otherwise than Embree, so a ray within rounding
-/// of an edge may fall on either side of it. Rounding is 1e-6 of some metres and leaves are a
-/// few centimetres wide, so the rim in question is 1e-4 to 1e-3 of a leaf and is decided
-/// wrongly now and then: 2 to 4 of 100,000 were measured without textures, 22 to 25 with; 50
-/// are allowed. Neighbouring rays must confirm that it is an edge, but for three: a ray along an
-/// edge that two triangles share may meet both or neither in the kernels, as none of its
-/// neighbours does (none or one was measured).
+/// Kernels compute in float and test triangles in another way than Embree, so a ray within rounding
+/// of an edge may pass it on either side. Rounding is 1e-6 of some metres and leaves are a few
+/// centimetres wide, so the uncertain border is 1e-4 to 1e-3 of a leaf. 50 of 100,000 rays may
+/// differ. For all but three of them, neighbouring rays must confirm that the ray is near an edge:
+/// on an edge that two triangles share, a ray may hit both or neither in the kernels, while each of
+/// its neighbours hits one.
 void expect_equal(const Scene& loaded, const OnDevice& prepared, double tolerance,
                   const char* label) {
   const std::vector<Segment> segments = random_segments(loaded, 1);
@@ -87,12 +86,12 @@ void expect_equal(const Scene& loaded, const OnDevice& prepared, double toleranc
       label, found.rays, kRays, tolerance, found.unexplained, found.mean, 100 * found.grey);
   EXPECT_LE(found.rays, 50u) << label;
   EXPECT_LE(found.unexplained, 3u) << label;
-  // Errors at edges go either way: a tenth of what 50 wholly wrong rays would make.
+  // Errors at edges have both signs: a tenth of the mean that 50 completely wrong rays would give.
   EXPECT_LE(std::fabs(found.mean), 5e-5) << label;
 }
 
-/// Every combination of wrap modes and filter, on small images of sides that are no powers of
-/// two, and of both alpha modes, with and without texture and vertex alpha.
+/// Adds a material for every combination of wrap modes, filter and alpha mode, with and without
+/// texture and vertex alpha. The sides of the small images are no powers of two.
 void add_every_material(Scene& scene, Random& random) {
   for (const Wrap s : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
     for (const Wrap t : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
@@ -120,7 +119,7 @@ void add_every_material(Scene& scene, Random& random) {
   }
 }
 
-/// Triangles at random in a cube of side 2 about the origin, of all the scene's materials.
+/// Random triangles in a cube of side 2 around the origin, with all materials of the scene.
 Mesh random_triangles(const Scene& scene, Random& random) {
   Mesh mesh;
   for (std::uint32_t i = 0; i < 342; ++i) {
@@ -136,7 +135,7 @@ Mesh random_triangles(const Scene& scene, Random& random) {
   return mesh;
 }
 
-/// Four placements: as it is, mirrored, stretched and sheared.
+/// Four instances of the random triangles: unchanged, mirrored, stretched and sheared.
 Scene soup_of_every_material() {
   Random random(2);
   Scene scene;

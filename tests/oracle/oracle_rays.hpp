@@ -1,4 +1,5 @@
-// Random rays through a scene, for Embree and for the device.
+// Random rays through a scene. In: a scene and a seed; out: the same rays in Embree's form and in
+// the device's.
 #pragma once
 
 #include <cmath>
@@ -11,7 +12,8 @@ namespace dapple::oracle {
 
 inline constexpr std::size_t kRays = 100'000;
 
-/// A place on a surface, surfaces chosen by number and not by area, so that small ones count.
+/// A random point on a surface. Primitives are chosen by number and not by area, so that small ones
+/// are tested as often as large ones.
 inline V3d random_target(const Scene& scene, Random& random) {
   const auto pick = [&](std::size_t count) {
     return static_cast<std::size_t>(random.real() * static_cast<double>(count));
@@ -23,7 +25,7 @@ inline V3d random_target(const Scene& scene, Random& random) {
     const double share = random.real();
     const V3d point =
         V3d(mesh.positions[end[0]]) * (1 - share) + V3d(mesh.positions[end[1]]) * share;
-    // Anywhere across it, and a little beyond.
+    // Anywhere across the strand's thickness, and slightly beyond it.
     return (point + random.direction() * (1.2 * random.real() * mesh.radii[end[0]])) *
            Imath::M44d(instance.to_world);
   }
@@ -35,8 +37,8 @@ inline V3d random_target(const Scene& scene, Random& random) {
   return point * Imath::M44d(instance.to_world);
 }
 
-/// From anywhere in the scene's box, grown by a quarter. Of four rays three are aimed at a
-/// surface, one goes anywhere; every other ray ends somewhere, as light rays do.
+/// Rays from random points in the scene's box, enlarged by a quarter. Three of four rays aim at a
+/// surface, one has a random direction. Every second ray ends at a distance, as light rays do.
 inline std::vector<Segment> random_segments(const Scene& scene, std::uint64_t seed) {
   Random random(seed);
   const Box3f box = scene_bounds(scene);
@@ -54,7 +56,7 @@ inline std::vector<Segment> random_segments(const Scene& scene, std::uint64_t se
   return segments;
 }
 
-/// The same for the device, with a footprint of `solid_angle` steradians.
+/// The same rays for the device, with a footprint of `solid_angle` steradians.
 inline std::vector<Ray> device_rays(const std::vector<Segment>& segments, float solid_angle) {
   std::vector<Ray> rays;
   for (const Segment& s : segments) {

@@ -1,4 +1,4 @@
-// What the oracle tests share: scenes, and scenes on a device.
+// Shared by the oracle tests: scenes from files, and scenes uploaded to a device.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,23 +17,23 @@ inline std::string shared_scene(const std::string& name) {
 #define DAPPLE_SKIP_WITHOUT(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here: left out"
 
-/// A birch of 95,084 triangles; its leaves are given the opacity of a real leaf.
+/// A birch of 95,084 triangles. Its leaves get the opacity of a real leaf.
 inline Scene load_sapling() {
   Scene scene = load_scene(shared_scene("sapling_100k.glb"));
   override_opacity(scene, "leaf", 0.85f);
   return scene;
 }
 
-/// A game pine of needle cards, textured and blended.
+/// A pine from a game: cards of needles with a texture, alpha-blended.
 inline Scene load_pine() { return load_scene(shared_scene("smallpine/scene.gltf")); }
 
-/// As render() prepares a scene for the BVH.
+/// The scene with single instances merged, as render() prepares it for the BVH.
 inline Scene merged(Scene scene) {
   merge_single_instances(scene);
   return scene;
 }
 
-/// A scene that rays can be sent through.
+/// A scene with its BVH on a device, ready for tracing.
 struct OnDevice {
   explicit OnDevice(const Scene& scene)
       : bvh(build_bvh(scene)), uploaded(upload(device, scene, bvh)) {}

@@ -1,4 +1,4 @@
-// Strands against Embree's round linear curves, ray by ray: transmittances, and what is met first.
+// Compares strands with Embree's round linear curves, ray by ray: transmittances and first hits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,10 +17,9 @@ using scene_test::strand_scene;
 
 constexpr std::size_t kChecked = 30'000;
 
-/// Segments are the sides of cones that meet in planes, Embree's are spheres drawn along lines; end
-/// points are rounded to a thousandth of a radius or so. Rays that graze a strand, or outside of a
-/// bend the corner that a sphere rounds, may meet the one and not the other: 0.03 % to 0.3 % were
-/// measured, half a percent is allowed, and in the mean 0.003.
+/// Our segments are cones that are joined at planes, with end points rounded to about a thousandth
+/// of a radius; Embree's are spheres swept along lines. A ray that grazes a strand, or the outside
+/// of a bend, may hit one and not the other. 0.5 % of the rays may differ, and the mean by 0.003.
 void expect_equal(const Scene& loaded, const char* label) {
   const Scene scene = merged(loaded);
   const OnDevice prepared(scene);
@@ -43,19 +42,19 @@ void expect_equal(const Scene& loaded, const char* label) {
   EXPECT_LE(std::fabs(mean), 0.003) << label;
 }
 
-TEST(OracleStrands, CurlsLetThroughWhatEmbreeSays) {
+TEST(OracleStrands, CurlsTransmitAsInEmbree) {
   expect_equal(strand_scene(curly_strands({}), 0.3f), "curls");
 }
 
-TEST(OracleStrands, StrandsThatComeToAPointLetThroughWhatEmbreeSays) {
+TEST(OracleStrands, PointedStrandsTransmitAsInEmbree) {
   expect_equal(strand_scene(curly_strands({.tip = 0, .tickets = 3}), 0.3f), "pointed");
 }
 
-TEST(OracleStrands, OpaqueOnesHideWhatEmbreeSays) {
+TEST(OracleStrands, OpaqueStrandsOccludeAsInEmbree) {
   expect_equal(strand_scene(curly_strands({.strands = 2000, .radius = 0.001f}), 1), "opaque");
 }
 
-TEST(OracleStrands, AmongTrianglesTheyLetThroughWhatEmbreeSays) {
+TEST(OracleStrands, StrandsAmongTrianglesTransmitAsInEmbree) {
   Scene scene = make_procedural("scene:cloud?leaves=2000&opacity=0.5");
   scene.materials.push_back(scene_test::material_of(0.3f));
   const auto hair = static_cast<std::uint32_t>(scene.materials.size() - 1);
@@ -70,10 +69,10 @@ TEST(OracleStrands, AmongTrianglesTheyLetThroughWhatEmbreeSays) {
   expect_equal(scene, "curls in a cloud");
 }
 
-TEST(OracleStrands, RealHairLetsThroughWhatEmbreeSays) {
+TEST(OracleStrands, RealHairTransmitsAsInEmbree) {
   const std::string path = shared_scene("mohawk.hair");
   DAPPLE_SKIP_WITHOUT(path);
-  // In metres, some 100 times its size: in scenes of millimetres Embree's curves lose their digits.
+  // Enlarged 100 times, in metres: in scenes of millimetres Embree's curves lose precision.
   Mesh mesh = load_scene(path).meshes.at(0);
   for (V3f& position : mesh.positions) position *= 100.0f;
   std::fill(mesh.radii.begin(), mesh.radii.end(), 0.08f);
@@ -82,8 +81,8 @@ TEST(OracleStrands, RealHairLetsThroughWhatEmbreeSays) {
   expect_equal(scene, "mohawk");
 }
 
-/// Where rays meet opaque strands first, and with which normals.
-TEST(OracleStrands, RaysMeetTheSamePlacesFirst) {
+/// Compares positions and normals of the closest hits on opaque strands.
+TEST(OracleStrands, ClosestHitsAgreeWithEmbree) {
   constexpr float kRadius = 0.002f;
   const Scene scene = strand_scene(curly_strands({.radius = kRadius, .tip = 0.5f}), 1);
   const OnDevice prepared(scene);
@@ -112,8 +111,9 @@ TEST(OracleStrands, RaysMeetTheSamePlacesFirst) {
   EXPECT_LE(different, kChecked / 200);
 }
 
-/// Pictures are made by packets: each pixel's one place must be what a ray towards it meets first.
-TEST(OracleStrands, CameraRaysMeetWhatIsThere) {
+/// Pictures are traced in packets. A ray from the camera to the position in each pixel must hit
+/// that position first.
+TEST(OracleStrands, CameraHitsAgreeWithEmbree) {
   constexpr float kRadius = 0.004f;
   Scene scene = strand_scene(curly_strands({.strands = 200, .radius = kRadius}), 1);
   const V3f eye(0, 0.5f, 3);

@@ -1,5 +1,5 @@
-// Files of checkpoints: what comes back is what was written, and damage, or a state that does not
-// fit its picture, is refused by name.
+// Checkpoint files: reading returns what was written; damaged files, and states that do not fit the
+// picture, are refused with the file's name.
 #include "render/checkpoint.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using namespace film_test;
 
 class CheckpointFile : public FilmFile {};
 
-/// A file of a few hundred bytes.
+/// Writes a checkpoint of a few hundred bytes to `path`; returns its bytes.
 std::string small_checkpoint(const std::string& path) {
   Checkpoint checkpoint;
   checkpoint.options = {{"--seed", "1"}};
@@ -47,7 +47,7 @@ TEST_F(CheckpointFile, ComesBackAsItWasWritten) {
   check_state("", read.state, {2, 4, 2});
 }
 
-// Every bit of a sealed file is tested beside those; here, one of each byte.
+// The tests of sealed files flip every bit; here, one bit of each byte is flipped.
 TEST_F(CheckpointFile, AFlippedBitAndAnotherLengthIsRefusedByName) {
   const std::string whole = small_checkpoint(path("a.ckpt"));
   for (std::size_t bit = 0; bit < 8 * whole.size(); bit += 9) {

@@ -1,5 +1,5 @@
-// The same command gives the same bits: run after run, whatever the threads of the device and
-// of the builder, whole picture or crop. Another seed gives another picture.
+// The same command gives the same bits: on every run, with any number of threads of device and BVH
+// builder, in the whole picture and in a crop. Another seed gives another picture.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder of its own for the program's pictures, gone afterwards.
+// Tests with a temporary folder for the program's pictures, which is removed afterwards.
 class Determinism : public ::testing::Test {
  protected:
   Determinism()
@@ -26,7 +26,7 @@ class Determinism : public ::testing::Test {
   }
   ~Determinism() override { fs::remove_all(folder_); }
 
-  // Renders a small demo in a process of its own; `environment` as "NAME=value ".
+  // Renders a small demo in a new process and returns its path; `environment` as "NAME=value ".
   [[nodiscard]] std::string rendered(const std::string& name, const std::string& arguments = "",
                                      const std::string& environment = "") const {
     const std::string path = (folder_ / name).string();
@@ -45,7 +45,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// As bits, so that NaN equals itself and -0 is not 0.
+// Compares bits, so that NaN equals itself and -0 differs from 0.
 bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
@@ -58,7 +58,7 @@ TEST_F(Determinism, TheProgramWritesTheSameBytesAgainAndWithAnyNumberOfDeviceThr
   EXPECT_EQ(bytes_of(rendered("two.exr", "", "POCL_MAX_PTHREAD_COUNT=2 ")), first);
 }
 
-TEST_F(Determinism, SoItDoesWithATargetWhosePixelsStopWhenTheyWill) {
+TEST_F(Determinism, TheProgramWritesTheSameBytesWithATarget) {
   for (const std::string adaptive : {"--target-error 0.05", "--target-rmse 0.02"}) {
     const std::string first = bytes_of(rendered("first.exr", adaptive));
     EXPECT_EQ(bytes_of(rendered("one.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=1 ")), first);
@@ -84,7 +84,7 @@ std::vector<float> cropped(const Film& film, const Plane& plane, const PixelRect
   return pixels;
 }
 
-// A ray alone in its packet is traced as one among others.
+// A packet of a single ray gives the same result as a packet of many.
 TEST(Crop, OfASinglePixelAndSampleEqualsThatOfTheWholePicture) {
   Scene scene = make_procedural("scene:tree?leaves=3000");
   RenderOptions options;
@@ -123,8 +123,8 @@ TEST(Crop, EqualsTheSamePartOfTheWholePictureBitForBit) {
   for (const Plane& plane : whole.planes) {
     const Plane* found = part.find(plane.channel);
     ASSERT_NE(found, nullptr) << plane.channel;
-    // R, G, B are relative to the brightest place of what was rendered, which
-    // a crop may not hold.
+    // R, G, B are relative to the largest irradiance of the rendered pixels, which may be outside
+    // of a crop.
     if (plane.channel == "R" || plane.channel == "G" || plane.channel == "B") continue;
     EXPECT_TRUE(same_bits(found->pixels, cropped(whole, plane, *options.crop))) << plane.channel;
   }

@@ -1,5 +1,6 @@
-// Renders that signals end, as programs: exit codes, a picture and a checkpoint that are whole, and
-// a next run that goes on to the same file. Killed at any moment, nothing is lost but time.
+// Signals end renders of the program: exit codes, a complete picture and checkpoint file, and a
+// next run that continues to the same file. A process that is killed loses only the work since its
+// last checkpoint.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,14 +39,14 @@ class Interruption : public FilmFile {
     if (!more.empty()) arguments.insert(arguments.end(), {more, value});
     return RunningProgram(arguments, log()).wait();
   }
-  /// Beside the folder, so that it does not count as a file left behind.
+  /// Path of the log, outside of the folder, so that files_in_folder() does not count it.
   [[nodiscard]] std::string log() const { return folder_.string() + ".log"; }
   [[nodiscard]] bool is_there(const char* name) const {
     return std::filesystem::exists(path(name));
   }
 };
 
-// Far more samples than there is time for: 2^20 a pixel.
+// So many samples a pixel (2^20) that a render never ends during a test.
 constexpr int kEndless = 1 << 20;
 
 TEST_F(Interruption, ASignalEndsWithItsCodeAPictureAndACheckpointThatGoesOn) {
@@ -56,14 +57,14 @@ TEST_F(Interruption, ASignalEndsWithItsCodeAPictureAndACheckpointThatGoesOn) {
     const auto sent = steady_clock::now();
     program.send(signal);
     EXPECT_EQ(program.wait(), code) << bytes_of(log());
-    // Of a picture that small it is a matter of tenths; a loaded machine may take its time.
+    // A small picture needs tenths of a second; the limit allows for a busy machine.
     EXPECT_LT(steady_clock::now() - sent, Milliseconds(10'000));
     const std::string said = bytes_of(log());
     EXPECT_TRUE(contains(said, "interrupted after ")) << said;
     EXPECT_TRUE(contains(said, "--resume " + path("a.ckpt") + " goes on")) << said;
     const Film film = read_exr(path("out.exr"));
     const auto& samples = film.find("samples")->pixels;
-    // The first pass of sixteen, two of which share a camera ray.
+    // The first pass: sixteen samples a pixel, two of which share a camera ray.
     EXPECT_GE(*std::min_element(samples.begin(), samples.end()), 8);
     EXPECT_EQ(files_in_folder(), 2u);
   }
@@ -116,7 +117,7 @@ TEST_F(Interruption, IgnoredSignalsStayIgnored) {
   EXPECT_EQ(program.wait(), 0) << bytes_of(log());
 }
 
-// A picture so large that files of the OpenCL compiler are smaller, so that they fit.
+// The picture is larger than the files of the OpenCL compiler, so that these fit into the limit.
 TEST_F(Interruption, ACheckpointTooLargeForTheDiskIsAnErrorAndTheOneBeforeIsKept) {
   std::vector<std::string> arguments = with_checkpoint(4, "1h");
   arguments.insert(arguments.end(), {"--crop", "0,100,799,499"});
@@ -139,7 +140,7 @@ TEST_F(Interruption, ACheckpointTooLargeForTheDiskIsAnErrorAndTheOneBeforeIsKept
   EXPECT_EQ(files_in_folder(), 2u);
 }
 
-TEST_F(Interruption, ADamagedCheckpointExitsWith1AndTimesThatAreNoneWith2) {
+TEST_F(Interruption, ADamagedCheckpointExitsWith1AndInvalidTimesWith2) {
   ASSERT_EQ(run(with_checkpoint(4, "1h")), 0) << bytes_of(log());
   std::string bytes = bytes_of(path("a.ckpt"));
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 16);

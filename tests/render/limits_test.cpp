@@ -1,5 +1,6 @@
-// The program under limits of memory and disk, and killed at any moment: the picture or a clear
-// error, the file before or the file after, nothing left behind. Slow: every step is a process.
+// The program with limits of memory and disk, and killed at various moments: it writes the picture
+// or prints a clear error, the output file is the former or the new one, and no other file remains.
+// Slow: every step is a process.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +49,7 @@ TEST_F(Limits, FileSizesFromNothingUpGiveThePictureOrAnErrorAndKeepTheFormerFile
     EXPECT_EQ(files_in_folder(), 1u);
     if (run.code == 0) continue;
     EXPECT_EQ(run.code, 1) << run.err;
-    if (blocks > 0) {  // else the message has no room either
+    if (blocks > 0) {  // with 0, the message cannot be written either
       EXPECT_TRUE(contains(run.err, "dapple: ")) << run.err;
     }
     EXPECT_EQ(bytes_of(path("out.exr")), "former");
@@ -69,8 +70,8 @@ TEST_F(Limits, AFullDiskIsAnErrorThatKeepsTheFormerFile) {
   EXPECT_EQ(run.out, "out.exr\nformer\n");
 }
 
-TEST_F(Limits, MessagesThatCannotBeWrittenEndNothingBySignal) {
-  // What would be redirected after this is a comment.
+TEST_F(Limits, UnwritableMessagesDoNotCauseASignal) {
+  // The '#' turns the redirections that dapple() appends into a comment.
   EXPECT_EQ(dapple("render nosuch.glb -o out.exr 2>/dev/full #").code, 3);
   const std::string err = " 2>'" + (logs() / "err").string() + "' #";
   expect_failure(dapple("info scene:cube >/dev/full" + err), 1,
@@ -85,7 +86,7 @@ TEST_F(Limits, KilledAtAnyMomentTheFileIsTheFormerOrTheNewAndTheNextRunSucceeds)
   for (int ms = 5; ms <= 400; ms += 15) {
     SCOPED_TRACE(ms);
     write_bytes(path("out.exr"), "former");
-    // In the foreground, for it would die with what it kills, and not wait for that to be gone.
+    // --foreground: else `timeout` would kill itself too, and not wait until the program is gone.
     const Outcome run =
         dapple(command, "timeout --foreground -s KILL " + std::to_string(ms / 1000.0));
     killed += run.code != 0;

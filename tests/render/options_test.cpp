@@ -1,5 +1,5 @@
-// Every option out of range is refused by the name of its flag, and everything in range,
-// the ends included, is accepted.
+// Ranges of options: a value out of range is refused with the name of its flag; every value in
+// range, the ends included, is accepted.
 #include "dapple/options.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 using Change = std::function<void(RenderOptions&)>;
 
-/// The message of the usage Error, or "accepted".
+/// The message of the usage Error that validate() throws, or "accepted".
 std::string verdict(const Change& change) {
   RenderOptions options;
   change(options);
@@ -93,7 +93,7 @@ TEST(Options, TheDefaultsAndTheEndsOfEveryRangeAreAccepted) {
   for (const Change& change : changes) EXPECT_EQ(verdict(change), "accepted") << index++;
 }
 
-TEST(Options, WhatIsOutOfRangeIsRefusedByItsFlag) {
+TEST(Options, ValuesOutOfRangeAreRefusedWithTheirFlag) {
   struct Case {
     const char* flag;
     Change change;

@@ -1,6 +1,6 @@
-// Renders that are interrupted and go on: to the same bits as those that were not, wherever they
-// were left and through a file. More samples continue a picture; other settings are refused by
-// name.
+// Interrupted renders that continue from a checkpoint end with the same bits as uninterrupted ones,
+// wherever they stopped. A larger number of samples continues a picture; other settings are refused
+// with the name of the option.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ RenderOptions small_picture() {
   options.width = 40;
   options.height = 36;
   options.spp = 40;
-  options.ao_rays = 32;  // slices are of 8,192 samples
+  options.ao_rays = 32;  // slices have 8,192 samples
   options.visits = true;
   return options;
 }
@@ -48,7 +48,7 @@ Stop stop_after(int slices) {
   return [left = slices]() mutable { return left-- == 0; };
 }
 
-/// A tree on the device, traced without all that render() does before and after.
+/// Traces a tree on the device, without the preparation and the film of render().
 class Tracing {
  public:
   Tracing(const SceneOnDevice& tree, const RenderOptions& options)
@@ -61,7 +61,7 @@ class Tracing {
     return trace_picture(device(), tree_.uploaded, view_, options_, layout_, control,
                          std::move(from));
   }
-  /// What there is after `slices` more.
+  /// The state after `slices` more slices.
   [[nodiscard]] TraceState state_after(int slices, TraceState from = {}) const {
     TraceState state;
     TraceControl control;
@@ -121,7 +121,7 @@ TEST_F(Resume, ARenderLeftAfterAnySliceGoesOnToTheSameBits) {
   }
 }
 
-/// Camera rays start side by side then, and not at one point.
+/// The scene with an orthographic camera, whose rays do not start at one point.
 Scene seen_from_afar(Scene scene) {
   std::vector<std::string> notes;
   Camera camera = choose_view(scene, small_picture(), notes).camera;
@@ -141,8 +141,8 @@ void expect_passes_to_add_up(const Scene& scene) {
   const TracedPicture a = tracing.trace(), b = tracing.trace(passes);
   EXPECT_EQ(a.samples, b.samples);
   const std::size_t pixels = a.samples.size();
-  // What rays visit depends on the other rays of their packets: planes 8 and 9 of the camera's, the
-  // last two of AO and lights.
+  // Visits and tests depend on the other rays of a packet. Their planes are set to 0: planes 8 and
+  // 9 of the camera, and the last two of AO and of the light.
   const auto without_visits = [pixels](const TracedPicture& picture) {
     std::vector<std::int64_t> sums = sums_of(picture);
     for (const std::size_t plane : {8, 9, 14, 15, 18, 19})
@@ -167,7 +167,7 @@ RenderResult draw(const RenderOptions& options, const RenderControl& control = {
   return render(make_procedural("scene:tree?leaves=1000"), options, control);
 }
 
-/// All layers but what rays cost, which depends on the order that they are traced in.
+/// Compares all layers but the visits of rays, which depend on the order in which rays are traced.
 void expect_same_film(const Film& a, const Film& b) {
   ASSERT_EQ(a.planes.size(), b.planes.size());
   for (const Plane& plane : a.planes) {
@@ -177,7 +177,7 @@ void expect_same_film(const Film& a, const Film& b) {
   EXPECT_EQ(a.metadata.settings, b.metadata.settings);
 }
 
-TEST_F(Resume, AnInterruptedPictureIsWhatThereIsAndItsFileTheRest) {
+TEST_F(Resume, AnInterruptedPictureHoldsTheSamplesSoFarAndItsFileContinues) {
   RenderOptions options = small_picture();
   options.camera_splitting = 1;
   const RenderResult whole = draw(options);
@@ -199,10 +199,10 @@ TEST_F(Resume, AnInterruptedPictureIsWhatThereIsAndItsFileTheRest) {
   expect_same_film(rest.film, whole.film);
   EXPECT_EQ(rest.statistics.rays.camera, whole.statistics.rays.camera);
   EXPECT_EQ(files_in_folder(), 1u);
-  expect_same_film(draw(options, control).film, whole.film);  // of a finished one nothing is left
+  expect_same_film(draw(options, control).film, whole.film);  // the checkpoint is complete now
 }
 
-TEST_F(Resume, PixelsWithoutSamplesAreAsThoseWhoseRaysMiss) {
+TEST_F(Resume, PixelsWithoutSamplesEqualPixelsThatMiss) {
   RenderOptions options = small_picture();
   for (const int slices : {0, 2}) {
     RenderControl control;
@@ -240,7 +240,7 @@ TEST_F(Resume, WithATargetAnInterruptedPictureKnowsItsErrorsOnceAllPixelsHaveTwo
   EXPECT_GT(later.statistics.rmse.at("ao"), 0.008);
 }
 
-// With the footprints that the first samples were made for.
+// Footprints stay those of the first samples.
 TEST_F(Resume, MoreSamplesContinueThePictureThatTheFirstBegan) {
   RenderOptions options = small_picture();
   options.spp = 12;
@@ -263,14 +263,14 @@ TEST_F(Resume, MoreSamplesContinueThePictureThatTheFirstBegan) {
     EXPECT_NE(bits_of(draw(more).film.find("ao.R")->pixels),
               bits_of(at_once.film.find("ao.R")->pixels))
         << "other footprints make another picture";
-    more.spp = 41;  // and on, with those of the very first
+    more.spp = 41;  // continues again, with the footprints of the first render
     const RenderResult further = draw(more, control);
     more.footprint_spp = 12;
     expect_same_film(further.film, draw(more).film);
   }
 }
 
-TEST_F(Resume, ATighterTargetAndMoreAtLeastGoOn) {
+TEST_F(Resume, ATighterTargetAndALargerSppContinue) {
   RenderOptions options = with(&RenderOptions::target_rmse, 0.03f);
   RenderControl control;
   control.checkpoint = path("a.ckpt");
@@ -347,7 +347,7 @@ TEST_F(Resume, ManySavesOnTheWayChangeNothing) {
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
-TEST_F(Resume, OneThatCannotBeWrittenCostsNoPictureAndKeepsTheOneBefore) {
+TEST_F(Resume, AnUnwritableCheckpointKeepsThePictureAndTheFormerCheckpoint) {
   RenderControl control;
   control.checkpoint = path("a.ckpt");
   const RenderOptions options = small_picture();

@@ -1,4 +1,5 @@
-// What adaptive sampling reads off a picture's sums.
+// The moments that adaptive sampling derives from a picture's sums: variances of batches, and the
+// irradiance by which errors of lights are divided.
 #include "sampling/film_moments.hpp"
 
 #include <gtest/gtest.h>
@@ -13,8 +14,8 @@ namespace {
 
 constexpr int kSide = 8;
 
-/// A picture with one light, every sample of which hits something unlit; batches' means have the
-/// variance `of_batch`.
+/// A picture with one light. Every sample hits something that is not lit; the batches' means have
+/// the variance `of_batch`.
 class UnlitPicture {
  public:
   UnlitPicture(std::vector<std::uint32_t> samples, float of_batch)
@@ -32,7 +33,7 @@ class UnlitPicture {
         std::llround(irradiance * samples_[pixel] * layout_.light_scale);
   }
 
-  /// By which the light's errors are divided.
+  /// The irradiance by which FilmMoments divides the light's errors.
   [[nodiscard]] double largest_unoccluded() const {
     const HostView sums(nullptr, std::as_bytes(std::span(sums_)));
     const HostView squares(nullptr, std::as_bytes(std::span(squares_)));
@@ -41,7 +42,8 @@ class UnlitPicture {
   }
 
  private:
-  /// A plane of them: means of so many samples, around 0, have that variance.
+  /// Appends a plane of sums of squares: means of `samples` samples each, around 0, with
+  /// `variance`.
   void add_squares(std::uint32_t samples, float variance) {
     for (const std::uint32_t of_pixel : samples_) {
       const auto means = static_cast<float>(of_pixel / samples);
@@ -79,11 +81,11 @@ TEST(FilmMoments, LightsErrorsAreRelativeToTheLargestUnoccludedIrradianceLessIts
   UnlitPicture picture(alike(16), 0.25f);
   picture.set_unoccluded(kBright, 4);
   picture.set_unoccluded(kBesideIt, 2);
-  // Four batches of variance 1/4: 1/4.
+  // The mean of four batches of variance 1/4 has a standard error of 1/4.
   EXPECT_NEAR(picture.largest_unoccluded(), 4 - 0.25, 1e-5);
 }
 
-TEST(FilmMoments, WhatIsMostlyNoiseIsTakenFromTheNeighbours) {
+TEST(FilmMoments, NoisyIrradianceIsAveragedOverNeighbours) {
   UnlitPicture picture(alike(16), 100);
   picture.set_unoccluded(kBright, 4);
   picture.set_unoccluded(kBesideIt, 2);
@@ -99,14 +101,14 @@ TEST(FilmMoments, PilotPixelsStandForOthers) {
   EXPECT_NEAR(picture.largest_unoccluded(), 4, 1e-5);
 }
 
-// Of numbers whose sum is known the squares' sum is least when they are equal, and means of pairs
-// lie closer together than what they are of.
+// Numbers with a given sum have the smallest sum of squares when they are equal, and the means of
+// pairs are closer together than the numbers.
 TEST(FilmMoments, KernelsSquareTheMeansOfBatchesAndOfPairs) {
   const scene_test::SceneOnDevice cloud(make_procedural("scene:cloud?leaves=300"));
   RenderOptions options;
   options.light = false;
   options.width = options.height = 16;
-  options.spp = 28;  // of seven batches one is alone
+  options.spp = 28;  // seven batches: three pairs and a single batch
   options.camera_splitting = 1;
   std::vector<std::string> notes;
   const View view = choose_view(cloud.scene, options, notes);
@@ -130,7 +132,7 @@ TEST(FilmMoments, KernelsSquareTheMeansOfBatchesAndOfPairs) {
     pairs += of_pixel[1];
     batches += of_pixel[2];
   }
-  // Batches differ by six differences, pairs and the one alone by three.
+  // Seven batches have six degrees of freedom; three pairs and a single batch have three.
   EXPECT_LT(1.01 * least, pairs);
   EXPECT_LT(pairs - least, 0.6 * (batches - least));
   EXPECT_GT(pairs - least, 0.2 * (batches - least));

@@ -1,4 +1,4 @@
-// Sums over neighbourhoods of pixels against adding them up one by one.
+// Compares sums over neighbourhoods of 3x3 pixels with adding up the pixels one by one.
 #include "sampling/pixel_neighbourhood.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// How a round of work is cut into slices, and what is traced when it is left between two of them.
+// How a round of work is divided into slices, and which samples are traced when it stops between
+// two of them.
 #include "sampling/round.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kPixels = 10;
 
-/// Ten pixels with `samples` each, the first five with four more in a second group.
+/// Ten pixels with `samples` each; the first five have four more in a second group.
 Round two_groups(std::uint32_t samples) {
   Round round;
   round.groups.resize(2);
@@ -29,7 +30,8 @@ std::vector<std::uint32_t> given(std::uint32_t samples) {
   return all;
 }
 
-// 7 and 12: neither pixels nor samples fit whole; 64: several pixels a slice; 1000: all in one.
+// Slices of 7 and 12 samples divide pixels and batches unevenly; 64 holds several pixels; 1000
+// holds all.
 TEST(Round, EverySampleIsTracedOnceInOrderAndCountedWhereverItIsLeft) {
   for (const std::uint32_t samples : {3u, 16u, 50u}) {
     for (const std::uint32_t slice_samples : {7u, 12u, 64u, 1000u}) {
@@ -63,7 +65,7 @@ TEST(Round, WithoutGroupsIsDone) {
   EXPECT_EQ(traced_samples({}, 64, {1, 2}), (std::vector<std::uint32_t>{1, 2}));
 }
 
-TEST(Round, MoreToComeThanWasGivenIsRefused) {
+TEST(Round, MoreWorkThanGivenSamplesIsRefused) {
   EXPECT_THROW(traced_samples(two_groups(8), 64, std::vector<std::uint32_t>(kPixels, 8)), Error);
 }
 

@@ -1,5 +1,5 @@
-// Who gets samples, without a renderer: allocations on known deviations, and the rounds of a plan
-// on pixels whose samples are Gaussian.
+// How many samples each pixel gets, tested without a renderer: allocations for known variances, and
+// the rounds of a plan on pixels with Gaussian samples.
 #include "sampling/sample_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -19,14 +19,6 @@
 namespace dapple {
 namespace {
 
-constexpr AllocationLimits kFree{1, 1u << 20};
-
-double rmse(const std::vector<float>& variances, const BatchCounts& batches) {
-  double sum = 0;
-  for (std::size_t p = 0; p < batches.size(); ++p) sum += double{variances[p]} / batches[p];
-  return std::sqrt(sum / static_cast<double>(batches.size()));
-}
-
 std::vector<float> rising_variances(std::size_t pixels) {
   std::vector<float> variances;
   for (std::size_t p = 0; p < pixels; ++p) {
@@ -36,100 +28,26 @@ std::vector<float> rising_variances(std::size_t pixels) {
   return variances;
 }
 
-std::vector<float> equal_costs(const std::vector<float>& variances) {
-  return std::vector<float>(variances.size(), 7.0f);
+TEST(WantEqual, GivesTheSameNumberWhereAVarianceIsAboveZeroAndKeepsWhatIsWanted) {
+  BatchCounts wanted{2, 2, 7, 2};
+  want_equal({0.5f, 0.0f, 0.1f, 1e-9f}, 4.1, 100, wanted);
+  EXPECT_EQ(wanted, (BatchCounts{5, 2, 7, 5}));
+  want_equal({0.5f, 0.0f, 0.1f, 1e-9f}, 1e12, 100, wanted);
+  EXPECT_EQ(wanted, (BatchCounts{100, 2, 100, 100}));
 }
 
-void want_mean(const std::vector<float>& variances, const std::vector<float>& costs, double target,
-               const BatchCounts& have, const AllocationLimits& limits, BatchCounts& wanted) {
-  const double enough = target * target * static_cast<double>(variances.size());
-  want_rmse(variances, costs, enough, have, limits, wanted);
-  EXPECT_TRUE(wanted.back() == limits.most || squared_errors(variances, wanted) <= enough);
+TEST(SquaredErrors, AreTheSumOfVariancesOverBatches) {
+  EXPECT_NEAR(squared_errors({0.5f, 0.0f, 0.25f}, {2, 3, 5}), 0.3, 1e-7);
 }
 
-TEST(WantRmse, GivesInProportionToTheDeviationAndReachesTheTarget) {
-  const std::vector<float> variances = rising_variances(500);
-  const BatchCounts have(variances.size(), 2);
-  BatchCounts wanted = have;
-  want_mean(variances, equal_costs(variances), 0.01, have, kFree, wanted);
-  EXPECT_LE(rmse(variances, wanted), 0.01);
-  EXPECT_GT(rmse(variances, wanted), 0.00999);
-  const double density = wanted.back() / std::sqrt(double{variances.back()});
-  for (std::size_t p = 0; p < wanted.size(); ++p)
-    EXPECT_NEAR(wanted[p], density * std::sqrt(double{variances[p]}), 1.0) << p;
+TEST(WantError, RoundsUpAndKeepsToTheMaximum) {
+  const std::vector<float> variances{0.01f, 0.041f, 0.1f, 0.0f};
+  BatchCounts wanted(4, 2);
+  want_error(variances, 0.1f, 9, wanted);  // 1, 4.1, 10 and no batches are enough
+  EXPECT_EQ(wanted, (BatchCounts{2, 5, 9, 2}));
 }
 
-TEST(WantRmse, TakesFewerThanEqualErrorsDoByWhatDeviationsDiffer) {
-  const std::vector<float> variances = rising_variances(500);
-  const BatchCounts have(variances.size(), 2);
-  BatchCounts by_rmse = have, by_error = have;
-  want_mean(variances, equal_costs(variances), 0.01, have, kFree, by_rmse);
-  want_error(variances, 0.01f, have, kFree, by_error);
-  double samples = 0, equal = 0, deviation = 0, variance = 0;
-  for (std::size_t p = 0; p < variances.size(); ++p) {
-    samples += by_rmse[p];
-    equal += by_error[p];
-    deviation += std::sqrt(variances[p]) / 500;
-    variance += variances[p] / 500;
-  }
-  EXPECT_NEAR(equal / samples, variance / (deviation * deviation), 0.01);
-}
-
-TEST(WantRmse, GivesFewerWhereSamplesCostMore) {
-  const std::vector<float> variances(400, 0.25f);
-  std::vector<float> costs(variances.size(), 1.0f);
-  for (std::size_t p = 0; p < costs.size(); p += 4) costs[p] = 16.0f;
-  const BatchCounts have(variances.size(), 2);
-  BatchCounts wanted = have;
-  want_mean(variances, costs, 0.01, have, kFree, wanted);
-  EXPECT_LE(rmse(variances, wanted), 0.01);
-  EXPECT_GT(rmse(variances, wanted), 0.00999);
-  for (std::size_t p = 0; p < wanted.size(); ++p)
-    EXPECT_NEAR(wanted[p], wanted[0] * (p % 4 ? 4.0 : 1.0), 4.0) << p;
-}
-
-// What little it could save an allocation loses by estimates that are off.
-TEST(WantRmse, NearlyEqualDeviationsGetTheSame) {
-  std::vector<float> variances(300);
-  for (std::size_t p = 0; p < variances.size(); ++p)
-    variances[p] = p % 3 ? 0.2f + 0.001f * static_cast<float>(p) : 0.0f;
-  const BatchCounts have(variances.size(), 2);
-  BatchCounts wanted = have;
-  want_mean(variances, equal_costs(variances), 0.01, have, kFree, wanted);
-  EXPECT_LE(rmse(variances, wanted), 0.01);
-  for (std::size_t p = 0; p < wanted.size(); ++p) EXPECT_EQ(wanted[p], p % 3 ? wanted[1] : 2u) << p;
-}
-
-TEST(WantRmse, WhatAnotherPassWantsCounts) {
-  const std::vector<float> variances = rising_variances(100);
-  const BatchCounts have(variances.size(), 2);
-  BatchCounts once = have;
-  want_mean(variances, equal_costs(variances), 0.02, have, kFree, once);
-  BatchCounts again = once;
-  want_mean(variances, equal_costs(variances), 0.02, have, kFree, again);
-  EXPECT_EQ(again, once);
-  want_mean(variances, equal_costs(variances), 0.03, have, kFree, again);
-  EXPECT_EQ(again, once) << "an easier target is reached already";
-}
-
-TEST(WantRmse, OutOfReachEveryPixelThatVariesWantsTheMost) {
-  std::vector<float> variances = rising_variances(50);
-  variances[7] = 0;
-  const BatchCounts have(variances.size(), 2);
-  BatchCounts wanted = have;
-  want_mean(variances, equal_costs(variances), 1e-4f, have, {4, 100}, wanted);
-  for (std::size_t p = 0; p < wanted.size(); ++p) EXPECT_EQ(wanted[p], p == 7 ? 2u : 100u) << p;
-}
-
-TEST(WantError, RoundsUpToWholeUnits) {
-  const std::vector<float> variances{0.01f, 0.05f, 0.1f, 0.0f};
-  const BatchCounts have(4, 2);
-  BatchCounts wanted = have;
-  want_error(variances, 0.1f, have, {4, 9}, wanted);  // 1, 5, 10 and no batches are enough
-  EXPECT_EQ(wanted, (BatchCounts{2, 6, 9, 2}));
-}
-
-// Pixels whose batches' means are Gaussian around 0.
+// Simulated pixels: the means of their batches are Gaussian around 0.
 class GaussianPixels {
  public:
   explicit GaussianPixels(std::vector<float> variances)
@@ -182,7 +100,6 @@ struct Drawn {
 Drawn draw(int width, int height, const RenderOptions& options) {
   const std::size_t count = static_cast<std::size_t>(width) * height;
   GaussianPixels pixels(rising_variances(count));
-  const auto costs = [&] { return std::vector<float>(count, 1.0f); };
   SamplePlan plan(width, height, options);
   const auto trace = [&](const std::vector<WorkGroup>& groups) {
     for (const WorkGroup& group : groups) pixels.trace(group);
@@ -192,7 +109,7 @@ Drawn draw(int width, int height, const RenderOptions& options) {
   for (std::vector<WorkGroup> first; !(first = plan.least()).empty();) trace(first);
   Drawn drawn;
   for (; drawn.rounds < 30; ++drawn.rounds) {
-    const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)}, costs);
+    const std::vector<WorkGroup> groups = plan.next({pixels.variances(width)});
     if (groups.empty()) break;
     trace(groups);
   }
@@ -205,13 +122,13 @@ Drawn draw(int width, int height, const RenderOptions& options) {
 
 TEST(SamplePlan, GaussianPixelsReachTheRmseInFewRounds) {
   const Drawn drawn = draw(64, 64, by_rmse(0.05f));
-  // 4,096 pixels know their RMSE to 1.1 %.
+  // The RMSE of 4,096 pixels is known to 1.1 %.
   EXPECT_NEAR(drawn.rmse, 0.05, 0.05 * 0.05);
   EXPECT_LE(drawn.rounds, 8);
   EXPECT_EQ(draw(64, 64, by_rmse(0.05f)).samples, drawn.samples);
 }
 
-TEST(SamplePlan, EveryPixelHasTheLeastAndNoneMoreThanTheMost) {
+TEST(SamplePlan, EveryPixelHasFromMinimumToMaximum) {
   RenderOptions options = by_rmse(0.01f);
   options.spp = 20;
   options.max_spp = 200;
@@ -224,7 +141,7 @@ TEST(SamplePlan, EveryPixelHasTheLeastAndNoneMoreThanTheMost) {
 }
 
 TEST(SamplePlan, PixelsOfABlockGetTheSame) {
-  const int width = 11, height = 7;  // blocks at the right and below are cut
+  const int width = 11, height = 7;  // blocks at the right and lower border are incomplete
   const Drawn drawn = draw(width, height, by_rmse(0.05f));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -234,17 +151,16 @@ TEST(SamplePlan, PixelsOfABlockGetTheSame) {
   }
 }
 
-TEST(SamplePlan, NoPixelGetsMoreThanEightTimesWhatItHasAndAllEndAtTheMost) {
+TEST(SamplePlan, NoPixelGetsMoreThanEightTimesWhatItHasAndAllEndAtTheMaximum) {
   RenderOptions options;
   options.target_error = 0.01f;
   options.max_spp = 200;
   SamplePlan plan(5, 2, options);
   EXPECT_EQ(plan.least().at(0).samples, 16u);
   const std::vector<std::vector<float>> variances{std::vector<float>(10, 1.0f)};
-  const auto costs = [] { return std::vector<float>(10, 1.0f); };
   for (int round = 0; round < 20; ++round) {
     const std::vector<std::uint32_t> before = plan.samples();
-    if (plan.next(variances, costs).empty()) break;
+    if (plan.next(variances).empty()) break;
     for (std::size_t p = 0; p < before.size(); ++p) {
       EXPECT_LE(plan.samples()[p], 9 * before[p]);
       EXPECT_GT(plan.samples()[p], before[p]);
@@ -290,41 +206,33 @@ TEST(PilotPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {
   }
 }
 
-TEST(PilotPixels, HaveAQuarterOfThemInTheFirstPass) {
-  const std::vector<bool> all = pilot_pixels(130, 130);
-  const std::vector<bool> first = pilot_pixels(130, 130, PilotPass::first_pass);
-  ASSERT_EQ(first.size(), all.size());
-  EXPECT_EQ(4 * std::count(first.begin(), first.end(), true),
-            std::count(all.begin(), all.end(), true));
-  for (std::size_t p = 0; p < all.size(); ++p) EXPECT_TRUE(!first[p] || all[p]) << p;
-}
-
-TEST(SamplePlan, AfterThePilotAllPixelsGetWhatMostWant) {
+TEST(SamplePlan, AfterThePilotAllPixelsGetEqualSamples) {
   RenderOptions options = by_rmse(0.1f);
   SamplePlan plan(128, 128, options);
   const std::vector<WorkGroup> pilot = plan.pilot();
   EXPECT_EQ(count_of(plan.samples(), 8), 1600u);
   EXPECT_EQ(count_of(plan.samples(), 0), 16384u - 1600u);
   ASSERT_TRUE(plan.only_pilot_has_samples());
-  // Batches of variance 0.041: the squared error is 0.01 at 4.1, of powers of two at 8.
+  // With batches of variance 0.041 the squared error is 0.01 at 4.1 batches; the next power of two
+  // is 8.
   const std::vector<WorkGroup> all = plan.after_pilot({std::vector<float>(16384, 0.041f)});
   EXPECT_EQ(count_of(plan.samples(), 8 * DAPPLE_SAMPLE_BATCH), 16384u);
   EXPECT_FALSE(plan.only_pilot_has_samples());
   GaussianPixels pixels(std::vector<float>(16384, 1.0f));
   for (const auto& groups : {pilot, all})
-    for (const WorkGroup& group : groups) pixels.trace(group);  // begins where it ended, or fails
+    for (const WorkGroup& group : groups) pixels.trace(group);  // fails if samples are left out
   EXPECT_TRUE(plan.least().empty());
 }
 
-TEST(SamplePlan, AfterThePilotNothingIsGivenToBeSure) {
-  // What is missing should the pilot be wrong is less than the doubling that being sure may cost.
+TEST(SamplePlan, AfterThePilotNoSafetyMarginIsAdded) {
+  // A safety margin could double the samples. If the pilot is wrong, a later round adds fewer.
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.pilot();
   plan.after_pilot({std::vector<float>(16384, 0.0399f)});
   EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_SAMPLE_BATCH), 16384u);
 }
 
-TEST(SamplePlan, AfterThePilotNoPixelGetsMoreThanFourTimesTheLeast) {
+TEST(SamplePlan, AfterThePilotNoPixelGetsMoreThanFourTimesTheMinimum) {
   SamplePlan plan(128, 128, by_rmse(0.001f));
   plan.pilot();
   plan.after_pilot({std::vector<float>(16384, 1.0f)});
@@ -332,21 +240,15 @@ TEST(SamplePlan, AfterThePilotNoPixelGetsMoreThanFourTimesTheLeast) {
   EXPECT_NEAR(plan.fraction_done(), 32.0 / 4096, 1e-6) << "of the most";
 }
 
-TEST(SamplePlan, ByErrorThePilotSaysWhatThreeQuartersOfThePixelsWant) {
+TEST(SamplePlan, ByErrorThereIsNoPilot) {
   RenderOptions options;
-  options.spp = 8;
   options.target_error = 0.1f;
   SamplePlan plan(128, 128, options);
-  plan.pilot();
-  std::vector<float> variances;  // a fifth see nothing, the others want 3 or 6 batches
-  for (int p = 0; p < 16384; ++p)
-    variances.push_back(p % 128 < 26 ? 0.0f : p < 8192 ? 0.03f : 0.06f);
-  plan.after_pilot({variances});
-  EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_SAMPLE_BATCH), 16384u)
-      << "and better stratified than 3";
+  EXPECT_TRUE(plan.pilot().empty());
+  EXPECT_EQ(plan.least().size(), 1u);
 }
 
-TEST(SamplePlan, APilotWithoutHitsAsksForTheLeast) {
+TEST(SamplePlan, APilotWithoutHitsGivesTheMinimum) {
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.pilot();
   plan.after_pilot({std::vector<float>(16384, 0.0f)});
@@ -354,7 +256,7 @@ TEST(SamplePlan, APilotWithoutHitsAsksForTheLeast) {
   EXPECT_EQ(plan.fraction_done(), 1);
 }
 
-TEST(SamplePlan, GoesOnFromAPilotAsIfItHadTakenIt) {
+TEST(SamplePlan, ContinuesFromTheSamplesOfAnEarlierPilot) {
   const std::vector<float> variances(16384, 0.09f);
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.pilot();

@@ -1,5 +1,5 @@
-// Random points are as evenly spread as promised, their mappings keep measure, and the light
-// samplers integrate to irradiances known in closed form.
+// Sampling functions of the kernels: Sobol points must be (0,2)-nets, mappings must keep areas and
+// solid angles, and the light samplers must integrate to irradiances known in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ TEST(Sampling, APixelsPointsAreNetsInEveryAlignedBlock) {
             << size << " points from " << first << " of pixel " << pixel;
       }
     }
-    // Far into the sequence too, where merging continues.
+    // Also far into the sequence, where a render takes its points when it continues.
     EXPECT_TRUE(is_net(sobol_points(pixel, pair, seed, 1u << 20, 256)));
   }
 }
@@ -68,14 +68,15 @@ TEST(Sampling, PixelsPairsAndSeedsHaveUnrelatedPoints) {
       xx += (base[i].x - 0.5) * (other[i].x - 0.5) * 12;
       yy += (base[i].y - 0.5) * (other[i].y - 0.5) * 12;
     }
-    // Correlations of 4,096 independent pairs have a deviation of 1/64; five of them.
+    // The correlation of 4,096 independent pairs has a standard deviation of 1/64; five are
+    // allowed.
     EXPECT_LT(std::fabs(xx / 4096), 5.0 / 64);
     EXPECT_LT(std::fabs(yy / 4096), 5.0 / 64);
   }
 }
 
 TEST(Sampling, TheFirstPointOverPixelsIsUniform) {
-  // What one sample a pixel makes of a picture: 64 boxes, 2,048 pixels.
+  // A picture of one sample a pixel: 2,048 pixels, whose points are counted in 64 boxes.
   std::vector<int> boxes(64, 0);
   for (uint pixel = 0; pixel < 2048; ++pixel) {
     const V2f p = sobol_points(pixel, 1, 0, 0, 1)[0];
@@ -83,7 +84,7 @@ TEST(Sampling, TheFirstPointOverPixelsIsUniform) {
   }
   double chi_square = 0;
   for (const int count : boxes) chi_square += (count - 32.0) * (count - 32.0) / 32;
-  // Mean 63, deviation sqrt(126) = 11; five of them.
+  // The mean is 63 and the standard deviation sqrt(126) = 11; five are allowed.
   EXPECT_LT(chi_square, 63 + 56);
 }
 
@@ -112,11 +113,11 @@ TEST(Sampling, TheConcentricMapKeepsAreas) {
     const double values[5] = {x, y, x * x, y * y, square * square};
     for (int m = 0; m < 5; ++m) moments[m] += values[m] / (side * side);
   }
-  // The uniform disk's: 0, 0, 1/4, 1/4, 1/3. Midpoints of squares 1/256 wide are off by
-  // curvature times 1/256^2 / 24, under 1e-5.
+  // The moments of the uniform disk are 0, 0, 1/4, 1/4, 1/3. The midpoint rule on squares 1/256
+  // wide is off by curvature times 1/256^2 / 24, less than 1e-5.
   const double expected[5] = {0, 0, 0.25, 0.25, 1.0 / 3};
   for (int m = 0; m < 5; ++m) EXPECT_NEAR(moments[m], expected[m], 1e-4) << "moment " << m;
-  // Locally too: a step in each coordinate spans pi / 4 of its square's share of [-1, 1]^2.
+  // Local areas too: the map from [0, 1]^2 to the disk multiplies every small area by pi.
   const float h = 1e-2f;
   for (const V2f& at : square_grid(7)) {
     const auto p =
@@ -149,7 +150,7 @@ TEST(Sampling, AVogelSpiralsPointsAreAGoldenAngleApartInRingsOfOneArea) {
     for (uint k = 0; k < kCount; ++k) {
       const double radius = std::sqrt((k + double{jitter}) / kCount);
       const double angle = turn / 0x1p32 * 2 * kPi + golden * k;
-      // The angle in 2^-32 of a turn is off by 0.43 of one.
+      // The kernels' golden angle, in units of 2^-32 of a turn, is off by 0.43 units.
       const double off = 1e-6 + k * 1e-9;
       ASSERT_NEAR(places[k].x, radius * std::cos(angle), off) << k << " turned by " << turn;
       ASSERT_NEAR(places[k].y, radius * std::sin(angle), off) << k << " turned by " << turn;
@@ -179,7 +180,7 @@ TEST(Sampling, FramesAreOrthonormalAndRightHandedForEveryNormal) {
     const auto t = download<V3f>(tangents, normals.size());
     const auto b = download<V3f>(bitangents, normals.size());
     for (std::size_t i = 0; i < normals.size(); ++i) {
-      // A handful of roundings of numbers up to 1.
+      // Several roundings of numbers up to 1.
       EXPECT_NEAR(t[i].length(), 1, 2e-6f) << kernel << normals[i];
       EXPECT_NEAR(b[i].length(), 1, 2e-6f) << kernel << normals[i];
       EXPECT_LT((t[i].cross(b[i]) - normals[i]).length(), 2e-6f) << kernel << normals[i];
@@ -201,14 +202,14 @@ TEST(Sampling, ConeDirectionsStayInTheConeAndFillItEvenly) {
     V3d sum(0, 0, 0);
     for (const V3f& d : download<V3f>(directions, squares.size())) {
       EXPECT_NEAR(d.length(), 1, 1e-6f);
-      // 1 - cos from the chord, since a cosine near 1 has no digits left.
+      // 1 - cos is computed from the chord, because a cosine near 1 loses its digits.
       const double from_axis = V3d(V3d(d) - V3d(axis)).length2() / 2;
       EXPECT_LE(from_axis, one_minus_cos * (1 + 1e-4) + 1e-7);
       height += from_axis / static_cast<double>(squares.size());
       sum += V3d(d) / static_cast<double>(squares.size());
     }
-    // Uniform in solid angle is uniform in the cosine: the mean height is half. A chord of
-    // the thinnest cone, 0.005, has an error of 1e-7 in it.
+    // Directions uniform in solid angle are uniform in the cosine, so the mean height is half of
+    // the cone's. In the thinnest cone a chord of 0.005 has an error of 1e-7.
     EXPECT_NEAR(height, 0.5 * one_minus_cos, 1e-3 * one_minus_cos);
     const V3d aside = sum - V3d(axis) * sum.dot(V3d(axis));
     EXPECT_LT(aside.length(), 1e-3 * std::sqrt(one_minus_cos)) << "the mean is off the axis";
@@ -259,7 +260,7 @@ Samples light_samples(const Scene& scene) {
           download<float>(solid_angles, kLightSamples)};
 }
 
-/// 16,384 points of a (0,2)-sequence on a smooth integrand: far better than 1 / 16,384.
+/// Relative error allowed for 16,384 points of a (0,2)-sequence on a smooth integrand.
 constexpr double kIntegrationError = 3e-4;
 
 Scene rect_scene(const V3f& position, const V3f& edge_u, const V3f& edge_v, const V3f& direction) {
@@ -281,7 +282,7 @@ TEST(LightSampling, ARectIntegratesToItsFormFactor) {
     const V3f c[4] = {at - u * 0.5f - v * 0.5f, at + u * 0.5f - v * 0.5f, at + u * 0.5f + v * 0.5f,
                       at - u * 0.5f + v * 0.5f};
     const double expected = polygon_irradiance({V3d(c[0]), V3d(c[1]), V3d(c[2]), V3d(c[3])});
-    // `way` points from the light to the receiver: lit only on the side it emits to.
+    // The receiver at the origin is lit only if it is in front of the rect.
     const bool lit = down.dot(-at) > 0;
     const double front = light_samples(rect_scene(at, u, v, down)).irradiance();
     const double back = light_samples(rect_scene(at, u, v, -down)).irradiance();
@@ -309,12 +310,12 @@ TEST(LightSampling, ASphereIntegratesToPiTimesTheSquaredSineOfItsRadius) {
     light.radius = radius;
     scene.lights = {light};
     const Samples samples = light_samples(scene);
-    // Wholly above the horizon: pi sin^2(angular radius) times the cosine to the centre.
+    // A sphere above the horizon: pi sin^2(angular radius) times the cosine to its centre.
     const double distance = position.length(), sine = radius / distance;
     const double expected = kPi * sine * sine * position.y / distance;
     EXPECT_NEAR(samples.irradiance(), expected, kIntegrationError * expected);
     for (uint i = 0; i < kLightSamples; ++i) {
-      // A tangent ray's distance is known to sqrt(roundings of distance^2) only.
+      // The distance along a tangent ray is only known to sqrt(roundings of distance^2).
       const V3f from_centre = samples.directions[i] * samples.distances[i] - position;
       ASSERT_NEAR(from_centre.length(), radius, 1e-3 * distance);
       ASSERT_LE(from_centre.dot(samples.directions[i]), 1e-3 * distance) << "the far side";
@@ -351,7 +352,7 @@ TEST(LightSampling, ASunIntegratesToPiTimesTheSquaredSineOfItsRadius) {
   }
 }
 
-/// A light of two triangles of unlike size, placed by `to_world`; front faces look down.
+/// A light of two triangles of different size, transformed by `to_world`; its front faces down.
 Scene mesh_light_scene(const M44f& to_world, bool double_sided) {
   Scene scene;
   scene.materials.emplace_back();
@@ -382,7 +383,7 @@ TEST(LightSampling, AMeshIntegratesToTheSumOfItsTriangles) {
         corners.emplace_back(mesh.positions[3 * t + c] * to_world);
       expected += polygon_irradiance(corners);
     }
-    // Two pieces of a stretched sequence: a little less even than one.
+    // Each triangle gets a part of one stretched sequence, which is less even than a whole one.
     EXPECT_NEAR(light_samples(scene).irradiance(), expected, 10 * kIntegrationError * expected);
     EXPECT_NEAR(light_samples(mesh_light_scene(to_world, true)).irradiance(), expected,
                 10 * kIntegrationError * expected);

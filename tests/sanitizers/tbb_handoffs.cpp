@@ -1,7 +1,7 @@
-// oneTBB's task hand-offs made visible to ThreadSanitizer. Debian's libtbb is not instrumented,
-// so that every result of a parallel loop looks like a race; and suppressing its frames would
-// silence our own races, since libtbb stands at the bottom of every worker's stack. Linked into
-// the programs under test these stand before libtbb's entry points and call them.
+// Makes oneTBB's hand-offs of tasks visible to ThreadSanitizer. Debian's libtbb is not
+// instrumented, so every result of a parallel loop looks like a race. Suppressing libtbb's frames
+// would also hide our own races, because libtbb is at the bottom of every worker's stack. These
+// functions are linked into the tested programs; they replace libtbb's entry points and call them.
 #include <dlfcn.h>
 #include <oneapi/tbb/detail/_task.h>
 #include <sanitizer/tsan_interface.h>
@@ -19,7 +19,7 @@ Function* in_libtbb(const char* symbol) {
   return reinterpret_cast<Function*>(found);
 }
 
-/// Stands in for a spawned task: what its maker did happens before its execution.
+/// Wraps a spawned task: all that its creator did happens before its execution.
 class HandedOff final : public d1::task {
  public:
   explicit HandedOff(d1::task& spawned) : spawned_(spawned) { __tsan_release(this); }
@@ -42,8 +42,8 @@ class HandedOff final : public d1::task {
   d1::task& spawned_;
 };
 
-/// libtbb has seen the count reach zero; this reads it again where the sanitizer sees it, so
-/// that what the finished tasks did happens before what follows.
+/// After libtbb has seen the count reach zero, this reads it again in instrumented code. So all
+/// that the finished tasks did happens before what follows.
 void join(d1::wait_context& finished) { finished.reserve(0); }
 
 }  // namespace
@@ -83,8 +83,8 @@ void wait(d1::wait_context& until, d1::task_group_context& context) {
   join(until);
 }
 
-// libtbb's pools hand memory from thread to thread unseen; the sanitizer knows about new.
-// Nothing looks into the pool, only whether there is one.
+// libtbb's pools pass memory between threads without the sanitizer's knowledge; it knows `new`.
+// Callers only test whether there is a pool; nobody reads it.
 void* allocate(d1::small_object_pool*& pool, std::size_t bytes) {
   static char no_pool;
   pool = reinterpret_cast<d1::small_object_pool*>(&no_pool);

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "corpus/stage.hpp"
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple::test {
 namespace {

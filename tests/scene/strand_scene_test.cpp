@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "support/curly_strands.hpp"
 #include "dapple/error.hpp"
+#include "support/curly_strands.hpp"
 
 namespace dapple {
 namespace {

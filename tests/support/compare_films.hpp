@@ -1,4 +1,5 @@
-// Small films to compare, and comparing them as the program does.
+// Small films for the comparison tests, and a function that compares two of them as `dapple
+// compare` does. In: sizes, planes of pixels; out: a Film, or the Comparison of two.
 #pragma once
 
 #include <limits>
@@ -11,7 +12,8 @@ namespace dapple::compare_test {
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// Its data window begins at (10, 20), so that positions tell film from data window.
+// The data window begins at (10, 20), so that positions in the film differ from those in the
+// window.
 inline Film film_of(int width, int height, std::vector<Plane> planes) {
   Film film;
   film.width = width + 30;
@@ -25,7 +27,7 @@ inline std::vector<float> constant(int count, float value) {
   return std::vector<float>(static_cast<std::size_t>(count), value);
 }
 
-// In [0,1), the same everywhere.
+// Pseudo-random values in [0,1), the same on every machine.
 inline std::vector<float> noise(int count, std::uint32_t seed) {
   std::vector<float> values;
   for (int i = 0; i < count; ++i) {

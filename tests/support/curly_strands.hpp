@@ -1,4 +1,5 @@
-// Hair for tests: strands of random length and curl that start on a ball, of one material each.
+// Hair for tests. In: number, thickness and curl of the strands; out: a mesh of strands that start
+// on a ball, with random lengths and curls and one material, or a scene with that mesh.
 #pragma once
 
 #include <cmath>
@@ -10,14 +11,14 @@ namespace dapple::scene_test {
 
 struct Curls {
   std::size_t strands = 500;
-  std::size_t segments = 16;  ///< of each
-  float radius = 0.002f;      ///< at the root, metres; the tip has `tip` of it
-  float tip = 1.0f;
-  float tickets = 2;  ///< of a strand around its way
+  std::size_t segments = 16;  ///< of each strand
+  float radius = 0.002f;      ///< at the root, metres
+  float tip = 1.0f;           ///< radius at the tip as a share of the root's
+  float tickets = 2;          ///< full turns of a strand's helix around its axis
   std::uint32_t seed = 1;
 };
 
-/// Around a ball of radius 0.3, strands 0.3 to 0.7 long.
+/// Strands of 0.3 to 0.7 m that start on a ball of radius 0.3 m.
 inline Mesh curly_strands(const Curls& curls, std::uint32_t material = 0) {
   Points random(curls.seed);
   Mesh mesh;
@@ -40,7 +41,7 @@ inline Mesh curly_strands(const Curls& curls, std::uint32_t material = 0) {
   return mesh;
 }
 
-/// One instance of `mesh`, its material of `opacity`.
+/// A scene of one instance of `mesh`; its material has `opacity`.
 inline Scene strand_scene(Mesh mesh, float opacity) {
   Scene scene;
   scene.source = "strands";

@@ -1,5 +1,5 @@
-// Functions of the program come before those of its libraries: dapple's calls arrive here, and go
-// on to the driver by dlsym().
+// The linker prefers functions of the program to those of its libraries. So dapple's OpenCL calls
+// arrive here; each forwards to the real function, which dlsym() finds.
 #include "support/failing_opencl.hpp"
 
 #include <dlfcn.h>
@@ -30,7 +30,7 @@ Function* next(Function*, const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
-/// An event that a call returns, if it was asked for one, lives.
+/// Counts the event that a call returns, if the caller requested one.
 cl_int count_event(cl_int status, const cl_event* event) {
   if (status == CL_SUCCESS && event != nullptr) ++living;
   return status;
@@ -210,8 +210,7 @@ cl_kernel clCreateKernel(cl_program a, const char* b, cl_int* status) {
   return count_object(next(&clCreateKernel, "clCreateKernel")(a, b, status));
 }
 
-// What lets go never fails here: an object that could not be released would be a leak by
-// definition.
+// Releases never fail here: an object that could not be released would always be a leak.
 
 cl_int clReleaseContext(cl_context a) {
   --living;

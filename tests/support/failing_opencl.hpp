@@ -1,5 +1,6 @@
-// OpenCL between dapple and the driver, in the test program only: counts calls and living objects,
-// fails the call it is told to, and makes a device look smaller or farther than it is.
+// A layer between dapple and the OpenCL driver, in the test program only. It counts calls and
+// living objects, fails a chosen call, and can report less memory than the device has, or memory
+// that is not shared with the host.
 #pragma once
 
 #include <cstddef>
@@ -7,26 +8,26 @@
 
 namespace dapple::opencl_test {
 
-/// Counting starts anew; the n-th call from now on fails, and no other. 0: none does.
+/// Restarts the count. Only the n-th call from now on fails; with 0 none does.
 void fail_call(int n);
-/// The same of calls that allocate a buffer only.
+/// The same, but counts and fails only calls that allocate a buffer.
 void fail_allocation(int n);
 /// Calls since fail_call(), allocations since fail_allocation().
 int calls();
 int allocations();
-/// "clFinish", the call that failed; empty when none did.
+/// Name of the call that failed, for example "clFinish"; empty when none did.
 std::string failed_call();
 
-/// Contexts, queues, buffers, programs, kernels and events that nobody has released.
+/// Number of contexts, queues, buffers, programs, kernels and events that are not yet released.
 int living_objects();
 
-/// What every device says of its memory from now on; 0: the truth.
+/// From now on every device reports these sizes of its memory, in bytes; 0: its real size.
 void pretend_memory(std::size_t global_bytes, std::size_t allocation_bytes);
 
-/// Whether devices say from now on that they share no memory with the host.
+/// With true, devices report from now on that they share no memory with the host.
 void pretend_own_memory(bool own);
 
-/// By all clEnqueueWriteBuffer() so far.
+/// Bytes that all clEnqueueWriteBuffer() calls wrote so far.
 std::size_t written_bytes();
 
 }  // namespace dapple::opencl_test

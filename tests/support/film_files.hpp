@@ -1,5 +1,5 @@
-// What the tests of films and their files share: a folder of their own, small films, and
-// catching Errors as values.
+// Shared by the tests of films and their files: a temporary folder for each test, small films,
+// reading and damaging files byte by byte, and a function that returns a thrown Error as a value.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace dapple::film_test {
 
-// A folder of its own for every test, gone afterwards.
+// A test with its own folder, which is removed after the test.
 class FilmFile : public ::testing::Test {
  protected:
   FilmFile() {
@@ -51,7 +51,7 @@ inline void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-// In place: the file's other bytes are not written again.
+// Flips one bit of the file and writes no other byte.
 inline void flip_bit(const std::string& path, std::size_t bit) {
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
   file.seekg(static_cast<std::streamoff>(bit / 8));
@@ -66,7 +66,7 @@ inline std::vector<std::uint32_t> bits_of(const std::vector<float>& values) {
   return bits;
 }
 
-// The Error that `action` throws; fails the test when it throws none.
+// Returns the Error that `action` throws; fails the test when it throws none.
 inline Error error_of(const std::function<void()>& action) {
   try {
     action();
@@ -81,7 +81,7 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// Two channels whose values tell row, column and channel apart.
+// Two channels; each value depends on row, column and channel.
 inline Film ramp_film(int width, int height) {
   Film film;
   film.width = width;
@@ -102,7 +102,7 @@ inline FilmMetadata some_metadata() {
   metadata.world_to_camera = M44f(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16);
   metadata.world_to_ndc = M44f(16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1);
   metadata.samples = 64;
-  metadata.seed = 4'000'000'000U;  // over what a signed 32-bit attribute can hold
+  metadata.seed = 4'000'000'000U;  // larger than a signed 32-bit attribute can hold
   metadata.scene = "scene:tree?leaves=50000";
   metadata.device = "pthread-model";
   metadata.version = "0.1.0";

@@ -1,6 +1,6 @@
-// Small glTF files for tests: bytes are appended to one buffer, elements to a JSON
-// document, and the result is written as .gltf or .glb into a folder that goes away with
-// the test. Also here: PNG images, and a scene's triangles in world space.
+// Small glTF files for tests. The builder appends bytes to one buffer and elements to a JSON
+// document; the result is written as .gltf or .glb into a temporary folder that is removed with
+// the test. Also here: an encoder of PNG images, and a scene's triangles in world space.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using Bytes = std::vector<std::uint8_t>;
 inline constexpr int kInt8 = 5120, kUint8 = 5121, kInt16 = 5122, kUint16 = 5123, kUint32 = 5125,
                      kFloat = 5126;
 
-/// A new folder under the system's temporary one, removed at the end.
+/// A new folder below the system's temporary folder; the destructor removes it.
 class TempFolder {
  public:
   TempFolder() {
@@ -75,7 +75,7 @@ class GltfBuilder {
  public:
   GltfBuilder() { doc["asset"]["version"] = "2.0"; }
 
-  /// Appends to an array of the document and returns the element's index.
+  /// Appends `element` to an array of the document; returns the element's index.
   int add(const char* array, json element) {
     doc[array].push_back(std::move(element));
     return static_cast<int>(doc[array].size()) - 1;
@@ -104,13 +104,13 @@ class GltfBuilder {
 
   int add_positions(const std::vector<float>& xyz) { return add_accessor(xyz, kFloat, "VEC3"); }
 
-  /// A mesh of one primitive, on a node of its own.
+  /// Adds a mesh of one primitive and a node with it; returns the node's index.
   int add_mesh(json primitive) {
     const int mesh = add("meshes", {{"primitives", json::array({std::move(primitive)})}});
     return add("nodes", {{"mesh", mesh}});
   }
 
-  /// One triangle (0,0,0) (1,0,0) (0,1,0) on a node of its own.
+  /// Adds the triangle (0,0,0) (1,0,0) (0,1,0) and a node with it; returns the node's index.
   int add_triangle() {
     return add_mesh({{"attributes", {{"POSITION", add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0})}}}});
   }
@@ -137,7 +137,7 @@ class GltfBuilder {
     return file;
   }
 
-  /// Written as GLB and read back.
+  /// Writes the document as GLB and reads it back.
   [[nodiscard]] Scene load(const SceneOptions& options = {}) const {
     const TempFolder folder;
     return load_gltf(folder.write("scene.glb", glb()), options);
@@ -164,7 +164,7 @@ inline std::vector<Triangle> world_triangles(const Scene& scene) {
   return triangles;
 }
 
-/// The message of the Error input that `load` throws; a failure of the test otherwise.
+/// Returns the message of the Error (kind input) that `load` throws; fails the test otherwise.
 template <typename Load>
 std::string input_error(Load load) {
   try {
@@ -222,7 +222,7 @@ inline void append_chunk(Bytes& file, const char* type, const Bytes& data) {
   append_big_endian(file, crc32(covered));
 }
 
-/// zlib with one stored block: at most 65,535 bytes.
+/// A zlib stream with one stored (uncompressed) block; `raw` has at most 65,535 bytes.
 inline Bytes stored_zlib(const Bytes& raw) {
   Bytes zlib = {0x78, 0x01, 0x01};
   append(zlib, static_cast<std::uint16_t>(raw.size()));
@@ -238,8 +238,8 @@ inline Bytes stored_zlib(const Bytes& raw) {
   return zlib;
 }
 
-/// `samples` are row by row, big-endian where `bits` is 16. Colour types as in PNG: 0
-/// grey, 2 RGB, 4 grey and alpha, 6 RGBA.
+/// A PNG file. `samples` are row by row, big-endian where `bits` is 16. Colour types as in PNG:
+/// 0 grey, 2 RGB, 4 grey and alpha, 6 RGBA.
 inline Bytes encode(std::uint32_t width, std::uint32_t height, std::uint8_t bits,
                     std::uint8_t color_type, const Bytes& samples) {
   Bytes header;
@@ -260,7 +260,7 @@ inline Bytes encode(std::uint32_t width, std::uint32_t height, std::uint8_t bits
   return file;
 }
 
-/// RGBA with the given alphas, black.
+/// A PNG of black RGBA pixels with these alphas.
 inline Bytes with_alpha(std::uint32_t width, std::uint32_t height, const Bytes& alphas) {
   Bytes samples;
   for (const std::uint8_t alpha : alphas) samples.insert(samples.end(), {0, 0, 0, alpha});

@@ -1,4 +1,5 @@
-// Small HAIR files for tests: a header and the arrays that were filled.
+// Small HAIR files for tests. In: counts, defaults and arrays; out: the bytes of a file with a
+// header and the arrays that are not empty.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@
 namespace dapple::test {
 
 struct HairBuilder {
-  std::vector<std::uint16_t> segments;  ///< a strand
-  std::vector<float> points;            ///< three a point
+  std::vector<std::uint16_t> segments;  ///< number of segments, one entry per strand
+  std::vector<float> points;            ///< x, y and z of each point
   std::vector<float> thickness;
   std::vector<float> transparency;
   std::vector<float> colors;
@@ -19,7 +20,7 @@ struct HairBuilder {
   std::uint32_t default_segments = 0;
   float default_thickness = 0.5f;
   float default_transparency = 0;
-  std::uint32_t more_arrays = 0;  ///< bits beside those of the arrays that are there
+  std::uint32_t more_arrays = 0;  ///< further bits for the header's field that names the arrays
 
   [[nodiscard]] Bytes bytes() const {
     Bytes file = {'H', 'A', 'I', 'R'};

@@ -1,5 +1,6 @@
-// Occlusion along a line of close points that all shoot the same rays: what changes from one
-// point to the next is geometry, and nodes that come to be covered, but never the noise.
+// Occlusion at close points along a line, all with the same ray directions. So the noise is the
+// same at every point, and only the geometry and the set of covered nodes change from one to the
+// next. In: a scene and an estimator; out: transmittances, and how much their means change a step.
 #pragma once
 
 #include <algorithm>
@@ -9,24 +10,24 @@
 #include <utility>
 #include <vector>
 
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple::popping {
 
-/// Strata of the unit square that directions are taken from, a ray each.
+/// Strata of the unit square; each gives one ray direction.
 struct Strata {
   int columns, rows;
   [[nodiscard]] int count() const { return columns * rows; }
 };
 
-/// A 32-bit finalizer: the index's bits, well mixed.
+/// A hash of 32 bits (a finalizer): mixes the bits of an index.
 inline std::uint32_t mixed(std::uint32_t x) {
   x = (x ^ x >> 16) * 0x7feb352du;
   x = (x ^ x >> 15) * 0x846ca68bu;
   return x ^ x >> 16;
 }
 
-/// A place in stratum `index`, [0,1)^2.
+/// A pseudo-random point in stratum `index`, in [0,1)^2.
 inline V2f in_stratum(const Strata& strata, int index) {
   const auto bits = static_cast<std::uint32_t>(index);
   const auto unit = [](std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; };
@@ -37,7 +38,7 @@ inline V2f in_stratum(const Strata& strata, int index) {
           (corner.y + within.y) / static_cast<float>(strata.rows)};
 }
 
-/// A ray without an origin, with the footprint of one of `shared` rays whose pdf is `pdf`.
+/// A ray whose origin is not set. Its footprint is that of one of `shared` rays with this `pdf`.
 inline Ray direction_ray(float height, float turn, float pdf, int shared, int index) {
   constexpr float kTwoPi = 2 * std::numbers::pi_v<float>;
   const float across = std::sqrt(std::max(0.0f, 1 - height * height));
@@ -51,7 +52,8 @@ inline Ray direction_ray(float height, float turn, float pdf, int shared, int in
   return ray;
 }
 
-/// Cosine-weighted about +Y, the pdf cos / pi. Footprints are those of `shared` rays a point.
+/// Cosine-weighted directions about +Y; the pdf is cos / pi. Footprints as of `shared` rays a
+/// point.
 inline std::vector<Ray> hemisphere_rays(const Strata& strata, int shared) {
   std::vector<Ray> rays;
   for (int i = 0; i < strata.count(); ++i) {
@@ -62,7 +64,7 @@ inline std::vector<Ray> hemisphere_rays(const Strata& strata, int shared) {
   return rays;
 }
 
-/// Uniform over the sphere, the pdf 1 / (4 pi).
+/// Directions uniform over the sphere; the pdf is 1 / (4 pi).
 inline std::vector<Ray> sphere_rays(const Strata& strata, int shared) {
   std::vector<Ray> rays;
   for (int i = 0; i < strata.count(); ++i) {
@@ -72,8 +74,8 @@ inline std::vector<Ray> sphere_rays(const Strata& strata, int shared) {
   return rays;
 }
 
-/// `count` points of `whole` even ones from side to side of the box, the middle ones: through a
-/// crown at two thirds of its height, a little askew so that no axis is favoured.
+/// The middle `count` of `whole` equally spaced points on a line from side to side of the box. It
+/// crosses a tree's crown at two thirds of the height, and is slightly tilted to favour no axis.
 inline std::vector<V3f> line_through(const Box3f& box, int count, int whole) {
   const V3f size = box.size();
   const V3f from = box.min + size * V3f(0.02f, 0.62f, 0.42f);
@@ -86,7 +88,7 @@ inline std::vector<V3f> line_through(const Box3f& box, int count, int whole) {
   return points;
 }
 
-/// Transmittances of the rays from each point, point after point.
+/// Transmittances of `rays` from each point: all rays of the first point, then of the second, ...
 inline std::vector<float> transmittances(const Device& device, const DeviceScene& scene,
                                          std::span<const V3f> points, std::span<const Ray> rays,
                                          Estimator estimator, float footprint) {
@@ -107,7 +109,7 @@ inline std::vector<float> transmittances(const Device& device, const DeviceScene
   return values;
 }
 
-/// From one point to the next: how much the mean transmittance changes, exact and prefiltered.
+/// Change of the mean transmittance from one point to the next, exact and prefiltered.
 struct Step {
   double exact = 0, prefiltered = 0;
   double error = 0;  ///< standard error of `prefiltered` - `exact`, from the rays' spread
@@ -136,7 +138,7 @@ inline std::vector<Step> steps(const std::vector<float>& exact,
   return found;
 }
 
-/// The largest of each, not all at the same place.
+/// The largest of each value; they may come from different steps.
 struct LargestSteps {
   double exact = 0, prefiltered = 0, excess = 0, error = 0;
 };

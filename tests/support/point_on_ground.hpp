@@ -1,4 +1,5 @@
-// A point of a ground facing +Y, seen by one pixel: what closed forms of lights are tried at.
+// The scene in which lights are compared with closed forms: one pixel sees one point of a ground
+// that faces +Y. In: the ground's lights and occluders; out: one value per channel of the film.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@ namespace dapple::point_on_ground_test {
 
 using namespace scene_test;
 
-// A ground at y = 0, and a camera that sees 0.1 mm of it around the origin in one pixel.
+// A ground at y = 0, and a camera whose only pixel sees 0.1 mm of it around the origin.
 inline Scene point_on_ground() {
   Scene scene;
   scene.materials.push_back(material_of(1));
@@ -21,8 +22,8 @@ inline Scene point_on_ground() {
   return scene;
 }
 
-// 4096 stratified rays from that point. Their error for a smooth integrand is of order
-// log(n) / n of its variation, some 1e-3; plain random rays would have 1 % or so.
+// 4096 stratified rays from that point. For a smooth integrand their error is about log(n) / n of
+// its variation, some 1e-3; the error of independent random rays would be about 1 %.
 inline RenderOptions one_pixel(Estimator estimator = Estimator::exact, float footprint = 1) {
   RenderOptions options;
   options.width = options.height = options.spp = 1;

@@ -1,17 +1,19 @@
-// Rays put into a queue and traced as a picture's or a baker's are.
+// Traces rays in a queue, as pictures and bakers do. In: rays; out: what each of them finds.
 #pragma once
 
 #include <limits>
 #include <vector>
 
 #include "device/context.hpp"
+#include "passes/occlusion_pass.hpp"
+#include "passes/queues.hpp"
+#include "passes/ray_packets.hpp"
 #include "support/scene_on_device.hpp"
-#include "passes/passes.hpp"
 
 namespace dapple::scene_test {
 
-/// What the rays find at a footprint of 1, `rays_per_point` in a row from one point; transmittances
-/// are NaN where none was traced.
+/// What the rays find at a footprint of 1. Each `rays_per_point` consecutive rays start at one
+/// point. The transmittance of a ray that was not traced is NaN.
 inline std::vector<Occlusion> trace_queue(const SceneOnDevice& scene, const std::vector<Ray>& rays,
                                           Estimator estimator, std::size_t rays_per_point,
                                           RayOrder order) {

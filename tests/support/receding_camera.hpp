@@ -1,5 +1,6 @@
-// A camera that is pulled back from a crown, frame by frame, and the mean AO of what is seen
-// of the same ball in each: as the pixels grow, so do the footprints that begin with them.
+// A camera that moves away from a tree's crown, frame by frame, and the mean AO of the surfaces
+// seen inside the same ball in each frame. Pixels grow with the distance, and footprints with the
+// pixels. In: a scene and an estimator; out: AO of each frame, and its change from frame to frame.
 #pragma once
 
 #include <algorithm>
@@ -7,13 +8,13 @@
 #include <numbers>
 #include <vector>
 
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 #include "render/picture.hpp"
 #include "support/line_of_points.hpp"
 
 namespace dapple::popping {
 
-/// Distances grow evenly in ratio, from one at which the ball fills the picture to `times` it.
+/// Distances grow by a constant factor a frame, from kNearest radii of the ball to `times` as far.
 class RecedingCamera {
  public:
   RecedingCamera(const Box3f& box, int frame_count, float times)
@@ -27,7 +28,7 @@ class RecedingCamera {
     const V3f towards = V3f(0.8f, 0.25f, 0.55f).normalized();
     return look_at(centre_ + towards * distance(frame), centre_, {0, 1, 0}, kFov);
   }
-  /// Radius of the ball's outline in the picture, in halves of its height.
+  /// Radius of the ball's outline in the picture, in units of half the picture's height.
   [[nodiscard]] float outline(int frame) const {
     return std::tan(std::asin(radius_ / distance(frame))) / std::tan(0.5f * kFov);
   }
@@ -45,11 +46,10 @@ class RecedingCamera {
   int frame_count_;
 };
 
-/// Sums over a frame's pixels, each by its share inside the ball's outline: of the samples that
-/// hit something, and of their AO, pixel by pixel and seed by seed.
+/// Values of a frame, each pixel weighted by its share inside the ball's outline.
 struct Frame {
-  double hits = 0;
-  std::vector<double> ao;
+  double hits = 0;         ///< number of samples that hit something, over all pixels and seeds
+  std::vector<double> ao;  ///< sum of AO, one entry per pixel and seed
 };
 
 /// Share of a square pixel that lies inside a circle around the picture's middle.
@@ -66,7 +66,7 @@ inline double share_inside(int column, int row, int size, float radius) {
   return inside / static_cast<double>(kAcross * kAcross);
 }
 
-/// Renders square frames of AO, several seeds each. The scene must outlive it.
+/// Renders square frames of AO, several seeds each. The scene must outlive this object.
 class FrameTracer {
  public:
   FrameTracer(const Device& device, const DeviceScene& scene, const Box3f& bounds,
@@ -106,7 +106,7 @@ class FrameTracer {
           return static_cast<double>(
               picture.sums.values<std::int64_t>()[p * layout.pixels + pixel]);
         };
-        // The order of the planes is that of kernels/film/film.cl: first how many samples hit.
+        // Planes are in the order of kernels/film/film.cl: the first counts the samples that hit.
         frame.hits += share * plane(0);
         frame.ao.push_back(share * plane(layout.ao) /
                            (double{layout.unit_scale} * options.ao_rays));
@@ -128,7 +128,8 @@ class FrameTracer {
   int seeds_;
 };
 
-/// The mean AO of two frames of equal camera rays, and the standard error of their difference.
+/// Change of the mean AO from a frame to the next, exact and prefiltered (both with the same camera
+/// rays), and the standard error of the difference of the two changes.
 inline Step frame_step(const Frame& exact, const Frame& exact_next, const Frame& prefiltered,
                        const Frame& prefiltered_next) {
   const auto mean = [](const Frame& frame) {
@@ -136,7 +137,7 @@ inline Step frame_step(const Frame& exact, const Frame& exact_next, const Frame&
     for (const double ao : frame.ao) sum += ao;
     return sum / frame.hits;
   };
-  // Pixels and seeds are independent; frames take the same directions, but from elsewhere.
+  // Pixels and seeds are independent. Frames use the same directions from other positions.
   const auto variance = [](const Frame& a, const Frame& b) {
     double sum = 0, squares = 0;
     for (std::size_t i = 0; i < a.ao.size(); ++i) {

@@ -1,6 +1,7 @@
-// A scalar traversal on the host that shares only the shared headers with the kernels: the
-// node's decoding, the opacity model, the records. One child and one triangle at a time, by
-// recursion; for scenes without opacity textures.
+// A scalar traversal on the host, to compare the kernels with. It shares only the headers of
+// dapple/shared with them: decoding of nodes, the opacity model, the records. It is recursive and
+// tests one child and one triangle at a time. In: a BVH without opacity textures and a ray; out:
+// transmittance and counts.
 #pragma once
 
 #include <algorithm>
@@ -38,8 +39,8 @@ class ReferenceTraversal {
   }
 
  private:
-  /// As DAPPLE_OPAQUE_ENOUGH in kernels/occlusion/traverse.clh: rays stop there, and visits with
-  /// them.
+  /// As DAPPLE_OPAQUE_ENOUGH in kernels/occlusion/traverse.clh: below this transmittance a ray
+  /// stops, so the counts of visits depend on it.
   static constexpr float kOpaqueEnough = 5e-5f;
 
   struct Walk {
@@ -48,7 +49,7 @@ class ReferenceTraversal {
     bool finished;
   };
 
-  /// The ray and its footprint in world or object space; t is the world's in both.
+  /// The ray and its footprint in world or object space; t is the same in both.
   struct Space {
     V3f origin, direction;
     float first_area, solid_angle;
@@ -57,11 +58,11 @@ class ReferenceTraversal {
   struct Crossing {
     bool hit = false;
     float enter = 0, leave = 0;
-    V3f size, centre;  ///< of the box; the centre from the ray's origin
+    V3f size, centre;  ///< of the box; the centre is relative to the ray's origin
   };
 
-  /// The slab test of Kay and Kajiya ("Ray Tracing Complex Scenes", 1986) for one child, its
-  /// far side pushed out as the kernels' is.
+  /// The slab test of Kay and Kajiya ("Ray Tracing Complex Scenes", 1986) for one child. The far
+  /// distance is enlarged as in the kernels, against roundings.
   static Crossing cross(const BvhNode& node, unsigned slot, const Space& space, float t_max) {
     Crossing crossing;
     if (node.lower[0][slot] > node.upper[0][slot]) return crossing;
@@ -85,7 +86,7 @@ class ReferenceTraversal {
     return crossing;
   }
 
-  /// Projected area of the child's box, split by the axis that its faces look along.
+  /// Projected areas of the child's box along `direction`: one value per pair of opposite faces.
   static V3f facing_areas(const V3f& size, const V3f& direction) {
     return {size.y * size.z * std::fabs(direction.x), size.x * size.z * std::fabs(direction.y),
             size.x * size.y * std::fabs(direction.z)};
@@ -97,7 +98,8 @@ class ReferenceTraversal {
     return facing.x + facing.y + facing.z < footprint && c.enter > 0 && c.leave < t_max * 0.999999f;
   }
 
-  /// box_depth(), chord_depth() and centre_weight() of opacity.h.
+  /// Optical depth of a child, as box_depth(), chord_depth() and centre_weight() of opacity.h give
+  /// it.
   static float depth(const BvhNode& node, unsigned slot, const Crossing& c, const V3f& facing,
                      const V3f& direction) {
     const float sum = facing.x + facing.y + facing.z;
@@ -146,7 +148,7 @@ class ReferenceTraversal {
     return u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < t_max;
   }
 
-  /// True when so little is left that the ray ends here.
+  /// True when the transmittance is so small that the ray ends here.
   static bool is_opaque(Walk& walk) {
     walk.finished |= walk.result.transmittance < kOpaqueEnough;
     return walk.finished;
@@ -169,7 +171,7 @@ class ReferenceTraversal {
     if (prefiltered_ && is_opaque(walk)) return;
     if (!in_top) test_leaves(walk, space, node, open);
     if (is_opaque(walk)) return;
-    // What was pushed last comes first from the kernels' stack.
+    // Backwards, because the kernels' stack returns the last pushed child first.
     for (unsigned slot = DAPPLE_BVH_WIDTH; slot-- > 0 && !walk.finished;) {
       if (!open[slot]) continue;
       if (node.inner_mask >> slot & 1) {
@@ -190,14 +192,14 @@ class ReferenceTraversal {
            ++i) {
         const TriangleBlock& block = bvh_.blocks[node.prim_base + i / 8];
         const float opacity = block.opacity[i % 8];
-        if (opacity < 0) std::abort();  // textured: not for this reference
+        if (opacity < 0) std::abort();  // textured triangles are not supported here
         ++walk.result.tests;
         if (meets(block, i % 8, space, walk.ray.t_max)) walk.result.transmittance *= 1 - opacity;
       }
     }
   }
 
-  /// From the world into an instance: areas shrink by |det|, directions keep t.
+  /// Moves a ray from the world into an instance. The direction keeps its length in t.
   void enter(Walk& walk, const Space& world, const InstanceRecord& instance) const {
     if (instance.light && instance.light == walk.ray.light) return;
     const float* m = instance.to_object;

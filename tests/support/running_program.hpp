@@ -1,4 +1,5 @@
-// The program in a process of its own that a test can send signals to.
+// Runs the program in a process that a test can send signals to. In: arguments and signals; out:
+// its exit code and a file with what it printed.
 #pragma once
 
 #include <fcntl.h>
@@ -17,7 +18,7 @@ namespace dapple::program_test {
 
 using Milliseconds = std::chrono::milliseconds;
 
-/// Whether `condition` came true in time.
+/// Waits until `condition` is true, at most `limit`; returns whether it became true.
 inline bool wait_until(const std::function<bool()>& condition, Milliseconds limit) {
   const auto end = std::chrono::steady_clock::now() + limit;
   while (!condition()) {
@@ -29,7 +30,7 @@ inline bool wait_until(const std::function<bool()>& condition, Milliseconds limi
 
 class RunningProgram {
  public:
-  /// `arguments` follow the program's name; what it prints goes into the file `output`.
+  /// Starts the program with `arguments`; all that it prints goes into the file `output`.
   RunningProgram(const std::vector<std::string>& arguments, const std::string& output) {
     std::vector<char*> argv{const_cast<char*>(DAPPLE_PROGRAM)};
     for (const std::string& argument : arguments)
@@ -58,7 +59,7 @@ class RunningProgram {
     if (!ended_) ended_ = waitpid(process_, &status_, WNOHANG) == process_;
     return ended_;
   }
-  /// Exit code; 128 + signal of a process that one ended, as shells have it.
+  /// Waits for the end; returns the exit code, or 128 + signal if a signal ended it, as shells do.
   int wait() {
     if (!ended_) waitpid(process_, &status_, 0);
     ended_ = true;

@@ -1,5 +1,5 @@
-// What the tests of traced scenes share: a scene built and uploaded once, rays by origin and
-// direction, points spread over a ball, squares of any subdivision.
+// Shared by the tests that trace scenes: a scene that is built and uploaded once, rays made from
+// origin and direction, random points, and meshes of subdivided squares.
 #pragma once
 
 #include <cmath>
@@ -9,20 +9,20 @@
 #include <utility>
 #include <vector>
 
-#include "dapple/wavefront.hpp"
+#include "dapple/render.hpp"
 
 namespace dapple::scene_test {
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr double kPi = std::numbers::pi;
 
-/// Opened once a process: compiling kernels takes longer than most tests.
+/// The device, opened once per process because compiling kernels takes longer than most tests.
 inline const Device& device() {
   static const Device device;
   return device;
 }
 
-/// A scene with everything that tracing it needs. Not merged: instances stay as they are.
+/// A scene with its BVH, uploaded to the device. Its instances are not merged.
 class SceneOnDevice {
  public:
   explicit SceneOnDevice(Scene scene_to_build)
@@ -65,7 +65,7 @@ inline double mean_transmittance(const std::vector<Occlusion>& found) {
   return sum / static_cast<double>(found.size());
 }
 
-/// The same points whatever the standard library: only the engine's bits are used.
+/// Pseudo-random points, the same with every standard library: only the engine's bits are used.
 class Points {
  public:
   explicit Points(std::uint32_t seed) : bits_(seed) {}
@@ -85,7 +85,7 @@ class Points {
   std::mt19937 bits_;
 };
 
-/// `count` rays from a sphere of `radius` around the scene's middle to places in its box.
+/// `count` rays from a sphere of `radius` around the middle of `box` towards random points in it.
 inline std::vector<Ray> rays_through(const Box3f& box, std::size_t count, float radius,
                                      float solid_angle, std::uint32_t seed) {
   Points points(seed);
@@ -100,8 +100,8 @@ inline std::vector<Ray> rays_through(const Box3f& box, std::size_t count, float 
   return rays;
 }
 
-/// `count` rays that cross the ball around `box` evenly: random directions, uniform over the disk
-/// across each. Their mean opacity is the occluding area that prefiltering has to keep.
+/// `count` rays through the ball around `box`: random directions, uniform over the ball's cross
+/// section. Their mean opacity is the occluding area, which prefiltering must not change.
 inline std::vector<Ray> rays_across(const Box3f& box, std::size_t count, float solid_angle,
                                     std::uint32_t seed) {
   Points points(seed);
@@ -128,7 +128,7 @@ inline Material material_of(float opacity) {
   return material;
 }
 
-/// Appends a parallelogram corner + [0,1] u + [0,1] v of `divisions` x `divisions` quads.
+/// Appends the parallelogram corner + [0,1] u + [0,1] v, made of `divisions` x `divisions` quads.
 inline void append_grid(Mesh& mesh, const V3f& corner, const V3f& u, const V3f& v, int divisions,
                         std::uint32_t material) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -164,8 +164,8 @@ inline Mesh square_mesh(float side, float height, int divisions, std::uint32_t m
   return mesh;
 }
 
-/// Behind cameras that look along -z from below 9, so that a mesh is not too small to stay an
-/// instance of its own.
+/// Appends 1000 triangles at z >= 9, behind cameras that look along -z from a smaller z. With them
+/// a mesh is large enough to stay an instance.
 inline void add_triangles_out_of_sight(Mesh& mesh) {
   for (int i = 0; i < 1000; ++i) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());

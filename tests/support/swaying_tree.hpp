@@ -1,5 +1,5 @@
-// A tree in the wind: a procedural tree or cloud whose stem bends, whose boughs swing and whose
-// leaves flutter, smoothly in time.
+// A tree in the wind. In: a procedural tree or cloud, and a time; out: the scene at that time. The
+// stem bends, the boughs swing and the leaves flutter, smoothly in time.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace dapple::motion {
 
-/// The first vertex of the leaves, which come last, four vertices each.
+/// Index of the leaves' first vertex. Leaves come last in the mesh, four vertices each.
 inline std::size_t first_leaf_vertex(const Scene& scene, const Mesh& mesh) {
   std::size_t first = mesh.positions.size();
   for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
@@ -20,13 +20,14 @@ inline std::size_t first_leaf_vertex(const Scene& scene, const Mesh& mesh) {
   return first;
 }
 
-/// `p` turned around the axis (unit) through the origin.
+/// `p` rotated by `angle` (radians) around the unit vector `axis` through the origin.
 inline V3f turned(const V3f& p, const V3f& axis, float angle) {
   const float c = std::cos(angle), s = std::sin(angle);
   return p * c + axis.cross(p) * s + axis * (axis.dot(p) * (1 - c));
 }
 
-/// Where the wind has moved a place of a tree from `foot` up to `height`, at `time` seconds.
+/// How far the wind moves the point `p` of a tree, in metres, at `time` seconds. The tree's lowest
+/// point is `foot`, and it is `height` metres high.
 inline V3f displacement(const V3f& p, const V3f& foot, float height, float wind, float time) {
   const V3f q = (p - foot) / height;
   const float bend = wind * 0.06f * height * q.y * q.y;

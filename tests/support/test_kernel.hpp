@@ -1,5 +1,5 @@
-// Running the tests' own kernels (tests/kernels), which include the product's device
-// functions: values in, values out.
+// Runs the kernels of tests/kernels, which call the product's device functions. In: arrays of
+// values; out: arrays of values.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@
 
 namespace dapple::kernel_test {
 
-/// The best device, with kernels from tests/kernels first. One a process: opening is slow.
+/// The best device; it looks for kernels in tests/kernels first. Opened once per process, because
+/// that is slow.
 inline DeviceContext& device() {
   static DeviceContext context("", DAPPLE_TEST_KERNELS);
   return context;

@@ -1,5 +1,6 @@
-// Comparisons' lanes as bits, and back, and what is pushed by them: of every pattern, in each way
-// in which kernels/vectors/lanes.clh may be compiled.
+// Functions of kernels/vectors/lanes.clh, for all patterns of sixteen bits and in each way in which
+// the file can be compiled: conversion of lanes to bits and back, nodes that a packet pushes, and
+// rounding.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -17,7 +18,7 @@ using namespace kernel_test;
 
 class Lanes : public testing::TestWithParam<const char*> {};
 
-TEST_P(Lanes, AreBitsOfEveryPattern) {
+TEST_P(Lanes, BitFunctionsAreRightForEveryPattern) {
   constexpr uint kPatterns = 65536, kValues = 6;
   const Buffer results = device().allocate(kPatterns * kValues * sizeof(uint));
   run(GetParam(), "lanes_of_patterns", kPatterns, {results});
@@ -54,9 +55,9 @@ TEST_P(Lanes, OpenedNodesArePushedInOrderAndLeavesAreNot) {
   }
 }
 
-TEST_P(Lanes, AreRoundedAsOnTheHost) {
+TEST_P(Lanes, RoundingAgreesWithTheHost) {
   std::vector<float> numbers;
-  for (float x = 0.0f; x < 4.0f; x += 0.125f) {  // halves among them, to the even ones
+  for (float x = 0.0f; x < 4.0f; x += 0.125f) {  // includes halves, which round to even
     for (const float at :
          {x, 1000.0f + x, std::nextafter(x, 9.0f), 8388608.0f + x, 1e18f * x, 2e8f * x})
       numbers.insert(numbers.end(), {at, -at});

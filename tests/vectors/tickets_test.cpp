@@ -1,4 +1,4 @@
-// Work taken by tickets: each ticket is drawn exactly once, launch after launch.
+// Launches with tickets: each ticket is taken exactly once in each launch.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -20,7 +20,7 @@ std::vector<uint> times_taken(DeviceContext& context, uint ticket_count, std::si
   return times;
 }
 
-TEST(Tickets, EveryPieceIsTakenOnce) {
+TEST(Tickets, EveryTicketIsTakenOnce) {
   for (const std::size_t group : {1u, 16u}) {
     for (const uint ticket_count : {1u, 2u, 15u, 16u, 17u, 100u, 5000u})
       EXPECT_EQ(times_taken(device(), ticket_count, group), std::vector<uint>(ticket_count, 1u))
@@ -28,14 +28,14 @@ TEST(Tickets, EveryPieceIsTakenOnce) {
   }
 }
 
-/// Turns are counted from 4096 below 2^32 on.
-TEST(Tickets, CountingStartsAgain) {
+/// Tickets are counted modulo 2^32, beginning at 2^32 - 4096, so the counter overflows here.
+TEST(Tickets, CountingOverflowsCorrectly) {
   DeviceContext context("", DAPPLE_TEST_KERNELS);
   for (int launch = 0; launch < 20; ++launch)
     EXPECT_EQ(times_taken(context, 1000, 1), std::vector<uint>(1000, 1u)) << launch;
 }
 
-TEST(Tickets, NothingIsLaunchedForNoPieces) {
+TEST(Tickets, NothingIsLaunchedWithoutTickets) {
   DeviceContext context("", DAPPLE_TEST_KERNELS);
   const Buffer taken = context.allocate_zeros(sizeof(uint));
   context.launch_with_tickets({"take_tickets", "tickets", {}}, "nothing", 0, {taken}, 1);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bvh/storage/bvh_cache.hpp"
 #include "bvh/refit/refit_record.hpp"
+#include "bvh/storage/bvh_cache.hpp"
 #include "dapple/bvh.hpp"
 
 namespace dapple {

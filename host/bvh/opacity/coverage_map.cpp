@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "bvh/opacity/map_row.hpp"
 #include "bvh/build/multiversion.hpp"
+#include "bvh/opacity/map_row.hpp"
 
 namespace dapple {
 namespace {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bvh/build/multiversion.hpp"
 #include "bvh/opacity/coverage_map.hpp"
 #include "bvh/opacity/map_row.hpp"
-#include "bvh/build/multiversion.hpp"
 
 namespace dapple {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bvh/opacity/coverage_map.hpp"
 #include "bvh/build/wide_tree.hpp"
+#include "bvh/opacity/coverage_map.hpp"
 
 namespace dapple {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "bvh/storage/segment_block.hpp"
 #include "bvh/build/wide_tree.hpp"
+#include "bvh/storage/segment_block.hpp"
 
 namespace dapple {
 

@@ -20,7 +20,7 @@
 namespace dapple {
 namespace {
 
-/// Each takes some 230 MB.
+/// Each process takes about 230 MB of memory.
 constexpr std::size_t kMaxProcesses = 4;
 
 using Arguments = std::vector<std::string>;
@@ -30,7 +30,8 @@ std::string& program_in_use() {
   return program;
 }
 
-/// The process, or 0 where it cannot be started. It says nothing.
+/// Starts `program` with standard input, output and error at /dev/null. Returns the process id, or
+/// 0 when it cannot be started.
 pid_t start_process(const std::string& program, Arguments arguments) {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -47,7 +48,8 @@ pid_t start_process(const std::string& program, Arguments arguments) {
   return process;
 }
 
-/// A kernel without a source counts as compiled here; preparing it throws the error.
+/// A kernel whose source cannot be read counts as compiled here: DeviceContext::prepare() throws
+/// the error later.
 bool is_missing(const DeviceContext& context, const KernelName& kernel, CompileTo to) {
   try {
     return !context.is_compiled(kernel, to);
@@ -56,12 +58,14 @@ bool is_missing(const DeviceContext& context, const KernelName& kernel, CompileT
   }
 }
 
-/// Kernels of one program, which is compiled as a whole.
+/// Kernels that one process compiles. Those of one program stay together, because a program is
+/// compiled as a whole.
 struct Share {
-  std::size_t source_size = 0;  ///< bytes: roughly what compiling takes
+  std::size_t source_size = 0;  ///< bytes: about proportional to the time of compiling
   std::vector<KernelName> kernels;
 };
 
+/// The missing kernels, in one share for each program.
 std::vector<Share> by_program(const DeviceContext& context, const std::set<KernelName>& kernels,
                               CompileTo to) {
   std::map<std::pair<std::string, Variant>, Share> programs;
@@ -77,8 +81,8 @@ std::vector<Share> by_program(const DeviceContext& context, const std::set<Kerne
   return shares;
 }
 
-/// The same in `count` shares of about the same size: the largest goes first, each to the share
-/// that has least.
+/// Merges the programs into at most `count` shares with sources of about the same size: from the
+/// largest program to the smallest, each joins the share that is smallest so far.
 std::vector<Share> deal(std::vector<Share> programs, std::size_t count) {
   const auto less = [](const Share& a, const Share& b) { return a.source_size < b.source_size; };
   std::vector<Share> hands(std::min(count, programs.size()));
@@ -119,7 +123,7 @@ void CompilerProcesses::start(const DeviceContext& context, const std::vector<Ke
                               CompileTo to) {
   if (program_in_use().empty() || !context.keeps_compiled()) return;
   const std::size_t cpus = cpus_of_process().size();
-  if (cpus < 2) return;  // nothing would be sooner
+  if (cpus < 2) return;  // parallel processes would gain nothing
   Arguments common{"dapple", "compile", "--parent", std::to_string(getpid())};
   if (to == CompileTo::programs) common.emplace_back("--programs");
   const auto add_option = [&](const char* name, const std::string& value) {

@@ -1,5 +1,6 @@
-// Processes that compile kernels for the kernel cache while this one reads a scene: within one PoCL
-// compiles a program at a time.
+// Processes that compile kernels for the kernel cache while this one reads a scene. Several are
+// needed because PoCL compiles one program at a time in a process. In: kernel names. Out: compiled
+// kernels in the kernel cache.
 #pragma once
 
 #include <sys/types.h>
@@ -11,28 +12,30 @@
 
 namespace dapple {
 
-/// A kernel as an argument of the program, "packet:occlusion/packet:1:0".
+/// A kernel as an argument of the command line, "packet:occlusion/packet:1:0".
 std::string text_of(const KernelName& kernel);
-/// Throws Error usage.
+/// The inverse of text_of(). Throws Error usage.
 KernelName parse_kernel(const std::string& text);
 
 class CompilerProcesses {
  public:
-  /// A program that compiles kernels when it is called with "compile", as in
-  /// host/commands/compile.cpp; without one, as in programs that use the library, none are started.
+  /// Sets the path of the program that start() runs with the argument "compile", which compiles
+  /// kernels as host/commands/compile.cpp does. Without it, as in programs that use the library,
+  /// start() does nothing.
   static void use(const std::string& program);
 
   CompilerProcesses() = default;
-  /// Those that still run are killed.
+  /// Kills the processes that still run.
   ~CompilerProcesses();
   CompilerProcesses(const CompilerProcesses&) = delete;
   CompilerProcesses& operator=(const CompilerProcesses&) = delete;
 
-  /// Starts as many as there are CPUs, at most four, on those of `kernels` that no process has
-  /// compiled before.
+  /// Starts at most as many processes as there are CPUs, and at most four. They compile those of
+  /// `kernels` that are not compiled yet. Starts none on one CPU, or when compiled kernels are not
+  /// kept.
   void start(const DeviceContext& context, const std::vector<KernelName>& kernels, CompileTo to);
-  /// Until all have ended. What they could not compile is compiled when it is asked for, which says
-  /// why.
+  /// Waits until all processes have ended. A kernel that they could not compile is compiled in this
+  /// process when it is used, which then throws the error.
   void wait();
 
  private:

@@ -16,13 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Programs kept, each of some 300 kB; the least recently used go first.
+/// Maximum number of programs kept, each about 300 kB; the least recently used are removed first.
 constexpr std::size_t kMaxPrograms = 96;
 
-/// What compiling every kernel may take on the disk, several times over.
+/// Free disk space that is required: several times what compiling every kernel needs.
 constexpr std::uint64_t kBytesNeeded = 8u << 20;
 
-/// PoCL builds paths of up to 1,024 characters and checks none; its own part is some 200.
+/// Characters. PoCL builds paths in 1,024 characters and does not check their length; about 200 of
+/// them are its own.
 constexpr std::size_t kLongestPath = 700;
 
 std::string variable(const char* name) {
@@ -30,7 +31,7 @@ std::string variable(const char* name) {
   return value ? value : "";
 }
 
-/// Where compiled kernels may be kept; empty without any of the variables.
+/// The folder to keep compiled kernels in; empty when none of the environment variables is set.
 fs::path cache_place() {
   if (const std::string chosen = variable("POCL_CACHE_DIR"); !chosen.empty()) return chosen;
   if (const std::string cache = variable("XDG_CACHE_HOME"); !cache.empty())
@@ -40,7 +41,7 @@ fs::path cache_place() {
   return {};
 }
 
-/// Why PoCL could not compile there although folders can be made; empty when it can.
+/// Why PoCL could not compile in `folder`, which exists; empty when it can.
 std::string refusal(const fs::path& folder) {
   struct statvfs status {};
   if (folder.native().size() > kLongestPath) return "the name is too long for PoCL";
@@ -66,7 +67,7 @@ KernelCache::KernelCache() {
     store_ = fs::absolute(place);
     return;
   }
-  // Not kept: where everybody may write, others could plant kernels.
+  // Kernels are not kept there: where everybody may write, others could plant kernels.
   std::error_code error;
   const fs::path temporary = fs::temp_directory_path(error);
   if (!error && use(temporary)) return;
@@ -104,7 +105,7 @@ KernelCache::Files KernelCache::compiled_files(const Program& program) const {
   Files found;
   std::error_code ignored;
   for (const fs::path& part : program.folders) {
-    if (!fs::exists(folder() / part / "program.bc", ignored)) continue;  // refused by the compiler
+    if (!fs::exists(folder() / part / "program.bc", ignored)) continue;  // the compiler refused it
     for (const auto& entry : fs::recursive_directory_iterator(folder() / part, ignored)) {
       const fs::path extension = entry.path().extension();
       if (extension == ".so" || extension == ".bc")
@@ -174,7 +175,7 @@ void KernelCache::publish(const Files& files, const fs::path& entry) const {
     if (ignored) fs::copy_file(folder() / file, staged / file);
   }
   if (!seal(staged, {files.begin(), files.end()})) return;
-  // A process that reads the former entry meanwhile finds a file missing, and compiles.
+  // A process that reads the former entry at this moment misses a file, and compiles the program.
   fs::rename(entry, former, ignored);
   fs::rename(staged, entry, ignored);
   fs::remove_all(former, ignored);

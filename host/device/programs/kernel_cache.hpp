@@ -1,6 +1,7 @@
-// Compiled kernels, kept from one run to the next. PoCL aborts the process on a damaged file in
-// its cache, so it gets a folder that this process alone writes to; what it compiles there is
-// kept sealed, by program, and only what still is as it was sealed comes back.
+// A cache of compiled kernels, kept from one run to the next. In: what identifies a program, and a
+// function that compiles it. Out: PoCL's files of the program. PoCL aborts the process when a file
+// in its cache is damaged, so it gets a folder that only this process writes to. Copies of its
+// files are kept with checksums, and restored only when the checksums still match.
 #pragma once
 
 #include <filesystem>
@@ -17,35 +18,37 @@ namespace dapple {
 
 class KernelCache {
  public:
-  /// The one of this process; never throws.
+  /// The cache that the whole process shares. Never throws.
   static KernelCache& of_process();
 
-  /// Chooses the first place that can be written: $POCL_CACHE_DIR, else $XDG_CACHE_HOME or
-  /// ~/.cache; else the folder for temporary files, from which nothing is kept.
+  /// Uses $POCL_CACHE_DIR if that is set, else dapple/kernels in $XDG_CACHE_HOME or in ~/.cache. If
+  /// that folder cannot be written, uses the folder for temporary files, where nothing is kept.
   KernelCache();
 
-  /// What PoCL gets as POCL_CACHE_DIR; empty where nothing can be written.
+  /// The value of POCL_CACHE_DIR for PoCL; empty when no folder can be written.
   [[nodiscard]] std::filesystem::path folder() const;
-  /// Which places could not be used and why, "/root/.cache/dapple: Read-only file system"; empty
-  /// when the first could.
+  /// Which folders could not be used and why, "/root/.cache/dapple: Read-only file system"; empty
+  /// when the first one could.
   [[nodiscard]] const std::string& refusals() const { return refusals_; }
 
-  /// Whether compiled programs are kept for later processes, and go to them.
+  /// Whether compiled programs are kept for later processes.
   [[nodiscard]] bool keeps() const { return !store_.empty(); }
-  /// Whether that program is kept, and with it machine code of `kernel` unless that is empty.
+  /// Whether the program that `text` identifies is kept; if `kernel` is not empty, whether machine
+  /// code of that kernel is kept.
   [[nodiscard]] bool has(const std::string& text, const std::string& kernel) const;
-  /// Runs `build`, which compiles the program that `text` stands for: its source, its options, and
-  /// all there is to know of its compiler. What is kept of it is there when `build` runs.
+  /// Runs `build`, which compiles the program that `text` identifies: its source, its options, and
+  /// the names and versions of device and driver. Restores the program's kept files to folder()
+  /// before.
   void build(const std::string& text, const std::function<void()>& build);
-  /// Keeps what has been compiled for that program. Never throws: what cannot be kept is compiled
-  /// again.
+  /// Keeps the compiled files of that program. Never throws: a program that cannot be kept is
+  /// compiled again.
   void keep(const std::string& text);
 
  private:
-  using Files = std::set<std::filesystem::path>;  ///< inside folder()
+  using Files = std::set<std::filesystem::path>;  ///< paths relative to folder()
   struct Program {
-    Files folders;  ///< where PoCL puts what it compiles
-    Files kept;
+    Files folders;  ///< where PoCL writes the program's files
+    Files kept;     ///< files that are in the store
   };
 
   bool use(const std::filesystem::path& place);
@@ -56,10 +59,10 @@ class KernelCache {
   void forget_oldest() const;
 
   std::unique_ptr<PrivateFolder> private_;
-  std::filesystem::path store_;  ///< where entries are kept; empty: nowhere
+  std::filesystem::path store_;  ///< folder of kept entries; empty: nothing is kept
   std::string refusals_;
   std::mutex mutex_;
-  std::map<std::string, Program> programs_;  ///< by name of the entry
+  std::map<std::string, Program> programs_;  ///< by the name of their entry
 };
 
 }  // namespace dapple

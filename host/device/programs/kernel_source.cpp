@@ -22,7 +22,7 @@ std::string read_source(const std::string& name, const std::string& kernel_dir) 
               "kernel file " + name + " is neither built in nor in '" + kernel_dir + "'");
 }
 
-/// The name in `#include "name"`, or nothing.
+/// The name in `#include "name"`; empty for other lines.
 std::string included_name(const std::string& line) {
   constexpr std::string_view kDirective = "#include \"";
   if (!line.starts_with(kDirective)) return {};

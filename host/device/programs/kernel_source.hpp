@@ -1,5 +1,6 @@
-// Kernel text: embedded at build time or read from a folder, with #include "..." expanded
-// so that no OpenCL compiler needs our folders.
+// Sources of kernels. In: the name of a file that is embedded at build time or read from a folder.
+// Out: its text with every #include "..." expanded, so that no OpenCL compiler needs include
+// folders.
 #pragma once
 
 #include <span>

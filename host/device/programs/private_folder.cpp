@@ -1,5 +1,6 @@
-// The lock tells the living from the dead: the kernel lets go of it however a process ends, and
-// unlike a process id it holds in containers that share the place.
+// A lock shows whether the process that made a folder still runs. The operating system releases it
+// however the process ends, and unlike a process id it is valid in all containers that share the
+// parent folder.
 #include "device/programs/private_folder.hpp"
 
 #include <fcntl.h>
@@ -53,8 +54,8 @@ PrivateFolder::PrivateFolder(const fs::path& parent) : owner_(getpid()) {
     if (!mkdtemp(name.data())) throw Error(ErrorKind::failed, std::strerror(errno));
     lock_ = open_folder(name);
     path_ = name;
-    // Between its birth and its lock a folder looks like one of the dead to others. Where a file
-    // system has no locks, nobody can take others' folders for dead ones either.
+    // Before it is locked, a new folder looks abandoned, and another process may remove it. On file
+    // systems without locks no process removes the folders of others.
     if (lock_ >= 0 && (flock(lock_, LOCK_EX) != 0 || !is_removed(lock_))) return;
     if (lock_ >= 0) close(lock_);
     lock_ = -1;

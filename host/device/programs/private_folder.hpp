@@ -1,5 +1,5 @@
-// A folder that one process alone uses and that goes with it. What processes that were killed
-// left behind is removed by the next one that makes a folder in the same place.
+// A folder that only one process uses, and that is removed when the process ends. If a process is
+// killed, its folder remains until the next PrivateFolder in the same parent folder removes it.
 #pragma once
 
 #include <sys/types.h>
@@ -10,8 +10,8 @@ namespace dapple {
 
 class PrivateFolder {
  public:
-  /// Makes `parent`, where it is missing, and a folder in it. Throws Error failed with the reason
-  /// alone, "Read-only file system".
+  /// Makes `parent` if it is missing, and a folder in it. Throws Error failed, whose message is
+  /// only the reason, "Read-only file system".
   explicit PrivateFolder(const std::filesystem::path& parent);
   ~PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;
@@ -21,8 +21,8 @@ class PrivateFolder {
 
  private:
   std::filesystem::path path_;
-  int lock_ = -1;  ///< descriptor of the folder, locked while the process lives
-  pid_t owner_;    ///< a fork's child leaves the folder to its parent
+  int lock_ = -1;  ///< descriptor of the folder, locked as long as it is open
+  pid_t owner_;    ///< forked child processes do not remove the folder
 };
 
 }  // namespace dapple

@@ -20,7 +20,7 @@ constexpr const char* kListName = "sealed";
 
 std::optional<std::string> bytes_of(const fs::path& path) {
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) return std::nullopt;  // a pipe would be waited for
+  if (!fs::is_regular_file(path, error)) return std::nullopt;  // reading a pipe could block
   std::ifstream file(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (!file) return std::nullopt;
@@ -46,8 +46,8 @@ bool stays_inside(const fs::path& path) {
   return true;
 }
 
-/// The list of a sealed folder; nothing when it is damaged itself. Its last line is the checksum of
-/// those before.
+/// The list of a sealed folder; nothing when the list is damaged. Its last line has the checksum of
+/// the lines before.
 std::optional<std::vector<SealedFile>> read_list(const fs::path& folder) {
   const auto text = bytes_of(folder / kListName);
   if (!text) return std::nullopt;
@@ -71,7 +71,7 @@ std::optional<std::vector<SealedFile>> read_list(const fs::path& folder) {
   return std::nullopt;
 }
 
-/// Another name for the file, or where the file system has no such thing a copy.
+/// Makes `to` a hard link to `from`, or a copy when that is not possible. False when both fail.
 bool place(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::create_directories(to.parent_path(), error);
@@ -105,7 +105,7 @@ std::vector<fs::path> sealed_files(const fs::path& sealed) {
 bool unseal(const fs::path& sealed, const fs::path& target, std::vector<fs::path>& files) {
   const auto list = read_list(sealed);
   if (!list) return false;
-  // What was placed is what is read: the sealed folder may be replaced at any moment.
+  // The checksum is taken of the file in `target`: the sealed folder may be replaced at any moment.
   std::vector<fs::path> placed;
   for (const SealedFile& file : *list) {
     if (!place(sealed / file.path, target / file.path)) break;

@@ -5,7 +5,7 @@
 namespace dapple {
 namespace {
 
-/// Running sums of `weights` over their total; even steps where all are 0.
+/// Appends the running sums of `weights` divided by their total; equal steps when all are 0.
 void append_cumulative(const std::vector<double>& weights, std::vector<float>& floats) {
   double total = 0;
   for (const double weight : weights) total += weight;

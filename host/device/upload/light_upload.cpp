@@ -9,7 +9,7 @@ void store(const V3f& from, float (&to)[3]) {
   for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
 }
 
-/// Appends the triangles of every instance that emits for `light`; their area in m^2.
+/// Appends the triangles of every instance that emits for `light`. Returns their area in m^2.
 double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangle>& emitters) {
   const std::size_t first = emitters.size();
   std::vector<double> areas;
@@ -29,7 +29,8 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
       if (!(area > 0)) continue;
       EmitterTriangle triangle{};
       store(vertex, triangle.vertex);
-      // A mirrored placement turns triangles inside out; glTF's front face stays front.
+      // A mirrored instance reverses the winding of its triangles. The swapped edges keep the
+      // normal on the front face, as glTF defines it.
       const bool mirrored = instance.to_world.determinant() < 0;
       store(mirrored ? edge2 : edge1, triangle.edge1);
       store(mirrored ? edge1 : edge2, triangle.edge2);

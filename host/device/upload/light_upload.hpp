@@ -1,4 +1,5 @@
-// Lights as the kernels sample them.
+// Lights as the kernels sample them. In: a scene. Out: a record of each light, and the triangles of
+// mesh lights.
 #pragma once
 
 #include <vector>
@@ -8,8 +9,8 @@
 
 namespace dapple {
 
-/// One record a light of the scene, in order, and the triangles of its mesh lights in
-/// world space with their shares of the light's area.
+/// Appends one record for each light of the scene, in order, and the triangles of its mesh lights,
+/// in world space with their cumulative shares of the light's area.
 void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
                  std::vector<EmitterTriangle>& emitters);
 

@@ -1,5 +1,5 @@
-// Whether a device has the memory, asked before the minutes that building a large scene takes and
-// again when its sizes are known.
+// Checks whether a device has enough memory for a scene: by a lower bound before the BVH is built,
+// and by the true sizes afterwards. In: a scene, a device. Out: bytes, or an Error.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,12 @@ struct MemoryNeed {
   std::size_t largest_buffer = 0;
 };
 
-/// The least that a scene can take, whatever is built of it: its triangles in blocks without a gap,
-/// its textures and instances. A tenth to a half more is usual.
+/// The minimum that a scene needs, whatever the builder makes of it: its triangles and segments in
+/// full blocks, its textures and its instances. A tenth to a half more is usual.
 MemoryNeed min_need(const Scene& scene);
 
-/// Throws Error device with needed and available bytes; `how` is "needs" or "needs at least".
+/// Throws Error device, with needed and available bytes, when `need` is too large for `device`.
+/// `how` is "needs" or "needs at least".
 void check_memory(const DeviceInfo& device, const MemoryNeed& need, const char* how);
 
 }  // namespace dapple

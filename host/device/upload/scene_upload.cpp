@@ -28,7 +28,7 @@ std::size_t bytes_of_all(const DeviceBuffers& b) {
          b.emitters.bytes() + b.environments.bytes();
 }
 
-/// Shares `now` unless that is what is there already.
+/// Replaces `values` by `now`, and shares them as `buffer`, unless both are the same already.
 template <class T>
 void share_if_new(DeviceContext& context, std::vector<T> now, std::vector<T>& values,
                   Buffer& buffer) {

@@ -1,4 +1,5 @@
-// A scene in device memory, in the order that every tracing kernel takes it.
+// The buffers of a scene in device memory, which all tracing kernels use. In: a scene and its BVH,
+// by upload() and update(). Out: buffers.
 #pragma once
 
 #include "dapple/shared/light_record.h"
@@ -9,7 +10,7 @@ namespace dapple {
 
 struct DeviceBuffers {
   explicit DeviceBuffers(const Device& d) : device(d) {}
-  /// Waits for kernels that still run, as after an error: they read the host's memory.
+  /// Waits for kernels that still run, as after an error, because they may read the values below.
   ~DeviceBuffers() { device.context().wait(); }
   DeviceBuffers(const DeviceBuffers&) = delete;
   DeviceBuffers& operator=(const DeviceBuffers&) = delete;
@@ -18,7 +19,7 @@ struct DeviceBuffers {
   Buffer lights, emitters, environments;
   SceneParams params{};
   Box3f bounds;  ///< world space
-  // What `share` may point into where memory is shared.
+  // The buffers use these values themselves when device and host share memory.
   ConstArray<BvhNode> node_values;
   ConstArray<TriangleBlock> block_values;
   ConstArray<SegmentBlock> segment_values;

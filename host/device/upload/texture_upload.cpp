@@ -11,7 +11,7 @@
 namespace dapple {
 namespace {
 
-/// Texels begin at multiples of this, and offsets count them.
+/// Textures and their mip levels begin at multiples of this many bytes; offsets count such units.
 constexpr std::size_t kOffsetUnit = 16;
 
 uint next_offset(std::vector<uchar>& texels) {
@@ -30,7 +30,8 @@ TextureRecord pack_texture(const Texture& texture, std::vector<uchar>& texels) {
   return record;
 }
 
-/// Offsets of the coarser levels, finest first.
+/// Appends the mip levels above the texture itself, at most DAPPLE_MAX_MIPS. Returns their offsets,
+/// finest first.
 std::vector<uint> pack_mips(const Texture& texture, float factor, float cutoff,
                             std::vector<uchar>& texels) {
   const OpacityPyramid pyramid(texture, factor, cutoff);
@@ -58,7 +59,7 @@ void pack_materials(const Scene& scene, std::vector<MaterialRecord>& records,
     if (material.alpha_texture >= 0) {
       record.texture = textures[material.alpha_texture];
       if (material.alpha_mode != AlphaMode::opaque) {
-        // What is blended is linear in the factor, which is applied later.
+        // A blended opacity is proportional to the factor, so the kernels can apply it later.
         const float factor = record.cutoff < 0 ? 1.0f : material.alpha;
         const auto [at, is_new] = mips.try_emplace({material.alpha_texture, factor, record.cutoff});
         if (is_new) {

@@ -1,4 +1,6 @@
-// Materials of textured triangles and their textures, as kernels/opacity/opacity_lookup.clh reads them.
+// Materials of textured triangles and their textures, as kernels/opacity/opacity_lookup.clh reads
+// them. In: a scene. Out: records of materials, and bytes of all mip levels (Williams, "Pyramidal
+// Parametrics", 1983).
 #pragma once
 
 #include <vector>
@@ -8,8 +10,9 @@
 
 namespace dapple {
 
-/// One record a material, in the scene's order, and the texels that they point to: each texture
-/// once, and once for each way in which its coarser levels are averaged.
+/// Appends one record for each material, in the scene's order, and the texels that the records
+/// refer to: each texture once, and its coarser mip levels once for each alpha factor and cutoff
+/// that the materials average them with.
 void pack_materials(const Scene& scene, std::vector<MaterialRecord>& records,
                     std::vector<uchar>& texels);
 

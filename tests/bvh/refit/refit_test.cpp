@@ -5,8 +5,8 @@
 
 #include <cstring>
 
-#include "bvh/opacity/prefilter.hpp"
 #include "bvh/build/quantize.hpp"
+#include "bvh/opacity/prefilter.hpp"
 #include "support/failing_opencl.hpp"
 #include "support/scene_on_device.hpp"
 #include "support/swaying_tree.hpp"

@@ -11,9 +11,9 @@
 
 #include "bvh/storage/builder_version.hpp"
 #include "bvh/storage/object_key.hpp"
-#include "support/curly_strands.hpp"
 #include "dapple/bvh.hpp"
 #include "files/sealed_file.hpp"
+#include "support/curly_strands.hpp"
 #include "support/film_files.hpp"
 
 namespace dapple {

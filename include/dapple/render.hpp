@@ -1,5 +1,6 @@
-// The two things dapple does: render a scene to a film, and shoot AO from points for
-// baking. Also the raw occlusion query under both, for tests and benches.
+// The library's two main functions: render() makes a film of a scene, and occlusion() returns AO at
+// points, for baking. Also the queries below them, trace() and closest_hits(), for tests and
+// benches.
 #pragma once
 
 #include <functional>

@@ -1,0 +1,48 @@
+#include "passes/kernel_list.hpp"
+
+#include "passes/camera_pass.hpp"
+#include "passes/light_pass.hpp"
+#include "passes/occlusion_pass.hpp"
+#include "passes/resolve_pass.hpp"
+
+namespace dapple {
+
+std::vector<KernelShape> every_kernel(const DeviceContext& context) {
+  std::vector<KernelShape> kernels{
+      {kClosestHit, kRayGroup},         {kCompactHits, kScanItems}, {kAoRays, kRayGeneratorGroup},
+      {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
+      {kResolveSurface, kRayGroup},     {kResolveLight, kRayGroup},
+  };
+  for (const bool orthographic : {false, true})
+    kernels.push_back({camera_kernel(orthographic), kCameraGroup});
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    kernels.push_back({occlusion_kernel(estimator, Packets::none), kRayGroup});
+    kernels.push_back({point_ao_kernel(estimator), kPointGroup});
+    for (const Packets with : {Packets::pixel, Packets::point})
+      kernels.push_back({occlusion_kernel(estimator, with), packet_group(context, with)});
+  }
+  return kernels;
+}
+
+std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
+                                        const Camera& camera, const std::vector<Light>& lights) {
+  std::vector<KernelName> kernels{camera_kernel(camera.kind == Camera::Kind::orthographic),
+                                  kCompactHits, kResolveSurface};
+  const auto add_occlusion = [&](int rays) {
+    kernels.push_back(
+        occlusion_kernel(options.estimator, packets_in_picture(context, options.estimator, rays)));
+  };
+  if (options.ao) {
+    add_occlusion(options.ao_rays);
+    kernels.insert(kernels.end(), {kAoRays, kResolveAo});
+  }
+  if (options.light) {
+    add_occlusion(options.light_rays);
+    kernels.push_back(kLightRays);
+    for (const Light& light : lights)
+      kernels.push_back(light.kind == LightKind::dome ? kResolveDome : kResolveLight);
+  }
+  return kernels;
+}
+
+}  // namespace dapple

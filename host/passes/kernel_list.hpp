@@ -1,0 +1,25 @@
+// Lists the kernels that passes launch, so that they can be compiled ahead and checked.
+#pragma once
+
+#include <vector>
+
+#include "dapple/options.hpp"
+#include "dapple/scene.hpp"
+#include "device/context.hpp"
+
+namespace dapple {
+
+/// A kernel and the items of its work-groups.
+struct KernelShape {
+  KernelName kernel;
+  std::size_t group = 0;
+};
+
+/// Every kernel that any picture or query launches.
+std::vector<KernelShape> every_kernel(const DeviceContext& context);
+
+/// The kernels that a picture with these options, camera and lights launches.
+std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
+                                        const Camera& camera, const std::vector<Light>& lights);
+
+}  // namespace dapple

@@ -1,0 +1,79 @@
+#include "passes/occlusion_pass.hpp"
+
+#include "dapple/shared/ray.h"
+
+namespace dapple {
+namespace {
+
+/// Work-items of a work-group of point packets on devices that run a group's items side by side.
+constexpr std::size_t kPacketGroup = 16;
+
+}  // namespace
+
+KernelName occlusion_kernel(Estimator estimator, Packets with) {
+  const bool prefiltered = estimator != Estimator::exact;
+  if (with == Packets::none) return {"occlusion", "occlusion/occlusion", {prefiltered}};
+  return {"packet", "occlusion/packet", {prefiltered, with == Packets::point}};
+}
+
+KernelName point_ao_kernel(Estimator estimator) {
+  return {"point_ao", "occlusion/point_ao", {estimator != Estimator::exact, true}};
+}
+
+// Several items only where those of a group run side by side: packets take so much memory that
+// Intel's CPU runtime refuses groups of 16.
+std::size_t packet_group(const DeviceContext& context, Packets with) {
+  return with == Packets::point && context.info().kind != "CPU" ? kPacketGroup : 1;
+}
+
+void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
+  const std::size_t rays = std::size_t{params.point_count} * params.rays;
+  context.launch(kAoRays, "ao rays", ceil_div(rays, kRayLanes),
+                 {queues.points, queues.active, queues.rays, params}, kRayGeneratorGroup);
+}
+
+void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                    const std::string& label, Estimator estimator, const OcclusionParams& params,
+                    RayOrder order) {
+  occlusion_pass_with(choose_packets(estimator, params.rays_per_point, order, context), context,
+                      queues, scene, label, estimator, params);
+}
+
+void occlusion_pass_with(Packets with, DeviceContext& context, const Queues& queues,
+                         const DeviceBuffers& scene, const std::string& label, Estimator estimator,
+                         const OcclusionParams& params) {
+  OcclusionParams launched = params;
+  const KernelName kernel = occlusion_kernel(estimator, with);
+  const std::vector<KernelArgument> arguments{
+      scene.nodes,  scene.blocks,    scene.segments, scene.textured,    scene.materials,
+      scene.texels, scene.instances, queues.rays,    queues.occlusions, launched};
+  if (with == Packets::none) {
+    context.launch(kernel, label, params.ray_count, arguments, kRayGroup);
+  } else {
+    const uint ticket_count = with == Packets::pixel
+                                  ? split_pixel_rays(launched)
+                                  : split_point_rays(context.info().kind == "CPU", launched);
+    context.launch_with_tickets(kernel, label, ticket_count, arguments,
+                                packet_group(context, with));
+  }
+}
+
+bool has_point_ao_pass(const DeviceContext& context, Estimator estimator,
+                       std::size_t rays_per_point) {
+  return context.info().kind == "CPU" && rays_per_point <= DAPPLE_POINT_RAY_BATCH &&
+         choose_packets(estimator, static_cast<uint>(rays_per_point), RayOrder::any, context) ==
+             Packets::point;
+}
+
+void point_ao_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                   Estimator estimator, const AoParams& ao_params, const OcclusionParams& params) {
+  OcclusionParams launched = params;
+  const uint ticket_count = split_point_rays(true, launched);
+  context.launch_with_tickets(
+      point_ao_kernel(estimator), "ao", ticket_count,
+      {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
+       scene.instances, queues.points, queues.rays, queues.occlusions, ao_params, launched},
+      kPointGroup);
+}
+
+}  // namespace dapple

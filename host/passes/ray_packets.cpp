@@ -1,0 +1,60 @@
+#include "passes/ray_packets.hpp"
+
+#include <algorithm>
+
+#include "dapple/shared/ray.h"
+#include "passes/queues.hpp"
+
+namespace dapple {
+namespace {
+
+/// Smallest number of rays of a point for which packets pay: experiment 301.
+constexpr uint kMinPacketRays = 4;
+
+/// Smallest number of rays of a point for which a packet of their own, with a shared origin, pays:
+/// experiment 302.
+constexpr uint kMinPointPacketRays = 16;
+
+/// The same for exact rays, which spend their time on triangles: with fewer rays full packets over
+/// several points are faster (experiment 303).
+constexpr uint kMinExactPointPacketRays = 32;
+
+/// Quarters of the pixel rays that go in large batches. The rest goes in small ones, so that
+/// threads end at about the same time: experiment 304.
+constexpr uint kLargeBatchQuarters = 3;
+
+/// Most rays of points that one ticket stands for on a CPU, unless a single point has more. With a
+/// ticket a point all threads would read the same nodes (experiment 601).
+constexpr uint kRaysPerTicket = 256;
+
+}  // namespace
+
+Packets choose_packets(Estimator estimator, uint rays_per_point, RayOrder order,
+                       const DeviceContext& context) {
+  if (context.packets() != Packets::automatic) return context.packets();
+  if (context.info().kind != "CPU") return Packets::none;
+  const uint min_of_point =
+      estimator == Estimator::exact ? kMinExactPointPacketRays : kMinPointPacketRays;
+  if (rays_per_point >= min_of_point) return Packets::point;
+  return rays_per_point >= kMinPacketRays || order == RayOrder::by_pixel ? Packets::pixel
+                                                                         : Packets::none;
+}
+
+Packets packets_in_picture(const DeviceContext& context, Estimator estimator, int rays) {
+  return choose_packets(estimator, static_cast<uint>(rays), RayOrder::by_pixel, context);
+}
+
+uint split_pixel_rays(OcclusionParams& params) {
+  params.large_batches = params.ray_count / DAPPLE_PIXEL_RAY_BATCH * kLargeBatchQuarters / 4;
+  const uint rest = params.ray_count - params.large_batches * DAPPLE_PIXEL_RAY_BATCH;
+  return params.large_batches + ceil_div<uint>(rest, DAPPLE_SMALL_RAY_BATCH);
+}
+
+uint split_point_rays(bool on_cpu, OcclusionParams& params) {
+  const uint batches = ceil_div<uint>(params.rays_per_point, DAPPLE_POINT_RAY_BATCH);
+  params.batches_per_ticket = on_cpu ? std::max(1u, kRaysPerTicket / params.rays_per_point) : 1u;
+  return ceil_div<uint>(params.ray_count / params.rays_per_point * batches,
+                        params.batches_per_ticket);
+}
+
+}  // namespace dapple
