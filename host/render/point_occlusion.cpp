@@ -1,4 +1,6 @@
 // AO at points of the caller's own, for baking.
+#include "render/point_occlusion.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -78,6 +80,12 @@ class SharedPoints {
   std::vector<SurfacePoint> points_;
 };
 
+/// Results of consecutive points.
+struct Results {
+  std::span<float> ao;
+  std::span<V3f> bent;  ///< empty: not asked for
+};
+
 /// AO of the points in the queue, whose rays stay on the device.
 void occlusion_at_once(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                        const OcclusionOptions& options, std::span<float> ao) {
@@ -88,7 +96,8 @@ void occlusion_at_once(DeviceContext& context, const Queues& queues, const Devic
 
 /// The same by rays that go through queues.
 void occlusion_in_passes(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
-                         const OcclusionOptions& options, std::span<float> ao) {
+                         const OcclusionOptions& options, const Results& results) {
+  const std::span<float> ao = results.ao;
   std::vector<uint> active(ao.size());
   std::iota(active.begin(), active.end(), 0u);
   context.write(queues.active, active.data(), active.size() * sizeof(uint));
@@ -103,13 +112,24 @@ void occlusion_in_passes(DeviceContext& context, const Queues& queues, const Dev
     for (std::size_t r = 0; r < rays; ++r) sum += found[i * rays + r].transmittance;
     ao[i] = static_cast<float>(sum / static_cast<double>(rays));
   }
+  if (results.bent.empty()) return;
+  const HostView view = context.view(queues.rays);
+  const std::span<const Ray> traced = view.values<Ray>();
+  for (std::size_t i = 0; i < ao.size(); ++i) {
+    V3d sum(0, 0, 0);
+    for (std::size_t r = i * rays; r < (i + 1) * rays; ++r) {
+      const float* d = traced[r].direction;
+      sum += V3d(d[0], d[1], d[2]) * double{found[r].transmittance};
+    }
+    results.bent[i] = V3f(sum / static_cast<double>(rays));
+  }
 }
 
 }  // namespace
 
-std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
-                             std::span<const V3f> points, std::span<const V3f> normals,
-                             const OcclusionOptions& options) {
+PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
+                               std::span<const V3f> points, std::span<const V3f> normals,
+                               const OcclusionOptions& options, bool bent) {
   if (points.size() != normals.size()) {
     throw Error(ErrorKind::usage,
                 fmt::format("occlusion: {} points but {} normals", points.size(), normals.size()));
@@ -121,23 +141,35 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
   const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), points.size());
-  const bool together = has_point_ao_pass(context, options.estimator, rays);
+  const bool together = !bent && has_point_ao_pass(context, options.estimator, rays);
   Queues queues =
       together ? make_point_queues(context, slice, rays) : make_queues(context, slice, rays);
   const std::vector<std::uint32_t> order = order_along_curve(points);
-  std::vector<float> ao(points.size()), found;
+  PointOcclusion result{std::vector<float>(points.size()),
+                        std::vector<V3f>(bent ? points.size() : 0)};
+  PointOcclusion found;
   for (std::size_t begin = 0; begin < points.size(); begin += slice) {
     const auto chosen = std::span(order).subspan(begin, std::min(slice, points.size() - begin));
     const SharedPoints batch(context, points, normals, chosen);
     queues.points = batch.buffer();
-    found.resize(chosen.size());
-    (together ? occlusion_at_once : occlusion_in_passes)(context, queues, *scene.buffers, options,
-                                                         found);
-    for (std::size_t i = 0; i < chosen.size(); ++i) ao[chosen[i]] = found[i];
+    found.ao.resize(chosen.size());
+    found.bent.resize(bent ? chosen.size() : 0);
+    if (together)
+      occlusion_at_once(context, queues, *scene.buffers, options, found.ao);
+    else
+      occlusion_in_passes(context, queues, *scene.buffers, options, {found.ao, found.bent});
+    for (std::size_t i = 0; i < chosen.size(); ++i) result.ao[chosen[i]] = found.ao[i];
+    for (std::size_t i = 0; i < found.bent.size(); ++i) result.bent[chosen[i]] = found.bent[i];
     queues.points = {};  // `batch` ends here and with it the memory that the buffer refers to
   }
   context.finish();
-  return ao;
+  return result;
+}
+
+std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
+                             std::span<const V3f> points, std::span<const V3f> normals,
+                             const OcclusionOptions& options) {
+  return point_occlusion(device, scene, points, normals, options, false).ao;
 }
 
 }  // namespace dapple

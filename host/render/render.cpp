@@ -25,7 +25,7 @@ namespace {
 
 /// Overrides, lights and ground, in the order that framing needs: the camera sees the
 /// scene as it came, without the ground.
-View prepare_rooms(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
+View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   View view = choose_view(scene, options, notes);
   if (options.light && scene.lights.empty()) {
@@ -181,7 +181,7 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   RenderStatistics& statistics = result.statistics;
   statistics.estimator = name_of(options.estimator);
 
-  const View view = prepare_rooms(scene, options, statistics.notes);
+  const View view = prepare_scene(scene, options, statistics.notes);
   options.camera_splitting = choose_camera_splitting(options, scene, view);
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);

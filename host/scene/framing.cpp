@@ -1,5 +1,5 @@
-// Cameras and lights for scenes that bring none. In: a scene's bounds; out: a camera that
-// sees all of it, and the light that a photographer would start with.
+// Default cameras and lights for scenes without their own. In: a scene's bounds; out: a camera that
+// sees the whole scene, and one rect light (a photographer's "key light").
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -12,8 +12,8 @@
 namespace dapple {
 namespace {
 
-constexpr float kFrameMargin = 1.06f;     // of empty picture around the scene
-constexpr float kFrameElevation = 0.21f;  // tangent: 12 degrees above the horizon
+constexpr float kFrameMargin = 1.06f;     // width of the frame over width of the scene
+constexpr float kFrameElevation = 0.21f;  // tangent of the camera's elevation, 12 degrees
 constexpr float kKeyDistance = 3;         // scene radii from the centre
 
 bool is_finite(V3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -29,7 +29,8 @@ V3f corner(const Box3f& box, int i) {
           (i & 4 ? box.max : box.min).z};
 }
 
-// The least distance from the box's centre, along `axes`' Z, from which every corner is seen.
+// The smallest distance from the box's centre, along the Z axis of `axes`, at which the camera
+// sees every corner.
 float framing_distance(const Box3f& box, const M44f& axes, float tan_x, float tan_y) {
   float distance = 0;
   for (int i = 0; i < 8; ++i) {
@@ -38,7 +39,7 @@ float framing_distance(const Box3f& box, const M44f& axes, float tan_x, float ta
         std::max(std::abs(p.dot(row(axes, 0))) / tan_x, std::abs(p.dot(row(axes, 1))) / tan_y);
     distance = std::max(distance, p.dot(row(axes, 2)) + kFrameMargin * across);
   }
-  return distance > 0 ? distance : 1;  // a scene of one point
+  return distance > 0 ? distance : 1;  // 0: all of the scene is one point
 }
 
 Box3f bounds_or_unit_box(const Scene& scene) {
@@ -90,7 +91,8 @@ Camera frame_scene(const Scene& scene, float aspect, float fov_y) {
 Light key_light(const Scene& scene, const Camera& camera) {
   const Box3f bounds = bounds_or_unit_box(scene);
   const float radius = std::max(bounds.size().length() / 2, 1e-3f);
-  // Height is the world's, so that a camera looking down does not put the light underground.
+  // The light's height uses the world's +Y, so that the light stays above the ground when the
+  // camera looks down or up.
   V3f back = row(camera.to_world, 2);
   back.y = 0;
   const V3f toward_light =
@@ -104,7 +106,7 @@ Light key_light(const Scene& scene, const Camera& camera) {
   const RectAxes axes = rect_axes(light.direction);
   light.edge_u = axes.u * radius;
   light.edge_v = axes.v * radius;
-  // Irradiance at the centre is radiance * area / distance^2, to first order: about 1.
+  // Irradiance at the centre is radiance * area / distance^2 to first order, which is about 1.
   light.radiance = V3f(kKeyDistance * kKeyDistance);
   return light;
 }

@@ -1,5 +1,5 @@
-// Describes a scene in glTF 2.0's words (Khronos, glTF 2.0 Specification, sections 3 and 5):
-// buffer views, accessors, one primitive a mesh and material, nodes, cameras.
+// Describes a scene in terms of glTF 2.0 (Khronos, glTF 2.0 Specification, sections 3 and 5):
+// buffer views, accessors, one primitive for each material of a mesh, nodes, cameras.
 #include "scene/glb_layout.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// OpenGL's numbers, which glTF uses.
+// glTF uses OpenGL's codes.
 constexpr int kFloat = 5126;
 constexpr int kUnsignedInt = 5125;
 constexpr int kArrayBuffer = 34962;
@@ -26,7 +26,7 @@ constexpr double kOrthographicFar = 1e4;
 Json vector_json(V3f v) { return {v.x, v.y, v.z}; }
 
 Json matrix_json(const M44f& m) {
-  // Rows of a matrix that row vectors multiply are the columns of glTF's.
+  // Our matrix multiplies row vectors, so its rows are the columns of glTF's matrix.
   Json elements = Json::array();
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 4; ++k) elements.push_back(m[i][k]);
@@ -80,7 +80,7 @@ Box3f finite_bounds(const Mesh& mesh) {
   return bounds;
 }
 
-// The triangles of each material, as indices; empty where a material has none.
+// Returns the vertex indices of each material's triangles; empty for a material without any.
 std::vector<std::vector<std::uint32_t>> split_by_material(const Mesh& mesh,
                                                           std::size_t material_count) {
   std::vector<std::vector<std::uint32_t>> indices(material_count);
@@ -116,7 +116,7 @@ class Describer {
   }
 
  private:
-  // Returns the accessor's number. All elements are of 4 bytes, so that views stay aligned.
+  // Returns the accessor's number. Components have 4 bytes, so that all views are aligned.
   std::size_t add_accessor(std::span<const std::byte> bytes, const Json& accessor, int target) {
     json_["bufferViews"].push_back({{"buffer", 0},
                                     {"byteOffset", layout_.byte_count},
@@ -158,7 +158,7 @@ class Describer {
                         kArrayBuffer);
   }
 
-  // glTF has no empty meshes: numbers shift past them.
+  // Leaves out empty meshes, which glTF does not allow; later meshes then get lower numbers.
   void add_mesh(const Mesh& mesh) {
     mesh_numbers_.push_back(-1);
     if (mesh.primitive_count() == 0) return;
@@ -209,7 +209,7 @@ class Describer {
       if (std::max({material.emission.x, material.emission.y, material.emission.z}) <= 1) continue;
       json_["extensionsUsed"] = {"KHR_materials_emissive_strength"};
     }
-    // Names may hold bytes that are not UTF-8; they are replaced, not thrown at.
+    // Names may hold bytes that are not UTF-8: dump() replaces them instead of throwing.
     layout_.json = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 

@@ -1,5 +1,5 @@
-// Writes a scene as one GLB file (glTF 2.0 Specification, section 4). The same scene gives the
-// same bytes.
+// Writes a scene as one GLB file (glTF 2.0 Specification, section 4). In: a scene and a path; out:
+// the file. The same scene always gives the same bytes.
 #include <fmt/format.h>
 
 #include <limits>
@@ -9,6 +9,7 @@
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
 #include "files/output_file.hpp"
+#include "scene/glb_bytes.hpp"
 #include "scene/glb_layout.hpp"
 
 namespace dapple {
@@ -21,18 +22,20 @@ constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
 constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
 
-// GLB is little-endian whatever the machine.
+// Appends 32 bits in little-endian order, which GLB uses on every machine.
 void append_word(std::string& out, std::size_t word) {
   for (std::size_t i = 0; i < 4; ++i) out += static_cast<char>((word >> (8 * i)) & 0xff);
 }
 
 }  // namespace
 
-void write_glb(const Scene& scene, const std::string& path) {
-  GlbLayout layout = lay_out_glb(scene);
-  layout.json.resize((layout.json.size() + 3) / 4 * 4, ' ');
-  const std::size_t total = kHeaderBytes + kChunkHeaderBytes + layout.json.size() +
-                            (layout.byte_count > 0 ? kChunkHeaderBytes + layout.byte_count : 0);
+void write_glb_bytes(const std::string& path, std::string json,
+                     std::span<const std::string_view> binary) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::size_t byte_count = 0;
+  for (const std::string_view section : binary) byte_count += section.size();
+  const std::size_t total = kHeaderBytes + kChunkHeaderBytes + json.size() +
+                            (byte_count > 0 ? kChunkHeaderBytes + byte_count : 0);
   if (total > std::numeric_limits<std::uint32_t>::max()) {
     throw Error(
         ErrorKind::failed,
@@ -40,19 +43,25 @@ void write_glb(const Scene& scene, const std::string& path) {
   }
   std::string header, binary_header;
   for (const std::size_t word : {std::size_t{kGlbMagic}, std::size_t{kGlbVersion}, total,
-                                 layout.json.size(), std::size_t{kJsonChunk}}) {
+                                 json.size(), std::size_t{kJsonChunk}}) {
     append_word(header, word);
   }
-  std::vector<std::string_view> sections{header, layout.json};
-  if (layout.byte_count > 0) {
-    append_word(binary_header, layout.byte_count);
+  std::vector<std::string_view> sections{header, json};
+  if (byte_count > 0) {
+    append_word(binary_header, byte_count);
     append_word(binary_header, kBinChunk);
     sections.push_back(binary_header);
-  }
-  for (const auto& section : layout.sections) {
-    sections.emplace_back(reinterpret_cast<const char*>(section.data()), section.size());
+    sections.insert(sections.end(), binary.begin(), binary.end());
   }
   write_whole_file(path, sections);
+}
+
+void write_glb(const Scene& scene, const std::string& path) {
+  const GlbLayout layout = lay_out_glb(scene);
+  std::vector<std::string_view> binary;
+  for (const auto& section : layout.sections)
+    binary.emplace_back(reinterpret_cast<const char*>(section.data()), section.size());
+  write_glb_bytes(path, layout.json, binary);
 }
 
 }  // namespace dapple

@@ -1,11 +1,12 @@
-// A ground under a place that is given, where add_ground(Scene&) takes the scene's own.
+// Adds a ground under given bounds. In: a scene and a box; out: the same scene with one mesh,
+// instance and material more. add_ground(Scene&) in dapple/scene.hpp uses the scene's own bounds.
 #pragma once
 
 #include "dapple/scene.hpp"
 
 namespace dapple {
 
-/// Adds an opaque square under `bounds`, 20 times as wide. Throws Error input where they are empty.
+/// Adds an opaque square under `bounds`, 20 times as wide. Throws Error input when they are empty.
 void add_ground(Scene& scene, const Box3f& bounds);
 
 }  // namespace dapple

@@ -1,5 +1,5 @@
-// Reading HAIR files: see hair_file.hpp. All counts are held against the file's size in 64 bits
-// before anything is allocated.
+// Reads HAIR files: see hair_file.hpp. All counts are compared with the file's size, in 64-bit
+// arithmetic, before memory is allocated.
 #include "scene/hair_file.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 32;
 constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
 constexpr std::uint64_t kHeaderBytes = 128;
 
-// Bits of the arrays that a file has, in the order in which these follow each other.
+// One bit for each array that a file may have. The arrays follow each other in this order.
 constexpr std::uint32_t kSegments = 1;
 constexpr std::uint32_t kPoints = 2;
 constexpr std::uint32_t kThickness = 4;
@@ -56,12 +56,12 @@ Header read_header(std::span<const std::uint8_t> bytes, const std::string& path)
   return header;
 }
 
-/// The arrays of a file, as bytes that may begin anywhere; null where there is none.
+/// The arrays of a file, as bytes without alignment; null for an array that the file lacks.
 struct Arrays {
-  const std::uint8_t* segments = nullptr;      ///< uint16, one a strand
-  const std::uint8_t* points = nullptr;        ///< three floats a point
-  const std::uint8_t* thickness = nullptr;     ///< a float a point
-  const std::uint8_t* transparency = nullptr;  ///< a float a point
+  const std::uint8_t* segments = nullptr;      ///< one uint16 per strand
+  const std::uint8_t* points = nullptr;        ///< three floats per point
+  const std::uint8_t* thickness = nullptr;     ///< one float per point
+  const std::uint8_t* transparency = nullptr;  ///< one float per point
 };
 
 Arrays find_arrays(const Header& header, std::span<const std::uint8_t> bytes,
@@ -101,7 +101,7 @@ class StrandLengths {
       }
     }
     const std::uint64_t points = segments + header.strands;
-    // Writers differ in whether a strand without segments has a point.
+    // Some writers store one point for a strand without segments, others store none.
     empty_has_point_ = points == header.points;
     if (empty_has_point_ || points - without == header.points) return;
     fail(path, "has {} points, but its {} strands of {} segments take {}", grouped(header.points),
@@ -132,7 +132,8 @@ constexpr std::uint64_t kNoPoint = std::numeric_limits<std::uint64_t>::max();
   fail(path, "point {} has a {} of {:g}", grouped(point), what, value);
 }
 
-/// Half of a thickness; a strand may taper to nothing, but a radius is above 0.
+/// Half of a thickness, in metres. The file's thickness may be 0 where a strand tapers; our radius
+/// must be above 0.
 float radius_of(float thickness, std::uint64_t point, const std::string& path) {
   if (!(thickness >= 0 && thickness <= kLargestCoordinate))
     refuse(point, "thickness", thickness, path);
@@ -146,7 +147,7 @@ float opacity_of(float transparency, std::uint64_t point, const std::string& pat
 
 bool is_finite(V3f p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-/// Whether two points are one but for the rounding of their coordinates.
+/// Whether two points differ only by the rounding of their coordinates.
 bool coincide(V3f a, V3f b) {
   constexpr float kRounding = 16 * std::numeric_limits<float>::epsilon();
   const auto largest = [](V3f p) {
@@ -155,7 +156,8 @@ bool coincide(V3f a, V3f b) {
   return largest(b - a) <= kRounding * std::max(largest(a), largest(b));
 }
 
-/// Appends strands to a mesh, point after point, and counts what is no segment.
+/// Appends strands to a mesh, point after point, and counts the points, segments and strands that
+/// it drops.
 class StrandWriter {
  public:
   StrandWriter(const Header& header, const Arrays& arrays, const std::string& path)
@@ -169,15 +171,16 @@ class StrandWriter {
     mesh_.materials.reserve(header.points);
   }
 
-  /// The strand that begins at the file's point `first`. A point that repeats the one before is
-  /// left out and the next segment begins at the latter, so that no gap opens.
+  /// Appends the strand of `count` points that begins at the file's point `first`. A point that
+  /// repeats the previous one is left out; the next segment begins at the previous point, so that
+  /// the strand has no gap. A point that is not finite ends the segments before it.
   void add(std::uint64_t first, std::uint64_t count) {
     if (is_speck(first, count)) {
       ++specks_;
       return;
     }
-    std::uint64_t last = kNoPoint;  // that the next segment begins at
-    bool written = false;           // it is the mesh's last vertex
+    std::uint64_t last = kNoPoint;  // the point at which the next segment begins
+    bool written = false;           // point `last` is the mesh's last vertex
     bool has_segment = false;
     for (std::uint64_t i = first; i < first + count; ++i) {
       if (!is_finite(point(i))) {
@@ -227,8 +230,8 @@ class StrandWriter {
                : radius_of(load<float>(arrays_.thickness + 4 * i), i, path_);
   }
 
-  /// Whether all of a strand's segments together are no longer than the strand is thick: dozens of
-  /// them in one place would be a dot of many layers, and no hair.
+  /// Whether the total length of a strand is at most its thickness. Such a strand looks like a dot
+  /// that consists of many overlapping segments.
   [[nodiscard]] bool is_speck(std::uint64_t first, std::uint64_t count) const {
     double length = 0;
     float thickest = 0;

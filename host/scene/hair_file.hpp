@@ -1,11 +1,11 @@
-// Cem Yuksel's HAIR files (cemyuksel.com/research/hairmodels, "HAIR File Format Specification"): a
-// header of 128 bytes, then arrays of segments, points, thickness, transparency and colours.
+// Reads Cem Yuksel's HAIR files (cemyuksel.com/research/hairmodels, "HAIR File Format
+// Specification"): a header of 128 bytes, then arrays of segments, points, thickness, transparency
+// and colours. In: a path or bytes; out: a scene with one mesh of strands.
 //
-// Coordinates are taken as metres and as they are, whichever way is up: the format says neither,
-// files are found with Y and with Z up. Thickness is a diameter, as are the widths of curves that
-// exporters write there. Transparency t is opacity 1 - t of each crossing of a strand. Colours are
-// left out: nothing here needs them. Strands that are no longer than thick are dropped, and
-// counted.
+// Coordinates are metres and stay as they are: the format gives neither unit nor up axis, and some
+// files have Y up, others Z up. Thickness is a diameter; exporters write the widths of curves
+// there. A transparency t means that each crossing of a strand has the opacity 1 - t. Colours are
+// ignored. A strand that is no longer than it is thick is dropped; a warning gives the count.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,14 @@
 
 namespace dapple {
 
-/// Whether a scene of that name is read by load_hair(): it ends in ".hair".
+/// Whether load_hair() reads a scene of that name: the name ends in ".hair".
 bool is_hair_name(const std::string& path);
 
-/// One mesh of strands, one material "hair". Throws Error input.
+/// Returns one mesh of strands with one material "hair". Throws Error input, and Error failed when
+/// there is not enough memory.
 Scene load_hair(const std::string& path);
 
-/// The same from memory; messages begin with `path`.
+/// Like load_hair(), but from memory; messages begin with `path`. Throws Error input.
 Scene decode_hair(std::span<const std::uint8_t> bytes, const std::string& path);
 
 }  // namespace dapple

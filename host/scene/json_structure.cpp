@@ -1,5 +1,5 @@
-// An event handler for nlohmann's parser: see json_structure.hpp. Not its parse callback: that
-// goes over an array again whenever one of its elements ends.
+// An event (SAX) handler for nlohmann's parser: see json_structure.hpp. It does not use nlohmann's
+// parse callback, which visits a whole array again at the end of each of its elements.
 #include "scene/json_structure.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kLongestKey = 120;  // of those in a message
+constexpr std::size_t kLongestKey = 120;  // bytes of a key in a message
 
 class StructureCheck : public nlohmann::json_sax<Json> {
  public:

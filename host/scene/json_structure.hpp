@@ -1,5 +1,6 @@
-// What is wrong with JSON text beyond its grammar, found without building a tree: depth, which
-// trees cannot have, and keys twice in one object, of which readers differ in the one they take.
+// Finds two defects of JSON text that its grammar allows: nesting that is too deep, and a key that
+// appears twice in one object (readers differ in which of the two values they take).
+// In: text; out: the text of a message. No tree of values is built.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +9,9 @@
 
 namespace dapple {
 
-/// "nests deeper than 16 levels" or "has the key "a" twice in one object"; empty when neither,
-/// and where the text is not JSON, which its parser will say better.
+/// Returns "nests deeper than 16 levels" or "has the key "a" twice in one object", whichever comes
+/// first. Returns "" when there is neither, also for text that is not JSON: its parser reports
+/// that with a better message.
 std::string json_structure_defect(std::string_view text, std::size_t max_depth);
 
 }  // namespace dapple

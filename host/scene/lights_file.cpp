@@ -1,5 +1,5 @@
 // Reads a JSON file of lights. In: {"lights": [{"type": "rect", ...}, ...]}; out: Lights.
-// Everything unknown is an error: a misspelt key would otherwise be a default in silence.
+// An unknown key is an error, because a misspelt key would silently leave a default value.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ using Json = nlohmann::json;
 
 constexpr std::uintmax_t kMaxFileBytes = 16u << 20;
 constexpr std::size_t kMaxDepth = 16;  // the format needs 4
-constexpr double kSunDegrees = 0.533;
-constexpr std::size_t kMaxMessage = 300;  // messages quote keys and what was last read
+constexpr double kSunDegrees = 0.533;     // angular diameter of the real sun
+constexpr std::size_t kMaxMessage = 300;  // bytes; messages quote keys and text of the file
 constexpr std::size_t kMaxName = 200;
 constexpr std::size_t kMaxLights = 4096;
 
@@ -48,14 +48,14 @@ Json parse_json(const std::string& path, const std::string& text) {
   try {
     return Json::parse(text);
   } catch (const Json::exception& error) {
-    // What follows "[json.exception.parse_error.101] " is for people.
+    // Removes the beginning "[json.exception.parse_error.101] ", which says nothing to a user.
     std::string_view message = error.what();
     message.remove_prefix(std::min(message.size(), message.find("] ") + 2));
     fail(path, message);
   }
 }
 
-// The keys of one light, with messages that say which light of which file.
+// The keys and values of one light. Error messages name the file and the light.
 class LightFields {
  public:
   LightFields(const std::string& path, std::size_t number, const Json& fields)
@@ -90,7 +90,7 @@ class LightFields {
 
   [[nodiscard]] float number(const char* key) const { return to_number(get(key), key); }
 
-  /// A length that float arithmetic can square, in metres.
+  /// A length in metres, from kSmallestLength to kLargestCoordinate.
   [[nodiscard]] float length(const char* key) const { return require_length(number(key), key); }
 
   [[nodiscard]] float in_range(const char* key, double low, double high) const {
@@ -118,7 +118,7 @@ class LightFields {
   }
 
   [[nodiscard]] V3f direction(const char* key) const {
-    const Imath::V3d value(numbers(key));  // squares of floats neither vanish nor overflow
+    const Imath::V3d value(numbers(key));  // in double, a float's square is never 0 or infinite
     if (value.length2() == 0) fail_at(key, "has no direction: it is 0, 0, 0");
     return V3f(value.normalized());
   }
@@ -132,7 +132,7 @@ class LightFields {
     return result;
   }
 
-  // A number is grey. Not negative, in W/(sr m^2) or W/m^2.
+  // Three numbers, or one number for a grey. At least 0, in W/(sr m^2) or W/m^2.
   [[nodiscard]] V3f colour(const char* key) const {
     const V3f value = get(key).is_number() ? V3f(number(key)) : numbers(key);
     for (int k = 0; k < 3; ++k) {
@@ -219,8 +219,8 @@ Light read_sun(const LightFields& fields) {
     light.radiance = fields.colour("radiance");
     return light;
   }
-  // A disk of constant radiance facing a surface: the integral of the cosine over it is
-  // pi sin^2 of its angular radius.
+  // The irradiance of a surface that faces a disk of constant radiance L is L * pi * sin^2(angular
+  // radius).
   const double sine = std::sin(angular_radius);
   light.radiance =
       fields.colour("irradiance") * static_cast<float>(1 / (std::numbers::pi * sine * sine));

@@ -1,4 +1,5 @@
-// Chooses the reader of a scene by its name. In: a file's path or "scene:..."; out: a Scene.
+// Chooses the reader of a scene by its name, and checks the options of reading. In: a file's path
+// or "scene:..."; out: a Scene.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,5 +1,6 @@
-// Puts all triangles that are placed once into one world-space mesh, all strands into another, and
-// drops what no ray could hit. In: a scene as it was read; out: the same, fewer meshes, warnings.
+// Merges meshes with one instance, and tiny meshes, into two world-space meshes, one of triangles
+// and one of strands. Drops what no ray can hit. In: a scene as it was read; out: the same scene
+// with fewer meshes, and warnings.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -15,9 +16,9 @@
 namespace dapple {
 namespace {
 
-constexpr std::size_t kTinyTriangles = 256;
-constexpr std::size_t kMaxTinyPlaced = 4'000'000;  // triangles, all copies of tiny meshes
-constexpr float kEqualScales = 1e-4f;              // of squares
+constexpr std::size_t kTinyTriangles = 256;        // a mesh with at most so many is tiny
+constexpr std::size_t kMaxTinyPlaced = 4'000'000;  // triangles of all copies of tiny meshes
+constexpr float kEqualScales = 1e-4f;              // relative tolerance of squared scales
 constexpr std::size_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
 
 bool is_finite(const M44f& matrix) {
@@ -29,7 +30,8 @@ bool is_finite(const M44f& matrix) {
   return true;
 }
 
-// Asks Imath, whose inverse the rays will be turned by: it answers identity where there is none.
+// Uses Imath's inverse(), which also transforms the rays later. It returns the identity for a
+// matrix without an inverse.
 bool is_invertible(const M44f& matrix) {
   if (!is_finite(matrix)) return false;
   const M44f inverse = matrix.inverse();
@@ -45,7 +47,7 @@ void drop_singular_instances(Scene& scene) {
   }
 }
 
-// By what the matrix scales lengths, or 0 where that depends on their direction.
+// The factor by which the matrix scales lengths, or 0 when the factor depends on the direction.
 float uniform_scale(const M44f& matrix) {
   const V3f rows[3] = {{matrix[0][0], matrix[0][1], matrix[0][2]},
                        {matrix[1][0], matrix[1][1], matrix[1][2]},
@@ -61,7 +63,7 @@ float uniform_scale(const M44f& matrix) {
 struct Uses {
   std::size_t as_geometry = 0;
   std::size_t as_light = 0;
-  bool fixed = false;  // strands that a placement would make other than round
+  bool fixed = false;  // must not be merged: an instance scales its strands non-uniformly
 };
 
 std::vector<Uses> count_uses(const Scene& scene) {
@@ -75,7 +77,7 @@ std::vector<Uses> count_uses(const Scene& scene) {
   return uses;
 }
 
-// Which meshes' geometry goes into the merged mesh, all of its placements together.
+// Chooses the meshes to merge; all instances of a chosen mesh that are not lights are merged.
 std::vector<bool> choose_merged(const Scene& scene, const std::vector<Uses>& uses) {
   std::vector<bool> merged(scene.meshes.size(), false);
   std::size_t tiny_placed = 0;
@@ -124,7 +126,7 @@ Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
   return totals;
 }
 
-// Vertices from `first` on.
+// Transforms the vertices from `first` to the last one.
 void transform_vertices(Mesh& mesh, std::size_t first, const M44f& to_world) {
   if (to_world == M44f{}) return;
   const float scale = mesh.has_strands() ? uniform_scale(to_world) : 1;
@@ -134,8 +136,8 @@ void transform_vertices(Mesh& mesh, std::size_t first, const M44f& to_world) {
   });
 }
 
-// A mirroring matrix turns windings over. They are left so: every surface occludes from both
-// sides, and normals are turned to the viewer.
+// A mirroring matrix reverses the winding of triangles. That is left as it is: every surface
+// occludes from both sides, and normals are flipped towards the viewer.
 void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const Totals& totals) {
   const std::size_t first = merged.positions.size();
   merged.positions.insert(merged.positions.end(), mesh.positions.begin(), mesh.positions.end());
@@ -157,7 +159,7 @@ void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const T
   }
 }
 
-// Empties each mesh after its last use: a scene that fills the memory once must not do so twice.
+// Empties each mesh after its last use, so that large scenes are not in memory twice.
 Mesh build_merged(Scene& scene, const std::vector<Instance>& instances,
                   const std::vector<Uses>& uses) {
   const Totals totals = measure(scene, instances);
@@ -200,7 +202,7 @@ void merge_chosen(Scene& scene) {
   }
 }
 
-// Their lights have no triangle then, and are dropped.
+// Makes strands stop emitting. drop_unused() later drops their mesh lights.
 void put_out_strands(Scene& scene) {
   std::size_t count = 0;
   for (Instance& instance : scene.instances) {
@@ -215,7 +217,7 @@ void put_out_strands(Scene& scene) {
   }
 }
 
-/// What was dropped, for the message that nothing is left.
+/// Lists what was dropped, for the error that nothing is left.
 std::string reasons(const Scene& scene) {
   std::string text;
   for (const std::string& warning : scene.warnings) {

@@ -1,14 +1,14 @@
-// Wording of the messages of the readers of scenes: see message.hpp.
+// Formats the messages of the readers of scenes: see message.hpp.
 #include "scene/message.hpp"
 
 namespace dapple {
 namespace {
 
-/// What a message quotes of a file, bytes: names there may be megabytes long.
+/// Limits in bytes, because names in a file may be megabytes long.
 constexpr std::size_t kLongestExcerpt = 120;
 constexpr std::size_t kLongestMessage = 1200;
 
-/// The first `bytes` of `text`, less what is left of a UTF-8 character that this would cut.
+/// Returns the first `bytes` of `text` and "...", without an incomplete UTF-8 character at the end.
 std::string shorten(std::string_view text, std::size_t bytes) {
   if (text.size() <= bytes) return std::string(text);
   while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0u) == 0x80u) --bytes;
@@ -17,7 +17,7 @@ std::string shorten(std::string_view text, std::size_t bytes) {
 
 bool is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
 
-/// U+0080 to U+009F, which terminals obey as they obey escape sequences.
+/// Whether U+0080 to U+009F begins at `at`: terminals interpret these like escape sequences.
 bool is_c1_control(std::string_view text, std::size_t at) {
   return at + 1 < text.size() && text[at] == '\xc2' &&
          static_cast<unsigned char>(text[at + 1]) < 0xa0;

@@ -1,5 +1,5 @@
-// How the readers of scenes report what is wrong: one line, `file: element: figures`. In come
-// a file name and a fmt format string; out goes a dapple::Error of kind input.
+// How the readers of scenes report an error: one line, `file: element: figures`. In: a file name
+// and a fmt format string; out: a dapple::Error of kind input.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,18 +12,19 @@
 
 namespace dapple {
 
-/// `text` with control characters replaced: names in a file may hold line breaks.
+/// Returns `text` with a space for each control character: names in a file may hold line breaks.
 std::string one_line(std::string_view text);
 
-/// The beginning of a long text, for messages that quote a file.
+/// Returns `text`, or the beginning of a long one, for messages that quote a file.
 std::string excerpt(std::string_view text);
 
-/// 4800 as "4,800".
+/// Returns "4,800" for 4800.
 std::string grouped(std::uint64_t value);
 
-/// `mesh 2 ("leaves")`, or `mesh 2` for an element without a name.
+/// Returns `mesh 2 ("leaves")`, or `mesh 2` for an element without a name.
 std::string element(std::string_view kind, std::size_t index, std::string_view name);
 
+/// Throws Error input with the text "file: message" in one line; a long message is cut.
 [[noreturn]] void fail_with(const std::string& file, const std::string& message);
 
 template <typename... Args>

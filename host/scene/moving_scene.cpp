@@ -1,4 +1,5 @@
-// The sources of moving scenes: glTF files, procedural scenes, and what does not move.
+// The sources of moving scenes: glTF files, procedural scenes, and scenes that do not move. In: a
+// scene's name and a time in seconds; out: the scene at that time.
 #include "dapple/moving_scene.hpp"
 
 #include <new>

@@ -1,4 +1,4 @@
-// Bounds, lights and cameras against what float arithmetic can take: see numeric_range.hpp.
+// Compares bounds, lights and cameras with the range: see numeric_range.hpp.
 #include "scene/numeric_range.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ double reach(const V3f& point) {
       {std::abs(double{point.x}), std::abs(double{point.y}), std::abs(double{point.z})});
 }
 
-/// Negated, so that a NaN is out of range too.
+/// The comparison is negated, so that a NaN is out of range too.
 void check_point(const Scene& scene, const std::string& what, const V3f& point) {
   if (!(reach(point) <= kLargestCoordinate)) refuse(scene, what, reach(point));
 }

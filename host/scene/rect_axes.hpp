@@ -1,4 +1,5 @@
-// How a rect light given by its normal is turned about it: the one place that says so.
+// The orientation of a rect light about its normal. In: the normal; out: the directions of the two
+// edges. All code that makes rect lights from a normal uses this function.
 #pragma once
 
 #include "dapple/scene.hpp"
@@ -11,8 +12,8 @@ struct RectAxes {
   V3f v;
 };
 
-/// First axis normalize(cross(normal, +Y)), or +X where that vanishes; second axis
-/// cross(normal, first). `normal` is of unit length.
+/// The first axis is normalize(cross(normal, +Y)), or +X where that cross product vanishes. The
+/// second axis is cross(normal, first). `normal` must have unit length.
 inline RectAxes rect_axes(V3f normal) {
   const V3f across = normal.cross(V3f(0, 1, 0));
   const V3f u = across.length() > 1e-6f ? across.normalized() : V3f(1, 0, 0);

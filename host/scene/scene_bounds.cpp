@@ -1,5 +1,5 @@
-// World-space bounds of a scene. In: meshes and instances; out: a box. Only vertices that a
-// triangle or a segment of a strand uses count.
+// Computes the world-space bounds of a scene. In: meshes and instances; out: a box. Vertices that
+// no triangle or segment of a strand uses are ignored.
 #include <Imath/ImathBoxAlgo.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -12,7 +12,8 @@
 namespace dapple {
 namespace {
 
-/// What strands reach at most beyond their vertices, once placed.
+/// How far strands extend beyond their vertices after `transform`. The largest radius is multiplied
+/// by the root mean square of the three axes' scales.
 float strand_reach(const Mesh& mesh, const M44f& transform) {
   if (!mesh.has_strands()) return 0;
   float radius = 0;
@@ -24,7 +25,8 @@ float strand_reach(const Mesh& mesh, const M44f& transform) {
   return radius * std::sqrt(square / 3);
 }
 
-// Minima and maxima come out the same in any order, so threads may share the work.
+// Minima and maxima do not depend on the order of the vertices, so several threads can work on
+// them.
 Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
   using Range = tbb::blocked_range<std::size_t>;
   Box3f bounds = tbb::parallel_reduce(
@@ -60,8 +62,8 @@ Box3f scene_bounds(const Scene& scene) {
       bounds.extendBy(mesh_bounds(mesh, instance.to_world));
       continue;
     }
-    // A forest's triangles are too many to visit: the box around the turned object-space box
-    // is a little larger and costs nothing.
+    // A mesh with several instances is visited once, because a forest has too many triangles. The
+    // box around its transformed object-space box is a little larger than needed.
     Box3f& box = object_bounds[instance.mesh];
     if (box.isEmpty()) box = mesh_bounds(mesh, M44f{});
     if (!box.isEmpty()) bounds.extendBy(Imath::transform(box, instance.to_world));

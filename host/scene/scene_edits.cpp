@@ -1,5 +1,5 @@
-// What the command line changes in a scene that was read: the opacity of a material, and a
-// ground to stand on.
+// Changes that the command line makes in a scene after reading: the opacity of a material, and a
+// ground under the scene. In and out: a scene.
 #include <fmt/format.h>
 
 #include <algorithm>

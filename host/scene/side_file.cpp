@@ -17,7 +17,7 @@ std::vector<std::uint8_t> read_side_file(const std::string& path, const char* ki
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) fail(fmt::format("there is no such {}", kind));
-  // A pipe or a device might never end.
+  // Reading a pipe or a device might never end.
   if (!std::filesystem::is_regular_file(status)) fail("is not a regular file");
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) fail(error.message());

@@ -1,4 +1,5 @@
-// Files that a scene is given beside its own: lights, images of domes.
+// Reads a whole file into memory: a lights file, the image of a dome light, a HAIR file.
+// In: a path and a size limit; out: the file's bytes.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,9 @@
 
 namespace dapple {
 
-/// The whole regular file. `kind` is what errors call it, as in "lights file". Throws Error input
-/// when there is none, for anything but a regular file, and past `most_bytes`.
+/// Returns the bytes of a regular file. `kind` is the name of the file in errors, as in "lights
+/// file". Throws Error input when the file does not exist, is not a regular file, cannot be read,
+/// or has more than `most_bytes` bytes.
 std::vector<std::uint8_t> read_side_file(const std::string& path, const char* kind,
                                          std::uintmax_t most_bytes);
 

@@ -1,5 +1,5 @@
-// Filters triangles and segments of strands and renumbers what refers to them. Numbers change only
-// where something was dropped.
+// Filters triangles and segments of strands and renumbers the indices: see triangle_cleanup.hpp.
+// A mesh without a fault keeps its numbers.
 #include "scene/triangle_cleanup.hpp"
 
 #include <fmt/format.h>
@@ -15,11 +15,11 @@ namespace dapple {
 namespace {
 
 constexpr std::uint32_t kUnused = 0xffffffffu;
-// Twice an area, in square metres. Below it a normal's squared length leaves float's range;
-// a triangle of a nanometre's sides is larger.
+// Twice an area, in square metres. Below it the squared length of a normal underflows in float. A
+// triangle with sides of one nanometre is larger.
 constexpr double kMinDoubleArea = 1e-19;
 
-// Of segments, in metres.
+// The minimum length of a segment, in metres.
 constexpr double kMinLength = 1e-15;
 
 enum class Fault : std::uint8_t { none, not_finite, no_area, no_length, no_radius };
@@ -29,7 +29,7 @@ Fault fault_of_segment(const Mesh& mesh, std::size_t segment) {
   const Imath::V3d a(mesh.positions[begin]), b(mesh.positions[end]), sum = a + b;
   const double radii = double{mesh.radii[begin]} + mesh.radii[end];
   if (!std::isfinite(sum.x + sum.y + sum.z + radii)) return Fault::not_finite;
-  // Strands may come to a point.
+  // One radius may be 0: strands may end in a point.
   if (mesh.radii[begin] < 0 || mesh.radii[end] < 0 || radii <= 0) return Fault::no_radius;
   return (b - a).length() > kMinLength ? Fault::none : Fault::no_length;
 }
@@ -40,7 +40,7 @@ Fault fault_of(const Mesh& mesh, std::size_t triangle) {
   for (std::size_t k = 0; k < 3; ++k) {
     corner[k] = Imath::V3d(mesh.positions[mesh.indices[3 * triangle + k]]);
   }
-  // In double, sums and products of floats cannot overflow.
+  // Double arithmetic: sums and products of floats cannot overflow in it.
   const Imath::V3d sum = corner[0] + corner[1] + corner[2];
   if (!std::isfinite(sum.x + sum.y + sum.z)) return Fault::not_finite;
   const Imath::V3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
@@ -48,7 +48,7 @@ Fault fault_of(const Mesh& mesh, std::size_t triangle) {
 }
 
 struct Faults {
-  std::array<std::size_t, 5> count{};  // by Fault
+  std::array<std::size_t, 5> count{};  // indexed by Fault
 
   [[nodiscard]] std::size_t of(Fault fault) const { return count[static_cast<std::size_t>(fault)]; }
   void add(Fault fault) { ++count[static_cast<std::size_t>(fault)]; }
@@ -74,7 +74,7 @@ Faults count_faults(const Mesh& mesh) {
       [](Faults a, const Faults& b) { return a += b; });
 }
 
-// A strand goes on across a segment without length: both its ends become one vertex.
+// Makes both ends of a segment without length one vertex, so that the strand has no gap there.
 void join_ends(Mesh& mesh) {
   std::vector<std::uint32_t> same(mesh.positions.size());
   std::iota(same.begin(), same.end(), 0u);
@@ -108,7 +108,7 @@ void keep_at(std::vector<Value>& values, const std::vector<std::uint32_t>& new_n
   values.resize(kept);
 }
 
-// Vertices keep their order, so a value only ever moves forward.
+// Vertices keep their order, so keep_at() moves values only towards the front, in place.
 void keep_used_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> new_numbers(mesh.positions.size(), kUnused);
   for (const std::uint32_t index : mesh.indices) new_numbers[index] = 0;
@@ -121,6 +121,7 @@ void keep_used_vertices(Mesh& mesh) {
   keep_at(mesh.radii, new_numbers, kept);
   keep_at(mesh.uvs, new_numbers, kept);
   keep_at(mesh.vertex_alpha, new_numbers, kept);
+  mesh.sources.clear();
 }
 
 void warn_dropped(Scene& scene, std::size_t count, const char* primitive, const char* what) {
@@ -135,7 +136,7 @@ std::vector<bool> find_placed(const Scene& scene) {
   return placed;
 }
 
-// Erases the items that are not wanted and returns each old number's new one.
+// Erases the items that are not wanted. Returns the new number of each old one, or kUnused.
 template <typename Item>
 std::vector<std::uint32_t> keep_wanted(std::vector<Item>& items, const std::vector<bool>& wanted) {
   std::vector<std::uint32_t> new_numbers(items.size(), kUnused);

@@ -1,17 +1,19 @@
-// Takes out of a scene what no ray can hit: broken triangles, and meshes and mesh lights that
-// nothing places. In and out: a scene; its warnings say how much went.
+// Removes from a scene what no ray can hit: broken triangles and segments, and meshes and mesh
+// lights without an instance. In and out: a scene; its warnings say what was removed.
 #pragma once
 
 #include "dapple/scene.hpp"
 
 namespace dapple {
 
-/// Drops triangles with non-finite vertices, triangles without an area, and the vertices that
-/// only they used, from every mesh that is placed. Adds a warning for each kind, with the count.
+/// Drops triangles with non-finite vertices or without an area, and segments of strands with
+/// non-finite ends, without a length or without a radius, from every mesh that has an instance.
+/// In a mesh that loses one, also drops the vertices that nothing uses. Adds a warning for each
+/// kind, with the count.
 void drop_unhittable_triangles(Scene& scene);
 
-/// Drops placements of empty meshes, meshes that nothing places, and mesh lights without a
-/// placement (with a warning); renumbers the rest.
+/// Drops instances of empty meshes, meshes without an instance, and mesh lights without an
+/// instance (with a warning). Renumbers the remaining meshes and lights.
 void drop_unused(Scene& scene);
 
 }  // namespace dapple

@@ -54,6 +54,13 @@ struct Material {
   bool double_sided = false;  ///< matters to emission only: every surface occludes from both sides
 };
 
+/// Consecutive vertices of a Mesh that were read from one primitive of a glTF file.
+struct VertexSource {
+  std::uint32_t mesh = 0, primitive = 0;  ///< indices in the file
+  std::uint32_t first = 0, count = 0;     ///< vertices of the Mesh
+  std::vector<std::uint32_t> used;        ///< their elements in accessors; empty: 0 to count - 1
+};
+
 /// Indexed primitives in object space, all triangles or all segments of strands; may mix materials.
 struct Mesh {
   std::string name;
@@ -62,7 +69,8 @@ struct Mesh {
   std::vector<std::uint32_t> materials;  ///< one per primitive, index into Scene::materials
   std::vector<float> radii;              ///< of strands, per vertex, metres, > 0; empty: triangles
   std::vector<V2f> uvs;  ///< per vertex, for the alpha texture, transforms applied; or empty
-  std::vector<float> vertex_alpha;  ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
+  std::vector<float> vertex_alpha;    ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
+  std::vector<VertexSource> sources;  ///< of a glTF file's mesh; empty once meshes are merged
 
   [[nodiscard]] bool has_strands() const { return !radii.empty(); }
   [[nodiscard]] std::size_t primitive_count() const { return materials.size(); }
@@ -73,6 +81,7 @@ struct Instance {
   std::uint32_t mesh = 0;
   M44f to_world;   ///< affine and invertible
   int light = -1;  ///< the mesh light this placement emits for, else -1
+  int node = -1;   ///< the glTF node that places it; -1: none
 };
 
 enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome };

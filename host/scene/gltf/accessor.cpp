@@ -1,4 +1,4 @@
-// Reading accessors: see accessor.hpp.
+// Reads accessors: see accessor.hpp.
 #include "scene/gltf/accessor.hpp"
 
 #include <algorithm>
@@ -17,7 +17,8 @@ T load(const std::uint8_t* bytes) {
   return value;
 }
 
-/// glTF 2.0, section 3.11: c / 255, max(c / 127, -1) and so on.
+/// Normalizes as in glTF 2.0, section 3.11: c / 255 for uint8, max(c / 127, -1) for int8, and so
+/// on.
 template <typename T>
 float load_number(const std::uint8_t* bytes, bool normalize) {
   const auto value = static_cast<float>(load<T>(bytes));

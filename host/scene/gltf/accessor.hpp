@@ -1,5 +1,5 @@
-// Typed reading of accessors: interleaved, sparse, normalized, of any component type. In
-// comes a validated document, out come numbers.
+// Reads accessors: interleaved, sparse, normalized, of any component type. In: a validated
+// document; out: numbers.
 #pragma once
 
 #include <Imath/ImathMatrix.h>
@@ -24,50 +24,51 @@ enum class Component : int {
   float32 = 5126,
 };
 
-/// Bytes of one component; 0 for a code that glTF does not have.
+/// Returns the bytes of one component; 0 for a code that glTF does not have.
 std::uint64_t component_bytes(int component_type);
 
-/// Components of tinygltf's type code: 1 for SCALAR to 16 for MAT4.
+/// Returns the number of components of a tinygltf type code: 1 for SCALAR to 16 for MAT4.
 std::uint64_t component_count(int type);
 
 /// "VEC3 of uint16", for messages.
 std::string type_name(const tinygltf::Accessor& accessor);
 
-/// Throws Error input, beginning with `who`, unless the accessor is one of these TINYGLTF
-/// types and components.
+/// Throws Error input, whose message begins with the file's name and `who`, unless the accessor
+/// has one of these TINYGLTF types and one of these components.
 void require_type(const Document& document, int accessor, const std::string& who,
                   std::initializer_list<int> types, std::initializer_list<Component> components);
 
-/// How many values a sparse accessor replaces, each of which a reader looks at; 0 for others and
-/// where `accessor` is -1.
+/// Returns how many values a sparse accessor replaces; a reader visits each of them. Returns 0 for
+/// other accessors and when `accessor` is -1.
 std::uint64_t sparse_count(const Document& document, int accessor);
 
 class AccessorReader {
  public:
-  /// Throws Error input when sparse indices do not increase or exceed the count.
+  /// Throws Error input when sparse indices do not increase or are not below the count.
   AccessorReader(const Document& document, int index);
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] std::uint64_t components() const { return components_; }
 
-  /// A component as a float. Integers become [0,1] or [-1,1] when the accessor is
+  /// Returns a component as a float. Integers are mapped to [0,1] or [-1,1] when the accessor is
   /// normalized, and keep their value when it is not.
   [[nodiscard]] float number(std::uint64_t i, std::uint64_t component) const {
     return number_of(element(i), component, normalized_);
   }
-  /// As `number`, but integers are normalized whatever the accessor says.
+  /// Like number(), but integers are always normalized.
   [[nodiscard]] float normalized(std::uint64_t i, std::uint64_t component) const {
     return number_of(element(i), component, true);
   }
-  /// Row by row for p' = p M, as glTF stores the columns of its transpose.
+  /// Returns a matrix for row vectors, p' = p M. glTF stores the columns of its transpose, which
+  /// are the rows of M.
   [[nodiscard]] Imath::M44d matrix(std::uint64_t i) const;
   [[nodiscard]] Imath::V2f vec2(std::uint64_t i) const;
   [[nodiscard]] Imath::V3f vec3(std::uint64_t i) const;
-  /// An unsigned integer, for accessors of indices.
+  /// Returns an unsigned integer, for accessors of indices.
   [[nodiscard]] std::uint32_t index(std::uint64_t i) const;
 
  private:
-  /// Null for an element of zeros (an accessor without a bufferView).
+  /// Returns null for an element of zeros (an accessor without a bufferView).
   [[nodiscard]] const std::uint8_t* element(std::uint64_t i) const;
   [[nodiscard]] float number_of(const std::uint8_t* element, std::uint64_t component,
                                 bool normalize) const;

@@ -1,4 +1,4 @@
-// Sampling keyframes: see animation.hpp.
+// Samples keyframes: see animation.hpp.
 #include "scene/gltf/animation.hpp"
 
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace {
 using Imath::V3d;
 using Imath::V4d;
 
-/// Samplers may share accessors, and weights be of many targets: what a small file can ask for.
+/// The limit of numbers that animations read. Samplers may share accessors and meshes may have many
+/// targets, so a small file could otherwise cause any amount of work.
 std::uint64_t max_numbers(const Document& document) {
   return (std::uint64_t{1} << 24) + document.bytes;
 }
@@ -35,12 +36,12 @@ std::string label_of(const Document& document, std::size_t clip, const Channel& 
 double last_time(const Document& document, int accessor) {
   const auto& given = accessor_of(document, accessor);
   if (!given.maxValues.empty()) return given.maxValues[0];
-  if (given.sparse.isSparse) return 0;  // not worth reading them all
+  if (given.sparse.isSparse) return 0;  // unknown: the values are not read for this
   const AccessorReader times(document, accessor);
   return double{times.number(times.count() - 1, 0)};
 }
 
-/// One channel's keyframes, `width` numbers each.
+/// Samples the keyframes of one channel at one time. `width` is as in Player::width_of().
 class ChannelSampler {
  public:
   ChannelSampler(const Document& document, const Channel& channel, const std::string& who,
@@ -70,7 +71,7 @@ class ChannelSampler {
   }
 
  private:
-  /// Number `i` of the value at a keyframe.
+  /// Returns component `i` of the value at a keyframe.
   [[nodiscard]] double value(std::size_t key, std::size_t i) const {
     return channel_.interpolation == Interpolation::cubic ? number(3 * key + 1, i) : number(key, i);
   }
@@ -79,7 +80,7 @@ class ChannelSampler {
     return place_.fraction > 0 && channel_.interpolation != Interpolation::step;
   }
 
-  /// Number `i`, at the time.
+  /// Returns component `i` of the value at the sampled time.
   [[nodiscard]] double sample(std::size_t i) const {
     const std::size_t key = place_.key;
     const double from = value(key, i);
@@ -111,7 +112,7 @@ class ChannelSampler {
   }
 
   [[nodiscard]] double number(std::size_t element, std::size_t i) const {
-    // Weights are scalars one after the other, all else is vectors.
+    // Weights are stored as consecutive scalars, other values as vectors.
     const double value = values_.components() == 1
                              ? double{values_.normalized(element * width_ + i, 0)}
                              : double{values_.normalized(element, i)};
@@ -149,7 +150,8 @@ V4d slerp(const V4d& from, V4d to, double fraction) {
     to = -to;
     cosine = -cosine;
   }
-  // Nearer than a hundredth of a degree a straight line is as good, and divides by no zero.
+  // For angles below about a hundredth of a degree, linear interpolation is accurate enough and
+  // avoids a division by zero.
   if (cosine > 1 - 1e-8) return (from + (to - from) * fraction).normalized();
   const double angle = std::acos(cosine);
   return (from * std::sin((1 - fraction) * angle) + to * std::sin(fraction * angle)) /
@@ -237,7 +239,7 @@ Pose Player::at(double seconds) const {
   for (const std::size_t clip : clips_) {
     for (const Channel& channel : document_.motion.clips[clip].channels) {
       const std::uint64_t width = width_of(channel);
-      if (width == 0) continue;  // weights of a mesh that has no targets
+      if (width == 0) continue;  // weights of a mesh without targets
       const std::string who = label_of(document_, clip, channel);
       count(numbers, width + sparse_count(document_, channel.values), who);
       const ChannelSampler sampler(document_, channel, who, width, times_.at(channel.times),

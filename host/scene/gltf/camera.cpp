@@ -1,4 +1,4 @@
-// Reading cameras: see camera.hpp.
+// Reads cameras: see camera.hpp.
 #include "scene/gltf/camera.hpp"
 
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 using Imath::M44d;
 using Imath::V3d;
 
-/// The matrix without scale, shear and mirroring, keeping where the camera looks (-Z) and
-/// then which way is up; nothing where a scale of zero has lost them.
+/// Returns the matrix without scale, shear and mirroring. It keeps the view direction (-Z) and, as
+/// far as possible, the up direction. Returns none when a scale is zero.
 std::optional<M44f> rigid(const M44d& m) {
   const V3d back = V3d(m[2][0], m[2][1], m[2][2]).normalized();
   const V3d up_given(m[1][0], m[1][1], m[1][2]);
@@ -26,7 +26,7 @@ std::optional<M44f> rigid(const M44d& m) {
 }
 
 void check_clip_planes(double near, double far, const std::string& who, const std::string& file) {
-  const bool unlimited = far == 0;  // tinygltf's word for an absent zfar
+  const bool unlimited = far == 0;  // tinygltf's value for an absent zfar
   if (unlimited || far > near) return;
   fail(file, "{} has zfar {:g} and znear {:g}; zfar must be larger", who, far, near);
 }
@@ -54,7 +54,8 @@ Camera orthographic(const tinygltf::OrthographicCamera& given, const std::string
   return camera;
 }
 
-/// All of the document's, placed or not: a damaged file is refused wherever it is damaged.
+/// Reads all cameras of the document, also those without a placed node, so that any damage in the
+/// file is found.
 std::vector<Camera> read_lenses(const Document& document) {
   std::vector<Camera> lenses;
   for (std::size_t i = 0; i < document.model.cameras.size(); ++i) {

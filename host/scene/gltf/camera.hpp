@@ -1,4 +1,4 @@
-// Cameras of placed nodes.
+// Reads the cameras of placed nodes. In: a document and its placed nodes; out: Scene::cameras.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace dapple::gltf {
 
-/// Appends to Scene::cameras, with rigid matrices. Throws Error input for angles and
-/// sizes that no camera can have.
+/// Appends cameras with rigid matrices to Scene::cameras. A camera whose node has a scale of zero
+/// is left out, with a warning. Throws Error input for invalid angles, sizes and clip planes.
 void add_cameras(const Document& document, const std::vector<PlacedNode>& placed, Scene& scene);
 
 }  // namespace dapple::gltf

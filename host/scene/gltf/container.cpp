@@ -1,4 +1,4 @@
-// GLB's header and chunks: see container.hpp.
+// Reads the header and the chunks of GLB (glTF 2.0 Specification, section 4): see container.hpp.
 #include "scene/gltf/container.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Chunk {
   std::span<const std::uint8_t> data;
 };
 
-Chunk batch_at(std::span<const std::uint8_t> glb, std::size_t offset, const std::string& file) {
+Chunk chunk_at(std::span<const std::uint8_t> glb, std::size_t offset, const std::string& file) {
   const std::size_t left = glb.size() - offset;
   if (left < kChunkHeaderBytes) {
     fail(file, "GLB chunk header at byte {} is cut off", grouped(offset));
@@ -60,7 +60,7 @@ std::span<const std::uint8_t> checked_glb(std::span<const std::uint8_t> bytes,
     fail(file, "GLB header says {} bytes, but the file has {}", grouped(length),
          grouped(bytes.size()));
   }
-  // Some file systems and archives pad; anything else means that a length is wrong.
+  // Some file systems and archives append zeros; other bytes mean that a length is wrong.
   const auto after = bytes.subspan(length);
   if (std::any_of(after.begin(), after.end(), [](std::uint8_t byte) { return byte != 0; })) {
     fail(file, "GLB header says {} bytes, but the file goes on for {} more", grouped(length),
@@ -75,14 +75,14 @@ Container split_container(std::span<const std::uint8_t> bytes, const std::string
   if (bytes.empty()) fail(file, "is empty");
   if (bytes.size() < 4 || u32_at(bytes, 0) != kMagic) return {as_text(bytes), {}};
   const auto glb = checked_glb(bytes, file);
-  const Chunk json = batch_at(glb, kHeaderBytes, file);
+  const Chunk json = chunk_at(glb, kHeaderBytes, file);
   if (json.type != kJsonChunk) fail(file, "GLB does not begin with a JSON chunk");
   Container container{as_text(json.data), {}};
-  // Padding is spaces by the book and NULs from some writers.
+  // The specification pads with spaces, some writers with NULs.
   while (container.json.ends_with('\0')) container.json.remove_suffix(1);
   std::size_t next = kHeaderBytes + kChunkHeaderBytes + json.data.size();
   for (int number = 1; next < glb.size(); ++number) {
-    const Chunk chunk = batch_at(glb, next, file);
+    const Chunk chunk = chunk_at(glb, next, file);
     if (chunk.type == kJsonChunk)
       fail(file, "GLB has a second JSON chunk at byte {}", grouped(next));
     if (chunk.type == kBinChunk && number > 1) {

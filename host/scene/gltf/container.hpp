@@ -1,5 +1,5 @@
-// A scene file's two parts: the JSON text, and for GLB the binary chunk. In come the
-// file's bytes, out go views of them.
+// Splits a scene file into the JSON text and, for GLB, the binary chunk. In: the file's bytes; out:
+// views of them.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ struct Container {
   std::optional<std::span<const std::uint8_t>> binary;  ///< GLB's BIN chunk
 };
 
-/// Splits .gltf or .glb bytes, told apart by their first four. Throws Error input when
-/// GLB's lengths do not add up
-/// or its chunks are not JSON, then BIN, then what nobody knows.
+/// Splits the bytes of a .gltf or .glb file; the first four bytes tell which one it is. Throws
+/// Error input when GLB's lengths are inconsistent, when its first chunk is not JSON, or when a
+/// JSON or BIN chunk comes later than glTF allows.
 Container split_container(std::span<const std::uint8_t> bytes, const std::string& file);
 
 }  // namespace dapple::gltf

@@ -1,4 +1,4 @@
-// Counting equal placements by hash: see crowding.hpp.
+// Counts instances with equal mesh and matrix by their hash: see crowding.hpp.
 #include "scene/gltf/crowding.hpp"
 
 #include <bit>
@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint32_t kMaxInOnePlace = 1000;
 
-/// FNV-1a over 32-bit words. That two of some million placements differ and have the same hash
-/// is unlikely, and would have to happen a thousand times to matter.
+/// FNV-1a over 32-bit words. Among some million different instances, equal hashes are unlikely, and
+/// only a thousand of them would cause a wrong error.
 std::uint64_t hash(const Instance& instance) {
   std::uint64_t value = 0xcbf29ce484222325u;
   const auto mix = [&](std::uint32_t word) { value = (value ^ word) * 0x100000001b3u; };

@@ -1,4 +1,4 @@
-// Morphing and skinning: see deformation.hpp.
+// Morphing and skinning of vertices: see deformation.hpp.
 #include "scene/gltf/deformation.hpp"
 
 #include <algorithm>
@@ -17,7 +17,8 @@ int find(const std::map<std::string, int>& attributes, const std::string& name) 
   return found == attributes.end() ? -1 : found->second;
 }
 
-/// How many sets of four joints a vertex has: JOINTS_0 and WEIGHTS_0, then 1...
+/// Returns how many sets of four joints a vertex has: JOINTS_0 and WEIGHTS_0, JOINTS_1 and
+/// WEIGHTS_1, and so on.
 int influence_sets(const tinygltf::Primitive& primitive) {
   const auto& attributes = primitive.attributes;
   int sets = 0;
@@ -27,7 +28,7 @@ int influence_sets(const tinygltf::Primitive& primitive) {
   return sets;
 }
 
-/// The targets that change a primitive: their weight and the accessor of their positions.
+/// Returns the targets that change a primitive: their weight and the accessor of their positions.
 std::vector<std::pair<double, int>> active_targets(const tinygltf::Primitive& primitive,
                                                    const std::vector<double>& weights) {
   std::vector<std::pair<double, int>> active;
@@ -38,7 +39,7 @@ std::vector<std::pair<double, int>> active_targets(const tinygltf::Primitive& pr
   return active;
 }
 
-/// p M for a matrix that is affine.
+/// Returns p M for an affine matrix.
 V3d moved(const V3d& p, const M44d& m) {
   V3d result;
   for (int k = 0; k < 3; ++k) result[k] = p.x * m[0][k] + p.y * m[1][k] + p.z * m[2][k] + m[3][k];
@@ -98,15 +99,15 @@ V3f VertexDeformer::position(V3f base, std::uint64_t i) const {
   return V3f(influences_.empty() ? position : carried(position, i));
 }
 
-/// Weights are taken relative to their sum, which exporters round; a vertex without any goes with
-/// its first joint.
+/// Divides by the sum of the weights, because exporters round them. A vertex without weights moves
+/// with its first joint.
 V3d VertexDeformer::carried(const V3d& position, std::uint64_t i) const {
   V3d sum(0.0);
   double total = 0;
   for (const Influences& set : influences_) {
     for (std::uint64_t k = 0; k < 4; ++k) {
       const double weight = double{set.weights.normalized(i, k)};
-      if (weight == 0) continue;  // the joint of one that is unused may be anything
+      if (weight == 0) continue;  // the joint of an unused weight may be any number
       sum += moved(position, joint(set, i, k)) * weight;
       total += weight;
     }
@@ -131,7 +132,7 @@ std::vector<M44d> joint_matrices(const Document& document, int skin,
   const AccessorReader inverse(document, given.inverse_matrices);
   for (std::size_t j = 0; j < matrices.size(); ++j) {
     M44d bind = inverse.matrix(j);
-    // Their last column is 0, 0, 0, 1; what exporters round there is no part of it.
+    // Sets the last column to exactly 0, 0, 0, 1: exporters round it.
     for (int row = 0; row < 4; ++row) bind[row][3] = row == 3 ? 1 : 0;
     matrices[j] = bind * matrices[j];
   }

@@ -1,5 +1,5 @@
-// Vertices that do not stay where they are written: morph targets add to them, then joints carry
-// them. In comes what a node's mesh is deformed by; out comes a position a vertex.
+// Deforms vertices: morph targets are added to their positions, then joints move them (skinning).
+// In: the weights and joint matrices of a node's mesh; out: the position of each vertex.
 #pragma once
 
 #include <Imath/ImathMatrix.h>
@@ -15,32 +15,33 @@
 namespace dapple::gltf {
 
 struct Deformation {
-  std::vector<double> weights;  ///< of morph targets; those beyond its end are 0
-  /// From the mesh, as it was bound, to the world, a matrix a joint; null: not skinned.
+  std::vector<double> weights;  ///< of morph targets; missing ones are 0
+  /// One matrix per joint, from the mesh in its bind pose to the world; null: not skinned.
   const std::vector<Imath::M44d>* joints = nullptr;
 };
 
-/// Whether a primitive says which joints carry its vertices.
+/// Whether a primitive has joints and weights for its vertices.
 bool has_joints(const tinygltf::Primitive& primitive);
 
-/// What deforming `vertices` of a primitive takes, in numbers read; needs no byte of geometry.
+/// Returns how many numbers the deformation of `vertices` vertices of a primitive reads. Reads no
+/// geometry itself.
 std::uint64_t deformation_cost(const Document& document, const tinygltf::Primitive& primitive,
                                const Deformation& deformation, std::uint64_t vertices);
 
 class VertexDeformer {
  public:
-  /// Refers to `deformation` and `who`. Throws Error input, beginning with `who`, for accessors of
-  /// a type that glTF does not give them.
+  /// Keeps references to `deformation` and `who`. Throws Error input, naming `who`, for accessors
+  /// of a type that glTF does not allow there.
   VertexDeformer(const Document& document, const tinygltf::Primitive& primitive,
                  const Deformation& deformation, const std::string& who);
 
-  /// Where vertex `i` is that is written to be at `base`. Throws Error input for a joint that the
-  /// skin does not have.
+  /// Returns the deformed position of vertex `i`, whose position in the file is `base`. Throws
+  /// Error input for a joint that the skin does not have.
   [[nodiscard]] Imath::V3f position(Imath::V3f base, std::uint64_t i) const;
 
  private:
   struct Influences {
-    AccessorReader joints, weights;  ///< four a vertex
+    AccessorReader joints, weights;  ///< four per vertex
   };
 
   void read_targets(const Document& document, const tinygltf::Primitive& primitive);
@@ -56,7 +57,8 @@ class VertexDeformer {
   std::vector<Influences> influences_;
 };
 
-/// The matrices of a skin's joints, from where their nodes stand in the world.
+/// Returns the matrices of a skin's joints, from the mesh in its bind pose to the world. `world`
+/// has the world matrix of each node.
 std::vector<Imath::M44d> joint_matrices(const Document& document, int skin,
                                         const std::vector<Imath::M44d>& world);
 

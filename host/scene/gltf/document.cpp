@@ -1,4 +1,4 @@
-// From a path to a Document: container, JSON, schema, buffers, tinygltf, validation.
+// Makes a Document from a path: container, JSON, schema, buffers, tinygltf, validation.
 #include "scene/gltf/document.hpp"
 
 #include <charconv>
@@ -19,10 +19,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What a scene's files may hold together: a few bytes of JSON can name any number of them.
+/// The limit of all files of a scene together: a few bytes of JSON can name many of them.
 constexpr std::uint64_t kMaxSceneBytes = kMaxFileBytes;
 
-/// "2.0" as {2, 0}; nothing where it is not of that form.
+/// Returns {2, 0} for "2.0"; none for text of another form.
 std::optional<std::pair<int, int>> parse_version(const std::string& text) {
   std::pair<int, int> version;
   const char* const end = text.data() + text.size();
@@ -44,7 +44,8 @@ void check_version(const Json& root, const std::string& file) {
   if (minimum != "2.0") fail(file, "needs glTF {}; only 2.0 can be read", excerpt(minimum));
 }
 
-/// Takes an array out of the document, so that tinygltf neither copies nor opens it.
+/// Removes an array from the document and returns it, so that tinygltf neither copies it nor opens
+/// its files.
 Json take(Json& root, const char* key) {
   const auto found = root.find(key);
   if (found == root.end()) return Json::array();
@@ -53,12 +54,12 @@ Json take(Json& root, const char* key) {
   return taken;
 }
 
-/// The bytes of buffers, each file read once.
+/// Reads the bytes of buffers; buffers with the same file share what was read of it.
 class BufferReader {
  public:
   explicit BufferReader(Document& document) : document_(document) {}
 
-  /// `length` bytes of the buffer's uri, or fewer where there are no more.
+  /// Returns the bytes of the buffer's uri: at least `length`, or fewer if there are no more.
   std::span<const std::uint8_t> read(const std::string& uri, std::uint64_t length,
                                      const std::string& what) {
     if (is_data_uri(uri)) {
@@ -84,8 +85,8 @@ class BufferReader {
     return document_.storage.back();
   }
 
-  /// glTF 2.0, section 3.6.1.1 allows two types; whatever calls itself something else is not
-  /// a buffer that lost its name.
+  /// glTF 2.0, section 3.6.1.1 allows two media types. Accepts every application type, and a
+  /// missing type.
   static void check_media_type(const std::string& uri, const std::string& what) {
     const std::string_view type = data_media_type(uri);
     if (type.empty() || type.starts_with("application/")) return;
@@ -127,8 +128,8 @@ void load_buffers(Document& document, const Json& buffers,
   }
 }
 
-/// Where images are. Every uri is resolved, needed or not: what leads out of the folder is
-/// refused whatever else is in the file.
+/// Lists where images are. Every uri is resolved, also of images that are not needed, so that a uri
+/// that leads out of the folder is always an error.
 void find_images(Document& document, const Json& images) {
   for (std::size_t i = 0; i < images.size(); ++i) {
     const Json& image = images[i];
@@ -142,13 +143,13 @@ void find_images(Document& document, const Json& images) {
                                image.value("uri", std::string()), image.value("bufferView", -1)});
     const std::string& uri = document.images.back().uri;
     if (!has_uri || is_data_uri(uri)) continue;
-    if (document.base.allow_outside && has_scheme(uri)) continue;  // refused by who needs it
+    if (document.base.allow_outside && has_scheme(uri)) continue;  // an error when it is needed
     document.files.push_back(resolve_uri(document.base, uri, what).string());
   }
 }
 
-/// Takes the primitives' `indices` out, in order: tinygltf refuses those whose accessor
-/// has no bufferView, which glTF allows (zeros, replaced by sparse values).
+/// Removes the `indices` of all primitives and returns them in order. tinygltf refuses indices
+/// whose accessor has no bufferView, which glTF allows (zeros that sparse values replace).
 std::vector<int> take_primitive_indices(Json& root) {
   std::vector<int> indices;
   const auto meshes = root.find("meshes");

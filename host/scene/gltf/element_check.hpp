@@ -1,5 +1,6 @@
-// The two questions that validation asks of every element, in 64 bits: does what it names
-// exist, and is there room for what it reads?
+// The two checks that validation makes for every element, in 64-bit arithmetic: whether the element
+// that an index names exists, and whether a byte range lies within its container. In: a document;
+// out: an Error when a check fails.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +12,15 @@
 
 namespace dapple::gltf {
 
-/// Every function throws Error input, beginning with `who`, when the answer is no.
+/// Every function throws Error input, naming `who`, when the check fails.
 class ElementCheck {
  public:
   explicit ElementCheck(const std::string& file) : file_(file) {}
 
-  /// `index` is -1 where the property is absent.
+  /// Checks that `index` is below `count`; -1 means that the property is absent.
   void index(const std::string& who, const char* kind, int index, std::size_t count) const;
 
+  /// Checks that `needs` is at most `has`, both in bytes.
   void range(const std::string& who, std::uint64_t needs, std::uint64_t has,
              const std::string& container) const;
 
@@ -28,16 +30,17 @@ class ElementCheck {
   const std::string& file_;
 };
 
-/// Meshes, their primitives and morph targets, once accessors are known to be sound.
+/// Validates meshes, their primitives and morph targets. Accessors must have been validated before.
 void validate_meshes(const Document& document, const ElementCheck& check);
 
-/// Skins and animations, once accessors and what nodes name are known to be sound.
+/// Validates skins and animations. Accessors, meshes and nodes must have been validated before.
 void validate_motion(const Document& document);
 
-/// What nodes name.
+/// Validates the indices that nodes have.
 void validate_nodes(const Document& document, const ElementCheck& check);
 
-/// The transforms of a document's nodes, before tinygltf drops one of two. Throws Error input.
+/// Checks the transforms of a document's nodes in the JSON, because tinygltf drops one of a matrix
+/// and another transform when a node has both. Throws Error input.
 void check_transforms(const nlohmann::json& nodes, const std::string& file);
 
 }  // namespace dapple::gltf

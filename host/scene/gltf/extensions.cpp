@@ -1,4 +1,5 @@
-// Which glTF extensions a file may require.
+// Checks which glTF extensions a file requires. In: their names; out: an error for one that dapple
+// can neither read nor ignore.
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -9,16 +10,16 @@
 namespace dapple::gltf {
 namespace {
 
-/// Read, as far as they matter to occlusion and light.
+/// Extensions that dapple reads, as far as they affect occlusion and light.
 constexpr std::array<std::string_view, 6> kRead = {
     "EXT_mesh_gpu_instancing",         "KHR_lights_punctual",
     "KHR_materials_emissive_strength", "KHR_materials_pbrSpecularGlossiness",
     "KHR_mesh_quantization",           "KHR_texture_transform",
 };
 
-/// Ignored: these change colour, gloss or metadata, and not opacity. Transmission and
-/// volume are among them: glass still occludes as its alpha says, because light that a
-/// surface refracts does not go on along the shadow ray.
+/// Extensions that dapple ignores: they change colour, gloss or metadata, but not opacity.
+/// Transmission and volume are among them: glass occludes according to its alpha, because refracted
+/// light does not continue in the direction of the shadow ray.
 constexpr std::array<std::string_view, 15> kIgnored = {
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",

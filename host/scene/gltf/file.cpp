@@ -1,4 +1,4 @@
-// Reading regular files whole: see file.hpp.
+// Reads regular files with POSIX calls: see file.hpp.
 #include "scene/gltf/file.hpp"
 
 #include <fcntl.h>
@@ -38,9 +38,9 @@ void check_kind(const struct stat& status, const std::string& what) {
   fail(what, "cannot be read ({})", std::strerror(errno));
 }
 
-/// Looked at before it is opened, because opening a device may do something, and again after,
-/// because another program may have put something else there; O_NONBLOCK, because that may be
-/// a FIFO.
+/// The file's kind is checked before opening, because opening a device may have an effect.
+/// regular_size() checks it again after opening, because another program may have replaced the file
+/// in between, even by a FIFO; O_NONBLOCK prevents waiting for that.
 int open_regular(const std::filesystem::path& path, const std::string& what) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) fail_with_errno(what);

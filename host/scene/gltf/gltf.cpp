@@ -1,5 +1,5 @@
-// From a path to a Scene, step by step, at rest or at a time. Each step is a file of this folder;
-// only this folder knows tinygltf.
+// Makes a Scene from a glTF file, at rest or at a time. In: a path, options and a time; out: a
+// Scene. Each step is a file of this folder; only this folder uses tinygltf.
 #include <new>
 #include <utility>
 
@@ -34,7 +34,7 @@ MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, boo
   timeless_.source = path;
   timeless_.files = document_.files;
   timeless_.animations = list_animations(document_);
-  // Which materials and images are needed does not depend on where nodes stand.
+  // The needed materials and images do not depend on the pose.
   materials_ =
       read_materials(document_, place_nodes(document_), options.line_radius > 0, timeless_);
 }

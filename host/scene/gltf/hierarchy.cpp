@@ -1,4 +1,4 @@
-// Flattening the node tree: see hierarchy.hpp.
+// Flattens the node tree and multiplies its matrices: see hierarchy.hpp.
 #include "scene/gltf/hierarchy.hpp"
 
 #include <Imath/ImathQuat.h>
@@ -18,7 +18,7 @@ using Imath::V4d;
 
 constexpr int kMaxDepth = 1024;
 
-/// How far a matrix's last column may be from 0, 0, 0, 1: exporters round.
+/// The allowed difference between a matrix's last column and 0, 0, 0, 1: exporters round.
 constexpr double kAffineTolerance = 1e-4;
 
 std::string node_label(const Document& document, int node) {
@@ -26,7 +26,7 @@ std::string node_label(const Document& document, int node) {
                  document.model.nodes[static_cast<std::size_t>(node)].name);
 }
 
-/// Each node's parent, -1 for roots.
+/// Returns each node's parent, -1 for roots.
 std::vector<int> find_parents(const Document& document) {
   const auto& nodes = document.model.nodes;
   std::vector<int> parents(nodes.size(), -1);
@@ -43,7 +43,7 @@ std::vector<int> find_parents(const Document& document) {
   return parents;
 }
 
-/// With at most one parent each, nodes that no root leads to are on a cycle or under one.
+/// Each node has at most one parent, so a node that no root leads to is on a cycle or below one.
 void check_tree(const Document& document, const std::vector<int>& parents) {
   const auto& nodes = document.model.nodes;
   std::vector<int> depth(nodes.size(), 0);
@@ -72,7 +72,7 @@ void check_tree(const Document& document, const std::vector<int>& parents) {
   }
 }
 
-/// The nodes that the shown scene begins with.
+/// Returns the root nodes of the shown scene.
 std::vector<int> scene_roots(const Document& document, const std::vector<int>& parents) {
   const auto& model = document.model;
   std::vector<int> roots;
@@ -97,7 +97,8 @@ std::vector<int> scene_roots(const Document& document, const std::vector<int>& p
   return roots;
 }
 
-/// glTF stores columns of p' = M p; read in the same order they are rows of p' = p M.
+/// glTF stores the columns of M in p' = M p. Read in the same order, they are the rows of our
+/// matrix in p' = p M.
 M44d given_matrix(const Document& document, int node, const std::vector<double>& m) {
   const bool affine = std::abs(m[3]) <= kAffineTolerance && std::abs(m[7]) <= kAffineTolerance &&
                       std::abs(m[11]) <= kAffineTolerance &&
@@ -139,7 +140,7 @@ void check_finite(const Document& document, const PlacedNode& placed) {
   }
 }
 
-/// The nodes at and below `roots`, depth first.
+/// Returns the nodes at and below `roots`, depth first.
 std::vector<PlacedNode> place_below(const Document& document, const std::vector<int>& roots,
                                     const Pose& pose) {
   std::vector<PlacedNode> open;

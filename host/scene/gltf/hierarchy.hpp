@@ -1,4 +1,5 @@
-// The node tree of the scene to be shown, flattened: every node with its world matrix.
+// Flattens the node tree of the scene to be shown. In: a document and a pose; out: a list of nodes
+// with their world matrices.
 #pragma once
 
 #include <Imath/ImathMatrix.h>
@@ -15,15 +16,16 @@ struct PlacedNode {
   Imath::M44d to_world;  ///< row vectors: p_world = p * to_world
 };
 
-/// The nodes of the default scene (or of the first; or all, where there is no scene) in
-/// depth-first file order. Throws Error input for cycles, nodes with two parents, trees
-/// deeper than 1,024 and matrices that are not affine.
+/// Returns the nodes of the default scene, or of the first scene, or all nodes when the document
+/// has no scene, depth first in the file's order. Throws Error input for cycles, nodes with two
+/// parents, trees deeper than 1,024, and matrices that are not affine or not finite.
 std::vector<PlacedNode> place_nodes(const Document& document, const Pose& pose = {});
 
-/// The world matrix of every node, in whatever scene it is; as place_nodes() otherwise.
+/// Returns the world matrix of every node, also of nodes outside of the shown scene. Throws like
+/// place_nodes(), but does not check for cycles.
 std::vector<Imath::M44d> world_matrices(const Document& document, const Pose& pose = {});
 
-/// scale, then rotate by the unit quaternion x, y, z, w, then translate.
+/// Returns the matrix that scales, then rotates by the unit quaternion x, y, z, w, then translates.
 Imath::M44d compose(const Imath::V3d& translation, const Imath::V4d& rotation,
                     const Imath::V3d& scale);
 

@@ -1,4 +1,4 @@
-// Placing meshes: see instance.hpp.
+// Makes instances and mesh lights: see instance.hpp.
 #include "scene/gltf/instance.hpp"
 
 #include <algorithm>
@@ -17,14 +17,14 @@ using Imath::M44d;
 using Imath::V3d;
 using Imath::V4d;
 
-/// Nodes may share accessors of instances: what a file can ask for is bounded by its size,
-/// above a number that is built in seconds.
+/// The limit of instances. Nodes may share accessors of instances, so a small file could otherwise
+/// make any number; above 2^22 instances the limit grows with the file's size.
 std::uint64_t max_instances(const Document& document) {
   constexpr std::uint64_t kMax = std::uint64_t{1} << 25;
   return std::min(kMax, (std::uint64_t{1} << 22) + document.bytes);
 }
 
-/// EXT_mesh_gpu_instancing's accessors, each of which may be absent.
+/// The accessors of EXT_mesh_gpu_instancing; each of them may be absent.
 struct Placements {
   std::optional<AccessorReader> translation;
   std::optional<AccessorReader> rotation;
@@ -83,7 +83,8 @@ M44d placement_matrix(const Placements& placements, std::uint64_t i) {
   return compose(translation, rotation, scale);
 }
 
-/// The world matrices of all placements that one node makes of its mesh.
+/// Returns the world matrices of all instances that one node makes of its mesh. `so_far` is the
+/// number of instances before them.
 std::vector<M44d> node_placements(const Document& document, const PlacedNode& placed,
                                   std::uint64_t so_far) {
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
@@ -118,9 +119,10 @@ int add_mesh_light(const Material& material, const std::string& node_name, Scene
 }
 
 void add_placement(const std::vector<MeshPart>& parts, const M44d& to_world,
-                   const std::string& node_name, Scene& scene) {
+                   int node, const std::string& node_name, Scene& scene) {
   for (const MeshPart& part : parts) {
     Instance instance;
+    instance.node = node;
     instance.mesh = part.mesh;
     instance.to_world = M44f(to_world);
     if (part.emitter >= 0) {
@@ -131,7 +133,7 @@ void add_placement(const std::vector<MeshPart>& parts, const M44d& to_world,
   }
 }
 
-/// One warning a feature, with how often it was met.
+/// Adds one warning for a feature, with the number of its occurrences.
 void warn(const std::string& file, std::uint64_t count, const char* what, Scene& scene) {
   if (count == 0) return;
   scene.warnings.push_back(
@@ -154,12 +156,12 @@ void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint
        scene);
 }
 
-/// The matrices of skins' joints at a pose, worked out when they are first asked for.
+/// The joint matrices of skins at a pose, computed at their first use.
 class Skeletons {
  public:
   Skeletons(const Document& document, const Pose& pose) : document_(document), pose_(pose) {}
 
-  /// Null for the skin -1.
+  /// Returns null for the skin -1.
   const std::vector<M44d>* joints(int skin) {
     if (skin < 0) return nullptr;
     if (world_.empty()) world_ = world_matrices(document_, pose_);
@@ -175,7 +177,7 @@ class Skeletons {
   std::map<int, std::vector<M44d>> joints_;
 };
 
-/// The accessor of a skin's inverse matrices, -1 for none.
+/// Returns the accessor of a skin's inverse bind matrices, -1 for none.
 int inverse_of(const Document& document, const MeshUse& use) {
   return document.motion.skins[static_cast<std::size_t>(use.skin)].inverse_matrices;
 }
@@ -201,10 +203,10 @@ void add_instances(const Document& document, const std::vector<PlacedNode>& plac
       known = parts_of_use.emplace(use, std::move(parts)).first;
     }
     if (known->second.empty()) continue;
-    // A skinned mesh is placed by its joints; glTF has its node's matrix ignored.
+    // Joints place a skinned mesh; glTF says that its node's own matrix is ignored.
     const PlacedNode stands{at.node, use.skin >= 0 ? M44d() : at.to_world};
     for (const M44d& to_world : node_placements(document, stands, scene.instances.size())) {
-      add_placement(known->second, to_world, node.name, scene);
+      add_placement(known->second, to_world, at.node, node.name, scene);
     }
   }
   warn_of_totals(document.file, totals, unbound, scene);

@@ -1,5 +1,6 @@
-// Placements: nodes with meshes become instances, once or, with EXT_mesh_gpu_instancing,
-// many times; each placement of an emitting part becomes a mesh light.
+// Makes instances from nodes with meshes: one per node, or many with EXT_mesh_gpu_instancing. Each
+// instance of an emitting part becomes a mesh light. In: a document, its placed nodes and a pose;
+// out: Scene::meshes, instances, lights and warnings.
 #pragma once
 
 #include <vector>
@@ -11,9 +12,9 @@
 
 namespace dapple::gltf {
 
-/// Fills Scene::meshes (only those that a placed node shows), instances and mesh lights,
-/// at a pose, and warns of features left out. Throws Error input, also when there is nothing to
-/// show.
+/// Appends meshes (only those that a placed node uses), instances and mesh lights to the scene, and
+/// a warning for each kind of thing that is left out. Throws Error input, also when the scene has
+/// no instance.
 void add_instances(const Document& document, const std::vector<PlacedNode>& placed,
                    const MaterialSet& materials, const Pose& pose, const SceneOptions& options,
                    Scene& scene);

@@ -1,4 +1,4 @@
-// Counting, parsing and the refusal of double keys: see json_text.hpp.
+// Counts the values of a JSON text, finds double keys, and parses it: see json_text.hpp.
 #include "scene/gltf/json_text.hpp"
 
 #include <nlohmann/json.hpp>
@@ -11,12 +11,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Beyond this, buffers belong in files.
+/// A larger text probably has buffers in data: URIs, which should be separate files.
 constexpr std::size_t kMaxJsonBytes = std::size_t{256} << 20;
 constexpr std::size_t kMaxDepth = 256;
-/// Two characters may be an object, which takes 0.7 kB until it is in the scene: 3 GB in all.
+/// Two characters may be an object, which takes up to 0.7 kB until it is in the scene; the limit
+/// then means 3 GB in all.
 constexpr std::size_t kMaxContainers = std::size_t{1} << 22;
-/// Other values take 16 bytes or 32 while their array grows.
+/// Another value takes 16 bytes, and 32 while its array grows.
 constexpr std::size_t kMaxValues = std::size_t{1} << 25;
 
 struct Counts {

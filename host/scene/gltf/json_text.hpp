@@ -1,5 +1,6 @@
-// From JSON text to a tree. How deep it nests and how much it holds is counted before it is
-// parsed, since parsers recurse and their trees take many times the text.
+// Parses JSON text to a tree of values. Depth and number of values are limited before parsing,
+// because parsers recurse and a tree takes many times the memory of its text.
+// In: text; out: a nlohmann::json value.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,8 +9,8 @@
 
 namespace dapple::gltf {
 
-/// Throws Error input when the text is not JSON, has a key twice in one object, or is larger or
-/// deeper than any scene is.
+/// Throws Error input when the text is not JSON, has a key twice in one object, or exceeds the
+/// limits of size and depth.
 nlohmann::json parse_json(std::string_view text, const std::string& file);
 
 }  // namespace dapple::gltf

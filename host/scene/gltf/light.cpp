@@ -1,4 +1,4 @@
-// Reading punctual lights: see light.hpp.
+// Reads punctual lights: see light.hpp.
 #include "scene/gltf/light.hpp"
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 namespace dapple::gltf {
 namespace {
 
-/// Beyond it, products with areas and numbers of samples leave float's range.
+/// Above this limit, products with areas and numbers of samples exceed float's range.
 constexpr double kLargestIntensity = 1e20;
 
-/// intensity * color. Intensities are photometric in glTF (candela, lux); dapple takes
-/// them as radiometric, without a factor.
+/// Returns intensity * color. glTF's intensities are photometric (candela, lux); dapple uses the
+/// same numbers as radiometric ones (W/sr, W/m^2).
 V3f intensity_of(const tinygltf::Light& light) {
   V3f result;
   for (int channel = 0; channel < 3; ++channel) {
@@ -27,7 +27,7 @@ V3f intensity_of(const tinygltf::Light& light) {
 
 void make_sun(Light& light, V3f irradiance) {
   light.kind = LightKind::sun;
-  // A disk of angular radius a and radiance L, seen face on, gives L * pi * sin^2 a.
+  // The irradiance of a surface that faces a disk of radiance L is L * pi * sin^2(angular radius).
   const float sine = std::sin(light.angular_radius);
   light.radiance = irradiance / (std::numbers::pi_v<float> * sine * sine);
 }
@@ -51,7 +51,8 @@ void make_cone(Light& light, const tinygltf::SpotLight& spot) {
   light.cos_outer = static_cast<float>(std::max(std::cos(spot.outerConeAngle), 0.0));
 }
 
-/// Position and direction from the node; its scale changes neither radius nor intensity.
+/// Takes position and direction from the node; its scale changes neither radius nor intensity.
+/// Returns false when a scale of zero leaves no direction.
 bool place(Light& light, const Imath::M44d& to_world) {
   const Imath::V3d minus_z(-to_world[2][0], -to_world[2][1], -to_world[2][2]);
   if (minus_z.length() == 0) return false;

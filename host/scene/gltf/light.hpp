@@ -1,4 +1,5 @@
-// KHR_lights_punctual: lights without size, given one.
+// Reads KHR_lights_punctual and gives a size to these lights, which have none. In: a document and
+// its placed nodes; out: Scene::lights.
 #pragma once
 
 #include <vector>
@@ -9,9 +10,10 @@
 
 namespace dapple::gltf {
 
-/// Appends the punctual lights of placed nodes to Scene::lights. Directional ones become
-/// suns of the same irradiance; point and spot ones spheres of options.light_radius with
-/// the same intensity. Throws Error input.
+/// Appends the punctual lights of placed nodes to Scene::lights. A directional light becomes a sun
+/// of the same irradiance; a point or spot light becomes a sphere of radius options.light_radius
+/// (metres) with the same intensity. A light whose node has a scale of zero is left out, with a
+/// warning. Throws Error input.
 void add_punctual_lights(const Document& document, const std::vector<PlacedNode>& placed,
                          const SceneOptions& options, Scene& scene);
 

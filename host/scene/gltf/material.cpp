@@ -1,4 +1,4 @@
-// Reading materials: see material.hpp.
+// Reads materials: see material.hpp.
 #include "scene/gltf/material.hpp"
 
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace {
 
 using tinygltf::Value;
 
-/// A baseColorTexture or what takes its place, from the two shapes that tinygltf has for it.
+/// A baseColorTexture, or the diffuseTexture that replaces it; tinygltf has a different type for
+/// each of them.
 struct TextureUse {
   int texture = -1;
   int texcoord = 0;
@@ -55,7 +56,7 @@ TextureUse diffuse_texture(const Value* info) {
           find(find(info, "extensions"), "KHR_texture_transform")};
 }
 
-/// KHR_materials_pbrSpecularGlossiness, where it is, replaces pbrMetallicRoughness whole.
+/// KHR_materials_pbrSpecularGlossiness, if present, replaces all of pbrMetallicRoughness.
 BaseColor base_color(const tinygltf::Material& material) {
   BaseColor base;
   const Value* gloss = find(material.extensions, "KHR_materials_pbrSpecularGlossiness");
@@ -72,10 +73,9 @@ BaseColor base_color(const tinygltf::Material& material) {
   return base;
 }
 
-/// KHR_texture_transform: offset after rotation after scale. The rotation's sign is that
-/// of its text ("counter-clockwise", in a space whose v points down), of its own example
-/// and of every implementation; the GLSL it lists turns the other way
-/// (KhronosGroup/glTF issue 1563).
+/// Reads KHR_texture_transform: scale, then rotation, then offset. The sign of the rotation is that
+/// of the extension's text ("counter-clockwise", where v points down), of its example and of other
+/// implementations; its GLSL code rotates the other way (KhronosGroup/glTF issue 1563).
 AlphaLookup alpha_lookup(const TextureUse& use) {
   AlphaLookup lookup;
   lookup.has_texture = use.texture >= 0;
@@ -110,8 +110,8 @@ V3f emission_factor(const tinygltf::Material& material) {
   return emission;
 }
 
-/// A mesh light has one radiance, so that an emissive texture counts by its mean. Without
-/// its image the light still shines, in the factor's colour.
+/// A mesh light has one radiance, so it uses the mean of an emissive texture. When the image cannot
+/// be read, the light keeps the factor's colour, with a warning.
 void apply_emissive_texture(TextureReader& textures, int texture, const std::string& who,
                             Material& material, Scene& scene) {
   if (texture < 0 || !emits(material)) return;
@@ -122,10 +122,10 @@ void apply_emissive_texture(TextureReader& textures, int texture, const std::str
   }
 }
 
-/// What placed primitives use.
+/// The materials that placed primitives use.
 struct ShownMaterials {
-  std::vector<bool> by_triangles;  ///< glTF's materials
-  bool none = false;               ///< some primitive that is shown has no material
+  std::vector<bool> by_triangles;  ///< per glTF material: whether triangles use it
+  bool none = false;               ///< a shown primitive has no material
 };
 
 ShownMaterials shown_materials(const Document& document, const std::vector<PlacedNode>& placed,

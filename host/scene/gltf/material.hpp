@@ -1,5 +1,5 @@
-// Materials: opacity, its texture and how that is looked up, emission. In come the
-// document and which materials are shown; out go Scene::materials and Scene::textures.
+// Reads materials: opacity, its texture and texture coordinates, emission. In: a document and its
+// placed nodes; out: Scene::materials and Scene::textures.
 #pragma once
 
 #include <vector>
@@ -10,20 +10,20 @@
 
 namespace dapple::gltf {
 
-/// How a material's alpha texture is looked up: the TEXCOORD set, and the affine map of
-/// KHR_texture_transform from its coordinates to the texture's.
+/// How a material's alpha texture is looked up: the number of the TEXCOORD attribute, and the
+/// affine map of KHR_texture_transform from its coordinates to those of the texture.
 struct AlphaLookup {
   int texcoord = 0;
   V2f du{1, 0};  ///< change of the result along u
   V2f dv{0, 1};  ///< change of the result along v
   V2f offset{0, 0};
-  bool has_texture = false;  ///< the material has one, read or not
+  bool has_texture = false;  ///< the material has a texture, whether it is read or not
 
   [[nodiscard]] V2f apply(V2f uv) const { return uv.x * du + uv.y * dv + offset; }
 };
 
-/// The glTF materials in their order, one AlphaLookup for each of Scene::materials, and
-/// the place of the material "default", which primitives without one get.
+/// One AlphaLookup for each of Scene::materials, which are the glTF materials in their order, and
+/// the index of the material "default", for primitives without a material.
 struct MaterialSet {
   std::vector<AlphaLookup> lookups;
   std::uint32_t default_material = 0;
@@ -33,9 +33,9 @@ struct MaterialSet {
   }
 };
 
-/// Reads images only for materials that a triangle primitive of `placed` uses; `with_lines` says
-/// whether lines are shown too. Throws Error input when an image whose alpha matters cannot be
-/// read.
+/// Appends to Scene::materials and Scene::textures. Reads images only for materials that a triangle
+/// primitive of `placed` uses; `with_lines` says whether lines are shown too. Throws Error input
+/// when an image whose alpha is used cannot be read.
 MaterialSet read_materials(const Document& document, const std::vector<PlacedNode>& placed,
                            bool with_lines, Scene& scene);
 

@@ -1,4 +1,4 @@
-// Reading geometry: see mesh.hpp.
+// Reads geometry: see mesh.hpp.
 #include "scene/gltf/mesh.hpp"
 
 #include <algorithm>
@@ -12,19 +12,20 @@
 namespace dapple::gltf {
 namespace {
 
-/// Primitives may share accessors, so that a small file could ask for any number of them:
-/// it gets as many as are built in seconds, and no more than its bytes can hold beyond that.
+/// The limit of triangles and segments. Primitives may share accessors, so a small file could
+/// otherwise make any number; above 2^22 elements the limit grows with the file's size.
 std::uint64_t max_elements(const Document& document) {
   constexpr std::uint64_t kMax = std::uint64_t{1} << 28;
   return std::min(kMax, (std::uint64_t{1} << 22) + document.bytes / 2);
 }
 
-/// The same for sparse values, which are read again for every primitive.
+/// The same limit for sparse values, which are read again for every primitive.
 std::uint64_t max_sparse_values(const Document& document) {
   return (std::uint64_t{1} << 24) + 4 * document.bytes;
 }
 
-/// Compressed primitives carry plain accessors too where their writer was kind.
+/// Throws Error input for a compressed primitive. Some writers also store uncompressed accessors;
+/// dapple then reads those.
 void refuse_compressed(const Document& document, const tinygltf::Primitive& primitive,
                        const std::string& who) {
   if (!primitive.extensions.contains("KHR_draco_mesh_compression")) return;
@@ -37,7 +38,7 @@ void refuse_compressed(const Document& document, const tinygltf::Primitive& prim
        who);
 }
 
-/// What of a primitive's vertices its material looks at; textures are of triangles alone.
+/// Returns the attributes of a primitive that its material needs. Only triangles use textures.
 AttributeNeeds needs_of(const Material& material, const AlphaLookup& lookup, bool lines,
                         MeshTotals& totals) {
   if (lines && lookup.has_texture && material.alpha_mode != AlphaMode::opaque)
@@ -54,9 +55,10 @@ void append_elements(Mesh& mesh, const std::vector<std::uint32_t>& corners, std:
   mesh.materials.insert(mesh.materials.end(), corners.size() / corners_each, material);
 }
 
-/// A primitive on its way into a mesh.
+/// A primitive and what is needed to append it to a mesh.
 struct PrimitiveSource {
   const tinygltf::Primitive& primitive;
+  std::uint32_t mesh, index;     ///< of the primitive in the file
   std::uint32_t material_index;  ///< into Scene::materials
   const Material& material;
   const AlphaLookup& lookup;
@@ -67,7 +69,8 @@ struct PrimitiveSource {
 
 void append_primitive(const Document& document, const PrimitiveSource& source, Mesh& mesh,
                       MeshTotals& totals) {
-  const auto& [primitive, material_index, material, lookup, line_radius, deformation, who] = source;
+  const auto& [primitive, file_mesh, file_primitive, material_index, material, lookup, line_radius,
+               deformation, who] = source;
   const bool lines = is_of_lines(primitive);
   const AttributeNeeds needs = needs_of(material, lookup, lines, totals);
   const Attributes attributes = read_attributes(document, primitive, needs, lookup, who);
@@ -82,11 +85,15 @@ void append_primitive(const Document& document, const PrimitiveSource& source, M
   }
   append_vertices(mesh, attributes, VertexDeformer(document, primitive, deformation, who), lookup,
                   used);
+  mesh.sources.push_back({file_mesh, file_primitive, static_cast<std::uint32_t>(base),
+                          static_cast<std::uint32_t>(added),
+                          used ? *used : std::vector<std::uint32_t>{}});
   if (lines) mesh.radii.resize(mesh.positions.size(), line_radius);
   append_elements(mesh, corners, base, material_index);
 }
 
-/// False, and counted, for what is made neither of triangles nor of lines that have a radius.
+/// Returns false, and counts the reason, for points, for lines without a radius, and for primitives
+/// without POSITION.
 bool is_shown(const tinygltf::Primitive& primitive, float line_radius, MeshTotals& totals) {
   const bool thin = is_of_lines(primitive) && line_radius == 0;
   const bool points = primitive.mode == TINYGLTF_MODE_POINTS;
@@ -100,7 +107,7 @@ bool is_shown(const tinygltf::Primitive& primitive, float line_radius, MeshTotal
   return true;
 }
 
-/// And for what deforms vertices, which may be shared by primitives and nodes.
+/// The limit of numbers that deform vertices; primitives and nodes may share them.
 constexpr std::uint64_t kMaxDeformed = std::uint64_t{1} << 28;
 
 void count_work(const Document& document, const tinygltf::Primitive& primitive,
@@ -116,7 +123,7 @@ void count_work(const Document& document, const tinygltf::Primitive& primitive,
   for (const auto& [name, accessor] : primitive.attributes) {
     totals.sparse_values += sparse_count(document, accessor);
   }
-  // No more vertices are read than corners need.
+  // A primitive reads at most one vertex per corner.
   const std::uint64_t vertices = std::min<std::uint64_t>(
       3 * elements,
       document.model.accessors[static_cast<std::size_t>(attribute(primitive, "POSITION"))].count);
@@ -132,7 +139,7 @@ void count_work(const Document& document, const tinygltf::Primitive& primitive,
   }
 }
 
-/// The primitives that are shown, all counted before the first is read.
+/// Returns the primitives that are shown. All are counted before the first one is read.
 std::vector<std::size_t> shown_primitives(const Document& document, const tinygltf::Mesh& mesh,
                                           const std::string& label, float line_radius,
                                           const Deformation& deformation, MeshTotals& totals) {
@@ -147,7 +154,7 @@ std::vector<std::size_t> shown_primitives(const Document& document, const tinygl
   return shown;
 }
 
-/// A part while it grows; `emitter` as in MeshPart.
+/// A mesh part while primitives are appended to it; `emitter` is as in MeshPart.
 struct Draft {
   int emitter;
   bool lines;
@@ -162,7 +169,8 @@ Mesh& draft_for(std::vector<Draft>& drafts, int emitter, bool lines) {
   return drafts.back().mesh;
 }
 
-/// The material that makes a mesh light of a primitive, -1 for none. Lines have no area to shine.
+/// Returns the material that makes a primitive a mesh light, -1 for none. Lines have no area, so
+/// they do not emit.
 int emitter_of(const Material& material, std::uint32_t at, bool lines, MeshTotals& totals) {
   if (!emits(material)) return -1;
   if (lines) ++totals.shining_lines;
@@ -194,8 +202,9 @@ std::vector<MeshPart> read_mesh(const Document& document, const MeshUse& use,
     Mesh& mesh = draft_for(drafts, emitter_of(material, at, lines, totals), lines);
     append_primitive(
         document,
-        {primitive, at, material, materials.lookups[at], use.line_radius, deformation, who}, mesh,
-        totals);
+        {primitive, static_cast<std::uint32_t>(use.mesh), static_cast<std::uint32_t>(p), at,
+         material, materials.lookups[at], use.line_radius, deformation, who},
+        mesh, totals);
   }
   const std::string name =
       given.name.empty() ? fmt::format("mesh_{}", use.mesh) : one_line(given.name);

@@ -1,5 +1,6 @@
-// Geometry: a glTF mesh becomes one dapple::Mesh of its triangles and one of its lines, and one
-// more for each material of it that emits, since a mesh light is a mesh of its own.
+// Reads geometry. In: a glTF mesh and how a node uses it; out: one dapple::Mesh of its triangles,
+// one of its lines, and one for each of its materials that emit, because a mesh light is a separate
+// mesh.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +16,14 @@ namespace dapple::gltf {
 
 struct MeshPart {
   std::uint32_t mesh = 0;  ///< index into Scene::meshes
-  int emitter = -1;        ///< index into Scene::materials where the part emits
+  int emitter = -1;        ///< index into Scene::materials when the part emits, else -1
 };
 
-/// What reading adds up over all meshes: for limits, and for one warning a feature.
+/// Totals over all meshes, for limits and for one warning per feature.
 struct MeshTotals {
   std::uint64_t elements = 0;  ///< triangles and segments
   std::uint64_t sparse_values = 0;
-  std::uint64_t deformed = 0;          ///< numbers that deform vertices
+  std::uint64_t deformed = 0;          ///< numbers that are read to deform vertices
   std::uint64_t thin_lines = 0;        ///< primitives of lines without a radius
   std::uint64_t points = 0;            ///< primitives
   std::uint64_t textured_lines = 0;    ///< primitives of lines whose opacity has a texture
@@ -31,8 +32,8 @@ struct MeshTotals {
   std::uint64_t without_texcoord = 0;  ///< primitives whose alpha texture lacks its TEXCOORD
 };
 
-/// Appends the parts of a glTF mesh to Scene::meshes, carried by `joints` unless that is null;
-/// parts without primitives are left out. Throws Error input naming mesh and primitive.
+/// Appends the parts of a glTF mesh to Scene::meshes, skinned by `joints` unless it is null. Parts
+/// without primitives are left out. Throws Error input naming mesh and primitive.
 std::vector<MeshPart> read_mesh(const Document& document, const MeshUse& use,
                                 const std::vector<Imath::M44d>* joints,
                                 const MaterialSet& materials, Scene& scene, MeshTotals& totals);

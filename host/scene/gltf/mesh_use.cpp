@@ -1,4 +1,4 @@
-// Telling uses of meshes apart: see mesh_use.hpp.
+// Finds how a node uses its mesh: see mesh_use.hpp.
 #include "scene/gltf/mesh_use.hpp"
 
 #include <algorithm>
@@ -10,7 +10,8 @@
 namespace dapple::gltf {
 namespace {
 
-/// A radius in metres in the units of a mesh that this matrix places, by its mean scale.
+/// Converts a radius from metres to the units of a mesh with this matrix, by its mean scale.
+/// Returns `radius` itself when the scale is zero or the result is out of float's range.
 float radius_in_mesh(float radius, const Imath::M44d& to_world) {
   const double scale = std::cbrt(std::abs(to_world.determinant()));
   const double in_mesh = scale > 0 ? radius / scale : radius;
@@ -27,7 +28,8 @@ bool is_bound_to_joints(const tinygltf::Mesh& mesh) {
   return std::all_of(mesh.primitives.begin(), mesh.primitives.end(), has_joints);
 }
 
-/// glTF 2.0, section 3.7.2.2: a node's own weights before those of its mesh.
+/// A node's own weights replace those of its mesh (glTF 2.0, section 3.7.2.2); a pose replaces
+/// both. Returns an empty vector when all are 0.
 std::vector<double> morph_weights(const tinygltf::Node& node, const tinygltf::Mesh& mesh,
                                   const NodePose* moved) {
   std::vector<double> weights = mesh.weights;

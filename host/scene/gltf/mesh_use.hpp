@@ -1,4 +1,5 @@
-// How nodes show their meshes: uses that are equal share the mesh that was read.
+// How a node uses its mesh: line radius, skin, morph weights. In: a placed node and a pose; out: a
+// MeshUse. Nodes with equal uses share one dapple mesh.
 #pragma once
 
 #include <compare>
@@ -13,16 +14,16 @@ namespace dapple::gltf {
 
 struct MeshUse {
   int mesh = 0;                 ///< glTF's index
-  float line_radius = 0;        ///< of its lines, in its own units; 0: they are left out
-  int skin = -1;                ///< that carries its vertices, -1 for none
-  std::vector<double> weights;  ///< of its morph targets; empty where all are 0
-  int node = -1;  ///< the one that uses it, where it changes with the time; else shared, -1
+  float line_radius = 0;        ///< of its lines, in the mesh's units; 0: lines are left out
+  int skin = -1;                ///< the skin of its vertices, -1 for none
+  std::vector<double> weights;  ///< of its morph targets; empty when all are 0
+  int node = -1;  ///< the node that uses it, if it changes with time; -1: can be shared
 
   auto operator<=>(const MeshUse&) const = default;
 };
 
-/// Of a placed node that has a mesh. A mesh that changes with the time belongs to its node, even
-/// while two happen to be equal: what is shared must not depend on the time.
+/// Returns the use of a placed node that has a mesh. A mesh that changes with time is never shared,
+/// even while two uses are equal, so that sharing does not depend on the time.
 MeshUse use_of(const Document& document, const PlacedNode& placed, const Pose& pose,
                const SceneOptions& options);
 

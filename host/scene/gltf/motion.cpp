@@ -1,4 +1,4 @@
-// From JSON to animations and skins: see motion.hpp.
+// Reads animations and skins from JSON: see motion.hpp.
 #include "scene/gltf/motion.hpp"
 
 #include <nlohmann/json.hpp>
@@ -88,7 +88,7 @@ class MotionReader {
       check_index(channels[i], "sampler", channel, "sampler", samplers.size());
       check_index(target, "node", channel, "node", elements(root_, "nodes").size());
       const std::string path = target["path"].get<std::string>();
-      if (!target.contains("node") || path == "pointer") continue;  // an extension's
+      if (!target.contains("node") || path == "pointer") continue;  // for an extension
       const Json& sampler = samplers[channels[i]["sampler"].get<std::size_t>()];
       clip.channels.push_back({static_cast<int>(i), target["node"].get<int>(), part_of(path),
                                interpolation_of(sampler), sampler["input"].get<int>(),

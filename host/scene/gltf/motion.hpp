@@ -1,5 +1,5 @@
-// Animations and skins: what a document says of motion, its indices known to lead somewhere. What
-// they mean at a time is in animation.hpp and skin.hpp.
+// Reads animations and skins from the JSON and checks their indices. In: the JSON root; out: a
+// Motion. animation.hpp and deformation.hpp evaluate them at a time.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,9 +11,9 @@ namespace dapple::gltf {
 enum class Interpolation { linear, step, cubic };
 enum class MovedPart { translation, rotation, scale, weights };
 
-/// What of a node follows which keyframes.
+/// Connects one property of a node with its keyframes.
 struct Channel {
-  int number = 0;  ///< its place in the animation, for messages
+  int number = 0;  ///< its index in the animation, for messages
   int node = 0;
   MovedPart part = MovedPart::translation;
   Interpolation interpolation = Interpolation::linear;
@@ -21,7 +21,7 @@ struct Channel {
   int values = 0;  ///< accessor
 };
 
-/// Without the channels that move nothing dapple knows of.
+/// One animation, without the channels that move nothing that dapple reads.
 struct Clip {
   std::string name;
   std::vector<Channel> channels;
@@ -30,7 +30,7 @@ struct Clip {
 struct Skin {
   std::string name;
   std::vector<int> joints;    ///< nodes
-  int inverse_matrices = -1;  ///< accessor, -1: identities
+  int inverse_matrices = -1;  ///< accessor; -1: identity matrices
 };
 
 struct Motion {
@@ -38,8 +38,8 @@ struct Motion {
   std::vector<Skin> skins;
 };
 
-/// In comes a document that keeps to the schema. Throws Error input when an animation, a skin
-/// or a node's skin names what is not there.
+/// `root` must have passed check_schema(). Throws Error input when an index of an animation, of a
+/// skin or of a node's skin names an element that does not exist.
 Motion read_motion(const nlohmann::json& root, const std::string& file);
 
 }  // namespace dapple::gltf

@@ -1,4 +1,5 @@
-// A glTF file that is read once and posed for any number of times.
+// A glTF file that is read once and posed for many times. In: a path and options, then times in
+// seconds; out: a Scene for each time.
 #pragma once
 
 #include <optional>
@@ -13,21 +14,22 @@ namespace dapple::gltf {
 
 class MovingGltf {
  public:
-  /// `plays`: at() will be asked for times, so that animations are checked here. Throws Error
-  /// input, and usage for an --animation that there is not.
+  /// With `plays`, at() may be called with times, and animations are checked here. Throws Error
+  /// input, and Error usage when the animation of the options does not exist.
   MovingGltf(const std::string& path, const SceneOptions& options, bool plays);
-  // player_ refers to document_.
+  // Not copied: player_ has a reference to document_.
   MovingGltf(const MovingGltf&) = delete;
   MovingGltf& operator=(const MovingGltf&) = delete;
 
-  /// As load_gltf(). Throws Error input where a pose is no scene.
+  /// Returns the scene at a time; none: at rest. Throws Error input when the pose or the scene is
+  /// invalid.
   [[nodiscard]] Scene at(std::optional<double> seconds) const;
 
  private:
   SceneOptions options_;
   Document document_;
   std::optional<Player> player_;
-  Scene timeless_;  ///< what does not depend on the time: materials and textures
+  Scene timeless_;  ///< the part that does not depend on the time: materials and textures
   MaterialSet materials_;
 };
 

@@ -1,5 +1,5 @@
-// What moves of a document, at one time: nodes that stand elsewhere than they are written to, and
-// meshes that are morphed otherwise.
+// The pose of a document at one time: values that replace the transforms and morph weights of its
+// nodes. animation.hpp makes it, hierarchy.hpp and mesh_use.hpp use it.
 #pragma once
 
 #include <Imath/ImathVec.h>
@@ -10,7 +10,7 @@
 
 namespace dapple::gltf {
 
-/// In place of a node's own properties.
+/// Replaces properties of one node; an empty one keeps the file's value.
 struct NodePose {
   std::optional<Imath::V3d> translation;
   std::optional<Imath::V4d> rotation;  ///< unit quaternion x, y, z, w
@@ -20,7 +20,7 @@ struct NodePose {
   [[nodiscard]] bool moves() const { return translation || rotation || scale; }
 };
 
-/// By node; empty: the document at rest.
+/// The poses by node index; an empty map is the document at rest.
 using Pose = std::map<int, NodePose>;
 
 }  // namespace dapple::gltf

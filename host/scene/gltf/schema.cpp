@@ -1,4 +1,4 @@
-// The walk that checks a document against the rules: see schema.hpp.
+// Visits all objects of a document and checks them against the rules: see schema.hpp.
 #include "scene/gltf/schema.hpp"
 
 #include <algorithm>
@@ -41,7 +41,8 @@ class Checker {
     fail(file_, "{}{} is not {}", prefix(where), rule.key, expected);
   }
 
-  /// What every object may have. `extras` goes: nobody reads it, and it may be anything.
+  /// Checks the properties that every object may have. Removes `extras`, which may have any value
+  /// and which nothing reads.
   void check_everywhere(Json& object, const std::string& where) const {
     object.erase("extras");
     const auto name = object.find("name");
@@ -74,7 +75,8 @@ class Checker {
     refuse(rule, where, "a multiple of 4 from 4 to 252");
   }
 
-  /// Turns integers into floating point as well: tinygltf keeps those in extensions as ints.
+  /// Also converts integers to floating point, because tinygltf keeps integers in extensions as
+  /// int.
   void check_number(Json& value, const Rule& rule, const std::string& where) const {
     const bool fits = value.is_number() &&
                       std::abs(value.get<double>()) <= double{std::numeric_limits<float>::max()};

@@ -1,16 +1,17 @@
-// The properties of glTF 2.0, and those of its extensions that dapple reads, bottom up: see
-// schema_rules.hpp. `name`, `extensions` and `extras` may be anywhere and are not listed.
+// The rules for the properties of glTF 2.0 and of the extensions that dapple reads, from the leaves
+// to the root: see schema_rules.hpp. `name`, `extensions` and `extras` are allowed everywhere and
+// are not listed.
 #include "scene/gltf/schema_rules.hpp"
 
 namespace dapple::gltf {
 namespace {
 
-/// What tinygltf makes of one element takes some hundred bytes to kilobytes, and one element
-/// may be two characters of JSON.
+/// The maximum number of elements. One element may be two characters of JSON, and tinygltf's object
+/// for it takes some hundred bytes to some kilobytes.
 constexpr std::size_t kMany = std::size_t{1} << 22;  // nodes, accessors: up to 0.7 kB
 constexpr std::size_t kFew = std::size_t{1} << 16;   // materials: 3 kB
 
-/// How far a colour may be outside of [0, 1]: exporters round.
+/// How far a colour may lie outside of [0, 1]: exporters round.
 constexpr double kRounding = 1e-3;
 
 constexpr Rule required(Rule rule) {

@@ -1,4 +1,5 @@
-// What the schema check knows of glTF's properties: a tree of rules, by key.
+// The rules of the schema check: a tree that has a rule for each property of glTF, by key. Out: the
+// rules of a document's root, for schema.cpp.
 #pragma once
 
 #include <array>
@@ -16,13 +17,13 @@ enum class Kind {
   code,        ///< one of the rule's codes
   number,      ///< finite as a float, in [low, high]
   positive,    ///< finite as a float, above 0
-  numbers,     ///< array of numbers as of `number`
+  numbers,     ///< array of `number`
   indices,     ///< array of index
   index_map,   ///< object of index
   index_maps,  ///< array of objects of index
   text,
   texts,
-  word,  ///< one of the rule's words
+  word,  ///< a string, one of the rule's words
   boolean,
   object,
   objects,  ///< array of objects, at most `length`
@@ -47,9 +48,9 @@ using Rules = Table<Rule>;
 struct Rule {
   std::string_view key;
   Kind kind;
-  Rules children = {};         ///< of object and objects
-  std::string_view noun = {};  ///< of objects: what a message calls one of them
-  std::size_t length = 0;      ///< of numbers; 0 for any
+  Rules children = {};         ///< for object and objects
+  std::string_view noun = {};  ///< for objects: the name of one of them in messages
+  std::size_t length = 0;      ///< numbers: their count, 0 for any; objects: the maximum count
   bool required = false;
   double low = std::numeric_limits<double>::lowest();
   double high = std::numeric_limits<double>::max();

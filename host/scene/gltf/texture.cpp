@@ -1,4 +1,4 @@
-// Finding, reading and sharing images: see texture.hpp.
+// Finds, reads and shares images: see texture.hpp.
 #include "scene/gltf/texture.hpp"
 
 #include <utility>
@@ -10,11 +10,12 @@
 namespace dapple::gltf {
 namespace {
 
-/// Image formats beyond PNG and JPEG, as the extensions that bring them in.
+/// The extensions for image formats other than PNG and JPEG.
 constexpr const char* kOtherFormats[] = {"KHR_texture_basisu", "EXT_texture_webp",
                                          "EXT_texture_avif", "MSFT_texture_dds"};
 
-/// Of all alpha textures together, a byte each: an image's file may be a thousandth of that.
+/// The limit of all alpha textures together, one byte per texel. An image's file can be a thousand
+/// times smaller than its texels.
 constexpr std::uint64_t kMaxTexels = std::uint64_t{1} << 31;
 
 struct ImageBytes {
@@ -65,7 +66,7 @@ Wrap wrap_mode(int code) {
   return code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
 }
 
-/// A texture without pixels, with the sampler's modes.
+/// Returns a texture without pixels that has the sampler's modes.
 Texture sampled(const Document& document, int texture) {
   Texture result;
   const int index = document.model.textures[static_cast<std::size_t>(texture)].sampler;

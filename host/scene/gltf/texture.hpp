@@ -1,5 +1,5 @@
-// Images that somebody needs: alpha textures into Scene::textures, shared between equal
-// uses, and the mean colour of emissive ones.
+// Reads the images that materials need. In: the index of a glTF texture; out: an alpha texture in
+// Scene::textures, which equal uses share, or the mean colour of an emissive texture.
 #pragma once
 
 #include <map>
@@ -15,11 +15,11 @@ class TextureReader {
  public:
   TextureReader(const Document& document, Scene& scene) : document_(document), scene_(scene) {}
 
-  /// The index in Scene::textures of a glTF texture's alpha. Throws Error input, naming
-  /// `user`, when its image is missing, corrupt or of a kind that cannot be read.
+  /// Returns the index in Scene::textures of a glTF texture's alpha. Throws Error input, naming
+  /// `user`, when the image is missing, corrupt or in a format that dapple cannot read.
   int alpha_texture(int texture, const std::string& user);
 
-  /// The mean linear colour of a glTF texture. Throws Error input as alpha_texture does.
+  /// Returns the mean linear colour of a glTF texture. Throws like alpha_texture().
   [[nodiscard]] V3f mean_color(int texture, const std::string& user) const;
 
  private:

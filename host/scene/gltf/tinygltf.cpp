@@ -1,6 +1,5 @@
-// The one place where tinygltf's implementation is compiled, against the system's JSON
-// library.
-#include <fstream>  // its writers need it even without a file system
+// Compiles tinygltf's implementation, once for the whole program, with the system's JSON library.
+#include <fstream>  // tinygltf's writers need it even without a file system
 #include <nlohmann/json.hpp>
 
 #define TINYGLTF_IMPLEMENTATION

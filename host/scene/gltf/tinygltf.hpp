@@ -1,5 +1,5 @@
-// tinygltf without images and files: this reader opens every file and decodes every image
-// itself. Every file includes it through here, since the macros change its class.
+// Includes tinygltf without its reading of images and files, which this reader does itself. Every
+// file must include tinygltf through this header, because the macros change its class.
 #pragma once
 
 #define TINYGLTF_NO_FS

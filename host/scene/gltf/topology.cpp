@@ -1,4 +1,4 @@
-// Lists, strips, fans and loops: see topology.hpp.
+// Converts lists, strips, fans and loops: see topology.hpp.
 #include "scene/gltf/topology.hpp"
 
 #include <array>
@@ -20,7 +20,7 @@ std::uint64_t index_count(const Document& document, const tinygltf::Primitive& p
   return document.model.accessors[static_cast<std::size_t>(primitive.indices)].count;
 }
 
-/// 0, 1, 2... where the primitive has no indices.
+/// Returns a primitive's indices; 0, 1, 2... for one without indices.
 std::vector<std::uint32_t> read_indices(const Document& document,
                                         const tinygltf::Primitive& primitive,
                                         const std::string& who) {
@@ -43,7 +43,8 @@ std::vector<std::uint32_t> read_indices(const Document& document,
   return indices;
 }
 
-/// glTF 2.0, section 3.7.2.1: the winding of every triangle i of a strip or fan.
+/// Returns the positions in the indices of triangle `i` of a strip or fan, in the winding of glTF
+/// 2.0, section 3.7.2.1.
 std::array<std::size_t, 3> corner_places(int mode, std::size_t i) {
   if (mode == TINYGLTF_MODE_TRIANGLE_FAN) return {i + 1, i + 2, 0};
   return {i, i + 1 + i % 2, i + 2 - i % 2};
@@ -88,7 +89,7 @@ std::uint64_t element_count(const Document& document, const tinygltf::Primitive&
     case TINYGLTF_MODE_LINE_STRIP:
       return count < 2 ? 0 : count - 1;
     case TINYGLTF_MODE_LINE_LOOP:
-      return count < 3 ? count / 2 : count;  // two points are not joined twice
+      return count < 3 ? count / 2 : count;  // two points make one segment, not two
     case TINYGLTF_MODE_TRIANGLES:
       return whole(3, "triangles");
     default:

@@ -1,4 +1,5 @@
-// A primitive's triangles or segments as tuples of vertices, whatever its mode and index type.
+// Converts a primitive of any mode and index type to triangles or segments. In: a document and a
+// primitive; out: tuples of vertex indices.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +10,17 @@
 
 namespace dapple::gltf {
 
-/// Whether a primitive is of lines, as a list, a strip or a loop.
+/// Whether a primitive has lines, as a list, a strip or a loop.
 bool is_of_lines(const tinygltf::Primitive& primitive);
 
-/// The triangles or segments that a primitive of such a mode has; needs no byte of geometry.
-/// Throws Error input when a list's indices do not make whole ones.
+/// Returns the number of a primitive's triangles or segments without reading geometry. Throws Error
+/// input when the number of indices of a list is not a multiple of 3 or 2.
 std::uint64_t element_count(const Document& document, const tinygltf::Primitive& primitive,
                             const std::string& who);
 
-/// Three vertex indices a triangle or two a segment, all below the vertex count; strips, fans and
-/// loops lose what uses a vertex twice, which only stitches. Throws Error input, beginning with
-/// `who`, for an index beyond the vertices.
+/// Returns three vertex indices per triangle or two per segment, all below the vertex count. In
+/// strips, fans and loops, a triangle or segment that uses a vertex twice only connects others; it
+/// is left out. Throws Error input, naming `who`, for an index that is not below the vertex count.
 std::vector<std::uint32_t> element_corners(const Document& document,
                                            const tinygltf::Primitive& primitive,
                                            const std::string& who);

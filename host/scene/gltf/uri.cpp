@@ -1,4 +1,4 @@
-// Decoding and confining URIs: see uri.hpp.
+// Decodes URIs and checks that paths stay inside a folder: see uri.hpp.
 #include "scene/gltf/uri.hpp"
 
 #include <algorithm>
@@ -20,8 +20,8 @@ int hex_digit(char c) {
   return -1;
 }
 
-/// Value of every character in base64, -1 for those outside of it. The URL-safe
-/// alphabet is taken as well.
+/// The value of every base64 character, -1 for other characters. The URL-safe alphabet is accepted
+/// too.
 constexpr std::array<std::int8_t, 256> kBase64 = [] {
   std::array<std::int8_t, 256> table{};
   table.fill(-1);
@@ -52,7 +52,7 @@ Bytes decode_base64(std::string_view text, const std::string& what) {
   return bytes;
 }
 
-/// Linux's own limits: a longer name is one that no file can have.
+/// Linux's limits in bytes: no file can have a longer name or path.
 constexpr std::size_t kLongestName = 255;
 constexpr std::size_t kLongestPath = 4095;
 
@@ -63,7 +63,8 @@ void check_length(const fs::path& file, const std::string& what) {
     fail(what, "its uri \"{}\" is longer than a file's name can be", excerpt(file.native()));
 }
 
-/// Absolute before canonical: of a relative name that is not there nothing else comes out.
+/// Returns an absolute path without symbolic links. The path is made absolute first, because
+/// weakly_canonical() leaves a relative path relative when it does not exist.
 fs::path whole_path(const fs::path& path, std::error_code& error) {
   const fs::path absolute = fs::absolute(path.empty() ? fs::path(".") : path, error);
   return error ? absolute : fs::weakly_canonical(absolute, error);
@@ -85,7 +86,7 @@ void check_inside(const fs::path& folder, const fs::path& file, std::string_view
 
 bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 
-// A letter, then letters, digits, '+', '-', '.', before the first ':'.
+// A scheme is a letter, then letters, digits, '+', '-' or '.', before the first ':'.
 bool has_scheme(std::string_view uri) {
   const std::size_t colon = uri.find(':');
   if (colon == std::string_view::npos || colon == 0) return false;

@@ -1,5 +1,5 @@
-// URIs of buffers and images: `data:` ones are decoded, relative ones become paths that
-// stay inside the scene's folder unless that is waived, everything else is refused.
+// URIs of buffers and images. In: a URI; out: the bytes of a `data:` URI, or the path of a relative
+// one, which must lie inside the scene's folder unless that is allowed. Other URIs are errors.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,15 @@ namespace dapple::gltf {
 
 bool is_data_uri(std::string_view uri);
 
-/// RFC 3986: whether the uri begins as "http:" does.
+/// Whether a URI begins with a scheme such as "http:" (RFC 3986, section 3.1).
 bool has_scheme(std::string_view uri);
 
-/// The bytes of a `data:` URI, base64 or percent-encoded. Throws Error input, the
-/// message beginning with `what`, when it is malformed.
+/// Returns the bytes of a `data:` URI, base64 or percent-encoded. Throws Error input when it is
+/// malformed; the message begins with `what`.
 Bytes decode_data_uri(std::string_view uri, const std::string& what);
 
-/// "a%20b" as "a b"; a % that no two hexadecimal digits follow stays as it is, because
-/// exporters leave file names like "100%.png" unencoded.
+/// Returns "a b" for "a%20b". A % without two hexadecimal digits after it stays as it is, because
+/// exporters do not encode file names like "100%.png".
 std::string percent_decode(std::string_view text);
 
 /// A folder, and whether URIs may lead out of it.
@@ -29,13 +29,14 @@ struct UriBase {
   bool allow_outside = false;
 };
 
-/// The file that a relative URI means, existing or not. Throws Error input when the URI has a
-/// scheme, holds a NUL, is too long for a file name or, unless that is allowed, is absolute or
-/// leads out of the folder (through symbolic links too).
+/// Returns the path of the file that a relative URI names; the file need not exist. Throws Error
+/// input when the URI is empty, has a scheme, holds a NUL, is too long for a file name, or leads
+/// out of the folder (as an absolute path, with "..", or through symbolic links) although
+/// base.allow_outside is false.
 std::filesystem::path resolve_uri(const UriBase& base, std::string_view uri,
                                   const std::string& what);
 
-/// What a `data:` URI says its content is, such as "image/png"; often empty.
+/// Returns the media type of a `data:` URI, such as "image/png"; often empty.
 std::string_view data_media_type(std::string_view uri);
 
 }  // namespace dapple::gltf

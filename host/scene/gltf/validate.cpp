@@ -1,6 +1,6 @@
-// Structural validation of a parsed document, in 64-bit arithmetic, before a byte of
-// geometry is read: indices, byte ranges, types and counts. What only reading can tell
-// (an index beyond the vertices, a corrupt image) is checked where it is read.
+// Validates the structure of a parsed document before geometry is read: indices, byte ranges, types
+// and counts, in 64-bit arithmetic. In: a Document; out: an error. Defects that only reading can
+// find (an index beyond the vertices, a corrupt image) are checked where the data is read.
 #include <utility>
 
 #include "scene/gltf/accessor.hpp"
@@ -13,8 +13,8 @@ namespace {
 using tinygltf::Accessor;
 using tinygltf::Model;
 
-/// An accessor without a bufferView is zeros, of any count that a few bytes of JSON care
-/// to name: this bounds what those bytes can make us allocate.
+/// An accessor without a bufferView has only zeros, and a few bytes of JSON can give it any count.
+/// This limits the memory that is allocated for it.
 constexpr std::uint64_t kMaxZeroElements = std::uint64_t{1} << 22;
 
 class Validator {
@@ -47,7 +47,7 @@ class Validator {
     const auto& view = model_.bufferViews[i];
     const std::string who = fmt::format("bufferView {}", i);
     check_.index(who, "buffer", view.buffer, document_.buffers.size());
-    // Both are below 2^53 (schema), so that the sum cannot overflow.
+    // The schema limits both to below 2^53, so that the sum cannot overflow.
     check_.range(who, view.byteOffset + view.byteLength,
                  document_.buffers[static_cast<std::size_t>(view.buffer)].size(),
                  fmt::format("buffer {}", view.buffer));
@@ -82,12 +82,12 @@ class Validator {
            element_bytes, accessor.bufferView, stride);
     }
     check_alignment(who, accessor.byteOffset, accessor.bufferView, accessor.componentType);
-    // Below 2^53 * 2^8 + 2^53: fits 64 bits.
+    // The sum is below 2^53 * 2^8 + 2^54, which fits in 64 bits.
     const std::uint64_t needs = accessor.byteOffset + (accessor.count - 1) * stride + element_bytes;
     check_.range(who, needs, view.byteLength, fmt::format("bufferView {}", accessor.bufferView));
   }
 
-  /// glTF 2.0, section 3.6.2.4.
+  /// Checks the alignment that glTF 2.0, section 3.6.2.4 requires.
   void check_alignment(const std::string& who, std::uint64_t offset, int buffer_view,
                        int component_type) const {
     const std::uint64_t bytes = component_bytes(component_type);

@@ -1,5 +1,5 @@
-// Validation of meshes: what primitives name exists, has a type that glTF gives it, and has
-// as many elements as there are vertices.
+// Validates meshes: the elements that primitives name exist, their accessors have a type that glTF
+// allows and as many elements as there are vertices. In: a Document; out: an error.
 #include <algorithm>
 #include <map>
 
@@ -12,8 +12,8 @@ namespace {
 
 using Attributes = std::map<std::string, int>;
 
-/// Whether integers may stand for positions: without the extension they are a wrong
-/// componentType, and what they would show is noise.
+/// Whether positions may be integers. Without the extension, an integer componentType is an error
+/// in the file, and its values would not be positions.
 bool is_quantized(const tinygltf::Model& model) {
   const auto has = [](const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), "KHR_mesh_quantization") != names.end();
@@ -67,7 +67,7 @@ class MeshValidator {
     }
   }
 
-  /// Of what dapple reads, components are checked again where they are read.
+  /// Component types of the attributes that dapple reads are checked again where they are read.
   void check_type(const std::string& name, int index, const std::string& what) const {
     if (name == "NORMAL") require_shape(index, what, TINYGLTF_TYPE_VEC3);
     if (name != "POSITION") return;

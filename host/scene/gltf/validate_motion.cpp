@@ -1,6 +1,6 @@
-// Validation of animations and skins: accessors are of types that glTF gives them, and long enough
-// for each other. What only values tell (times that do not increase) is checked where they are
-// read.
+// Validates animations and skins: accessors have types that glTF allows, and their lengths fit each
+// other. In: a Document; out: an error. Defects that only values show (times that do not increase)
+// are checked where the values are read.
 #include <algorithm>
 
 #include "scene/gltf/accessor.hpp"
@@ -50,15 +50,15 @@ class MotionValidator {
     require_type(document_, channel.times, who + " input", {TINYGLTF_TYPE_SCALAR}, kFloat);
     check_values_type(channel, who + " output");
     const auto& node = model_.nodes[static_cast<std::size_t>(channel.node)];
-    if (channel.part == MovedPart::weights && node.mesh < 0) return;  // moves nothing
+    if (channel.part == MovedPart::weights && node.mesh < 0) return;  // no mesh: moves nothing
     if (channel.part != MovedPart::weights && node.matrix.size() == 16)
       fail(document_.file, "{} moves node {}, which has a matrix", who, channel.node);
     const std::uint64_t each = channel.interpolation == Interpolation::cubic ? 3 : 1;
     const std::uint64_t width =
         channel.part == MovedPart::weights ? morph_target_count(document_, node.mesh) : 1;
-    if (width == 0) return;  // a mesh without targets: moves nothing
+    if (width == 0) return;  // no targets: moves nothing
     const std::uint64_t keys = count_of(channel.times), values = count_of(channel.values);
-    // Divided, since a product might overflow.
+    // Divides, because a product might overflow.
     if (values % (each * width) == 0 && values / (each * width) == keys) return;
     fail(document_.file, "{} has {} keyframes of {} values, but {} values (accessor {})", who,
          grouped(keys), grouped(each * width), grouped(values), channel.values);

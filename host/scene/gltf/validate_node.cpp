@@ -1,5 +1,6 @@
-// Validation of nodes: what they name exists, and their transforms are ones. What they are to
-// each other is checked where they are placed (hierarchy.cpp).
+// Validates nodes: the elements that they name exist, and their transforms are valid. In: a
+// Document or the JSON of its nodes; out: an error. hierarchy.cpp checks that the nodes form a
+// tree.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +12,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Exporters round rotations; beyond this viewers disagree about whether they scale.
+/// The allowed difference of a rotation's length from 1: exporters round. Viewers disagree about
+/// whether a longer or shorter rotation also scales.
 constexpr double kRotationTolerance = 0.05;
 
 void check_rotation(const std::string& file, const std::string& who, const Json& rotation) {

@@ -1,4 +1,4 @@
-// Reading vertices: see vertices.hpp.
+// Reads vertices: see vertices.hpp.
 #include "scene/gltf/vertices.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::optional<AccessorReader> read_uvs(const Document& document,
   return AccessorReader(document, accessor);
 }
 
-/// COLOR_0 where it has an alpha.
+/// Returns COLOR_0 if it has an alpha.
 std::optional<AccessorReader> read_colors(const Document& document,
                                           const tinygltf::Primitive& primitive,
                                           const std::string& who) {
@@ -44,7 +44,7 @@ std::optional<AccessorReader> read_colors(const Document& document,
 
 V2f finite_or_zero(V2f uv) { return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : V2f(0, 0); }
 
-/// NaN becomes 0.
+/// Clamps to [0, 1]; NaN becomes 0.
 float clamp_alpha(float alpha) { return alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f; }
 
 }  // namespace

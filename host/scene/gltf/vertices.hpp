@@ -1,5 +1,5 @@
-// The vertices of one primitive, appended to a mesh: positions, and of texture coordinates, alphas
-// and radii what its material and mode need.
+// Reads the vertices of one primitive. In: its accessors and what its material needs; out:
+// positions, texture coordinates and alphas appended to a Mesh.
 #pragma once
 
 #include <cstdint>
@@ -15,36 +15,38 @@
 
 namespace dapple::gltf {
 
-/// The accessors of one primitive that dapple looks at.
+/// The accessors of one primitive that dapple reads.
 struct Attributes {
   AccessorReader positions;
   std::optional<AccessorReader> uvs;
-  std::optional<AccessorReader> colors;  ///< where they have an alpha
+  std::optional<AccessorReader> colors;  ///< only colours with an alpha
 };
 
-/// What of them is needed.
+/// Which optional attributes the material needs.
 struct AttributeNeeds {
   bool uvs = false;
   bool colors = false;
 };
 
-/// -1 where the primitive has no such attribute.
+/// Returns the accessor of an attribute, -1 when the primitive does not have it.
 int attribute(const tinygltf::Primitive& primitive, const std::string& name);
 
-/// Throws Error input, beginning with `who`, for a type that an attribute cannot have. `uvs` stays
-/// empty where the TEXCOORD of `lookup` is missing.
+/// Throws Error input, naming `who`, for a type that an attribute cannot have. `uvs` stays empty
+/// when the primitive does not have the TEXCOORD of `lookup`.
 Attributes read_attributes(const Document& document, const tinygltf::Primitive& primitive,
                            const AttributeNeeds& needs, const AlphaLookup& lookup,
                            const std::string& who);
 
-/// Renumbers `corners` 0, 1, 2... and returns the vertices that they used, in order, or
-/// nothing where they may use all of them: primitives often share one long vertex
-/// buffer, and copying all of it for each would square a file's size.
+/// Renumbers `corners` to 0, 1, 2... and returns the vertices that they used, in increasing order.
+/// Primitives often share one long vertex buffer; copying all of it for each of them would take
+/// memory of the square of the file's size. Does nothing and returns none when there are at least
+/// as many corners as vertices.
 std::optional<std::vector<std::uint32_t>> compact(std::vector<std::uint32_t>& corners,
                                                   std::uint64_t vertices);
 
-/// Appends the vertices `used`, or all, to `mesh`, where `deformer` has them; arrays that only some
-/// primitives have are filled with their defaults, uv (0, 0) and alpha 1, for the others.
+/// Appends the vertices `used`, or all, to `mesh`, at the positions that `deformer` returns. When
+/// only some primitives have texture coordinates or alphas, the others get the defaults: uv (0, 0)
+/// and alpha 1.
 void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDeformer& deformer,
                      const AlphaLookup& lookup,
                      const std::optional<std::vector<std::uint32_t>>& used);

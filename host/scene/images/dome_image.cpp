@@ -1,4 +1,5 @@
-// Reads the images of dome lights and prepares them for sampling.
+// Reads the images of dome lights and prepares them for sampling. In: a path, or a scene with dome
+// lights; out: an Environment, or the lights with images of mean luminance 1 and limited size.
 #include "scene/images/dome_image.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +17,8 @@ namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 31;
 
-/// Images are averaged down to this: finer detail than a sixth of a degree lights nothing.
+/// Larger images are averaged down to at most this size: texels smaller than a sixth of a degree
+/// make no visible difference to the light.
 constexpr std::uint32_t kMaxWidth = 2048, kMaxHeight = 1024;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -42,7 +44,7 @@ Environment environment_of(const ExrImage& image, const std::string& path) {
   return environment;
 }
 
-/// Clamps negative values, refuses others that are no radiance.
+/// Sets negative values to 0. Throws Error input for values that are not finite.
 void check_radiance(Environment& environment, const std::string& path) {
   for (std::size_t i = 0; i < environment.radiance.size(); ++i) {
     V3f& radiance = environment.radiance[i];
@@ -56,9 +58,9 @@ void check_radiance(Environment& environment, const std::string& path) {
   }
 }
 
-/// Means over boxes of `across` x `down` texels, weighted by solid angle.
+/// Returns the means over boxes of `across` x `down` texels, weighted by solid angle.
 Environment averaged(const Environment& fine, std::uint32_t across, std::uint32_t down) {
-  // A rest that fills no box is part of the last one's sum.
+  // Columns and rows that do not fill a box are added to the last box.
   Environment coarse{
       std::max(1u, fine.width / across), std::max(1u, fine.height / down), {}, fine.file};
   std::vector<V3d> sums(std::size_t{coarse.width} * coarse.height, V3d(0.0));

@@ -1,4 +1,5 @@
-// Arithmetic of latitude-longitude images: see Environment in dapple/scene.hpp.
+// Arithmetic of latitude-longitude images: texels, luminance, solid angles. In: an Environment
+// (dapple/scene.hpp) and texel numbers; out: numbers.
 #pragma once
 
 #include <cmath>
@@ -13,11 +14,11 @@ inline const V3f& texel(const Environment& environment, std::uint32_t x, std::ui
   return environment.radiance[std::size_t{y} * environment.width + x];
 }
 
-/// Of linear RGB with the primaries of ITU-R BT.709.
+/// The luminance of linear RGB with the primaries of ITU-R BT.709.
 inline double luminance(const V3d& rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z; }
 inline double luminance(const V3f& rgb) { return luminance(V3d(rgb)); }
 
-/// Steradians of a texel of row `y`.
+/// The solid angle of one texel of row `y`, in steradians.
 inline double texel_solid_angle(const Environment& environment, std::uint32_t y) {
   using std::numbers::pi;
   const auto height = static_cast<double>(environment.height);

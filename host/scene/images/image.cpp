@@ -1,4 +1,4 @@
-// Decoding images through stb_image: see image.hpp.
+// Decodes PNG and JPEG images with stb_image: see image.hpp.
 #include "scene/images/image.hpp"
 
 #include <array>
@@ -45,15 +45,16 @@ std::uint64_t big_endian(std::span<const std::uint8_t> bytes) {
   return value;
 }
 
-/// stb_image reads a PNG header too, but calls one of more than 2^30 bytes "unknown".
+/// stb_image checks the size too, but says "unknown" for a PNG that decodes to more than 2^30
+/// bytes.
 void check_png_size(std::span<const std::uint8_t> bytes, const std::string& what) {
   constexpr std::size_t kSizesEnd = 24;
   if (bytes.size() < kSizesEnd) refuse(what, "is corrupt (its PNG header)");
   check_size(big_endian(bytes.subspan(16, 4)), big_endian(bytes.subspan(20, 4)), what);
 }
 
-/// The header alone decides whether an image is small enough: 100 bytes of PNG can ask
-/// for gigabytes.
+/// Checks format, structure and size before decoding, because 100 bytes of PNG can decode to
+/// gigabytes.
 void check_header(std::span<const std::uint8_t> bytes, const std::string& what) {
   const ImageFormat format = image_format(bytes);
   if (format == ImageFormat::other) refuse(what, "is neither a PNG nor a JPEG image");
@@ -71,7 +72,7 @@ void check_header(std::span<const std::uint8_t> bytes, const std::string& what) 
   check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), what);
 }
 
-/// `channels` as stb_image counts them: 2 is grey and alpha, 3 is RGB.
+/// Decodes to `channels` bytes per pixel: 2 is grey and alpha, 3 is RGB.
 Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::string& what) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     refuse(what, "has more than 2^31 bytes");
@@ -92,7 +93,7 @@ Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::stri
   return pixels;
 }
 
-/// IEC 61966-2-1.
+/// The sRGB transfer function of IEC 61966-2-1, for values in [0, 1].
 double linear_from_srgb(double value) {
   return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }

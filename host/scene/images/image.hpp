@@ -1,5 +1,5 @@
-// Decoding PNG and JPEG images from memory: alpha channels for opacity, the mean colour
-// for emission. The only file that knows stb_image.
+// Decodes PNG and JPEG images from memory. In: the bytes of a file; out: the alpha channel, for
+// opacity, or the mean colour, for emission. Only image.cpp and radiance_hdr.cpp use stb_image.
 #pragma once
 
 #include <Imath/ImathVec.h>
@@ -11,7 +11,7 @@
 
 namespace dapple {
 
-/// Images with more pixels than this are refused before they are decoded.
+/// An image with more pixels is an error, which is found before the image is decoded.
 inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 28;
 
 struct AlphaImage {
@@ -20,12 +20,12 @@ struct AlphaImage {
   std::vector<std::uint8_t> alpha;  ///< width * height, top row first
 };
 
-/// The alpha channel; 255 everywhere for an image without one; 16-bit alpha keeps its
-/// high byte. Throws Error input, the message beginning with `what`.
+/// Returns the alpha channel: 255 everywhere for an image without one, the high byte of a 16-bit
+/// one. Throws Error input; the message begins with `what`.
 AlphaImage decode_alpha(std::span<const std::uint8_t> bytes, const std::string& what);
 
-/// The mean over all pixels of the colour, from sRGB to linear, in [0,1]. Throws as
-/// decode_alpha does.
+/// Returns the mean over all pixels of the colour, converted from sRGB to linear, in [0,1].
+/// Throws like decode_alpha().
 Imath::V3f mean_linear_color(std::span<const std::uint8_t> bytes, const std::string& what);
 
 }  // namespace dapple

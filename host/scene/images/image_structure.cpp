@@ -1,4 +1,4 @@
-// Chunks of PNG (ISO/IEC 15948) and segments of JPEG (ITU-T T.81, annex B): see
+// Checks the chunks of PNG (ISO/IEC 15948) and the segments of JPEG (ITU-T T.81, annex B): see
 // image_structure.hpp.
 #include "scene/images/image_structure.hpp"
 
@@ -15,7 +15,8 @@ using Span = std::span<const std::uint8_t>;
 constexpr std::array<std::uint8_t, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr std::size_t kChunkOverhead = 12;  // length, type, checksum
 
-/// Each scan of a progressive JPEG goes over all pixels, and may take three bytes of file.
+/// The decoder visits all pixels for each scan of a progressive JPEG, and a scan can be as short as
+/// three bytes.
 constexpr int kMaxScans = 100;
 
 std::uint32_t big_endian(Span bytes) {
@@ -44,12 +45,13 @@ std::string_view chunk_type(Span chunk) {
   return {reinterpret_cast<const char*>(chunk.data()) + 4, 4};
 }
 
-/// Markers that stand alone: TEM and the restarts.
+/// Whether a marker has no length field and no data: TEM and the restart markers.
 bool has_no_length(std::uint8_t marker) {
   return marker == 0x01 || (marker >= 0xd0 && marker <= 0xd7);
 }
 
-/// The place after a scan's compressed data: the next marker that is not part of it.
+/// Returns the offset of the first marker after a scan's compressed data. Restart markers and
+/// stuffed bytes (0xff 0x00) belong to the data.
 std::size_t after_scan(Span bytes, std::size_t at) {
   while (at + 1 < bytes.size()) {
     const std::uint8_t marker = bytes[at + 1];
@@ -60,10 +62,10 @@ std::size_t after_scan(Span bytes, std::size_t at) {
   return bytes.size();
 }
 
-/// Of a DHT segment's tables: the decoder has room for 256 codes each, does not count them, and
-/// takes the last of 256 for none. Real ones have 162 at most.
+/// Checks the tables of a DHT segment. The decoder has room for 256 codes per table, does not check
+/// their number, and treats the last of 256 as no code. Real tables have at most 162.
 std::string huffman_defect(Span tables) {
-  constexpr std::size_t kHead = 17;  // class and number, codes of each of 16 lengths
+  constexpr std::size_t kHead = 17;  // one byte of class and number, 16 counts of codes by length
   while (!tables.empty()) {
     if (tables.size() < kHead) return "its JPEG data is cut off";
     const Span lengths = tables.subspan(1, kHead - 1);

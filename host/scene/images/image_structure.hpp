@@ -1,5 +1,6 @@
-// Whether the parts of a PNG or JPEG file are all there, before it is decoded: the decoder
-// shows what is left of a cut or damaged file as if it were whole.
+// Checks that a PNG or JPEG file is complete before it is decoded, because the decoder returns an
+// image without an error for a cut or damaged file. In: the bytes of a file; out: the text of a
+// message, empty for a complete file.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +9,18 @@
 
 namespace dapple {
 
-/// What an image file is, by its first bytes.
 enum class ImageFormat : std::uint8_t { png, jpeg, other };
 
+/// Finds the format from the first bytes of a file.
 ImageFormat image_format(std::span<const std::uint8_t> bytes);
 
-/// Why a PNG file is not whole: its chunks must follow each other from IHDR to IEND with the
-/// checksums that they carry. Empty when it is.
+/// Says why a PNG file is incomplete: chunks must follow each other from IHDR to IEND, and their
+/// checksums must be right. Returns "" for a complete file.
 std::string png_defect(std::span<const std::uint8_t> bytes);
 
-/// Why a JPEG file is not whole or takes too long to decode: its segments must follow each
-/// other to an end of image, with no more scans than any encoder writes. Empty when it is.
+/// Says why a JPEG file is incomplete or takes too long to decode: segments must follow each other
+/// up to the end-of-image marker, and there may be at most 100 scans, more than encoders write.
+/// Returns "" for a complete file.
 std::string jpeg_defect(std::span<const std::uint8_t> bytes);
 
 }  // namespace dapple

@@ -1,5 +1,5 @@
-// Radiance HDR images by stb_image, which trusts files: what they hold is counted before it reads
-// them.
+// Decodes Radiance HDR images with stb_image: see radiance_hdr.hpp. stb_image does not check that a
+// file is complete, so this file checks it first.
 #include "scene/images/radiance_hdr.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct StbiFree {
   throw Error(ErrorKind::input, what + ": " + why);
 }
 
-/// Where the pixels begin: behind an empty line and the line of the resolution.
+/// Returns the offset of the pixels: they follow an empty line and the line of the resolution.
 std::size_t end_of_header(std::span<const std::uint8_t> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::size_t empty = text.find("\n\n");
@@ -40,7 +40,8 @@ std::size_t end_of_header(std::span<const std::uint8_t> bytes) {
   return end == std::string_view::npos ? bytes.size() : end + 1;
 }
 
-/// One of a run-length encoded scanline's four channels; false when it does not fill `width`.
+/// Skips one of the four channels of a run-length encoded scanline. Returns false when its runs do
+/// not make exactly `width` values.
 bool skip_channel(std::span<const std::uint8_t>& left, int width) {
   for (int filled = 0; filled < width;) {
     if (left.empty()) return false;
@@ -53,7 +54,8 @@ bool skip_channel(std::span<const std::uint8_t>& left, int width) {
   return true;
 }
 
-/// stb_image reads zeros past the end, and runs of zero pixels for ever.
+/// Whether the file has data for all pixels. stb_image would read zeros past the end, and would
+/// loop forever at a run of length zero.
 bool is_whole(std::span<const std::uint8_t> bytes, int width, int height) {
   std::span<const std::uint8_t> left = bytes.subspan(end_of_header(bytes));
   const auto is_encoded = [&] {

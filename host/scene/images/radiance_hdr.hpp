@@ -1,5 +1,5 @@
-// Decoding Radiance HDR images (.hdr, RGBE) from memory. Beside image.cpp the only file that knows
-// stb_image.
+// Decodes Radiance HDR images (.hdr, RGBE) from memory. In: the bytes of a file; out: an
+// Environment of linear RGB radiance. Only image.cpp and radiance_hdr.cpp use stb_image.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace dapple {
 
-/// Whether the first bytes are those of such an image.
+/// Whether the first bytes are those of a Radiance HDR image.
 bool is_radiance_hdr(std::span<const std::uint8_t> bytes);
 
-/// Throws Error input, the message beginning with `what`.
+/// Throws Error input; the message begins with `what`.
 Environment decode_radiance_hdr(std::span<const std::uint8_t> bytes, const std::string& what);
 
 }  // namespace dapple

@@ -1,4 +1,5 @@
-// Procedural foliage: a tree, a cloud of leaves, a forest of instances, and the demo.
+// Makes procedural foliage: a tree, a cloud of leaves, a forest of instances, and the demo.
+// In: checked parameters; out: a scene.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -17,7 +18,7 @@ namespace {
 constexpr std::uint32_t kLeafMaterial = 0;
 constexpr std::uint32_t kBarkMaterial = 1;
 constexpr std::uint32_t kGroundMaterial = 2;
-constexpr float kDemoOpacity = 0.85f;  // of the leaves in the paper that this renderer follows
+constexpr float kDemoOpacity = 0.85f;  // as the leaves in Lacewell et al. 2008
 
 void add_tree_materials(Scene& scene, float opacity, bool wood) {
   scene.materials.push_back(blend_material("leaf", opacity));
@@ -32,7 +33,7 @@ void add_ground_square(Scene& scene, float side) {
   place(scene, std::move(ground));
 }
 
-// 0 for automatic. Smaller leaves than a millimetre would vanish in float's rounding.
+// In metres; 0 means automatic. Float's rounding would destroy leaves shorter than a millimetre.
 float given_leaf_length(const ProceduralParameters& parameters) {
   const float length = parameters.real("leaf_size");
   if (length > 0 && length < 0.001f) {
@@ -43,8 +44,8 @@ float given_leaf_length(const ProceduralParameters& parameters) {
 
 float cloud_leaf_length(const ProceduralParameters& parameters) {
   if (const float given = given_leaf_length(parameters); given > 0) return given;
-  // Leaf area, and with it the optical depth through the middle, is that of 20,000 leaves of
-  // 5 cm: leaves * length^2 stays the same.
+  // leaves * length^2 is constant, so that any number of leaves has the leaf area of 20,000 leaves
+  // of 5 cm, and thus the same optical depth through the middle.
   const float length = 0.05f * std::sqrt(20000.0f / static_cast<float>(parameters.whole("leaves")));
   return std::min(length, 0.5f);
 }
@@ -149,7 +150,7 @@ Scene make_forest_scene(const ProceduralParameters& parameters) {
     Pcg32 rng(seed, tree);
     Instance instance;
     instance.to_world = forest_placement(rng, tree, row_length, spacing);
-    instance.mesh = tree < species ? tree : rng.below(species);  // each at least once
+    instance.mesh = tree < species ? tree : rng.below(species);  // uses each species at least once
     scene.instances.push_back(instance);
   }
   add_ground_square(scene, (static_cast<float>(row_length) + 3) * spacing);
@@ -164,7 +165,7 @@ Scene make_demo_scene(const ProceduralParameters&) {
   place(scene, make_tree(shape, {kLeafMaterial, kBarkMaterial}));
   scene.cameras.push_back(look_at({1.5f, 2.6f, 14}, {0.6f, 3.85f, 0}, {0, 1, 0}, 0.62f));
   scene.cameras.back().name = "demo";
-  // Before the ground, whose size must not decide where the light hangs.
+  // The light is placed before the ground is added, because its position depends on the bounds.
   scene.lights.push_back(key_light(scene, scene.cameras.back()));
   add_ground_square(scene, 120);
   return scene;

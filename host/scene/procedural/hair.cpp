@@ -1,5 +1,6 @@
-// Procedural hair: an opaque head, and locks of curly strands that grow out of its scalp, fall over
-// it and hang down. Units are metres; the head looks along +Z, its chin is at the origin.
+// Makes procedural hair: an opaque head, and locks of curly strands that begin at its scalp and
+// hang down over it. In: checked parameters; out: a scene. Units are metres; the face looks along
+// +Z, the chin is near the origin.
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -19,7 +20,7 @@ namespace {
 constexpr std::uint32_t kHairMaterial = 0;
 constexpr std::uint32_t kSkinMaterial = 1;
 constexpr std::uint32_t kMaxSegments = 1u << 26;
-constexpr std::uint64_t kLockStreams = std::uint64_t{1} << 40;  // beyond the strands' own
+constexpr std::uint64_t kLockStreams = std::uint64_t{1} << 40;  // above the strands' stream numbers
 
 const V3f kHeadCentre(0, 0.12f, 0);
 const V3f kHeadRadii(0.075f, 0.115f, 0.095f);
@@ -30,17 +31,18 @@ struct HairShape {
   float curl = 0;
 };
 
-/// What the strands of one lock have in common.
+/// Values that all strands of one lock share.
 struct Lock {
   V3f root;  ///< direction from the head's centre, in the space where the head is a unit sphere
-  V3f sway;  ///< added to where gravity pulls
+  V3f sway;  ///< added to the direction of gravity
   V2f phase;
   float length = 0;
 };
 
 V3f on_head(V3f direction, float scale) { return kHeadCentre + direction * kHeadRadii * scale; }
 
-/// Whether hair grows there: above a line that is high over the face and low at the nape.
+/// Whether hair grows in a direction from the head's centre: it does above a line that is high at
+/// the face and low at the back of the neck.
 bool is_scalp(V3f direction) {
   const float face = std::clamp(direction.z + 0.35f, 0.0f, 1.0f);
   return direction.y > -0.45f + 0.95f * face;
@@ -63,12 +65,13 @@ Lock grow_lock(const HairShape& shape, std::uint32_t lock) {
   return grown;
 }
 
-/// Locks of some forty strands, but enough of them to cover the scalp.
+/// About one lock for each forty strands, but at least 400 locks (if there are as many strands), to
+/// cover the scalp, and at most 4000.
 std::uint32_t lock_count(std::uint32_t strands) {
   return std::clamp(strands / 40, std::min(strands, 400u), 4000u);
 }
 
-/// Outside of the head, `scale` times as large.
+/// Moves a point that is inside the head, enlarged by `scale`, out to its surface.
 V3f pushed_out(V3f point, float scale) {
   const V3f direction = (point - kHeadCentre) / kHeadRadii;
   const float distance = direction.length();
@@ -76,15 +79,16 @@ V3f pushed_out(V3f point, float scale) {
   return distance > 0 ? on_head(direction / distance, scale) : on_head(V3f(0, 1, 0), scale);
 }
 
-/// The turn of a curl from one segment to the next: no more than a sixth, whatever the segments.
+/// The rotation of a curl from one segment to the next, as cosine and sine; at most a sixth of a
+/// full turn.
 V2f curl_step(const HairShape& shape) {
   const double turns = 6.0 * shape.curl;
   const double angle = 2 * std::numbers::pi * std::min(turns / shape.segments, 1.0 / 6);
-  // In double and then rounded, so that libm's last bit does not reach the mesh.
+  // Double arithmetic, rounded at the end: differences in libm's last bit do not change the mesh.
   return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
 }
 
-/// Grows the core of a strand step by step and winds the strand around it.
+/// Computes the points of one strand: a core grows step by step, the strand winds around it.
 class Strand {
  public:
   Strand(const HairShape& shape, const Lock& lock, Pcg32& rng) : lock_(lock) {
@@ -98,7 +102,7 @@ class Strand {
     step_length_ = lock.length * rng.between(0.85f, 1.0f) / static_cast<float>(shape.segments);
     curl_radius_ = 0.009f * shape.curl * rng.between(0.8f, 1.2f);
     pull_ = 6.0f / static_cast<float>(shape.segments);
-    // Out of the face: from a parting to the sides, and back.
+    // Combs hair away from the face: from a parting to the sides and to the back.
     const float side = std::copysign(std::max(std::abs(root.x), 0.4f), root.x);
     comb_ = V3f(1.4f * side, 0, -2.2f * std::max(0.0f, root.z + 0.2f));
     frizz_ = unit_vector(rng) * 0.15f;
@@ -106,16 +110,17 @@ class Strand {
 
   [[nodiscard]] V3f root() const { return core_; }
 
-  /// The next point; `t` is how far along the strand it is, (0, 1].
+  /// Returns the next point; `t`, in (0, 1], is its position along the strand. `curl` is
+  /// curl_step()'s rotation.
   V3f grow(V2f curl, float t) {
     const V3f pull = V3f(0, -1, 0) + lock_.sway + frizz_ + comb_ * std::max(0.0f, 1 - 2 * t);
     V3f next = core_ + (along_ + pull * pull_).normalized() * step_length_;
-    // The layers of hair below carry it.
+    // Keeps the strand outside of the head and of the hair below it.
     next = pushed_out(next, 1.0f + (lift_ - 1.0f) * std::min(1.0f, 6 * t));
     const V3f moved = next - core_;
     along_ = moved.length2() > 0 ? moved.normalized() : along_;
     core_ = next;
-    // The frame is carried along without turning, as in append_tube().
+    // The frame moves without rotating about the strand, as in append_tube().
     const V3f carried = across_ - along_ * across_.dot(along_);
     across_ = carried.length2() > 1e-6f ? carried.normalized() : perpendicular(along_);
     turn_ = {turn_.x * curl.x - turn_.y * curl.y, turn_.x * curl.y + turn_.y * curl.x};
@@ -172,7 +177,7 @@ Mesh make_hair(const HairShape& shape) {
   HairMesh mesh(shape);
   const auto grow = [&](const tbb::blocked_range<std::uint32_t>& range) {
     for (std::uint32_t strand = range.begin(); strand < range.end(); ++strand) {
-      // Strands of one lock are neighbours in memory too.
+      // Strands of one lock are adjacent in memory.
       mesh.set(strand, locks[std::uint64_t{strand} * locks.size() / shape.strands]);
     }
   };
@@ -180,7 +185,7 @@ Mesh make_hair(const HairShape& shape) {
   return mesh.take();
 }
 
-/// A closed ellipsoid of rings around the vertical axis.
+/// Makes a closed ellipsoid from rings around the vertical axis.
 Mesh make_head() {
   constexpr int kRings = 48, kSides = 64;
   Mesh mesh;
@@ -208,7 +213,7 @@ Mesh make_head() {
     for (int side = 0; side < kSides; ++side) {
       const std::uint32_t a = vertex(ring, side), b = vertex(ring + 1, side),
                           c = vertex(ring + 1, side + 1), d = vertex(ring, side + 1);
-      // At the poles b and c, or a and d, are one.
+      // At the lower pole b and c are the same vertex, at the upper pole a and d.
       if (ring + 1 < kRings) mesh.indices.insert(mesh.indices.end(), {a, b, c});
       if (ring > 0) mesh.indices.insert(mesh.indices.end(), {a, c, d});
     }
@@ -217,7 +222,8 @@ Mesh make_head() {
   return mesh;
 }
 
-/// Whatever their number, as wide in all as a real head's 100,000 of radius 0.04 mm.
+/// The radius at the root, in metres. By default the sum of all strands' radii is that of a real
+/// head, with 100,000 strands of radius 0.04 mm.
 float radius_of(const ProceduralParameters& parameters) {
   if (const float given = parameters.real("radius"); given > 0) return given;
   return std::min(0.01f, 4.0f / static_cast<float>(parameters.whole("strands")));

@@ -1,5 +1,4 @@
-// Appends quads, squares, tubes and leaf blades to a mesh. In: corners, axes and radii in
-// metres; out: positions, indices and materials.
+// Appends quads, squares, tubes and leaf blades to a mesh: see mesh_shapes.hpp.
 #include "scene/procedural/mesh_shapes.hpp"
 
 #include <cassert>
@@ -21,7 +20,7 @@ std::uint32_t next_vertex(const Mesh& mesh) {
 
 void append_ring(Mesh& mesh, V3f centre, V3f u, V3f v, int sides) {
   for (int i = 0; i < sides; ++i) {
-    // In double and then rounded, so that libm's last bit does not reach the mesh.
+    // Double arithmetic, rounded at the end: differences in libm's last bit do not change the mesh.
     const double angle = 2 * std::numbers::pi * i / sides;
     mesh.positions.push_back(centre + u * static_cast<float>(std::cos(angle)) +
                              v * static_cast<float>(std::sin(angle)));
@@ -74,8 +73,8 @@ void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float>
   std::uint32_t lower = 0;
   for (std::size_t i = 0; i < last; ++i) {
     const V3f along = (points[i + 1] - points[i == 0 ? 0 : i - 1]).normalized();
-    // The ring is carried along without turning about the axis, so that the tube does not
-    // twist; where the path doubles back there is nothing to carry.
+    // The ring moves without rotating about the axis, so that the tube does not twist. Where `u`
+    // is parallel to the path, a new direction is taken.
     const V3f carried = u - along * u.dot(along);
     u = carried.length2() > 1e-6f ? carried.normalized() : perpendicular(along);
     const std::uint32_t ring = next_vertex(mesh);

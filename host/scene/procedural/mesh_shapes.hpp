@@ -1,5 +1,6 @@
-// The shapes that procedural scenes are put together from: quads, squares, leaf blades and
-// tapered tubes, appended to a Mesh. Units are metres; every triangle has an area.
+// The shapes that procedural scenes consist of: quads, squares, leaf blades and tapered tubes.
+// In: corners, axes and radii in metres; out: vertices, indices and materials appended to a Mesh.
+// Every triangle has an area.
 #pragma once
 
 #include <span>
@@ -8,7 +9,7 @@
 
 namespace dapple {
 
-/// Some unit vector across `direction` (of any length but zero).
+/// Returns one of the unit vectors perpendicular to `direction`, whose length must not be zero.
 V3f perpendicular(V3f direction);
 
 /// Appends two triangles a-b-c, a-c-d.
@@ -17,13 +18,13 @@ void append_quad(Mesh& mesh, V3f a, V3f b, V3f c, V3f d, std::uint32_t material)
 /// Appends a horizontal square facing up, centred at (0, y, 0).
 void append_square(Mesh& mesh, float side, float y, std::uint32_t material);
 
-/// Appends an open tube through `points` (two or more), whose radius at points[i] is radii[i],
-/// and which ends in a point at the last.
+/// Appends a tube through `points` (two or more) that is open at its beginning and ends in a point
+/// at the last one. Its radius at points[i] is radii[i]; the last radius is not used.
 void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float> radii, int sides,
                  std::uint32_t material);
 
-/// One leaf: a rhombus from `base` to `base + axis * length`, kBladeWidth times as wide as
-/// long and a little folded along its midrib, the edge that its two triangles share.
+/// One leaf: a rhombus from `base` to `base + axis * length`. Its width is kBladeWidth times its
+/// length. It is slightly folded along its midrib, the edge that its two triangles share.
 struct Blade {
   V3f base;
   V3f axis;    ///< unit
@@ -32,10 +33,10 @@ struct Blade {
 };
 
 inline constexpr float kBladeWidth = 0.55f;
-/// Area of a blade over the square of its length, the fold left out.
+/// Area of a blade divided by the square of its length, without the fold.
 inline constexpr float kBladeArea = kBladeWidth / 2;
 
-/// Places for `count` blades at the end of a mesh, to be filled in any order.
+/// Appends memory for `count` blades to a mesh; set() fills it in any order.
 class BladeRange {
  public:
   BladeRange(Mesh& mesh, std::size_t count, std::uint32_t material);

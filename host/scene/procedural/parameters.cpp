@@ -1,4 +1,4 @@
-// Reads and checks "key=value&key=value". Every complaint names the scene and the key.
+// Reads and checks "key=value&key=value": see parameters.hpp.
 #include "scene/procedural/parameters.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ double read_number(const std::string& scene, const ProceduralParameter& paramete
     throw Error(ErrorKind::usage,
                 fmt::format("{}: {}={} is not a number", scene, parameter.name, text));
   }
-  // Negated, so that a NaN is outside too.
+  // The comparison is negated, so that a NaN is outside too.
   if (!(value >= parameter.minimum && value <= parameter.maximum)) {
     throw Error(ErrorKind::usage,
                 fmt::format("{}: {}={} is outside [{}, {}]", scene, parameter.name, text,

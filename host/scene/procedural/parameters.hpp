@@ -1,4 +1,4 @@
-// The parameters of one procedural scene: "leaves=50000&opacity=0.85" checked against the
+// The parameters of one procedural scene, as in "leaves=50000&opacity=0.85", checked with the
 // scene's table. In: text from the command line; out: a value for every parameter.
 #pragma once
 
@@ -14,15 +14,15 @@ namespace dapple {
 
 class ProceduralParameters {
  public:
-  /// `query` is what follows the '?', or empty. Throws Error usage naming the scene, the key
-  /// and what is allowed.
+  /// `query` is the text after the '?', or empty. Throws Error usage; the message names the scene,
+  /// the key and the allowed values.
   ProceduralParameters(const ProceduralHelp& scene, std::string_view query,
                        std::optional<double> time = {});
 
   /// The value of a parameter of the scene's table.
   [[nodiscard]] float real(std::string_view name) const;
   [[nodiscard]] std::uint32_t whole(std::string_view name) const;
-  /// Seconds, of what moves; none: at rest.
+  /// The time in seconds; none: the scene is at rest.
   [[nodiscard]] std::optional<double> time() const { return time_; }
 
  private:

@@ -1,6 +1,6 @@
-// Randomness for procedural scenes: integers, +, -, *, / and sqrt only, so that a seed gives
-// the same bits on every machine (std distributions and libm's sines do not promise that).
-// In: a seed and a stream number; out: uniform numbers, points and directions.
+// Random numbers for procedural scenes. In: a seed and a stream number; out: uniform numbers,
+// points and directions. Only integers, +, -, *, / and sqrt are used, so that a seed gives the same
+// bits on every machine; std distributions and libm's sines do not guarantee that.
 #pragma once
 
 #include <cassert>
@@ -15,8 +15,8 @@ namespace dapple {
 /// Algorithms for Random Number Generation, 2014, section 6.3).
 class Pcg32 {
  public:
-  /// `stream` makes independent sequences of one seed: one a leaf, so that leaves can be made
-  /// in any order and on any thread.
+  /// Each `stream` of a seed is an independent sequence. Each leaf uses its own stream, so that
+  /// leaves can be made in any order and on any thread.
   explicit Pcg32(std::uint64_t seed, std::uint64_t stream = 0)
       : state_(mix(seed + mix(stream))), increment_(2 * mix(stream ^ seed) + 1) {}
 
@@ -41,8 +41,8 @@ class Pcg32 {
   }
 
  private:
-  // The finalizer of SplitMix64 (Steele et al., Fast Splittable Pseudorandom Number
-  // Generators, 2014): neighbouring seeds and streams start far apart.
+  // The finalizer of SplitMix64 (Steele et al., Fast Splittable Pseudorandom Number Generators,
+  // 2014). It gives very different states to consecutive seeds and streams.
   static std::uint64_t mix(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15ULL;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -54,7 +54,7 @@ class Pcg32 {
   std::uint64_t increment_;
 };
 
-/// Uniform in the unit ball, never its centre.
+/// Uniform in the unit ball, without a ball of radius 0.01 around the centre.
 inline V3f point_in_ball(Pcg32& rng) {
   for (;;) {
     const float x = rng.between(-1, 1);

@@ -1,4 +1,5 @@
-// The table of procedural scenes, and the way from "scene:NAME?key=value" to one of them.
+// The table of procedural scenes, and the function that makes one from "scene:NAME?key=value".
+// In: a name with parameters and a time; out: a scene.
 #include "scene/procedural/procedural.hpp"
 
 #include <fmt/format.h>
@@ -106,7 +107,7 @@ std::vector<Recipe> sheet_and_solid_recipes() {
   };
 }
 
-/// In the order in which `dapple scene` shows them.
+/// Makes the table, in the order of the output of `dapple scene`.
 std::vector<Recipe> make_recipes() {
   std::vector<Recipe> all = plant_recipes();
   all.push_back(hair_recipe());

@@ -1,5 +1,5 @@
-// What procedural scenes there are and what each can be told, for `dapple scene --help` and
-// for messages. The scenes themselves come from make_procedural in dapple/scene.hpp.
+// Lists the procedural scenes and their parameters, for `dapple scene --help` and for messages.
+// make_procedural() in dapple/scene.hpp makes the scenes.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct ProceduralHelp {
   std::vector<ProceduralParameter> parameters;
 };
 
-/// Every scene, in the order in which to show them.
+/// Returns every scene, in the order of the help text.
 std::vector<ProceduralHelp> procedural_help();
 
 }  // namespace dapple

@@ -1,4 +1,4 @@
-// One function a procedural scene; their parameters are in the table in procedural.cpp.
+// One function for each procedural scene; procedural.cpp has the table of their parameters.
 // In: checked parameters; out: a scene without a source name.
 #pragma once
 
@@ -7,26 +7,26 @@
 
 namespace dapple {
 
-// Foliage (procedural_foliage.cpp).
+// Foliage (foliage.cpp).
 Scene make_tree_scene(const ProceduralParameters& parameters);
 Scene make_cloud_scene(const ProceduralParameters& parameters);
 Scene make_forest_scene(const ProceduralParameters& parameters);
 Scene make_demo_scene(const ProceduralParameters& parameters);
 
-// Strands (procedural_hair.cpp).
+// Strands (hair.cpp).
 Scene make_hair_scene(const ProceduralParameters& parameters);
 
-// Shapes whose occlusion is known in closed form (procedural_solids.cpp).
+// Shapes whose occlusion is known in closed form (solids.cpp).
 Scene make_stack_scene(const ProceduralParameters& parameters);
 Scene make_disk_scene(const ProceduralParameters& parameters);
 Scene make_cube_scene(const ProceduralParameters& parameters);
 Scene make_greys_scene(const ProceduralParameters& parameters);
 
-/// A BLEND material of that opacity.
+/// Makes a material of alpha mode BLEND; `opacity` is in [0, 1].
 Material blend_material(const std::string& name, float opacity);
 Material opaque_material(const std::string& name);
 
-/// Adds `mesh` and places it once, where it is.
+/// Adds `mesh` and one instance of it, without a transformation.
 void place(Scene& scene, Mesh mesh);
 
 }  // namespace dapple

@@ -1,4 +1,5 @@
-// Procedural shapes whose occlusion is known in closed form: sheets, a disk, a solid cube.
+// Makes procedural shapes whose occlusion is known in closed form: sheets, a disk, a solid cube.
+// In: checked parameters; out: a scene.
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +12,7 @@ namespace {
 constexpr float kSheetSide = 2;
 constexpr float kGroundSide = 20;
 
-// Adds material "ground" and a square of it at y = 0.
+// Adds a material "ground" and a square with that material at y = 0.
 void add_test_ground(Scene& scene) {
   const auto material = static_cast<std::uint32_t>(scene.materials.size());
   scene.materials.push_back(opaque_material("ground"));
@@ -21,7 +22,7 @@ void add_test_ground(Scene& scene) {
   place(scene, std::move(ground));
 }
 
-// One face of the unit cube centred at the origin: the one that `out` points to.
+// Appends one face of the unit cube centred at the origin; `out` is the face's outward normal.
 void append_cube_face(Mesh& mesh, V3f out, int divisions) {
   const V3f u = perpendicular(out);
   const V3f v = out.cross(u);

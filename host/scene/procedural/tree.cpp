@@ -1,4 +1,4 @@
-// Puts wood around a tree's skeleton and leaves on its twigs.
+// Makes the wood around a tree's skeleton and the leaves on its twigs: see tree.hpp.
 #include "scene/procedural/tree.hpp"
 
 #include <tbb/blocked_range.h>
@@ -16,7 +16,7 @@
 namespace dapple {
 namespace {
 
-// One-sided leaf area over the ground under the crown; broad-leaved trees have 3 to 6.
+// One-sided leaf area divided by the ground area under the crown; broad-leaved trees have 3 to 6.
 constexpr float kLeafAreaIndex = 4.0f;
 
 float leaf_length(const TreeShape& shape) {
@@ -24,10 +24,10 @@ float leaf_length(const TreeShape& shape) {
   const float crown_radius = kCrownRadius * shape.height_m;
   const float area = kLeafAreaIndex * std::numbers::pi_v<float> * crown_radius * crown_radius;
   const float length = std::sqrt(area / (kBladeArea * static_cast<float>(shape.leaves)));
-  return std::min(length, 0.03f * shape.height_m);  // a handful of leaves stays leaves
+  return std::min(length, 0.03f * shape.height_m);  // limits the size when there are few leaves
 }
 
-// The child that carries a branch on: its thickest; 0 for none.
+// Finds for each node the child that continues its branch, the thickest one; 0 for none.
 std::vector<std::uint32_t> find_leaders(const TreeSkeleton& tree) {
   std::vector<std::uint32_t> leaders(tree.size(), 0);
   for (std::uint32_t node = 1; node < tree.size(); ++node) {
@@ -42,7 +42,8 @@ int sides_of(float radius, float trunk_radius) {
   return share > 0.5f ? 12 : share > 0.25f ? 7 : share > 0.12f ? 5 : 3;
 }
 
-/// Carries the tube that begins at vertex `first`, whose rings are around `nodes`, from rest.
+/// Moves the vertices of a tube from their rest positions. The tube begins at vertex `first`, and
+/// its rings are around `nodes`.
 void sway_tube(Mesh& mesh, std::size_t first, const std::vector<std::uint32_t>& nodes, int sides,
                const SwayingSkeleton& swaying) {
   for (std::size_t v = first; v < mesh.positions.size(); ++v) {
@@ -51,8 +52,8 @@ void sway_tube(Mesh& mesh, std::size_t first, const std::vector<std::uint32_t>& 
   }
 }
 
-// Every branch is a tube from its parent's axis to its tip, with as many sides as its
-// thickness deserves.
+// Appends one tube for each branch, from its parent's axis to its tip. Thicker branches have more
+// sides.
 void append_wood(Mesh& mesh, const TreeSkeleton& tree, const SwayingSkeleton* swaying,
                  std::uint32_t material) {
   const std::vector<std::uint32_t> leaders = find_leaders(tree);
@@ -78,8 +79,8 @@ void append_wood(Mesh& mesh, const TreeSkeleton& tree, const SwayingSkeleton* sw
   }
 }
 
-// Leaves stand around their twig, point away from it and hang a little; their upper sides
-// seek the sky, each in its own way.
+// Makes a leaf near its twig that points away from it and hangs down a little. Its upper side
+// faces roughly up, with a random deviation. `reach` is the largest distance from the twig, metres.
 Blade grow_leaf(Pcg32& rng, V3f twig, V3f twig_foot, float reach, float length) {
   const V3f along = twig_foot + (twig - twig_foot) * rng.unit();
   const V3f offset = point_in_ball(rng);
@@ -91,7 +92,7 @@ Blade grow_leaf(Pcg32& rng, V3f twig, V3f twig_foot, float reach, float length) 
   V3f up = V3f(0, 1, 0) + lean * 0.9f;
   up -= blade.axis * up.dot(blade.axis);
   blade.normal = up.length2() > 1e-6f ? up.normalized() : perpendicular(blade.axis);
-  // A leaf whose axis cancelled out has none: give it one that is at right angles to up.
+  // When the sum for the axis is zero, the axis is any direction perpendicular to the normal.
   if (blade.axis.length2() < 0.5f) blade.axis = perpendicular(blade.normal);
   blade.length = length * rng.between(0.75f, 1.25f);
   return blade;
@@ -111,7 +112,7 @@ void append_leaves(Mesh& mesh, const TreeSkeleton& tree, const SwayingSkeleton* 
   const float reach = 0.034f * shape.height_m;
   const auto grow = [&](const tbb::blocked_range<std::uint32_t>& range) {
     for (std::uint32_t leaf = range.begin(); leaf < range.end(); ++leaf) {
-      // Leaves of one twig are neighbours in memory too.
+      // Leaves of one twig are adjacent in memory.
       const std::uint64_t twig_count = tree.twigs.size();
       const std::uint32_t twig = tree.twigs[leaf * twig_count / shape.leaves];
       Pcg32 rng(shape.seed, leaf);

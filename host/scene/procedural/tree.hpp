@@ -1,5 +1,5 @@
-// A broad-leaved tree as one mesh. In: how many leaves, how tall, which seed; out: triangles
-// of two materials, the wood first, then two triangles a leaf.
+// Makes a broad-leaved tree as one mesh. In: number of leaves, height, seed, wind; out: triangles
+// of two materials, first those of the wood, then two for each leaf.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ struct TreeShape {
   std::uint32_t leaves = 50000;
   std::uint32_t seed = 1;
   float height_m = 8;
-  float leaf_length_m = 0;  ///< 0: so that the leaf area index is a real crown's
+  float leaf_length_m = 0;  ///< 0: chosen for the leaf area index of a real crown
   bool wood = true;
-  Wind wind;  ///< that sways it
+  Wind wind;
 };
 
 struct TreeMaterials {
@@ -23,8 +23,9 @@ struct TreeMaterials {
   std::uint32_t bark = 1;
 };
 
-/// Y up, the trunk's foot at the origin. The same bits for the same shape, on any machine and
-/// any number of threads; the same vertices and triangles, in number and order, in any wind.
+/// +Y is up, the trunk's foot is at the origin. The same shape gives the same bits on any machine
+/// and with any number of threads. The wind does not change the number and order of vertices and
+/// triangles.
 Mesh make_tree(const TreeShape& shape, const TreeMaterials& materials);
 
 }  // namespace dapple

@@ -1,6 +1,6 @@
-// Grows branches towards points scattered in the crown, after Runions, Lane, Prusinkiewicz,
-// Modeling Trees with a Space Colonization Algorithm, 2007; then thickens them from the tips
-// down. Everything is grown at a height of 1 and scaled at the end.
+// Grows branches towards points in the crown (Runions, Lane, Prusinkiewicz, Modeling Trees with a
+// Space Colonization Algorithm, 2007), then computes their radii from the tips to the trunk.
+// Lengths are relative to the tree's height until the end: see tree_skeleton.hpp.
 #include "scene/procedural/tree_skeleton.hpp"
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace dapple {
 namespace {
 
 constexpr float kCrownBottom = 0.2f;
-constexpr float kTrunkTop = 0.42f;  // from there up the crown is all branches
+constexpr float kTrunkTop = 0.42f;  // above it there are only branches
 constexpr float kStep = 0.021f;     // length of a branch segment
-constexpr float kReached = 0.04f;   // an attractor this near to a branch is served
+constexpr float kReached = 0.04f;   // an attractor this close to a branch is removed
 constexpr float kTrunkRadius = 0.02f;
-constexpr int kBoughs = 80;  // clumps of foliage that the eye can tell apart
+constexpr int kBoughs = 80;  // visibly separate clumps of foliage
 constexpr int kAttractors = 1150;
 constexpr std::size_t kMaxNodes = 20000;
 constexpr int kMaxChildren = 3;
@@ -30,7 +30,7 @@ struct Attractor {
 
 struct Growth {
   TreeSkeleton tree;
-  std::vector<std::uint32_t> last_child;  // of each node; 0 is none
+  std::vector<std::uint32_t> last_child;  // of each node; 0 means none
   std::vector<int> child_count;
 
   void add(V3f position, std::uint32_t parent) {
@@ -45,7 +45,8 @@ struct Growth {
   }
 };
 
-// How far out `point` is in the egg-shaped crown: 0 on the axis, 1 at the surface.
+// The distance of `point` from the axis, relative to the egg-shaped crown: 0 on the axis, 1 at the
+// surface.
 float crown_fraction(V3f point) {
   const float t = (point.y - kCrownBottom) / (1 - kCrownBottom);
   if (t <= 0 || t >= 1) return std::numeric_limits<float>::max();
@@ -64,8 +65,8 @@ V3f point_in_crown(Pcg32& rng, float inner, float outer) {
   }
 }
 
-// Attractors come in boughs, most of them near the surface where the light is: scattered
-// evenly they make a ball on a stick.
+// Attractors are grouped in boughs, most of them near the crown's surface. A uniform distribution
+// would make the crown look like a ball.
 std::vector<Attractor> scatter_attractors(Pcg32& rng) {
   std::vector<V3f> boughs;
   for (int i = 0; i < kBoughs; ++i) {
@@ -104,7 +105,8 @@ void find_nearest(std::vector<Attractor>& attractors, const TreeSkeleton& tree,
   }
 }
 
-// A node between two attractors would otherwise grow the same child again and again.
+// Whether a node must not get another child at `position`: it has three children, or its last child
+// is very close. Otherwise a node between two attractors would get the same child again and again.
 bool is_crowded(const Growth& growth, std::uint32_t node, V3f position) {
   if (growth.child_count[node] >= kMaxChildren) return true;
   if (growth.child_count[node] == 0) return false;
@@ -115,12 +117,13 @@ bool is_crowded(const Growth& growth, std::uint32_t node, V3f position) {
 V3f growth_direction(const TreeSkeleton& tree, std::uint32_t node, V3f pull, Pcg32& rng) {
   const V3f wander = unit_vector(rng);
   const V3f came_from = tree.positions[node] - tree.positions[tree.parents[node]];
-  // Branches keep some of their way and strive up: that bends them as a tree's do.
+  // The old direction and the upward direction have a part in the new one, so that branches bend
+  // like those of a real tree.
   return (pull.normalized() + came_from.normalized() * 0.35f + V3f(0, 0.18f, 0) + wander * 0.22f)
       .normalized();
 }
 
-// One step of every branch that something attracts. Returns whether anything grew.
+// Grows one step at every node that attractors pull on. Returns whether a node was added.
 bool extend_branches(Growth& growth, const std::vector<Attractor>& attractors, Pcg32& rng) {
   const std::size_t count = growth.tree.size();
   std::vector<V3f> pulls(count, V3f(0, 0, 0));
@@ -137,7 +140,8 @@ bool extend_branches(Growth& growth, const std::vector<Attractor>& attractors, P
   return growth.tree.size() > count;
 }
 
-// Cross-sections add up where branches join (da Vinci's rule).
+// Computes radii: a branch's cross-section is the sum of its children's (da Vinci's rule). Nodes
+// with a small cross-section become twigs.
 void thicken(TreeSkeleton& tree) {
   std::vector<float> section(tree.size(), 0.0f);
   std::vector<bool> is_tip(tree.size(), true);
@@ -157,7 +161,7 @@ void thicken(TreeSkeleton& tree) {
 }  // namespace
 
 TreeSkeleton grow_skeleton(std::uint32_t seed, float height_m) {
-  Pcg32 rng(seed, 0x736b656c65746f6eULL);  // a stream that no leaf number reaches
+  Pcg32 rng(seed, 0x736b656c65746f6eULL);  // a stream number above those of the leaves
   std::vector<Attractor> attractors = scatter_attractors(rng);
   Growth growth;
   raise_trunk(growth, rng);

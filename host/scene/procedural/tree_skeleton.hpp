@@ -1,5 +1,5 @@
-// The wood of a broad-leaved tree as a graph: where branches go and how thick they are.
-// In: a seed and a height; out: nodes with parents and radii, in metres.
+// The wood of a broad-leaved tree as a graph of nodes. In: a seed and a height; out: positions,
+// parents and radii of the nodes, in metres.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace dapple {
 
-/// Node 0 is the trunk's foot, at the origin, and its own parent; every other node comes
-/// after its parent.
+/// Node 0 is the trunk's foot, at the origin; it is its own parent. Every other node has a larger
+/// number than its parent.
 struct TreeSkeleton {
   std::vector<V3f> positions;
   std::vector<std::uint32_t> parents;
@@ -20,7 +20,7 @@ struct TreeSkeleton {
   [[nodiscard]] std::size_t size() const { return positions.size(); }
 };
 
-/// Greatest radius of the crown, over the tree's height.
+/// Approximate largest radius of the crown, divided by the tree's height.
 inline constexpr float kCrownRadius = 0.33f;
 
 TreeSkeleton grow_skeleton(std::uint32_t seed, float height_m);

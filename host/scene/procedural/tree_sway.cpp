@@ -1,5 +1,5 @@
-// Bending from the foot to the tips: see tree_sway.hpp. All is worked out in double and rounded
-// once, so that libm's last bit does not reach the mesh.
+// Bends a tree from the foot to the tips: see tree_sway.hpp. Double arithmetic, rounded at the end:
+// differences in libm's last bit do not change the mesh.
 #include "scene/procedural/tree_sway.hpp"
 
 #include <algorithm>
@@ -14,15 +14,15 @@ namespace {
 using Imath::Quatd;
 using Imath::V3d;
 
-constexpr double kBend = 1.1;        // radians over a tree's height, of the thinnest limb
+constexpr double kBend = 1.1;        // radians per tree height, for the thinnest limb
 constexpr double kFlutter = 0.22;    // radians
-constexpr double kMaxFlutter = 0.6;  // radians: beyond, leaves would spin
-constexpr std::uint64_t kFlutterStreams = std::uint64_t{1} << 41;  // beyond the leaves' own
+constexpr double kMaxFlutter = 0.6;  // radians; with larger angles leaves would seem to spin
+constexpr std::uint64_t kFlutterStreams = std::uint64_t{1} << 41;  // above the leaves' streams
 
-/// A wave that runs through the crown.
+/// A wave that travels through the crown.
 struct Gust {
   double hertz;
-  V3d waves;  ///< radians over a tree's height
+  V3d waves;  ///< wave vector, radians per tree height
   double phase;
 };
 
@@ -30,8 +30,8 @@ double at(const Gust& gust, const V3d& place, double seconds) {
   return std::sin(2 * std::numbers::pi * gust.hertz * seconds - gust.waves.dot(place) + gust.phase);
 }
 
-/// The force on a limb at `place`, in tree heights; slow gusts reach thick and thin limbs, quick
-/// ones thin limbs only.
+/// The force on a limb at `place` (in tree heights). Slow gusts act on thick and thin limbs, the
+/// quick one mainly on thin limbs. `thinness` is 0 for the trunk's foot and up to 1.
 V3d wind_force(const V3d& place, double thinness, const Wind& wind) {
   static const Gust kAlong[] = {{0.17, {1.3, 0.2, 0.4}, 0.0}, {0.43, {2.9, 0.5, 1.1}, 1.9}};
   static const Gust kAcross[] = {{0.29, {1.7, 0.9, 1.5}, 4.1}, {0.71, {3.7, 1.3, 2.3}, 0.7}};
@@ -44,7 +44,7 @@ V3d wind_force(const V3d& place, double thinness, const Wind& wind) {
   return V3d(along, 0, across) * wind.strength;
 }
 
-/// By the rotation vector: its direction is the axis, its length the angle in radians.
+/// The rotation of a rotation vector: its direction is the axis, its length the angle in radians.
 Quatd turn_by(const V3d& rotation) {
   const double angle = rotation.length();
   if (angle < 1e-12) return {};
@@ -66,8 +66,8 @@ SwayingSkeleton::SwayingSkeleton(const TreeSkeleton& rest, float height_m, const
     const std::uint32_t parent = rest.parents[node];
     const V3d limb = V3d(rest.positions[node]) - V3d(rest.positions[parent]);
     const V3d now = rotated(tickets_[parent], limb);
-    // A branch is stiff at the trunk and gives way at its tips; it streams with the wind, which has
-    // no hold on it where it points along it already.
+    // A limb is stiff where it is thick and bends where it is thin. The wind turns it towards the
+    // direction of the force; a limb that already points there does not turn.
     const double thinness =
         std::clamp(1.0 - double{rest.radii[node]} / double{rest.radii[0]}, 0.0, 1.0);
     const double give = kBend * (0.06 + 0.94 * thinness * thinness) / double{height_m};

@@ -1,6 +1,6 @@
 // A tree in the wind: limbs bend along their length, leaves flutter. In: a skeleton at rest, a wind
-// and a time; out: where each of its nodes carries what is around it. Smooth in time and in space,
-// and a function of both alone: any frame may be made without those before it.
+// and a time; out: how each node moves and turns the points around it. The motion is smooth in time
+// and space and depends on nothing else, so that each frame can be made without earlier frames.
 #pragma once
 
 #include <Imath/ImathQuat.h>
@@ -12,9 +12,9 @@
 
 namespace dapple {
 
-/// Blows along +X.
+/// Wind along +X.
 struct Wind {
-  double strength = 0;  ///< 0: calm, 1: branches toss
+  double strength = 0;  ///< 0: calm, 1: branches move strongly
   double seconds = 0;
 
   [[nodiscard]] bool blows() const { return strength > 0; }
@@ -22,12 +22,12 @@ struct Wind {
 
 class SwayingSkeleton {
  public:
-  /// Refers to `rest`. The trunk's foot stays where it is.
+  /// Keeps a reference to `rest`, which must outlive this. The trunk's foot does not move.
   SwayingSkeleton(const TreeSkeleton& rest, float height_m, const Wind& wind);
 
-  /// Where a point goes that is at `rest` while `node` is at rest.
+  /// The moved position of a point that is attached to `node` and is at `rest` when the tree is.
   [[nodiscard]] V3f moved(std::uint32_t node, V3f rest) const;
-  /// The same of a unit direction.
+  /// The same for a unit direction.
   [[nodiscard]] V3f turned(std::uint32_t node, V3f rest) const;
 
  private:
@@ -36,7 +36,8 @@ class SwayingSkeleton {
   std::vector<Imath::Quatd> tickets_;
 };
 
-/// A leaf, where its twig carries it, turned about its axis and nodding, each in its own way.
+/// Turns a leaf that its twig has already moved: about its axis and up and down, with frequencies
+/// and phases that depend on `seed` and `leaf`.
 Blade flutter(const Blade& blade, const Wind& wind, std::uint32_t seed, std::uint32_t leaf);
 
 }  // namespace dapple

@@ -1,0 +1,45 @@
+#include "bake/occluder_scene.hpp"
+
+#include "render/stopwatch.hpp"
+
+namespace dapple {
+
+void append_scene(Scene& scene, const Scene& other) {
+  const auto textures = static_cast<int>(scene.textures.size());
+  const auto materials = static_cast<std::uint32_t>(scene.materials.size());
+  const auto meshes = static_cast<std::uint32_t>(scene.meshes.size());
+  scene.textures.insert(scene.textures.end(), other.textures.begin(), other.textures.end());
+  for (Material material : other.materials) {
+    if (material.alpha_texture >= 0) material.alpha_texture += textures;
+    scene.materials.push_back(std::move(material));
+  }
+  for (Mesh mesh : other.meshes) {
+    for (std::uint32_t& material : mesh.materials) material += materials;
+    scene.meshes.push_back(std::move(mesh));
+  }
+  for (Instance instance : other.instances) {
+    instance.mesh += meshes;
+    instance.light = -1;
+    scene.instances.push_back(instance);
+  }
+}
+
+OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
+                             const std::vector<Scene>& others)
+    : device(options.device, options.kernel_dir) {
+  for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
+  scene.lights.clear();
+  for (Instance& instance : scene.instances) instance.light = -1;
+  for (const Scene& other : others) append_scene(scene, other);
+  if (options.ground) add_ground(scene);
+  merge_single_instances(scene);
+  const Stopwatch building;
+  bvh = build_bvh(scene, options.cache);
+  build_seconds = building.seconds();
+  const Stopwatch uploading;
+  uploaded = upload(device, scene, bvh);
+  upload_seconds = uploading.seconds();
+  for (std::string& warning : scene.warnings) notes.push_back(std::move(warning));
+}
+
+}  // namespace dapple

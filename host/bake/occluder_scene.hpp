@@ -1,0 +1,29 @@
+// What a bake traces against: the scene, other occluders and the ground, built and uploaded. In:
+// scenes and options. Out: an uploaded scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dapple/bake.hpp"
+#include "dapple/bvh.hpp"
+#include "dapple/device.hpp"
+
+namespace dapple {
+
+struct OccluderScene {
+  /// Throws Error usage, input, device or failed.
+  OccluderScene(Scene scene, const BakeOptions& options, const std::vector<Scene>& others);
+
+  Device device;
+  SceneBvh bvh;
+  DeviceScene uploaded;
+  double build_seconds = 0, upload_seconds = 0;
+  std::vector<std::string> notes;
+};
+
+/// Appends the meshes, materials, textures and instances of `other` to `scene`; not its lights and
+/// cameras.
+void append_scene(Scene& scene, const Scene& other);
+
+}  // namespace dapple

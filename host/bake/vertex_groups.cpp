@@ -1,0 +1,108 @@
+#include "bake/vertex_groups.hpp"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+namespace dapple {
+namespace {
+
+/// Cosine of the angle up to which normals are similar: 45 degrees.
+constexpr float kSimilar = 0.70710678f;
+
+/// Groups at one position among which a vertex's is searched.
+constexpr std::ptrdiff_t kMaxSearched = 64;
+
+/// Sum of the area vectors of the triangles around each vertex.
+std::vector<V3f> vertex_normals(const Mesh& mesh) {
+  std::vector<V3f> normals(mesh.positions.size(), V3f(0, 0, 0));
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+    const V3f area = area_vector(mesh, t);
+    for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner)
+      normals[mesh.indices[corner]] += area;
+  }
+  for (V3f& normal : normals) normal.normalize();
+  return normals;
+}
+
+bool same_position(const V3f& a, const V3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// Orders positions by their bits, equal ones by vertex.
+std::vector<std::uint32_t> order_by_position(const std::vector<V3f>& positions) {
+  std::vector<std::uint32_t> order(positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const int compared = std::memcmp(&positions[a], &positions[b], sizeof(V3f));
+    return compared != 0 ? compared < 0 : a < b;
+  });
+  return order;
+}
+
+/// Root of a union-find forest, with path halving.
+std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t node) {
+  while (parents[node] != node) node = parents[node] = parents[parents[node]];
+  return node;
+}
+
+}  // namespace
+
+V3f area_vector(const Mesh& mesh, std::size_t triangle) {
+  const std::uint32_t* corner = &mesh.indices[3 * triangle];
+  const V3f& a = mesh.positions[corner[0]];
+  return (mesh.positions[corner[1]] - a).cross(mesh.positions[corner[2]] - a);
+}
+
+VertexGroups group_vertices(const Mesh& mesh, bool two_sided) {
+  const std::vector<V3f> normals = vertex_normals(mesh);
+  const std::vector<std::uint32_t> order = order_by_position(mesh.positions);
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> first(mesh.positions.size(), kNone);  // vertex that began the group
+  const auto similar = [&](std::uint32_t a, std::uint32_t b) {
+    const float cosine = normals[a].dot(normals[b]);
+    return (two_sided ? std::fabs(cosine) : cosine) >= kSimilar;
+  };
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    while (end < order.size() &&
+           same_position(mesh.positions[order[begin]], mesh.positions[order[end]]))
+      ++end;
+    std::vector<std::uint32_t> firsts;  // few: the sides of an edge or corner
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t vertex = order[i];
+      // Only the last ones are searched, so that no file makes this quadratic.
+      const auto begin_search = static_cast<std::ptrdiff_t>(firsts.size()) > kMaxSearched
+                                    ? firsts.end() - kMaxSearched
+                                    : firsts.begin();
+      const auto found = std::find_if(begin_search, firsts.end(),
+                                      [&](std::uint32_t f) { return similar(f, vertex); });
+      first[vertex] = found == firsts.end() ? vertex : *found;
+      if (first[vertex] == vertex) firsts.push_back(vertex);
+    }
+  }
+  VertexGroups groups;
+  groups.of_vertex.resize(first.size());
+  for (std::uint32_t vertex = 0; vertex < first.size(); ++vertex)
+    groups.of_vertex[vertex] = first[vertex] == vertex ? static_cast<std::uint32_t>(groups.count++)
+                                                       : groups.of_vertex[first[vertex]];
+  return groups;
+}
+
+std::vector<std::uint32_t> connected_parts(const Mesh& mesh, const VertexGroups& groups) {
+  std::vector<std::uint32_t> parents(groups.count);
+  std::iota(parents.begin(), parents.end(), 0u);
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+    const std::uint32_t* corner = &mesh.indices[3 * t];
+    for (int i = 1; i < 3; ++i) {
+      const std::uint32_t a = root_of(parents, groups.of_vertex[corner[0]]);
+      const std::uint32_t b = root_of(parents, groups.of_vertex[corner[i]]);
+      parents[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (std::uint32_t group = 0; group < parents.size(); ++group)
+    parents[group] = root_of(parents, group);
+  return parents;
+}
+
+}  // namespace dapple

@@ -1,0 +1,30 @@
+// Groups the vertices of a mesh that are one point of its surface: at the same position, with
+// similar normals. Exporters split vertices at seams of textures; baked values must not differ
+// there.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+struct VertexGroups {
+  std::vector<std::uint32_t> of_vertex;  ///< group of each vertex
+  std::size_t count = 0;
+};
+
+/// Groups by the mean normals of the triangles around each vertex: within 45 degrees of the group's
+/// first vertex. Groups are numbered by their first vertex. With `two_sided`, opposite normals
+/// count as equal. Linear in the vertices but for a sort.
+VertexGroups group_vertices(const Mesh& mesh, bool two_sided);
+
+/// For each group the connected part of the mesh that it belongs to: groups joined by triangles.
+/// Parts are numbered by their first group.
+std::vector<std::uint32_t> connected_parts(const Mesh& mesh, const VertexGroups& groups);
+
+/// Cross product of two edges of a triangle: along the front side's normal, twice the area long.
+V3f area_vector(const Mesh& mesh, std::size_t triangle);
+
+}  // namespace dapple

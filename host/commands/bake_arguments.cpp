@@ -1,0 +1,133 @@
+#include "commands/bake_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "commands/option_text.hpp"
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+template <class T>
+T choice(const char* flag, const std::string& text, const std::map<std::string, T>& choices) {
+  const auto found = choices.find(text);
+  if (found != choices.end()) return found->second;
+  std::string known;
+  for (const auto& [name, value] : choices) known += (known.empty() ? "" : ", ") + name;
+  throw Error(ErrorKind::usage, fmt::format("{} is \"{}\"; it can be {}", flag, text, known));
+}
+
+}  // namespace
+
+void add_bake_options(CLI::App& app, BakeArguments& a) {
+  BakeOptions& o = a.options;
+  app.add_option("SCENE", a.scene,
+                 "glTF file (.gltf, .glb) or a procedural scene, \"scene:tree?leaves=50000\"")
+      ->required();
+  app.add_option("-o,--output", a.output,
+                 "glTF file to write, .glb or .gltf: SCENE with what was baked")
+      ->required();
+  app.add_option("--to", a.to, "vertex: values at vertices; instance: a value for each placement")
+      ->capture_default_str();
+  app.add_option("--passes", a.passes,
+                 "ao; or ao,bent: bent normals, the mean unoccluded direction, too")
+      ->capture_default_str();
+  app.add_option("--channel", a.channel,
+                 "Where AO goes: COLOR_0.rgb, COLOR_0.r, .g, .b or .a, or an attribute of its own "
+                 "such as _AO")
+      ->capture_default_str();
+  app.add_option("--blend", a.blend, "With a colour that is there: multiply or replace")
+      ->capture_default_str();
+  app.add_option("--rays", o.rays, "Rays of each triangle, on each side that counts")
+      ->capture_default_str();
+  app.add_option("--at", a.at,
+                 "triangles: rays start all over the triangles around a vertex; vertices: at the "
+                 "vertex alone")
+      ->capture_default_str();
+  app.add_option("--sides", a.sides,
+                 "Side of a surface: front, max (the brighter one) or mean; auto: max for "
+                 "double-sided materials, front for others")
+      ->capture_default_str();
+  app.add_option("--instances", a.instances,
+                 "Meshes that are placed several times: together, the mean over all placements; "
+                 "alone, without the rest of the scene")
+      ->capture_default_str();
+  app.add_option("--estimator", a.estimator,
+                 "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the "
+                 "ray's footprint covers")
+      ->capture_default_str();
+  app.add_option("--footprint", o.footprint,
+                 "Footprint scale: larger is faster and less noisy, 0 is exact")
+      ->capture_default_str();
+  app.add_option("--ao-distance", o.distance,
+                 "Surfaces farther than this, in metres, don't occlude; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--ao-falloff", o.falloff,
+                 "Power p: a surface at t counts (1 - t / distance)^p; 0: a hard limit")
+      ->capture_default_str();
+  app.add_option("--opacity", a.opacity,
+                 "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
+  app.add_option("--occluders", a.occluders,
+                 "glTF files that occlude and are not baked; may be repeated");
+  app.add_flag("--ground", o.ground, "An opaque plane under the scene occludes");
+  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
+  app.add_flag("--allow-outside", a.scene_options.allow_outside,
+               "Let a glTF file name buffers and images outside of its folder");
+  app.add_option("--device", o.device, "OpenCL device, by part of its name (see dapple devices)");
+  app.add_option("--kernel-dir", o.kernel_dir,
+                 "Read OpenCL kernels from this folder (for developers)");
+  app.add_option("--cache", o.cache, "Keep built BVHs in this folder and reuse them");
+  app.add_option("--stats-json", a.stats_json, "Write the statistics as JSON");
+  app.add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
+  app.footer(
+      "Example:\n  dapple bake tree.glb -o tree_ao.glb\n"
+      "  dapple bake tree.glb -o tree_ao.glb --passes ao,bent --channel _AO --ground\n"
+      "  dapple bake forest.glb -o forest_ao.glb --to instance");
+}
+
+BakeOptions to_options(const BakeArguments& a) {
+  BakeOptions o = a.options;
+  const bool instance = choice<bool>("--to", a.to, {{"vertex", false}, {"instance", true}});
+  o.vertices = !instance;
+  o.instances = instance;
+  o.bent =
+      choice<bool>("--passes", a.passes, {{"ao", false}, {"ao,bent", true}, {"bent,ao", true}});
+  o.at_vertices = choice<bool>("--at", a.at, {{"triangles", false}, {"vertices", true}});
+  o.sides = choice<BakeSides>("--sides", a.sides,
+                              {{"auto", BakeSides::automatic},
+                               {"front", BakeSides::front},
+                               {"max", BakeSides::max},
+                               {"mean", BakeSides::mean}});
+  o.placement = choice<BakeInstances>(
+      "--instances", a.instances,
+      {{"together", BakeInstances::together}, {"alone", BakeInstances::alone}});
+  choice<bool>("--blend", a.blend, {{"multiply", true}, {"replace", false}});
+  o.estimator = parse_estimator(a.estimator);
+  for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
+  if (instance && o.bent)
+    throw Error(ErrorKind::usage, "--passes bent needs --to vertex: an instance has one AO value");
+  parse_channel(a.channel);
+  validate(o);
+  return o;
+}
+
+BakeChannel parse_channel(const std::string& text) {
+  const std::size_t dot = text.find('.');
+  const BakeChannel channel{text.substr(0, dot),
+                            dot == std::string::npos ? "" : text.substr(dot + 1)};
+  const bool color =
+      channel.attribute == "COLOR_0" &&
+      (channel.components == "rgb" || channel.components == "r" || channel.components == "g" ||
+       channel.components == "b" || channel.components == "a");
+  const bool own = channel.attribute.size() > 1 && channel.attribute[0] == '_' &&
+                   dot == std::string::npos && channel.attribute != "_BENT_NORMAL";
+  if (color || own) return channel;
+  throw Error(ErrorKind::usage,
+              fmt::format("--channel is \"{}\"; it can be COLOR_0.rgb, COLOR_0.r, COLOR_0.g, "
+                          "COLOR_0.b, COLOR_0.a or a name that begins with _, such as _AO",
+                          text));
+}
+
+}  // namespace dapple

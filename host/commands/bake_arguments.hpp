@@ -1,0 +1,34 @@
+// The options of `dapple bake`, as typed.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "dapple/bake.hpp"
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// Where AO goes: "COLOR_0.rgb" as {"COLOR_0", "rgb"}, "_AO" as {"_AO", ""}.
+struct BakeChannel {
+  std::string attribute, components;
+};
+
+struct BakeArguments {
+  std::string scene, output, stats_json;
+  std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply";
+  std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";
+  std::vector<std::string> opacity, occluders;
+  SceneOptions scene_options;
+  BakeOptions options;
+  bool quiet = false;
+};
+
+void add_bake_options(CLI::App& app, BakeArguments& a);
+
+/// Throws Error usage, naming the flag.
+BakeOptions to_options(const BakeArguments& a);
+BakeChannel parse_channel(const std::string& text);
+
+}  // namespace dapple

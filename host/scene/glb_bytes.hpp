@@ -1,0 +1,16 @@
+// Writes a GLB container (glTF 2.0 Specification, section 4). In: JSON text and the binary chunk.
+// Out: a file.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace dapple {
+
+/// The binary chunk is the sections one after the other; its size must be a multiple of 4. Throws
+/// Error failed when the file cannot be written or would be larger than GLB's 32-bit lengths.
+void write_glb_bytes(const std::string& path, std::string json,
+                     std::span<const std::string_view> binary);
+
+}  // namespace dapple

@@ -1,0 +1,177 @@
+// dapple bake, from file to file: what was in a glTF file stays in it, values are where they were
+// asked for, and errors leave nothing behind.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "dapple/scene.hpp"
+#include "support/gltf_builder.hpp"
+#include "support/program_run.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using nlohmann::json;
+using program_test::Outcome;
+using test::GltfBuilder;
+
+class BakeCommand : public program_test::ProgramRun {
+ protected:
+  void write(const std::string& name, const test::Bytes& bytes) const {
+    std::ofstream(path(name), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  }
+  [[nodiscard]] json document(const std::string& name) const {
+    const std::string bytes = bytes_of(path(name));
+    if (bytes.substr(0, 4) != "glTF") return json::parse(bytes);
+    std::uint32_t length = 0;
+    std::memcpy(&length, bytes.data() + 12, 4);
+    return json::parse(bytes.substr(20, length));
+  }
+};
+
+// A triangle with much around it that dapple does not know.
+GltfBuilder rich_triangle() {
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.doc["meshes"][0]["primitives"][0]["attributes"]["_TEMPERATURE"] =
+      builder.add_accessor(std::vector<float>{1, 2, 3}, test::kFloat, "SCALAR");
+  builder.doc["meshes"][0]["extras"] = {{"season", "autumn"}, {"leaves", {1, 2.5, nullptr}}};
+  builder.doc["nodes"][0]["name"] = "twig";
+  builder.doc["extensionsUsed"] = {"ACME_wind"};
+  builder.doc["extensions"]["ACME_wind"] = {{"speed", 3.25}};
+  builder.doc["asset"]["copyright"] = "nobody";
+  return builder;
+}
+
+TEST_F(BakeCommand, KeepsEverythingElseInTheFile) {
+  write("in.glb", rich_triangle().glb());
+  const Outcome run = dapple("bake in.glb -o out.glb");
+  ASSERT_EQ(run.code, 0) << run.err;
+  json before = document("in.glb"), after = document("out.glb");
+  json& attributes = after["meshes"][0]["primitives"][0]["attributes"];
+  ASSERT_TRUE(attributes.contains("COLOR_0"));
+  const json accessor = after["accessors"][attributes["COLOR_0"].get<std::size_t>()];
+  EXPECT_EQ(accessor["count"], 3);
+  EXPECT_EQ(accessor["type"], "VEC3");
+  EXPECT_EQ(accessor["normalized"], true);
+  attributes.erase("COLOR_0");
+  for (const char* key : {"bufferViews", "accessors"}) {
+    after[key].erase(after[key].size() - 1);
+    EXPECT_EQ(after[key], before[key]) << key;
+  }
+  before.erase("buffers");
+  after.erase("buffers");
+  EXPECT_EQ(after, before);
+  const Scene scene = load_gltf(path("out.glb"));
+  EXPECT_EQ(scene.meshes.at(0).positions, load_gltf(path("in.glb")).meshes.at(0).positions);
+}
+
+TEST_F(BakeCommand, AnAttributeOfItsOwnHoldsTheValuesAndBentNormalsStandBeside) {
+  write("in.glb", rich_triangle().glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --channel _AO --passes ao,bent");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json after = document("out.glb");
+  const json& attributes = after["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_EQ(after["accessors"][attributes["_AO"].get<std::size_t>()]["type"], "SCALAR");
+  EXPECT_EQ(after["accessors"][attributes["_BENT_NORMAL"].get<std::size_t>()]["type"], "VEC3");
+}
+
+TEST_F(BakeCommand, AoIsMultipliedWithAColourThatIsThereOrReplacesIt) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.doc["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = builder.add_accessor(
+      std::vector<float>{0.5f, 1, 1, 0.25f, 0.5f, 1, 1, 0.25f, 0.5f, 1, 1, 0.25f}, test::kFloat,
+      "VEC4");
+  write("in.glb", builder.glb());
+  for (const auto& [blend, red] : {std::pair{"multiply", 0.5}, {"replace", 1.0}}) {
+    ASSERT_EQ(dapple(std::string("bake in.glb -o out.glb --blend ") + blend).code, 0);
+    const std::string bytes = bytes_of(path("out.glb"));
+    const json after = document("out.glb");
+    const json accessor = after["accessors"].back();
+    EXPECT_EQ(accessor["type"], "VEC4") << "alpha is kept";
+    const std::size_t begin = bytes.size() - 3 * 8;
+    std::uint16_t rgba[4];
+    std::memcpy(rgba, bytes.data() + begin, sizeof rgba);
+    EXPECT_NEAR(rgba[0] / 65535.0, red, 1e-4) << blend;  // nothing occludes: AO 1
+    EXPECT_NEAR(rgba[3] / 65535.0, 0.25, 1e-4) << blend;
+  }
+}
+
+TEST_F(BakeCommand, TextFilesKeepTheirSideFilesAndBinaryOnesEmbedThem) {
+  GltfBuilder builder = rich_triangle();
+  json doc = builder.doc;
+  doc["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", "mesh.bin"}}};
+  write("mesh.bin", builder.bin);
+  std::ofstream(path("in.gltf")) << doc.dump();
+  ASSERT_EQ(dapple("bake in.gltf -o out.gltf").code, 0);
+  const json text = document("out.gltf");
+  EXPECT_EQ(text["buffers"][0]["uri"], "mesh.bin");
+  EXPECT_EQ(text["buffers"][1]["uri"], "out_baked.bin");
+  EXPECT_EQ(load_gltf(path("out.gltf")).meshes.size(), 1u);
+  std::filesystem::create_directory(path("other"));
+  ASSERT_EQ(dapple("bake in.gltf -o other/out.gltf").code, 0);
+  EXPECT_EQ(bytes_of(path("other/mesh.bin")), bytes_of(path("mesh.bin")));
+  EXPECT_EQ(load_gltf(path("other/out.gltf")).meshes.size(), 1u);
+  ASSERT_EQ(dapple("bake in.gltf -o other/out.glb").code, 0);
+  EXPECT_EQ(document("other/out.glb")["buffers"].size(), 1u);
+  EXPECT_EQ(load_gltf(path("other/out.glb")).meshes.size(), 1u);
+}
+
+TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.add("nodes", {{"mesh", 0}, {"translation", {0, 0, -3}}});
+  const int places =
+      builder.add_accessor(std::vector<float>{5, 0, 0, 7, 0, 0}, test::kFloat, "VEC3");
+  builder.add(
+      "nodes",
+      {{"mesh", 0},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}});
+  builder.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --to instance");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json after = document("out.glb");
+  EXPECT_GT(after["nodes"][0]["extras"]["ao"].get<double>(), 0.5);
+  EXPECT_GT(after["nodes"][1]["extras"]["ao"].get<double>(), 0.5);
+  const json& attributes = after["nodes"][2]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  EXPECT_EQ(after["accessors"][attributes["_AO"].get<std::size_t>()]["count"], 2);
+  EXPECT_EQ(load_gltf(path("out.glb")).instances.size(), 4u);
+}
+
+TEST_F(BakeCommand, AProceduralSceneIsBakedAndItsStatisticsAreWritten) {
+  const Outcome run =
+      dapple("bake 'scene:tree?leaves=500' -o out.glb --rays 16 --stats-json s.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json statistics = document("s.json");
+  EXPECT_GT(statistics["rays"].get<double>(), 0);
+  EXPECT_GT(statistics["vertices"].get<double>(), 0);
+  EXPECT_EQ(files_in_folder(), 2u) << "nothing else is left";
+}
+
+TEST_F(BakeCommand, ErrorsSayWhatCanBeDoneAndLeaveNothingBehind) {
+  write("in.glb", rich_triangle().glb());
+  const std::pair<const char*, const char*> cases[] = {
+      {"in.glb -o out.glb --channel NORMAL", "COLOR_0.rgb"},
+      {"in.glb -o out.glb --rays 3", "--rays"},
+      {"in.glb -o out.glb --sides top", "--sides"},
+      {"in.glb -o out.glb --to texture", "--to"},
+      {"in.glb -o out.glb --to instance --passes ao,bent", "--passes bent"},
+      {"in.glb -o out.obj", ".gltf"},
+      {"in.glb -o in.glb", "in.glb"},
+      {"head.hair -o out.glb", "strands"},
+  };
+  for (const auto& [arguments, part] : cases) {
+    const Outcome run = dapple(std::string("bake ") + arguments);
+    expect_failure(run, 2, part);
+    EXPECT_EQ(files_in_folder(), 1u) << arguments;
+  }
+  expect_failure(dapple("bake missing.glb -o out.glb"), 3, "missing.glb");
+  EXPECT_EQ(files_in_folder(), 1u);
+}
+
+}  // namespace
+}  // namespace dapple
