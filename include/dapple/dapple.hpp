@@ -1,6 +1,7 @@
 // All of dapple's public interface.
 #pragma once
 
+#include "dapple/bake.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/device.hpp"
 #include "dapple/error.hpp"
