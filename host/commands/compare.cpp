@@ -1,4 +1,4 @@
-// dapple compare: from two EXR files to figures, a heat map and a page, top to bottom.
+// dapple compare: reads two EXR files, prints their differences, and writes a heat map and a page.
 #include <fmt/format.h>
 
 #include <cmath>

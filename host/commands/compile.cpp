@@ -1,4 +1,4 @@
-// dapple compile: what CompilerProcesses starts. Not for users, who find nothing of it in --help.
+// dapple compile: the process that CompilerProcesses starts. It is hidden from --help.
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ struct CompileArguments {
   std::vector<std::string> kernels;
 };
 
-/// Ends when its parent process ends, for whatever reason.
+/// The process ends when its parent ends, for any reason.
 void end_with(int parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) std::raise(SIGKILL);
@@ -28,7 +28,7 @@ void end_with(int parent) {
 
 void run_compile(const CompileArguments& a) {
   if (a.parent) end_with(a.parent);
-  setenv("POCL_MAX_PTHREAD_COUNT", "1", 1);  // to be run on whatever CPU is free
+  setenv("POCL_MAX_PTHREAD_COUNT", "1", 1);  // the system chooses the CPU
   std::vector<KernelName> kernels;
   for (const std::string& text : a.kernels) kernels.push_back(parse_kernel(text));
   const Device device(a.device, a.kernel_dir);

@@ -1,4 +1,4 @@
-// dapple devices: what OpenCL offers here, best first, and whether it will do.
+// dapple devices: lists the OpenCL devices, best first, and whether each can run dapple.
 #include <fmt/format.h>
 
 #include "commands/command.hpp"

@@ -1,4 +1,4 @@
-// Which files each frame is written to: see frames.hpp.
+// The files of each frame: see frames.hpp.
 #include "commands/frames.hpp"
 
 #include <fmt/format.h>
@@ -12,14 +12,14 @@
 namespace dapple {
 namespace {
 
-/// Where the heat map goes that accompanies a preview: tree.png, tree_visits.png.
+/// Path of the heat map beside a preview: tree_visits.png for tree.png.
 std::string visits_path(const std::string& png) {
   const std::filesystem::path path(png);
   return (path.parent_path() / (path.stem().string() + "_visits" + path.extension().string()))
       .string();
 }
 
-/// The files as they were typed.
+/// The output files as the user typed them.
 Frame typed_files(const RenderArguments& a) {
   RenderOptions passes;
   parse_passes(a.passes, passes);
@@ -62,7 +62,8 @@ std::vector<OutputPath> outputs_of(const Frame& frame, const RenderArguments& a)
   return outputs;
 }
 
-/// A checkpoint may take the place of the one that it goes on from, nothing else may.
+/// A new checkpoint may replace the one that the render resumes from. No other output may replace
+/// an input.
 void check_resumed_spare(std::vector<OutputPath> outputs, const std::string& resume) {
   std::erase_if(outputs, [](const OutputPath& output) { return output.flag == "--checkpoint"; });
   check_outputs_spare(outputs, {resume});

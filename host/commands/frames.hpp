@@ -15,15 +15,15 @@ struct Frame {
   std::string output, png, visits_png, stats_json;  ///< empty: not written
 };
 
-/// Throws Error usage for files of a sequence whose names have no place for the number, and for
-/// checkpoints of one.
+/// Throws Error usage if a sequence's file names have no run of # for the number, and for
+/// checkpoints of a sequence.
 std::vector<Frame> list_frames(const RenderArguments& arguments);
 
-/// Before anything is read, so that a picture is never lost for want of a place, nor a file
-/// that is to be read. Throws Error usage.
+/// Checks, before anything is read, that every output can be written and that none is an input.
+/// Throws Error usage.
 void check_files(const std::vector<Frame>& frames, const RenderArguments& arguments);
 
-/// The same for the files that a scene turned out to be made of.
+/// The same for `inputs`, the files that the scene consists of.
 void check_files_spare(const std::vector<Frame>& frames, const RenderArguments& arguments,
                        const std::vector<std::string>& inputs);
 

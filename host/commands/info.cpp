@@ -1,4 +1,4 @@
-// dapple info: what a scene holds, what its BVH costs and how opaque it is.
+// dapple info: prints the contents of a scene, the cost of its BVH and its opacity.
 #include <fmt/format.h>
 
 #include <memory>

@@ -9,12 +9,12 @@ namespace {
 
 constexpr int kSignalled = 128;  ///< added to a signal's number, as shells do
 
-// All that a handler may touch.
+// The only variables that a signal handler may access.
 volatile std::sig_atomic_t received = 0;
 volatile std::sig_atomic_t saving = 0;
 
-// What a process that ends here leaves unfinished has no name of its own yet; the next run removes
-// it. A second SIGTERM is no sign of impatience: process managers send it twice.
+// An unfinished file of a process that ends here has a temporary name; the next run removes it. A
+// second SIGTERM does not end the process at once: process managers send it twice.
 extern "C" void on_interruption(int signal) {
   if (!saving || (received && signal == SIGINT)) _exit(kSignalled + signal);
   if (!received) received = signal;

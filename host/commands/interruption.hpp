@@ -1,20 +1,21 @@
-// SIGINT and SIGTERM: a render that has something to save finishes its slice and saves it, any
-// other ends at once. The process's signal handlers are set here and nowhere else.
+// Handles SIGINT and SIGTERM: a render that has results finishes its slice and saves them;
+// otherwise the process ends at once. Only this file sets signal handlers.
 #pragma once
 
 #include "dapple/render.hpp"
 
 namespace dapple {
 
-/// From now on both signals end the process with 128 + signal: 130, 143; at once until
-/// save_when_interrupted() is first asked. Signals that are ignored stay so.
+/// Installs the handlers. Both signals end the process with exit code 128 + signal (130, 143): at
+/// once until the function of save_when_interrupted() is first called. Ignored signals stay
+/// ignored.
 void catch_interruptions();
 
-/// For RenderControl: whether a signal came. Once asked there is something to save, and only a
-/// second SIGINT ends the process at once.
+/// Returns a function for RenderControl that tells whether a signal came. After its first call only
+/// a second SIGINT ends the process at once.
 Stop save_when_interrupted();
 
-/// Exit code of the signal that came, 0 if none.
+/// The exit code for the signal that came, or 0.
 int interruption_code();
 
 }  // namespace dapple

@@ -1,4 +1,4 @@
-// Option values as typed, to what they mean. All throw Error usage naming the flag.
+// Parses option values. In: text. Out: values. Every function throws Error usage, naming the flag.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ Packets parse_packets(const std::string& text);
 /// "ao", "light", "ao,light"
 void parse_passes(const std::string& text, RenderOptions& options);
 
-/// Frames by number: first, first + step, ... up to last.
+/// Frame numbers first, first + step, ... up to last.
 struct FrameRange {
   std::int64_t first = 0, last = 0, step = 1;
 

@@ -1,4 +1,4 @@
-// Which names are one file: see output_paths.hpp.
+// Tells whether two paths name one file: see output_paths.hpp.
 #include "commands/output_paths.hpp"
 
 #include <fmt/format.h>
@@ -13,12 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Existing files are one when device and inode are, which sees through symbolic and hard
-/// links; others when the folders are and the names.
+/// Existing files are the same if device and inode are, also through symbolic and hard links.
+/// Others are the same if their folders and names are.
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  // Made absolute first: weakly_canonical leaves a relative name that is not there as it is.
+  // Absolute first: weakly_canonical() does not change a relative path that does not exist.
   const fs::path whole_a = fs::weakly_canonical(fs::absolute(a, error), error);
   if (error) return false;
   const fs::path whole_b = fs::weakly_canonical(fs::absolute(b, error), error);

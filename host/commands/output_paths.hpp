@@ -1,5 +1,5 @@
-// The files that a command is about to write: each can be written, and none is a file that the
-// command reads or writes as well, by whatever name or link.
+// Checks the output files of a command before it runs: each can be written, and none is also an
+// input or another output, by any name or link.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace dapple {
 
-/// A file to be written, and the option that names it.
+/// An output file and the option that names it.
 struct OutputPath {
   std::string flag;
   std::string path;
 };
 
-/// Whether a path names a file for each frame: its file name has a run of '#'.
+/// Whether the file name has a run of '#' for the frame number.
 bool has_frame_digits(const std::string& path);
 
-/// "out.####.exr" as "out.0007.exr": the last run of '#' is the frame's number in at least as many
-/// digits.
+/// "out.####.exr" becomes "out.0007.exr": the last run of '#' is replaced by the frame's number, in
+/// at least as many digits.
 std::string frame_path(const std::string& pattern, std::int64_t number);
 
 /// Throws Error usage, naming the flag, for a path that cannot be written (not a regular file,

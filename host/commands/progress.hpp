@@ -1,4 +1,5 @@
-// How far a render is: a bar with an estimate on a terminal, a line now and then elsewhere.
+// Shows the progress of a render: on a terminal a bar with the estimated time, elsewhere a line now
+// and then.
 #pragma once
 
 #include <chrono>
@@ -10,14 +11,14 @@ namespace dapple {
 
 class ProgressBar {
  public:
-  /// Says nothing when `quiet`.
+  /// Prints nothing if `quiet`.
   explicit ProgressBar(bool quiet);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(double done);
-  /// Begins anew with the next of several renders, of which the bar says `what` it is.
+  /// Starts the bar of the next of several renders; `what` is its title.
   void begin(const std::string& what);
   /// Erases the bar, so that other text can follow.
   void clear();
@@ -28,7 +29,7 @@ class ProgressBar {
  private:
   bool quiet_, terminal_, drawn_ = false;
   std::string what_;
-  double begun_ = -1;  ///< what was done when it was first told
+  double begun_ = -1;  ///< progress at the first call of show()
   std::chrono::steady_clock::time_point start_, last_;
 };
 

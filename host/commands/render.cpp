@@ -1,4 +1,4 @@
-// dapple render: the pipeline from a scene to files, top to bottom, for each frame.
+// dapple render: reads a scene, renders each frame and writes its files.
 #include "dapple/render.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ void write_pictures(const RenderResult& result, const Frame& frame) {
   if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
 }
 
-/// One line each; a scene may have thousands. Frames of a sequence repeat themselves.
+/// Prints one line for each note, at most twenty, and none that an earlier frame printed.
 class NotePrinter {
  public:
   void print(const std::vector<std::string>& notes) {
@@ -102,7 +102,7 @@ void run_render(const RenderArguments& a) {
     RenderResult result = renderer.render(std::move(scene), options, control);
     progress.clear();
     RenderStatistics& statistics = result.statistics;
-    // The picture before was the last that was asked for.
+    // Interrupted before this frame began: the previous frame was the last.
     if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
 
     const auto writing = Clock::now();

@@ -1,4 +1,4 @@
-// The options of `dapple render`, and from their text to RenderOptions.
+// The options of `dapple render`. In: the command line. Out: RenderOptions.
 #include "commands/render_arguments.hpp"
 
 #include <fmt/format.h>

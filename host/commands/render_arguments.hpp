@@ -1,4 +1,4 @@
-// What `dapple render` is told: arguments as typed, and what they mean.
+// The arguments of `dapple render`. In: text as typed. Out: RenderOptions.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,7 @@
 
 namespace dapple {
 
-/// What was typed, before it becomes options.
+/// The arguments as typed.
 struct RenderArguments {
   std::string scene, output, png, stats_json, lights, dome;
   double dome_rotation = 0;

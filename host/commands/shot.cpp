@@ -1,4 +1,4 @@
-// Scenes frame by frame: see shot.hpp.
+// The scene of each frame: see shot.hpp.
 #include "commands/shot.hpp"
 
 #include <cmath>

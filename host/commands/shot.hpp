@@ -1,6 +1,6 @@
-// The scenes of a render's frames, and what is the same in all of them: lights and dome that the
-// command line names, and of a sequence the camera, the light and the ground that the scene lacks
-// and its first frame settles. They would tremble if each frame chose its own.
+// The scenes of a render's frames. Lights and the dome of the command line are the same in all
+// frames. In a sequence the first frame also chooses the camera, light and ground that the scene
+// lacks: they would jitter if each frame chose its own.
 #pragma once
 
 #include <optional>
@@ -11,19 +11,19 @@
 
 namespace dapple {
 
-/// Puts `lights` in place of the scene's.
+/// Replaces the scene's lights by `lights`.
 void use_lights(Scene& scene, const std::vector<Light>& lights);
 
 class Shot {
  public:
-  /// Reads the files. `options` are the render's; of a sequence `options.ground` is done here, and
-  /// cleared. Throws Error.
+  /// Reads the files. In a sequence the ground is added here and `options.ground` is cleared.
+  /// Throws Error.
   Shot(const RenderArguments& arguments, RenderOptions& options);
 
   Scene frame(std::optional<double> seconds);
 
  private:
-  /// What the first frame settles.
+  /// Chooses camera, light and ground from the first frame.
   struct Set {
     std::optional<Camera> camera;
     std::optional<Light> light;
@@ -36,7 +36,7 @@ class Shot {
 
   const RenderArguments& arguments_;
   RenderOptions options_;
-  std::optional<MovingScene> moving_;  ///< of a sequence; else the scene is read when asked for
+  std::optional<MovingScene> moving_;  ///< for sequences; other scenes are read by frame()
   std::optional<std::vector<Light>> lights_;
   std::optional<Light> dome_;
   std::optional<Set> set_;

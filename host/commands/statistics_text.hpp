@@ -1,4 +1,4 @@
-// Render statistics as people and as programs read them.
+// Render statistics as text for people and as JSON for programs.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
-// Sections: what there is to read as JSON, then compressed sums, squares, samples and the work of
-// each group of the round. Values are in this machine's byte order, which the seal checks.
+// Sections of the file: a JSON description, then compressed sums, squares, samples, and the work of
+// each group of the round. Values have this machine's byte order, which the seal checks.
 #include "render/checkpoint.hpp"
 
 #include <fmt/format.h>
@@ -18,9 +18,9 @@ namespace {
 using nlohmann::json;
 
 constexpr SealedKind kKind{"checkpoint", 2};
-constexpr std::size_t kFirstGroup = 4;  ///< its section
+constexpr std::size_t kFirstGroup = 4;  ///< section of the first group
 
-/// Nothing asks for more than 2^20 samples a pixel, and no device takes larger slices.
+/// Pixels have at most 2^20 samples, and slices are not larger.
 constexpr std::uint32_t kMaxSamples = DAPPLE_MAX_CAMERA_SPLITTING << 20;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
@@ -118,8 +118,8 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
     packed.push_back(compress(as_section(group.work)));
   std::vector<Section> sections{as_section(about)};
   for (const std::vector<std::byte>& bytes : packed) sections.emplace_back(bytes);
-  // Not synced to disk (experiment 805): a checksum tells after a power
-  // failure. A process that is killed loses nothing by it.
+  // Not synced to disk (experiment 805): after a power failure the checksum shows the damage, and a
+  // killed process loses nothing.
   write_sealed_file(path, kKind, sections, Durable::no);
 }
 

@@ -1,4 +1,4 @@
-// A render's state as a file: what it was made with and how far it is, sealed with a checksum.
+// A render's state as a file: its settings and what was traced so far, sealed with a checksum.
 #pragma once
 
 #include <string>
@@ -10,20 +10,20 @@ namespace dapple {
 
 struct Checkpoint {
   Settings options, content;  ///< option_settings(), content_settings()
-  int footprint_spp = 1;      ///< samples that its footprints are made for
-  std::string device;         ///< that traced it last
+  int footprint_spp = 1;      ///< samples that its footprints are computed for
+  std::string device;         ///< name of the device that traced last
   TraceState state = {};
 };
 
-/// What the file is beside the state; `state` apart, so that it need not be copied.
+/// The content of the file. The state is separate so that it need not be copied.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
                       const TraceState& state);
 
-/// Whole and unharmed, or Error failed, "--resume PATH: ..." with what is wrong. That the state
-/// fits a picture is for check_state() to tell.
+/// Reads and verifies the file. Throws Error failed, "--resume PATH: ...", if it is damaged.
+/// Whether the state fits a picture is checked by check_state().
 Checkpoint read_checkpoint(const std::string& path);
 
-/// What a state has to fit: pixels of the picture and its planes.
+/// The size that a state must have: pixels and planes of the picture.
 struct StateShape {
   std::size_t pixels = 0, sums = 0, squares = 0;
 };

@@ -39,7 +39,7 @@ void check_crop(const RenderOptions& options) {
           c.x0, c.y0, c.x1, c.y1, options.width, options.height));
 }
 
-/// `rays`: of one kind, of a camera sample.
+/// `rays`: of one kind, for each camera sample.
 void check_sample_product(const char* flag, const RenderOptions& options, int rays) {
   const bool adaptive = is_adaptive(options);
   const int spp = adaptive ? options.max_spp : options.spp;
@@ -100,12 +100,12 @@ std::string name_of(Packets packets) {
 
 namespace {
 
-/// Of one sample, as footprint_rmse(). Of sixteen samples the bias' RMSE over the pixels that see
-/// something is 0.004 to 0.010 (docs/accuracy.md), and it falls with the root of their number.
-/// Pictures have sky too, which has no bias (experiment 501).
+/// footprint_rmse() of one sample. With sixteen samples the RMSE of the bias, over pixels with a
+/// hit, is 0.004 to 0.010 (docs/accuracy.md); it falls with the square root of the number of
+/// samples. Sky has no bias (experiment 501).
 constexpr double kFootprintRmse = 0.057;
 
-/// The same of a pixel.
+/// The same for the error of single pixels.
 constexpr double kFootprintError = 0.08;
 
 }  // namespace

@@ -21,13 +21,13 @@
 namespace dapple {
 namespace {
 
-/// Rays in flight: on a CPU few enough for the queues to stay in its caches, and enough to hide the
-/// end of each pass (experiment 706); on a GPU enough to fill it.
+/// Rays of one kind in a slice. On a CPU the queues stay in its caches, and passes are long enough
+/// that their ends do not matter (experiment 706); on a GPU they fill the device.
 constexpr std::size_t kCpuSlice = 1u << 18;
 constexpr std::size_t kGpuSlice = 1u << 19;
 
-/// Rays of all kinds that a slice may trace, as a multiple of those in flight: with many lights it
-/// would take too long to wait for when the render is to stop.
+/// Rays of all kinds in a slice at most, as a multiple of the above: with many lights a slice would
+/// take too long, and a render stops only between slices.
 constexpr std::size_t kRaysOverInFlight = 4;
 
 std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
@@ -92,7 +92,7 @@ class PictureTracer {
     return *std::min_element(samples.begin(), samples.end()) >= 2 * DAPPLE_SAMPLE_BATCH;
   }
 
-  /// Onto the device, where from now on they are.
+  /// Moves the state's sums and squares to the device.
   void place_sums() {
     earlier_seconds_ = state_.pass_seconds;
     for (const auto& [label, seconds] : context_.pass_seconds()) earlier_seconds_[label] -= seconds;
@@ -117,15 +117,16 @@ class PictureTracer {
     state_.pass_seconds = pass_seconds();
   }
 
-  /// Of this picture, in this run and those that it goes on from.
+  /// Device seconds of this picture, in this run and in the runs that it resumes.
   [[nodiscard]] std::map<std::string, double> pass_seconds() const {
     std::map<std::string, double> sum = earlier_seconds_;
     for (const auto& [label, seconds] : context_.pass_seconds()) sum[label] += seconds;
-    std::erase_if(sum, [](const auto& pass) { return pass.second == 0; });  // of other pictures
+    std::erase_if(sum,
+                  [](const auto& pass) { return pass.second == 0; });  // passes of other pictures
     return sum;
   }
 
-  /// False when there is no more to trace.
+  /// Chooses the next round. Returns false if there is nothing left to trace.
   bool next_round(SamplePlan& plan, const TraceControl& control) {
     if (plan.is_adaptive()) {
       state_.round = {next_for_target(plan)};
@@ -139,7 +140,8 @@ class PictureTracer {
     std::vector<WorkGroup> groups = plan.pilot();
     if (!groups.empty()) return groups;
     const bool only_pilot = plan.only_pilot_has_samples();
-    // Errors depend on the order, by roundings: with a target it is always the same.
+    // Rounding makes errors depend on the order of samples; with a target the order is always the
+    // same.
     if (!only_pilot && !(groups = plan.least()).empty()) return groups;
     const std::vector<std::uint32_t>& samples = plan.samples();
     const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
@@ -151,10 +153,10 @@ class PictureTracer {
     return groups;
   }
 
-  /// What is left of the round; false when asked to stop before its end.
+  /// Traces the rest of the round. Returns false if it was stopped before its end.
   bool trace_round(const SamplePlan& plan, const TraceControl& control) {
     Round& round = state_.round;
-    // With a target what is given out is a part of the work.
+    // With a target the rounds so far are only a part of the work.
     const double given = sum_of(plan.samples());
     const double total = plan.is_adaptive() ? given / plan.fraction_done()
                                             : static_cast<double>(layout_.pixels) * options_.spp;
@@ -289,10 +291,10 @@ class PictureTracer {
   ResolveParams resolve_{};
   Queues queues_;
   FilmBuffers film_;
-  std::vector<std::vector<float>> variances_;  ///< of the film as it is at the end, if known
+  std::vector<std::vector<float>> variances_;  ///< of the finished film, if known
   TraceState state_;     ///< without sums and squares while these are on the device
-  double traced_ = 0;    ///< samples, of all pixels
-  double progress_ = 0;  ///< [0,1], as estimated: decisions may find that less was done
+  double traced_ = 0;    ///< number of samples of all pixels
+  double progress_ = 0;  ///< [0,1], estimated; never decreases
   std::map<std::string, double> earlier_seconds_;
   Clock::time_point saved_ = Clock::now();
 };

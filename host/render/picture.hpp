@@ -10,7 +10,7 @@
 
 namespace dapple {
 
-/// How tracing is watched and left; any of the functions may be empty.
+/// Progress, interruption and checkpoints of tracing; each function may be empty.
 struct TraceControl {
   Progress progress;
   Stop stop;                                    ///< asked before each slice
@@ -20,8 +20,8 @@ struct TraceControl {
 };
 
 /// Runs every pass that `options` ask for over the view's crop. The result depends on
-/// neither the slices nor the device's threads. Goes on from `state`, which must fit the picture,
-/// unless that is empty.
+/// neither the slices nor the device's threads. Continues from `state`, which must fit the picture,
+/// unless it is empty.
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
                             const RenderOptions& options, const FilmLayout& layout,
                             const TraceControl& control, TraceState state = {});

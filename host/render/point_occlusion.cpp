@@ -1,4 +1,4 @@
-// AO at points of the caller's own, for baking.
+// AO and bent normals at given points. In: points and normals. Out: one value for each point.
 #include "render/point_occlusion.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@
 namespace dapple {
 namespace {
 
-/// The offset that clears the rounding of coordinates given as floats.
+/// The offset along the normal exceeds the rounding error of float coordinates.
 SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t index) {
   SurfacePoint point{};
   float largest = 0;
@@ -58,7 +58,7 @@ OcclusionParams occlusion_params(const OcclusionOptions& options, const DeviceBu
   return params;
 }
 
-/// Points that the device may read where the host has put them, so for as long as a launch runs.
+/// Points in host memory that the device reads in place. The destructor waits for the device.
 class SharedPoints {
  public:
   SharedPoints(DeviceContext& context, std::span<const V3f> points, std::span<const V3f> normals,
@@ -86,7 +86,7 @@ struct Results {
   std::span<V3f> bent;  ///< empty: not asked for
 };
 
-/// AO of the points in the queue, whose rays stay on the device.
+/// AO of the points in the queue by point_ao_pass(); rays stay on the device.
 void occlusion_at_once(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                        const OcclusionOptions& options, std::span<float> ao) {
   point_ao_pass(context, queues, scene, options.estimator, ao_params(options, ao.size()),
@@ -94,7 +94,7 @@ void occlusion_at_once(DeviceContext& context, const Queues& queues, const Devic
   context.read(queues.occlusions, ao.data(), ao.size_bytes());
 }
 
-/// The same by rays that go through queues.
+/// AO and bent normals of the points by rays in queues.
 void occlusion_in_passes(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                          const OcclusionOptions& options, const Results& results) {
   const std::span<float> ao = results.ao;
@@ -160,7 +160,7 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
       occlusion_in_passes(context, queues, *scene.buffers, options, {found.ao, found.bent});
     for (std::size_t i = 0; i < chosen.size(); ++i) result.ao[chosen[i]] = found.ao[i];
     for (std::size_t i = 0; i < found.bent.size(); ++i) result.bent[chosen[i]] = found.bent[i];
-    queues.points = {};  // `batch` ends here and with it the memory that the buffer refers to
+    queues.points = {};  // `batch` is destroyed here, and the buffer refers to its memory
   }
   context.finish();
   return result;

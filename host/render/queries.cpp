@@ -1,4 +1,4 @@
-// Rays that no camera made: the raw queries.
+// Queries with rays of the caller: trace() and closest_hits().
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,7 @@ OcclusionParams occlusion_params(const DeviceBuffers& scene, std::size_t points,
   return params;
 }
 
-/// Throws Error usage unless the rays are whole points, all of a point from one place to one
-/// light.
+/// Throws Error usage unless every rays_per_point consecutive rays have one origin and one light.
 void check_points(std::span<const Ray> rays, std::size_t rays_per_point) {
   if (rays_per_point < 1 || rays.size() % rays_per_point != 0) {
     throw Error(ErrorKind::usage, fmt::format("trace: {} rays are no whole number of points of {}",

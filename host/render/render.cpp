@@ -23,8 +23,8 @@
 namespace dapple {
 namespace {
 
-/// Overrides, lights and ground, in the order that framing needs: the camera sees the
-/// scene as it came, without the ground.
+/// Applies overrides, chooses the view, and adds lights and ground, in this order: the camera
+/// frames the scene without the ground.
 View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   View view = choose_view(scene, options, notes);
@@ -110,7 +110,7 @@ void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
   s.bytes.queues = picture.queue_bytes;
 }
 
-/// What a device was opened with.
+/// The options that a device is opened with.
 std::array<std::string, 3> device_key(const RenderOptions& options) {
   return {options.device, options.kernel_dir, name_of(options.packets)};
 }
@@ -140,7 +140,7 @@ void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statis
   for (std::string& note : device->context().notes()) statistics.notes.push_back(std::move(note));
 }
 
-/// The scene to the device, by the BVH that there is.
+/// Builds or refits the BVH and uploads the scene.
 void Renderer::Kept::bring(const Scene& scene, const RenderOptions& options,
                            RenderStatistics& statistics) {
   const Stopwatch bringing;
@@ -160,7 +160,7 @@ void Renderer::Kept::bring(const Scene& scene, const RenderOptions& options,
   add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
 }
 
-/// What `processes` have compiled, and the rest.
+/// Loads the kernels that `processes` compiled and compiles the rest.
 void Renderer::Kept::compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                              RenderStatistics& statistics) const {
   const Stopwatch compiling;
@@ -186,7 +186,7 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, view, options);
   const RenderOptions sampled = by_sample(options);
-  // Here until all went well: after an error nothing of it is of use.
+  // Moved out until the render succeeds: after an error nothing is kept.
   Kept kept = std::exchange(*kept_, {});
   kept.open(options, statistics);
   const Device& device = *kept.device;

@@ -12,7 +12,7 @@ namespace dapple {
 namespace {
 
 std::string passes_text(const RenderOptions& options) {
-  // Visits are counted in any case.
+  // Visits are counted with and without the pass, so it is not a setting.
   return fmt::format("{}{}{}", options.ao ? "ao" : "", options.ao && options.light ? "," : "",
                      options.light ? "light" : "");
 }

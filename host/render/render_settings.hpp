@@ -13,18 +13,18 @@
 
 namespace dapple {
 
-/// Name for people, value that tells as little or as much as equality needs.
+/// A setting's name, for messages, and a value that is compared for equality.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
-/// What was asked for: flags of the command line. Values read back to the same bits.
+/// The settings of the command line. Numbers are printed so that they read back to the same bits.
 Settings option_settings(const RenderOptions& options, const View& view);
 
-/// What it is asked of, as checksums: camera, scene, lights, kernels.
+/// Checksums of camera, scene, lights and kernels.
 Settings content_settings(const RenderOptions& options, const View& view, const SceneBvh& bvh,
                           const DeviceBuffers& scene);
 
-/// Throws Error usage, "--resume PATH: ...", naming the first of `now` that was another, or was
-/// not there, when the checkpoint `path` was made with `then`.
+/// Throws Error usage, "--resume PATH: ...", naming the first setting of `now` that `then`, the
+/// settings of the checkpoint `path`, lacks or has with another value.
 void require_same(const std::string& path, const Settings& then, const Settings& now);
 
 }  // namespace dapple

@@ -7,21 +7,22 @@
 
 namespace dapple {
 
-/// The checkpoint `path`, and in `options` the footprints of its beginning. Throws Error failed
-/// when it is damaged, Error usage when `options` differ from those that it was made with.
+/// Reads the checkpoint `path` and sets the footprints in `options` to those of the first run.
+/// Throws Error failed if it is damaged, Error usage if `options` differ from those of the
+/// checkpoint.
 Checkpoint resume(const std::string& path, const View& view, RenderOptions& options);
 
-/// Throws Error unless `resumed`, read from `path`, is of the very picture that is `now` to be
-/// traced; adds to `notes` where it comes from.
+/// Throws Error unless `resumed`, read from `path`, belongs to the picture that `now` describes.
+/// Adds a note about its origin to `notes`.
 void check_resumed(const std::string& path, const Checkpoint& resumed, const Checkpoint& now,
                    const FilmLayout& layout, std::vector<std::string>& notes);
 
-/// Lets `tracing` write checkpoints as `control` asks, with all of `about` but its state. A failure
-/// is kept in `result` for the end: a full disk must not cost what is traced.
+/// Makes `tracing` write checkpoints as `control` asks, with the settings of `about`. A failure is
+/// stored in `result` until the end, so that a full disk does not lose the picture.
 void write_checkpoints(TraceControl& tracing, const RenderControl& control, Checkpoint about,
                        RenderResult& result);
 
-/// How far it came, and how to go on.
+/// A note that says how much was traced and how to continue.
 std::string interruption_note(const TracedPicture& picture, const RenderOptions& options,
                               const RenderControl& control);
 

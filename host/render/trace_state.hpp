@@ -12,10 +12,10 @@
 namespace dapple {
 
 struct TraceState {
-  std::uint32_t slice_samples = 0;     ///< as rounds are cut; the device's choice at the start
+  std::uint32_t slice_samples = 0;     ///< samples of a slice; chosen by the first device
   std::vector<std::int64_t> sums;      ///< planes as FilmLayout says
   std::vector<float> squares;          ///< planes as FilmLayout says
-  std::vector<std::uint32_t> samples;  ///< of each pixel, with all of the round's
+  std::vector<std::uint32_t> samples;  ///< of each pixel, those of the whole round included
   Round round;
   std::map<std::string, double> pass_seconds;  ///< device seconds so far, by label
 };

@@ -14,36 +14,36 @@
 
 namespace dapple {
 
-/// What building took and made; seconds are wall time.
+/// Time and result of a build; seconds are wall time.
 struct BvhStatistics {
   double build_seconds = 0;                              ///< SAH build, collapse, quantization
   double prefilter_seconds = 0;                          ///< directional opacity
   std::size_t triangles = 0;                             ///< distinct, before instancing
-  std::size_t segments = 0;                              ///< of strands, likewise
+  std::size_t segments = 0;                              ///< segments of strands, distinct too
   std::size_t opaque = 0, cut_out = 0, translucent = 0;  ///< of `triangles`
   std::size_t instanced_triangles = 0, instanced_segments = 0;
   std::size_t instances = 0;
   double lane_use = 0;  ///< used lanes of all blocks, [0,1]
   double sah_cost = 0;  ///< expected node visits a ray through the largest object's root
   float root_opacity[3] = {0, 0, 0};  ///< of the whole scene's box, along x, y, z
-  /// Of the cache of trees. Small objects are built anew without it and count among neither.
+  /// The BVH cache. Small objects are always built and count in neither number.
   struct {
     std::size_t objects_read = 0, objects_written = 0;
     double read_seconds = 0, write_seconds = 0;
-    double seconds_saved = 0;  ///< that building what was read once took, less read_seconds
-    std::string note;          ///< what was wrong with its files, one line; empty: nothing
+    double seconds_saved = 0;  ///< build time of the objects that were read, less read_seconds
+    std::string note;          ///< one line about damaged files; empty: there were none
   } cache;
 };
 
 struct SceneBvh {
-  ConstArray<BvhNode> nodes;  ///< all objects', then the top level's
+  ConstArray<BvhNode> nodes;  ///< nodes of all objects, then of the top level
   ConstArray<TriangleBlock> blocks;
   ConstArray<SegmentBlock> segments;
   ConstArray<TexturedTriangle> textured;
   ConstArray<InstanceRecord> instances;  ///< in the order of the top level's leaves
   std::uint32_t root = 0;                ///< node to start from
-  bool has_top = false;                  ///< false: `root` is the only object's, in world space
-  Box3f bounds;                          ///< world space
+  bool has_top = false;  ///< false: `root` belongs to the only object, in world space
+  Box3f bounds;          ///< world space
   BvhStatistics statistics;
 };
 
@@ -51,51 +51,51 @@ struct SceneBvh {
 /// there, and removes what killed runs left in it. Throws Error usage, which names --cache.
 void prepare_bvh_cache(const std::string& folder);
 
-/// Builds everything for a scene with at least one triangle that can be hit. Linear in the
-/// triangles, parallel, and the same bits whatever the thread count. With a `cache_folder` objects
-/// that were built before are read from there, the same bits again, and others written there;
-/// files that are damaged or of another version are replaced. Throws Error failed when the tree is
-/// too deep for the kernels' stack or too large for 32-bit indices.
+/// Builds the BVH of a scene, which must have a triangle or segment that can be hit. Takes time
+/// linear in the triangles, in parallel; the bits do not depend on the number of threads. With a
+/// `cache_folder`, objects that were built before are read from it, with the same bits, and others
+/// are written to it; damaged files and those of other versions are replaced. Throws Error failed
+/// when the tree is too deep for the kernels' stack or too large for 32-bit indices.
 SceneBvh build_bvh(const Scene& scene, const std::string& cache_folder = "");
 
-/// From one value of an array up to another.
+/// A range of indices of an array: begin, up to but not including end.
 struct IndexRange {
   std::size_t begin = 0, end = 0;
 };
 
-/// What an update of an UpdatableBvh did.
+/// The result of UpdatableBvh::update().
 struct BvhUpdate {
-  std::size_t objects_kept = 0;      ///< they had not moved
-  std::size_t objects_refitted = 0;  ///< over the trees that they had
-  std::size_t objects_rebuilt = 0;   ///< for want of a record, by another form, or by cost_ratio
+  std::size_t objects_kept = 0;      ///< did not move
+  std::size_t objects_refitted = 0;  ///< kept their tree, with new boxes
+  std::size_t objects_rebuilt = 0;   ///< changed in form, or became too costly
   double seconds = 0;                ///< wall time
-  double cost_ratio = 1;  ///< SAH cost after refitting over that when built, of the worst object
-  bool is_new = false;    ///< every array is another one
-  /// Else these parts of the nodes and triangle blocks changed.
+  double cost_ratio = 1;  ///< largest SAH cost after refitting, relative to that after building
+  bool is_new = false;    ///< all arrays were replaced
+  /// Otherwise these ranges of nodes and triangle blocks changed.
   std::vector<IndexRange> nodes, blocks;
-  bool placement = false;  ///< and the instances, root and bounds
+  bool placement = false;  ///< and whether instances, root and bounds changed
 };
 
-/// A SceneBvh that follows its scene as things move.
+/// A SceneBvh that is updated when its scene moves.
 class UpdatableBvh {
  public:
   enum class Motion {
-    maybe,     ///< objects are built anew when they first move; until then nothing more is kept
-    expected,  ///< what refitting needs is kept from the start, some 20 bytes a triangle
+    maybe,     ///< objects are rebuilt when they first move; needs no memory before
+    expected,  ///< keeps what refitting needs from the start, about 20 bytes a triangle
   };
 
-  /// Builds as build_bvh(); `cache_folder` is of use when motion is not expected.
+  /// Builds as build_bvh(); `cache_folder` is used only with Motion::maybe.
   explicit UpdatableBvh(const Scene& scene, Motion motion = Motion::expected,
                         const std::string& cache_folder = "");
   ~UpdatableBvh();
   UpdatableBvh(UpdatableBvh&&) noexcept;
   UpdatableBvh& operator=(UpdatableBvh&&) noexcept;
 
-  /// Makes it the BVH of `moved`. Objects whose vertices moved are refitted, in time linear in
-  /// their triangles and with the same bits whatever the thread count, and rebuilt when their trees
-  /// have become too costly; the top level is made anew. Meshes that are not what they were in more
-  /// than positions are rebuilt, and all when there is another number of meshes. Arrays change in
-  /// place: no device may be using them (HostAccess). Throws as build_bvh().
+  /// Updates the BVH to `moved`. Objects whose vertices moved are refitted, in time linear in their
+  /// triangles; the bits do not depend on the number of threads. Objects whose trees became too
+  /// costly are rebuilt, as are meshes that changed in more than positions, and all meshes if their
+  /// number changed. The top level is always rebuilt. Arrays change in place: no device may use
+  /// them meanwhile. Throws as build_bvh().
   BvhUpdate update(const Scene& moved);
 
   [[nodiscard]] const SceneBvh& bvh() const;

@@ -1,5 +1,5 @@
-// Values that do not change any more: made in a vector, or found in a file that is mapped into
-// memory. Copies share them.
+// An array of values that no longer change: from a vector, or from a file that is mapped into
+// memory. Copies share the values.
 #pragma once
 
 #include <memory>

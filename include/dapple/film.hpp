@@ -17,7 +17,7 @@ struct Plane {
   std::vector<float> pixels;
 };
 
-/// What the picture was made with; every field becomes EXR metadata.
+/// Settings that the picture was made with; every field becomes EXR metadata.
 struct FilmMetadata {
   M44f world_to_camera;  ///< EXR's convention: left-handed camera, +Z forward; row vectors
   M44f world_to_ndc;     ///< to x, y in [0,1] over the display window, y down, after division by w

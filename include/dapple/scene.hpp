@@ -91,7 +91,7 @@ enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome };
 struct Environment {
   std::uint32_t width = 0, height = 0;
   std::vector<V3f> radiance;  ///< row by row, linear RGB, finite, not negative
-  std::string file = {};      ///< that it was read from; empty: none
+  std::string file = {};      ///< path that it was read from; empty: none
 };
 
 /// A light. Irradiance at a point is the integral of radiance * cosine * transmittance.
@@ -126,7 +126,7 @@ struct Camera {
 /// Motion that a scene's file contains.
 struct Animation {
   std::string name;
-  double seconds = 0;  ///< when its last keyframe is
+  double seconds = 0;  ///< time of its last keyframe
 };
 
 struct Scene {
@@ -172,8 +172,8 @@ std::vector<Light> load_lights(const std::string& path);
 /// HDR. Negative values become 0. Throws Error: input.
 std::shared_ptr<const Environment> load_environment(const std::string& path);
 
-/// What domes are sampled by: images of more than 2048 x 1024 pixels are averaged down, and all are
-/// divided by their mean luminance, by which the lights' radiances are multiplied instead.
+/// Prepares dome images for sampling: averages images of more than 2048 x 1024 pixels down, divides
+/// each by its mean luminance, and multiplies the light's radiance by it instead.
 void finalize_domes(Scene& scene);
 
 /// Writes meshes, instances, materials (no textures), cameras as one GLB file. Throws Error.

@@ -1,6 +1,6 @@
-/* Directional opacity of a box: optical depths along the three axes and the correlations
-   of its surfaces' normals, a byte each, and the model that turns them into an optical
-   depth along any ray. Opacity is 1 - exp(-depth). */
+/* Directional opacity of a box. In: optical depths along the three axes and the correlations of the
+   normals of its surfaces, one byte each. Out: the optical depth along any ray. Opacity is
+   1 - exp(-depth). Heitz et al., "The SGGX Microflake Distribution", 2015. */
 #ifndef DAPPLE_SHARED_OPACITY_H
 #define DAPPLE_SHARED_OPACITY_H
 
@@ -11,36 +11,36 @@ namespace dapple {
 using std::sqrt;
 #endif
 
-/* Transmittances below this count as none: -log(1e-4) is the greatest depth stored. */
+/* Transmittances below this count as 0: the greatest depth stored is -log(1e-4). */
 #define DAPPLE_MIN_TRANSMITTANCE 1e-4f
 #define DAPPLE_GREATEST_DEPTH 9.2103404f
 
-/* Chords are not measured in boxes whose mean chord is below this part of the distance:
-   their length would be rounding. */
+/* In boxes whose mean chord is below this fraction of the distance, chords are not computed: rounding
+   would dominate their length. */
 #define DAPPLE_THINNEST 3e-5f
 
-/* Where the middle of a ray's way through a box lies: the sum of squares of its coordinates in
-   half sizes from the box's centre. Its mean over rays that fill the box evenly is 2/3 along
-   the axes and 0.70 across; below this weight nothing is taken as empty. */
+/* The distance from the box's centre to the middle of a ray's chord: sum of squares of coordinates in
+   half sizes of the box. Its mean over uniformly distributed rays is 2/3 for rays along an axis and
+   0.70 for diagonal ones. centre_weight() is never below DAPPLE_MIN_CENTRE_WEIGHT. */
 #define DAPPLE_MEAN_OFF_CENTRE 0.68f
 #define DAPPLE_MIN_CENTRE_WEIGHT 0.1f
 
-/* From the first of these depths on to the second, a box is taken as filled: how long the
-   ray's way through it is counts less and less, so that solid boxes don't leak at edges. */
+/* Between these two depths a box gradually counts as solid: the length of the ray's chord matters less
+   and less, so that solid boxes do not leak light at their edges. */
 #define DAPPLE_SPARSE_DEPTH 1.0f
 #define DAPPLE_FILLED_DEPTH 3.0f
 
-/* A code c in 0..255 means depth (c / 255)^2 of the greatest: thin nodes don't round to
-   nothing. */
+/* Code c, 0 to 255, means (c / 255)^2 of the greatest depth, so that small depths do not round to
+   0. */
 DAPPLE_FUNCTION float depth_decode(uchar code) {
   const float root = (float)code * (1.0f / 255.0f);
   return root * root * DAPPLE_GREATEST_DEPTH;
 }
 
-/* Variance class of a child's opacity, in the least bits of its three correlations, which they don't
-   need: class c from 0 to 6 where the opacities of a sixteenth by a sixteenth of the box's sides,
-   seen along the axes, deviate from their mean by 2^(c/2 - 8) at most (rms), and the mean squared is
-   no more than that either; 7: all others. */
+/* Variance class of a child's opacity, stored in the lowest bits of its three correlations. The box,
+   seen along each axis, is divided into 16 x 16 cells. Class c, 0 to 6: the opacities of the cells
+   deviate from their mean by at most 2^(c/2 - 8) (rms), and the squared mean is not larger either;
+   class 7: all others. */
 #define DAPPLE_NOT_UNIFORM 7u
 #define DAPPLE_MIN_VARIANCE 1.52587890625e-5f /* 2^-16 */
 
@@ -69,8 +69,8 @@ DAPPLE_FUNCTION float chord_depth(float depth, float chord) {
   return depth * (chord + filled * (1.0f - chord));
 }
 
-/* Boxes hold less in their corners than in their middle, the more so the fewer things they
-   bound: what the depth of a ray is multiplied by whose way's middle lies off_centre. */
+/* Factor of the optical depth of a ray for mass concentration: boxes hold less in their corners than
+   in their middle. off_centre: see DAPPLE_MEAN_OFF_CENTRE. */
 DAPPLE_FUNCTION float centre_weight(float mass_concentration, float off_centre) {
   const float weight = 1.0f + mass_concentration * (DAPPLE_MEAN_OFF_CENTRE - off_centre);
   return weight > DAPPLE_MIN_CENTRE_WEIGHT ? weight : DAPPLE_MIN_CENTRE_WEIGHT;

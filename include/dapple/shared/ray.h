@@ -17,12 +17,12 @@ typedef struct Ray {
   float solid_angle;  /* steradians, [0, 2 pi] */
   float first_area;   /* square metres */
   uint light;         /* 1 + the mesh light this ray is aimed at; 0: none */
-  float weight;       /* what the ray's transmittance is multiplied by in its pass */
-  uint key;           /* random bits of its own: closest_hit.cl, footprint_spread() */
+  float weight;       /* factor of the ray's transmittance in its pass */
+  uint key;           /* random bits: closest_hit.cl, footprint_spread() */
 } Ray;
 
-/* Each ray's footprint is scaled by a random number from 1/2 to 2, so that nodes come to be
-   covered for some rays before others and nothing pops. */
+/* Random scale of a ray's footprint, 1/2 to 2. A node becomes covered for some rays before others, so
+   that nothing pops as the camera moves. */
 DAPPLE_FUNCTION float footprint_spread(uint key) {
   const float root = 0.70710678f * (1.0f + (float)(key >> 8) * (1.0f / 16777216.0f));
   return root * root;
@@ -34,27 +34,27 @@ typedef struct Occlusion {
   uint visits;          /* nodes visited | triangles tested << 16, each clamped to 65535 */
 } Occlusion;
 
-/* Camera rays that are traced together: an item of the camera pass. */
+/* Camera rays that one work-item of the camera pass traces as a packet. */
 #define DAPPLE_ITEM_RAYS 64u
 
-/* Of these, side by side in a vector. */
+/* Camera rays in one vector. */
 #define DAPPLE_GROUP_RAYS 16u
 
-/* Samples at most that share a camera ray: powers of two. */
+/* The largest number of samples that share a camera ray; a power of two. */
 #define DAPPLE_MAX_CAMERA_SPLITTING 4u
 
-/* Consecutive items that one ticket stands for: neighbours read much the same memory. */
+/* Consecutive items of one ticket: neighbours read mostly the same memory. */
 #define DAPPLE_ITEMS_PER_TICKET 4u
 
-/* Samples of a SampleHits. */
+/* Number of samples in a SampleHits. */
 #define DAPPLE_HIT_BITS 16u
 
-/* What became of DAPPLE_HIT_BITS samples in a row of a slice. */
+/* Results of DAPPLE_HIT_BITS consecutive samples of a slice. */
 typedef struct SampleHits {
   uint hits;        /* bit i: sample i of these hit a surface */
-  uint first_slot;  /* place of the first hit among all hits of the slice */
-  /* Of the item that the samples were in: nodes that its rays visited together, and pairs of a ray
-     and a triangle or segment. */
+  uint first_slot;  /* index of the first hit among all hits of the slice */
+  /* Of the work-item that traced the samples: nodes that its packet visited, and tests of a ray with a
+     triangle or segment. */
   uint visits, tests;
 } SampleHits;
 
