@@ -20,7 +20,7 @@ constexpr double kPartOfFour = 0.25, kPartOfTwo = 0.1;
 
 /// About how many mip footprints of a texture are examined along each axis, and at most how many
 /// texels of each footprint.
-constexpr int kSquares = 64, kTexels = 4;
+constexpr int kFootprints = 64, kTexels = 4;
 
 /// Textures are averaged here for this number of samples a pixel, not for the picture's own: a
 /// render that is resumed with more samples must keep its splitting factor.
@@ -57,8 +57,8 @@ struct Factors {
 
 /// The mean opacity of the mip footprint of `side` x `side` texels from (x, y) on, from at most
 /// kTexels x kTexels of them.
-float square_opacity(const Texture& texture, Factors factors, std::uint32_t x, std::uint32_t y,
-                     std::uint32_t side) {
+float footprint_opacity(const Texture& texture, Factors factors, std::uint32_t x, std::uint32_t y,
+                        std::uint32_t side) {
   const std::uint32_t width = std::min(side, texture.width - x);
   const std::uint32_t height = std::min(side, texture.height - y);
   const std::uint32_t columns = std::min<std::uint32_t>(width, kTexels);
@@ -76,16 +76,16 @@ float square_opacity(const Texture& texture, Factors factors, std::uint32_t x, s
 }
 
 /// Counts one surface: the mean over its texture's mip footprints with an opacity above 0.
-Counts count_squares(const Texture& texture, Factors factors, std::uint32_t side) {
-  const std::uint32_t across = side * std::max(1u, texture.width / side / kSquares);
-  const std::uint32_t down = side * std::max(1u, texture.height / side / kSquares);
+Counts count_footprints(const Texture& texture, Factors factors, std::uint32_t side) {
+  const std::uint32_t across = side * std::max(1u, texture.width / side / kFootprints);
+  const std::uint32_t down = side * std::max(1u, texture.height / side / kFootprints);
   const float of_four = side > 1 ? kOpacityOfTwo : kOpacityOfFour;
-  Counts squares;
+  Counts footprints;
   for (std::uint32_t y = 0; y < texture.height; y += down)
     for (std::uint32_t x = 0; x < texture.width; x += across)
-      squares.add(count_opacity(square_opacity(texture, factors, x, y, side), of_four), 1);
+      footprints.add(count_opacity(footprint_opacity(texture, factors, x, y, side), of_four), 1);
   Counts one;
-  if (squares.all > 0) one.add(squares, 1 / squares.all);
+  if (footprints.all > 0) one.add(footprints, 1 / footprints.all);
   return one;
 }
 
@@ -124,7 +124,7 @@ Counts count_part(const Scene& scene, const Mesh& mesh, const Part& part, int le
   const Factors factors{material.alpha * vertex_alpha, cutoff_of(material)};
   if (!has_texture(material, mesh))
     return count_opacity(thresholded(factors.factor, factors.cutoff), kOpacityOfFour);
-  return count_squares(scene.textures[material.alpha_texture], factors, 1u << level);
+  return count_footprints(scene.textures[material.alpha_texture], factors, 1u << level);
 }
 
 /// The mip level whose texels are as wide as the area that a camera ray averages of the texture.

@@ -91,7 +91,7 @@ struct DeviceContext::State {
   std::vector<std::pair<std::string, cl::Event>> events;
   std::map<std::string, double> pass_seconds;
   Buffer tickets;  ///< counter; empty before the first launch and after a failed one
-  cl_uint next_turn = kFirstTicket;
+  cl_uint next_ticket = kFirstTicket;
   bool warming_up = false;
 
   /// The text that names a program of that source in KernelCache.
@@ -331,16 +331,16 @@ void DeviceContext::launch_with_tickets(const KernelName& name, const std::strin
   // If anything throws from here on, the next launch makes a new counter.
   Buffer tickets = std::exchange(s.tickets, {});
   if (!tickets.bytes()) {
-    tickets = allocate(sizeof s.next_turn);
-    s.next_turn = kFirstTicket;
-    write(tickets, &s.next_turn, sizeof s.next_turn);
+    tickets = allocate(sizeof s.next_ticket);
+    s.next_ticket = kFirstTicket;
+    write(tickets, &s.next_ticket, sizeof s.next_ticket);
   }
   const std::size_t groups = std::max<std::size_t>(groups_with_tickets(ticket_count), 1);
   const auto count = static_cast<cl_uint>(ticket_count);
-  arguments.insert(arguments.end(), {tickets, s.next_turn, count});
+  arguments.insert(arguments.end(), {tickets, s.next_ticket, count});
   launch(name, label, groups * group, arguments, group);
   // The launch takes all tickets, and each work-item one more, beyond the last ticket.
-  s.next_turn += static_cast<cl_uint>(ticket_count + groups * group);
+  s.next_ticket += static_cast<cl_uint>(ticket_count + groups * group);
   s.tickets = std::move(tickets);
 }
 

@@ -43,18 +43,18 @@ double rmse(const std::vector<float>& a, const std::vector<float>& b) {
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-int depths_of(const RenderOptions& options, const Scene& scene) {
+int splitting_of(const RenderOptions& options, const Scene& scene) {
   std::vector<std::string> notes;
   return choose_camera_splitting(options, scene, choose_view(scene, options, notes));
 }
 
 TEST(CameraSplitting, IncreasesWithTheTransmittanceOfSurfaces) {
-  for (const auto& [opacity, depths] :
+  for (const auto& [opacity, factor] :
        {std::pair(1.0f, 1), {0.9f, 1}, {0.85f, 2}, {0.5f, 2}, {0.2f, 4}})
-    EXPECT_EQ(depths_of({}, tree(opacity)), depths) << opacity;
+    EXPECT_EQ(splitting_of({}, tree(opacity)), factor) << opacity;
   RenderOptions options;
   options.camera_splitting = 2;
-  EXPECT_EQ(depths_of(options, tree(0.2f)), 2) << "as asked for";
+  EXPECT_EQ(splitting_of(options, tree(0.2f)), 2) << "the given factor";
 }
 
 /// A tree whose leaves have a texture of 2x1 texels with these alphas.
@@ -67,9 +67,9 @@ Scene cards(std::uint8_t left, std::uint8_t right) {
 }
 
 TEST(CameraSplitting, DependsOnTheAlphaOfTextures) {
-  EXPECT_EQ(depths_of({}, cards(0, 255)), 1) << "holes and opaque leaf";
-  EXPECT_EQ(depths_of({}, cards(51, 51)), 4) << "as an opacity of 0.2";
-  EXPECT_EQ(depths_of({}, cards(0, 128)), 2) << "what is not there doesn't count";
+  EXPECT_EQ(splitting_of({}, cards(0, 255)), 1) << "holes and opaque leaf";
+  EXPECT_EQ(splitting_of({}, cards(51, 51)), 4) << "as an opacity of 0.2";
+  EXPECT_EQ(splitting_of({}, cards(0, 128)), 2) << "what is not there doesn't count";
 }
 
 TEST(CameraSplitting, DependsOnTexturesAsThePictureFiltersThem) {
@@ -79,10 +79,10 @@ TEST(CameraSplitting, DependsOnTexturesAsThePictureFiltersThem) {
     for (std::size_t v = 0; v < mesh.uvs.size(); ++v)
       mesh.uvs[v] = V2f(mesh.positions[v].x + mesh.positions[v].z, mesh.positions[v].y) * 1e5f;
   }
-  EXPECT_EQ(depths_of({}, scene), 4);
+  EXPECT_EQ(splitting_of({}, scene), 4);
   RenderOptions exact;
   exact.estimator = Estimator::exact;
-  EXPECT_EQ(depths_of(exact, scene), 1) << "which averages nothing";
+  EXPECT_EQ(splitting_of(exact, scene), 1) << "which averages nothing";
 }
 
 /// A tree in which a share `part` of all triangles is thin.
@@ -101,18 +101,18 @@ Scene partly_thin(double part) {
 }
 
 TEST(CameraSplitting, IsNotUsedForAFewThinSurfaces) {
-  EXPECT_EQ(depths_of({}, partly_thin(0.05)), 1);
-  EXPECT_EQ(depths_of({}, partly_thin(0.15)), 2);
-  EXPECT_EQ(depths_of({}, partly_thin(0.3)), 4);
+  EXPECT_EQ(splitting_of({}, partly_thin(0.05)), 1);
+  EXPECT_EQ(splitting_of({}, partly_thin(0.15)), 2);
+  EXPECT_EQ(splitting_of({}, partly_thin(0.3)), 4);
 }
 
 TEST(CameraSplitting, LeavesRoomForAllSamples) {
   RenderOptions options;
   options.spp = 1 << 20;
   options.ao_rays = 8;
-  EXPECT_EQ(depths_of(options, tree(0.2f)), 2);
+  EXPECT_EQ(splitting_of(options, tree(0.2f)), 2);
   options.ao_rays = 16;
-  EXPECT_EQ(depths_of(options, tree(0.2f)), 1);
+  EXPECT_EQ(splitting_of(options, tree(0.2f)), 1);
 }
 
 TEST(CameraSplitting, GivesTheSamePictureWithLessNoise) {
@@ -123,16 +123,16 @@ TEST(CameraSplitting, GivesTheSamePictureWithLessNoise) {
   many.estimator = Estimator::exact;
   const RenderResult truth = render(tree(0.2f), many);
   std::vector<double> errors;
-  for (const int depths : {1, 2, 4}) {
+  for (const int factor : {1, 2, 4}) {
     RenderOptions options = many;
-    options.camera_splitting = depths;
+    options.camera_splitting = factor;
     options.spp = 16;
     const RenderResult result = render(tree(0.2f), options);
     for (const char* name : {"A", "ao.R", "light.key.G", "N.Y", "bent.Y"}) {
       const auto &found = channel(result, name), &expected = channel(truth, name);
       const double error_of_mean =
           rmse(found, expected) / std::sqrt(static_cast<double>(found.size()));
-      EXPECT_NEAR(mean(found), mean(expected), 3 * error_of_mean) << name << ", " << depths;
+      EXPECT_NEAR(mean(found), mean(expected), 3 * error_of_mean) << name << ", " << factor;
     }
     errors.push_back(rmse(channel(result, "ao.R"), channel(truth, "ao.R")));
   }
@@ -157,8 +157,8 @@ TEST(CameraSplitting, ErrorsWithATargetAreThoseOfWholeCameraRays) {
   RenderOptions many = small_picture(1);
   many.spp = 2048;
   const std::vector<float> truth = channel(render(tree(0.2f), many), "ao.R");
-  for (const int depths : {2, 4}) {
-    RenderOptions options = small_picture(depths);
+  for (const int factor : {2, 4}) {
+    RenderOptions options = small_picture(factor);
     options.spp = 2;
     options.light = false;
     options.target_rmse = 0.015f;
@@ -167,8 +167,8 @@ TEST(CameraSplitting, ErrorsWithATargetAreThoseOfWholeCameraRays) {
     const std::vector<float>& ao = channel(result, "ao.R");
     // Samples of one ray are correlated. If they counted as independent, the error would be
     // underestimated.
-    EXPECT_LT(rmse(ao, truth), 0.016) << depths;
-    EXPECT_GT(rmse(ao, truth), 0.011) << depths;
+    EXPECT_LT(rmse(ao, truth), 0.016) << factor;
+    EXPECT_GT(rmse(ao, truth), 0.011) << factor;
     EXPECT_EQ(std::memcmp(ao.data(), channel(again, "ao.R").data(), ao.size() * sizeof(float)), 0);
     for (const float samples : channel(result, "samples")) EXPECT_GE(samples, 2);
   }

@@ -47,7 +47,7 @@ TEST(OracleStrands, CurlsTransmitAsInEmbree) {
 }
 
 TEST(OracleStrands, PointedStrandsTransmitAsInEmbree) {
-  expect_equal(strand_scene(curly_strands({.tip = 0, .tickets = 3}), 0.3f), "pointed");
+  expect_equal(strand_scene(curly_strands({.tip = 0, .turns = 3}), 0.3f), "pointed");
 }
 
 TEST(OracleStrands, OpaqueStrandsOccludeAsInEmbree) {

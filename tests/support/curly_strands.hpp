@@ -14,7 +14,7 @@ struct Curls {
   std::size_t segments = 16;  ///< of each strand
   float radius = 0.002f;      ///< at the root, metres
   float tip = 1.0f;           ///< radius at the tip as a share of the root's
-  float tickets = 2;          ///< full turns of a strand's helix around its axis
+  float turns = 2;          ///< full turns of a strand's helix around its axis
   std::uint32_t seed = 1;
 };
 
@@ -28,7 +28,7 @@ inline Mesh curly_strands(const Curls& curls, std::uint32_t material = 0) {
     const float length = 0.3f + 0.4f * random.unit(), curl = 0.02f + 0.04f * random.unit();
     for (std::size_t i = 0; i <= curls.segments; ++i) {
       const float share = static_cast<float>(i) / static_cast<float>(curls.segments);
-      const float angle = 2 * static_cast<float>(kPi) * curls.tickets * share;
+      const float angle = 2 * static_cast<float>(kPi) * curls.turns * share;
       const auto at = static_cast<std::uint32_t>(mesh.positions.size());
       mesh.positions.push_back(way * (0.3f + length * share) +
                                (side * std::sin(angle) + up * (std::cos(angle) - 1)) * curl);

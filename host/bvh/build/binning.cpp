@@ -5,7 +5,8 @@
 namespace dapple {
 namespace {
 
-/// Few primitives don't need many bins, whose setting up would cost more than they.
+/// Number of bins: fewer for few primitives, for which setting up bins would cost more than they
+/// save.
 int bins_for(std::uint32_t count) { return count >= 32 ? kBins : 8; }
 
 }  // namespace
@@ -35,7 +36,7 @@ void Bins::fill(const PrimitiveBox* prims, std::uint32_t prim_count, const Binni
     Float4 half[2];
     std::memcpy(half, &bounds, sizeof half);
     Float4 at = (half[0] - half[1] - start) * scale;
-    at = at > zero ? at : zero;  // and where it is no number
+    at = at > zero ? at : zero;  // 0 for NaN too
     const Int4 bin = __builtin_convertvector(at < last ? at : last, Int4);
     for (int a = 0; a < 3; ++a) {
       box[bin[a]][a].add(bounds);
@@ -86,7 +87,8 @@ std::uint32_t partition(const PrimitiveBox* prims, std::uint32_t count, const Bi
   const int axis = split.axis;
   const float start = binning.start[axis], scale = binning.scale[axis];
   const float first_right = static_cast<float>(split.last_left + 1);
-  // No branches: which side is as good as random. A side's centres gain infinity on the other.
+  // Without branches, since the side is unpredictable: infinity keeps a centre out of the other
+  // side.
   const Float8 zero{}, infinity = zero + std::numeric_limits<float>::infinity();
   const Float8 aside[2] = {zero, infinity};
   Box8 sides[2] = {centres2[0], centres2[1]};

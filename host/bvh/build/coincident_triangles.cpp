@@ -12,7 +12,7 @@
 namespace dapple {
 namespace {
 
-/// The same of all triangles that have these corners.
+/// The same for all triangles that have these corners.
 Checksum corners_checksum(const Mesh& mesh, std::uint32_t triangle) {
   std::array<std::array<float, 3>, 3> corners{};
   for (std::size_t corner = 0; corner < 3; ++corner) {

@@ -23,8 +23,8 @@ void shift(TriangleBlock& block, const ObjectOffsets& by, int sign) {
 void shift(SegmentBlock&, const ObjectOffsets&, int) {}
 void shift(TexturedTriangle&, const ObjectOffsets&, int) {}
 
-/// Each part's values shifted by its offsets, and `spare` more. Parts are emptied on the way, to
-/// need memory for one twice.
+/// Concatenates the parts' values, each shifted by its offsets, with `spare` more elements. Parts
+/// are freed one by one, so that only one is in memory twice.
 template <class T>
 std::vector<T> values_of(std::span<ConstArray<T>* const> parts,
                          std::span<const ObjectOffsets> offsets, std::size_t spare) {
@@ -42,7 +42,7 @@ std::vector<T> values_of(std::span<ConstArray<T>* const> parts,
   return values;
 }
 
-/// The first parts that are not empty have offsets 0, so that alone they need not be copied.
+/// A single part has offset 0, so it need not be copied.
 template <class T>
 ConstArray<T> joined(std::span<ConstArray<T>* const> parts,
                      std::span<const ObjectOffsets> offsets) {
@@ -73,7 +73,7 @@ ConstArray<T> part_of(const ConstArray<T>& all, std::size_t first, std::size_t e
   return values;
 }
 
-/// What refitting does not change: strands that move are built anew.
+/// Refitting does not change segments: strands that move are rebuilt.
 void join_constant(SceneBvh& bvh, std::vector<FinishedObject>& objects,
                    const std::vector<ObjectOffsets>& offsets) {
   bvh.segments = joined<SegmentBlock>(arrays_of(objects, &FinishedObject::segments), offsets);
@@ -115,7 +115,7 @@ void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
   std::vector<ConstArray<BvhNode>*> nodes = arrays_of(objects, &FinishedObject::nodes);
   nodes.push_back(&top_nodes);
   std::vector<ObjectOffsets> node_offsets = offsets;
-  node_offsets.back() = {};  // the top level's indices already count so
+  node_offsets.back() = {};  // the top level's indices are already absolute
   bvh.nodes = joined<BvhNode>(nodes, node_offsets);
   bvh.blocks = joined<TriangleBlock>(arrays_of(objects, &FinishedObject::blocks), offsets);
   join_constant(bvh, objects, offsets);

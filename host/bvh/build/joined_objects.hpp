@@ -26,17 +26,17 @@ std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
 void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
           const std::vector<ObjectOffsets>& offsets, std::vector<BvhNode> top);
 
-/// Arrays of a SceneBvh by another name, under which they may be written to.
+/// The arrays of a SceneBvh as vectors that may be written to.
 struct ChangeableArrays {
   std::span<BvhNode> nodes;
   std::span<TriangleBlock> blocks;
 };
 
-/// As join(), into arrays that may change later, with `spare` nodes after all objects'.
+/// As join(), but into arrays that may change later, with room for `spare` nodes at the end.
 ChangeableArrays join_changeable(SceneBvh& bvh, std::vector<FinishedObject>& objects,
                                  const std::vector<ObjectOffsets>& offsets, std::size_t spare);
 
-/// A copy of the object that lies from `first` up to `end`, with indices of its own again.
+/// A copy of the object between the offsets `first` and `end`, with indices relative to itself.
 FinishedObject separate(const SceneBvh& bvh, const ObjectSummary& summary,
                         const ObjectOffsets& first, const ObjectOffsets& end);
 

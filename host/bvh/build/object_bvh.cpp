@@ -17,11 +17,11 @@
 namespace dapple {
 namespace {
 
-/// Primitives a leaf may hold.
+/// Maximum number of primitives of a leaf.
 constexpr std::uint32_t kLeafSize = 4;
 static_assert(kLeafSize * DAPPLE_BVH_WIDTH <= DAPPLE_MAX_PRIMITIVES);
 
-/// Triangles to a task of one pass over them all.
+/// Triangles of one task of a parallel loop.
 constexpr std::uint32_t kGrain = 1u << 14;
 
 template <class Body>
@@ -31,7 +31,7 @@ void for_each_block(std::size_t count, const Body& body) {
   });
 }
 
-/// Stands for a textured triangle until it has its index.
+/// Marks a textured triangle until it gets its index.
 constexpr float kTextured = -1.0f;
 
 /// Opacity of each primitive, [0,1], or kTextured; counts their kinds.
@@ -67,14 +67,15 @@ std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, Obje
     opacities[t] = -1.0f - static_cast<float>(textured.size());
     textured.push_back(t);
   }
-  // Two sides of a card let the same through: the product of their means would be less.
+  // The two sides of a card have the same transmittance; the product of their means would be too
+  // small.
   const std::vector<std::uint8_t> coincident = find_coincident(mesh, textured);
   for (std::size_t i = 0; i < textured.size(); ++i)
     object.textured.push_back(textured_triangle(scene, mesh, textured[i], coincident[i] == 0));
   return opacities;
 }
 
-/// Of the primitives that can be seen, in their order. Fills `boxes`, one for each.
+/// Lists the primitives that are not fully transparent, in order, and sets `boxes`, one for each.
 template <class BoxOf>
 void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> boxes,
                 const BoxOf& box_of) {
@@ -135,7 +136,7 @@ double expected_visits(const WideTree& tree) {
 
 }  // namespace
 
-// Minima and maxima without branches, which Imath's extendBy() would take at random.
+// Minima and maxima without branches: those of Imath's extendBy() are unpredictable.
 Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
   const std::uint32_t* index = &mesh.indices[3 * triangle];
   const V3f &a = mesh.positions[index[0]], &b = mesh.positions[index[1]],
@@ -199,7 +200,7 @@ std::vector<BvhNode> pack_nodes(const WideTree& tree) {
 
 namespace {
 
-/// What is known of an object once its tree stands.
+/// The summary of an object whose tree is built.
 void summarize(BuiltObject& built) {
   ObjectBvh& object = built.object;
   const WideTree& tree = built.tree;
@@ -242,7 +243,7 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangl
   object.has_strands = mesh.has_strands();
   const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
   if (object.triangles == 0) return built;
-  // Not cleared, so that the threads that write the pages also get them from the system.
+  // Not cleared: the threads that write the pages also fault them in.
   const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);
   const std::span boxes(storage.get(), object.triangles);
   if (mesh.has_strands())

@@ -14,7 +14,7 @@ namespace dapple {
 
 struct RefitRecord;  // bvh/refit_record.hpp
 
-/// What the top level and statistics need to know of an object.
+/// The summary of an object for the top level and statistics.
 struct ObjectSummary {
   Box3f box;
   std::vector<Box3f> parts;  ///< boxes of the root's children
@@ -35,7 +35,7 @@ struct ObjectBvh : ObjectSummary {
   std::vector<TexturedTriangle> textured;
 };
 
-/// A built object and what prefiltering needs beside it.
+/// A built object, and the data that prefiltering needs.
 struct BuiltObject {
   ObjectBvh object;
   WideTree tree;                     ///< the object was packed from
@@ -57,7 +57,7 @@ void prefilter(BuiltObject& built, const TextureIntegrals& integrals,
 /// by the caller.
 std::vector<BvhNode> pack_nodes(const WideTree& tree);
 
-/// What a node's map and normals say of it and its box.
+/// The coverage map and normals of a node, with its box.
 NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box);
 
 /// Stores the opacity of child `slot`, whose exact box had `opacity`, as that of its grown box.
@@ -68,7 +68,8 @@ float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity
 /// variance_class() as stored with it.
 unsigned variance_of_child(const BvhNode& node, unsigned slot);
 
-/// A triangle of the mesh into a lane; `opacity` in [0,1], or the code of a textured one.
+/// Stores a triangle of the mesh in a lane. `opacity`: in [0,1], or the code of a textured
+/// triangle.
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
               float opacity);
 

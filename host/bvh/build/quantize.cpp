@@ -17,8 +17,8 @@ double margin(float coordinate, double step) {
 /// multiply slowly (experiment 101).
 constexpr int kMinPower = -100;
 
-/// The smallest power of two with which [lower, upper] and the margins on both sides fit 255 steps
-/// from an origin rounded down to a float. 253 steps is where to begin.
+/// The smallest power of two with which [lower, upper] and both margins fit 255 steps from an
+/// origin that is rounded down to a float. The search starts with 253 steps.
 void choose_axis(float lower, float upper, float& origin, uchar& exponent) {
   int power = kMinPower;
   const double size = static_cast<double>(upper) - lower;

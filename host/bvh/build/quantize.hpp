@@ -1,4 +1,4 @@
-// Child boxes to 8 bits a bound and back. Quantization may grow a box, never shrink it.
+// Quantizes child boxes to 8 bits a bound, and decodes them. A box may grow, but never shrinks.
 #pragma once
 
 #include "dapple/scene.hpp"
@@ -20,10 +20,9 @@ Box3f child_box(const BvhNode& node, unsigned slot);
 
 inline constexpr double kGridMargin = 1.0 / 1024.0;
 
-/// Of a coordinate: two roundings to a float. Kernels round a stored side to a float, which leaves
-/// it at least as far outside as a float can say, and then multiply it and the ray's origin by the
-/// inverse direction: two roundings of numbers about as large as the coordinate over the direction.
-/// Where a ray has far to go to the box the rest is a part of the distance, and is paid for there.
+/// Margin relative to the coordinate: two roundings to a float. Kernels multiply a side and the
+/// ray's origin by the inverse direction, which rounds two numbers of the size of the coordinate.
+/// Errors relative to the distance are covered by the slab test's own margin.
 inline constexpr double kGridRounding = 0x1p-23;
 
 }  // namespace dapple

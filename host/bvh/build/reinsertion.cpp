@@ -10,15 +10,15 @@
 namespace dapple {
 namespace {
 
-/// Levels from `tree`'s root of one that is kept; the splitter makes some 48 from the object's.
-/// Boxes around one another cost least in a chain, which no stack would hold.
+/// A reinserted tree with more levels is not kept. (The splitter makes about 48 from the object's
+/// root.) Nested boxes cost least as a chain, which would exceed every stack.
 constexpr unsigned kDeepest = 64;
 
-/// Nodes looked at in a round, over all: where boxes overlap that aren't in one another, there is
-/// room for each nearly everywhere. Those of leaves and branches look at fewer than fifty.
+/// Nodes that the searches of a round may visit, divided by the number of nodes. Where boxes
+/// overlap, a subtree fits nearly everywhere; in plants searches visit fewer than fifty.
 constexpr std::size_t kLooksPerNode = 64;
 
-/// Node 0 is the root and nobody's child.
+/// Node 0 is the root and is no child.
 struct LinkedNode {
   Box8 box;
   float area;
@@ -30,25 +30,25 @@ struct LinkedNode {
   }
 };
 
-/// A node to stand beside, and by how much the sum of areas falls.
+/// A new sibling for a subtree, and by how much the sum of areas decreases.
 struct Place {
   std::uint32_t node = 0;
   float gain = 0;
 };
 
-/// A node to look at, and what is gained before what it takes to let the subtree in there.
+/// A node to visit, and the gain so far, without the cost of inserting the subtree there.
 struct Candidate {
   std::uint32_t node;
   float gain;
 };
 
-/// What a search may still look at, and memory that it needs.
+/// The remaining effort of the searches, and their working memory.
 struct Effort {
   std::size_t looks = 0;
   std::vector<Candidate> waiting;
 };
 
-/// The best place at `top` and below, as far as the effort goes.
+/// The best sibling among `top` and the nodes below, within the remaining effort.
 inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candidate top,
                        Effort& effort, Place& best) {
   std::vector<Candidate>& waiting = effort.waiting;
@@ -69,14 +69,15 @@ inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candida
   }
 }
 
-/// Node 0 if it is best where it is. Its parent, which goes with it, is not the root.
+/// The best new sibling of a node; node 0 if it should stay. The node's parent must not be the
+/// root.
 DAPPLE_MULTIVERSION
 Place find_place(const LinkedNode* nodes, std::uint32_t moved, Effort& effort) {
   Place best;
   std::uint32_t below = nodes[moved].parent;
   float gain = nodes[below].area;
   std::uint32_t sibling = nodes[below].other_than(moved);
-  Box8 rest = nodes[sibling].box;  // of the ancestor gone up to, without what moves
+  Box8 rest = nodes[sibling].box;  // of the current ancestor, without the moved subtree
   look_below(nodes, nodes[moved], {sibling, gain}, effort, best);
   while (below != 0) {
     const std::uint32_t ancestor = nodes[below].parent;
@@ -188,8 +189,8 @@ class Reinsertion {
 }  // namespace
 
 void reinsert_subtrees(int rounds, std::span<PrimitiveBox> boxes, std::vector<BinaryNode>& tree) {
-  if (tree.size() < 5) return;               // nothing has a grandparent
-  if (!std::isfinite(tree[0].area)) return;  // nothing can be compared
+  if (tree.size() < 5) return;               // no node has a grandparent
+  if (!std::isfinite(tree[0].area)) return;  // areas cannot be compared
   Reinsertion reinsertion(tree);
   for (int round = 0; round < rounds; ++round) reinsertion.round();
   if (reinsertion.is_too_deep()) return;

@@ -1,4 +1,4 @@
-// Makes a binary tree better after it is built: subtrees move to where they cost less (Meister and
+// Improves a binary tree after it is built: moves subtrees to where they cost less (Meister and
 // Bittner, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", 2018).
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace dapple {
 
-/// In each of so many rounds every node that lowers the sum of areas elsewhere moves there, largest
-/// first. `boxes`, which leaves are ranges of, are put in the new order. A tree that would become
-/// very deep stays as it is.
+/// Runs so many rounds. In each, nodes that lower the sum of areas elsewhere move there, the
+/// largest first. Reorders `boxes`, since leaves are ranges of it. A tree that would become too
+/// deep is not changed.
 void reinsert_subtrees(int rounds, std::span<PrimitiveBox> boxes, std::vector<BinaryNode>& tree);
 
 }  // namespace dapple

@@ -1,4 +1,4 @@
-// All objects' BVHs put together, and the top-level BVH over their instances.
+// Builds all objects' BVHs, joins them, and builds the top-level BVH over their instances.
 #include "bvh/build/scene_bvh.hpp"
 
 #include "bvh/build/scene_objects.hpp"

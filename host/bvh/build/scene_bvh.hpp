@@ -1,4 +1,4 @@
-// A built scene with what its arrays alone don't tell any more.
+// A built scene with the objects and offsets that its joined arrays no longer show.
 #pragma once
 
 #include <string>

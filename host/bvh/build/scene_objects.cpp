@@ -11,21 +11,20 @@
 namespace dapple {
 namespace {
 
-/// Smaller objects are not worth a file (experiment 102). Scenes with many smaller ones have them
-/// merged.
+/// Objects with fewer triangles are not cached (experiment 102).
 constexpr std::size_t kMinCachedTriangles = 256;
 
-/// A mesh on its way to a finished object.
+/// A mesh while its object is read or built.
 struct Work {
-  bool is_cached = false;  ///< worth a file
+  bool is_cached = false;  ///< large enough for a file
   bool is_read = false;
   Checksum key{};
-  std::string note;  ///< what was wrong with its file
+  std::string note;  ///< the error of its cache file
   BuiltObject built;
   CachedObject finished;
 };
 
-/// `body` for every piece of work, in parallel; returns wall seconds.
+/// Calls `body` for every item, in parallel. Returns wall seconds.
 template <class Body>
 double for_each(std::vector<Work>& works, const Body& body) {
   const auto start = std::chrono::steady_clock::now();
@@ -46,7 +45,7 @@ void read_from_cache(const Scene& scene, const std::string& folder, std::vector<
   });
 }
 
-/// Fills `records`, of every mesh, too, where it is not nullptr.
+/// Also fills `records`, one for each mesh, unless it is nullptr.
 void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& statistics,
                    std::vector<RefitRecord>* records) {
   statistics.build_seconds = for_each(works, [&](Work& work, std::size_t m) {
@@ -67,7 +66,7 @@ void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& 
   });
 }
 
-/// Objects share the time that building them all took by their triangles.
+/// Divides the build time over the objects by their numbers of triangles.
 void share_out_seconds(std::vector<Work>& works, const BvhStatistics& statistics) {
   double triangles = 0;
   for (const Work& work : works) {
@@ -80,7 +79,7 @@ void share_out_seconds(std::vector<Work>& works, const BvhStatistics& statistics
   }
 }
 
-/// A render does not fail for want of a cache: what could not be written becomes a note.
+/// A cache file that cannot be written becomes a note; the render does not fail.
 void write_to_cache(const std::string& folder, std::vector<Work>& works,
                     BvhStatistics& statistics) {
   std::vector<char> written(works.size(), 0);
@@ -96,7 +95,7 @@ void write_to_cache(const std::string& folder, std::vector<Work>& works,
   for (const char was_written : written) statistics.cache.objects_written += was_written != 0;
 }
 
-/// One line, however many files there are.
+/// One line for all files.
 std::string summed_notes(const std::vector<Work>& works) {
   std::string first;
   std::size_t count = 0;

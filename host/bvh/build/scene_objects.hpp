@@ -1,4 +1,4 @@
-// Every mesh's finished object: from the cache, or built and put into it.
+// The finished object of every mesh: read from the cache, or built and written to it.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace dapple {
 
-/// One for each of the scene's meshes; those that nothing can hit have no nodes. Fills what the
-/// statistics tell of times and of the cache. `cache_folder`: empty for none.
+/// Returns one object for each mesh; meshes without primitives that can be hit have no nodes. Fills
+/// the times and the cache's part of the statistics. `cache_folder`: empty for none.
 std::vector<FinishedObject> finish_objects(const Scene& scene, const std::string& cache_folder,
                                            BvhStatistics& statistics);
 

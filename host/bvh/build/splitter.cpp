@@ -11,14 +11,14 @@
 namespace dapple {
 namespace {
 
-/// Below this depth ranges are halved, which bounds the depth of hostile input.
+/// Below this depth ranges are halved, which bounds the depth for any input.
 constexpr int kDeepest = 48;
-/// Up to here all ways to split are tried.
+/// Up to so many primitives all splits are tried.
 constexpr std::uint32_t kFew = 4;
 constexpr std::uint32_t kParallelSplit = 1u << 16;
 constexpr std::uint32_t kBlock = 1u << 13;
 
-/// The cheapest way to split a few primitives, and what both sides cost as leaves.
+/// The cheapest split of a few primitives, and the cost of both sides as leaves.
 struct FewSplit {
   float cost;
   unsigned left_set;
@@ -35,7 +35,7 @@ FewSplit best_of_all(const PrimitiveBox* prims, std::uint32_t count) {
     if (rest) box[set].add(box[rest]);
     cost[set] = leaf_cost(box[set].half_area(), static_cast<unsigned>(__builtin_popcount(set)));
   }
-  // Every split once: the last primitive goes right.
+  // The last primitive always goes right, so every split is tried once.
   FewSplit best{std::numeric_limits<float>::infinity(), 1};
   for (unsigned set = 1; set <= everything / 2; ++set) {
     const float both = cost[set] + cost[everything ^ set];
@@ -44,7 +44,7 @@ FewSplit best_of_all(const PrimitiveBox* prims, std::uint32_t count) {
   return best;
 }
 
-/// What is left of `part` and what becomes of the other side, but for where their centres are.
+/// The two sides of `part`, without the bounds of their centres.
 void divide(Part& part, Part& right, std::uint32_t left_count) {
   right = part;
   right.first = part.first + left_count;
@@ -159,7 +159,7 @@ void Splitter::split_in_parallel(Part& part, Part& right) const {
   for (std::uint32_t b = 1; b < blocks; ++b) all.add(bins[b], binning.used);
   const Split split = best_split(all, binning.used);
   if (split.axis < 0 || part.depth >= kDeepest) return halve(part, right);
-  // Each block knows from its bins how many will go left, so all can write at once.
+  // The bins tell how many primitives of each block go left, so all blocks can write in parallel.
   std::vector<std::uint32_t> left_before(blocks + 1, 0);
   for (std::uint32_t b = 0; b < blocks; ++b) {
     left_before[b + 1] = left_before[b];

@@ -1,4 +1,4 @@
-// Splits ranges of primitives in two, top-down, and says where to stop.
+// Splits ranges of primitives in two, top-down, and decides where to stop.
 #pragma once
 
 #include <span>
@@ -7,18 +7,18 @@
 
 namespace dapple {
 
-/// A range of primitives, measured.
+/// A range of primitives with its bounds.
 struct Part {
   Box8 box, centres2;
   std::uint32_t first = 0, count = 0;
   float area = 0;         ///< half_area() of the box
   int depth = 0;          ///< splits above
-  unsigned left_set = 0;  ///< of a few primitives: bit i says that number i goes left
-  bool leaf = false;      ///< one primitive, or no dearer than its two sides as leaves
+  unsigned left_set = 0;  ///< for few primitives: bit i is set if primitive i goes left
+  bool leaf = false;      ///< one primitive, or not more expensive than two leaves
   bool away = false;      ///< its primitives lie in the second array
 };
 
-/// Splits by surface area heuristic: the same parts whatever the threads.
+/// Splits by the surface area heuristic. The result does not depend on threads.
 class Splitter {
  public:
   /// Sorts `home`, which `second`, of the same size, helps to.
@@ -33,7 +33,7 @@ class Splitter {
   /// `part`, not a leaf, becomes the left side. Large parts are split in parallel.
   void split(Part& part, Part& right) const;
 
-  /// Where all primitives should be in the end, and brings a part's there.
+  /// The array that holds all primitives at the end; moves the primitives of a part there.
   [[nodiscard]] std::span<PrimitiveBox> home() const { return {home_, count_}; }
   void bring_home(Part& part) const;
 

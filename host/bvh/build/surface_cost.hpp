@@ -1,11 +1,11 @@
-// What the surface area heuristic counts for nodes and leaves (MacDonald and Booth, 1990), over one
-// test of a ray against a node's eight boxes.
+// Costs of nodes and leaves for the surface area heuristic (MacDonald and Booth, 1990), in units of
+// one test of a ray against a node's eight boxes.
 #pragma once
 
 namespace dapple {
 
-/// A ray that hits a leaf's box has its block of up to eight triangles brought and met, which the
-/// node's other leaves may share: most of it once, little for each primitive.
+/// A ray that hits a leaf's box loads and intersects a block of up to eight triangles, which the
+/// node's other leaves may share: the cost is mostly constant and grows little with the primitives.
 inline constexpr float kLeafCost = 0.7f;
 inline constexpr float kPrimitiveCost = 0.2f;
 

@@ -24,7 +24,7 @@ void store_rows(const M44f& m, float (&rows)[12]) {
   }
 }
 
-/// World box around the boxes of the root's children: tighter than around the root's own.
+/// World box around the boxes of the root's children; it is tighter than that of the root's box.
 Box3f world_box(const std::vector<Box3f>& parts, const M44f& to_world) {
   Box3f world;
   for (const Box3f& box : parts) {

@@ -1,4 +1,5 @@
-// The BVH over the scene's instances: same nodes as the objects', one instance a leaf.
+// Builds the BVH over the scene's instances, with the same nodes as objects and one instance in a
+// leaf.
 #pragma once
 
 #include <vector>

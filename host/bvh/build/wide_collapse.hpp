@@ -1,6 +1,6 @@
-// Which subtrees of a binary tree become the children of nodes of eight, and which its leaves, so
-// that the surface area heuristic's cost is least (Ylitie, Karras, Laine, "Efficient Incoherent Ray
-// Traversal on GPUs Through Compressed Wide BVHs", 2017).
+// Chooses which subtrees of a binary tree become children of nodes of eight and which become
+// leaves, so that the cost by the surface area heuristic is minimal (Ylitie, Karras, Laine,
+// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017).
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace dapple {
 
 class CheapestNodes {
  public:
-  /// Of `tree`, which outlives it; leaves have at most `leaf_size` primitives.
+  /// `tree` must outlive the object. Leaves have at most `leaf_size` primitives.
   CheapestNodes(std::span<const BinaryNode> tree, std::uint32_t leaf_size);
 
   [[nodiscard]] bool is_leaf(std::uint32_t node) const { return ways_[node].leaf; }
@@ -28,7 +28,7 @@ class CheapestNodes {
   [[nodiscard]] Children children_of(std::uint32_t node) const;
 
  private:
-  /// The cheapest ways to make a subtree 1 to 8 children of a node.
+  /// The cheapest ways to turn a subtree into 1 to 8 children of a node.
   struct Ways {
     std::array<float, DAPPLE_BVH_WIDTH> cost;  ///< [children - 1]; of 8 at least two
     std::array<std::uint8_t, DAPPLE_BVH_WIDTH> left_children;  ///< how many of them on the left

@@ -26,7 +26,7 @@ constexpr std::uint32_t kTaskPrimitives = 1u << 15;
 constexpr std::size_t kMaxReinserted = 1u << 18;
 constexpr int kRounds = 2;
 
-/// Up to eight parts that together cover one.
+/// Up to eight parts of a range.
 struct Parts {
   std::array<Part, DAPPLE_BVH_WIDTH> part;
   unsigned count = 1;
@@ -44,8 +44,7 @@ struct Parts {
   }
 };
 
-/// Appends a node's children, of which inner ones have count 0 and will be nodes from `next_node`
-/// on.
+/// Appends a node's children. Inner ones have count 0 and become the nodes from `next_node` on.
 WideNode add_children(const Box8& box, std::uint32_t primitives,
                       std::span<const WideChild> children, std::uint32_t next_node,
                       WideTree& tree) {
@@ -59,14 +58,14 @@ WideNode add_children(const Box8& box, std::uint32_t primitives,
   return node;
 }
 
-/// A binary tree as nodes of eight. Depth first, by groups of siblings: what a ray visits together
-/// lies together.
+/// Converts a binary tree to nodes of eight, depth first by groups of siblings: nodes that a ray
+/// visits together are adjacent.
 class Growth {
  public:
   Growth(std::span<const BinaryNode> binary, std::uint32_t leaf_size, WideTree& tree)
       : binary_(binary), cheapest_(binary, leaf_size), tree_(tree) {}
 
-  /// Node `index` of the wide tree in place of `from`, and all below.
+  /// Makes node `index` of the wide tree from binary node `from`, and all nodes below.
   void grow(std::uint32_t from, std::size_t index) {
     const CheapestNodes::Children children = cheapest_.children_of(from);
     std::array<WideChild, DAPPLE_BVH_WIDTH> wide;
@@ -99,11 +98,11 @@ std::vector<BinaryNode> binary_subtree(const Splitter& splitter, const Part& who
   return binary;
 }
 
-/// A subtree in arrays of its own; of a large one only the root, its children being branches.
+/// A subtree with its own arrays. A large subtree holds only its root; its children are branches.
 struct Branch {
   WideTree tree;
   std::vector<Branch> below;
-  std::size_t node_count = 0, child_count = 0;  ///< with all below
+  std::size_t node_count = 0, child_count = 0;  ///< including all nodes below
 };
 
 Branch grow_branch(const Splitter& splitter, Part& whole, std::uint32_t leaf_size) {
@@ -143,8 +142,8 @@ Branch grow_branch(const Splitter& splitter, Part& whole, std::uint32_t leaf_siz
   return branch;
 }
 
-/// Copies a branch to where it belongs: its root to node `root`, all other nodes from `nodes`
-/// on and children from `children` on. Frees it.
+/// Copies a branch into the final arrays: its root to node `root`, other nodes from `nodes` on,
+/// children from `children` on. Frees the branch.
 void place(Branch& branch, std::size_t root, std::size_t nodes, std::size_t children,
            WideTree& tree) {
   const std::size_t own = branch.tree.nodes.size();
@@ -152,7 +151,7 @@ void place(Branch& branch, std::size_t root, std::size_t nodes, std::size_t chil
     WideNode& node = tree.nodes[n ? nodes + n - 1 : root] = branch.tree.nodes[n];
     node.first_child += static_cast<std::uint32_t>(children);
   }
-  // A subtree counts its nodes from its root, a lone root from its first inner child.
+  // A subtree's indices count from its root, a single root's from its first inner child.
   const std::size_t inner_base = branch.below.empty() ? nodes - 1 : nodes;
   WideChild* to = &tree.children[children];
   for (WideChild child : branch.tree.children) {

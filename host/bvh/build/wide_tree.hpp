@@ -1,5 +1,5 @@
-// The tree before it is quantized: nodes of up to eight children with their exact boxes. Knows
-// nothing of what is inside the primitives' boxes.
+// The tree before quantization: nodes of up to eight children with exact boxes. In: boxes of
+// primitives of any kind. Out: nodes and an order of the primitives.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +38,8 @@ struct WideTree {
 /// Blocks of eight that the primitives of a node's leaves take.
 inline std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
 
-/// Builds in O(n log n), in parallel, the same tree whatever the thread count. `boxes` is not
-/// empty and has finite boxes; it is reordered so that leaves, of at most `leaf_size`
+/// Builds in O(n log n), in parallel. The tree does not depend on the number of threads. `boxes` is
+/// not empty and has finite boxes; it is reordered so that leaves, of at most `leaf_size`
 /// primitives, are ranges.
 WideTree build_wide_tree(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size);
 

@@ -7,10 +7,10 @@
 namespace dapple {
 namespace {
 
-/// What may be left of the area vectors of a closed piece.
+/// The largest sum of area vectors of a closed part, relative to its area.
 constexpr float kOpenShare = 0.1f;
 
-/// Vertices that triangles connect, as a forest with one root a piece.
+/// Vertices connected by triangles, as a union-find forest with one root for each part.
 class QueueSplit {
  public:
   explicit QueueSplit(std::size_t vertices) : parent_(vertices) {
@@ -89,7 +89,7 @@ void SurfaceAreas::add(const SurfaceAreas& areas) {
 }
 
 float enclosed_share(const SurfaceAreas& a, const SurfaceAreas& b, int axis) {
-  // What has no other side yet in its own node, front positive.
+  // The area that has no opposite side in its own node yet; front sides are positive.
   const float single_a = a.front[axis] - a.back[axis], single_b = b.front[axis] - b.back[axis];
   if (single_a * single_b >= 0.0f) return 0.0f;
   const auto hidden = [&](const SurfaceAreas& node) {

@@ -1,5 +1,5 @@
-// Twigs, trunks and stones: surfaces that close on themselves. Seen from anywhere their front
-// hides their back, which the opacity of a node must not count twice.
+// Finds closed surfaces, such as twigs, trunks and stones. Their front always occludes their back,
+// so the opacity of a node must not count both.
 #pragma once
 
 #include <span>

@@ -12,7 +12,8 @@ constexpr float kSize = kMapSize;
 /// Of scaling a triangle's cells to its area; two bring nearly all to a rounding.
 constexpr int kScalingPasses = 3;
 
-/// A triangle that slipped between the cells: its area shared by the cells it touches.
+/// A triangle whose coverage is 0 in every cell by rounding: its area is divided over the cells
+/// that it touches.
 void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
   const int columns = triangle.column1 - triangle.column0 + 1,
             rows = triangle.row1 - triangle.row0 + 1;
@@ -25,7 +26,7 @@ void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
   }
 }
 
-/// Of the touched rows, column by column, cells that are full and what the others hold.
+/// For the touched rows: the number of full cells, and the sum of the others, by column.
 struct Tally {
   Row full{}, partial{}, largest{};
 

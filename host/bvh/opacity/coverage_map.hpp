@@ -1,5 +1,5 @@
-// A small image of transmittance a box, per axis: how the things inside clump, which
-// multiplying mean opacities forgets. Maps are made from triangles, composited upwards.
+// Small images of a box's transmittance along each axis. They keep how the content clumps, which
+// products of mean opacities lose. In: triangles and strips, or the maps of children. Out: a map.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct CoverageMap {
   /// 2/3 of the mean opacity where it lies evenly.
   [[nodiscard]] float opacity_off_centre(int axis) const;
   /// Relative variance of opacity over the box: variance of the cells over the greatest that their
-  /// mean allows, all axes together. 0: all alike; 1: each cell is clear or hides everything.
+  /// mean allows, all axes together. 0: all cells are alike; 1: each cell is clear or opaque.
   [[nodiscard]] float clumping() const;
 };
 
@@ -53,7 +53,7 @@ struct CoveringTriangle {
   bool closed = false;  ///< part of a closed surface, opaque: closed_triangles()
 };
 
-/// What is drawn along each axis. Triangles are the same along all, strips face their axis.
+/// The triangles for each axis. Triangles are the same for all axes; strips face their axis.
 using Covering = std::array<std::span<const CoveringTriangle>, 3>;
 
 /// Multiplies triangles inside `box` into the map, keeping their projected areas. Those

@@ -1,4 +1,4 @@
-// Compositing the children's coverage maps into their parent's.
+// Composites the coverage maps of children into the map of their parent.
 #include <algorithm>
 #include <cmath>
 

@@ -62,7 +62,7 @@ V3f NormalMoments::correlation() const {
 
 namespace {
 
-/// Numbers of four directions side by side, in one register of any x86-64.
+/// Values for four directions, in one 128-bit register.
 using Four = float __attribute__((vector_size(16)));
 using FourInts = int __attribute__((vector_size(16)));
 
@@ -164,7 +164,7 @@ float compensation(std::size_t triangles) {
   return std::clamp(std::log2(static_cast<float>(triangles) + 1.0f) / 12.0f, 0.0f, 1.0f);
 }
 
-/// Looks at a box of some size from four directions at a time.
+/// Computes the opacity of a box from four directions at a time.
 class DirectionalOpacity {
  public:
   DirectionalOpacity(const NodeOpacity& opacity, const V3f& size)
@@ -178,9 +178,9 @@ class DirectionalOpacity {
 
   struct Views {
     Four facing;   ///< projected area of the box
-    Four met;      ///< mean opacity that rays meet
-    Four slope;    ///< its change with a factor on depths
-    Four opacity;  ///< that they should meet
+    Four met;      ///< mean opacity of rays by the model
+    Four slope;    ///< its derivative by a factor on depths
+    Four opacity;  ///< mean opacity that they should have
   };
 
   [[nodiscard]] Views along(const FourVectors& direction) const {

@@ -1,5 +1,5 @@
-// What a node stores of what is in it, before it becomes bytes: opacity along the axes, and
-// how the normals of its surfaces lie.
+// The opacity of a node before quantization: opacities along the axes, and the second moments of
+// the normals of its surfaces (SGGX, Heitz et al. 2015).
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace dapple {
 
-/// Second moments of normals, weighted by area and opacity: xx, yy, zz, xy, yz, zx. Of
-/// everything in a node they are the sum of its children's.
+/// Second moments of normals, weighted by area and opacity: xx, yy, zz, xy, yz, zx. Those of a node
+/// are the sum over its children.
 struct NormalMoments {
   std::array<float, 6> sum{};
 
-  /// A surface with area vector `normal` (its length is any multiple of the area).
+  /// Adds a surface with area vector `normal`, whose length is any multiple of the area.
   void add(const V3f& normal, float opacity);
   /// The side of a cylinder around `axis`, half of it: what is seen from anywhere.
   void add_cylinder(const V3f& axis, float radius, float opacity);

@@ -1,5 +1,5 @@
-// A texture's opacities at every coarseness: for prefiltering nodes, and for rays whose footprints
-// cover many texels (kernels/opacity/opacity_lookup.clh).
+// Mip pyramids of a texture's opacity, for prefiltering nodes and for rays whose footprints cover
+// many texels (kernels/opacity/opacity_lookup.clh).
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ namespace dapple {
 /// The opacity of an alpha: 1 from `cutoff` on and 0 below, or the alpha itself where it is < 0.
 float thresholded(float alpha, float cutoff);
 
-/// A texture's opacities averaged over squares of 1, 2, 4... texels (Williams, "Pyramidal
-/// Parametrics", 1983). Of a cut-out the texels are thresholded first and averaged only then.
+/// The opacities of a texture, averaged over 1, 2, 4... texels along each axis (Williams,
+/// "Pyramidal Parametrics", 1983). Cut-out textures are thresholded before they are averaged.
 class OpacityPyramid {
  public:
   /// Level k is half as wide and high as level k - 1, rounded down, and at least 1.

@@ -1,5 +1,5 @@
-// Directional opacity, bottom-up: leaves are drawn into coverage maps of their own, and
-// each node puts its children's maps into one that it hands to its parent.
+// Computes directional opacity bottom-up: rasterizes each leaf into a coverage map, and composites
+// the maps of a node's children into the node's own.
 #include "bvh/opacity/prefilter.hpp"
 
 #include <tbb/parallel_for.h>
@@ -14,20 +14,20 @@
 namespace dapple {
 namespace {
 
-/// Subtrees of fewer primitives are not worth a task.
+/// Subtrees with fewer primitives run in their parent's task.
 constexpr std::uint32_t kTaskPrimitives = 2048;
 
-/// From here on up to 1, nodes count as parts of something solid.
+/// From this opacity up to 1, nodes count as parts of a solid.
 constexpr float kNearlySolid = 0.9f;
 
 uchar encode_depth(float depth) {
   return static_cast<uchar>(std::lround(std::sqrt(depth / DAPPLE_GREATEST_DEPTH) * 255.0f));
 }
 
-/// Primitives that a leaf holds at most.
+/// Maximum number of primitives of a leaf.
 constexpr std::size_t kMaxInLeaf = 8;
 
-/// A leaf's primitives, as what they hide, and what adds up over them.
+/// A leaf's primitives as triangles to rasterize, with their sums of areas and normals.
 struct Leaf {
   /// Triangles once for all axes; or along each the strips of segments, two triangles each.
   std::array<CoveringTriangle, 3 * 2 * kMaxInLeaf> storage;

@@ -1,4 +1,5 @@
-// Prefiltering a tree, or a part of one, in arrays that are the object's own or the scene's.
+// Prefilters a tree or a part of it. In: nodes with their primitives, in the arrays of the object
+// or of the scene. Out: the nodes' directional opacities (Lacewell et al. 2008).
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace dapple {
 
-/// What a subtree hands to its parent.
+/// The result of a subtree for its parent.
 struct Summary {
   CoverageMap map;
   NormalMoments normals;
@@ -26,7 +27,8 @@ struct ObjectArrays {
   std::span<const SegmentBlock> segments = {};  ///< of strands, which are never refitted
 };
 
-/// Answers for subtrees that are not in the tree to be prefiltered: its nodes without children.
+/// Provides the results of subtrees that are prefiltered elsewhere: nodes of this tree without
+/// children.
 class Stumps {
  public:
   virtual ~Stumps() = default;

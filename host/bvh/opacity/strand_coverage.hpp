@@ -1,4 +1,4 @@
-// What segments of strands hide, seen along an axis: strips that face it.
+// The outlines of segments of strands along an axis: strips that face the axis.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace dapple {
 /// The segment's outline along `axis` as two triangles across the axis, edge to edge.
 std::array<CoveringTriangle, 2> facing_strip(const StrandSegment& segment, int axis);
 
-/// Adds what the segment has of normals and projected areas.
+/// Adds the segment's normals and projected areas.
 void add_surface(const StrandSegment& segment, NormalMoments& normals, SurfaceAreas& areas);
 
 /// Whether segments of a leaf are a single one's continuations, in any order in which each meets

@@ -1,5 +1,5 @@
-// What opacity a triangle has: one number, or a texture and factors to be looked up at
-// each hit (kernels/opacity/opacity_lookup.clh) and averaged over areas when prefiltering.
+// The opacity of triangles: one number, or a texture with factors that is looked up at each hit
+// (kernels/opacity/opacity_lookup.clh) and averaged over areas for prefiltering.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace dapple {
 
-/// The triangle's opacity in [0,1] if it is the same all over, else nothing.
+/// The triangle's opacity in [0,1] if it is constant, else nothing.
 std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
 
-/// Of a segment of a strand, [0,1]: its ends' mean alpha, by the material. No textures.
+/// The opacity of a segment, [0,1]: the mean alpha of its ends, by the material, without textures.
 float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment);
 
 /// Whether alpha is looked up.
@@ -36,10 +36,11 @@ float cutoff_of(const Material& material);
 TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle,
                                    bool averaged);
 
-/// Answers "how opaque is this part of the triangle on average" for textured triangles.
+/// Mean opacities of parts of textured triangles.
 class TextureIntegrals {
  public:
-  /// Makes the pyramids that `textured` need, each once. Keeps `scene`'s materials by address.
+  /// Makes the pyramids that the `textured` triangles need, each once. `scene` must outlive the
+  /// object.
   TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured);
 
   /// Mean opacity of the triangle around barycentrics (u, v) over an area that is `share`

@@ -1,15 +1,15 @@
-// An object's arrays after its vertices moved: triangles, boxes and opacities, over the tree that
-// it has.
+// Refits an object after its vertices moved. In: its arrays and the moved mesh. Out: the same tree
+// with new triangles, boxes and opacities.
 #pragma once
 
 #include "bvh/opacity/prefilter.hpp"
 
 namespace dapple {
 
-/// Rewrites the object's nodes and blocks for `mesh`, which is what it was built of but for
-/// positions, and of `summary` what depends on them. In parallel, the same bits whatever the thread
-/// count. Exact boxes hold the triangles as those of a fresh build do; opacities of subtrees that
-/// moved nearly rigidly are taken from the record, all others prefiltered anew.
+/// Rewrites the object's nodes and blocks for `mesh`, which differs from the built one only in
+/// positions, and updates `summary`. In parallel; the bits do not depend on the number of threads.
+/// Exact boxes hold the triangles as those of a fresh build do; opacities of subtrees that moved
+/// nearly rigidly are taken from the record, all others prefiltered anew.
 void refit_object(const Scene& scene, const Mesh& mesh, const ObjectArrays& object,
                   RefitRecord& record, ObjectSummary& summary);
 

@@ -1,5 +1,5 @@
-// What refitting an object needs beside its arrays: which triangle lies where, and what of its
-// opacities outlives motion. Made while the object is built, some 16 bytes a triangle.
+// The data that refitting an object needs beside its arrays: the triangle of each lane, and
+// opacities that motion hardly changes. Made while the object is built; about 16 bytes a triangle.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@ namespace dapple {
 /// Subtrees of up to so many primitives are taken to move nearly rigidly.
 inline constexpr std::uint32_t kRigidPrimitives = 256;
 
-/// Of a node's children: how much of the surfaces in them hides, and how that looks from between
-/// the axes. Neither changes while they move rigidly, and both hardly while they bend a little.
+/// For a node's children: opacity relative to the surface area inside, and correlations of normals.
+/// Neither changes while the content moves rigidly, and both change little while it bends.
 class KeptOpacity {
  public:
   /// `axes`: the child's opacity; `areas` of the surfaces in its `box`; `factor`:
   /// clumping_factor().
   void keep(unsigned slot, const V3f& axes, const SurfaceAreas& areas, const Box3f& box,
             float factor);
-  /// What child `slot` hides seen along `axis`, over the sum of its surfaces' areas.
+  /// The occluded area of child `slot` seen along `axis`, over the sum of its surfaces' areas.
   [[nodiscard]] float share(int axis, unsigned slot) const {
     return static_cast<float>(share_[axis][slot]) * (1.0f / kShareOne);
   }
@@ -31,19 +31,19 @@ class KeptOpacity {
   }
 
  private:
-  /// Code of 1: all that is there hides.
+  /// The code of 1: no surfaces overlap.
   static constexpr float kShareOne = 170.0f;
   std::array<std::array<std::uint8_t, DAPPLE_BVH_WIDTH>, 3> share_{};
   std::array<std::uint8_t, DAPPLE_BVH_WIDTH> factor_{};
 };
 
-/// A coverage map of a quarter of the cells and of bytes.
+/// A coverage map with a quarter of the cells, a byte each.
 class SmallMap {
  public:
   SmallMap() = default;
   explicit SmallMap(const CoverageMap& map);
-  /// The map again, its opacities multiplied so that their means are `axes`, or as near as cells
-  /// that hide everything let them come.
+  /// Returns the map with opacities scaled so that their means are `axes`, as far as opaque cells
+  /// permit.
   [[nodiscard]] CoverageMap with_means(const V3f& axes) const;
 
  private:

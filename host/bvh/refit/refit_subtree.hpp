@@ -1,4 +1,4 @@
-// The lower parts of a tree after their triangles moved.
+// Refits the lower subtrees of an object after their triangles moved.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace dapple {
 
-/// What a moved subtree hands to its parent.
+/// The result of a refitted subtree for its parent.
 struct MovedPart {
   Box3f box;
   SurfaceAreas areas;

@@ -1,5 +1,5 @@
-// Finds out what moved in a scene and brings its BVH up to date: refits objects in place, builds
-// those anew that cannot be refitted, places the instances.
+// Finds what moved in a scene and updates its BVH: refits objects in place, rebuilds objects that
+// cannot be refitted, and places the instances.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 /// SAH cost over that of the last build from which on an object is built again: experiment 107.
 constexpr double kWorstCost = 1.5;
 
-/// What a mesh was when its object was made.
+/// A mesh as it was when its object was built.
 struct MeshKey {
   Checksum form{}, positions{};
 };
@@ -34,7 +34,8 @@ std::vector<MeshKey> keys_of(const Scene& scene) {
   return keys;
 }
 
-/// Nodes that the top level may take: each but a lone root has at least two instances below.
+/// The largest number of top-level nodes: each node but a single root has at least two instances
+/// below.
 std::size_t max_top_nodes(const Scene& scene) { return scene.instances.size() + 1; }
 
 bool is_placed_alike(const Instance& a, const Instance& b) {
@@ -83,7 +84,7 @@ void UpdatableBvh::State::build(const Scene& scene, Motion motion,
   for (std::size_t m = 0; m < meshes; ++m) built_costs[m] = objects[m].sah_cost;
 }
 
-/// Builds all objects but those that are kept.
+/// Builds all objects except those that are kept.
 void UpdatableBvh::State::rebuild(const Scene& scene, const std::vector<bool>& is_kept) {
   std::vector<FinishedObject> finished =
       build_refittable(scene, separated(is_kept), is_kept, records, bvh.statistics);
@@ -111,7 +112,7 @@ void UpdatableBvh::State::put_together(const Scene& scene, std::vector<FinishedO
   bvh.statistics.lane_use = lane_use(bvh);
 }
 
-/// The top level, in the nodes that are left for it.
+/// Builds the top level into the nodes reserved for it.
 void UpdatableBvh::State::place(const Scene& scene, BvhUpdate& update) {
   describe_objects(bvh.statistics, objects);
   const std::vector<BvhNode> top = place_instances(bvh, scene, objects, offsets);

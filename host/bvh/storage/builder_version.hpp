@@ -1,12 +1,13 @@
-// What made a tree: two builders that say the same make the same bits of the same mesh.
+// The version of the BVH builder: builders with the same version make the same bits from the same
+// mesh.
 #pragma once
 
 #include <string_view>
 
 namespace dapple {
 
-/// A checksum over this folder's sources, the layouts that it fills and the compiler with its
-/// flags, so that no one has to remember to count a version up.
+/// A checksum over the sources of host/bvh, the layouts that it fills, and the compiler with its
+/// flags. So nobody has to increase a version number.
 std::string_view builder_version();
 
 }  // namespace dapple

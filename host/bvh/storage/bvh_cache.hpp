@@ -1,5 +1,5 @@
-// Finished trees in a folder, one sealed file an object, named by object_key(). What cannot be
-// read back as it was written counts as not there.
+// The BVH cache: a folder with one sealed file for each object, named by object_key(). A file that
+// cannot be read back as it was written counts as missing.
 #pragma once
 
 #include <optional>
@@ -21,14 +21,14 @@ struct FinishedObject : ObjectSummary {
   ConstArray<TexturedTriangle> textured;
 };
 
-/// What a file of the cache holds.
+/// The content of a cache file.
 struct CachedObject {
   FinishedObject object;
   double build_seconds = 0;  ///< that building and prefiltering took
 };
 
-/// An object of `scene` whose arrays are the file's, mapped into memory. Nothing when there is no
-/// file, or only one that is damaged or of another version, which `note` then says.
+/// Returns an object of `scene` whose arrays are mapped from the file. Returns nothing if there is
+/// no file, or if it is damaged or of another version; `note` then says so.
 std::optional<CachedObject> read_cached_object(const std::string& folder, const Checksum& key,
                                                const Scene& scene, std::string& note);
 

@@ -1,5 +1,5 @@
-// The name under which a mesh's tree is cached: a checksum of everything that the tree is a
-// function of, but of what builds it.
+// The name under which a mesh's BVH is cached: a checksum of everything that the BVH depends on,
+// except the builder.
 #pragma once
 
 #include "dapple/scene.hpp"
@@ -7,11 +7,11 @@
 
 namespace dapple {
 
-/// Of the mesh's geometry, its materials' opacities and their textures. Names, instances, lights
-/// and whatever other meshes use make no difference.
+/// Checksum of the mesh's geometry, its materials' opacities and their textures. Names, instances,
+/// lights and other meshes do not count.
 Checksum object_key(const Scene& scene, const Mesh& mesh);
 
-/// Of all that but where the vertices are, which position_key() tells.
+/// The same without the positions of vertices, which position_key() covers.
 Checksum form_key(const Scene& scene, const Mesh& mesh);
 Checksum position_key(const Mesh& mesh);
 

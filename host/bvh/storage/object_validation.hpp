@@ -1,5 +1,5 @@
-// Whether kernels may walk an object that came out of a file. A checksum shows damage; this shows
-// so that no ray of any file, damaged or not, leaves the object's arrays or the traversal stack.
+// Validates an object that was read from a file, so that no ray leaves its arrays or the traversal
+// stack, whatever the file holds. (A checksum only shows accidental damage.)
 #pragma once
 
 #include "bvh/storage/bvh_cache.hpp"

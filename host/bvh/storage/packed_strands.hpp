@@ -1,4 +1,5 @@
-// The segments of a tree's leaves in blocks, and the tree fitted around what the blocks hold.
+// Packs the segments of a tree's leaves into blocks, and enlarges the tree's boxes to what the
+// quantized blocks hold.
 #pragma once
 
 #include <span>

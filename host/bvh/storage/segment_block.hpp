@@ -1,4 +1,4 @@
-// Segments of strands to blocks of 16-bit steps and 8-bit codes, and back.
+// Encodes segments of strands as blocks of 16-bit steps and 8-bit codes, and decodes them.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ namespace dapple {
 /// of the block's greatest, which itself is kept as it is.
 SegmentBlock pack_segments(std::span<const StrandSegment> segments);
 
-/// What kernels see in a lane.
+/// Decodes a lane as kernels do.
 StrandSegment unpack_segment(const SegmentBlock& block, unsigned lane);
 
 }  // namespace dapple

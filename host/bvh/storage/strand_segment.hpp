@@ -1,5 +1,5 @@
-// A mesh's segments of strands, each with the planes that cut it off: what segment blocks are made
-// of, and what is read back from them.
+// Segments of strands with the planes that end them. In: a mesh of strands. Out: the segments that
+// blocks store, and that are decoded from blocks.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct StrandSegment {
 /// Around the part of the cone between the planes.
 Box3f bounds(const StrandSegment& segment);
 
-/// Where a strand's segments meet: found by vertices that two of them have in common.
+/// The joints of strands: vertices that two segments share.
 class StrandJoints {
  public:
   explicit StrandJoints(const Mesh& mesh);

@@ -60,29 +60,29 @@ V3d rotated(const Quatd& turn, const V3d& v) {
 }  // namespace
 
 SwayingSkeleton::SwayingSkeleton(const TreeSkeleton& rest, float height_m, const Wind& wind)
-    : rest_(rest), positions_(rest.size()), tickets_(rest.size()) {
+    : rest_(rest), positions_(rest.size()), rotations_(rest.size()) {
   positions_[0] = V3d(rest.positions[0]);
   for (std::size_t node = 1; node < rest.size(); ++node) {
     const std::uint32_t parent = rest.parents[node];
     const V3d limb = V3d(rest.positions[node]) - V3d(rest.positions[parent]);
-    const V3d now = rotated(tickets_[parent], limb);
+    const V3d now = rotated(rotations_[parent], limb);
     // A limb is stiff where it is thick and bends where it is thin. The wind turns it towards the
     // direction of the force; a limb that already points there does not turn.
     const double thinness =
         std::clamp(1.0 - double{rest.radii[node]} / double{rest.radii[0]}, 0.0, 1.0);
     const double give = kBend * (0.06 + 0.94 * thinness * thinness) / double{height_m};
     const V3d force = wind_force(V3d(rest.positions[node]) / double{height_m}, thinness, wind);
-    tickets_[node] = (turn_by(now.cross(force) * give) * tickets_[parent]).normalized();
-    positions_[node] = positions_[parent] + rotated(tickets_[node], limb);
+    rotations_[node] = (turn_by(now.cross(force) * give) * rotations_[parent]).normalized();
+    positions_[node] = positions_[parent] + rotated(rotations_[node], limb);
   }
 }
 
 V3f SwayingSkeleton::moved(std::uint32_t node, V3f rest) const {
-  return V3f(positions_[node] + rotated(tickets_[node], V3d(rest) - V3d(rest_.positions[node])));
+  return V3f(positions_[node] + rotated(rotations_[node], V3d(rest) - V3d(rest_.positions[node])));
 }
 
 V3f SwayingSkeleton::turned(std::uint32_t node, V3f rest) const {
-  return V3f(rotated(tickets_[node], V3d(rest)).normalized());
+  return V3f(rotated(rotations_[node], V3d(rest)).normalized());
 }
 
 Blade flutter(const Blade& blade, const Wind& wind, std::uint32_t seed, std::uint32_t leaf) {

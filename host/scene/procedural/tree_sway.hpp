@@ -33,7 +33,7 @@ class SwayingSkeleton {
  private:
   const TreeSkeleton& rest_;
   std::vector<Imath::V3d> positions_;
-  std::vector<Imath::Quatd> tickets_;
+  std::vector<Imath::Quatd> rotations_;
 };
 
 /// Turns a leaf that its twig has already moved: about its axis and up and down, with frequencies
