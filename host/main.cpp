@@ -28,14 +28,14 @@ int run(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 pictures differ,\n"
       "130, 143 interrupted by SIGINT, SIGTERM.\n"
-      "dapple COMMAND --help tells more of each.");
+      "dapple COMMAND --help lists the options of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
   CLI::App& bake =
       *app.add_subcommand("bake", "Bake AO into the vertices or instances of a glTF file");
-  CLI::App& info = *app.add_subcommand("info", "Tell what is in a scene and what its BVH costs");
+  CLI::App& info = *app.add_subcommand("info", "Print what a scene holds and what its BVH costs");
   CLI::App& scene = *app.add_subcommand("scene", "Write a procedural scene as a GLB file");
   CLI::App& devices = *app.add_subcommand("devices", "List the OpenCL devices");
-  CLI::App& compare = *app.add_subcommand("compare", "Tell how far two OpenEXR files are apart");
+  CLI::App& compare = *app.add_subcommand("compare", "Print the differences of two OpenEXR files");
   CLI::App& compile = *app.add_subcommand("compile", "Compile kernels for another process");
   const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
       {&render, dapple::add_render_command(render)},
@@ -54,7 +54,8 @@ int run(int argc, char** argv) {
   }
   // Not CLI11's own requirement: that hides the name of a command it does not know.
   if (app.get_subcommands().empty()) {
-    fmt::print(stderr, "dapple: a subcommand is needed: render, bake, info, scene, devices or compare\n");
+    fmt::print(stderr,
+               "dapple: a subcommand is needed: render, bake, info, scene, devices or compare\n");
     return kUsage;
   }
   for (const auto& [command, work] : commands) {

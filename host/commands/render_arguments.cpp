@@ -18,26 +18,26 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
       "--crop", a.crop,
       "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
-  app.add_option("--spp", a.spp, "Camera samples a pixel; with a target the least")
-      ->default_str(fmt::format("{}, with --target-rmse what tells an error", o.spp));
+  app.add_option("--spp", a.spp, "Camera samples a pixel; with a target the minimum")
+      ->default_str(fmt::format("{}; 8 with --target-rmse", o.spp));
   app.add_option(
          "--target-error", o.target_error,
-         "Sample each pixel until its estimated standard error is below this: of AO, and of "
-         "lights relative to their largest unoccluded irradiance; 0: --spp everywhere")
+         "Sample each pixel until its estimated standard error is below this; 0: no target. Errors "
+         "of lights are relative to their largest unoccluded irradiance")
       ->capture_default_str();
   app.add_option(
          "--target-rmse", o.target_rmse,
-         "Sample where time lowers the picture's error most, until the estimated root mean square "
-         "of its pixels' errors is below this in every pass; 0: don't. Sooner there than by "
-         "--target-error to the same mean, but pixels' errors differ")
+         "Sample until the root mean square of the pixels' estimated errors is below this in every "
+         "pass; 0: no target. Faster than --target-error to the same mean error, but the errors of "
+         "single pixels differ more")
       ->capture_default_str();
-  app.add_option("--max-spp", o.max_spp, "With a target the most samples a pixel")
+  app.add_option("--max-spp", o.max_spp, "With a target: the maximum of samples a pixel")
       ->capture_default_str();
   app.add_option(
          "--camera-splitting", o.camera_splitting,
-         "Samples that share a camera ray, 1, 2 or 4: each is shaded at a surface of its own "
-         "among those that the ray crosses. More suit thin leaves and hair; 0: chosen by the "
-         "scene's opacities")
+         "Samples that share a camera ray, 1, 2 or 4: each is shaded at another surface that the "
+         "ray crosses. Larger factors suit thin leaves and hair; 0: chosen by the scene's "
+         "opacities")
       ->capture_default_str();
   app.add_option("--ao-rays", o.ao_rays,
                  "AO rays a camera ray, shared out among its samples, at least one each")
@@ -53,9 +53,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
          "--footprint", o.footprint,
          "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
       ->capture_default_str();
-  app.add_option(
-         "--passes", a.passes,
-         "Which passes to make, with commas between: ao, light; visits: what the others' rays cost")
+  app.add_option("--passes", a.passes,
+                 "Passes to render, with commas between: ao, light; visits: the cost of their rays")
       ->capture_default_str();
   app.add_option("--ao-distance", o.ao_distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
@@ -81,7 +80,7 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
       "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
       "around, beside other lights");
   app.add_option("--dome-rotation", a.dome_rotation,
-                 "Degrees by which it is turned about +Y, from +Z towards +X")
+                 "Rotation of the dome about +Y, degrees, from +Z towards +X")
       ->capture_default_str();
   app.add_option("--light-radius", a.scene_options.light_radius,
                  "Radius that glTF point lights get, metres")
@@ -97,20 +96,21 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
 }
 
 void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
-  CLI::Option& checkpoint = *app.add_option(
-      "--checkpoint", a.checkpoint,
-      "Keep what is traced in this file, for --resume; also when interrupted, and at the end");
+  CLI::Option& checkpoint = *app.add_option("--checkpoint", a.checkpoint,
+                                            "Save the state of the render to this file, for "
+                                            "--resume; also on interruption and at the end");
   app.add_option("--checkpoint-every", a.checkpoint_every, "How often, as in 30, 30s, 5m or 1h")
       ->capture_default_str()
       ->needs(&checkpoint);
-  app.add_option("--resume", a.resume,
-                 "Go on from this checkpoint: same scene and options, but --spp, --max-spp and "
-                 "the targets may ask for more");
+  app.add_option(
+      "--resume", a.resume,
+      "Continue from this checkpoint, with the same scene and options; --spp, --max-spp and "
+      "the targets may ask for more");
 }
 
 void add_motion_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& frame = *app.add_option(
-      "--frame", a.frame, "Seconds: what moves is shown as it is at that time; default: at rest");
+      "--frame", a.frame, "Time in seconds at which moving things are shown; default: at rest");
   CLI::Option& frames =
       *app.add_option("--frames", a.frames,
                       "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; the outputs "

@@ -51,11 +51,11 @@ struct RenderOptions {
   /// Primary samples a pixel, [1, 2^20]; with a target the minimum, rounded up to whole batches of
   /// four, at least two.
   int spp = 16;
-  /// Sample each pixel until its estimated standard error is below this, [0, 1]; 0: don't. Of AO,
-  /// and of lights relative to their largest unoccluded irradiance.
+  /// Sample each pixel until its estimated standard error is below this, [0, 1]; 0: no target.
+  /// Errors of lights are relative to their largest unoccluded irradiance.
   float target_error = 0;
-  /// Sample where time lowers the picture's error most, until the estimated root mean square of its
-  /// pixels' errors is below this in every pass, [0, 1]; 0: don't. Not together with target_error.
+  /// Sample until the estimated root mean square of the pixels' errors is below this in every pass,
+  /// [0, 1]; 0: no target. Not together with target_error.
   float target_rmse = 0;
   /// Samples a pixel that footprints are made for, [1, 2^20]; 0: spp. A render that resumes from a
   /// checkpoint keeps those of its beginning, so that more samples estimate the same picture.

@@ -20,8 +20,8 @@ using program_test::Outcome;
 class CommandLine : public program_test::ProgramRun {};
 
 TEST_F(CommandLine, HelpOfEveryCommandHasAnExample) {
-  for (const char* arguments :
-       {"--help", "render --help", "bake --help", "info --help", "scene --help", "devices --help"}) {
+  for (const char* arguments : {"--help", "render --help", "bake --help", "info --help",
+                                "scene --help", "devices --help"}) {
     const Outcome run = dapple(arguments);
     EXPECT_EQ(run.code, 0) << arguments;
     EXPECT_TRUE(contains(run.out, "Example:")) << arguments;
