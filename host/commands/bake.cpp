@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A procedural scene as a GLB file beside the output, removed at the end: what is baked is always
-/// a file.
+/// The file to bake. A procedural scene is written as a GLB file beside the output, and removed
+/// once it is read.
 class SceneFile {
  public:
   SceneFile(const std::string& spec, const std::string& output) : path_(spec) {
@@ -96,13 +96,14 @@ void run_bake(const BakeArguments& a) {
   const Stopwatch total;
   Seconds seconds;
   ProgressBar progress(a.quiet);
-  const SceneFile input(a.scene, a.output);
-  const Scene scene = load_gltf(input.path(), a.scene_options);
+  std::optional<SceneFile> input(std::in_place, a.scene, a.output);
+  const Scene scene = load_gltf(input->path(), a.scene_options);
   check_outputs_spare(outputs, scene.files);
   std::vector<Scene> occluders;
   for (const std::string& path : a.occluders)
     occluders.push_back(load_scene(path, a.scene_options));
-  const gltf::SourceFile file(input.path(), a.scene_options.allow_outside);
+  const gltf::SourceFile file(input->path(), a.scene_options.allow_outside);
+  input.reset();  // all of it is in memory
   std::vector<OutputPath> sides;
   for (const std::string& path : gltf::side_files_of(file, a.output))
     sides.push_back({"--output", path});
