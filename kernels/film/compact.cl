@@ -1,5 +1,5 @@
-/* Lists the samples that hit a surface, in order: a prefix sum by one work-group, since a
-   slice is small and atomics would shuffle the order from run to run. */
+/* Lists the samples that hit a surface, in ascending order. In: hit bits. Out: the active list. One
+   work-group computes a prefix sum: a slice is small, and atomics would change the order between runs. */
 #include "vectors/lanes.clh"
 #include "film/sample_hits.clh"
 

@@ -1,10 +1,11 @@
-/* The passes that add up camera samples, AO and lights: see film.clh. */
+/* The resolve kernels: add camera samples, AO and lights to the film. In: the queues of a slice. Out: film
+   sums and squares, see film.clh. */
 #include "film/film.clh"
 #include "vectors/lanes.clh"
 #include "geometry/scene.clh"
 
-/* Position (3), depth, normal (3), hits: a SurfacePoint has t and offset where depth and hits
-   are. */
+/* A SurfacePoint in fixed point: position (3), depth, normal (3), one hit. Depth and hit take the places of
+   the point's t and offset. */
 inline long8 surface_sums(ResolveParams params, float8 scale, __global const SurfacePoint* point) {
   float8 values = vload8(0, point->position);
   values.s3 = 0.0f;

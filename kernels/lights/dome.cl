@@ -1,8 +1,8 @@
-/* Resolves the rays to a dome light: as resolve_light, in three channels. */
+/* Resolves the rays to a dome light. As resolve_light in film.cl, but in three channels. */
 #include "lights/dome.clh"
 #include "film/film.clh"
 
-/* Irradiance, and the same unoccluded, that one ray brings; visits and tests. */
+/* Contribution of one ray: irradiance with and without occlusion, visits, tests. */
 inline long8 dome_sums(const Dome* dome, __global const Ray* ray, Occlusion found, float scale) {
   const float3 light = ray->weight * dome_colour(dome, load3(ray->direction)) * scale;
   const float3 seen = light * found.transmittance;

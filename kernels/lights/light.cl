@@ -1,20 +1,20 @@
-/* The light pass: rays from every active point to one light, weighted so that their mean
-   transmittance times weight is the irradiance of that light at radiance 1. */
+/* The light pass: generates rays from every active point to one light. In: surface points and the light.
+   Out: rays whose weights make the mean of weight times transmittance the irradiance at radiance 1. */
 #include "sampling/direction.clh"
 #include "lights/dome.clh"
 #include "dapple/shared/light_record.h"
 #include "dapple/shared/pass_params.h"
 #include "occlusion/point_rays.clh"
 
-/* Always inlined: a sample would be returned through memory. */
+/* Always inlined, since a sample would be returned through memory. */
 typedef struct LightSample {
   float3 direction;   /* towards the light, unit */
   float distance;
-  float solid_angle;  /* 1 / pdf; also the weight but for the receiver's cosine and radiance */
+  float solid_angle;  /* 1 / pdf; the weight without cosine and radiance */
   float radiance;     /* dome: the luminance from there; else 1 */
 } LightSample;
 
-/* A point of a flat emitter, uniform over `area`. */
+/* Sample of a flat emitter, uniform over `area`. */
 DAPPLE_INLINE LightSample towards(float3 from, float3 to, float3 light_normal, float area,
                                   bool two_sided) {
   LightSample sample;
@@ -28,7 +28,7 @@ DAPPLE_INLINE LightSample towards(float3 from, float3 to, float3 light_normal, f
   return sample;
 }
 
-/* Uniform in the cone that the sphere subtends; from inside, over all directions. */
+/* Sample of a sphere, uniform in the cone that it subtends; from inside, over all directions. */
 DAPPLE_INLINE LightSample sample_sphere(__global const LightRecord* light, float3 from, float2 u) {
   LightSample sample;
   sample.radiance = 1.0f;
@@ -95,7 +95,7 @@ DAPPLE_INLINE LightSample sample_around(__global const LightRecord* light,
   return sample;
 }
 
-/* Of all lights but rectangles, sample_rect(), and domes. */
+/* Sample of a light that is neither a rectangle nor a dome. */
 DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
                                         __global const EmitterTriangle* emitters, float3 from,
                                         float2 u) {
@@ -106,12 +106,12 @@ DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
   }
 }
 
-/* Sixteen LightSamples, a ray's in each lane. */
+/* Sixteen LightSamples, one in each lane. */
 typedef struct LightSamples {
   Floats16 direction[3], distance, solid_angle, radiance;
 } LightSamples;
 
-/* As towards(), with places on the rectangle. */
+/* As towards(), for sixteen points of the rectangle. */
 inline void sample_rect(__global const LightRecord* light, const PointRays* rays,
                         LightSamples* samples) {
   const float16 u = rays->u.v - 0.5f, v = rays->v.v - 0.5f;
@@ -157,7 +157,7 @@ inline void sample_light(__global const LightRecord* light,
   }
 }
 
-/* A ray that can bring nothing is not traced: it ends before it starts. */
+/* A ray without a contribution gets t_max < 0 and is not traced. */
 inline void aim_light_rays(const PointRays* rays, const LightSamples* samples, float inverse_count,
                            RayDirections* signs) {
   float16 cosine = (float16)(0.0f);
