@@ -1,5 +1,5 @@
-// How a measured scene is made: as render() would, up to the rays of its occlusion pass,
-// which stay in the queues for the benchmarks to trace again and again.
+// Prepares a measured scene as render() does, up to the rays of the occlusion pass. The rays stay
+// in the queues, so that benchmarks can trace them repeatedly.
 #include "bench_scene.hpp"
 
 #include <limits>
@@ -12,8 +12,8 @@
 namespace dapple::bench {
 namespace {
 
-/// Small enough for a launch of some tenths of a second, large enough that launching costs
-/// nothing: about 10,000 points, so 150,000 AO rays.
+/// About 10,000 points and 150,000 AO rays: so few that a launch takes some tenths of a second, and
+/// so many that the overhead of a launch does not matter.
 constexpr int kWidth = 384;
 constexpr int kHeight = 240;
 constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
@@ -27,8 +27,8 @@ RenderOptions picture_options() {
   return options;
 }
 
-/// Runs the renderer's own passes up to the occlusion pass. Camera and AO rays go to queues
-/// of their own, so that either pass can be run again.
+/// Runs the renderer's passes up to the occlusion pass. Camera rays and AO rays are in separate
+/// queues, so that either pass can run again.
 SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, const View& view) {
   SceneRays rays;
   rays.camera = make_queues(context, kPixels, 1);
@@ -54,7 +54,7 @@ SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, const Vi
   return rays;
 }
 
-/// A dome brighter upwards, with a sun of a few texels.
+/// A dome that is brighter towards the zenith, with a sun of a few texels.
 Light sky() {
   Environment image{1024, 512, {}};
   for (std::uint32_t y = 0; y < image.height; ++y) {
@@ -87,7 +87,7 @@ const Scene& BenchScene::scene() {
   for (const auto& [material, value] : recipe_.opacity) override_opacity(scene, material, value);
   const RenderOptions options = picture_options();
   std::vector<std::string> notes;
-  // As render() does, the camera is chosen before merging touches the scene.
+  // As in render(), the camera is chosen before meshes are merged.
   view_ = choose_view(scene, options, notes);
   merge_single_instances(scene);
   scene.lights = {sky()};

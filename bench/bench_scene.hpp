@@ -1,5 +1,5 @@
-// The scenes that are measured: made, built, uploaded and given rays once, on the first
-// benchmark that asks, and shared by all that follow.
+// The scenes that are measured. In: a scene's name; out: the scene, its BVH, its copy on the device
+// and rays. Each is made when a benchmark first needs it; later benchmarks share it.
 #pragma once
 
 #include <optional>
@@ -16,29 +16,28 @@
 
 namespace dapple::bench {
 
-/// AO rays a shading point, which also sets their footprints: pi / (16 cos theta).
+/// AO rays for each shading point. Their footprints have the solid angle pi / (16 cos theta).
 inline constexpr int kRaysPerPoint = 16;
 
-/// What a scene is called in benchmark names, and what load_scene() makes it from.
+/// A scene's name in benchmark names, and the argument of load_scene().
 struct SceneRecipe {
   std::string name;
   std::string spec;
   std::vector<std::pair<std::string, float>> opacity;  ///< material name, opacity in [0,1]
 };
 
-/// tree, tree-thin, cloud, forest and hair, in the order of the README's table.
+/// tree, tree-thin, cloud, forest and hair, in the order of the table in bench/README.md.
 std::vector<SceneRecipe> named_scenes();
 
-/// The rays the renderer itself would shoot at one sample a pixel, in its order, resident
-/// on the device.
+/// The rays that the renderer makes with one sample a pixel, in the same order, in device memory.
 struct SceneRays {
   Queues camera;
   std::size_t camera_count = 0;
-  Queues ao;  ///< kRaysPerPoint from every point that a camera ray met
+  Queues ao;  ///< kRaysPerPoint rays from every point that a camera ray hit
   std::size_t ao_count = 0;
 };
 
-/// The one device of a run, opened by the first benchmark that needs it.
+/// The device of a run. The first benchmark that needs it opens it.
 class BenchDevice {
  public:
   BenchDevice(std::string name, std::string kernel_dir)
@@ -53,8 +52,8 @@ class BenchDevice {
   std::optional<Device> device_;
 };
 
-/// Everything is made on first use. Objects must stay where they are: the device may read
-/// the BVH in place.
+/// Makes everything at its first use. Objects must not move, because the device may read the BVH in
+/// place.
 class BenchScene {
  public:
   BenchScene(SceneRecipe recipe, BenchDevice& device)
@@ -63,13 +62,13 @@ class BenchScene {
   BenchScene& operator=(const BenchScene&) = delete;
 
   [[nodiscard]] const std::string& name() const { return recipe_.name; }
-  /// Ready for build_bvh(): meshes that are placed once are merged. A dome is its only light.
+  /// Ready for build_bvh(): meshes that are placed once are merged. The only light is a dome.
   const Scene& scene();
   const SceneBvh& bvh();
   const Device& device() { return device_.open(); }
   const DeviceScene& on_device();
   const SceneRays& rays();
-  /// That of the picture.
+  /// The camera of the picture that rays() belong to.
   CameraParams camera();
 
  private:

@@ -1,5 +1,5 @@
-// What is measured of a scene; each function registers benchmarks named KIND/scene that
-// live as long as `scene` does.
+// Registers the benchmarks. In: a scene, which must outlive them; out: benchmarks with the names
+// KIND/scene.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -10,8 +10,8 @@
 
 namespace dapple::bench {
 
-/// Registers a benchmark: `measure`(benchmark::State&) runs once in each of `repetitions` and
-/// sets the time itself.
+/// Registers a benchmark. `measure`(benchmark::State&) runs once in each of `repetitions` and sets
+/// the time itself.
 template <class Measure>
 void register_measured(const std::string& name, int repetitions, const Measure& measure) {
   benchmark::RegisterBenchmark(name.c_str(), measure)
@@ -23,13 +23,14 @@ void register_measured(const std::string& name, int repetitions, const Measure& 
       ->DisplayAggregatesOnly();
 }
 
-/// Occlusion, OcclusionTogether, OcclusionOfPoints, each exact and prefiltered: AO rays one by one,
-/// with their neighbours, with those of their point. Camera: the camera pass.
+/// Occlusion, OcclusionTogether and OcclusionOfPoints, each exact and prefiltered: AO rays as
+/// single rays, in pixel packets, and in point packets. DomeRays: generation of rays to a dome
+/// light. Camera: the camera pass.
 void register_tracing(BenchScene& scene);
-/// Build: all of build_bvh(). Prefilter: the part of it that makes opacities.
+/// Build: all of build_bvh(). Prefilter: the part of it that computes opacities.
 void register_building(BenchScene& scene);
-/// Refit: UpdatableBvh::update() of trees of 40 k to 4 M triangles, each frame of which is built
-/// too.
+/// Refit: UpdatableBvh::update() of moving trees of 40 k to 4 M triangles, compared with
+/// build_bvh().
 void register_refitting();
 
 }  // namespace dapple::bench

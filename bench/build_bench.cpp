@@ -1,4 +1,4 @@
-// Building on the host, by wall time, and the bytes of the result.
+// Measures build_bvh() on the host. In: scenes. Out: wall times and the size of the BVH.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -15,8 +15,8 @@ double bytes(const Array& data) {
   return static_cast<double>(data.size() * sizeof(data[0]));
 }
 
-/// Triangles and segments a second, and bytes a distinct one: of nodes, and of everything that a
-/// ray may touch but texels.
+/// Reports triangles and segments a second, and bytes for each distinct one: of nodes, and of all
+/// arrays that rays read except texels.
 void count_triangles(benchmark::State& state, const SceneBvh& bvh) {
   const auto triangles = static_cast<double>(bvh.statistics.triangles + bvh.statistics.segments);
   const double all = bytes(bvh.nodes) + bytes(bvh.blocks) + bytes(bvh.segments) +
@@ -39,7 +39,8 @@ void measure_build(benchmark::State& state, const Scene& scene) {
   count_triangles(state, bvh);
 }
 
-/// The opacities need a tree to go up, so each iteration builds one that is not counted.
+/// Opacities are computed for a finished BVH, so each iteration builds one. The time is only that
+/// of the opacities.
 void measure_prefilter(benchmark::State& state, const Scene& scene) {
   SceneBvh bvh;
   for (auto _ : state) {

@@ -1,5 +1,6 @@
-// dapple-bench: kernel and builder micro-benchmarks. Takes its own options first, Google
-// Benchmark's after them; shows medians and their spread.
+// dapple-bench: benchmarks of the kernels and the BVH builder, and the subcommands accuracy, paper
+// and rivals. Its own options and those of Google Benchmark may be mixed. Prints medians and their
+// spread.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -55,7 +56,7 @@ void add_opacity(Arguments& a, const std::string& text) {
   a.scenes.back().opacity.emplace_back(text.substr(0, at), value);
 }
 
-/// The value of `argument` when it is NAME=value, else nullptr.
+/// The value of `argument` if it is NAME=value, else nullptr.
 const char* value_of(const char* argument, const char* name) {
   const std::size_t length = std::strlen(name);
   return std::strncmp(argument, name, length) == 0 && argument[length] == '='
@@ -84,8 +85,8 @@ Arguments parse(int argc, char** argv) {
   return a;
 }
 
-/// Of every benchmark's repetitions, the median and the coefficient of variation, under the
-/// name that it was registered by.
+/// Prints the median and the coefficient of variation of each benchmark's repetitions, with the
+/// name under which the benchmark was registered.
 class MedianReporter : public benchmark::ConsoleReporter {
  public:
   MedianReporter() : ConsoleReporter(OO_Tabular) {}
@@ -123,7 +124,7 @@ int run(int argc, char** argv) {
   benchmark::Initialize(&rest, arguments.rest.data());
   if (benchmark::ReportUnrecognizedArguments(rest, arguments.rest.data())) return 2;
   MedianReporter medians;
-  // An own reporter would silence --benchmark_format.
+  // A reporter of our own would disable --benchmark_format.
   benchmark::RunSpecifiedBenchmarks(arguments.chose_format ? nullptr : &medians);
   return 0;
 }

@@ -1,5 +1,5 @@
-// The traversal kernels, timed by the device's own clock: AO rays that lie ready on it, and whole
-// camera passes.
+// Measures the traversal kernels with the device's own clock. In: AO rays in device memory, and a
+// camera. Out: seconds of a launch, node visits and triangle tests for each ray.
 #include <benchmark/benchmark.h>
 
 #include "benchmarks.hpp"
@@ -29,7 +29,7 @@ void report_work(benchmark::State& state, double visits, double tests, double ra
                                               benchmark::Counter::kIsRate);
 }
 
-/// Times `launch`, once unmeasured to compile its kernel and warm the caches.
+/// Measures `launch`. The first launch, which compiles the kernel and fills caches, is not counted.
 template <class Launch>
 void time_launches(benchmark::State& state, DeviceContext& context, const Launch& launch) {
   launch();
@@ -42,7 +42,7 @@ void time_launches(benchmark::State& state, DeviceContext& context, const Launch
   }
 }
 
-/// The scene's AO rays, of which `rays_per_point` in a row are said to share a point.
+/// Measures the scene's AO rays. Each `rays_per_point` consecutive rays count as rays of one point.
 void measure_occlusion(benchmark::State& state, BenchScene& scene, Estimator estimator,
                        uint rays_per_point, RayOrder order) {
   const SceneRays& rays = scene.rays();
@@ -66,7 +66,8 @@ void measure_occlusion(benchmark::State& state, BenchScene& scene, Estimator est
   report_work(state, visits, tests, static_cast<double>(rays.ao_count));
 }
 
-/// The picture's camera pass at `samples` a pixel, in slices of as many samples as it has pixels.
+/// Measures the picture's camera pass with `samples` a pixel. The number of samples in a slice is
+/// the number of pixels of the picture.
 void measure_camera(benchmark::State& state, BenchScene& scene, uint samples) {
   const SceneRays& rays = scene.rays();
   const DeviceBuffers& buffers = *scene.on_device().buffers;
@@ -94,7 +95,7 @@ void measure_camera(benchmark::State& state, BenchScene& scene, uint samples) {
   report_work(state, visits, tests, static_cast<double>(rays.camera_count * samples));
 }
 
-/// A ray to the scene's dome from every point that the camera sees.
+/// Measures the generation of one ray to the scene's dome from every point that the camera sees.
 void measure_dome_rays(benchmark::State& state, BenchScene& scene) {
   const SceneRays& rays = scene.rays();
   const DeviceBuffers& buffers = *scene.on_device().buffers;
@@ -123,7 +124,7 @@ void register_tracing(BenchScene& scene) {
     add_occlusion("OcclusionTogether", 1, RayOrder::by_pixel);
     add_occlusion("OcclusionOfPoints", kRaysPerPoint, RayOrder::any);
   }
-  // Before camera passes, which find other points.
+  // Before the camera passes, because these overwrite the points.
   register_measured("DomeRays/" + scene.name(), kRepetitions,
                     [&scene](benchmark::State& state) { measure_dome_rays(state, scene); });
   for (const uint samples : {1u, 16u}) {

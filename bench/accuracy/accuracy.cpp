@@ -46,7 +46,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.footer("Example:\n  dapple-bench accuracy tree.glb --opacity leaf=0.85 --svg tree.svg");
 }
 
-/// A tenth of the work at about three times the uncertainty.
+/// About a tenth of the work, with about three times the uncertainty.
 void make_quick(Arguments& a) {
   a.nodes.nodes = 20;
   a.nodes.directions = 4;
@@ -68,7 +68,7 @@ void settle(Arguments& a) {
   if (!a.svg.empty()) check_output_path(a.svg);
 }
 
-/// Studies that are nothing but a table. False when none was asked for.
+/// Runs a study that only prints a table. Returns false if none was requested.
 bool ran_study(const Arguments& a) {
   if (a.linear) {
     fmt::print("{}", cost_text(measure_prefilter_cost(a.quick)));
@@ -82,7 +82,7 @@ bool ran_study(const Arguments& a) {
   return true;
 }
 
-/// The share done, on a line that is overwritten; nothing where nobody watches.
+/// Shows the fraction done on a line that is overwritten. Prints nothing without a terminal.
 void show_progress(double share) {
   if (!isatty(STDERR_FILENO)) return;
   fmt::print(stderr, "\rpictures: {:.0f} %{}", 100 * share, share < 1 ? "" : "\r\033[K");

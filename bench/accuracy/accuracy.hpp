@@ -1,5 +1,5 @@
-// dapple-bench accuracy: how far prefiltered occlusion is from exact, node by node and
-// picture by picture.
+// dapple-bench accuracy: measures the errors of prefiltered occlusion. In: a scene. Out: tables,
+// JSON and plots of the errors of nodes and of pictures.
 #pragma once
 
 namespace dapple::bench {

@@ -6,7 +6,8 @@
 namespace dapple::bench {
 namespace {
 
-/// Axis of the face that a ray uniform over the projection enters by.
+/// Axis of the face by which a ray enters the box, with a probability proportional to the projected
+/// areas. `choice` is random, [0,1).
 int choose_face(const V3f& facing, double choice) {
   const double at = choice * (facing.x + facing.y + facing.z);
   return at < facing.x ? 0 : at < facing.x + facing.y ? 1 : 2;
@@ -39,7 +40,7 @@ BoxRay ray_through(const Box3f& box, const V3f& direction, oracle::Random& rando
                                : box.min[axis] + size[axis] * static_cast<float>(random.real());
   }
   const float mean_length = size.x * size.y * size.z / (facing.x + facing.y + facing.z);
-  // All of the subtree lies inside the box, so rays may start before it.
+  // The whole subtree lies inside the box, so rays may start outside.
   const V3f origin = entry - direction * (0.01f * size.length());
   const float length = length_inside(box, entry, direction);
   const V3f away = (entry + direction * (0.5f * length) - box.center()) / (size * 0.5f);

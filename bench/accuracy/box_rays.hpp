@@ -1,5 +1,5 @@
-// Rays spread evenly over what a box shows of itself along a direction, and how opaque a
-// subtree is to them.
+// Random rays through a box, uniform over its projection along a direction. In: a box, a direction
+// and the contents of the box. Out: rays and their mean opacity.
 #pragma once
 
 #include <functional>
@@ -10,9 +10,9 @@
 
 namespace dapple::bench {
 
-/// Through a box along a unit direction; `chord` is the length inside the box over the mean
-/// length of all such rays, volume / projected area; `off_centre` is the squared distance of the
-/// middle of its way inside from the box's centre, in half sizes.
+/// A ray through a box along a unit direction. `chord`: length inside the box, divided by the mean
+/// length of such rays, which is volume / projected area. `off_centre`: squared distance from the
+/// box's centre to the middle of the chord, in half sizes of the box.
 struct BoxRay {
   oracle::Segment segment;
   float chord;
@@ -25,14 +25,14 @@ V3f facing_areas(const V3f& size, const V3f& direction);
 /// A ray uniform over the box's projection along `direction`.
 BoxRay ray_through(const Box3f& box, const V3f& direction, oracle::Random& random);
 
-/// Rays of one direction and the mean opacity they met.
-/// Transmittance of what a box holds along a ray.
+/// Transmittance of the contents of a box along a ray.
 using Truth = std::function<double(const oracle::Segment&)>;
 
+/// Rays of one direction and the mean of their opacities.
 struct SampledOpacity {
   std::vector<BoxRay> rays;
   double opacity;
-  double variance;  ///< of `opacity`, estimated from the rays' spread
+  double variance;  ///< of `opacity`, estimated from the variance of the rays
 };
 
 SampledOpacity sample_opacity(const Truth& subtree, const Box3f& box, const V3f& direction,

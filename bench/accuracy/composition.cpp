@@ -18,14 +18,14 @@ float face(const Box3f& box, int axis) {
   return box.size()[first_across(axis)] * box.size()[second_across(axis)];
 }
 
-/// A box and how opaque it is, all over the same.
+/// A box with a constant opacity along each axis.
 struct UniformBox {
   Box3f box;
   V3f opacity;
 };
 
-/// Opacity of `whole` along `axis` when the parts' opacities multiply where they overlap:
-/// summed over the cells into which the parts' sides cut it.
+/// Opacity of `whole` along `axis`, if the transmittances of overlapping parts are multiplied. It
+/// is a sum over the cells into which the sides of the parts divide the face.
 float rectangle_opacity(const Box3f& whole, const std::vector<UniformBox>& parts, int axis) {
   const int u = first_across(axis), v = second_across(axis);
   std::vector<float> columns, rows;

@@ -8,9 +8,9 @@
 namespace dapple::bench {
 namespace {
 
-/// Pictures of one footprint, seed by seed beside exact ones of the same seeds: camera
-/// samples and directions are then the same, so that their difference is little else than
-/// what the footprint does.
+/// Sums over pictures of one footprint and over their differences from exact pictures of the same
+/// seeds. Equal seeds give equal camera samples and directions, so that the differences come almost
+/// only from the footprint.
 class FootprintSums {
  public:
   FootprintSums(float footprint, const Picture& shape) : footprint_(footprint) {
@@ -45,7 +45,7 @@ class FootprintSums {
       ImageError error;
       error.pass = names_[i];
       error.bias = differences_[i].mean();
-      // Never below the bias, however noisy the estimate.
+      // The estimate is noisy, but the RMSE is never below the bias.
       error.converged_rmse = std::max(differences_[i].converged_rms(), std::fabs(error.bias));
       error.noise = values_[i].noise();
       error.noise_of_mean = values_[i].noise_of_mean();
@@ -62,7 +62,7 @@ class FootprintSums {
   std::vector<double> ao_seconds_, light_seconds_, trace_seconds_;
 };
 
-/// `options` with this seed and footprint; 0 is exact.
+/// `options` with this seed and footprint; footprint 0: exact.
 RenderOptions variant(RenderOptions options, float footprint, int seed) {
   options.estimator = footprint > 0 ? Estimator::prefiltered : Estimator::exact;
   options.footprint = footprint;
@@ -75,13 +75,13 @@ RenderOptions variant(RenderOptions options, float footprint, int seed) {
 std::vector<ImageAccuracyRow> measure_images(PictureScene& scene,
                                              const ImageAccuracyOptions& options,
                                              const std::function<void(double)>& progress) {
-  // A picture more fixes which pixels count and what lights are relative to.
+  // An additional picture determines which pixels count and the largest irradiance of each light.
   const Picture shape = scene.render(variant(options.render, 0, options.seeds));
   scene.set_largest(shape.largest);
   std::vector<FootprintSums> sums;
   for (const float footprint : options.footprints) sums.emplace_back(footprint, shape);
   sums.emplace_back(0.0f, shape);
-  // One seed after the other, so that drifts of the machine's speed meet all footprints alike.
+  // Seeds are the outer loop, so that changes of the machine's speed affect all footprints equally.
   for (int seed = 0; seed < options.seeds; ++seed) {
     const Picture exact = scene.render(variant(options.render, 0, seed));
     for (FootprintSums& one : sums) {

@@ -1,4 +1,5 @@
-// Part two of the accuracy bench: whole pictures against exact, footprint by footprint.
+// Part two of the accuracy bench: errors of prefiltered pictures. In: a scene and footprint scales.
+// Out: bias, RMSE, noise and time for each scale, compared with exact pictures.
 #pragma once
 
 #include <functional>
@@ -15,15 +16,15 @@ struct ImageAccuracyOptions {
   RenderOptions render;  ///< size, samples, rays
 };
 
-/// One pass at one footprint. AO is in [0,1], lights relative to their largest unoccluded
-/// irradiance; only pixels in which the scene is seen count.
+/// Errors of one pass at one footprint scale. AO is in [0,1]; lights are relative to their largest
+/// unoccluded irradiance. Only pixels that show the scene count.
 struct ImageError {
   std::string pass;
   double bias = 0;            ///< of the mean over pixels, prefiltered minus exact
-  double converged_rmse = 0;  ///< of pixels, noise taken out: what more samples do not mend
+  double converged_rmse = 0;  ///< of pixels, without noise: the error with infinitely many samples
   double noise = 0;           ///< standard deviation of a pixel, one picture
   double noise_of_mean = 0;   ///< of the mean over pixels
-  double seconds = 0;         ///< occlusion rays of one picture, median; lights together
+  double seconds = 0;  ///< of the occlusion rays of a picture, median; of all lights together
 };
 
 struct ImageAccuracyRow {
@@ -32,7 +33,8 @@ struct ImageAccuracyRow {
   std::vector<ImageError> passes;
 };
 
-/// The exact row comes last. `progress` is told the share done.
+/// Returns a row for each footprint; the row of exact pictures is the last. `progress` is called
+/// with the fraction done, [0,1].
 std::vector<ImageAccuracyRow> measure_images(PictureScene& scene,
                                              const ImageAccuracyOptions& options,
                                              const std::function<void(double)>& progress);

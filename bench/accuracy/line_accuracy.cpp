@@ -16,7 +16,7 @@ Scene prepared(const std::string& spec, const RenderOptions& options) {
   return scene;
 }
 
-/// A scene on the device that `--device` names.
+/// A scene on the device of the options.
 struct Uploaded {
   Uploaded(const std::string& spec, const RenderOptions& options)
       : scene(prepared(spec, options)),

@@ -1,5 +1,5 @@
-// Part three of the accuracy bench: whether occlusion pops when the point, or the camera,
-// moves by a little.
+// Part three of the accuracy bench: steps of AO along a line. In: a scene and footprint scales.
+// Out: the largest change between neighbouring points, and between frames of a moving camera.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ namespace dapple::bench {
 
 struct LineAccuracyOptions {
   std::vector<float> footprints{0.5f, 1, 2, 4};
-  int points = 1000;     ///< on the line, from side to side of the scene
-  int rays_across = 64;  ///< squared: rays a point
-  int frames = 100;      ///< of the camera that is pulled back
-  int size = 64;         ///< of a frame, both ways, pixels
+  int points = 1000;     ///< on the line, from one side of the scene to the other
+  int rays_across = 64;  ///< square root of the rays for each point
+  int frames = 100;      ///< of the camera that moves away
+  int size = 64;         ///< width and height of a frame, pixels
   int seeds = 2;         ///< pictures of each frame
   RenderOptions render;  ///< samples, device, opacities
 };
@@ -24,7 +24,7 @@ struct LineAccuracyRow {
   std::string what;  ///< which rays, or the camera
   float footprint = 0;
   double exact = 0, prefiltered = 0;  ///< largest change of mean AO
-  double excess = 0;  ///< the most that a prefiltered change is beyond the exact one there
+  double excess = 0;  ///< the largest (prefiltered change - exact change) at one place
   double error = 0;   ///< largest standard error of the difference of the two changes
 };
 

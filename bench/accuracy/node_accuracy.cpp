@@ -16,25 +16,25 @@ namespace {
 /// Subtrees of one triangle, and of [n, 2n) for the others.
 constexpr std::size_t kSizes[] = {1, 2, 4, 16, 64, 256, 1024, 4096, 16384, 65536};
 
-/// Rays along an axis, where a model is given the true opacities, for each ray of a direction.
+/// The true opacities along axes are sampled with kAxisRays times the rays of a direction.
 constexpr int kAxisRays = 4;
 
-/// The node as the different ablations see it.
+/// The data of a node for the different models.
 struct JudgedNode {
-  Box3f box;           ///< grown
-  NodeOpacity stored;  ///< what the kernels read
-  V3f exact_box;       ///< opacities of the box before it was grown
-  V3f rectangles;
-  V3f true_axes;  ///< sampled along the axes: no error but the directional one is left
+  Box3f box;           ///< the quantized box, which is larger than the exact one
+  NodeOpacity stored;  ///< the data that the kernels read
+  V3f exact_box;       ///< opacities relative to the exact box
+  V3f rectangles;      ///< Composition::rectangles
+  V3f true_axes;       ///< sampled along the axes; with these only the directional error remains
 };
 
 struct Model {
   const char* name;
   DirectionalModel directional;
-  V3f JudgedNode::*opacity = nullptr;  ///< in place of the stored ones
+  V3f JudgedNode::*opacity = nullptr;  ///< replaces the stored opacities, unless nullptr
 };
 
-/// Each but the last changes one thing of the first.
+/// Most of them change one part of the first model.
 constexpr Model kModels[] = {
     {"renderer", kRendererModel},
     {"no chord", {Blend::depths, Chord::none, true}},
@@ -70,7 +70,7 @@ Box3f bounds_of(const std::vector<LeafTriangle>& triangles,
   return box;
 }
 
-/// The stored opacities without the correction for the box's growth.
+/// The stored opacities, relative to the exact box instead of the larger quantized box.
 V3f before_growing(const V3f& opacity, const V3f& grown, const V3f& exact) {
   V3f out;
   for (int axis = 0; axis < 3; ++axis) {
@@ -82,7 +82,7 @@ V3f before_growing(const V3f& opacity, const V3f& grown, const V3f& exact) {
   return out;
 }
 
-/// Mean opacity that a model gives the same rays the truth was sampled with.
+/// Mean opacity that a model computes for the rays of the truth.
 double model_opacity(const Model& model, const JudgedNode& node, const V3f& direction,
                      const std::vector<BoxRay>& rays) {
   NodeOpacity known = node.stored;
@@ -94,7 +94,7 @@ double model_opacity(const Model& model, const JudgedNode& node, const V3f& dire
   return opacity / static_cast<double>(rays.size());
 }
 
-/// Running sums of one size of subtrees.
+/// Sums over the subtrees of one size.
 class ErrorSums {
  public:
   void add(const JudgedNode& node, const V3f& direction, const SampledOpacity& truth) {
@@ -112,7 +112,7 @@ class ErrorSums {
     row.true_opacity = truth_ / count_;
     for (std::size_t m = 0; m < kModelCount; ++m) {
       const double bias = errors_[m] / count_;
-      // What is left without the noise is noisy itself, but never below the bias.
+      // The estimate without noise is noisy itself. It is never below the bias.
       const double square = std::max(bias * bias, (squares_[m] - noise_) / count_);
       row.errors.push_back({bias, std::sqrt(square)});
     }
@@ -132,7 +132,7 @@ class NodeJudge {
         compositions_(compose(bvh, scene)),
         random_(options.seed) {}
 
-  /// Judges up to options.nodes of the candidates, drawn at random.
+  /// Measures at most options.nodes of the candidates, which are chosen at random.
   NodeAccuracyRow judge(std::vector<Subtree> candidates, std::size_t triangles) {
     const std::size_t count = std::min(candidates.size(), static_cast<std::size_t>(options_.nodes));
     ErrorSums sums;

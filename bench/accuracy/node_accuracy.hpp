@@ -1,5 +1,6 @@
-// Part one of the accuracy bench: the opacity a node stores, turned into one along a ray,
-// against ray-sampled truth, by size of the subtree, with ablations.
+// Part one of the accuracy bench: errors of the opacities that nodes store. In: a scene and its
+// BVH. Out: bias and RMS error of the opacity along rays, compared with traced rays, for each size
+// of subtree and each ablation of the model.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +12,19 @@
 namespace dapple::bench {
 
 struct NodeAccuracyOptions {
-  int nodes = 60;       ///< of each size, at most
-  int directions = 12;  ///< random ones a node
-  int rays = 1024;      ///< a direction, at least 2
+  int nodes = 60;       ///< maximum for each size
+  int directions = 12;  ///< random directions for each node
+  int rays = 1024;      ///< for each direction, at least 2
   std::uint64_t seed = 1;
 };
 
-/// Opacity of a model minus the truth, over nodes and directions.
+/// Error of a model's opacity (model minus truth) over nodes and directions.
 struct ModelError {
   double bias = 0;
-  double rms = 0;  ///< the truth's own noise taken out
+  double rms = 0;  ///< without the noise of the truth
 };
 
-/// Subtrees of [triangles, 2 triangles).
+/// Results for subtrees of `triangles` to 2 * triangles - 1 triangles or segments.
 struct NodeAccuracyRow {
   std::size_t triangles = 0;
   int nodes = 0;
@@ -31,11 +32,10 @@ struct NodeAccuracyRow {
   std::vector<ModelError> errors;  ///< in the order of model_names()
 };
 
-/// The renderer's own model first, then what is left of it when one part is taken out or
-/// replaced.
+/// The first is the renderer's model. The others omit or replace parts of it.
 std::vector<std::string> model_names();
 
-/// `scene` is what `bvh` was built from. Needs no device.
+/// `bvh` must be the BVH of `scene`. Needs no device.
 std::vector<NodeAccuracyRow> measure_nodes(const Scene& scene, const SceneBvh& bvh,
                                            const NodeAccuracyOptions& options);
 

@@ -13,9 +13,9 @@ namespace {
 
 float sum(const V3f& v) { return v.x + v.y + v.z; }
 
-/// Length of `terms`, the ellipsoid's value along a direction, each term >= 0 its part along
-/// an axis. `correlation` bends it away from the axes: SGGX (Heitz et al., "The SGGX
-/// Microflake Distribution", 2015) with the normals' correlations as off-diagonals.
+/// Value of an ellipsoid along a direction: the length of `terms`, its parts >= 0 along the axes,
+/// with off-diagonal terms from the correlations of the normals. SGGX: Heitz et al., "The SGGX
+/// Microflake Distribution", 2015.
 float ellipsoid(const V3f& terms, const V3f& direction, const V3f& correlation) {
   V3f v = terms;
   for (int axis = 0; axis < 3; ++axis) v[axis] = std::copysign(terms[axis], direction[axis]);
@@ -28,8 +28,8 @@ float depth_with_chord(float depth, Chord chord, float length, const V3f& facing
   if (chord == Chord::none) return depth;
   const float counted = std::max(length, 0.0f);
   if (chord == Chord::scaled) return chord_depth(depth, counted);
-  // Chords as if gamma distributed: mean exp(-raised * chord) = (1 + v raised)^(-1/v), which
-  // is to be exp(-depth).
+  // Chords are modelled by a gamma distribution of variance v: the mean of exp(-raised * chord) is
+  // (1 + v raised)^(-1/v). `raised` makes this mean equal to exp(-depth).
   const float variance = chord_variance(facing);
   const float raised = variance > 1e-4f ? std::expm1(variance * depth) / variance : depth;
   return raised * counted;

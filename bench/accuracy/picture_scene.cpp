@@ -23,7 +23,7 @@ Scene prepared_scene(const std::string& spec, const RenderOptions& options, View
   return scene;
 }
 
-/// Planes of film sums as means over samples; their order is that of kernels/film/film.cl.
+/// Returns planes of the film sums as means over samples. kernels/film/film.cl has their order.
 class Sums {
  public:
   Sums(const TracedPicture& picture, const FilmLayout& layout)
@@ -43,7 +43,7 @@ class Sums {
   const FilmLayout& layout_;
 };
 
-/// Means over a pixel's samples, 1 for samples that met nothing.
+/// Means over a pixel's samples. The value is 1 for samples that hit nothing.
 std::vector<double> ao_values(const Sums& sums, const FilmLayout& layout,
                               const RenderOptions& options) {
   const std::vector<double> covered = sums.plane(0, 1.0);

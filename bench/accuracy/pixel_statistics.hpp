@@ -1,27 +1,27 @@
-// Pictures of many seeds, pixel by pixel: what is left of them in the mean, and the noise.
+// Statistics of pictures with different seeds. In: values of the pixels. Out: mean, noise and RMS.
 #pragma once
 
 #include <vector>
 
 namespace dapple::bench {
 
-/// Running sums of pictures of equal size; only pixels of the mask count.
+/// Sums over pictures of equal size. Only pixels of the mask count.
 class PixelStatistics {
  public:
   explicit PixelStatistics(std::vector<bool> mask);
 
   void add(const std::vector<double>& pixels);
 
-  /// Over all pixels and pictures.
+  /// Mean over all pixels and pictures.
   [[nodiscard]] double mean() const;
-  /// Standard deviation from seed to seed of a pixel, root mean square over the pixels.
+  /// Standard deviation of a pixel between seeds; root mean square over the pixels.
   [[nodiscard]] double noise() const;
-  /// Standard deviation from seed to seed of the picture's mean.
+  /// Standard deviation of the picture's mean between seeds.
   [[nodiscard]] double noise_of_mean() const;
-  /// Root mean square over the pixels of what infinitely many pictures would average to:
-  /// the variance that remains in the mean of those added is taken out. Needs two pictures.
+  /// Root mean square over the pixels of the mean of infinitely many pictures: the variance of the
+  /// mean of the added pictures is subtracted. Needs two pictures.
   [[nodiscard]] double converged_rms() const;
-  /// The same of a single picture: noise included.
+  /// Root mean square over the pixels of a single picture, with noise.
   [[nodiscard]] double rms() const;
 
  private:
@@ -33,7 +33,8 @@ class PixelStatistics {
   double pixels_ = 0;
 };
 
-/// Middle of the values, of an even number the mean of the two. There must be one.
+/// The median; for an even number of values, the mean of the middle two. `values` must not be
+/// empty.
 double median(std::vector<double> values);
 
 }  // namespace dapple::bench

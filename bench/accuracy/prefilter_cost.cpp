@@ -1,5 +1,5 @@
-// Peaks are the kernel's own: the resident set's high water, which it forgets on request
-// (proc(5), clear_refs). They count pages, so small scenes come out too large.
+// Peaks are the peak resident set size that Linux reports and resets on request (proc(5),
+// clear_refs). They count whole pages, so the values of small scenes are too large.
 #include "accuracy/prefilter_cost.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kRepetitions = 3;
 
-/// A line of /proc/self/status in bytes; 0 where there is no such thing.
+/// The value of a line of /proc/self/status in bytes; 0 if there is no such line.
 double status_bytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -42,7 +42,7 @@ double mesh_bytes(const Mesh& mesh) {
          bytes(mesh.vertex_alpha);
 }
 
-/// What `work` takes: seconds, and the most that was resident at once.
+/// Runs `work`. Returns its seconds, and the peak of resident bytes.
 template <class Work>
 std::pair<double, double> cost_of(const Work& work) {
   malloc_trim(0);
@@ -52,7 +52,7 @@ std::pair<double, double> cost_of(const Work& work) {
   return {seconds_since(start), status_bytes("VmHWM")};
 }
 
-/// The steps of build_bvh() for one mesh, apart.
+/// Measures the two steps of build_bvh() separately, for the first mesh.
 void measure_once(const Scene& scene, PrefilterCostRow& row) {
   malloc_trim(0);
   const double before = status_bytes("VmRSS");

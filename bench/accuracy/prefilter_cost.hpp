@@ -1,5 +1,5 @@
-// Part four of the accuracy bench: how the time and the memory that prefiltering takes grow
-// with the triangles.
+// Part four of the accuracy bench: time and memory of prefiltering. In: clouds of growing size.
+// Out: seconds and bytes for each size.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@ namespace dapple::bench {
 
 struct PrefilterCostRow {
   std::size_t triangles = 0;
-  double build_seconds = 0, prefilter_seconds = 0;  ///< wall time, the least of the repetitions
-  double ratio = 0;  ///< prefilter_seconds over those of the row before, per 10 times; first: 0
-  double scene_bytes = 0;           ///< meshes, which stay
+  double build_seconds = 0, prefilter_seconds = 0;  ///< wall time, minimum of the repetitions
+  double ratio = 0;  ///< growth of prefilter_seconds for ten times the triangles; first row: 0
+  double scene_bytes = 0;           ///< meshes, which stay in memory
   double bvh_bytes = 0;             ///< the finished BVH: nodes, blocks, textured triangles
-  double build_peak_bytes = 0;      ///< most resident at once while building, without the scene
+  double build_peak_bytes = 0;      ///< peak of resident memory while building, without the scene
   double prefilter_peak_bytes = 0;  ///< the same while prefiltering
 };
 

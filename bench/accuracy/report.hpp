@@ -1,4 +1,5 @@
-// What the accuracy and paper benches write down: tables for people, JSON for programs.
+// Reports of the accuracy and paper benches. In: rows of results. Out: tables as text, JSON, and
+// SVG plots.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +11,8 @@
 
 namespace dapple::bench {
 
-/// Cells as text, columns as wide as their widest cell, the first flush left.
+/// A table as text. Each column is as wide as its widest cell; the first column is left-aligned,
+/// the others are right-aligned.
 std::string table_text(const std::vector<std::vector<std::string>>& rows);
 
 std::string nodes_text(const std::vector<NodeAccuracyRow>& rows);
@@ -18,10 +20,11 @@ nlohmann::json nodes_json(const std::vector<NodeAccuracyRow>& rows);
 
 std::string images_text(const std::vector<ImageAccuracyRow>& rows);
 nlohmann::json images_json(const std::vector<ImageAccuracyRow>& rows);
-/// Converged RMSE and noise of each pass against the footprint, times as labels.
+/// Plots converged RMSE and noise of each pass over the footprint scale, with times as labels.
 std::string images_svg(const std::vector<ImageAccuracyRow>& rows, const std::string& title);
 
-/// Writes `text` whole or not at all; nothing where `path` is empty. Throws Error failed.
+/// Writes `text` to the file, whole or not at all. Does nothing if `path` is empty. Throws Error
+/// failed.
 void write_report(const std::string& path, const std::string& text);
 
 }  // namespace dapple::bench

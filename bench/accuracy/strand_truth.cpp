@@ -1,4 +1,4 @@
-// Embree finds the segments whose boxes a ray meets; the rest is done here.
+// Embree finds the segments whose boxes a ray hits; the functions here intersect them.
 #include "accuracy/strand_truth.hpp"
 
 #include <embree3/rtcore.h>
@@ -9,10 +9,10 @@
 namespace dapple::bench {
 namespace {
 
-/// Smaller root of a t^2 + 2 b t + c; NaN for none.
+/// The root (-b - sqrt(b^2 - a c)) / a of a t^2 + 2 b t + c; NaN if there is none.
 double first_root(double a, double b, double c) { return (-b - std::sqrt(b * b - a * c)) / a; }
 
-/// The sides of the planes at the segment's ends that it lies on.
+/// Whether `p` lies between the planes at the ends of the segment.
 bool is_between(const StrandSegment& s, const V3d& p) {
   return (p - V3d(s.point[0])).dot(V3d(s.plane[0])) >= 0 &&
          (p - V3d(s.point[1])).dot(V3d(s.plane[1])) < 0;
@@ -47,7 +47,7 @@ bool enters(const StrandSegment& s, const V3d& origin, const V3d& direction, dou
   return false;
 }
 
-/// Embree hands back the pointer to `context`, the first member.
+/// Embree passes the pointer to `context` to the callback. So it must be the first member.
 struct Query {
   RTCIntersectContext context;
   const oracle::Segment* ray;

@@ -1,5 +1,6 @@
-// Transmittance of strands, by the definition in dapple/shared/segment_block.h and in double, for
-// the segments of a part of a BVH: cut off where the part ends, they are no strands to Embree.
+// Reference transmittance of segments of strands. In: the segments of a part of a BVH. Out: their
+// transmittance along rays in double precision, as dapple/shared/segment_block.h defines it.
+// Embree's curves cannot do this: the part cuts strands off without caps.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Walks finished BVHs from their roots; rebuilds scenes from triangle blocks, so that what
-// is judged is what was packed.
+// Visits finished BVHs from their roots. Scenes are rebuilt from triangle blocks, so that the
+// reference has the same triangles as the BVH.
 #include "accuracy/subtree.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ void append_below(const SceneBvh& bvh, const BvhNode& node, unsigned slot, const
   for (unsigned s = 0; s < DAPPLE_BVH_WIDTH; ++s) append_below(bvh, child, s, of_leaf, out);
 }
 
-/// Materials of a rebuilt scene: uniform triangles carry their opacity as vertex alpha, varying
-/// ones have the material that they had, without texture where it did not count.
+/// Materials of a rebuilt scene. Constant-opacity triangles have their opacity as vertex alpha.
+/// Others keep their material, but without its texture if that was not used.
 class Materials {
  public:
   Materials(Scene& scene, const Scene& original) : scene_(scene), original_(original) {}
@@ -52,13 +52,13 @@ class Materials {
 
   std::uint32_t of(const TexturedCorners& corners) {
     Material material = original_.materials[corners.material];
-    material.uses_vertex_alpha = true;  // alphas are 1 where they were not used
+    material.uses_vertex_alpha = true;  // unused alphas are 1
     if (!corners.has_texture) material.alpha_texture = -1;
     return find({corners.material, corners.has_texture}, material);
   }
 
  private:
-  using Key = std::pair<std::int64_t, bool>;  ///< index of the original, whether with texture
+  using Key = std::pair<std::int64_t, bool>;  ///< index of the original, has a texture
 
   std::uint32_t find(const Key& key, const Material& material) {
     const auto [at, added] =

@@ -11,7 +11,7 @@ namespace {
 constexpr double kWidth = 770, kHeight = 440;
 constexpr double kLeft = 70, kRight = 240, kTop = 40, kBottom = 50;
 
-/// Colours of Okabe and Ito, told apart by colour-blind readers as well.
+/// Colours of Okabe and Ito, which colour-blind readers can distinguish.
 constexpr const char* kPalette[] = {"#0072b2", "#d55e00", "#009e73",
                                     "#cc79a7", "#e69f00", "#56b4e9"};
 
@@ -39,7 +39,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// A logarithmic axis from value to pixel.
+/// A logarithmic axis: converts values to pixels.
 class LogAxis {
  public:
   LogAxis(double first_pixel, double last_pixel) : first_(first_pixel), last_(last_pixel) {}
@@ -47,7 +47,7 @@ class LogAxis {
     low_ = std::min(low_, std::log10(value));
     high_ = std::max(high_, std::log10(value));
   }
-  /// To whole ticks; an axis without values becomes 0.1 to 1.
+  /// Extends the axis to whole ticks. An axis without values becomes 0.1 to 1.
   void round_out(double ticks_a_decade) {
     if (low_ > high_) low_ = -1, high_ = 0;
     low_ = std::floor(low_ * ticks_a_decade) / ticks_a_decade;
@@ -94,7 +94,7 @@ class PlotWriter {
     y_.round_out(1);
   }
 
-  /// All that goes inside the svg element, `top` pixels down.
+  /// The content of the svg element for this plot, moved down by `top` pixels.
   std::string write(double top) {
     std::string out = fmt::format("<g transform=\"translate(0,{})\">\n", top);
     out += text_at(kLeft, 22, "start", plot_.title) + grid();
@@ -123,7 +123,7 @@ class PlotWriter {
            text_at(12, kTop - 6, "start", plot_.y_name);
   }
 
-  /// A vertical line of the grid with its number; nothing where the axis does not reach.
+  /// A vertical line of the grid with its number, or "" if x is outside of the axis.
   std::string column(double x) const {
     if (!x_.shows(x)) return "";
     return grid_line(x_.pixel(x), kTop, x_.pixel(x), kHeight - kBottom) +

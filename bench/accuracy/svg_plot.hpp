@@ -1,4 +1,5 @@
-// A plot as one small SVG file: logarithmic axes, lines with points, texts at the points.
+// Plots as one small SVG file. In: lines of points with labels. Out: the text of the file, with
+// logarithmic axes.
 #pragma once
 
 #include <string>
@@ -7,8 +8,8 @@
 namespace dapple::bench {
 
 struct PlotPoint {
-  double x, y;        ///< positive; others are left out
-  std::string label;  ///< beside the point; may be empty
+  double x, y;        ///< points are only drawn if both are positive
+  std::string label;  ///< drawn next to the point; may be empty
 };
 
 struct PlotLine {
@@ -24,9 +25,9 @@ struct Plot {
   bool decimal_x = false;  ///< ticks at 1, 2, 5, 10... instead of powers of two
 };
 
-/// The SVG file's text; an empty plot still has its title.
+/// The text of the SVG file. An empty plot has only its title and axes.
 std::string svg_text(const Plot& plot);
-/// Plots one below the other.
+/// The same for several plots, one below the other.
 std::string svg_text(const std::vector<Plot>& plots);
 
 }  // namespace dapple::bench

@@ -1,5 +1,5 @@
-// dapple-bench paper: the experiment of Lacewell, Burley, Boulos, Shirley, "Raytracing
-// Prefiltered Occlusion for Aggregate Geometry", 2008, again.
+// dapple-bench paper: repeats the experiment of Lacewell, Burley, Boulos and Shirley, "Raytracing
+// Prefiltered Occlusion for Aggregate Geometry", 2008.
 #pragma once
 
 namespace dapple::bench {

@@ -19,7 +19,8 @@ RenderOptions with(RenderOptions options, const PaperVariant& variant, int seed)
   return options;
 }
 
-/// Passes 0 (AO) and 1 (the light) of converged pictures, and the variance left in them.
+/// Means of the passes 0 (AO) and 1 (the light) over several pictures, and the variances of these
+/// means.
 struct Reference {
   std::vector<double> pixels[2];
   double variance[2] = {0, 0};
@@ -45,7 +46,7 @@ Reference make_reference(PictureScene& scene, const RenderOptions& options, int 
   return reference;
 }
 
-/// One variant's pictures so far.
+/// Sums over the pictures of one variant.
 class VariantSums {
  public:
   VariantSums(PaperVariant variant, const Picture& shape)

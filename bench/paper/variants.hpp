@@ -1,5 +1,5 @@
-// What the paper experiment compares, and measuring it: the same picture by several
-// estimators and ray counts, in turn.
+// Measurements of the paper experiment. In: a scene and options. Out: seconds and errors of one
+// picture with several estimators and numbers of rays.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace dapple::bench {
 
-/// One way to make the picture: AO and light rays of each primary sample.
+/// One way to render the picture. `rays`: AO rays, and rays to each light, of a primary sample.
 struct PaperVariant {
   std::string name;
   Estimator estimator;
@@ -17,14 +17,14 @@ struct PaperVariant {
   float footprint;
 };
 
-/// exact with 4, 9 and 25 rays; prefiltered with the footprint of a pixel's share, n = primary
-/// samples times rays; and with the paper's, n = rays, which is as many times wider as there
-/// are primary samples.
+/// Exact, prefiltered, and prefiltered as in the paper, each with 4, 9 and 25 rays. A footprint is
+/// the n-th part of the hemisphere: n = primary samples times rays here, n = rays in the paper,
+/// whose footprints therefore have a larger area.
 std::vector<PaperVariant> paper_variants(int primary_samples);
 
-/// Of one variant and one pass.
+/// Results of one variant and one pass.
 struct PaperFigures {
-  double seconds = 0;  ///< occlusion rays alone, median
+  double seconds = 0;  ///< of the occlusion rays only, median
   double noise = 0;    ///< standard deviation of a pixel from seed to seed
   double rmse = 0;     ///< of one picture against converged exact
 };
@@ -34,9 +34,9 @@ struct PaperRow {
   PaperFigures ao, light;
 };
 
-/// Renders each variant `repeats` times, interleaved, each time with another seed, and as
-/// many exact pictures of 25 rays of other seeds as a reference, whose own noise is taken
-/// out of every RMSE.
+/// Renders each variant `repeats` times, interleaved and with different seeds. The reference is the
+/// mean of as many exact pictures of 25 rays with other seeds. Its variance is subtracted from
+/// every squared error.
 std::vector<PaperRow> measure_paper(PictureScene& scene, const RenderOptions& options, int repeats);
 
 }  // namespace dapple::bench

@@ -18,11 +18,11 @@ namespace dapple {
 enum class BakeSides : std::uint8_t {
   automatic,  ///< max for double-sided materials, front for others
   front,      ///< the side from which the triangle's vertices are counterclockwise
-  max,        ///< the side with the larger AO: of small sheets as a whole, of others by vertex
+  max,        ///< the side with the larger AO, chosen for a small sheet as a whole, else by vertex
   mean,       ///< the mean of both
 };
 
-/// Where the instances of a mesh are, for the values of its vertices.
+/// Which placements of a mesh the values at its vertices describe.
 enum class BakeInstances : std::uint8_t {
   together,  ///< the mean over all placements, each in its surroundings
   alone,     ///< the mesh without the rest of the scene, as it is in object space
@@ -34,8 +34,8 @@ struct BakeOptions {
   bool bent = false;       ///< bent normals too, at vertices
   int rays = 192;  ///< of each triangle and side (at_vertices: vertex and side), [16, 65536]
   Estimator estimator = Estimator::prefiltered;
-  /// As RenderOptions::footprint, for the rays of one point. Those of a triangle's other points
-  /// make up for smaller footprints.
+  /// As RenderOptions::footprint, for the rays of one point. A smaller scale than there is enough,
+  /// because a triangle has rays from several points.
   float footprint = 0.5f;
   float distance = 0;        ///< metres; surfaces farther away do not occlude; 0: no limit
   float falloff = 0;         ///< as RenderOptions::ao_falloff
@@ -51,11 +51,11 @@ struct BakeOptions {
 /// Throws Error usage, naming the command line's flag, when a value is out of range.
 void validate(const BakeOptions& options);
 
-/// Values at the vertices of Scene::meshes[i], one for each vertex; empty if they were not asked
-/// for, and for strands. Vertices that no triangle with an area uses have AO 1 and no bent normal.
+/// Values of Scene::meshes[i], one for each vertex. Empty for strands, and if no values at vertices
+/// were requested. Vertices that no triangle of positive area uses have AO 1 and no bent normal.
 struct BakedMesh {
   std::vector<float> ao;  ///< [0,1], 1: unoccluded
-  std::vector<V3f> bent;  ///< unit vector in object space, the mean unoccluded direction; or zero
+  std::vector<V3f> bent;  ///< mean unoccluded direction, a unit vector in object space; or zero
 };
 
 struct BakeStatistics {
@@ -64,24 +64,24 @@ struct BakeStatistics {
   } seconds;
   std::size_t triangles = 0, vertices = 0, points = 0;
   std::uint64_t rays = 0;
-  std::size_t hidden_vertices = 0;  ///< inside closed geometry: they have their neighbours' value
+  std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
   std::string device;
   std::vector<std::string> notes;
 };
 
 struct BakeResult {
   std::vector<BakedMesh> meshes;   ///< as Scene::meshes
-  std::vector<float> instance_ao;  ///< as Scene::instances, [0,1]; empty if not asked for
+  std::vector<float> instance_ao;  ///< as Scene::instances, [0,1]; empty if not requested
   BakeStatistics statistics;
-  bool interrupted = false;  ///< RenderControl::stop asked for it; the values are not complete
+  bool interrupted = false;  ///< RenderControl::stop returned true; the values are incomplete
 };
 
-/// Bakes `scene`, whose instances and meshes are as they were read. `occluders`: scenes that
-/// occlude and are not baked. A vertex's value is the mean of the AO at points of the triangles
-/// around it, weighted by area and by the vertex's barycentric coordinate (the lumped form of
-/// Kavan, Bargteil and Sloan, "Least Squares Vertex Baking", 2011). Vertices at the same position
-/// with normals within 45 degrees share one value. Of `control`, progress and stop are used. Throws
-/// Error usage, input, device or failed. The same arguments give the same bits.
+/// Bakes `scene`. Its instances and meshes must be as the reader returned them. `occluders` are
+/// scenes that occlude and are not baked. A vertex's value is the mean of the AO at points of the
+/// triangles around it, weighted by area and by the vertex's barycentric coordinate (the lumped
+/// form of Kavan, Bargteil and Sloan, "Least Squares Vertex Baking", 2011). Vertices at the same
+/// position with normals within 45 degrees share one value. Uses only progress and stop of
+/// `control`. Throws Error usage, input, device or failed. The same arguments give the same bits.
 BakeResult bake(const Scene& scene, const BakeOptions& options = {},
                 const RenderControl& control = {}, const std::vector<Scene>& occluders = {});
 

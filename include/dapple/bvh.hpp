@@ -1,5 +1,6 @@
-// The acceleration structure, finished on the host before any device exists: 8-wide BVHs
-// over the meshes, one over their instances, opacity in every node.
+// The acceleration structure: 8-wide BVHs over the meshes and one over their instances, with the
+// opacity of every child. In: a Scene; out: arrays that upload() copies to a device. Nothing here
+// needs a device.
 #pragma once
 
 #include <cstdint>
@@ -47,15 +48,15 @@ struct SceneBvh {
   BvhStatistics statistics;
 };
 
-/// Makes a folder for built trees if there is none, checks that files can be read and written
-/// there, and removes what killed runs left in it. Throws Error usage, which names --cache.
+/// Makes a folder for built BVHs if there is none, checks that files can be read and written there,
+/// and removes unfinished files of earlier runs. Throws Error usage, which names --cache.
 void prepare_bvh_cache(const std::string& folder);
 
 /// Builds the BVH of a scene, which must have a triangle or segment that can be hit. Takes time
 /// linear in the triangles, in parallel; the bits do not depend on the number of threads. With a
 /// `cache_folder`, objects that were built before are read from it, with the same bits, and others
 /// are written to it; damaged files and those of other versions are replaced. Throws Error failed
-/// when the tree is too deep for the kernels' stack or too large for 32-bit indices.
+/// if the BVH is too deep for the kernels' stack or too large for 32-bit indices.
 SceneBvh build_bvh(const Scene& scene, const std::string& cache_folder = "");
 
 /// A range of indices of an array: begin, up to but not including end.
@@ -66,21 +67,21 @@ struct IndexRange {
 /// The result of UpdatableBvh::update().
 struct BvhUpdate {
   std::size_t objects_kept = 0;      ///< did not move
-  std::size_t objects_refitted = 0;  ///< kept their tree, with new boxes
-  std::size_t objects_rebuilt = 0;   ///< changed in form, or became too costly
+  std::size_t objects_refitted = 0;  ///< kept their BVH, with new boxes
+  std::size_t objects_rebuilt = 0;   ///< changed in more than positions, or became too costly
   double seconds = 0;                ///< wall time
   double cost_ratio = 1;  ///< largest SAH cost after refitting, relative to that after building
   bool is_new = false;    ///< all arrays were replaced
-  /// Otherwise these ranges of nodes and triangle blocks changed.
+  /// If not is_new: the ranges of nodes and triangle blocks that changed.
   std::vector<IndexRange> nodes, blocks;
-  bool placement = false;  ///< and whether instances, root and bounds changed
+  bool placement = false;  ///< if not is_new: whether instances, root and bounds changed
 };
 
 /// A SceneBvh that is updated when its scene moves.
 class UpdatableBvh {
  public:
   enum class Motion {
-    maybe,     ///< objects are rebuilt when they first move; needs no memory before
+    maybe,     ///< objects are rebuilt when they first move; needs no memory before that
     expected,  ///< keeps what refitting needs from the start, about 20 bytes a triangle
   };
 
@@ -92,7 +93,7 @@ class UpdatableBvh {
   UpdatableBvh& operator=(UpdatableBvh&&) noexcept;
 
   /// Updates the BVH to `moved`. Objects whose vertices moved are refitted, in time linear in their
-  /// triangles; the bits do not depend on the number of threads. Objects whose trees became too
+  /// triangles; the bits do not depend on the number of threads. Objects whose BVHs became too
   /// costly are rebuilt, as are meshes that changed in more than positions, and all meshes if their
   /// number changed. The top level is always rebuilt. Arrays change in place: no device may use
   /// them meanwhile. Throws as build_bvh().

@@ -1,5 +1,5 @@
-// An array of values that no longer change: from a vector, or from a file that is mapped into
-// memory. Copies share the values.
+// An array of constant values, from a vector or from a file that is mapped into memory. Copies
+// share the values.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace dapple {
 
-/// Copying is cheap, and so is moving, which leaves the source as it was.
+/// Copies and moves are cheap. A move leaves the source unchanged.
 template <class T>
 class ConstArray : public std::span<const T> {
  public:
@@ -17,10 +17,10 @@ class ConstArray : public std::span<const T> {
   ConstArray(const ConstArray&) = default;
   ConstArray& operator=(const ConstArray&) = default;
 
-  ConstArray(std::vector<T>&& values)  // NOLINT: implicit, a vector that is finished becomes one
+  ConstArray(std::vector<T>&& values)  // NOLINT: implicit conversion is wanted
       : ConstArray(std::make_shared<const std::vector<T>>(std::move(values))) {}
 
-  /// `keeper` keeps the values in memory.
+  /// `keeper` owns the memory of the values.
   ConstArray(std::span<const T> values, std::shared_ptr<const void> keeper)
       : std::span<const T>(values), keeper_(std::move(keeper)) {}
 

@@ -1,4 +1,4 @@
-// OpenCL devices without OpenCL types: list, choose, upload a scene.
+// OpenCL devices, without OpenCL types: lists them, opens one, and uploads a scene to it.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct DeviceInfo {
   std::size_t largest_buffer_bytes = 0;
 };
 
-/// Every OpenCL device, best first. Throws Error device when there is no platform.
+/// Every OpenCL device, best first. Throws Error device if there is no platform.
 std::vector<DeviceInfo> list_devices();
 
 class DeviceContext;  // host/device/context.hpp
@@ -35,8 +35,8 @@ class DeviceContext;  // host/device/context.hpp
 /// An opened device with its command queue and compiled kernels; cheap to copy.
 class Device {
  public:
-  /// Opens the best device whose name or platform contains `name` (any case), the best
-  /// of all when `name` is empty. Throws Error device, listing what there is.
+  /// Opens the best device whose name or platform contains `name` (in any case), or the best of all
+  /// if `name` is empty. Throws Error device, which lists the devices.
   explicit Device(const std::string& name = "", const std::string& kernel_dir = "",
                   Packets packets = Packets::automatic);
 
@@ -55,12 +55,13 @@ struct DeviceScene {
   std::size_t bytes = 0;
 };
 
-/// Copies what the kernels need. On devices that share the host's memory nothing is
-/// copied. Throws Error device when it cannot fit.
+/// Copies the parts that kernels read to the device. A device that shares the host's memory reads
+/// them in place. Throws Error device if they do not fit.
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh);
 
-/// Updates `bvh`, from which `on_device` was made, to `moved`, and uploads what changed: on devices
-/// that share the host's memory nothing but lights. Throws as UpdatableBvh::update() and upload().
+/// Updates `bvh`, from which `on_device` was made, to `moved`, and uploads what changed. On devices
+/// that share the host's memory it uploads only lights. Throws as UpdatableBvh::update() and
+/// upload().
 BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
                  const Scene& moved);
 

@@ -1,5 +1,5 @@
-// The one exception type of dapple: thrown anywhere, caught in main(), where its
-// kind becomes the exit code. Our own bugs are assert()s, never Errors.
+// The one exception type of dapple. Any function may throw it; main() catches it and makes its kind
+// the exit code. Bugs of dapple itself are found by assert() and are never Errors.
 #pragma once
 
 #include <stdexcept>
@@ -7,16 +7,16 @@
 
 namespace dapple {
 
-/// What went wrong, in the words of the exit codes.
+/// The kind of failure; its value is the exit code.
 enum class ErrorKind {
   failed = 1,     ///< the work could not be finished (disk, memory, a device that died)
   usage = 2,      ///< an option is wrong or missing
   input = 3,      ///< a scene, texture or lights file is wrong
   device = 4,     ///< no usable OpenCL device
-  different = 5,  ///< the pictures compared differ by more than was allowed
+  different = 5,  ///< the compared pictures differ by more than was allowed
 };
 
-/// `what()` is one line: which file or option, which element, what next.
+/// `what()` is one line: the file or option, the element, and what the user can do.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}

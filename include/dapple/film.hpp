@@ -1,5 +1,5 @@
-// The finished picture: named planes of 32-bit floats, with what an EXR file should
-// say about them. Values in, files out; nothing here knows how the planes were made.
+// The finished picture: named planes of 32-bit floats and the metadata of an EXR file. In: values;
+// out: EXR and PNG files. Also reads EXR files.
 #pragma once
 
 #include <string>
@@ -42,23 +42,23 @@ struct Film {
 /// 200 characters.
 std::string layer_name(const std::string& text);
 
-/// Writes a scanline EXR, ZIP, all channels FLOAT. Written beside, closed, reopened and
-/// verified, then renamed over `path`. Throws Error failed; `path` is then as it was.
+/// Writes a scanline EXR, ZIP, all channels FLOAT. It writes a temporary file in the same folder,
+/// reopens and verifies it, and renames it to `path`. Throws Error failed; an existing file at
+/// `path` is then unchanged.
 void write_exr(const Film& film, const std::string& path);
 
-/// Reads what `write_exr` wrote, or any single-part EXR, scanline or tiled, without subsampling
-/// and of at most 2^28 pixels; HALF and UINT become float. Planes and settings come in
-/// alphabetical order. Throws Error input.
+/// Reads any single-part EXR, scanline or tiled, without subsampling and of at most 2^28 pixels.
+/// HALF and UINT become float. Planes and settings are in alphabetical order. Throws Error input.
 Film read_exr(const std::string& path);
 
-/// Writes an 8-bit sRGB preview of RGBA over black, or of `layer` when given ("ao", "N",
-/// "light.key", ...), of the data window's size; values are clamped to [0,1]. N (from [-1,1])
-/// and Z, P (from their finite range) are written linearly, lights divided by their largest
-/// value. Throws Error usage when there is no such layer, otherwise failed.
+/// Writes an 8-bit sRGB preview of RGBA over black, or of `layer` if it is not empty ("ao", "N",
+/// "light.key", ...), of the data window's size. Values are clamped to [0,1]. N (from [-1,1]) and
+/// Z, P (from their finite range) are mapped linearly; lights are divided by their largest value.
+/// Throws Error usage if there is no such layer, otherwise failed.
 void write_png(const Film& film, const std::string& path, const std::string& layer = "");
 
 /// Writes an 8-bit heat map of one channel: black at 0, pale yellow at its largest value. Throws
-/// Error usage when there is no such channel, otherwise failed.
+/// Error usage if there is no such channel, otherwise failed.
 void write_heat_map(const Film& film, const std::string& path, const std::string& channel);
 
 }  // namespace dapple

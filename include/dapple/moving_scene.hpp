@@ -1,5 +1,6 @@
-// A scene that moves: read once, posed for any number of times. In: what load_scene() takes; out: a
-// Scene a time, whose meshes keep their vertices and primitives in number and order.
+// A scene that moves: it is read once and posed for any number of times. In: the arguments of
+// load_scene(); out: one Scene for each time. The meshes keep number and order of their vertices
+// and primitives.
 #pragma once
 
 #include <memory>
@@ -12,14 +13,14 @@ namespace dapple {
 
 class MovingScene {
  public:
-  /// Reads and checks all that does not depend on the time; `options.time` is not looked at.
-  /// Throws Error as load_scene() does.
+  /// Reads and checks everything that does not depend on the time; ignores `options.time`. Throws
+  /// Error as load_scene() does.
   explicit MovingScene(const std::string& spec, const SceneOptions& options = {});
   ~MovingScene();
   MovingScene(MovingScene&&) noexcept;
   MovingScene& operator=(MovingScene&&) noexcept;
 
-  /// The scene at that time in seconds; none: at rest. Throws Error input where a pose is no scene.
+  /// The scene at that time in seconds; none: at rest. Throws Error input if the pose is invalid.
   [[nodiscard]] Scene at(std::optional<double> seconds) const;
 
   class Source;

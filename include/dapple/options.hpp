@@ -1,5 +1,5 @@
-// Everything that decides a picture, filled by the command line and by callers of the
-// library alike. Defaults are those of the command line.
+// The options of a picture, for the command line and for callers of the library. The defaults are
+// those of the command line.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,22 @@
 
 namespace dapple {
 
-/// Footprint scale of all defaults, from a curve of bias, noise and time (docs/accuracy.md): mean
-/// biases of AO are within 0.006 here, but for the outside of dense hair.
+/// Default footprint scale, chosen from a curve of bias, noise and time (docs/accuracy.md). The
+/// mean bias of AO is at most 0.006, except for the outside of dense hair.
 inline constexpr float kDefaultFootprint = 4.0f;
 
-/// How an occlusion ray is estimated.
+/// How the transmittance of an occlusion ray is estimated.
 enum class Estimator : std::uint8_t {
   exact,        ///< every surface on the ray is composited
   prefiltered,  ///< stops at BVH nodes that the ray's footprint covers
 };
 
-/// As the command line spells it.
+/// The value's name on the command line.
 std::string name_of(Estimator estimator);
 std::string name_of(Packets packets);
 
-/// Rays of one kind that a pixel may have at most, `spp` or `max_spp` times those of a sample: sums
-/// are kept in 64-bit fixed point with 24 bits to spare.
+/// The largest number of rays of one kind for a pixel: `spp` or `max_spp` times the rays of a
+/// sample. Sums are 64-bit fixed-point numbers with 24 bits for the number of rays.
 inline constexpr int kMaxRaysOfPixel = 1 << 24;
 
 /// A pixel rectangle, inclusive at both ends as in EXR windows; (0,0) is top left.
@@ -48,8 +48,8 @@ struct LookAt {
 struct RenderOptions {
   int width = 960;   ///< pixels, [1, 65535]
   int height = 540;  ///< pixels, [1, 65535]
-  /// Primary samples a pixel, [1, 2^20]; with a target the minimum, rounded up to whole batches of
-  /// four, at least two.
+  /// Primary samples a pixel, [1, 2^20]. With a target it is the minimum, rounded up to whole
+  /// batches of four, at least two batches.
   int spp = 16;
   /// Sample each pixel until its estimated standard error is below this, [0, 1]; 0: no target.
   /// Errors of lights are relative to their largest unoccluded irradiance.
@@ -57,14 +57,15 @@ struct RenderOptions {
   /// Sample until the estimated root mean square of the pixels' errors is below this in every pass,
   /// [0, 1]; 0: no target. Not together with target_error.
   float target_rmse = 0;
-  /// Samples a pixel that footprints are made for, [1, 2^20]; 0: spp. A render that resumes from a
-  /// checkpoint keeps those of its beginning, so that more samples estimate the same picture.
+  /// Samples a pixel that footprints are computed for, [1, 2^20]; 0: footprint_samples() chooses. A
+  /// resumed render keeps the number of the first run, so that more samples estimate the same
+  /// picture.
   int footprint_spp = 0;
-  int footprint_ao_rays = 0;  ///< the same of AO rays a primary sample, [1, 4096]; 0: ao_rays
-  int max_spp = 4096;         ///< with a target the most samples a pixel, [spp, 2^20]
-  /// Samples that share a camera ray, 1, 2 or 4: each is shaded at a surface of its own among those
-  /// that the ray crosses. More suit thin leaves and hair; 0: chosen by the scene's opacities.
-  /// `spp` and `max_spp` count camera rays.
+  int footprint_ao_rays = 0;  ///< AO rays a primary sample, in the same way, [1, 4096]; 0: ao_rays
+  int max_spp = 4096;         ///< with a target, the maximum of samples a pixel, [spp, 2^20]
+  /// Samples that share a camera ray, 1, 2 or 4. Each sample chooses its own surface among those
+  /// that the ray intersects. Larger values suit thin leaves and hair; 0: chosen from the scene's
+  /// opacities. `spp` and `max_spp` count camera rays.
   int camera_splitting = 0;
   /// AO rays a primary sample, [1, 4096], at least one for each sample that shares a camera ray
   /// (two: experiment 516).
@@ -74,7 +75,7 @@ struct RenderOptions {
   float footprint = kDefaultFootprint;  ///< scale, >= 0; 0 is exact
   bool ao = true;                       ///< make the AO pass
   bool light = true;                    ///< make the light passes
-  bool visits = false;                  ///< make layers of what rays cost
+  bool visits = false;                  ///< make layers of node visits and triangle tests
   float ao_distance = 0.0f;             ///< metres; 0 is no limit
   float ao_falloff = 0.0f;              ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
   std::string camera;                   ///< by name; empty: the first, or one that frames the scene
@@ -90,25 +91,25 @@ struct RenderOptions {
   std::vector<std::pair<std::string, float>> opacity;  ///< material name, opacity in [0,1]
 };
 
-/// Whether pixels get as many samples as they need, by one of the two targets.
+/// Whether the number of samples differs from pixel to pixel, because a target is set.
 [[nodiscard]] inline bool is_adaptive(const RenderOptions& options) {
   return options.target_error > 0 || options.target_rmse > 0;
 }
 
-/// Samples a pixel whose shares footprints begin with: `footprint_spp` if there is one; else `spp`,
-/// and with a target so many that the bias over what is seen stays below about a third of a pixel's
-/// error, half of a picture's.
+/// Samples a pixel that footprints are computed for: `footprint_spp` if it is set, else `spp`. With
+/// a target it returns at least `spp`, and so many samples that the bias over visible surfaces
+/// stays below about a third of target_error, or half of target_rmse.
 [[nodiscard]] int footprint_samples(const RenderOptions& options);
 
-/// The RMSE of a picture that footprints of so many samples are for, [0,1].
+/// The RMSE of a picture for which footprints of footprint_samples() samples are meant, [0,1].
 [[nodiscard]] float footprint_rmse(const RenderOptions& options);
 
-/// AO rays a primary sample among which footprints share the hemisphere.
+/// AO rays a primary sample that divide the hemisphere into footprints.
 [[nodiscard]] inline int footprint_ao_rays(const RenderOptions& options) {
   return options.footprint_ao_rays > 0 ? options.footprint_ao_rays : options.ao_rays;
 }
 
-/// Throws Error usage, naming the command line's flag, when a value is out of range.
+/// Throws Error usage, which names the command line's flag, if a value is out of range.
 void validate(const RenderOptions& options);
 
 }  // namespace dapple

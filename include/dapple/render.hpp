@@ -1,6 +1,5 @@
 // The library's two main functions: render() makes a film of a scene, and occlusion() returns AO at
-// points, for baking. Also the queries below them, trace() and closest_hits(), for tests and
-// benches.
+// points, for baking. trace() and closest_hits() take rays of the caller, for tests and benches.
 #pragma once
 
 #include <functional>
@@ -21,9 +20,9 @@ struct RenderStatistics {
   struct {
     double load = 0, cache = 0, build = 0, prefilter = 0, refit = 0, upload = 0, kernel_build = 0,
            trace = 0, checkpoint = 0, write = 0, total = 0;
-  } seconds;  ///< wall time; cache is reading and writing it, refit is finding what moved and
-              ///< refitting it, kernel_build waiting for kernels once the scene is on the device,
-              ///< trace all passes, camera rays included, checkpoints not
+  } seconds;  ///< wall time. cache: reads and writes; refit: finding and refitting what moved;
+              ///< kernel_build: wait for kernels after the scene is on the device; trace: all
+              ///< passes with the camera pass, without checkpoints
   std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
   struct {
     std::uint64_t camera = 0, ao = 0, light = 0;
@@ -35,13 +34,13 @@ struct RenderStatistics {
   /// "light.NAME"); of lights relative to their largest unoccluded irradiance.
   std::map<std::string, double> rmse;
   std::size_t triangles = 0, segments = 0, nodes = 0;
-  /// Of the cache of BVHs. Small objects are always built and count among neither.
+  /// The BVH cache. Small objects are always built and count in neither number.
   struct {
     bool used = false;
     std::size_t objects_read = 0, objects_written = 0;
-    double seconds_saved = 0;  ///< building what was read once took so much longer than reading it
+    double seconds_saved = 0;  ///< build time of the objects that were read, less the read time
   } cache;
-  /// Of a Renderer's renders after its first: what became of the BVHs that it had.
+  /// For a Renderer's second render and later ones: what it did with the BVHs that it kept.
   struct {
     bool used = false;
     std::size_t objects_kept = 0, objects_refitted = 0, objects_rebuilt = 0;
@@ -53,41 +52,42 @@ struct RenderStatistics {
   } bytes;  ///< device memory by part
   std::string device;
   std::string estimator;
-  std::vector<std::string> notes;  ///< choices made for the user: "no camera: framed the scene"
+  std::vector<std::string> notes;  ///< for the user, such as "no camera: framed the scene"
 };
 
 struct RenderResult {
   Film film;
   RenderStatistics statistics;
-  /// Stopped early: the film is what there was by then, its layer `samples` says how much. Pixels
-  /// without samples are as those whose rays miss.
+  /// The render was stopped early: the film has the samples that were traced by then, and its layer
+  /// `samples` counts them. Pixels without samples look like pixels whose rays miss.
   bool interrupted = false;
-  /// Why the last checkpoint could not be written; empty: it could. The one before it is kept.
+  /// Why the last checkpoint could not be written, or empty. The checkpoint before it is kept.
   std::string checkpoint_failure;
 };
 
-/// Called now and then with the fraction done, [0,1].
+/// A function that is called repeatedly with the fraction done, [0,1].
 using Progress = std::function<void(double)>;
 
-/// Asked before each slice of a fraction of a second; true ends the render.
+/// A function that is called before each slice, which takes a fraction of a second. If it returns
+/// true, the render ends.
 using Stop = std::function<bool()>;
 
-/// How a long render is watched, interrupted and continued; nothing of it changes the picture.
+/// Progress, interruption and checkpoints of a render. They do not change the finished picture.
 struct RenderControl {
   Progress progress;
   Stop stop;
-  /// File that holds what is traced, for `resume`: written every `checkpoint_every` seconds and at
-  /// the end, whole or not at all; empty: none.
+  /// File for the samples that were traced so far, from which `resume` continues. It is written
+  /// every `checkpoint_every` seconds and at the end, whole or not at all. Empty: no file.
   std::string checkpoint;
   double checkpoint_every = 60;
-  /// Checkpoint to go on from. Scene and options must be those that it was made with, but for more
-  /// samples or other targets. Empty: begin.
+  /// Checkpoint to continue from. Scene and options must be those of the first run, but there may
+  /// be more samples or other targets. Empty: start from the beginning.
   std::string resume;
 };
 
-/// Renders pictures one after the other, as of a scene that moves. Keeps the device with its
-/// kernels and the scene's BVH from one to the next, so that only what moved is refitted and
-/// brought to the device (UpdatableBvh: built once more when things first move).
+/// Renders pictures one after the other, for example of a scene that moves. Keeps the device, its
+/// kernels and the scene's BVH from one picture to the next, so that only what moved is refitted
+/// and uploaded. Objects are rebuilt when they first move (UpdatableBvh::Motion::maybe).
 class Renderer {
  public:
   Renderer();
@@ -95,8 +95,9 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Renders `scene` as `options` say: applies overrides, ground, lights and camera, builds or
-  /// refits, uploads, traces. Throws Error usage, input, device or failed, and keeps nothing then.
+  /// Renders `scene` with `options`: applies overrides, ground, lights and camera; builds or refits
+  /// the BVH, uploads it and traces. Throws Error usage, input, device or failed; after an Error
+  /// nothing is kept.
   RenderResult render(Scene scene, RenderOptions options, const RenderControl& control = {});
 
  private:
@@ -104,19 +105,19 @@ class Renderer {
   std::unique_ptr<Kept> kept_;
 };
 
-/// A Renderer used once.
+/// The same with a Renderer that is used once.
 RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control);
 RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress = {});
 
-/// Whether a device can do all that dapple asks of devices, found out by compiling every kernel.
+/// Whether a device can run dapple. check_device() compiles every kernel to find out.
 struct DeviceCheck {
-  std::vector<std::string> refusals;     ///< a line a kernel that cannot run; empty: none
-  Packets packets = Packets::automatic;  ///< of a picture's occlusion rays, never automatic
+  std::vector<std::string> refusals;     ///< one line for each kernel that cannot run
+  Packets packets = Packets::automatic;  ///< of a picture's occlusion rays; never automatic
 };
 DeviceCheck check_device(const Device& device);
 
 struct OcclusionOptions {
-  int rays = 64;  ///< a point, [1, 2^20]
+  int rays = 64;  ///< for each point, [1, 2^20]
   Estimator estimator = Estimator::prefiltered;
   float footprint = kDefaultFootprint;
   float distance = 0.0f;  ///< metres; 0: no limit
@@ -124,23 +125,23 @@ struct OcclusionOptions {
   std::uint32_t seed = 0;
 };
 
-/// Ambient occlusion at points, for baking: 1 = unoccluded. `normals` are unit vectors;
-/// origins are offset along them by the rounding error of the coordinates.
-/// Throws Error usage when the sizes differ.
+/// Returns the ambient occlusion at points, for baking: [0,1], 1 = unoccluded. `normals` are unit
+/// vectors. Rays start off the points along the normals, by more than the rounding error of the
+/// coordinates. Throws Error usage if the sizes differ.
 std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
                              std::span<const V3f> points, std::span<const V3f> normals,
                              const OcclusionOptions& options = {});
 
-/// Transmittance along each ray. `footprint` 0 with the prefiltered estimator equals exact.
-/// Rays that share a point may be traced together: `rays_per_point` of them in a row, with one
-/// origin and light. Throws Error usage.
+/// Returns the transmittance along each ray. The prefiltered estimator with `footprint` 0 is exact.
+/// Every `rays_per_point` consecutive rays must have one origin and one light; they may be traced
+/// as point packets. Throws Error usage if they differ.
 std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              std::span<const Ray> rays, Estimator estimator,
                              float footprint = kDefaultFootprint, std::size_t rays_per_point = 1);
 
-/// The surface that stops each ray: of the rays that come to a surface of opacity a, the share a.
-/// Which these are is hashed from origin, direction and key (kernels/camera/closest_hit.cl): the
-/// same ray finds the same. Where t < 0 there is none.
+/// Returns the surface that stops each ray. A surface of opacity a stops a ray with probability a.
+/// The random numbers are hashed from origin, direction and key (kernels/camera/closest_hit.cl), so
+/// that equal rays have equal results. t < 0: no surface stops the ray.
 std::vector<SurfacePoint> closest_hits(const Device& device, const DeviceScene& scene,
                                        std::span<const Ray> rays);
 

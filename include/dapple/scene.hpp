@@ -1,6 +1,6 @@
-// A scene as plain values: meshes, instances, materials, opacity textures, lights,
-// cameras. Filled by the readers in host/scene, consumed by the BVH builder and the
-// uploader. World space is right-handed, +Y up, metres, as in glTF.
+// A scene as plain values: meshes, instances, materials, opacity textures, lights, cameras. The
+// readers in host/scene fill it; the BVH builder and upload() read it. World space is right-handed,
+// +Y up, metres, as in glTF.
 #pragma once
 
 #include <Imath/ImathBox.h>
@@ -22,7 +22,7 @@ using Imath::V2f;
 using Imath::V3d;
 using Imath::V3f;
 
-/// glTF's `alphaMode`: how a looked-up alpha becomes an opacity.
+/// glTF's `alphaMode`: how an alpha becomes an opacity.
 enum class AlphaMode : std::uint8_t {
   opaque,  ///< alpha is ignored, opacity is 1
   mask,    ///< opacity is 1 where alpha >= cutoff, else 0
@@ -51,7 +51,7 @@ struct Material {
   int alpha_texture = -1;     ///< index into Scene::textures, -1 for none
   bool uses_vertex_alpha = true;
   V3f emission{0, 0, 0};      ///< emitted radiance, W/(sr m^2), linear RGB
-  bool double_sided = false;  ///< matters to emission only: every surface occludes from both sides
+  bool double_sided = false;  ///< only for emission: every surface occludes from both sides
 };
 
 /// Consecutive vertices of a Mesh that were read from one primitive of a glTF file.
@@ -61,13 +61,14 @@ struct VertexSource {
   std::vector<std::uint32_t> used;        ///< their elements in accessors; empty: 0 to count - 1
 };
 
-/// Indexed primitives in object space, all triangles or all segments of strands; may mix materials.
+/// Indexed primitives in object space: only triangles, or only segments of strands. The materials
+/// may differ.
 struct Mesh {
   std::string name;
   std::vector<V3f> positions;
   std::vector<std::uint32_t> indices;    ///< three per triangle, two per segment
   std::vector<std::uint32_t> materials;  ///< one per primitive, index into Scene::materials
-  std::vector<float> radii;              ///< of strands, per vertex, metres, > 0; empty: triangles
+  std::vector<float> radii;              ///< strands: per vertex, metres, > 0; empty: triangles
   std::vector<V2f> uvs;  ///< per vertex, for the alpha texture, transforms applied; or empty
   std::vector<float> vertex_alpha;    ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
   std::vector<VertexSource> sources;  ///< of a glTF file's mesh; empty once meshes are merged
@@ -80,14 +81,15 @@ struct Mesh {
 struct Instance {
   std::uint32_t mesh = 0;
   M44f to_world;   ///< affine and invertible
-  int light = -1;  ///< the mesh light this placement emits for, else -1
+  int light = -1;  ///< index of the mesh light that this placement emits, else -1
   int node = -1;   ///< the glTF node that places it; -1: none
 };
 
 enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome };
 
-/// Radiance from all around: a latitude-longitude image as OpenEXR defines it (ImfEnvmap.h). The
-/// top row looks up +Y, the middle column along +Z, the one a quarter from the left along +X.
+/// Radiance from all directions: a latitude-longitude image as OpenEXR defines it (ImfEnvmap.h).
+/// The top row is the direction +Y, the middle column +Z, and the column a quarter from the left
+/// +X.
 struct Environment {
   std::uint32_t width = 0, height = 0;
   std::vector<V3f> radiance;  ///< row by row, linear RGB, finite, not negative
@@ -101,7 +103,7 @@ struct Light {
   V3f radiance{1, 1, 1};  ///< W/(sr m^2), linear RGB
   V3f position{0, 0, 0};  ///< rect and sphere: centre
   V3f direction{0, -1,
-                0};  ///< rect: the side that emits; sun, spot: the way light travels; unit length
+                0};  ///< unit; rect: towards the emitting side; sun, spot: in which light travels
   V3f edge_u{1, 0, 0};              ///< rect: full first edge
   V3f edge_v{0, 0, 1};              ///< rect: full second edge
   float radius = 0.1f;              ///< sphere, metres
@@ -109,9 +111,9 @@ struct Light {
   float cos_inner = -1.0f;          ///< spot cone as in KHR_lights_punctual; -1, -1 for none
   float cos_outer = -1.0f;
   bool double_sided = false;  ///< mesh: emits from both sides
-  /// dome: multiplied by `radiance`; none: the same from all around.
+  /// dome: multiplied by `radiance`; none: the same radiance from all directions.
   std::shared_ptr<const Environment> environment;
-  float rotation = 0;  ///< dome: radians about +Y; what lies along +Z turns towards +X
+  float rotation = 0;  ///< dome: radians about +Y, from +Z towards +X
 };
 
 struct Camera {
@@ -138,24 +140,24 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::vector<Animation> animations;  ///< SceneOptions::animation chooses one
-  std::vector<std::string> warnings;  ///< what the reader skipped, one line each
+  std::vector<std::string> warnings;  ///< one line for each thing that the reader skipped
   std::vector<std::string> files;     ///< paths of the scene, its buffers and its images
 };
 
 struct SceneOptions {
   float light_radius = 0.1f;   ///< metres: KHR point and spot lights become spheres of this radius
-  float line_radius = 0;       ///< metres: glTF's lines become strands of this radius; 0: left out
+  float line_radius = 0;       ///< metres: glTF's lines become strands of this radius; 0: skipped
   bool allow_outside = false;  ///< buffers and images may be outside of the scene file's folder
-  std::optional<double> time;  ///< seconds: what moves is as it is then; none: at rest
+  std::optional<double> time;  ///< seconds: the time of the pose; none: at rest
   std::string animation;       ///< the glTF animation that plays, "*" for all; empty: the first
 };
 
-/// Throws Error usage, naming the command line's flag, when a value is out of range.
+/// Throws Error usage, which names the command line's flag, if a value is out of range.
 void validate(const SceneOptions& options);
 
 /// Reads a scene: a glTF 2.0 file (.gltf or .glb), strands in a file of Cem Yuksel's HAIR format
-/// (.hair), or a procedural one by name, "scene:tree?leaves=50000&opacity=0.85&seed=1". What moves
-/// is read once and posed for many times by MovingScene. Throws Error: input.
+/// (.hair), or a procedural one by name, "scene:tree?leaves=50000&opacity=0.85&seed=1". MovingScene
+/// reads a scene once and poses it for many times. Throws Error: input.
 Scene load_scene(const std::string& spec, const SceneOptions& options = {});
 
 /// Reads only glTF; `load_scene` calls it. Throws Error: input.
@@ -172,18 +174,18 @@ std::vector<Light> load_lights(const std::string& path);
 /// HDR. Negative values become 0. Throws Error: input.
 std::shared_ptr<const Environment> load_environment(const std::string& path);
 
-/// Prepares dome images for sampling: averages images of more than 2048 x 1024 pixels down, divides
-/// each by its mean luminance, and multiplies the light's radiance by it instead.
+/// Prepares dome images for sampling: reduces images of more than 2048 x 1024 pixels by averaging,
+/// divides each by its mean luminance, and multiplies the light's radiance by that luminance.
 void finalize_domes(Scene& scene);
 
 /// Writes meshes, instances, materials (no textures), cameras as one GLB file. Throws Error.
 void write_glb(const Scene& scene, const std::string& path);
 
-/// World-space bounds of every instance; empty box for an empty scene.
+/// World-space bounds of all instances; an empty box for an empty scene.
 Box3f scene_bounds(const Scene& scene);
 
 /// Gives material `name` the opacity `value` in place of texture, factor and mode.
-/// Throws Error usage when there is no such material or value is outside [0,1].
+/// Throws Error usage if there is no such material or `value` is outside [0,1].
 void override_opacity(Scene& scene, const std::string& name, float value);
 
 /// Adds an opaque square under the scene's lowest point, 20 times as wide as the scene.
@@ -193,16 +195,15 @@ void add_ground(Scene& scene);
 /// `aspect` is width / height; `fov_y` in radians.
 Camera frame_scene(const Scene& scene, float aspect, float fov_y = 0.7f);
 
-/// A camera at `from` looking at `at`. Throws Error usage when the three are degenerate.
+/// A camera at `from` that looks at `at`. Throws Error usage if the three are degenerate.
 Camera look_at(V3f from, V3f at, V3f up, float fov_y);
 
 /// The rect light that a scene without lights gets: up, left and in front of `camera`.
 Light key_light(const Scene& scene, const Camera& camera);
 
-/// Merges every mesh that is placed once, and tiny ones placed often, into one mesh in
-/// world space, so that overlapping meshes share one BVH. Mesh lights stay on their own.
-/// Drops instances whose matrix cannot be inverted and triangles that are not finite,
-/// with a warning.
+/// Merges all meshes that are placed once, and tiny meshes that are placed several times, into one
+/// mesh in world space, so that overlapping meshes share one BVH. Mesh lights are not merged. Drops
+/// instances whose matrix cannot be inverted and triangles that are not finite, with a warning.
 void merge_single_instances(Scene& scene);
 
 }  // namespace dapple

@@ -1,4 +1,5 @@
-// A binary tree over a few thousand primitives, down to those that are not worth splitting.
+// A binary BVH over a range of primitives. In: a range and the splitter. Out: nodes, down to ranges
+// that the splitter declares leaves.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +13,11 @@ struct BinaryNode {
   Box8 box;
   float area;                  ///< half_area() of the box
   std::uint32_t first, count;  ///< range of its primitives
-  std::uint32_t right;         ///< index of the right child, the left being the next; 0: not split
+  std::uint32_t right;         ///< index of the right child; the left is the next node; 0: a leaf
 };
 
-/// All that the splitter makes of `whole`, which is at home; parents before children.
+/// Splits `whole`, which must be in Splitter::home(), down to leaves. Parents come before their
+/// children.
 std::vector<BinaryNode> build_binary_tree(const Splitter& splitter, const Part& whole);
 
 }  // namespace dapple

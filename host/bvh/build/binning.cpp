@@ -87,8 +87,8 @@ std::uint32_t partition(const PrimitiveBox* prims, std::uint32_t count, const Bi
   const int axis = split.axis;
   const float start = binning.start[axis], scale = binning.scale[axis];
   const float first_right = static_cast<float>(split.last_left + 1);
-  // Without branches, since the side is unpredictable: infinity keeps a centre out of the other
-  // side.
+  // Without branches, since the side is unpredictable: adding infinity to a centre excludes it from
+  // the bounds of the other side.
   const Float8 zero{}, infinity = zero + std::numeric_limits<float>::infinity();
   const Float8 aside[2] = {zero, infinity};
   Box8 sides[2] = {centres2[0], centres2[1]};

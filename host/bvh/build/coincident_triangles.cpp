@@ -12,7 +12,7 @@
 namespace dapple {
 namespace {
 
-/// The same for all triangles that have these corners.
+/// Returns a checksum that does not depend on the order of the corners.
 Checksum corners_checksum(const Mesh& mesh, std::uint32_t triangle) {
   std::array<std::array<float, 3>, 3> corners{};
   for (std::size_t corner = 0; corner < 3; ++corner) {

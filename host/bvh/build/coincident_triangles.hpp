@@ -1,4 +1,5 @@
-// Triangles that lie on others, as the backs of cards that are modelled twice.
+// Finds triangles that coincide with others, such as both sides of a card that is modelled with two
+// triangles. In: triangles of a mesh. Out: which of them coincide.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@
 
 namespace dapple {
 
-/// Of each of `triangles` of the mesh, 1 where another one of them has the same three corners, to
-/// the bit and in any order, else 0.
+/// Returns, for each of `triangles`, 1 if another one of them has exactly the same three corners,
+/// in any order, else 0.
 std::vector<std::uint8_t> find_coincident(const Mesh& mesh,
                                           std::span<const std::uint32_t> triangles);
 

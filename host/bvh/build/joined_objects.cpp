@@ -7,7 +7,8 @@
 namespace dapple {
 namespace {
 
-/// `sign`: 1 to count what comes before too, -1 to count no more than the object's own.
+/// Converts indices. `sign`: 1 from the object's to the scene's, -1 from the scene's to the
+/// object's.
 void shift(BvhNode& node, const ObjectOffsets& by, int sign) {
   const std::uint32_t first = node.prim_base & DAPPLE_SEGMENTS ? by.segments : by.block;
   node.child_base += static_cast<std::uint32_t>(sign) * by.node;
@@ -42,7 +43,7 @@ std::vector<T> values_of(std::span<ConstArray<T>* const> parts,
   return values;
 }
 
-/// A single part has offset 0, so it need not be copied.
+/// Concatenates the parts' values. A single part has offset 0, so it is not copied.
 template <class T>
 ConstArray<T> joined(std::span<ConstArray<T>* const> parts,
                      std::span<const ObjectOffsets> offsets) {
@@ -87,8 +88,8 @@ std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
   std::vector<ObjectOffsets> offsets;
   std::size_t nodes = 0, blocks = 0, segments = 0, textured = 0;
   const auto push = [&] {
-    // The stack's top bit marks instances, that of a primitive's number, eight to a block, marks
-    // segments; a textured triangle's index must fit a float.
+    // The top bit of a stack entry marks instances. The top bit of a primitive's index, of which
+    // each block has eight, marks segments. The index of a textured triangle must fit a float.
     constexpr std::uint32_t kMaxBlocks = DAPPLE_SEGMENTS / 8;
     if (nodes >= DAPPLE_SEGMENTS || blocks > kMaxBlocks || segments > kMaxBlocks ||
         textured >= 1u << 24) {

@@ -1,5 +1,6 @@
-// Objects' arrays one after the other, as kernels take them, with indices that count from the
-// scene's first node, block of either kind and textured triangle.
+// Concatenates the arrays of all objects for the kernels. In: finished objects, whose indices count
+// from their own first elements. Out: arrays of the scene, whose indices count from the scene's
+// first node, block of either kind and textured triangle.
 #pragma once
 
 #include <span>
@@ -11,18 +12,19 @@
 
 namespace dapple {
 
-/// What comes before an object in each of the scene's arrays.
+/// Number of elements that precede an object in each array of the scene.
 struct ObjectOffsets {
   std::uint32_t node = 0, block = 0, segments = 0, textured = 0;
 };
 
-/// One for each object, and one more for what comes after them all. Throws Error failed when there
-/// are more than indices can tell.
+/// Returns one entry for each object, and one more with the totals. Throws Error failed if there
+/// are more elements than indices can represent.
 std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
                                    const std::string& source);
 
-/// Fills the scene's arrays: the objects', which give up theirs, then the top level's nodes.
-/// A single object's are taken as they are, still mapped from its file when they came from one.
+/// Fills the arrays of the scene with those of the objects, which become empty, and with the nodes
+/// of the top level at the end. An array that only one object fills is taken without a copy; it may
+/// stay mapped from a cache file.
 void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
           const std::vector<ObjectOffsets>& offsets, std::vector<BvhNode> top);
 
@@ -36,7 +38,8 @@ struct ChangeableArrays {
 ChangeableArrays join_changeable(SceneBvh& bvh, std::vector<FinishedObject>& objects,
                                  const std::vector<ObjectOffsets>& offsets, std::size_t spare);
 
-/// A copy of the object between the offsets `first` and `end`, with indices relative to itself.
+/// Returns a copy of the object between the offsets `first` and `end`. Its indices count from its
+/// own first elements.
 FinishedObject separate(const SceneBvh& bvh, const ObjectSummary& summary,
                         const ObjectOffsets& first, const ObjectOffsets& end);
 

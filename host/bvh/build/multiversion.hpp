@@ -1,5 +1,5 @@
-// Functions compiled for several instruction sets, the best chosen when the program
-// starts. No clone contracts multiplications and additions, so all give the same bits.
+// Compiles a function for several instruction sets; the best version is chosen when the program
+// starts. No version contracts multiplications and additions, so all give the same bits.
 #pragma once
 
 #if defined(__x86_64__) && defined(__linux__) && !defined(__SANITIZE_THREAD__) && \

@@ -31,10 +31,11 @@ void for_each_block(std::size_t count, const Body& body) {
   });
 }
 
-/// Marks a textured triangle until it gets its index.
+/// Marks a textured triangle until its index is known.
 constexpr float kTextured = -1.0f;
 
-/// Opacity of each primitive, [0,1], or kTextured; counts their kinds.
+/// Returns the opacity of each primitive, [0,1], or kTextured. Counts the primitives of each kind
+/// in `object`.
 std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
   std::vector<float> opacities(mesh.primitive_count());
   std::atomic<std::size_t> opaque = 0, cut_out = 0, translucent = 0;
@@ -58,7 +59,7 @@ std::vector<float> uniform_opacities(const Scene& scene, const Mesh& mesh, Objec
   return opacities;
 }
 
-/// Opacity of each triangle: [0,1], or -(1 + index) of a textured one.
+/// Returns the opacity of each triangle, [0,1], or -(1 + index) for a textured triangle.
 std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, ObjectBvh& object) {
   std::vector<float> opacities = uniform_opacities(scene, mesh, object);
   std::vector<std::uint32_t> textured;
@@ -67,8 +68,8 @@ std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, Obje
     opacities[t] = -1.0f - static_cast<float>(textured.size());
     textured.push_back(t);
   }
-  // The two sides of a card have the same transmittance; the product of their means would be too
-  // small.
+  // Coincident triangles are not averaged: both sides of a card have the same transmittance at each
+  // point, so the product of their means would be too small.
   const std::vector<std::uint8_t> coincident = find_coincident(mesh, textured);
   for (std::size_t i = 0; i < textured.size(); ++i)
     object.textured.push_back(textured_triangle(scene, mesh, textured[i], coincident[i] == 0));
@@ -95,7 +96,8 @@ void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> box
   });
 }
 
-/// Triangles of each node's leaves, in slot order, padded to whole blocks a node.
+/// Packs the triangles of each node's leaves, in the order of the slots. Each node begins a new
+/// block.
 void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
                     const std::vector<float>& opacities, const std::vector<bool>& closed,
                     bool keep_triangles) {
@@ -136,7 +138,7 @@ double expected_visits(const WideTree& tree) {
 
 }  // namespace
 
-// Minima and maxima without branches: those of Imath's extendBy() are unpredictable.
+// Minima and maxima without branches: the branches of Imath's extendBy() are unpredictable.
 Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
   const std::uint32_t* index = &mesh.indices[3 * triangle];
   const V3f &a = mesh.positions[index[0]], &b = mesh.positions[index[1]],
@@ -200,7 +202,7 @@ std::vector<BvhNode> pack_nodes(const WideTree& tree) {
 
 namespace {
 
-/// The summary of an object whose tree is built.
+/// Fills the summary and the nodes of an object whose tree is built.
 void summarize(BuiltObject& built) {
   ObjectBvh& object = built.object;
   const WideTree& tree = built.tree;
@@ -243,7 +245,7 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangl
   object.has_strands = mesh.has_strands();
   const std::vector<float> opacities = triangle_opacities(scene, mesh, object);
   if (object.triangles == 0) return built;
-  // Not cleared: the threads that write the pages also fault them in.
+  // Not initialized: the page faults then happen in the threads that write the pages.
   const auto storage = std::make_unique_for_overwrite<PrimitiveBox[]>(object.triangles);
   const std::span boxes(storage.get(), object.triangles);
   if (mesh.has_strands())

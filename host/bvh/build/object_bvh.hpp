@@ -1,5 +1,5 @@
-// One mesh's BVH, of triangles or of segments of strands, and the steps that make it: build, pack,
-// prefilter.
+// The BVH of one mesh, over triangles or over segments of strands, and the steps that make it:
+// build, pack, prefilter.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace dapple {
 
-struct RefitRecord;  // bvh/refit_record.hpp
+struct RefitRecord;  // bvh/refit/refit_record.hpp
 
 /// The summary of an object for the top level and statistics.
 struct ObjectSummary {
@@ -26,8 +26,9 @@ struct ObjectSummary {
   std::size_t triangles = 0, opaque = 0, cut_out = 0, translucent = 0;
 };
 
-/// Indices inside (child_base, prim_base, textured codes) count from this object's own
-/// first node, block and textured triangle. Either `blocks` or `segments` is empty.
+/// The BVH of an object. Its indices (child_base, prim_base, codes of textured triangles) count
+/// from the first node, block and textured triangle of this object. Either `blocks` or `segments`
+/// is empty.
 struct ObjectBvh : ObjectSummary {
   std::vector<BvhNode> nodes;
   std::vector<TriangleBlock> blocks;
@@ -38,34 +39,34 @@ struct ObjectBvh : ObjectSummary {
 /// A built object, and the data that prefiltering needs.
 struct BuiltObject {
   ObjectBvh object;
-  WideTree tree;                     ///< the object was packed from
+  WideTree tree;                     ///< the tree from which the object was packed
   std::vector<std::uint8_t> closed;  ///< by block: bit l for lane l, closed_triangles(); or empty
   std::vector<std::uint32_t> triangles;  ///< by lane of the blocks: index in the mesh; or empty
 };
 
-/// Builds and packs the triangles or segments of `mesh` that are not fully transparent. Empty (no
-/// nodes) when there are none. `keep_triangles`: fill BuiltObject::triangles.
+/// Builds and packs the triangles or segments of `mesh` that are not fully transparent. If there
+/// are none, the object has no nodes. `keep_triangles`: fill BuiltObject::triangles.
 BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangles = false);
 
-/// Fills the nodes' opacities and `opacity` of a packed object, bottom-up, in parallel and in
-/// time linear in the triangles; and the `record` for refitting, if any, for which
-/// BuiltObject::triangles must be there.
+/// Computes the opacities of the nodes and `opacity` of a packed object: bottom-up, in parallel and
+/// in time linear in the number of triangles. Fills the `record` for refitting unless it is
+/// nullptr; this moves BuiltObject::triangles, which must be filled, into the record.
 void prefilter(BuiltObject& built, const TextureIntegrals& integrals,
                RefitRecord* record = nullptr);
 
-/// Packs a wide tree's boxes and layout into nodes; opacities stay 0, `prim_base` is set
-/// by the caller.
+/// Packs the boxes and the layout of a wide tree into nodes. The opacities stay 0; the caller sets
+/// `prim_base`.
 std::vector<BvhNode> pack_nodes(const WideTree& tree);
 
-/// The coverage map and normals of a node, with its box.
+/// Returns the opacity of a node from its coverage map, its normals and its box.
 NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box);
 
-/// Stores the opacity of child `slot`, whose exact box had `opacity`, as that of its grown box.
-/// Returns its clumping_factor().
+/// Stores the opacity of child `slot`. `opacity` is that of its `exact` box; it is converted to its
+/// quantized box, which is larger. Returns the clumping_factor() of the child.
 float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
                         const Box3f& exact);
 
-/// variance_class() as stored with it.
+/// Returns the variance_class() that is stored with the opacity of child `slot`.
 unsigned variance_of_child(const BvhNode& node, unsigned slot);
 
 /// Stores a triangle of the mesh in a lane. `opacity`: in [0,1], or the code of a textured
@@ -75,7 +76,8 @@ void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32
 
 Box3f triangle_box(const Mesh& mesh, std::size_t triangle);
 
-/// Expected node visits of a random ray through the root's box, by the nodes' half_area() summed.
+/// Returns the expected node visits of a random ray through the root's box. `half_areas`: sum of
+/// half_area() over all nodes.
 double expected_visits(double half_areas, const Box3f& root);
 
 }  // namespace dapple

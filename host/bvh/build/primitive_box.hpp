@@ -1,5 +1,5 @@
-// The builder's input, and boxes as it computes with them: eight floats, so that one minimum
-// joins two boxes.
+// The input of the BVH builder, and the boxes with which it computes: eight floats each, so that
+// the union of two boxes is a single vector minimum.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace dapple {
 
-/// The box of one primitive and its index in the caller's list. Its bytes are a Box8's but for
-/// the fourth lanes.
+/// The box of one primitive and its index in the caller's list. The bytes are those of a Box8,
+/// except lanes 3 and 7.
 struct alignas(32) PrimitiveBox {
-  float lower[3];  // no V3f, which is not copied as bytes
+  float lower[3];  // not V3f, which is not trivially copyable
   std::uint32_t primitive;
   float minus_upper[3];
   std::uint32_t spare;
@@ -29,9 +29,9 @@ using Int4 = std::int32_t __attribute__((vector_size(16)));
 using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 
-/// Lower bounds, then negated upper bounds, so that both are joined by a minimum; lanes 3 and 7
-/// mean nothing. Not initialized: begin with clear(). By reference everywhere: a vector wider
-/// than the instruction set's has no calling convention, nor an alignment of its own.
+/// A box as lower bounds, then negated upper bounds, so that one minimum joins both. Lanes 3 and 7
+/// have no meaning. Not initialized: begin with clear(). Passed by reference everywhere: vectors
+/// wider than the registers of the instruction set have no calling convention, nor an alignment.
 struct alignas(32) Box8 {
   Float8 bounds;
 
@@ -47,12 +47,13 @@ struct alignas(32) Box8 {
   [[nodiscard]] float half_area() const {
     Float4 half[2];
     std::memcpy(half, &bounds, sizeof half);
-    const Float4 size = half[0] + half[1];  // negated, which products don't show
+    const Float4 size = half[0] + half[1];  // negated; products of two sizes are positive
     return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
   }
 };
 
-/// The box without the integers in its fourth lanes, which as floats may be slow or NaN.
+/// Loads the box and sets lanes 3 and 7 to 0: they hold integers, which may be slow or NaN as
+/// floats.
 inline void load_box(const PrimitiveBox& prim, Float8& box) {
   Int8 bits;
   static_assert(sizeof(PrimitiveBox) == sizeof bits && std::is_trivially_copyable_v<PrimitiveBox>);
@@ -61,12 +62,12 @@ inline void load_box(const PrimitiveBox& prim, Float8& box) {
   std::memcpy(&box, &bits, sizeof box);
 }
 
-/// Twice the centre of a box, as a Box8 of that one point.
+/// Computes twice the centre of a box, as the bounds of this point in the layout of Box8.
 inline void centre2_of(const Float8& box, Float8& centre2) {
   centre2 = box - __builtin_shufflevector(box, box, 4, 5, 6, 7, 0, 1, 2, 3);
 }
 
-/// Half of the box's surface: xy + yz + zx, in square metres; 0 for an empty box.
+/// Returns half of the surface area of the box: xy + yz + zx, in square metres; 0 for an empty box.
 inline float half_area(const Box3f& box) {
   if (box.isEmpty()) return 0.0f;
   const V3f size = box.max - box.min;

@@ -17,8 +17,9 @@ double margin(float coordinate, double step) {
 /// multiply slowly (experiment 101).
 constexpr int kMinPower = -100;
 
-/// The smallest power of two with which [lower, upper] and both margins fit 255 steps from an
-/// origin that is rounded down to a float. The search starts with 253 steps.
+/// Chooses the smallest step, a power of two, such that [lower, upper] and both margins fit in 255
+/// steps from the origin, which is rounded down to a float. The search starts with the step at
+/// which 253 steps suffice without margins.
 void choose_axis(float lower, float upper, float& origin, uchar& exponent) {
   int power = kMinPower;
   const double size = static_cast<double>(upper) - lower;

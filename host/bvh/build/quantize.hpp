@@ -6,16 +6,16 @@
 
 namespace dapple {
 
-/// Sets the node's origin and exponents to a grid of 255 steps an axis around `box`
-/// (finite, not empty), and marks every slot empty.
+/// Sets the origin and the exponents of the node: a grid of 255 steps per axis around `box`, which
+/// must be finite and not empty. Marks every slot as empty.
 void set_grid(BvhNode& node, const Box3f& box);
 
-/// Stores `box`, which lies inside the grid's box, as child `slot`, grown to grid steps plus at
-/// least kGridMargin of a step and kGridRounding of a side's coordinate, which pay for the kernels'
-/// rounding.
+/// Stores `box`, which must lie inside the box of the grid, as child `slot`. The stored box is
+/// larger: at least by kGridMargin of a step and by kGridRounding of a side's coordinate, which
+/// compensate for the kernels' rounding, and rounded outward to whole steps.
 void set_child_box(BvhNode& node, unsigned slot, const Box3f& box);
 
-/// The grown box of child `slot`, as the kernels see it.
+/// Returns the stored box of child `slot`, as the kernels decode it.
 Box3f child_box(const BvhNode& node, unsigned slot);
 
 inline constexpr double kGridMargin = 1.0 / 1024.0;

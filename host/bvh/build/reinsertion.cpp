@@ -10,15 +10,17 @@
 namespace dapple {
 namespace {
 
-/// A reinserted tree with more levels is not kept. (The splitter makes about 48 from the object's
-/// root.) Nested boxes cost least as a chain, which would exceed every stack.
+/// Maximum number of levels of a reinserted tree; deeper trees are discarded. (The splitter makes
+/// about 48 levels, counted from the root of the object.) The cheapest tree over nested boxes is a
+/// chain, which would exceed every stack.
 constexpr unsigned kDeepest = 64;
 
-/// Nodes that the searches of a round may visit, divided by the number of nodes. Where boxes
-/// overlap, a subtree fits nearly everywhere; in plants searches visit fewer than fifty.
+/// Maximum number of nodes that the searches of a round may visit, divided by the number of nodes.
+/// Where boxes overlap, a subtree fits nearly everywhere, and a search visits many nodes. In plants
+/// a search visits fewer than fifty.
 constexpr std::size_t kLooksPerNode = 64;
 
-/// Node 0 is the root and is no child.
+/// A binary node with a link to its parent. Node 0 is the root; as a child, 0 means none.
 struct LinkedNode {
   Box8 box;
   float area;
@@ -30,7 +32,7 @@ struct LinkedNode {
   }
 };
 
-/// A new sibling for a subtree, and by how much the sum of areas decreases.
+/// A new sibling for a subtree, and the decrease of the sum of areas.
 struct Place {
   std::uint32_t node = 0;
   float gain = 0;
@@ -48,7 +50,8 @@ struct Effort {
   std::vector<Candidate> waiting;
 };
 
-/// The best sibling among `top` and the nodes below, within the remaining effort.
+/// Updates `best` with the best sibling among `top` and the nodes below, within the remaining
+/// effort.
 inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candidate top,
                        Effort& effort, Place& best) {
   std::vector<Candidate>& waiting = effort.waiting;
@@ -69,15 +72,15 @@ inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candida
   }
 }
 
-/// The best new sibling of a node; node 0 if it should stay. The node's parent must not be the
-/// root.
+/// Returns the best new sibling of node `moved`; node 0 if it should stay where it is. Its parent
+/// must not be the root.
 DAPPLE_MULTIVERSION
 Place find_place(const LinkedNode* nodes, std::uint32_t moved, Effort& effort) {
   Place best;
   std::uint32_t below = nodes[moved].parent;
   float gain = nodes[below].area;
   std::uint32_t sibling = nodes[below].other_than(moved);
-  Box8 rest = nodes[sibling].box;  // of the current ancestor, without the moved subtree
+  Box8 rest = nodes[sibling].box;  // box of the current ancestor without the moved subtree
   look_below(nodes, nodes[moved], {sibling, gain}, effort, best);
   while (below != 0) {
     const std::uint32_t ancestor = nodes[below].parent;
@@ -128,8 +131,9 @@ class Reinsertion {
     return too_deep_;
   }
 
-  /// Appends node `from` and all below to `to`, whose leaves are those of `leaves`, and their boxes
-  /// to `order`; `first`: index of its first box.
+  /// Appends node `from` and all nodes below to `to`, and the boxes of their leaves to `order`.
+  /// `leaves`: the tree before, with the ranges of the leaves in `boxes`; `first`: index of the
+  /// first box.
   void write(std::uint32_t from, const std::vector<BinaryNode>& leaves,
              std::span<const PrimitiveBox> boxes, std::uint32_t first,
              std::vector<PrimitiveBox>& order, std::vector<BinaryNode>& to) const {
@@ -169,7 +173,7 @@ class Reinsertion {
     fit(parent);
   }
 
-  /// The boxes of a node and all above.
+  /// Recomputes the boxes of a node and of all its ancestors.
   void fit(std::uint32_t node) {
     for (unsigned level = 1;; node = nodes_[node].parent, ++level) {
       LinkedNode& it = nodes_[node];

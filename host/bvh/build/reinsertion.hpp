@@ -9,9 +9,9 @@
 
 namespace dapple {
 
-/// Runs so many rounds. In each, nodes that lower the sum of areas elsewhere move there, the
-/// largest first. Reorders `boxes`, since leaves are ranges of it. A tree that would become too
-/// deep is not changed.
+/// Runs `rounds` rounds. Each round moves nodes to other positions if this reduces the sum of
+/// areas, in descending order of the nodes' areas. Reorders `boxes`, since leaves are ranges of it.
+/// A tree that would become too deep is not changed.
 void reinsert_subtrees(int rounds, std::span<PrimitiveBox> boxes, std::vector<BinaryNode>& tree);
 
 }  // namespace dapple

@@ -1,4 +1,5 @@
-// A built scene with the objects and offsets that its joined arrays no longer show.
+// The BVH of a scene, with the summaries and offsets of the objects, which the joined arrays do not
+// contain.
 #pragma once
 
 #include <string>
@@ -15,7 +16,7 @@ struct BuiltScene {
   std::vector<ObjectOffsets> offsets;  ///< lay_out()
 };
 
-/// As build_bvh().
+/// Like build_bvh(), and returns the objects too.
 BuiltScene build_scene(const Scene& scene, const std::string& cache_folder);
 
 }  // namespace dapple

@@ -14,7 +14,7 @@ namespace {
 /// Objects with fewer triangles are not cached (experiment 102).
 constexpr std::size_t kMinCachedTriangles = 256;
 
-/// A mesh while its object is read or built.
+/// The state of a mesh while its object is read or built.
 struct Work {
   bool is_cached = false;  ///< large enough for a file
   bool is_read = false;
@@ -45,7 +45,8 @@ void read_from_cache(const Scene& scene, const std::string& folder, std::vector<
   });
 }
 
-/// Also fills `records`, one for each mesh, unless it is nullptr.
+/// Builds and prefilters the objects that were not read. Fills `records`, one for each mesh, unless
+/// it is nullptr.
 void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& statistics,
                    std::vector<RefitRecord>* records) {
   statistics.build_seconds = for_each(works, [&](Work& work, std::size_t m) {
@@ -79,7 +80,8 @@ void share_out_seconds(std::vector<Work>& works, const BvhStatistics& statistics
   }
 }
 
-/// A cache file that cannot be written becomes a note; the render does not fail.
+/// Writes the new objects. If a cache file cannot be written, the error becomes a note, and the
+/// render continues.
 void write_to_cache(const std::string& folder, std::vector<Work>& works,
                     BvhStatistics& statistics) {
   std::vector<char> written(works.size(), 0);
@@ -95,7 +97,7 @@ void write_to_cache(const std::string& folder, std::vector<Work>& works,
   for (const char was_written : written) statistics.cache.objects_written += was_written != 0;
 }
 
-/// One line for all files.
+/// Returns one line for the notes of all files.
 std::string summed_notes(const std::vector<Work>& works) {
   std::string first;
   std::size_t count = 0;

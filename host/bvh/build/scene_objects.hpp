@@ -1,4 +1,5 @@
-// The finished object of every mesh: read from the cache, or built and written to it.
+// Makes the finished object of every mesh: reads it from the cache, or builds it and writes it to
+// the cache.
 #pragma once
 
 #include <string>
@@ -15,8 +16,8 @@ namespace dapple {
 std::vector<FinishedObject> finish_objects(const Scene& scene, const std::string& cache_folder,
                                            BvhStatistics& statistics);
 
-/// The same without a cache, but for the meshes marked `is_kept`, whose objects and records stay as
-/// they are. Fills the other meshes' records for refitting.
+/// The same without a cache. The objects and records of meshes marked `is_kept` stay as they are;
+/// for the other meshes the function builds objects and fills `records` for refitting.
 std::vector<FinishedObject> build_refittable(const Scene& scene, std::vector<FinishedObject> kept,
                                              const std::vector<bool>& is_kept,
                                              std::vector<RefitRecord>& records,

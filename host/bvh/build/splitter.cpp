@@ -11,9 +11,9 @@
 namespace dapple {
 namespace {
 
-/// Below this depth ranges are halved, which bounds the depth for any input.
+/// From this depth on, ranges are halved, which bounds the depth for any input.
 constexpr int kDeepest = 48;
-/// Up to so many primitives all splits are tried.
+/// For up to this many primitives all splits are tried.
 constexpr std::uint32_t kFew = 4;
 constexpr std::uint32_t kParallelSplit = 1u << 16;
 constexpr std::uint32_t kBlock = 1u << 13;
@@ -44,7 +44,7 @@ FewSplit best_of_all(const PrimitiveBox* prims, std::uint32_t count) {
   return best;
 }
 
-/// The two sides of `part`, without the bounds of their centres.
+/// Divides the range of `part` into two sides, without new boxes and bounds of centres.
 void divide(Part& part, Part& right, std::uint32_t left_count) {
   right = part;
   right.first = part.first + left_count;

@@ -1,4 +1,5 @@
-// Splits ranges of primitives in two, top-down, and decides where to stop.
+// Splits ranges of primitives in two, top-down, by the surface area heuristic, and decides which
+// ranges become leaves.
 #pragma once
 
 #include <span>
@@ -15,13 +16,13 @@ struct Part {
   int depth = 0;          ///< splits above
   unsigned left_set = 0;  ///< for few primitives: bit i is set if primitive i goes left
   bool leaf = false;      ///< one primitive, or not more expensive than two leaves
-  bool away = false;      ///< its primitives lie in the second array
+  bool away = false;      ///< whether its primitives are in the second array
 };
 
 /// Splits by the surface area heuristic. The result does not depend on threads.
 class Splitter {
  public:
-  /// Sorts `home`, which `second`, of the same size, helps to.
+  /// Reorders `home`; `second`, of the same size, is scratch memory. Both must outlive the object.
   Splitter(std::span<PrimitiveBox> home, std::span<PrimitiveBox> second, std::uint32_t leaf_size)
       : home_(home.data()),
         second_(second.data()),
@@ -30,10 +31,12 @@ class Splitter {
 
   [[nodiscard]] Part all() const;
 
-  /// `part`, not a leaf, becomes the left side. Large parts are split in parallel.
+  /// Splits `part`, which must not be a leaf: it becomes the left side. Large parts are split in
+  /// parallel.
   void split(Part& part, Part& right) const;
 
-  /// The array that holds all primitives at the end; moves the primitives of a part there.
+  /// The array that holds all primitives at the end. bring_home() copies the primitives of a part
+  /// to it.
   [[nodiscard]] std::span<PrimitiveBox> home() const { return {home_, count_}; }
   void bring_home(Part& part) const;
 

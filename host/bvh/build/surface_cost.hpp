@@ -4,8 +4,9 @@
 
 namespace dapple {
 
-/// A ray that hits a leaf's box loads and intersects a block of up to eight triangles, which the
-/// node's other leaves may share: the cost is mostly constant and grows little with the primitives.
+/// A ray that hits the box of a leaf loads and intersects a block of up to eight triangles, which
+/// other leaves of the node may share. Therefore the cost of a leaf is mostly constant and grows
+/// little with the number of primitives.
 inline constexpr float kLeafCost = 0.7f;
 inline constexpr float kPrimitiveCost = 0.2f;
 

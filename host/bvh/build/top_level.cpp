@@ -24,7 +24,8 @@ void store_rows(const M44f& m, float (&rows)[12]) {
   }
 }
 
-/// World box around the boxes of the root's children; it is tighter than that of the root's box.
+/// Returns the world box around the boxes of the root's children. It is tighter than the world box
+/// around the root's box.
 Box3f world_box(const std::vector<Box3f>& parts, const M44f& to_world) {
   Box3f world;
   for (const Box3f& box : parts) {
@@ -37,8 +38,9 @@ Box3f world_box(const std::vector<Box3f>& parts, const M44f& to_world) {
   return world;
 }
 
-/// The object's root opacity as that of its world box: along a world axis e the object is
-/// crossed in direction M^-1 e, and areas grow by |det M| |M^-1 e|.
+/// Returns the opacity of the instance's world box, from that of the object's root. A ray along the
+/// world axis e crosses the object in direction M^-1 e, and projected areas grow by
+/// |det M| |M^-1 e|.
 NodeOpacity instance_opacity(const ObjectSummary& object, const M44f& to_world,
                              const Box3f& world) {
   const M44f to_object = to_world.inverse();
@@ -61,7 +63,7 @@ NodeOpacity instance_opacity(const ObjectSummary& object, const M44f& to_world,
   return opacity;
 }
 
-/// An instance that can be hit, as the top level sees it.
+/// An instance that can be hit: what the top level stores of it.
 struct Placement {
   Box3f box;
   NodeOpacity opacity;
@@ -82,8 +84,9 @@ Placement place(const Instance& instance, const ObjectSummary& object, std::uint
   return placement;
 }
 
-/// Coverage and normals of a top-level node; sets the opacities below it. Instances count
-/// as evenly filled boxes: how an object clumps is not known along turned axes.
+/// Returns the coverage and the normals of a top-level node, and sets the opacities below it.
+/// Instances count as uniformly filled boxes, since the coverage maps of an object are not known
+/// along the rotated axes.
 std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
                                                     const std::vector<PrimitiveBox>& order,
                                                     const std::vector<Placement>& placed,
@@ -118,7 +121,8 @@ struct TopLevel {
   std::uint32_t stack = 0;  ///< traversal stack entries needed
 };
 
-/// The BVH over instances, one a leaf; its nodes will follow `first_node` others.
+/// Builds the BVH over instances, with one instance per leaf. `first_node`: number of nodes that
+/// precede it in the scene.
 TopLevel build_top(const std::vector<Placement>& placed, std::size_t first_node) {
   std::vector<PrimitiveBox> boxes;
   for (std::uint32_t i = 0; i < placed.size(); ++i)

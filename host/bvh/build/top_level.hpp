@@ -10,10 +10,10 @@
 
 namespace dapple {
 
-/// Sets all of `bvh` that depends on where the instances are, and returns the top level's nodes,
-/// which come after all objects'; none when the only object lies in world space. `objects` and
-/// `offsets`: of each mesh. Throws Error input when nothing can be hit, failed when the tree is too
-/// deep for the kernels' stack.
+/// Sets the members of `bvh` that depend on the transforms of the instances. Returns the nodes of
+/// the top level, which follow the nodes of all objects; none if there is only one object and it is
+/// in world space. `objects`: of each mesh; `offsets`: lay_out(). Throws Error input if nothing can
+/// be hit, failed if the BVH is too deep for the kernels' stack.
 std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
                                      const std::vector<ObjectSummary>& objects,
                                      const std::vector<ObjectOffsets>& offsets);

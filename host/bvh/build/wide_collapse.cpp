@@ -24,7 +24,7 @@ CheapestNodes::Ways CheapestNodes::ways_of(const BinaryNode& node, const Ways& l
                                            const Ways& right) const {
   Ways ways;
   ways.cost.fill(std::numeric_limits<float>::infinity());
-  ways.left_children.fill(1);  // also valid where areas are infinite
+  ways.left_children.fill(1);  // also valid if areas are infinite
   const unsigned most = std::min<unsigned>(node.count, DAPPLE_BVH_WIDTH);
   for (unsigned children = 2; children <= most; ++children) {
     for (unsigned on_left = 1; on_left < children; ++on_left) {
@@ -34,7 +34,7 @@ CheapestNodes::Ways CheapestNodes::ways_of(const BinaryNode& node, const Ways& l
       ways.left_children[children - 1] = static_cast<std::uint8_t>(on_left);
     }
   }
-  // A subtree may take fewer children than it is offered, but a node has at least two.
+  // A subtree may have fewer children than the maximum, but a node has at least two.
   const float divided = ways.cost[most - 1];
   ways.left_children[DAPPLE_BVH_WIDTH - 1] = ways.left_children[most - 1];
   const float as_leaf = node.count <= leaf_size_ ? leaf_cost(node.area, node.count)

@@ -19,20 +19,22 @@ class CheapestNodes {
 
   [[nodiscard]] bool is_leaf(std::uint32_t node) const { return ways_[node].leaf; }
 
-  /// Binary nodes, from the left.
+  /// Indices of binary nodes, from left to right.
   struct Children {
     std::array<std::uint32_t, DAPPLE_BVH_WIDTH> node;
     unsigned count = 0;
   };
-  /// Of a node of eight in place of binary `node`; of a leaf itself.
+  /// Returns the children of the node of eight that replaces binary `node`; of a leaf, the node
+  /// itself.
   [[nodiscard]] Children children_of(std::uint32_t node) const;
 
  private:
   /// The cheapest ways to turn a subtree into 1 to 8 children of a node.
   struct Ways {
-    std::array<float, DAPPLE_BVH_WIDTH> cost;  ///< [children - 1]; of 8 at least two
-    std::array<std::uint8_t, DAPPLE_BVH_WIDTH> left_children;  ///< how many of them on the left
-    bool leaf = false;                                         ///< as one child
+    /// cost[n - 1]: with at most n children. The entry for 8 is for a node, with at least 2.
+    std::array<float, DAPPLE_BVH_WIDTH> cost;
+    std::array<std::uint8_t, DAPPLE_BVH_WIDTH> left_children;  ///< how many are in the left subtree
+    bool leaf = false;  ///< whether the subtree as one child is a leaf
   };
 
   [[nodiscard]] Ways ways_of(const BinaryNode& node, const Ways& left, const Ways& right) const;

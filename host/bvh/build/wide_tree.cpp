@@ -1,6 +1,7 @@
-// Large nodes open the widest of their children until there are eight (Wald, Benthin, Boulos,
-// "Getting Rid of Packets", 2008). Subtrees, in parallel, become binary trees first, whose cheapest
-// nodes of eight are chosen; each grows in arrays of its own that are put together in the end.
+// A large node splits its child of the largest area until there are eight (Wald, Benthin, Boulos,
+// "Getting Rid of Packets", 2008). Smaller subtrees are built in parallel: first as binary trees,
+// then converted to nodes of eight of minimal cost. Each subtree has its own arrays, which are
+// joined at the end.
 #include "bvh/build/wide_tree.hpp"
 
 #include <tbb/parallel_for.h>
@@ -18,15 +19,15 @@
 namespace dapple {
 namespace {
 
-/// Subtrees of up to this many primitives grow on one thread.
+/// Subtrees of up to this many primitives are built by one thread.
 constexpr std::uint32_t kTaskPrimitives = 1u << 15;
 
-/// Largest object whose subtrees are reinserted, and the rounds of reinsertion: experiment 103.
-/// Larger objects gain nothing: experiment 104.
+/// Maximum number of primitives of an object whose subtrees are reinserted, and the number of
+/// rounds of reinsertion: experiment 103. Larger objects gain nothing: experiment 104.
 constexpr std::size_t kMaxReinserted = 1u << 18;
 constexpr int kRounds = 2;
 
-/// Up to eight parts of a range.
+/// A range divided into up to eight parts, of which the largest was split each time.
 struct Parts {
   std::array<Part, DAPPLE_BVH_WIDTH> part;
   unsigned count = 1;
@@ -44,7 +45,8 @@ struct Parts {
   }
 };
 
-/// Appends a node's children. Inner ones have count 0 and become the nodes from `next_node` on.
+/// Appends the children of a node and returns the node. Inner children have count 0; their nodes
+/// are those from `next_node` on.
 WideNode add_children(const Box8& box, std::uint32_t primitives,
                       std::span<const WideChild> children, std::uint32_t next_node,
                       WideTree& tree) {
@@ -151,7 +153,8 @@ void place(Branch& branch, std::size_t root, std::size_t nodes, std::size_t chil
     WideNode& node = tree.nodes[n ? nodes + n - 1 : root] = branch.tree.nodes[n];
     node.first_child += static_cast<std::uint32_t>(children);
   }
-  // A subtree's indices count from its root, a single root's from its first inner child.
+  // Indices in a subtree count from its root. Indices in a branch with branches below count from
+  // its first inner child.
   const std::size_t inner_base = branch.below.empty() ? nodes - 1 : nodes;
   WideChild* to = &tree.children[children];
   for (WideChild child : branch.tree.children) {
@@ -193,8 +196,9 @@ WideTree build_wide_tree(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size)
 }
 
 std::uint32_t stack_needed(const WideTree& tree) {
-  // Children come after parents: one backward sweep. A node pops itself and pushes all of
-  // its inner children (or instances); the last pushed is traversed on top of the others.
+  // Children come after their parents, so one backward loop is enough. A traversal pops a node and
+  // pushes all of its inner children (or instances). The last one pushed is traversed while the
+  // others are on the stack.
   std::vector<std::uint32_t> needed(tree.nodes.size(), 0);
   for (std::size_t n = tree.nodes.size(); n-- > 0;) {
     const WideNode& node = tree.nodes[n];

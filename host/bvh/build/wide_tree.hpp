@@ -1,5 +1,5 @@
-// The tree before quantization: nodes of up to eight children with exact boxes. In: boxes of
-// primitives of any kind. Out: nodes and an order of the primitives.
+// Builds the BVH before quantization: nodes of up to eight children with exact boxes. In: boxes of
+// primitives of any kind. Out: nodes, and the order of the primitives.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ struct WideChild {
   std::uint32_t count = 0;  ///< leaf: primitives; inner: 0
 };
 
-/// Inner children of a node lie one after the other in WideTree::nodes, in slot order.
+/// A node of up to eight children. Its inner children are contiguous in WideTree::nodes, in the
+/// order of the slots.
 struct WideNode {
   Box3f box;
   std::uint32_t first_child = 0;  ///< in WideTree::children
@@ -35,15 +36,15 @@ struct WideTree {
   }
 };
 
-/// Blocks of eight that the primitives of a node's leaves take.
+/// Returns the number of blocks of eight that hold the primitives of the node's leaves.
 inline std::uint32_t blocks_of(const WideNode& node) { return (node.leaf_primitives + 7u) / 8u; }
 
-/// Builds in O(n log n), in parallel. The tree does not depend on the number of threads. `boxes` is
-/// not empty and has finite boxes; it is reordered so that leaves, of at most `leaf_size`
-/// primitives, are ranges.
+/// Builds in O(n log n), in parallel. The tree does not depend on the number of threads. `boxes`
+/// must not be empty, and its boxes must be finite. The function reorders `boxes` so that each
+/// leaf, of at most `leaf_size` primitives, is a range.
 WideTree build_wide_tree(std::span<PrimitiveBox> boxes, std::uint32_t leaf_size);
 
-/// Entries that a depth-first traversal of the tree may have on its stack at once.
+/// Returns the maximum number of entries on the stack of a depth-first traversal of the tree.
 std::uint32_t stack_needed(const WideTree& tree);
 
 }  // namespace dapple

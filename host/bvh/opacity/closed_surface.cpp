@@ -7,17 +7,17 @@
 namespace dapple {
 namespace {
 
-/// The largest sum of area vectors of a closed part, relative to its area.
+/// Maximum length of the sum of a closed surface's area vectors, relative to its area.
 constexpr float kOpenShare = 0.1f;
 
-/// Vertices connected by triangles, as a union-find forest with one root for each part.
-class QueueSplit {
+/// A union-find forest of vertices that triangles connect, with one root for each component.
+class ConnectedVertices {
  public:
-  explicit QueueSplit(std::size_t vertices) : parent_(vertices) {
+  explicit ConnectedVertices(std::size_t vertices) : parent_(vertices) {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
-  /// Halves the path on the way (Tarjan and van Leeuwen, "Worst-case Analysis of Set Union
-  /// Algorithms", 1984).
+  /// Returns the root of `vertex` and halves the path to it (Tarjan and van Leeuwen, "Worst-case
+  /// Analysis of Set Union Algorithms", 1984).
   std::uint32_t root(std::uint32_t vertex) {
     while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
     return vertex;
@@ -44,7 +44,7 @@ std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opac
   if (std::none_of(opacities.begin(), opacities.end(), [](float o) { return o == 1.0f; })) {
     return {};
   }
-  QueueSplit ticket_count(mesh.positions.size());
+  ConnectedVertices ticket_count(mesh.positions.size());
   for (std::size_t t = 0; t < opacities.size(); ++t) {
     if (!opaque(t)) continue;
     const std::uint32_t* index = &mesh.indices[3 * t];
@@ -89,7 +89,7 @@ void SurfaceAreas::add(const SurfaceAreas& areas) {
 }
 
 float enclosed_share(const SurfaceAreas& a, const SurfaceAreas& b, int axis) {
-  // The area that has no opposite side in its own node yet; front sides are positive.
+  // The area whose opposite side is not in the same node; fronts are positive, backs negative.
   const float single_a = a.front[axis] - a.back[axis], single_b = b.front[axis] - b.back[axis];
   if (single_a * single_b >= 0.0f) return 0.0f;
   const auto hidden = [&](const SurfaceAreas& node) {

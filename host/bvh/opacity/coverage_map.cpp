@@ -9,11 +9,12 @@ namespace dapple {
 namespace {
 
 constexpr float kSize = kMapSize;
-/// Of scaling a triangle's cells to its area; two bring nearly all to a rounding.
+/// Maximum number of passes that scale a triangle's cells to its area. After two, nearly all
+/// triangles are exact but for rounding.
 constexpr int kScalingPasses = 3;
 
-/// A triangle whose coverage is 0 in every cell by rounding: its area is divided over the cells
-/// that it touches.
+/// For a triangle whose coverage is rounded to 0 in every cell: divides its area equally over the
+/// cells that it touches.
 void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
   const int columns = triangle.column1 - triangle.column0 + 1,
             rows = triangle.row1 - triangle.row0 + 1;
@@ -26,7 +27,8 @@ void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
   }
 }
 
-/// For the touched rows: the number of full cells, and the sum of the others, by column.
+/// By column, over the touched rows: the number of full cells, and the sum and the maximum of the
+/// other cells.
 struct Tally {
   Row full{}, partial{}, largest{};
 
@@ -39,8 +41,8 @@ struct Tally {
   }
 };
 
-/// Cells that are full stay full; the others are scaled so that the sum is the triangle's
-/// area. True when that filled more cells, so that another pass would come closer.
+/// Scales the cells that are not full so that the sum over all cells is the triangle's area.
+/// Returns true if this filled more cells, so that another pass would come closer.
 inline bool scale_partial_cells(const CellTriangle& triangle, Tally& tally,
                                 CellCoverage& coverage) {
   const float full_sum = sum_of(tally.full), partial_sum = sum_of(tally.partial);
@@ -56,7 +58,7 @@ inline bool scale_partial_cells(const CellTriangle& triangle, Tally& tally,
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
     Row out;
     load_row(&coverage.share[row * kMapSize], out);
-    // Selecting by two comparisons at once would come out lane by lane (g++ 12).
+    // One selection by two comparisons would be compiled lane by lane (g++ 12).
     const Row kept = out >= one ? one : zero;
     Row scaled = out * scale;
     scaled = scaled < one ? scaled : one;
@@ -143,9 +145,9 @@ bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellT
 
 DAPPLE_MULTIVERSION
 void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
-  // Each edge cuts a share 1 - c from a cell; where the shares don't overlap, as in a thin
-  // sliver or along an edge, what is left is c0 + c1 + c2 - 2. The rest is put right by
-  // scaling to the known area. Rows are done whole: one or two vectors, no remainders.
+  // Each edge cuts a share 1 - c from a cell. If these shares do not overlap, as in a thin sliver
+  // or along an edge, the share c0 + c1 + c2 - 2 remains. Scaling to the known area corrects the
+  // other cells. Whole rows are computed: full vectors without remainders.
   V2f corner[3] = {triangle.a, triangle.a + triangle.edge1, triangle.a + triangle.edge2};
   if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x)
     std::swap(corner[1], corner[2]);
@@ -161,7 +163,7 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
   const Row zero{}, one = zero + 1.0f;
   Row x;
   for (int i = 0; i < kMapSize; ++i) x[i] = static_cast<float>(i) + 0.5f;
-  // Along a row shares are straight lines, and from row to row they differ by ny.
+  // Along a row the shares are linear; from one row to the next they change by ny.
   Row beyond[3], step[3];
   const float y = static_cast<float>(triangle.row0) + 0.5f;
   for (int e = 0; e < 3; ++e) {
@@ -237,7 +239,7 @@ std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> tr
 unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b) {
   const V3f p[3] = {a.vertex, a.vertex + a.edge1, a.vertex + a.edge2};
   const V3f q[3] = {b.vertex, b.vertex + b.edge1, b.vertex + b.edge2};
-  // Edges are stored rounded: corners that were one may differ by a few roundings.
+  // Stored edges are rounded: corners that were equal may differ by a few roundings.
   const float tolerance =
       1e-5f * (std::fabs(a.edge1.x) + std::fabs(a.edge1.y) + std::fabs(a.edge1.z) +
                std::fabs(a.edge2.x) + std::fabs(a.edge2.y) + std::fabs(a.edge2.z));

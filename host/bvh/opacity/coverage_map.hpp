@@ -1,5 +1,6 @@
-// Small images of a box's transmittance along each axis. They keep how the content clumps, which
-// products of mean opacities lose. In: triangles and strips, or the maps of children. Out: a map.
+// Small images of the transmittance of a box along each axis. They represent how the content clumps
+// together; products of mean opacities do not. In: triangles and strips, or the maps of child
+// nodes. Out: a map.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace dapple {
 inline constexpr int kMapSize = 16;
 inline constexpr int kMapCells = kMapSize * kMapSize;
 
-/// The two axes a map along `axis` spans: columns, then rows.
+/// The two axes that a map along `axis` spans: column_axis() for columns, row_axis() for rows.
 inline constexpr int column_axis(int axis) { return (axis + 1) % 3; }
 inline constexpr int row_axis(int axis) { return (axis + 2) % 3; }
 
@@ -37,86 +38,93 @@ struct CoverageMap {
   }
   /// Mean opacity of the box along `axis`, [0,1].
   [[nodiscard]] float mean_opacity(int axis) const;
-  /// Mean over the cells of opacity times the squared distance from the middle in half sizes;
-  /// 2/3 of the mean opacity where it lies evenly.
+  /// Mean over the cells of opacity times the squared distance from the middle, in half sizes of
+  /// the box; 2/3 of the mean opacity if all cells have the same opacity.
   [[nodiscard]] float opacity_off_centre(int axis) const;
-  /// Relative variance of opacity over the box: variance of the cells over the greatest that their
-  /// mean allows, all axes together. 0: all cells are alike; 1: each cell is clear or opaque.
+  /// Relative variance of opacity over the box: the variance of the cells divided by the maximum
+  /// that their mean permits, for all axes together. 0: all cells are alike; 1: each cell is either
+  /// clear or opaque.
   [[nodiscard]] float clumping() const;
 };
 
-/// A triangle to be drawn. `opacity_at(triangle, u, v, share)` is its mean opacity around the
-/// barycentrics over `share` of its area; asked only when `opacity` is negative.
+/// A triangle to rasterize. If `opacity` is negative, cover() calls `opacity_at(triangle, u, v,
+/// share)`, which returns the mean opacity around the barycentrics over `share` of the triangle's
+/// area.
 struct CoveringTriangle {
   V3f vertex, edge1, edge2;
   float opacity;
-  bool closed = false;  ///< part of a closed surface, opaque: closed_triangles()
+  bool closed = false;  ///< part of an opaque closed surface: closed_triangles()
 };
 
-/// The triangles for each axis. Triangles are the same for all axes; strips face their axis.
+/// The triangles for each axis. Triangles of meshes are the same for all axes; strips of strands
+/// face their axis.
 using Covering = std::array<std::span<const CoveringTriangle>, 3>;
 
-/// Multiplies triangles inside `box` into the map, keeping their projected areas. Those
-/// that meet along an edge lie side by side and add up, and so does each side of closed
-/// surfaces, one of which hides the other; others overlap as if independent.
+/// Multiplies the transmittances of triangles inside `box` into the map; their projected areas are
+/// preserved. Opacities of triangles that share an edge and lie side by side add up. The opacities
+/// of the fronts of closed surfaces add up, those of the backs too, and a cell takes the maximum of
+/// both. All other triangles overlap as if independent.
 template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
            const OpacityAt& opacity_at);
 
 /// A projected triangle in units of map cells, and the cells it may touch.
 struct CellTriangle {
-  V2f a, edge1, edge2;               ///< edges as the triangle has them, either orientation
+  V2f a, edge1, edge2;               ///< in the order of the triangle, either orientation
   float area;                        ///< in cells
   int column0, column1, row0, row1;  ///< inclusive
 };
 
-/// False when the box has no area along `axis` or the triangle none in it.
+/// Projects the triangle along `axis`. Returns false if the box or the triangle has no area along
+/// `axis`.
 bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out);
 
-/// Cells of a map, row after row; only the rows a triangle touches are valid.
+/// Cells of a map, row after row; only the rows that the triangle touches are valid.
 struct CellCoverage {
   alignas(64) std::array<float, kMapCells> share;
 };
 
-/// Fraction of each cell in the touched rows that is covered; the sum is the triangle's
-/// area exactly, up to cells that would be more than full.
+/// Computes the covered fraction of each cell in the touched rows. The sum equals the triangle's
+/// area, unless cells would be more than full.
 void rasterize(const CellTriangle& triangle, CellCoverage& coverage);
 
-/// What a group of triangles side by side hides of each cell of one axis' map.
+/// The share of each cell that a group of triangles occludes, in the map of one axis. The triangles
+/// lie side by side.
 struct HiddenCells {
   std::array<float, kMapCells> hidden;
   int row0 = kMapSize, row1 = -1;  ///< rows touched, inclusive
 
   HiddenCells() { fill_cells(hidden, 0.0f); }
   void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
-  /// Hides what either hides: the two sides of closed surfaces. Empties the other.
+  /// Sets each cell to the maximum of this and `back`: fronts and backs of closed surfaces. Clears
+  /// `back`.
   void enclose(HiddenCells& back);
   void clear();
-  /// Multiplies what is left into `map` and empties this.
+  /// Multiplies the remaining transmittance into `map`, then clears this.
   void flush(std::array<float, kMapCells>& map);
 };
 
-/// Where a box lies in its node's along each axis, in map cells: 0 to kMapSize. Of use only
-/// along axes in which the node has size.
+/// The extent of a box inside the box of its node along an axis, in map cells: 0 to kMapSize. Valid
+/// only for axes along which the node's box has size.
 struct CellRange {
   float from, to;
 };
 using CellRanges = std::array<CellRange, 3>;
 
-/// The map of a node while its children are put in, one after the other. Children whose
-/// boxes lie side by side in a cell add up; only where boxes overlap do they multiply.
-/// Taking both as independent would let a quarter of the light through every joint. Fronts
-/// of closed surfaces hide their backs.
+/// Builds the map of a node from its children, which are added one after the other. Where the
+/// children's boxes lie side by side in a cell, opacities add up; only where boxes overlap do
+/// transmittances multiply. If side by side counted as independent too, every joint would transmit
+/// a quarter of the light. Fronts of closed surfaces occlude their backs.
 class NodeCoverage {
  public:
   explicit NodeCoverage(const Box3f& box) : box_(box) {
     for (auto& covered : covered_) fill_cells(covered, 0.0f);
   }
 
-  /// Puts in a child with its map over `child_box`, which lies in the node's box.
+  /// Adds a child by its map over `child_box`, which lies in the node's box.
   void add(const CoverageMap& child, const Box3f& child_box, const SurfaceAreas& areas = {});
 
-  /// Puts in a leaf's triangles, a single layer as is_single_layer() says, of uniform opacities.
+  /// Adds the triangles of a leaf: a single layer by is_single_layer(), with constant opacities.
   void add_layer(const Covering& covering, const Box3f& child_box, const SurfaceAreas& areas);
 
   [[nodiscard]] const CoverageMap& map() const { return map_; }
@@ -124,7 +132,7 @@ class NodeCoverage {
 
  private:
   [[nodiscard]] CellRanges cell_ranges(const Box3f& child) const;
-  /// Puts one axis' `opacity` of the next child into the map, in these rows, inclusive.
+  /// Merges the `opacity` of the next child along one axis into the map, for these rows, inclusive.
   void merge(const CellRanges& child, int axis, int first_row, int last_row,
              const std::array<float, kMapCells>& opacity, const SurfaceAreas& areas);
 
@@ -132,21 +140,22 @@ class NodeCoverage {
   CoverageMap map_;
   std::array<std::array<float, kMapCells>, 3> covered_;  ///< share of each cell that boxes cover
   SurfaceAreas areas_;
-  HiddenCells layer_;  ///< of the leaf being put in; empty between them
+  HiddenCells layer_;  ///< scratch of add_layer(); empty between calls
   std::array<CellRanges, DAPPLE_BVH_WIDTH> children_;
   int child_count_ = 0;
 };
 
-/// Whether triangles of a leaf hide nothing of each other seen along any axis: they lie side by
-/// side, edge to edge.
+/// Whether no triangle of a leaf occludes another, seen along any axis: they lie side by side, edge
+/// to edge.
 bool is_single_layer(std::span<const CoveringTriangle> triangles);
 
-/// A map of one opacity an axis all over.
+/// Returns a map whose cells all have the same opacity, one value for each axis.
 CoverageMap uniform_map(const V3f& opacity);
 
 // Implementation of cover().
 
-/// Bit k is set where two triangles share an edge and lie on either side of it, seen along axis k.
+/// Returns a mask: bit k is set if the two triangles share an edge and lie on opposite sides of it,
+/// seen along axis k.
 unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b);
 
 template <class OpacityAt>
@@ -169,8 +178,8 @@ void add_varying(HiddenCells& cells, const CellTriangle& t, const CellCoverage& 
   }
 }
 
-/// Draws the closed surfaces into `cells`, with `back` as scratch. Returns a bit for each
-/// triangle done; leaves hold at most 8.
+/// Rasterizes the triangles of closed surfaces into `cells`, with `back` as scratch. Returns a mask
+/// with a bit for each triangle done; leaves hold at most 8 primitives.
 std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
                           CellCoverage& coverage, HiddenCells& cells, HiddenCells& back);
 
@@ -184,7 +193,7 @@ void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
     std::uint64_t done = draw_closed(box, triangles, axis, coverage, cells, back);
     cells.flush(map.transmittance[axis]);
     for (std::size_t first = 0; first < triangles.size(); ++first) {
-      // A group: this triangle and every later one beside a member of it.
+      // A group: this triangle and every later one that lies side by side with a member.
       for (std::size_t t = first; t < triangles.size(); ++t) {
         const auto beside = [&](std::size_t other) {
           return (done >> other & 1u) &&

@@ -9,13 +9,13 @@ namespace dapple {
 
 using Row = float __attribute__((vector_size(kMapSize * sizeof(float))));
 
-// By reference: a vector wider than the instruction set's has no calling convention.
+// By reference: vectors wider than the registers of the instruction set have no calling convention.
 inline void load_row(const float* from, Row& row) { std::memcpy(&row, from, sizeof row); }
 inline void store_row(float* to, const Row& row) { std::memcpy(to, &row, sizeof row); }
 
 inline void keep_least(Row& row, const Row& other) { row = row < other ? row : other; }
 
-/// Halves added to halves: four additions deep instead of sixteen.
+/// Adds one half of the vector to the other, repeatedly: a chain of four additions, not sixteen.
 inline float sum_of(const Row& row) {
   Row sum = row;
   sum += __builtin_shufflevector(sum, sum, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);

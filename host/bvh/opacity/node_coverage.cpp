@@ -11,8 +11,9 @@ namespace {
 
 constexpr float kSize = kMapSize;
 
-/// Where each cell of a child's axis lands in its parent's: a first cell, and how much of
-/// a parent cell's width goes to it and to the next.
+/// Resampling of a map of a child to the cells of its parent along one axis. For each cell of the
+/// child: the first parent cell that it overlaps, and the overlap with this cell (`here`) and with
+/// the next one, in widths of a parent cell.
 struct AxisResampling {
   std::array<int, kMapSize> cell;
   std::array<float, kMapSize> here, next;
@@ -36,7 +37,7 @@ struct AxisResampling {
   }
 };
 
-/// Share of each of the parent's cells, along one axis, that lies in the range.
+/// Computes the share of each parent cell, along one axis, that lies in the range.
 inline void cell_shares(const CellRange& range, Row& share) {
   const Row zero{};
   Row begin;
@@ -63,8 +64,8 @@ struct Rows {
   int first = kMapSize, last = -1;
 };
 
-/// Adds to `overlap`, in rows of `within`, what two boxes share of each cell. `touched` are
-/// the rows set so far, to which it adds.
+/// Adds to `overlap` the share of each cell that both boxes cover, for the rows `within`. Extends
+/// `touched`, the rows that the calls so far added to; the first of them sets all rows to 0.
 inline void add_overlap(const CellRanges& a, const CellRanges& b, int axis, const Rows& within,
                         Cells& overlap, Rows& touched) {
   const CellRange columns = intersection(a[column_axis(axis)], b[column_axis(axis)]);
@@ -89,8 +90,8 @@ inline void add_overlap(const CellRanges& a, const CellRanges& b, int axis, cons
   touched = {std::min(touched.first, first), std::max(touched.last, last)};
 }
 
-/// Sums sixteen rows into the rows of the parent that `along` gives: a row of `out` for
-/// each of along.first .. along.last, and no others.
+/// Sums the opacities of the child's sixteen rows into the parent's rows by `along`. Writes the
+/// rows along.first .. along.last of `out`, and no others.
 inline void sum_rows(const AxisResampling& along, const float* transmittance, float* out) {
   const Row zero{}, one = zero + 1.0f;
   Row sum = zero, carried = zero;
@@ -111,12 +112,13 @@ inline void sum_rows(const AxisResampling& along, const float* transmittance, fl
   if (cell < along.last) store_row(out + (cell + 1) * kMapSize, carried);
 }
 
-/// The child's opacity in the parent's cells, times the share of each that it covers.
-/// Returns the rows touched; the others are not set.
+/// Computes the child's opacity in the parent's cells, times the share of each cell that the child
+/// covers. Returns the rows touched; the others are not set.
 DAPPLE_MULTIVERSION
 Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
               const AxisResampling& down, Cells& opacity) {
-  // Down first, a row of child columns being one vector; then across, a row of parent columns.
+  // First down: a vector is a row of the child's columns. Then across: a vector is a row of the
+  // parent's columns.
   Cells rows;
   sum_rows(down, child.transmittance[axis].data(), rows.data());
   Cells shares;
@@ -142,9 +144,10 @@ Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
   return {down.first, down.last};
 }
 
-/// Of a cell, boxes cover F and a child f; in the part that both cover, what they hide
-/// overlaps as if independent, but for the `enclosed` share, which one of the two hides all of;
-/// elsewhere not at all.
+/// Merges the child's `opacity` into `map`, and its box into `map_covered`. Earlier boxes cover a
+/// share F of a cell, the child's box covers f. Occluded areas overlap only in the part that both
+/// cover. There they count as independent, except for the share `enclosed`: in it the larger
+/// occluded area contains the smaller.
 DAPPLE_MULTIVERSION
 void merge_rows(const Rows& rows, const CellRanges& child, int axis, const Cells& opacity,
                 const Cells& overlap, const Rows& overlapped, float enclosed, Cells& map,

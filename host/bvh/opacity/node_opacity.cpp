@@ -34,7 +34,8 @@ void NormalMoments::add(const NormalMoments& other) {
 }
 
 NormalMoments NormalMoments::placed(const M44f& to_world) const {
-  // Rows are the images of the axes; cofactor rows are their cross products.
+  // The rows of the matrix are the images of the axes; the rows of cofactors are their cross
+  // products.
   V3f axis[3];
   for (int i = 0; i < 3; ++i) axis[i] = V3f(to_world[i][0], to_world[i][1], to_world[i][2]);
   const V3f cofactor[3] = {axis[1].cross(axis[2]), axis[2].cross(axis[0]), axis[0].cross(axis[1])};
@@ -74,7 +75,8 @@ Four root(Four x) {
   return Four{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
 }
 
-/// exp(-x) of numbers from 0 on, to 4e-6 of it up to 16; beyond 87 nothing is left.
+/// Returns exp(-x) for x >= 0. The relative error is at most 4e-6 for x up to 16; x above 87 counts
+/// as 87.
 Four exp_of_minus(Four x) {
   const Four octaves = least(x, all(87.0f)) * std::numbers::log2e_v<float>;
   const FourInts whole = __builtin_convertvector(octaves + 0.5f, FourInts);
@@ -93,10 +95,10 @@ struct FourVectors {
   Four x, y, z;
 };
 
-/// chord_variance().
+/// chord_variance() for four directions.
 Four chord_variances(const FourVectors& facing) {
-  // Mean square by the box's covariogram, the integral over the longest chord of
-  // prod (1 - q_k s); q_k is the share of side k that this chord spans.
+  // The mean square follows from the covariogram of the box: the integral over the longest chord of
+  // prod (1 - q_k s), where q_k is the share of side k that this chord spans.
   const Four most = largest(largest(facing.x, facing.y), largest(facing.z, all(1e-37f)));
   const Four per = 1.0f / most;
   const Four qx = facing.x * per, qy = facing.y * per, qz = facing.z * per;
@@ -105,11 +107,11 @@ Four chord_variances(const FourVectors& facing) {
                  2.0f * e1 * (1.0f - e1 * (1.0f / 2) + e2 * (1.0f / 3) - e3 * (1.0f / 4)) - 1.0f);
 }
 
-/// Variances of the depths that chord_depth() and centre_weight() give rays, over the squares of
-/// their means `depth`. Sampled for boxes of any shape, to a tenth: long chords are those through
-/// the middle.
+/// Returns the variances of the optical depths of rays by chord_depth() and centre_weight(),
+/// divided by the squares of their means `depth`. Fitted to samples for boxes of any shape, with an
+/// error of a tenth. Chords through the middle are the long ones.
 Four depth_variances(Four depth, Four chords, float mass_concentration) {
-  // How much of a chord's deviation from the mean one counts: chord_depth().
+  // The share of a chord's deviation from the mean chord that counts: chord_depth().
   constexpr float kPerDepth = 1.0f / (DAPPLE_FILLED_DEPTH - DAPPLE_SPARSE_DEPTH);
   const Four counted =
       least(largest((DAPPLE_FILLED_DEPTH - depth) * kPerDepth, all(0.0f)), all(1.0f));
@@ -117,9 +119,11 @@ Four depth_variances(Four depth, Four chords, float mass_concentration) {
          0.17f * mass_concentration * mass_concentration;
 }
 
-/// Of rays whose depths have these means and variances, as if gamma distributed.
+/// Returns the mean transmittances of rays whose depths have these means and relative variances and
+/// follow a gamma distribution.
 Four mean_transmittances(Four depth, Four variance) {
-  // (1 + v depth)^(-1 / v), with log(1 + x) as x (6 + x) / (6 + 4 x), to a hundredth up to 2.
+  // (1 + v depth)^(-1 / v), where log(1 + x) is approximated by x (6 + x) / (6 + 4 x): the error of
+  // the transmittance is about a hundredth for x up to 2.
   const Four x = variance * depth;
   return exp_of_minus(depth * (6.0f + x) / (6.0f + 4.0f * x));
 }
@@ -149,16 +153,18 @@ float chord_variance(const V3f& facing) {
 }
 
 float mass_concentration_of(float off_centre) {
-  // Where opacity falls as 1 + c (2/3 - r), r has mean 2/3 - c times its variance over a square.
+  // If the opacity is proportional to 1 + c (2/3 - r), the mean of the squared distance r is
+  // 2/3 - c * kVariance, where kVariance is the variance of r over a square.
   constexpr float kVariance = 8.0f / 45.0f;
   return std::clamp((2.0f / 3.0f - off_centre) / kVariance, 0.0f, 1.0f);
 }
 
 namespace {
 
-/// How much of what mass concentration takes from the mean opacity is given back: all in nodes of
-/// many triangles. Neighbouring small nodes hide the same rays more than independent ones would,
-/// and a little too much light in each sets their product right (measured on trees).
+/// Returns the share of the opacity lost by mass concentration that is compensated: all of it in
+/// nodes of many triangles. Neighbouring small nodes occlude the same rays more often than
+/// independent nodes would. The product of their transmittances is right if each transmits slightly
+/// too much light (measured on trees).
 float compensation(std::size_t triangles) {
   if (triangles == 0) return 1.0f;
   return std::clamp(std::log2(static_cast<float>(triangles) + 1.0f) / 12.0f, 0.0f, 1.0f);
@@ -178,9 +184,9 @@ class DirectionalOpacity {
 
   struct Views {
     Four facing;   ///< projected area of the box
-    Four met;      ///< mean opacity of rays by the model
-    Four slope;    ///< its derivative by a factor on depths
-    Four opacity;  ///< mean opacity that they should have
+    Four met;      ///< mean opacity of rays by the kernels' model
+    Four slope;    ///< derivative of `met` by a factor on depths
+    Four opacity;  ///< mean opacity that rays should have
   };
 
   [[nodiscard]] Views along(const FourVectors& direction) const {
@@ -191,7 +197,8 @@ class DirectionalOpacity {
     const Four depth = blend(depths_, seen, area);
     const Four chords = chord_variances(facing);
     Views views = meet(area, depth, chords);
-    // What gathers around the middle is no less opaque for the box's empty corners.
+    // Content in the middle of the box does not become less opaque because the corners of the box
+    // are empty: mass concentration reduces the variance.
     const Four even = 1.0f - mean_transmittances(depth, (1.0f - mass_concentration_) *
                                                             depth_variances(depth, chords, 0.0f));
     const Four clump = least(blend(axes_, seen, area), all(1.0f));
@@ -199,8 +206,8 @@ class DirectionalOpacity {
     return views;
   }
 
-  /// Along the axes, where opacities are known and all ways through the box are equally long, so
-  /// that chords have no variance. The fourth lane sees no area.
+  /// Views along the axes. Their opacities are known, and the chords of a view have equal lengths:
+  /// the variance is 0. The fourth lane has area 0.
   [[nodiscard]] Views along_axes() const {
     Views views = meet(Four{faces_.x, faces_.y, faces_.z, 0.0f},
                        Four{depths_.x, depths_.y, depths_.z, 0.0f}, all(0.0f));
@@ -216,8 +223,8 @@ class DirectionalOpacity {
             all(0.0f)};
   }
 
-  /// box_depth() of dapple/shared/opacity.h; correlations have the signs of directions, and so have
-  /// the areas `seen` here.
+  /// box_depth() of dapple/shared/opacity.h. There, correlations are multiplied by the signs of the
+  /// direction; here, the areas `seen` have these signs.
   [[nodiscard]] Four blend(const V3f& along, const FourVectors& seen, Four area) const {
     const Four x = along.x * seen.x, y = along.y * seen.y, z = along.z * seen.z;
     const Four mixed = correlation_.x * x * y + correlation_.y * y * z + correlation_.z * z * x;
@@ -226,7 +233,7 @@ class DirectionalOpacity {
 
   V3f faces_, axes_, depths_, correlation_;
   float clumping_, mass_concentration_;
-  float compensated_;  ///< the mass concentration that is compensated
+  float compensated_;  ///< mass concentration times compensation()
 };
 
 }  // namespace
@@ -247,8 +254,8 @@ float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
                                                        Four{kRoot, -kRoot, -kRoot, kRoot}});
   const Four of_axes = 2.0f / 15 * axes.facing;
   const Four of_diagonals = 3.0f / 20 * diagonals.facing;
-  // Hidden area summed over directions: what is wanted beyond what the depths give, and how
-  // the latter changes with the factor.
+  // Occluded area summed over directions: the wanted area minus the area by the depths, and the
+  // derivative of the latter by the factor.
   const Four wanted =
       of_axes * (axes.opacity - axes.met) + of_diagonals * (diagonals.opacity - diagonals.met);
   const Four changed = of_axes * axes.slope + of_diagonals * diagonals.slope;

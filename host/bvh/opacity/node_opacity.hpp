@@ -1,5 +1,5 @@
 // The opacity of a node before quantization: opacities along the axes, and the second moments of
-// the normals of its surfaces (SGGX, Heitz et al. 2015).
+// the normals of its surfaces. Heitz et al., "The SGGX Microflake Distribution", 2015.
 #pragma once
 
 #include <array>
@@ -9,19 +9,20 @@
 
 namespace dapple {
 
-/// Second moments of normals, weighted by area and opacity: xx, yy, zz, xy, yz, zx. Those of a node
-/// are the sum over its children.
+/// Second moments of normals, weighted by area and opacity: xx, yy, zz, xy, yz, zx. The moments of
+/// a node are the sums of the moments of its children.
 struct NormalMoments {
   std::array<float, 6> sum{};
 
   /// Adds a surface with area vector `normal`, whose length is any multiple of the area.
   void add(const V3f& normal, float opacity);
-  /// The side of a cylinder around `axis`, half of it: what is seen from anywhere.
+  /// Adds half of the lateral surface of a cylinder: the half that is visible from one direction.
+  /// The length of `axis` is the length of the cylinder.
   void add_cylinder(const V3f& axis, float radius, float opacity);
   void add(const NormalMoments& other);
-  /// The moments after the surfaces are placed: area vectors turn by the matrix' cofactors.
+  /// Returns the moments after a transform: the cofactor matrix transforms area vectors.
   [[nodiscard]] NormalMoments placed(const M44f& to_world) const;
-  /// Correlations xy, yz, zx of the normals' components, [-1,1]; 0 where one is always 0.
+  /// Correlations xy, yz, zx of the normals' components, [-1,1]; 0 if a component is always 0.
   [[nodiscard]] V3f correlation() const;
 };
 
@@ -33,29 +34,31 @@ struct NodeOpacity {
   std::size_t triangles = 0;     ///< in the whole subtree; 0: many
 };
 
-/// The mass concentration that makes centre_weight() of dapple/shared/opacity.h fit: from the mean
-/// squared distance of what hides from the centre of the box, seen along the axes, in half
-/// sizes. 2/3 and more, as of things that fill the box evenly or stay away from its middle: 0.
+/// Returns the mass concentration for centre_weight() of dapple/shared/opacity.h, [0,1].
+/// `off_centre`: mean squared distance of the occluders from the centre of the box, seen along the
+/// axes, in half sizes of the box. The result is 0 from 2/3 on: content that fills the box
+/// uniformly or lies away from its middle.
 float mass_concentration_of(float off_centre);
 
-/// Variance class of a box's opacity, as nodes store it: dapple/shared/opacity.h.
+/// Returns the variance class of a box's opacity, as nodes store it: dapple/shared/opacity.h.
 unsigned variance_class(const NodeOpacity& opacity);
 
-/// -log(1 - opacity), at most the greatest depth that a node can store.
+/// Returns the optical depth -log(1 - opacity), at most the maximum that a node can store.
 float depth_of(float opacity);
 
-/// Variance of a box's chords along a direction over their squared mean, [0, 1/2]. Of the box
-/// only its faces' projected areas along the direction matter.
+/// Returns the variance of the lengths of a box's chords along a direction, divided by their
+/// squared mean, [0, 1/2]. `facing`: projected areas of the faces of the box along the direction.
 float chord_variance(const V3f& facing);
 
-/// Mean opacity that rays along `direction` (any length) meet in a box of `size`. Surfaces
-/// that lie evenly, one behind the other, hide what their depths say; a clump hides its
-/// projected area, which is less between the axes. Clumping goes from one to the other.
+/// Returns the mean opacity of a box of `size` for rays along `direction` (any length). Clumping
+/// interpolates between two models. 0: the surfaces are evenly distributed, and the opacity follows
+/// from the optical depths. 1: the surfaces form a clump, and the opacity is the projected area of
+/// the clump, which is smaller in directions between the axes.
 float opacity_along(const NodeOpacity& opacity, const V3f& size, const V3f& direction);
 
-/// Factor on the depths along the axes with which rays that meet box_depth(), chord_depth() and
-/// centre_weight() of dapple/shared/opacity.h are stopped as opacity_along() says in the mean
-/// over all directions and ways through the box.
+/// Returns the factor on the optical depths along the axes, [0.6, 1.6]. With it, the opacity by
+/// box_depth(), chord_depth() and centre_weight() of dapple/shared/opacity.h agrees with
+/// opacity_along() in the mean over all directions and chords, to the accuracy of one Newton step.
 float clumping_factor(const NodeOpacity& opacity, const V3f& size);
 
 }  // namespace dapple

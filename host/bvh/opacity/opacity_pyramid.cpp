@@ -16,16 +16,17 @@ int wrap(int cell, int size, Wrap mode) {
   return r < size ? r : period - 1 - r;
 }
 
-/// A texture coordinate brought near [0,1), so that integers can hold its texel.
+/// Returns an equivalent texture coordinate near [0,1), so that the index of its texel fits in an
+/// int.
 float folded_coordinate(float u, Wrap mode) {
   return mode == Wrap::clamp ? std::clamp(u, -1.0f, 2.0f) : u - 2.0f * std::floor(0.5f * u);
 }
 
-/// Those of a finer axis that one texel of a coarser axis is over: of odd sizes some are shared out
-/// by length, so that means are kept.
+/// The texels of a finer axis that one texel of a coarser axis covers. If the size is odd, texels
+/// are divided between two coarser ones in proportion to the length, so that means are preserved.
 struct Shares {
   int first = 0, count = 0;
-  float share[4] = {};  ///< a ratio of sizes below 4, of lengths 1 to 3, meets four at most
+  float share[4] = {};  ///< four are enough: the ratio of sizes is between 1 and 3
 };
 
 std::vector<Shares> shares_of(int fine, int coarse) {

@@ -9,7 +9,8 @@
 
 namespace dapple {
 
-/// The opacity of an alpha: 1 from `cutoff` on and 0 below, or the alpha itself where it is < 0.
+/// Returns the opacity of `alpha`: 1 from `cutoff` on and 0 below it. If `cutoff` < 0, returns the
+/// alpha itself, clamped to [0,1].
 float thresholded(float alpha, float cutoff);
 
 /// The opacities of a texture, averaged over 1, 2, 4... texels along each axis (Williams,
@@ -28,7 +29,7 @@ class OpacityPyramid {
   /// Mean opacity around uv over a square `width_texels` wide.
   [[nodiscard]] float mean(V2f uv, float width_texels) const;
 
-  /// From the texture itself to one texel.
+  /// All levels, from the texture itself to a single texel.
   [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
 
   [[nodiscard]] V2f size() const { return size_; }
@@ -41,7 +42,7 @@ class OpacityPyramid {
   Wrap wrap_s_, wrap_t_;
 };
 
-/// Texels of all levels, the texture itself among them.
+/// Returns the number of texels of all levels, including the texture itself.
 std::size_t pyramid_texels(const Texture& texture);
 
 }  // namespace dapple

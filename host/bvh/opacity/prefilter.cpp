@@ -17,7 +17,7 @@ namespace {
 /// Subtrees with fewer primitives run in their parent's task.
 constexpr std::uint32_t kTaskPrimitives = 2048;
 
-/// From this opacity up to 1, nodes count as parts of a solid.
+/// From this opacity to 1, nodes count gradually as parts of a solid.
 constexpr float kNearlySolid = 0.9f;
 
 uchar encode_depth(float depth) {
@@ -27,13 +27,14 @@ uchar encode_depth(float depth) {
 /// Maximum number of primitives of a leaf.
 constexpr std::size_t kMaxInLeaf = 8;
 
-/// A leaf's primitives as triangles to rasterize, with their sums of areas and normals.
+/// The primitives of a leaf as triangles to rasterize, with the sums of their areas and normals.
 struct Leaf {
-  /// Triangles once for all axes; or along each the strips of segments, two triangles each.
+  /// Triangles, the same for all axes; or strips of strand segments, two triangles a segment,
+  /// separately for each axis.
   std::array<CoveringTriangle, 3 * 2 * kMaxInLeaf> storage;
   std::size_t count = 0;  ///< primitives
-  std::size_t drawn = 0;  ///< triangles along an axis
-  bool facing = false;    ///< each axis has its own
+  std::size_t drawn = 0;  ///< triangles for one axis
+  bool facing = false;    ///< whether each axis has its own triangles
   bool textured = false;
   bool single_layer = false;
   NormalMoments normals;
@@ -44,8 +45,8 @@ struct Leaf {
   [[nodiscard]] Covering covering() const { return {along(0), along(1), along(2)}; }
 };
 
-/// Mean over the triangle, seen along `axis`, of the squared distance from the box's centre in
-/// half sizes.
+/// Returns the mean over the triangle, seen along `axis`, of the squared distance from the centre
+/// of the box, in half sizes of the box.
 float mean_off_centre(const CoveringTriangle& t, const Box3f& box, int axis) {
   float sum = 0;
   for (const int k : {column_axis(axis), row_axis(axis)}) {
@@ -57,7 +58,8 @@ float mean_off_centre(const CoveringTriangle& t, const Box3f& box, int axis) {
   return sum;
 }
 
-/// What map_opacity() would say of a single layer, had its map endless cells.
+/// Returns the opacity of a single layer: the result of map_opacity() for a map of infinitely many
+/// cells.
 NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
   NodeOpacity opacity;
   opacity.normals = leaf.normals;
@@ -107,7 +109,7 @@ class Prefilter {
         if (!children[slot].count) below[slot] = node(children[slot].first);
       });
     }
-    // By slot, so that the bits don't depend on which task came first.
+    // In the order of the slots, so that the bits do not depend on the order of the tasks.
     for (unsigned slot = 0; slot < wide.child_count; ++slot) {
       if (children[slot].count) {
         normals.add(add_leaf(own, slot, children[slot].box, coverage));
@@ -119,7 +121,8 @@ class Prefilter {
   }
 
  private:
-  /// Of child `slot` of the object's node `own`; of those that have children, by what is in them.
+  /// Sets the opacity of child `slot`, an inner node, of the object's node `own`. `below`: summary
+  /// of the child; `primitives`: number of primitives in `own`.
   void set_inner_opacity(std::uint32_t own, unsigned slot, const WideChild& child,
                          const Summary& below, std::uint32_t primitives) const {
     const WideNode& wide = tree_.nodes[child.first];
@@ -249,20 +252,22 @@ NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, co
 
 namespace {
 
-/// Of the grown box of a child, whose exact one had the opacities `axes`.
+/// Returns the opacities of a child's quantized `box`, which is larger than its `exact` box. `axes`
+/// are the opacities of the exact box.
 V3f grown_opacity(const V3f& axes, const Box3f& exact, const Box3f& box) {
   V3f grown;
   for (int axis = 0; axis < 3; ++axis) {
     const float area = face_area(box, axis);
     const float share = area > 0.0f ? std::min(face_area(exact, axis) / area, 1.0f) : 0.0f;
-    // A solid part of a wall must not leak where its box grew: its neighbours are there.
+    // Where the box of a solid part grew, it stays opaque: the neighbouring parts of the solid
+    // fill that space, and light must not leak.
     const float solid = std::clamp((axes[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
     grown[axis] = axes[axis] * (share + solid * (1.0f - share));
   }
   return grown;
 }
 
-/// The nearest code of a correlation whose least bit is that one.
+/// Returns the code nearest to `correlation` whose lowest bit is `bit`.
 schar encode_correlation(float correlation, unsigned bit) {
   const int last = static_cast<int>(bit), most = 126 + last;
   const auto half =

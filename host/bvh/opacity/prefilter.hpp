@@ -1,5 +1,6 @@
-// Prefilters a tree or a part of it. In: nodes with their primitives, in the arrays of the object
-// or of the scene. Out: the nodes' directional opacities (Lacewell et al. 2008).
+// Prefilters a BVH or a part of it. In: nodes with their primitives, in the arrays of the object
+// or of the scene. Out: the directional opacities of the nodes. Lacewell et al., "Raytracing
+// Prefiltered Occlusion for Aggregate Geometry", 2008.
 #pragma once
 
 #include <cstdint>
@@ -10,46 +11,50 @@
 
 namespace dapple {
 
-/// The result of a subtree for its parent.
+/// The result of prefiltering a subtree, as its parent needs it.
 struct Summary {
   CoverageMap map;
   NormalMoments normals;
   SurfaceAreas areas;
 };
 
-/// An object's nodes, and the arrays that their indices count in.
+/// The nodes of an object, and the arrays that the indices in these nodes refer to.
 struct ObjectArrays {
-  std::span<BvhNode> nodes;  ///< the object's own
+  std::span<BvhNode> nodes;  ///< of this object only
   std::span<TriangleBlock> blocks;
   std::span<const TexturedTriangle> textured;
-  std::span<const std::uint8_t> closed;  ///< BuiltObject::closed, of its own blocks
-  std::uint32_t first_node = 0, first_block = 0, first_textured = 0;  ///< counted before its own
+  std::span<const std::uint8_t> closed;  ///< BuiltObject::closed, for the blocks of this object
+  /// Indices of the object's first node, block and textured triangle in the scene's arrays; 0 if
+  /// these are the arrays of the object alone.
+  std::uint32_t first_node = 0, first_block = 0, first_textured = 0;
   std::span<const SegmentBlock> segments = {};  ///< of strands, which are never refitted
 };
 
-/// Provides the results of subtrees that are prefiltered elsewhere: nodes of this tree without
-/// children.
+/// Provides the results of subtrees that are prefiltered elsewhere. In the tree these are nodes
+/// without children.
 class Stumps {
  public:
   virtual ~Stumps() = default;
   [[nodiscard]] virtual Summary summary(std::uint32_t node) const = 0;
-  /// Its opacity as prefiltering found it just now; nullptr: by what the record kept of it.
+  /// Returns the opacity of the subtree if it was just prefiltered again; nullptr: the opacity
+  /// follows from the refit record.
   [[nodiscard]] virtual const NodeOpacity* measured(std::uint32_t node) const = 0;
 };
 
 struct PrefilterTask {
   const ObjectArrays& object;
   const WideTree& tree;
-  std::span<const std::uint32_t> node_of;  ///< of the tree's nodes, the object's; empty: the same
-  RefitRecord* record = nullptr;           ///< keeps what is found; may be none
+  std::span<const std::uint32_t> node_of;  ///< object's index of each tree node; empty: the same
+  RefitRecord* record = nullptr;           ///< stores the opacities for refitting; may be null
   const Stumps* stumps = nullptr;
 };
 
-/// Sets all opacities below the tree's root, and returns the root's summary.
+/// Sets the opacities of all nodes below the root of the tree. Returns the summary of the root.
 Summary prefilter(const PrefilterTask& task, const TextureIntegrals& integrals);
 
-/// Child `slot`, whose exact box holds surfaces of these areas and normals by now, gets the opacity
-/// that it keeps while it moves.
+/// Sets the opacity of child `slot` after motion, from the record's `kept` opacity of the node's
+/// children. `areas` and `normals` are those of the surfaces that the child's `exact` box contains
+/// now.
 void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
                       const SurfaceAreas& areas, const NormalMoments& normals, const Box3f& exact);
 

@@ -7,10 +7,12 @@
 namespace dapple {
 namespace {
 
-/// Of a segment's length: ends that were one point before blocks rounded them.
+/// Tolerance, relative to a segment's length, for ends that were the same point before they were
+/// rounded in blocks.
 constexpr float kSamePoint = 1e-3f;
 
-/// Strips go on so far beyond a cap's middle, in radii: by as much as half a disk hides.
+/// How far a strip extends beyond the centre of a cap, in radii: its area grows by that of half a
+/// disk.
 constexpr float kCapReach = static_cast<float>(std::numbers::pi / 4);
 
 bool meet(const StrandSegment& a, const StrandSegment& b) {
@@ -30,7 +32,7 @@ std::array<CoveringTriangle, 2> facing_strip(const StrandSegment& segment, int a
   view[axis] = 1.0f;
   const V3f along = segment.point[1] - segment.point[0];
   V3f across = view.cross(along);
-  if (!(across.length2() > 0.0f)) across[column_axis(axis)] = 1.0f;  // it is seen end on
+  if (!(across.length2() > 0.0f)) across[column_axis(axis)] = 1.0f;  // seen from its end
   across.normalize();
   const V3f onwards = across.cross(view);
   V3f point[2], half[2];

@@ -1,4 +1,5 @@
-// The outlines of segments of strands along an axis: strips that face the axis.
+// Coverage of strands. In: segments of strands. Out: their outlines along an axis, as strips that
+// face the axis, and their normals and projected areas.
 #pragma once
 
 #include <array>
@@ -11,14 +12,15 @@
 
 namespace dapple {
 
-/// The segment's outline along `axis` as two triangles across the axis, edge to edge.
+/// Returns the outline of the segment seen along `axis`: two triangles that share an edge and are
+/// perpendicular to the axis.
 std::array<CoveringTriangle, 2> facing_strip(const StrandSegment& segment, int axis);
 
-/// Adds the segment's normals and projected areas.
+/// Adds the normals and the projected areas of the segment.
 void add_surface(const StrandSegment& segment, NormalMoments& normals, SurfaceAreas& areas);
 
-/// Whether segments of a leaf are a single one's continuations, in any order in which each meets
-/// one before it: end to end they hide hardly anything of each other.
+/// Whether each segment of a leaf, except the first, shares an end with an earlier one. Segments
+/// that are connected end to end hardly occlude each other.
 bool is_one_strand(std::span<const StrandSegment> segments);
 
 }  // namespace dapple

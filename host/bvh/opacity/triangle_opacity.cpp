@@ -99,8 +99,9 @@ TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::ui
 }
 
 TextureIntegrals::Key TextureIntegrals::key_of(const TexturedCorners& corners) const {
-  // A blended texture's mean is linear in the factor, which is applied later; a cut-out's
-  // is not, so it gets a pyramid for each factor (rounded, where vertices differ).
+  // The mean of a blended texture is linear in the factor, which is applied later. The mean of a
+  // cut-out texture is not, so there is a pyramid for each factor. The factor is the mean over the
+  // corners, rounded.
   const Material& material = materials_[corners.material];
   const float cutoff = cutoff_of(material);
   if (cutoff < 0.0f) return {material.alpha_texture, 1.0f, -1.0f};

@@ -14,33 +14,33 @@
 
 namespace dapple {
 
-/// The triangle's opacity in [0,1] if it is constant, else nothing.
+/// Returns the opacity of the triangle, [0,1], if it is constant, else nothing.
 std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
 
 /// The opacity of a segment, [0,1]: the mean alpha of its ends, by the material, without textures.
 float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment);
 
-/// Whether alpha is looked up.
+/// Whether the alpha of the mesh's triangles is looked up in the texture of the material.
 bool has_texture(const Material& material, const Mesh& mesh);
 
-/// How wide a texel of the material's texture is on the triangle, in the object's units; 0 where
-/// there is none, or no area.
+/// Returns the width of a texel of the material's texture on the triangle, in units of the object;
+/// 0 if there is no texture, or if the triangle has no area in it.
 float texel_size(const Scene& scene, const Mesh& mesh, std::uint32_t triangle);
 
-/// The alpha from which on a masked material is opaque, or -1 where alpha is opacity.
+/// Returns the alpha from which on a masked material is opaque, or -1 if alpha is the opacity.
 float cutoff_of(const Material& material);
 
-/// The record the kernels look a varying triangle up by; `averaged`: wide footprints take the mean
-/// of its texels. Throws Error failed where its material is beyond the most that the records can
-/// name.
+/// Returns the record by which the kernels look up the opacity of a triangle if it is not constant.
+/// `averaged`: for wide footprints the kernels take the mean of the texels. Throws Error failed if
+/// the index of the material is above the maximum of the records.
 TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::uint32_t triangle,
                                    bool averaged);
 
 /// Mean opacities of parts of textured triangles.
 class TextureIntegrals {
  public:
-  /// Makes the pyramids that the `textured` triangles need, each once. `scene` must outlive the
-  /// object.
+  /// Makes the mip pyramids that the `textured` triangles need, each once. `scene` must outlive
+  /// this object.
   TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured);
 
   /// Mean opacity of the triangle around barycentrics (u, v) over an area that is `share`

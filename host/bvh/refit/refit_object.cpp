@@ -13,15 +13,15 @@
 namespace dapple {
 namespace {
 
-/// A subtree whose surfaces lie by so much denser or thinner in its box than when it was last
-/// prefiltered has not moved rigidly.
+/// A subtree has not moved rigidly if its layers_in() changed by more than this factor, up or down,
+/// since it was last prefiltered.
 constexpr float kRigidChange = 1.5f;
 
-/// Subtrees to a task.
+/// Number of subtrees per task.
 constexpr std::size_t kGrain = 16;
 
 bool is_alike(float now, float then) {
-  constexpr float kNone = 1e-3f;  // layers that make no difference
+  constexpr float kNone = 1e-3f;  // below this, layers have no visible effect
   return (now <= kRigidChange * then && then <= kRigidChange * now) ||
          (now < kNone && then < kNone);
 }
@@ -102,7 +102,8 @@ class ObjectRefit : public Stumps {
     });
   }
 
-  /// Exact boxes bottom-up, then the nodes'. Returns the half_area() of all nodes summed.
+  /// Computes the exact boxes bottom-up, then stores them in the nodes. Returns the sum of
+  /// half_area() over all nodes.
   double move_upper_boxes() {
     WideTree& upper = record_.upper;
     double half_areas = 0;
@@ -123,7 +124,7 @@ class ObjectRefit : public Stumps {
     return half_areas;
   }
 
-  /// Marks subtrees that changed their shape; whether there are any.
+  /// Marks the subtrees that did not move rigidly. Returns whether there are any.
   bool find_strays() {
     bool any = false;
     strays_.assign(moved_.size(), 0);

@@ -1,15 +1,16 @@
-// Refits an object after its vertices moved. In: its arrays and the moved mesh. Out: the same tree
-// with new triangles, boxes and opacities.
+// Refits an object after its vertices moved. In: its arrays, its refit record and the moved mesh.
+// Out: the same BVH with new triangles, boxes and opacities.
 #pragma once
 
 #include "bvh/opacity/prefilter.hpp"
 
 namespace dapple {
 
-/// Rewrites the object's nodes and blocks for `mesh`, which differs from the built one only in
-/// positions, and updates `summary`. In parallel; the bits do not depend on the number of threads.
-/// Exact boxes hold the triangles as those of a fresh build do; opacities of subtrees that moved
-/// nearly rigidly are taken from the record, all others prefiltered anew.
+/// Rewrites the nodes and blocks of the object for `mesh` and updates `summary`. `mesh` may differ
+/// from the mesh of the build only in its positions. Runs in parallel; the bits of the result do
+/// not depend on the number of threads. The exact boxes contain the triangles, as after a new
+/// build. Opacities of subtrees that moved nearly rigidly come from the record; all other opacities
+/// are prefiltered again.
 void refit_object(const Scene& scene, const Mesh& mesh, const ObjectArrays& object,
                   RefitRecord& record, ObjectSummary& summary);
 

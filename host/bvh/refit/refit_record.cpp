@@ -15,7 +15,7 @@ bool is_cut_off(const WideTree& tree, std::uint32_t node) {
   return node > 0 && tree.nodes[node].primitives <= kRigidPrimitives;
 }
 
-/// Which nodes are above the subtrees, or the roots of these.
+/// Returns which nodes are above the subtrees or are roots of subtrees.
 std::vector<bool> find_upper(const WideTree& tree) {
   std::vector<bool> upper(tree.nodes.size(), false);
   upper[0] = true;
@@ -58,7 +58,7 @@ CoverageMap SmallMap::with_means(const V3f& axes) const {
   for (int axis = 0; axis < 3; ++axis) {
     unsigned sum = 0;
     for (const std::uint8_t opacity : opacity_[axis]) sum += opacity;
-    // Where nothing was seen something may be by now: it lies evenly.
+    // A map that was empty may have content now: all cells get the same opacity.
     const float even = sum == 0 ? axes[axis] : 0.0f;
     const float scale =
         sum == 0 ? 0.0f : axes[axis] * static_cast<float>(kSize * kSize) / static_cast<float>(sum);

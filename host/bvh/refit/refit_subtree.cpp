@@ -14,17 +14,18 @@ bool is_leaf(const BvhNode& node, unsigned slot) {
   return bvh_leaf_begin(node.leaf_end, slot) < bvh_leaf_end(node.leaf_end, slot);
 }
 
-/// The object's node that is the first inner child.
+/// Returns the index, among the object's nodes, of the first inner child.
 std::uint32_t first_inner(const BvhNode& node, const ObjectArrays& object) {
   return node.child_base - object.first_node;
 }
 
-/// Where the object's own record has primitive `i` of the node's leaves.
+/// Returns the index, among the lanes of the object's refit record, of primitive `i` of the node's
+/// leaves.
 std::size_t lane_of(const BvhNode& node, const ObjectArrays& object, std::uint32_t i) {
   return 8 * std::size_t{node.prim_base - object.first_block} + i;
 }
 
-/// Box3f::extendBy() without its branches, which go either way.
+/// Box3f::extendBy() without branches: they are hard to predict here.
 void join(Box3f& box, const Box3f& other) {
   for (int axis = 0; axis < 3; ++axis) {
     box.min[axis] = std::min(box.min[axis], other.min[axis]);
@@ -85,8 +86,8 @@ MovedPart SubtreeRefit::subtree(std::uint32_t root) const {
   return node(root);
 }
 
-// Triangles of a subtree lie anywhere in the mesh: fetched one after the other, they would be
-// waited for half of the time.
+// The triangles of a subtree are scattered over the mesh. Without prefetching, each of them would
+// wait for memory in turn.
 void SubtreeRefit::prefetch(std::uint32_t root) const {
   std::array<std::uint32_t, kRigidPrimitives> triangles;
   std::size_t count = 0;
@@ -142,7 +143,7 @@ WideTree wide_subtree(const Mesh& mesh, const ObjectArrays& object, const RefitR
                       std::uint32_t root, std::vector<std::uint32_t>& node_of) {
   WideTree tree;
   node_of = {root};
-  // Siblings lie one after the other and come after their parents, as in the object.
+  // Siblings are contiguous and follow their parents, as in the object.
   for (std::size_t n = 0; n < node_of.size(); ++n) {
     const BvhNode& node = object.nodes[node_of[n]];
     WideNode wide;

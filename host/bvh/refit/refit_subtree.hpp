@@ -1,4 +1,5 @@
-// Refits the lower subtrees of an object after their triangles moved.
+// Refits the small subtrees of an object after its vertices moved. In: the moved mesh, the arrays
+// of the object and its refit record. Out: new triangles, boxes and opacities in these arrays.
 #pragma once
 
 #include <array>
@@ -8,12 +9,12 @@
 
 namespace dapple {
 
-/// The result of a refitted subtree for its parent.
+/// The result of refitting a subtree or a leaf, as its parent needs it.
 struct MovedPart {
   Box3f box;
   SurfaceAreas areas;
   NormalMoments normals;
-  double half_areas = 0;  ///< half_area() of its nodes summed
+  double half_areas = 0;  ///< sum of half_area() over its nodes
 };
 
 class SubtreeRefit {
@@ -21,8 +22,8 @@ class SubtreeRefit {
   SubtreeRefit(const Mesh& mesh, const ObjectArrays& object, const RefitRecord& record)
       : mesh_(mesh), object_(object), record_(record) {}
 
-  /// Rewrites the triangles, boxes and opacities of the object's node `root`, which has at most
-  /// kRigidPrimitives, and all below.
+  /// Rewrites the triangles, boxes and opacities of the object's node `root` and of all nodes
+  /// below. They have at most kRigidPrimitives primitives.
   MovedPart subtree(std::uint32_t root) const;
 
   /// Rewrites the triangles of a leaf.
@@ -39,11 +40,12 @@ class SubtreeRefit {
   const RefitRecord& record_;
 };
 
-/// Boxes of inner children and of nodes with children, from those of leaves and of nodes without.
+/// Computes the boxes of inner children and of nodes that have children, from the boxes of leaves
+/// and of nodes without children.
 void pass_up_boxes(WideTree& tree);
 
-/// The object's node `root` and all below as a tree of its own, with the boxes of moved triangles;
-/// `node_of` gets the object's nodes that its own are.
+/// Returns the object's node `root` and all nodes below as a separate tree, with the boxes of the
+/// moved triangles. Sets `node_of` to the object's node for each node of this tree.
 WideTree wide_subtree(const Mesh& mesh, const ObjectArrays& object, const RefitRecord& record,
                       std::uint32_t root, std::vector<std::uint32_t>& node_of);
 

@@ -16,7 +16,8 @@
 namespace dapple {
 namespace {
 
-/// SAH cost over that of the last build from which on an object is built again: experiment 107.
+/// An object is rebuilt if its SAH cost exceeds that of its last build by this factor:
+/// experiment 107.
 constexpr double kWorstCost = 1.5;
 
 /// A mesh as it was when its object was built.
@@ -34,8 +35,8 @@ std::vector<MeshKey> keys_of(const Scene& scene) {
   return keys;
 }
 
-/// The largest number of top-level nodes: each node but a single root has at least two instances
-/// below.
+/// Returns the maximum number of top-level nodes: each node, except a single root, has at least two
+/// instances below.
 std::size_t max_top_nodes(const Scene& scene) { return scene.instances.size() + 1; }
 
 bool is_placed_alike(const Instance& a, const Instance& b) {
@@ -46,11 +47,11 @@ bool is_placed_alike(const Instance& a, const Instance& b) {
 
 struct UpdatableBvh::State {
   SceneBvh bvh;
-  ChangeableArrays arrays;  ///< of `bvh`; empty until something moved, if that was not expected
+  ChangeableArrays arrays;  ///< of `bvh`; empty until the first motion if none was expected
   std::vector<ObjectSummary> objects;
   std::vector<ObjectOffsets> offsets;
-  std::vector<RefitRecord> records;  ///< of each mesh; without nodes: none
-  std::vector<double> built_costs;   ///< sah_cost of each object when it was built
+  std::vector<RefitRecord> records;  ///< one for each mesh; without nodes: there is no record
+  std::vector<double> built_costs;   ///< sah_cost of each object at its last build
   std::vector<MeshKey> keys;
   std::vector<Instance> instances;
 
@@ -94,7 +95,7 @@ void UpdatableBvh::State::rebuild(const Scene& scene, const std::vector<bool>& i
   put_together(scene, std::move(finished));
 }
 
-/// Copies of those that are kept.
+/// Returns copies of the objects that are kept; the others are empty.
 std::vector<FinishedObject> UpdatableBvh::State::separated(const std::vector<bool>& is_kept) const {
   std::vector<FinishedObject> finished(is_kept.size());
   for (std::size_t m = 0; m < is_kept.size(); ++m) {
@@ -137,7 +138,8 @@ ObjectArrays UpdatableBvh::State::arrays_of(std::size_t mesh) const {
           first.textured};
 }
 
-/// The objects that moved and can be refitted; unmarks those that must be built.
+/// Returns the objects that moved and can be refitted. Clears `is_kept` for the objects that must
+/// be rebuilt.
 std::vector<std::size_t> UpdatableBvh::State::sort_objects(const Scene& scene,
                                                            const std::vector<MeshKey>& now,
                                                            std::vector<bool>& is_kept) const {

@@ -28,7 +28,7 @@ constexpr std::size_t kRecord = 0, kBuilder = 1, kNodes = 2, kBlocks = 3, kTextu
 
 using BoxRecord = std::array<float, 6>;
 
-/// An ObjectSummary as plain data, and how the file came about.
+/// An ObjectSummary as plain data, with the key of the object and its build time.
 struct ObjectRecord {
   Checksum key;
   double build_seconds, sah_cost;
@@ -159,7 +159,8 @@ std::optional<CachedObject> read_cached_object(const std::string& folder, const 
   }
 }
 
-// Not waiting for the disk: what a power failure damages is built again.
+// Does not wait until the disk has stored the file: an object whose file a power failure damages is
+// built again.
 void write_cached_object(const std::string& folder, const Checksum& key,
                          const CachedObject& cached) {
   const ObjectRecord record = record_of(cached, key);

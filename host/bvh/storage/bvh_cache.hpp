@@ -24,7 +24,7 @@ struct FinishedObject : ObjectSummary {
 /// The content of a cache file.
 struct CachedObject {
   FinishedObject object;
-  double build_seconds = 0;  ///< that building and prefiltering took
+  double build_seconds = 0;  ///< time to build and prefilter the object
 };
 
 /// Returns an object of `scene` whose arrays are mapped from the file. Returns nothing if there is
@@ -32,7 +32,7 @@ struct CachedObject {
 std::optional<CachedObject> read_cached_object(const std::string& folder, const Checksum& key,
                                                const Scene& scene, std::string& note);
 
-/// Replaces whatever is there. Throws Error failed.
+/// Writes the cache file of an object and replaces an existing one. Throws Error failed.
 void write_cached_object(const std::string& folder, const Checksum& key,
                          const CachedObject& cached);
 

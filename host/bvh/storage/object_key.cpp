@@ -20,7 +20,7 @@ void add_texture(ChecksumStream& key, const Texture& texture) {
   key.add_range(texture.alpha);
 }
 
-/// The texture's index too: textured triangles hold it.
+/// Adds the opacity of the material, the index of its texture, and the texture.
 void add_material(ChecksumStream& key, const Scene& scene, const Material& material) {
   key.add_value(material.alpha_mode);
   key.add_value(material.alpha);
@@ -30,7 +30,7 @@ void add_material(ChecksumStream& key, const Scene& scene, const Material& mater
   if (material.alpha_texture >= 0) add_texture(key, scene.textures[material.alpha_texture]);
 }
 
-/// All but positions.
+/// Adds everything except positions.
 void add_form(ChecksumStream& key, const Scene& scene, const Mesh& mesh) {
   key.add_range(mesh.indices);
   key.add_range(mesh.materials);

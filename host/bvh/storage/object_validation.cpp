@@ -30,7 +30,7 @@ std::uint32_t children_of(const BvhNode& node) {
   return children;
 }
 
-/// One backward sweep, as stack_needed() does of wide trees.
+/// Checks the nodes and the stack size in one backward loop, like stack_needed() for wide trees.
 bool nodes_are_sound(const FinishedObject& object) {
   std::vector<std::uint32_t> needed(object.nodes.size(), 0);
   for (std::size_t n = needed.size(); n-- > 0;) {
@@ -48,7 +48,7 @@ bool nodes_are_sound(const FinishedObject& object) {
   return !needed.empty() && std::min(object.stack, DAPPLE_STACK_SIZE + 1u) == needed[0];
 }
 
-/// Opacities are in [0,1], or indices of textured triangles that are there. False for NaN.
+/// Whether all opacities are in [0,1] or refer to existing textured triangles. False for NaN.
 bool blocks_are_sound(const FinishedObject& object) {
   const float least = -static_cast<float>(object.textured.size());
   const tbb::blocked_range<std::size_t> all(0, object.blocks.size(), 4096);
@@ -65,7 +65,7 @@ bool blocks_are_sound(const FinishedObject& object) {
       [](bool a, bool b) { return a && b; });
 }
 
-/// Radii and opacities that planes and codes of any value can be taken from.
+/// Whether radii and opacities of the blocks are valid. Planes and codes may have any value.
 bool segments_are_sound(const FinishedObject& object) {
   return std::all_of(object.segments.begin(), object.segments.end(), [](const SegmentBlock& block) {
     return block.opacity >= 0.0f && block.opacity <= 1.0f && block.radius >= 0.0f;

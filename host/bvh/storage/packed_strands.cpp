@@ -10,7 +10,7 @@ namespace {
 
 using Segments = std::vector<StrandSegment>;
 
-/// Those of the node's leaves, in slot order.
+/// Sets `segments` to those of the node's leaves, in the order of the slots.
 void gather(const WideTree& tree, const WideNode& node, std::span<const PrimitiveBox> order,
             const Mesh& mesh, const StrandJoints& joints, const std::vector<float>& opacities,
             Segments& segments) {
@@ -24,7 +24,7 @@ void gather(const WideTree& tree, const WideNode& node, std::span<const Primitiv
   }
 }
 
-/// Boxes of the leaves of a node whose blocks are packed.
+/// Computes the boxes of the leaves of a node from its packed blocks.
 void fit_leaves(WideTree& tree, const WideNode& node, std::span<const SegmentBlock> blocks) {
   unsigned next = 0;
   for (std::uint32_t c = 0; c < node.child_count; ++c) {
@@ -37,7 +37,8 @@ void fit_leaves(WideTree& tree, const WideNode& node, std::span<const SegmentBlo
   }
 }
 
-/// Children come after their parents: one backward sweep.
+/// Computes the boxes of inner children and nodes. Children come after their parents, so one
+/// backward loop is enough.
 void fit_nodes(WideTree& tree) {
   for (std::size_t n = tree.nodes.size(); n-- > 0;) {
     WideNode& node = tree.nodes[n];

@@ -1,5 +1,5 @@
-// Packs the segments of a tree's leaves into blocks, and enlarges the tree's boxes to what the
-// quantized blocks hold.
+// Packs the segments of strands in the leaves of a tree into blocks, and fits the boxes of the tree
+// to the quantized segments.
 #pragma once
 
 #include <span>
@@ -15,8 +15,8 @@ struct PackedStrands {
   std::vector<std::uint32_t> first_block;  ///< of each node
 };
 
-/// In slot order, padded to whole blocks a node; `opacities` are the mesh's segments'. The boxes of
-/// `tree` become those of the segments as blocks round them.
+/// Packs in the order of the slots; each node begins a new block. `opacities`: one for each segment
+/// of the mesh. Sets the boxes of `tree` to those of the segments after rounding in blocks.
 PackedStrands pack_strands(WideTree& tree, std::span<const PrimitiveBox> order, const Mesh& mesh,
                            const StrandJoints& joints, const std::vector<float>& opacities);
 

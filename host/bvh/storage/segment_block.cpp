@@ -6,8 +6,8 @@
 namespace dapple {
 namespace {
 
-/// The smallest power of two s, at least 2^-126, with which `size` is at most 65534 steps: one more
-/// is for an origin that is rounded down to a step.
+/// Returns the exponent of the smallest step, a power of two and at least 2^-126, such that `size`
+/// is at most 65534 steps. One more step is reserved: the origin is rounded down to a whole step.
 int step_power(float size) {
   int power = -126;
   if (size > 0.0f) {
@@ -16,7 +16,8 @@ int step_power(float size) {
   return std::clamp(power, -126, 127);
 }
 
-/// Of origins that are whole steps, neighbouring blocks of one step size share their grid.
+/// Chooses the grid of a block around its end points. Origins are whole steps, so that neighbouring
+/// blocks with the same step share a grid.
 void set_grid(SegmentBlock& block, const Box3f& points) {
   const V3f size = points.size();
   const int power = step_power(std::max({size.x, size.y, size.z}));

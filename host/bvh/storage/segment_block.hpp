@@ -8,9 +8,9 @@
 
 namespace dapple {
 
-/// Up to eight segments. Codes are rounded to the nearest, so that what is wrong at one is made
-/// good at others: end points to 1/65535 of the block's largest side, radii and opacities to 1/510
-/// of the block's greatest, which itself is kept as it is.
+/// Packs up to eight segments. Codes are rounded to the nearest, so that errors average out. Errors
+/// are at most 1/65535 of the block's largest side for end points, and 1/510 of the block's maximum
+/// for radii and opacities. The maximum itself is exact.
 SegmentBlock pack_segments(std::span<const StrandSegment> segments);
 
 /// Decodes a lane as kernels do.

@@ -6,11 +6,12 @@
 namespace dapple {
 namespace {
 
-/// Strands that turn by more than a right angle, cosine below this, are cut across: the plane
-/// between the two sides would cut off a long spike.
+/// If a strand turns by more than a right angle (a cosine below this), its segments end in planes
+/// perpendicular to their axes: the plane that halves the angle would make a long spike.
 constexpr float kMinTurnCosine = 0.0f;
 
-/// Change of radius by length up to which neighbouring cones meet well enough in a plane.
+/// Maximum change of radius, relative to length, for which neighbouring cones fit together well
+/// enough at a plane.
 constexpr float kMaxTaper = 0.5f;
 
 V3f axis_of(const Mesh& mesh, std::uint32_t index) {
@@ -23,9 +24,10 @@ float taper_of(const StrandSegment& segment) {
   return std::fabs(segment.radius[1] - segment.radius[0]) / std::max(length, 1e-30f);
 }
 
-/// Half the size of the ellipse in which the plane cuts a cylinder of radius 1, along each axis.
+/// Returns half the size, along each axis, of the ellipse in which the plane cuts a cylinder of
+/// radius 1.
 V3f reach_of_cut(const V3f& axis, const V3f& plane) {
-  const V3f slope = plane / plane.dot(axis) - axis;  // across the axis
+  const V3f slope = plane / plane.dot(axis) - axis;  // perpendicular to the axis
   V3f reach;
   for (int k = 0; k < 3; ++k) {
     V3f across = axis * -axis[k];
@@ -43,7 +45,7 @@ Box3f bounds(const StrandSegment& segment) {
   Box3f box;
   for (int end = 0; end < 2; ++end) {
     const V3f& plane = segment.plane[end];
-    // A mitred end reaches to where the cone may have become wider.
+    // A mitred end extends beyond the end of the axis, where the cone may be wider.
     const float radius = segment.radius[end] / (1.0f - taper);
     const bool cut = !segment.cap[end] && plane.dot(axis) > 0.0f;
     const V3f reach = (cut ? reach_of_cut(axis, plane) : V3f(1.0f)) * radius;
@@ -85,7 +87,7 @@ StrandSegment StrandJoints::segment(const Mesh& mesh, std::uint32_t index) const
     const std::uint32_t other = neighbour(mesh, index, end);
     segment.cap[end] = other == kNone;
     if (segment.cap[end] || other == kMany || flares) continue;
-    // Turned to go the same way along the strand, whichever end it has here.
+    // The axis of the neighbour, reversed if necessary to have the same direction along the strand.
     const bool same_way = mesh.indices[2 * std::size_t{other} + (1 - end)] == at[end];
     const V3f along = axis_of(mesh, other) * (same_way ? 1.0f : -1.0f);
     if (axis.dot(along) > kMinTurnCosine) segment.plane[end] = axis + along;

@@ -7,12 +7,12 @@
 namespace dapple {
 namespace {
 
-/// The finest steps are those of coordinates in [0,1): where textures touch 1, or begin anywhere
-/// else, floats have little more to offer.
+/// Exponent of the smallest step, for coordinates in [0,1). Floats near 1 are only a little more
+/// precise.
 constexpr int kFinestExponent = -21;
 static_assert(DAPPLE_UV_CODES == 1 << -kFinestExponent);
 
-constexpr double kFarthest = 0x1p60;  // floats don't tell tiles apart long before
+constexpr double kFarthest = 0x1p60;  // floats represent single tiles only far below this
 
 using Coordinates = std::array<std::array<double, 2>, 3>;
 
@@ -35,10 +35,10 @@ Coordinates without_whole_tiles(const TexturedCorners& corners, Wrap wrap_s, Wra
   return uv;
 }
 
-/// The finest steps that span a triangle's coordinates.
+/// The smallest steps whose codes span the coordinates of a triangle.
 struct Steps {
   int exponent = kFinestExponent;
-  double origin = 0;  ///< code of 0
+  double origin = 0;  ///< code of coordinate 0
 
   [[nodiscard]] double code(double coordinate) const {
     return std::round(std::ldexp(coordinate, -exponent)) + origin;
@@ -55,7 +55,7 @@ Steps steps_for(const Coordinates& uv) {
 }
 
 std::uint32_t alpha_code(float alpha) {
-  const float inside = alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f;  // of NaN 0
+  const float inside = alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f;  // 0 for NaN
   return static_cast<std::uint32_t>(std::lround(inside * DAPPLE_ALPHA_ONE));
 }
 

@@ -1,5 +1,6 @@
-/* The 8-wide BVH node, two cache lines, and how its quantized boxes are decoded. Object
-   BVHs (leaves: triangles, or segments of strands) and the top-level BVH (leaves: instances) use the same node. */
+/* The 8-wide BVH node of two cache lines with quantized boxes, and functions that decode it. Object
+   BVHs (leaves: triangles, or segments of strands) and the top-level BVH (leaves: instances) use
+   the same node. */
 #ifndef DAPPLE_SHARED_BVH_NODE_H
 #define DAPPLE_SHARED_BVH_NODE_H
 
@@ -11,28 +12,30 @@ namespace dapple {
 
 #define DAPPLE_BVH_WIDTH 8
 
-/* Entries of the traversal stack; the builder refuses trees that could need more. */
+/* Entries of the traversal stack. The builder throws an Error for BVHs that could need more. */
 #define DAPPLE_STACK_SIZE 192
 
-/* Child c spans origin + lower[axis][c] * 2^e .. origin + upper[axis][c] * 2^e per axis.
-   An empty slot has lower 255 and upper 0. Inner children lie one after the other from
-   child_base, in slot order. Leaf children own primitives: slot c those from the leaf end of
-   c - 1 (0 for c = 0) up to its own, counted from prim_base; inner and empty slots own none. */
+/* The box of child c is, on each axis, origin + lower[axis][c] * 2^e .. origin + upper[axis][c] *
+   2^e. An empty slot has lower 255 and upper 0. Inner children are consecutive nodes from
+   child_base on, in slot order. A leaf child in slot c owns the primitives from the leaf end of
+   slot c - 1 (0 for c = 0) to its own leaf end, counted from prim_base. Inner and empty slots own
+   none. */
 typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   float origin[3];
-  uchar exponent[3];     /* biased by 127, as in a float: scale = 2^(exponent - 127) */
-  uchar inner_mask;      /* bit c: child c is a node */
-  uint child_base;       /* index of the first inner child's node */
-  uint prim_base;        /* first block, see below (objects), or first instance (top level) */
+  uchar exponent[3]; /* biased by 127, as in a float: scale = 2^(exponent - 127) */
+  uchar inner_mask;  /* bit c: child c is a node */
+  uint child_base;   /* index of the first inner child's node */
+  uint prim_base;    /* first block, see below (objects), or first instance (top level) */
   uchar lower[3][8];
   uchar upper[3][8];
   uchar depth[3][8];       /* optical depth of child c's quantized box along each axis */
-  uchar leaf_end[8];       /* bits 0 to 5: where its primitives end; 6 and 7: mass concentration */
-  schar correlation[3][8]; /* of its normals' components xy, yz, zx; codes: opacity.h, variance */
+  uchar leaf_end[8];       /* bits 0 to 5: end of child c's primitives; 6, 7: mass concentration */
+  schar correlation[3][8]; /* of its normals' components xy, yz, zx, with its variance class */
 } BvhNode;
 
-/* A node's prim_base with this bit counts segment blocks, all of an object's nodes having it, else
-   triangle blocks. So it does in a block's index, and in the number of a segment that was hit. */
+/* This bit of prim_base is set if the object consists of segments: prim_base is then the index of a
+   segment block, otherwise of a triangle block. The bit has the same meaning in the index of a
+   block and in the number of a hit primitive. */
 #define DAPPLE_SEGMENTS 0x80000000u
 
 DAPPLE_FUNCTION uint bvh_block_index(uint block) { return block & ~DAPPLE_SEGMENTS; }
@@ -41,7 +44,7 @@ DAPPLE_FUNCTION float bvh_scale(uchar exponent) {
   return dapple_bits_to_float((uint)exponent << 23);
 }
 
-#define DAPPLE_MAX_PRIMITIVES 63 /* a node owns */
+#define DAPPLE_MAX_PRIMITIVES 63 /* of the leaf children of one node */
 
 DAPPLE_FUNCTION uint bvh_leaf_end(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
   return (uint)leaf_end[slot] & 63u;
@@ -51,7 +54,7 @@ DAPPLE_FUNCTION uint bvh_leaf_begin(DAPPLE_GLOBAL const uchar* leaf_end, uint sl
   return slot == 0u ? 0u : bvh_leaf_end(leaf_end, slot - 1u);
 }
 
-/* How far what is in child `slot` gathers around its middle, [0,1]: centre_weight(). */
+/* Mass concentration of child `slot` around the centre of its box, [0,1]; for centre_weight(). */
 DAPPLE_FUNCTION float bvh_mass_concentration(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
   return (float)(leaf_end[slot] >> 6) * (1.0f / 3.0f);
 }

@@ -1,5 +1,5 @@
-/* What the leaves and the top level point to: triangle blocks (segments of strands:
-   segment_block.h), opacity textures, materials of textured triangles, instances. */
+/* Records that the leaves of the BVHs refer to: triangle blocks, opacity textures, materials of
+   textured triangles, and instances. Segments of strands are in segment_block.h. */
 #ifndef DAPPLE_SHARED_GEOMETRY_H
 #define DAPPLE_SHARED_GEOMETRY_H
 
@@ -11,9 +11,9 @@
 namespace dapple {
 #endif
 
-/* Eight triangles side by side, one vector lane each: a vertex and the two edges that
-   leave it. opacity in [0,1], or -(1 + index) of a TexturedTriangle. Unused lanes have
-   zero edges and opacity 0: they are never hit. */
+/* Eight triangles, one in each vector lane: a vertex and the two edges that start at it. `opacity`
+   is in [0,1], or it is -(1 + index) of a TexturedTriangle. Unused lanes have zero edges and
+   opacity 0; rays never hit them. */
 typedef struct DAPPLE_CACHE_ALIGNED TriangleBlock {
   float vertex[3][8];
   float edge1[3][8];
@@ -27,34 +27,36 @@ typedef struct DAPPLE_CACHE_ALIGNED TriangleBlock {
 
 /* An 8-bit alpha image inside the texel buffer. */
 typedef struct TextureRecord {
-  uint offset;  /* of its first texel, in 16-byte units, so that 64 GB can be addressed */
+  uint offset; /* of its first texel, in 16-byte units, so that 64 GB can be addressed */
   uint width;
   uint height;
-  uint flags;   /* wrap_s | wrap_t << 2 | nearest << 4 */
+  uint flags; /* wrap_s | wrap_t << 2 | nearest << 4 */
 } TextureRecord;
 
-/* Coarser levels of a texture at most: of 65,536 texels along either axis the last is one. */
+/* The largest number of coarser levels of a texture. With 65,536 texels along an axis, the last
+   level has one. */
 #define DAPPLE_MAX_MIPS 16
 
-/* What textured triangles share: opacity = vertex alpha (interpolated) * alpha * texture alpha,
-   then 1 where >= cutoff and 0 below if cutoff >= 0. Where a footprint covers many texels their
-   mean counts, out of a pyramid (Williams, "Pyramidal Parametrics", 1983): level k, half as wide
-   and high as level k - 1, rounded down, holds mean texture alphas, of a cut-out mean opacities. */
+/* Material of textured triangles: opacity = vertex alpha (interpolated) * alpha * texture alpha. If
+   cutoff >= 0, the opacity is 1 where this product is >= cutoff, else 0. If a footprint covers many
+   texels, their mean is read from a mip pyramid (Williams, "Pyramidal Parametrics", 1983). Level k
+   has half the width and height of level k - 1, rounded down. It holds mean texture alphas, or mean
+   opacities if there is a cutoff. */
 typedef struct MaterialRecord {
-  TextureRecord texture;  /* zeros for none */
-  float alpha;            /* baseColorFactor.a */
-  float cutoff;           /* < 0: blended */
-  uint mips;              /* levels above the texture itself */
+  TextureRecord texture; /* zeros for none */
+  float alpha;           /* baseColorFactor.a */
+  float cutoff;          /* < 0: blended */
+  uint mips;             /* levels above the texture itself */
   uint spare;
-  uint mip_offset[DAPPLE_MAX_MIPS];  /* of level 1 and up, as TextureRecord::offset */
+  uint mip_offset[DAPPLE_MAX_MIPS]; /* of level 1 and up, as TextureRecord::offset */
 } MaterialRecord;
 
-/* A placed object. p_object = to_object * (p_world, 1), rows of a 3x4 matrix; rays keep
-   their parameter t: directions are transformed without normalizing. */
+/* A placed object. p_object = to_object * (p_world, 1), rows of a 3x4 matrix. Rays keep their
+   parameter t, because directions are transformed without normalizing. */
 typedef struct InstanceRecord {
   float to_object[12];
   float to_world[12];
-  float inverse_area_scale; /* 1 / |det of object to world|; see footprint in traverse.clh */
+  float inverse_area_scale; /* 1 / |det of object to world|; see kernels/opacity/footprint.clh */
   uint root;                /* the object's root node */
   uint light;               /* 1 + the mesh light it emits for; 0: none */
   uint spare;

@@ -1,5 +1,5 @@
-/* The little that OpenCL C and C++ spell differently, so that the headers beside this one
-   compile as both. Layout rule: scalars and fixed arrays only, no padding the compiler
+/* Types and macros that differ between OpenCL C and C++, so that the headers of this folder compile
+   as both. Layout rule: structs have only scalars and fixed arrays, and no padding that a compiler
    could choose (tests/device/layout_test.cpp compares sizeof and offsets on the device). */
 #ifndef DAPPLE_SHARED_LANGUAGE_H
 #define DAPPLE_SHARED_LANGUAGE_H
@@ -11,13 +11,14 @@
 #define DAPPLE_GLOBAL __global
 typedef char schar; /* signed in OpenCL C */
 #define DAPPLE_FUNCTION inline
-/* For functions whose vectors would otherwise be passed through memory, and for bodies of loops that are
-   to be vectorized. Not for the triangle tests, which then spill registers: experiment 708. */
+/* For functions whose vectors would otherwise be passed through memory, and for bodies of loops
+   that the compiler should vectorize. Not for the triangle tests, which then spill registers:
+   experiment 708. */
 #define DAPPLE_INLINE __attribute__((always_inline)) inline
-/* For loops over axes, which otherwise keep arrays of vectors in memory: experiment 709. */
+/* For loops over axes. Otherwise their arrays of vectors stay in memory: experiment 709. */
 #define DAPPLE_UNROLL _Pragma("unroll")
-/* For loops over sixteen lanes or more, of scalars that nothing else may point to: without it
-   PoCL's compiler makes vectors of four: experiment 710. */
+/* For loops over sixteen lanes or more, of scalars without aliases. Otherwise PoCL's compiler uses
+   vectors of four: experiment 710. */
 #if defined(__clang__)
 #define DAPPLE_SIXTEEN_LANES _Pragma("clang loop vectorize_width(16) interleave(disable)")
 #else

@@ -1,5 +1,5 @@
-/* A light as the kernels sample it. Radiance stays on the host: kernels make the
-   irradiance of a light of radiance 1, which is then multiplied by its colour. */
+/* A light as the kernels sample it. The kernels compute the irradiance of a light of radiance 1.
+   The host then multiplies it by the light's radiance. */
 #ifndef DAPPLE_SHARED_LIGHT_RECORD_H
 #define DAPPLE_SHARED_LIGHT_RECORD_H
 
@@ -30,13 +30,13 @@ typedef struct LightRecord {
   uint triangle_count;
   uint two_sided;
   uint id;                /* mesh: 1 + index of the light; else 0 */
-  uint environment_first; /* dome: where its floats begin, see kernels/lights/dome.clh */
+  uint environment_first; /* dome: index of its first float, see kernels/lights/dome.clh */
   uint environment_width, environment_height;
   float rotation; /* dome: radians about +Y */
 } LightRecord;
 
-/* A triangle of a mesh light in world space; cumulative is the share of the light's area
-   up to and including it, ascending to 1. */
+/* A triangle of a mesh light in world space. `cumulative` is the sum of the triangles' areas up to
+   and including this one, as a fraction of the light's area; the last one is 1. */
 typedef struct EmitterTriangle {
   float vertex[3];
   float cumulative;

@@ -11,36 +11,37 @@ namespace dapple {
 using std::sqrt;
 #endif
 
-/* Transmittances below this count as 0: the greatest depth stored is -log(1e-4). */
+/* Transmittances below this count as 0. The largest stored depth is -log(1e-4). */
 #define DAPPLE_MIN_TRANSMITTANCE 1e-4f
 #define DAPPLE_GREATEST_DEPTH 9.2103404f
 
-/* In boxes whose mean chord is below this fraction of the distance, chords are not computed: rounding
-   would dominate their length. */
+/* Chords are not computed for boxes whose mean chord is below this fraction of the distance:
+   rounding would dominate the length. */
 #define DAPPLE_THINNEST 3e-5f
 
-/* The distance from the box's centre to the middle of a ray's chord: sum of squares of coordinates in
-   half sizes of the box. Its mean over uniformly distributed rays is 2/3 for rays along an axis and
-   0.70 for diagonal ones. centre_weight() is never below DAPPLE_MIN_CENTRE_WEIGHT. */
+/* Mean of off_centre, the squared distance from the box's centre to the middle of a ray's chord:
+   the sum of squares of its coordinates in half sizes of the box. The mean over uniformly
+   distributed rays is 2/3 for rays along an axis and 0.70 for diagonal rays. centre_weight() is
+   never below DAPPLE_MIN_CENTRE_WEIGHT. */
 #define DAPPLE_MEAN_OFF_CENTRE 0.68f
 #define DAPPLE_MIN_CENTRE_WEIGHT 0.1f
 
-/* Between these two depths a box gradually counts as solid: the length of the ray's chord matters less
-   and less, so that solid boxes do not leak light at their edges. */
+/* Between these two depths a box gradually counts as solid: the length of the ray's chord matters
+   less and less, so that solid boxes do not leak light at their edges. */
 #define DAPPLE_SPARSE_DEPTH 1.0f
 #define DAPPLE_FILLED_DEPTH 3.0f
 
-/* Code c, 0 to 255, means (c / 255)^2 of the greatest depth, so that small depths do not round to
+/* Code c, 0 to 255, means (c / 255)^2 of the largest depth, so that small depths do not round to
    0. */
 DAPPLE_FUNCTION float depth_decode(uchar code) {
   const float root = (float)code * (1.0f / 255.0f);
   return root * root * DAPPLE_GREATEST_DEPTH;
 }
 
-/* Variance class of a child's opacity, stored in the lowest bits of its three correlations. The box,
-   seen along each axis, is divided into 16 x 16 cells. Class c, 0 to 6: the opacities of the cells
-   deviate from their mean by at most 2^(c/2 - 8) (rms), and the squared mean is not larger either;
-   class 7: all others. */
+/* Variance class of a child's opacity, stored in the lowest bits of its three correlations. The
+   projection of the box along each axis is divided into 16 x 16 cells. Class c, 0 to 6: the
+   opacities of the cells deviate from their mean by at most 2^(c/2 - 8) (rms), and the squared mean
+   is not larger either; class 7: all others. */
 #define DAPPLE_NOT_UNIFORM 7u
 #define DAPPLE_MIN_VARIANCE 1.52587890625e-5f /* 2^-16 */
 
@@ -57,8 +58,9 @@ DAPPLE_FUNCTION float box_depth(float depth_x, float depth_y, float depth_z, flo
   const float x = depth_x * facing_x;
   const float y = depth_y * facing_y;
   const float z = depth_z * facing_z;
-  const float square = x * x + y * y + z * z +
-                       2.0f * (correlation_xy * x * y + correlation_yz * y * z + correlation_zx * z * x);
+  const float square =
+      x * x + y * y + z * z +
+      2.0f * (correlation_xy * x * y + correlation_yz * y * z + correlation_zx * z * x);
   return sqrt(square > 0.0f ? square : 0.0f) / (facing_x + facing_y + facing_z + 1e-37f);
 }
 
@@ -69,8 +71,8 @@ DAPPLE_FUNCTION float chord_depth(float depth, float chord) {
   return depth * (chord + filled * (1.0f - chord));
 }
 
-/* Factor of the optical depth of a ray for mass concentration: boxes hold less in their corners than
-   in their middle. off_centre: see DAPPLE_MEAN_OFF_CENTRE. */
+/* Factor of the optical depth of a ray for mass concentration: boxes hold less in their corners
+   than in their middle. off_centre: see DAPPLE_MEAN_OFF_CENTRE. */
 DAPPLE_FUNCTION float centre_weight(float mass_concentration, float off_centre) {
   const float weight = 1.0f + mass_concentration * (DAPPLE_MEAN_OFF_CENTRE - off_centre);
   return weight > DAPPLE_MIN_CENTRE_WEIGHT ? weight : DAPPLE_MIN_CENTRE_WEIGHT;

@@ -1,4 +1,5 @@
-/* One parameter struct a kernel, passed by value. */
+/* Parameters of the kernels, passed by value: one struct for each pass. The host fills them,
+   kernels read them. */
 #ifndef DAPPLE_SHARED_PASS_PARAMS_H
 #define DAPPLE_SHARED_PASS_PARAMS_H
 
@@ -9,14 +10,15 @@
 namespace dapple {
 #endif
 
-/* What every traversal needs to know of the scene. */
+/* Where a traversal of the scene starts. */
 typedef struct SceneParams {
-  uint root;         /* node to start from */
-  uint has_top;      /* 1: root is top-level; 0: it is the only object's, in world space */
+  uint root;    /* index of the root node */
+  uint has_top; /* 1: root is top-level; 0: it is the only object's, in world space */
 } SceneParams;
 
-/* Rays of a batch: they are sorted together and then cut into packets. At most so many rays of one point;
-   so many rays of neighbouring pixels, and small batches at the end of a queue (experiment 304). */
+/* Rays in a ray batch: they are sorted together and then divided into packets. The maximum for the
+   rays of one point; the number for rays of neighbouring pixels; and the number for the small
+   batches at the end of a queue of these (experiment 304). */
 #define DAPPLE_POINT_RAY_BATCH 512u
 #define DAPPLE_PIXEL_RAY_BATCH 1024u
 #define DAPPLE_SMALL_RAY_BATCH 256u
@@ -24,28 +26,31 @@ typedef struct SceneParams {
 typedef struct OcclusionParams {
   SceneParams scene;
   uint ray_count;
-  float footprint;            /* scale, >= 0 */
-  float inverse_distance;     /* AO: 1 / D for the falloff; 0: none */
-  float falloff;              /* AO: the power p; 0: none */
-  uint rays_per_point;        /* packets: rays in a row that share their origin */
-  /* Packets; set by occlusion_pass() and point_ao_pass(). */
-  uint large_batches;          /* of neighbours: the first ones, of DAPPLE_PIXEL_RAY_BATCH rays */
-  uint batches_per_ticket;          /* of points: batches that one ticket stands for */
+  float footprint;        /* scale, >= 0 */
+  float inverse_distance; /* AO: 1 / D for the falloff; 0: none */
+  float falloff;          /* AO: the power p; 0: none */
+  uint rays_per_point;    /* packets: consecutive rays that share their origin */
+  /* The next two are for packets; occlusion_pass() and point_ao_pass() set them. */
+  uint large_batches;      /* pixel packets: number of batches of DAPPLE_PIXEL_RAY_BATCH rays */
+  uint batches_per_ticket; /* point packets: consecutive batches of one ticket */
 } OcclusionParams;
 
-/* Samples of a sample batch: its mean counts once in the sum of squares that variances come from. At least
-   those of one camera ray, as these are correlated. Not two: experiment 517. */
+/* Samples in a sample batch. The squares of the batches' means are summed for the variance
+   estimate. A batch contains all samples of a camera ray, since these are correlated. Not two
+   samples: experiment 517. */
 #define DAPPLE_SAMPLE_BATCH 4u
 
-/* A pixel of the crop (row-major) that is to be sampled, and how many samples it has. */
+/* A pixel that is to be sampled (row-major index in the crop), and the number of samples that it
+   already has. */
 typedef struct PixelWork {
   uint pixel;
   uint first_sample;
 } PixelWork;
 
-/* A slice: `pixel_count` entries of the work list from `first_work`, and of each the samples
-   from first_sample on, counted from its own; item = entry * sample_count + sample. Samples are
-   those of whole camera rays; slices that don't end their pixels' samples are whole batches. */
+/* A slice of the work list: `pixel_count` entries from `first_work` on, with `sample_count` samples
+   of each. first_sample is relative to PixelWork::first_sample. Item = entry * sample_count +
+   sample. A slice has all samples of a camera ray or none. Unless it has the last samples of its
+   pixels, it has whole sample batches. */
 typedef struct SliceParams {
   uint first_work;
   uint pixel_count;
@@ -56,61 +61,62 @@ typedef struct SliceParams {
 typedef struct CameraParams {
   SliceParams slice;
   SceneParams scene;
-  float to_world[12];   /* rows of a 3x4 matrix, column vectors */
-  float half_width;     /* of the image plane: at distance 1, or in metres if orthographic */
+  float to_world[12]; /* rows of a 3x4 matrix, column vectors */
+  float half_width;   /* of the image plane: at distance 1, or in metres if orthographic */
   float half_height;
   uint orthographic;
-  uint width, height;   /* the whole picture, pixels */
+  uint width, height; /* the whole picture, pixels */
   uint crop_x, crop_y;
   uint crop_width;
   uint seed;
-  float inverse_spp;    /* 1 / samples a pixel that were asked for */
-  float texel_share;    /* of a pixel's area that each look-up in a texture averages; 0: none */
-  float tap_offset;      /* as in FilterTaps; 0: no filter taps */
-  float tap_centring;       /* how far the taps' centre moves from the hit to the pixel's centre, [0,1] */
-  float medium_error;     /* by which the opacity of a medium's box in a pixel may deviate; 0: no media */
-  uint splitting_bits;      /* two to these samples in a row share a camera ray */
-  /* Pixels in which the scene may be: columns [left, right), rows [above, below). */
+  float inverse_spp;   /* 1 / samples a pixel that footprints are computed for */
+  float texel_share;   /* part of a pixel's area that a texture lookup averages; 0: none */
+  float tap_offset;    /* as FilterTaps::reach; 0: no filter taps */
+  float tap_centring;  /* shift of the filter taps from the hit to the pixel's centre, [0,1] */
+  float medium_error;  /* allowed deviation of a medium's opacity in a pixel; 0: no media */
+  uint splitting_bits; /* log2 of the number of consecutive samples that share a camera ray */
+  /* Pixels that may show the scene: columns [left, right), rows [above, below). */
   uint seen_left, seen_above, seen_right, seen_below;
 } CameraParams;
 
-/* Rays a point for AO; also for points that no camera made. */
+/* AO rays from points: those that the camera pass found, or those of a caller. */
 typedef struct AoParams {
-  uint point_count;     /* points to shoot from: entries of the active list, if there is one */
-  uint rays;            /* a point */
-  float inverse_count;  /* 1 / (rays asked for to estimate this pixel or point) */
+  uint point_count;    /* entries of the active list; without such a list, points */
+  uint rays;           /* for each point */
+  float inverse_count; /* 1 / (rays for each pixel or point that footprints are computed for) */
   float t_max;
   uint seed;
-  uint whole_sets;      /* a point's rays are all there are for it, its sample being 0: best placed
-                           for that number of them */
+  uint whole_sets; /* 1: a point has no other rays, and its sample is 0. The directions are
+                      then points of a Vogel spiral of that number of points. */
 } AoParams;
 
 typedef struct LightParams {
   uint point_count;
   uint rays;
   float inverse_count;
-  uint light;           /* index of the LightRecord */
+  uint light; /* index of the LightRecord */
   uint seed;
 } LightParams;
 
-/* Sums over the samples of each pixel into 64-bit fixed point planes. scale values are
-   powers of two. */
+/* Adds the samples of each pixel to planes of 64-bit fixed-point numbers. Each scale is a power of
+   two. */
 typedef struct ResolveParams {
   SliceParams slice;
-  uint film_pixels;     /* pixels of a plane */
-  uint plane;           /* first plane to add to */
-  uint rays;            /* rays a sample */
-  uint squares;         /* first of two planes of squares to add to */
-  uint splitting_bits;      /* as in CameraParams */
-  float scale;          /* of unit-range values */
+  uint film_pixels;    /* pixels of a plane */
+  uint plane;          /* first plane to add to */
+  uint rays;           /* rays a sample */
+  uint squares;        /* first of two planes of squares to add to */
+  uint splitting_bits; /* as in CameraParams */
+  float scale;         /* of values in [0,1] */
   float position_scale;
   float depth_scale;
-  float axis[3];        /* viewing axis, unit */
+  float axis[3]; /* viewing axis, unit */
   float eye[3];
 } ResolveParams;
 
 #ifndef __OPENCL_VERSION__
-static_assert(DAPPLE_SAMPLE_BATCH % DAPPLE_MAX_CAMERA_SPLITTING == 0, "batches are whole camera rays");
+static_assert(DAPPLE_SAMPLE_BATCH % DAPPLE_MAX_CAMERA_SPLITTING == 0,
+              "batches are whole camera rays");
 }  // namespace dapple
 #endif
 

@@ -14,15 +14,15 @@ typedef struct Ray {
   float origin[3];
   float t_max;
   float direction[3];
-  float solid_angle;  /* steradians, [0, 2 pi] */
-  float first_area;   /* square metres */
-  uint light;         /* 1 + the mesh light this ray is aimed at; 0: none */
-  float weight;       /* factor of the ray's transmittance in its pass */
-  uint key;           /* random bits: closest_hit.cl, footprint_spread() */
+  float solid_angle; /* steradians, [0, 2 pi] */
+  float first_area;  /* square metres */
+  uint light;        /* 1 + the mesh light this ray is aimed at; 0: none */
+  float weight;      /* factor of the ray's transmittance in its pass */
+  uint key;          /* random bits: closest_hit.cl, footprint_spread() */
 } Ray;
 
-/* Random scale of a ray's footprint, 1/2 to 2. A node becomes covered for some rays before others, so
-   that nothing pops as the camera moves. */
+/* Random scale of a ray's footprint, 1/2 to 2. A node becomes covered for some rays before others,
+   so that nothing pops as the camera moves. */
 DAPPLE_FUNCTION float footprint_spread(uint key) {
   const float root = 0.70710678f * (1.0f + (float)(key >> 8) * (1.0f / 16777216.0f));
   return root * root;
@@ -30,8 +30,8 @@ DAPPLE_FUNCTION float footprint_spread(uint key) {
 
 /* Result of an occlusion ray. */
 typedef struct Occlusion {
-  float transmittance;  /* [0,1] */
-  uint visits;          /* nodes visited | triangles tested << 16, each clamped to 65535 */
+  float transmittance; /* [0,1] */
+  uint visits;         /* nodes visited | triangles tested << 16, each clamped to 65535 */
 } Occlusion;
 
 /* Camera rays that one work-item of the camera pass traces as a packet. */
@@ -43,7 +43,7 @@ typedef struct Occlusion {
 /* The largest number of samples that share a camera ray; a power of two. */
 #define DAPPLE_MAX_CAMERA_SPLITTING 4u
 
-/* Consecutive items of one ticket: neighbours read mostly the same memory. */
+/* Consecutive items of one ticket; neighbouring items read mostly the same memory. */
 #define DAPPLE_ITEMS_PER_TICKET 4u
 
 /* Number of samples in a SampleHits. */
@@ -51,10 +51,10 @@ typedef struct Occlusion {
 
 /* Results of DAPPLE_HIT_BITS consecutive samples of a slice. */
 typedef struct SampleHits {
-  uint hits;        /* bit i: sample i of these hit a surface */
-  uint first_slot;  /* index of the first hit among all hits of the slice */
-  /* Of the work-item that traced the samples: nodes that its packet visited, and tests of a ray with a
-     triangle or segment. */
+  uint hits;       /* bit i: sample i of the record hit a surface */
+  uint first_slot; /* index of the first hit among all hits of the slice */
+  /* Totals of the work-item that traced the samples: nodes that its packet visited, and tests of a
+     ray with a triangle or segment. */
   uint visits, tests;
 } SampleHits;
 
@@ -62,12 +62,12 @@ typedef struct SampleHits {
 typedef struct SurfacePoint {
   float position[3];
   float t;
-  float normal[3];   /* geometric, unit, turned to the viewer */
-  float offset;      /* how far rays must start along the normal to clear rounding */
-  float area;        /* square metres across the ray that the pixel's share covers */
-  uint pixel;        /* index in the whole picture, row-major; seeds the random numbers */
-  uint sample;       /* number of the sample in its pixel */
-  uint visits;       /* as in Occlusion, of closest_hits(); 0 of camera rays */
+  float normal[3]; /* geometric, unit, turned to the viewer */
+  float offset;    /* metres along the normal to the origins of rays; exceeds rounding errors */
+  float area;      /* square metres across the ray that the pixel's share covers */
+  uint pixel;      /* index in the whole picture, row-major; seeds the random numbers */
+  uint sample;     /* number of the sample in its pixel */
+  uint visits;     /* as in Occlusion, of closest_hits(); 0 of camera rays */
 } SurfacePoint;
 
 #ifndef __OPENCL_VERSION__

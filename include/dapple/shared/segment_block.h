@@ -1,11 +1,11 @@
-/* Segments of strands, as leaves hold them, and how they are decoded. host/bvh/storage/segment_block.cpp
-   encodes.
+/* Blocks of segments of strands, and functions that decode them.
+   host/bvh/storage/segment_block.cpp encodes them.
 
-   A segment is the side of a cone (its axis between two end points, a radius at each) between two
-   planes through the end points. Where segments of a strand meet, both have the plane that halves
-   the angle between them, so that they neither overlap nor gape. A ray is stopped where it enters:
-   once for each crossing of the strand, as by the hits of Embree's round linear curves that face
-   it, and never by the strand it starts from. Where a strand ends, there is half a sphere (a cap). */
+   A segment is the side of a cone (an axis between two end points, a radius at each) between two
+   planes through the end points. Two consecutive segments share the plane that bisects the angle
+   between them, so that they leave no gap and do not overlap. A ray hits a segment where it enters:
+   once for each crossing of the strand, and never the strand that it starts from. These are the
+   front-facing hits of Embree's round linear curves. A strand ends in half a sphere (a cap). */
 #ifndef DAPPLE_SHARED_SEGMENT_BLOCK_H
 #define DAPPLE_SHARED_SEGMENT_BLOCK_H
 
@@ -15,19 +15,19 @@
 namespace dapple {
 #endif
 
-/* Eight segments side by side, one vector lane each, in three cache lines. End points lie on a grid
-   of the block's own. Unused lanes are all zeros and owned by no leaf. */
+/* Eight segments, one in each vector lane, in three cache lines. End points are on a grid that
+   belongs to the block. Unused lanes are all zeros, and no leaf owns them. */
 typedef struct DAPPLE_CACHE_ALIGNED SegmentBlock {
-  float origin[3];       /* of the grid */
-  uchar exponent;        /* of its step, biased by 127 as in a float */
-  uchar begin_caps;      /* bit l: segment l begins its strand */
-  uchar end_caps;        /* bit l: it ends it */
+  float origin[3];  /* of the grid */
+  uchar exponent;   /* of the grid's step, biased by 127 as in a float */
+  uchar begin_caps; /* bit l: segment l is the first of its strand */
+  uchar end_caps;   /* bit l: segment l is the last of its strand */
   uchar spare;
-  float radius;          /* of code 255, metres in object space */
-  float opacity;         /* of code 255, [0,1] */
-  ushort begin[3][8];    /* steps from the origin */
+  float radius;       /* of code 255, metres in object space */
+  float opacity;      /* of code 255, [0,1] */
+  ushort begin[3][8]; /* steps from the origin */
   ushort end[3][8];
-  schar begin_plane[3][8];  /* normals of any length, towards the end of the strand */
+  schar begin_plane[3][8]; /* normals of any length, towards the end of the strand */
   schar end_plane[3][8];
   uchar begin_radius[8];
   uchar end_radius[8];
@@ -41,7 +41,7 @@ DAPPLE_FUNCTION float segment_step(DAPPLE_GLOBAL const SegmentBlock* block) {
   return dapple_bits_to_float((uint)block->exponent << 23);
 }
 
-/* What the codes of radii and opacities are multiplied by. */
+/* Factors that decode radii and opacities. */
 DAPPLE_FUNCTION float segment_radius_step(DAPPLE_GLOBAL const SegmentBlock* block) {
   return block->radius * (1.0f / 255.0f);
 }

@@ -1,6 +1,6 @@
 /* A triangle with varying opacity in 24 bytes: texture coordinates, vertex alphas, a material index
-   and the size of a texel. The functions decode them; host/bvh/storage/textured_triangle.cpp encodes
-   them. */
+   and the size of a texel. The functions and macros decode them;
+   host/bvh/storage/textured_triangle.cpp encodes them. */
 #ifndef DAPPLE_SHARED_TEXTURED_TRIANGLE_H
 #define DAPPLE_SHARED_TEXTURED_TRIANGLE_H
 
@@ -10,11 +10,11 @@
 namespace dapple {
 #endif
 
-/* Each corner has two words, for u and v. The upper 21 bits of a word are the coordinate, in steps of
-   a power of two that all six coordinates share. The lower 11 bits of the first word are the upper
-   bits of the vertex alpha. The second word continues with the lowest bit of the alpha, and then
-   holds bits 0 to 9 of the material index (corner 0), bits 10 to 14 of it and above them the size of
-   a texel (corner 1), or the step and three flags (corner 2).
+/* Each corner has two words, for u and v. The upper 21 bits of a word are the coordinate, in steps
+   of a power of two that all six coordinates share. The lower 11 bits of the first word are the
+   upper bits of the vertex alpha. The second word continues with the lowest bit of the alpha, and
+   then holds bits 0 to 9 of the material index (corner 0), bits 10 to 14 of it and above them the
+   size of a texel (corner 1), or the step and three flags (corner 2).
 
    Corners are stored, not edges, so that neighbouring triangles agree at shared vertices. 16 bits
    would move textures by up to 1/64 of a texel. */
@@ -41,8 +41,8 @@ DAPPLE_FUNCTION uint has_texture(DAPPLE_GLOBAL const TexturedTriangle* triangle)
   return triangle->corner[2][1] & DAPPLE_HAS_TEXTURE;
 }
 
-/* The macros take words or vectors of words: `first` and `second` are the words of a corner, `last` is
-   the second word of corner 2. */
+/* The macros take words or vectors of words: `first` and `second` are the words of a corner, `last`
+   is the second word of corner 2. */
 
 /* The material index, from the second words of corners 0 and 1. */
 #define DAPPLE_MATERIAL_NUMBER(of_corner_0, of_corner_1) \
