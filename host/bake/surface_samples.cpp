@@ -2,49 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace dapple {
 namespace {
 
-constexpr int kMinRays = 16;
-
-/// A point of a quadrature rule: barycentric coordinates and the share of the area.
-struct RulePoint {
-  float a, b, c, weight;
-};
-
-/// Rules of 1, 3, 6 and 12 points, exact for polynomials of degree 1, 2, 4 and 6 (Dunavant, "High
-/// Degree Efficient Symmetrical Gaussian Quadrature Rules for the Triangle", 1985).
-std::span<const RulePoint> rule(int points) {
-  static constexpr RulePoint kOne[] = {{1 / 3.0f, 1 / 3.0f, 1 / 3.0f, 1}};
-  static constexpr RulePoint kThree[] = {{2 / 3.0f, 1 / 6.0f, 1 / 6.0f, 1 / 3.0f},
-                                         {1 / 6.0f, 2 / 3.0f, 1 / 6.0f, 1 / 3.0f},
-                                         {1 / 6.0f, 1 / 6.0f, 2 / 3.0f, 1 / 3.0f}};
-  constexpr float kA = 0.816847572980459f, kB = 0.091576213509771f, kAreaA = 0.109951743655322f;
-  constexpr float kC = 0.108103018168070f, kD = 0.445948490915965f, kAreaC = 0.223381589678011f;
-  static constexpr RulePoint kSix[] = {{kA, kB, kB, kAreaA}, {kB, kA, kB, kAreaA},
-                                       {kB, kB, kA, kAreaA}, {kC, kD, kD, kAreaC},
-                                       {kD, kC, kD, kAreaC}, {kD, kD, kC, kAreaC}};
-  constexpr float kE = 0.501426509658179f, kF = 0.249286745170910f, kAreaE = 0.116786275726379f;
-  constexpr float kG = 0.873821971016996f, kH = 0.063089014491502f, kAreaG = 0.050844906370207f;
-  constexpr float kI = 0.053145049844817f, kJ = 0.310352451033784f, kK = 0.636502499121399f,
-                  kAreaI = 0.082851075618374f;
-  static constexpr RulePoint kTwelve[] = {
-      {kE, kF, kF, kAreaE}, {kF, kE, kF, kAreaE}, {kF, kF, kE, kAreaE}, {kG, kH, kH, kAreaG},
-      {kH, kG, kH, kAreaG}, {kH, kH, kG, kAreaG}, {kI, kJ, kK, kAreaI}, {kI, kK, kJ, kAreaI},
-      {kJ, kI, kK, kAreaI}, {kJ, kK, kI, kAreaI}, {kK, kI, kJ, kAreaI}, {kK, kJ, kI, kAreaI}};
-  if (points < 3) return kOne;
-  if (points < 6) return kThree;
-  if (points < 12) return kSix;
-  return kTwelve;
-}
+constexpr int kMaxSamples = 64;  ///< of a triangle, when the number of rays is given
 
 }  // namespace
 
 SampleCounts sample_counts(int rays) {
-  const int points = static_cast<int>(rule(rays / kMinRays).size());
-  return {points, rays / points};
+  const int samples = std::clamp(rays / kRaysPerSample, 1, kMaxSamples);
+  return {samples, rays / samples};
 }
 
 bool is_two_sided(const Material& material, BakeSides sides) {
@@ -61,24 +29,45 @@ std::uint32_t hash_of(std::uint32_t a, std::uint32_t b) {
   return x ^ x >> 15;
 }
 
-void sample_triangle(const Mesh& mesh, std::size_t triangle, const VertexGroups& groups,
-                     bool two_sided, int points, std::vector<SurfaceSample>& samples) {
+// Each base-4 digit chooses a quarter of the triangle: the one in the middle, which is turned
+// round, or the one at a corner.
+std::array<float, 3> triangle_point(std::uint32_t index) {
+  std::array<float, 3> point{1 / 3.0f, 1 / 3.0f, 1 / 3.0f};
+  float size = 0.5f;
+  for (; index > 0; index >>= 2) {
+    const std::uint32_t digit = index & 3;
+    if (digit == 0) {
+      size = -size;
+    } else {
+      // The centre of the quarter at the corner, from the centre of the whole.
+      for (std::uint32_t k = 0; k < 3; ++k)
+        point[k] += size * ((k + 1 == digit ? 1.0f : 0.0f) - 1 / 3.0f);
+    }
+    size *= 0.5f;
+  }
+  return point;
+}
+
+bool has_area(const Mesh& mesh, std::size_t triangle) {
+  const float twice_area = area_vector(mesh, triangle).length();
+  return twice_area > 0 && std::isfinite(twice_area);
+}
+
+SurfaceSample sample_triangle(const Mesh& mesh, std::size_t triangle, const VertexGroups& groups,
+                              bool two_sided, std::uint32_t index) {
   const V3f cross = area_vector(mesh, triangle);
   const float twice_area = cross.length();
-  if (!(twice_area > 0) || !std::isfinite(twice_area)) return;
   const std::uint32_t* corner = &mesh.indices[3 * triangle];
-  for (const RulePoint& point : rule(points)) {
-    const std::array<float, 3> barycentric{point.a, point.b, point.c};
-    SurfaceSample sample;
-    sample.normal = cross / twice_area;
-    sample.two_sided = two_sided;
-    for (std::size_t k = 0; k < 3; ++k) {
-      sample.position += mesh.positions[corner[k]] * barycentric[k];
-      sample.group[k] = groups.of_vertex[corner[k]];
-      sample.weight[k] = twice_area * point.weight * barycentric[k];
-    }
-    samples.push_back(sample);
+  const std::array<float, 3> barycentric = triangle_point(index);
+  SurfaceSample sample;
+  sample.normal = cross / twice_area;
+  sample.back = two_sided;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sample.position += mesh.positions[corner[k]] * barycentric[k];
+    sample.group[k] = groups.of_vertex[corner[k]];
+    sample.weight[k] = twice_area * barycentric[k];
   }
+  return sample;
 }
 
 std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, const VertexGroups& groups,
@@ -92,16 +81,16 @@ std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, const VertexGroups&
       // The two sides of a folded sheet would cancel.
       sample.normal += sample.normal.dot(area) < 0 ? -area : area;
       sample.position = mesh.positions[vertex];
-      sample.two_sided = sample.two_sided || two_sided_triangles[t];
+      sample.back = sample.back || two_sided_triangles[t];
       sample.group[0] = groups.of_vertex[vertex];
-      sample.weight[0] = 1;
     }
   }
-  std::erase_if(of_group, [](SurfaceSample& sample) {
+  for (SurfaceSample& sample : of_group) {
     const float length = sample.normal.length();
-    sample.normal /= length > 0 ? length : 1.0f;
-    return !(length > 0) || !std::isfinite(length);
-  });
+    if (!(length > 0) || !std::isfinite(length)) continue;
+    sample.normal /= length;
+    sample.weight[0] = 1;
+  }
   return of_group;
 }
 

@@ -1,5 +1,5 @@
 // Points on the triangles of a mesh from which rays start, and how much each counts for the
-// vertices around it. In: a mesh with its vertex groups. Out: samples, triangle by triangle.
+// vertices around it. In: a mesh with its vertex groups. Out: samples.
 #pragma once
 
 #include <array>
@@ -11,35 +11,45 @@
 
 namespace dapple {
 
+/// Rays of one sample. So few have wide footprints, and the many samples that they leave average
+/// what is near the surface: experiment 616.
+inline constexpr int kRaysPerSample = 8;
+
 /// A point of the surface in object space.
 struct SurfaceSample {
   V3f position{0, 0, 0};
-  V3f normal{0, 0, 0};  ///< unit length, on the front side
-  bool two_sided = false;
+  V3f normal{0, 0, 0};                   ///< unit length, on the front side
+  bool front = true, back = false;       ///< sides that are traced
   std::array<std::uint32_t, 3> group{};  ///< vertex groups that the sample counts for
   std::array<float, 3> weight{};         ///< area times barycentric coordinate; 0: does not count
 };
 
-/// Points and rays of each triangle.
+/// Samples of each triangle and rays of each sample and side.
 struct SampleCounts {
-  int points = 1;
-  int rays = 16;  ///< of a point and side
+  int samples = 1;
+  int rays = kRaysPerSample;
 };
 
-/// Divides the rays of a triangle's side over one, three, six or twelve points, sixteen rays each
-/// at least.
+/// Divides the rays of a triangle's side over 64 samples at most, of kRaysPerSample rays at least.
 SampleCounts sample_counts(int rays);
 
 /// Whether values of a triangle with this material describe both sides.
 bool is_two_sided(const Material& material, BakeSides sides);
 
-/// Appends the samples of a triangle, the points of a quadrature rule: values that are linear over
-/// the triangle are averaged without an error. None for a triangle without an area.
-void sample_triangle(const Mesh& mesh, std::size_t triangle, const VertexGroups& groups,
-                     bool two_sided, int points, std::vector<SurfaceSample>& samples);
+/// Barycentric coordinates of point `index` of the triangular van der Corput sequence, whose first
+/// 4^k points lie in different ones of 4^k equal parts (Basu and Owen, "Low Discrepancy
+/// Constructions in the Triangle", 2015).
+std::array<float, 3> triangle_point(std::uint32_t index);
+
+/// Whether the triangle has a positive, finite area. Others have no samples.
+bool has_area(const Mesh& mesh, std::size_t triangle);
+
+/// Sample `index` of a triangle that has an area.
+SurfaceSample sample_triangle(const Mesh& mesh, std::size_t triangle, const VertexGroups& groups,
+                              bool two_sided, std::uint32_t index);
 
 /// One sample for each vertex group, with the mean normal of the triangles around it. Groups
-/// without such triangles are left out.
+/// without such triangles have weight 0.
 std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, const VertexGroups& groups,
                                            const std::vector<bool>& two_sided_triangles);
 

@@ -1,10 +1,13 @@
 #include "bake/vertex_groups.hpp"
 
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <compare>
 #include <numeric>
 
 namespace dapple {
@@ -28,16 +31,22 @@ std::vector<V3f> vertex_normals(const Mesh& mesh) {
   return normals;
 }
 
-bool same_position(const V3f& a, const V3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+/// A vertex and its position as bits, which compare fast.
+struct PlacedVertex {
+  std::array<std::uint32_t, 3> position;
+  std::uint32_t vertex;
+  auto operator<=>(const PlacedVertex&) const = default;
+};
 
 /// Orders positions by their bits, equal ones by vertex.
-std::vector<std::uint32_t> order_by_position(const std::vector<V3f>& positions) {
-  std::vector<std::uint32_t> order(positions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  tbb::parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const int compared = std::memcmp(&positions[a], &positions[b], sizeof(V3f));
-    return compared != 0 ? compared < 0 : a < b;
+std::vector<PlacedVertex> order_by_position(const std::vector<V3f>& positions) {
+  std::vector<PlacedVertex> order(positions.size());
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
+    order[i] = {std::bit_cast<std::array<std::uint32_t, 3>>(
+                    std::array<float, 3>{positions[i].x, positions[i].y, positions[i].z}),
+                static_cast<std::uint32_t>(i)};
   });
+  tbb::parallel_sort(order.begin(), order.end());
   return order;
 }
 
@@ -57,20 +66,23 @@ V3f area_vector(const Mesh& mesh, std::size_t triangle) {
 
 VertexGroups group_vertices(const Mesh& mesh, bool two_sided) {
   const std::vector<V3f> normals = vertex_normals(mesh);
-  const std::vector<std::uint32_t> order = order_by_position(mesh.positions);
+  const std::vector<PlacedVertex> order = order_by_position(mesh.positions);
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> first(mesh.positions.size(), kNone);  // vertex that began the group
   const auto similar = [&](std::uint32_t a, std::uint32_t b) {
     const float cosine = normals[a].dot(normals[b]);
     return (two_sided ? std::fabs(cosine) : cosine) >= kSimilar;
   };
+  std::vector<std::uint32_t> firsts;  // few: the sides of an edge or corner
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    while (end < order.size() &&
-           same_position(mesh.positions[order[begin]], mesh.positions[order[end]]))
-      ++end;
-    std::vector<std::uint32_t> firsts;  // few: the sides of an edge or corner
+    while (end < order.size() && order[begin].position == order[end].position) ++end;
+    if (end == begin + 1) {
+      first[order[begin].vertex] = order[begin].vertex;
+      continue;
+    }
+    firsts.clear();
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t vertex = order[i];
+      const std::uint32_t vertex = order[i].vertex;
       // Only the last ones are searched, so that no file makes this quadratic.
       const auto begin_search = static_cast<std::ptrdiff_t>(firsts.size()) > kMaxSearched
                                     ? firsts.end() - kMaxSearched

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -49,6 +50,11 @@ struct Seconds {
   double load = 0, write = 0, total = 0;
 };
 
+/// Root mean square of the standard errors of the values at vertices.
+double standard_error(const BakeStatistics& s) {
+  return s.vertices > 0 ? std::sqrt(s.squared_errors / static_cast<double>(s.vertices)) : 0.0;
+}
+
 void write_statistics(const BakeStatistics& s, const Seconds& seconds, const std::string& path) {
   const nlohmann::ordered_json json = {{"seconds",
                                         {{"load", seconds.load},
@@ -61,6 +67,7 @@ void write_statistics(const BakeStatistics& s, const Seconds& seconds, const std
                                        {"vertices", s.vertices},
                                        {"points", s.points},
                                        {"rays", s.rays},
+                                       {"standard_error", standard_error(s)},
                                        {"hidden_vertices", s.hidden_vertices},
                                        {"device", s.device},
                                        {"notes", s.notes}};
@@ -75,6 +82,8 @@ void print_summary(const BakeStatistics& s, const Seconds& seconds, const std::s
       s.triangles, s.vertices, s.rays, s.points,
       s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
       seconds.load, s.seconds.build, s.seconds.trace, seconds.write, seconds.total);
+  if (s.vertices > 0)
+    fmt::print("standard error of a vertex's AO {:.3f} (root mean square)\n", standard_error(s));
   if (s.hidden_vertices > 0)
     fmt::print("{} vertices lie inside closed geometry and have their neighbours' values\n",
                s.hidden_vertices);

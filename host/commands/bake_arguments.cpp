@@ -40,8 +40,11 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
       ->capture_default_str();
   app.add_option("--blend", a.blend, "With a colour that is there: multiply or replace")
       ->capture_default_str();
-  app.add_option("--rays", o.rays, "Rays of each triangle, on each side that counts")
-      ->capture_default_str();
+  app.add_option("--target-error", a.target_error,
+                 "Trace rays until the standard error of each value is this [0.04]");
+  app.add_option("--rays", a.rays,
+                 "Trace this number of rays for each triangle and side, without a target; with "
+                 "--target-error, at most this number");
   app.add_option("--at", a.at,
                  "triangles: rays start all over the triangles around a vertex; vertices: at the "
                  "vertex alone")
@@ -104,6 +107,9 @@ BakeOptions to_options(const BakeArguments& a) {
       "--instances", a.instances,
       {{"together", BakeInstances::together}, {"alone", BakeInstances::alone}});
   choice<bool>("--blend", a.blend, {{"multiply", true}, {"replace", false}});
+  if (a.rays) o.rays = *a.rays;
+  if (a.rays) o.target_error = 0;
+  if (a.target_error) o.target_error = *a.target_error;
   o.estimator = parse_estimator(a.estimator);
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   if (instance && o.bent)

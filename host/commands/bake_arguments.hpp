@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct BakeArguments {
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";
   std::vector<std::string> opacity, occluders;
   SceneOptions scene_options;
+  std::optional<int> rays;
+  std::optional<float> target_error;
   BakeOptions options;
   bool quiet = false;
 };

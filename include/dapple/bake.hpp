@@ -32,11 +32,13 @@ struct BakeOptions {
   bool vertices = true;    ///< bake values at vertices
   bool instances = false;  ///< bake a value for each instance
   bool bent = false;       ///< bent normals too, at vertices
-  int rays = 192;  ///< of each triangle and side (at_vertices: vertex and side), [16, 65536]
+  /// Standard error of each value to aim at, [0,1]; 0: `rays` for every value.
+  float target_error = 0.04f;
+  /// Of each triangle and side (at_vertices: vertex and side), [8, 65536]; with a target, at most.
+  int rays = 1024;
   Estimator estimator = Estimator::prefiltered;
-  /// As RenderOptions::footprint, for the rays of one point. A smaller scale than there is enough,
-  /// because a triangle has rays from several points.
-  float footprint = 0.5f;
+  /// As RenderOptions::footprint, for the rays of one point.
+  float footprint = 1.2f;
   float distance = 0;        ///< metres; surfaces farther away do not occlude; 0: no limit
   float falloff = 0;         ///< as RenderOptions::ao_falloff
   bool at_vertices = false;  ///< rays start at the vertices, not from points of the triangles
@@ -64,6 +66,7 @@ struct BakeStatistics {
   } seconds;
   std::size_t triangles = 0, vertices = 0, points = 0;
   std::uint64_t rays = 0;
+  double squared_errors = 0;  ///< of AO at vertices, estimated; the sum over `vertices`
   std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
   std::string device;
   std::vector<std::string> notes;

@@ -37,6 +37,7 @@ std::size_t vertex_near(const Mesh& mesh, const V3f& point) {
 
 BakeOptions many_rays() {
   BakeOptions options;
+  options.target_error = 0;
   options.rays = 8192;
   options.estimator = Estimator::exact;
   return options;
@@ -72,15 +73,20 @@ TEST(Bake, AnOpenPlaneSeesTheWholeSkyAndItsBentNormalIsItsOwn) {
   plane.meshes = {grid(2, 0, 4)};
   plane.instances.resize(1);
   plane.instances[0].to_world.rotate(V3f(0.3f, 0.2f, 0.1f));
-  BakeOptions options;
-  options.bent = true;
-  const BakeResult result = bake(plane, options);
-  for (std::size_t v = 0; v < result.meshes.at(0).ao.size(); ++v) {
-    // Of thousands of rays one in the plane itself may hit a neighbour, by rounding.
-    EXPECT_NEAR(result.meshes[0].ao[v], 1, 0.001) << v;
-    EXPECT_GT(result.meshes[0].bent[v].dot(V3f(0, 1, 0)), 0.999f) << "in object space";
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    BakeOptions options;
+    options.estimator = estimator;
+    options.bent = true;
+    const BakeResult result = bake(plane, options);
+    // Exact: one ray in the plane itself may hit a neighbour, by rounding. Prefiltered: grazing
+    // rays meet covered nodes of the plane.
+    const double tolerance = estimator == Estimator::exact ? 0.001 : 0.025;
+    for (std::size_t v = 0; v < result.meshes.at(0).ao.size(); ++v) {
+      EXPECT_NEAR(result.meshes[0].ao[v], 1, tolerance) << v;
+      EXPECT_GT(result.meshes[0].bent[v].dot(V3f(0, 1, 0)), 0.99f) << "in object space";
+    }
+    EXPECT_EQ(result.statistics.hidden_vertices, 0u);
   }
-  EXPECT_EQ(result.statistics.hidden_vertices, 0u);
 }
 
 // A small leaf that lies on a table: its lower side is dark, its upper side is not.
@@ -183,7 +189,9 @@ TEST(Bake, TheSameArgumentsGiveTheSameBits) {
 
 TEST(Bake, DefaultsAreWithinThreeHundredthsOfExactWithManyRays) {
   const Scene tree = make_procedural("scene:tree?leaves=5000");
-  const BakeResult found = bake(tree), truth = bake(tree, many_rays());
+  BakeOptions exact = many_rays();
+  exact.rays = 2048;
+  const BakeResult found = bake(tree), truth = bake(tree, exact);
   double square = 0, sum = 0;
   std::size_t count = 0;
   for (std::size_t m = 0; m < found.meshes.size(); ++m) {
@@ -196,7 +204,32 @@ TEST(Bake, DefaultsAreWithinThreeHundredthsOfExactWithManyRays) {
   const auto n = static_cast<double>(count);
   std::printf("baked tree: RMSE %.4f, mean %+.4f\n", std::sqrt(square / n), sum / n);
   EXPECT_LT(std::sqrt(square / n), 0.03);
-  EXPECT_LT(std::fabs(sum / n), 0.005);
+  EXPECT_LT(std::fabs(sum / n), 0.006);
+  const BakeStatistics& s = found.statistics;
+  const double estimated = std::sqrt(s.squared_errors / static_cast<double>(s.vertices));
+  EXPECT_NEAR(estimated, std::sqrt(square / n), 0.008);
+}
+
+TEST(Bake, ASmallerTargetErrorTakesMoreRaysAndASmallerErrorIsLeft) {
+  const Scene tree = make_procedural("scene:tree?leaves=500");
+  const auto bake_to = [&](float target) {
+    BakeOptions options;
+    options.target_error = target;
+    return bake(tree, options).statistics;
+  };
+  const BakeStatistics rough = bake_to(0.08f), fine = bake_to(0.02f);
+  EXPECT_GT(fine.rays, 2 * rough.rays);
+  EXPECT_LT(fine.squared_errors, rough.squared_errors / 4);
+}
+
+TEST(Bake, WithATargetRaysAreTheLimitOfATriangle) {
+  const Scene tree = make_procedural("scene:tree?leaves=500");
+  BakeOptions options;
+  options.target_error = 1e-4f;
+  options.rays = 64;
+  const BakeStatistics s = bake(tree, options).statistics;
+  EXPECT_LE(s.rays, s.triangles * 2 * 64);
+  EXPECT_GT(s.rays, s.triangles * 32);
 }
 
 TEST(Bake, StopsWhenAskedAndRefusesValuesOutOfRange) {
@@ -204,7 +237,7 @@ TEST(Bake, StopsWhenAskedAndRefusesValuesOutOfRange) {
   RenderControl control;
   control.stop = [] { return true; };
   EXPECT_TRUE(bake(tree, {}, control).interrupted);
-  for (const int rays : {0, 15, 65537}) {
+  for (const int rays : {0, 7, 65537}) {
     BakeOptions options;
     options.rays = rays;
     EXPECT_THROW(bake(tree, options), Error) << rays;

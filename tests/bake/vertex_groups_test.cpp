@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "bake/surface_samples.hpp"
 
@@ -69,47 +71,45 @@ TEST(VertexGroups, ManyVerticesAtOnePointTakeLinearTime) {
   EXPECT_GT(group_vertices(mesh, false).count, 2 * std::size_t{kCount} / 2);
 }
 
-// A polynomial of degree `d` in x and y over the triangle (0,0) (1,0) (0,1): its integral is
-// i! j! / (i + j + 2)!.
-double integral(int i, int j) {
-  return std::tgamma(i + 1) * std::tgamma(j + 1) / std::tgamma(i + j + 3);
-}
-
-TEST(SurfaceSamples, IntegratePolynomialsUpToTheRulesDegreeExactly) {
-  const Mesh mesh = triangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-  const VertexGroups groups = group_vertices(mesh, false);
-  for (const auto& [points, degree] : {std::pair{1, 1}, {3, 2}, {6, 4}, {12, 6}}) {
-    std::vector<SurfaceSample> samples;
-    sample_triangle(mesh, 0, groups, false, points, samples);
-    ASSERT_EQ(samples.size(), static_cast<std::size_t>(points));
-    for (int i = 0; i <= degree; ++i) {
-      for (int j = 0; i + j <= degree; ++j) {
-        double sum = 0;
-        for (const SurfaceSample& s : samples) {
-          const double weight = 0.5 * (double{s.weight[0]} + s.weight[1] + s.weight[2]);
-          sum += weight * std::pow(double{s.position.x}, i) * std::pow(double{s.position.y}, j);
+TEST(SurfaceSamples, TheFirstPowersOfFourLieInDifferentPartsOfATriangle) {
+  for (const std::uint32_t shift : {0u, 0x1234u, 0xffffu}) {
+    for (const std::uint32_t count : {4u, 16u, 64u}) {
+      const auto across = static_cast<float>(std::lround(std::sqrt(count)));
+      std::set<std::array<int, 3>> parts;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::array<float, 3> at = triangle_point(i ^ shift);
+        EXPECT_NEAR(at[0] + at[1] + at[2], 1.0f, 1e-5f);
+        std::array<int, 3> part{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          EXPECT_GT(at[k], 0.0f);
+          part[k] = static_cast<int>(at[k] * across);
         }
-        EXPECT_NEAR(sum, integral(i, j), 1e-6) << points << " points, x^" << i << " y^" << j;
+        parts.insert(part);
       }
+      EXPECT_EQ(parts.size(), count) << shift;
     }
   }
 }
 
-TEST(SurfaceSamples, TrianglesWithoutAnAreaHaveNone) {
-  const Mesh mesh = triangles({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}});
-  const VertexGroups groups = group_vertices(mesh, false);
-  std::vector<SurfaceSample> samples;
-  sample_triangle(mesh, 0, groups, false, 12, samples);
-  sample_triangle(mesh, 1, groups, false, 12, samples);
-  EXPECT_TRUE(samples.empty());
+TEST(SurfaceSamples, WeightsOfASampleAddUpToTwiceTheArea) {
+  const Mesh mesh = triangles({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}});
+  const SurfaceSample sample = sample_triangle(mesh, 0, group_vertices(mesh, false), true, 5);
+  EXPECT_NEAR(sample.weight[0] + sample.weight[1] + sample.weight[2], 6.0f, 1e-5f);
+  EXPECT_TRUE(sample.front && sample.back);
 }
 
-TEST(SurfaceSamples, RaysAreDividedOverPointsOfSixteenRaysAndMore) {
-  for (const auto& [rays, points] :
-       {std::pair{16, 1}, {47, 1}, {48, 3}, {95, 3}, {96, 6}, {191, 6}, {192, 12}, {65536, 12}}) {
+TEST(SurfaceSamples, TrianglesWithoutAnAreaHaveNone) {
+  const Mesh mesh = triangles({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}});
+  EXPECT_FALSE(has_area(mesh, 0));
+  EXPECT_FALSE(has_area(mesh, 1));
+}
+
+TEST(SurfaceSamples, RaysAreDividedOverSixtyFourSamplesAtMost) {
+  for (const auto& [rays, samples] :
+       {std::pair{8, 1}, {15, 1}, {16, 2}, {512, 64}, {1024, 64}, {65536, 64}}) {
     const SampleCounts counts = sample_counts(rays);
-    EXPECT_EQ(counts.points, points) << rays;
-    EXPECT_EQ(counts.rays, rays / points) << rays;
+    EXPECT_EQ(counts.samples, samples) << rays;
+    EXPECT_EQ(counts.rays, rays / samples) << rays;
   }
 }
 

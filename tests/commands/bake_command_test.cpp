@@ -1,5 +1,5 @@
-// dapple bake, from file to file: what was in a glTF file stays in it, values are where they were
-// asked for, and errors leave nothing behind.
+// The command dapple bake. The output file keeps everything that the input file had, baked values
+// are in the attributes that the options name, and errors leave no file behind.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -32,7 +32,7 @@ class BakeCommand : public program_test::ProgramRun {
   }
 };
 
-// A triangle with much around it that dapple does not know.
+// A triangle in a file with attributes, extras and extensions that dapple does not know.
 GltfBuilder rich_triangle() {
   GltfBuilder builder;
   builder.add_triangle();
@@ -95,7 +95,7 @@ TEST_F(BakeCommand, AoIsMultipliedWithAColourThatIsThereOrReplacesIt) {
     const std::size_t begin = bytes.size() - 3 * 8;
     std::uint16_t rgba[4];
     std::memcpy(rgba, bytes.data() + begin, sizeof rgba);
-    EXPECT_NEAR(rgba[0] / 65535.0, red, 1e-4) << blend;  // nothing occludes: AO 1
+    EXPECT_NEAR(rgba[0] / 65535.0, red, 1e-4) << blend;  // AO is 1: nothing occludes
     EXPECT_NEAR(rgba[3] / 65535.0, 0.25, 1e-4) << blend;
   }
 }

@@ -1,6 +1,6 @@
-// dapple render --cache as its users meet it: the second run makes the same picture without
-// building, with other processes running, whatever happened to the folder, and killed at any
-// moment.
+// The option --cache of dapple render. The second run makes the same picture without building a
+// BVH. The picture also stays the same with several processes at once, with damaged files, and
+// after a process was killed while it built.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -24,7 +24,8 @@ class CacheCommand : public FilmFile {
   CacheCommand() { fs::current_path(folder_); }
   ~CacheCommand() override { fs::current_path(before_); }
 
-  /// Renders into NAME.exr with its statistics in NAME.json; what it prints goes into NAME.txt.
+  /// A shell command that renders into NAME.exr, with statistics in NAME.json and the program's
+  /// output in NAME.txt.
   static std::string command(const std::string& name, const std::string& scene = kScene) {
     return DAPPLE_PROGRAM " render '" + scene + "' -o " + name + ".exr --stats-json " + name +
            ".json --width 48 --height 32 --spp 2 --cache cache >" + name + ".txt 2>&1 </dev/null";
@@ -121,7 +122,7 @@ TEST_F(CacheCommand, AFolderThatCannotBeUsedIsFoundBeforeTheSceneIsRead) {
   EXPECT_EQ(bytes_of(path("cache")), "a file");
 }
 
-/// Starts the shell command in a process group of its own and kills all of it after a while.
+/// Starts a shell command in its own process group, and kills its process after that time.
 void kill_after(const std::string& shell, useconds_t microseconds) {
   const pid_t child = fork();
   if (child == 0) {
@@ -139,7 +140,7 @@ TEST_F(CacheCommand, KilledOnTheWayToItsFileTheNextRunCleansUpAndSucceeds) {
   ASSERT_EQ(run(command("first", scene)), 0);
   const auto json = statistics("first")["seconds"];
   const auto second = [&](const char* step) { return json[step].get<double>(); };
-  // Not later: PoCL, killed, may damage what it keeps of compiled kernels.
+  // The process is not killed later: PoCL might then damage its compiled kernels on disk.
   const double built = second("load") + second("build") + second("prefilter") + second("cache");
   std::mt19937 random(2);
   std::uniform_real_distribution<double> moment(second("load"), built);

@@ -1,5 +1,5 @@
-// The program as its users meet it: exit codes, messages that name what is wrong, nothing
-// left behind by a failure, and the files of a success.
+// The command line of the program: exit codes, messages that name the wrong option or file, the
+// files that a successful run writes, and no files after a failure.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -79,7 +79,7 @@ TEST_F(CommandLine, UsageErrorsNameTheirFlagAndLeaveNothingBehind) {
       {"--light-radius -1", "--light-radius"},
       {"--light-radius nan", "--light-radius"},
       {"--camera nosuch", "--camera"},
-      {"--opacity nosuch=0.5", "cube"},  // the materials that there are
+      {"--opacity nosuch=0.5", "cube"},  // must list the scene's materials
       {"--opacity cube=2", "cube"},
       {"--opacity cube=nan", "cube"},
       {"--opacity cube=", "--opacity cube"},
@@ -89,7 +89,7 @@ TEST_F(CommandLine, UsageErrorsNameTheirFlagAndLeaveNothingBehind) {
     SCOPED_TRACE(arguments);
     expect_failure(render(arguments), 2, part);
     EXPECT_EQ(files_in_folder(), 0u);
-    std::filesystem::remove(path("out.exr"));  // a leftover is this case's fault only
+    std::filesystem::remove(path("out.exr"));  // so that a left file fails only one case
   }
 }
 
@@ -120,7 +120,8 @@ TEST_F(CommandLine, ACommandLineThatLacksSomethingIsAUsageError) {
 TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsFoundBeforeTheSceneIsRead) {
   std::filesystem::create_directory(path("folder"));
   for (const char* output : {"missing/out.exr", "folder", "folder/x/out.exr"}) {
-    // The scene is missing too: code 2, not 3, says which was looked at first.
+    // The scene is missing too, which would be code 3. Code 2 shows that the output is checked
+    // first.
     expect_failure(dapple(std::string("render nosuch.glb -o ") + output), 2, output);
     expect_failure(dapple(std::string("render nosuch.glb -o a.exr --png ") + output), 2, output);
     expect_failure(dapple(std::string("render nosuch.glb -o a.exr --stats-json ") + output), 2,
@@ -251,7 +252,7 @@ TEST_F(CommandLine, InputsThatCannotBeReadAreNamed) {
 }
 
 TEST_F(CommandLine, AFailedWriteExitsWith1AndLeavesNothingBehind) {
-  // A limit of one block a file stands in for a full disk; the message still fits.
+  // A limit of one block for each file simulates a full disk; the message still fits.
   const Outcome run = dapple("scene cube -o x.glb", "trap '' XFSZ && ulimit -f 1 &&");
   expect_failure(run, 1, "x.glb");
   EXPECT_EQ(files_in_folder(), 0u);
@@ -271,7 +272,7 @@ TEST_F(CommandLine, AQuietRenderPrintsNothingAndWritesItsThreeFiles) {
   }
   EXPECT_GE(json["seconds"]["total"].get<double>(), json["seconds"]["trace"].get<double>());
   EXPECT_EQ(json.at("rays").at("camera"), 64);
-  // Two AO rays and one light ray, the key light's, a sample that hit something.
+  // Each sample that hit a surface has two AO rays, and one light ray to the key light.
   EXPECT_EQ(json.at("rays").at("ao"), 2 * json.at("rays").at("light").get<int>());
   EXPECT_GT(json["rays"]["light"], 0);
   EXPECT_LE(json["rays"]["light"], 64);
@@ -301,8 +302,8 @@ TEST_F(CommandLine, VisitsAreALayerAndAHeatMapBesideThePreview) {
   const Plane* nodes = film.find("visits.nodes");
   ASSERT_NE(nodes, nullptr);
   ASSERT_NE(film.find("visits.triangles"), nullptr);
-  // The camera rays of an item visit the root together; the means add up to what the statistics
-  // count.
+  // The camera rays of a work-item visit the root together. The sum of the pixels' means equals the
+  // visits that the statistics count.
   double sum = 0;
   for (const float visits : nodes->pixels) sum += visits;
   EXPECT_GT(sum, 0);

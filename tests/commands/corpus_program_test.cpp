@@ -1,5 +1,6 @@
-// The corpus, rendered by the program: malformed scenes end soon, with an exit code of bad
-// input, a message of few lines and nothing left behind; tricky ones give their twin's picture.
+// The program renders the corpus. It refuses malformed scenes soon, with the exit code of bad
+// input, a message of few lines, and without leaving files. Tricky scenes give the picture of their
+// plain twins.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -33,14 +34,14 @@ std::vector<std::string> files_below(const fs::path& folder) {
   return names;
 }
 
-/// Address space cannot be limited where a sanitizer maps terabytes of it.
+/// The address space cannot be limited with a sanitizer, which maps terabytes.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr const char* kMemoryLimit = "";
 #else
 constexpr const char* kMemoryLimit = "ulimit -v 8388608; ";
 #endif
 
-/// dapple render of the scene into out.exr, with `limits` of the shell's before it.
+/// Runs `dapple render` in a shell, into out.exr. `limits` are shell commands that run before it.
 Run render(const SceneFiles& files, const fs::path& folder, const std::string& options,
            const std::string& limits) {
   const fs::path inside = folder / "case";
@@ -59,7 +60,7 @@ Run render(const SceneFiles& files, const fs::path& folder, const std::string& o
   return run;
 }
 
-/// What is wrong with how the program refused a case; empty when nothing is.
+/// Describes what is wrong with the program's refusal of a case; empty if nothing is wrong.
 std::string fault_of(const Malformed& malformed) {
   const TempFolder folder;
   const Run run = render(malformed.files, folder.path(""), "", kMemoryLimit);
@@ -72,7 +73,7 @@ std::string fault_of(const Malformed& malformed) {
   return run.left.empty() ? "" : "left behind: " + run.left.front();
 }
 
-/// Calls `work` for every case, two at a time.
+/// Calls `work` for every case, in two threads, and reports the faults that it returns.
 template <typename Case, typename Work>
 void for_all(const std::vector<Case>& cases, const Work& work) {
   std::vector<std::string> faults(cases.size());
@@ -106,8 +107,8 @@ Picture picture_of(const SceneFiles& files) {
   return {"", read_exr(folder.path("case/out.exr"))};
 }
 
-/// Triangles in another order or with other corners first round otherwise, which moves a
-/// sample or two across an edge.
+/// Describes how two pictures differ; empty if they agree. Triangles in another order, or with
+/// another first corner, round differently, which moves a few samples across an edge.
 std::string difference(const Film& a, const Film& b) {
   for (const char* channel : {"ao.G", "G", "A", "Z"}) {
     const Plane *pa = a.find(channel), *pb = b.find(channel);

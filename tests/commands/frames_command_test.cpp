@@ -1,5 +1,5 @@
-// dapple render --frame and --frames: files by number, what is the same in every frame, and what is
-// refused before anything is rendered.
+// The options --frame and --frames of dapple render: one file for each frame, named by its number;
+// what stays the same in all frames; and arguments that are refused before anything is rendered.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -17,7 +17,7 @@ using namespace program_test;
 
 class FramesCommand : public ProgramRun {
  protected:
-  /// A square that climbs by 1 m a second from 0 s to 1 s, under the name climb.glb.
+  /// Writes climb.glb, a triangle that moves up at 1 m/s from 0 s to 1 s.
   void write_climb() const {
     test::GltfBuilder b = test::one_triangle();
     const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
@@ -40,7 +40,7 @@ class FramesCommand : public ProgramRun {
   [[nodiscard]] std::vector<float> ao(const char* name) const {
     return read_exr(path(name)).find("ao.R")->pixels;
   }
-  /// The mean height of what camera rays hit.
+  /// Mean height of the points that camera rays hit, in metres.
   [[nodiscard]] double height(const char* name) const {
     const Film film = read_exr(path(name));
     double sum = 0, weight = 0;
@@ -95,7 +95,7 @@ TEST_F(FramesCommand, CameraLightAndGroundOfASequenceStandStill) {
   ASSERT_EQ(run.code, 0) << run.err;
   const Film first = read_exr(path("a.0.exr")), last = read_exr(path("a.1.exr"));
   EXPECT_EQ(first.metadata.world_to_camera, last.metadata.world_to_camera);
-  // The lowest row shows the ground in both, at one height.
+  // The lowest row of both pictures shows the ground, at the same height.
   const std::size_t below = first.find("P.Y")->pixels.size() - 1;
   EXPECT_EQ(first.find("P.Y")->pixels[below], last.find("P.Y")->pixels[below]);
   EXPECT_NE(last.find("light.key.R"), nullptr);

@@ -1,4 +1,5 @@
-// Small files that ask for much, and numbers that no picture can be made of.
+// Small files that would need much memory or time, and positions and scales that no picture can be
+// rendered with.
 #include <limits>
 
 #include "corpus/corpus.hpp"
@@ -15,7 +16,7 @@ void add(MalformedCases& cases, const std::string& name, const GltfBuilder& buil
   cases.push_back({name, as_glb(builder), says});
 }
 
-/// An accessor of zeros of this many elements, from no bytes at all.
+/// Adds an accessor of `count` zero elements, which needs no bytes. Returns its index.
 int zeros(GltfBuilder& builder, std::uint64_t count, const char* type = "VEC3") {
   return builder.add("accessors", {{"componentType", kFloat}, {"count", count}, {"type", type}});
 }
@@ -30,7 +31,7 @@ GltfBuilder instanced_zeros(std::uint64_t count, int nodes) {
   return builder;
 }
 
-/// Every node has the next twice, 2^levels in all.
+/// Each node has the previous one as a child twice: 2^levels instances in all.
 GltfBuilder doubling(int levels) {
   GltfBuilder builder = one_triangle();
   for (int i = 0; i < levels; ++i) builder.add("nodes", {{"children", {i, i}}});
@@ -43,7 +44,7 @@ GltfBuilder coincident_nodes(int count) {
   return builder;
 }
 
-/// `primitives` times a strip of `vertices`, from one accessor.
+/// A mesh with the same strip of `vertices` vertices `primitives` times, from one accessor.
 GltfBuilder repeated_strip(int primitives, int vertices) {
   GltfBuilder builder;
   std::vector<float> positions;
@@ -92,7 +93,7 @@ GltfBuilder scaled(double scale) {
   return builder;
 }
 
-/// Nothing is left of these, or nothing that float arithmetic can render.
+/// Scenes from which all triangles are dropped, or whose numbers float arithmetic cannot render.
 void add_numbers(MalformedCases& cases) {
   const char* const says = "scene.glb: ";
   add(cases, "number_nan", triangle_of({0, 0, 0, kNan, 0, 0, 0, 1, 0}), says);

@@ -1,4 +1,4 @@
-// Writing the corpus down: see corpus.hpp.
+// Collects the cases of the corpus and writes their files: see corpus.hpp.
 #include "corpus/corpus.hpp"
 
 namespace dapple::test {

@@ -1,6 +1,7 @@
-// The corpus of bad and of unusual input: small glTF and HAIR files, made here, each in a folder of
-// its own. Malformed ones must be refused by name, quickly and leaving nothing behind; tricky ones
-// are valid, and must render like a plain twin.
+// The corpus of wrong and of unusual input: small glTF and HAIR files that the tests generate, each
+// case in its own folder. Malformed cases must be refused soon, with a message that names the file
+// and the element, and without leaving files. Tricky cases are valid: each must render like its
+// plain twin, which holds the same scene in a simple form.
 #pragma once
 
 #include <filesystem>
@@ -13,39 +14,40 @@
 
 namespace dapple::test {
 
-/// Files to be written, and the one among them that is the scene.
+/// Files to write, and the name of the file that is the scene.
 struct SceneFiles {
   std::string scene = "scene.glb";
   std::map<std::string, Bytes> files;
-  /// What files cannot say: FIFOs, folders, links. Done in the folder, before the files.
+  /// Makes what is not a file (FIFOs, folders, links) in the folder. It runs before the files are
+  /// written.
   std::function<void(const std::filesystem::path&)> prepare;
 };
 
-/// Writes everything into `folder`, which exists, and returns the scene's path.
+/// Writes everything into `folder`, which must exist, and returns the scene's path.
 std::string write_files(const SceneFiles& files, const std::filesystem::path& folder);
 
 struct Malformed {
   std::string name;  ///< letters, digits and underscores
   SceneFiles files;
-  std::string says;  ///< part of the message, at least the element's name
+  std::string says;  ///< part of the message that must occur, at least the element's name
 };
 
 struct Tricky {
   std::string name;
   SceneFiles files;
-  SceneFiles plain;  ///< the twin
+  SceneFiles plain;  ///< the plain twin
 };
 
 using MalformedCases = std::vector<Malformed>;
 using TrickyCases = std::vector<Tricky>;
 
 SceneFiles as_glb(const GltfBuilder& builder);
-/// scene.gltf and its buffer as scene.bin.
+/// The builder's scene as scene.gltf, with its buffer in scene.bin.
 SceneFiles as_gltf(const GltfBuilder& builder);
-/// Text as scene.gltf.
+/// The text as scene.gltf.
 SceneFiles as_text(const std::string& text);
 
-// Families, a file each.
+// Each of these adds a family of cases, and is in a file of its own.
 void add_malformed_containers(MalformedCases& cases);
 void add_malformed_json(MalformedCases& cases);
 void add_wrong_types(MalformedCases& cases);

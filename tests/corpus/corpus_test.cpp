@@ -1,5 +1,5 @@
-// The corpus, read by the library: what is malformed is refused by name, what is tricky has
-// the triangles of its plain twin.
+// The library reads the corpus: it refuses malformed scenes with messages that name the file and
+// the element, and reads from tricky scenes the triangles of their plain twins.
 #include "corpus/corpus.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace dapple::test {
 
 namespace {
 
-/// A folder in a folder, so that ".." is a place of the case's own.
+/// A folder inside a temporary folder, so that ".." is also a folder of this case only.
 class CaseFolder {
  public:
   CaseFolder() { std::filesystem::create_directory(path()); }
@@ -28,8 +28,8 @@ Scene read_and_merge(const std::string& path) {
   return scene;
 }
 
-/// A family at a time, and not each case as a test of its own: the corpus would be made anew
-/// for each.
+/// Expects that all cases of a family are refused. One test covers a family, since a test for each
+/// case would generate the corpus again for each of them.
 void expect_refused(void (*add_family)(MalformedCases&)) {
   MalformedCases cases;
   add_family(cases);
@@ -78,7 +78,7 @@ void expect_same_triangles(const Scene& given, const Scene& plain) {
   ASSERT_EQ(triangles.size(), expected.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      // Quantization to 1/100 of two metres.
+      // Quantized cases divide two metres into at least 100 steps.
       EXPECT_LT((triangles[i][k] - expected[i][k]).length(), 0.01f) << "triangle " << i;
     }
   }

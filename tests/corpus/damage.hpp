@@ -1,4 +1,5 @@
-// One edit of a sound document of one triangle that makes it malformed.
+// Edits that each make the valid document of one triangle malformed. In: a table of edits and
+// messages; out: one malformed case for each edit.
 #pragma once
 
 #include <span>
@@ -7,7 +8,7 @@
 
 namespace dapple::test {
 
-/// The message must hold `says`.
+/// An edit of the document. The message of the Error must contain `says`.
 struct Damage {
   const char* name;
   std::function<void(json&)> edit;

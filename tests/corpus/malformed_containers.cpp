@@ -1,4 +1,4 @@
-// GLB files whose header, chunks or lengths are wrong, and files that are no glTF at all.
+// GLB files whose header, chunks or lengths are wrong, and files of other formats.
 #include "corpus/corpus.hpp"
 
 namespace dapple::test {
@@ -43,7 +43,7 @@ Bytes glb_of(const std::vector<Chunk>& chunks) {
   return file;
 }
 
-/// The two chunks of a sound file.
+/// The JSON and the BIN chunk of a valid file.
 std::vector<Chunk> sound_chunks() {
   const Bytes glb = one_triangle().glb();
   const auto json_end = glb.begin() + 20 + u32_at(glb, 12);
@@ -62,7 +62,7 @@ void add_cuts(MalformedCases& cases) {
     const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     cases.push_back(bytes_case("cut_at_" + std::to_string(size), cut, "scene.glb"));
     if (size < 12) continue;
-    // The same with a header that knows: chunks are cut, not the file.
+    // The same bytes, but the header has the right length: only chunks are cut off.
     Bytes honest = cut;
     set_u32(honest, 8, static_cast<std::uint32_t>(size));
     cases.push_back(bytes_case("honest_cut_at_" + std::to_string(size), honest, "scene.glb"));
@@ -123,7 +123,7 @@ void add_wrong_chunks(MalformedCases& cases) {
   add("empty_json", {{kJsonChunk, {}}, sound[1]}, "is not glTF");
   add("binary_json", {{kJsonChunk, Bytes(64, 0xfe)}, sound[1]}, "is not glTF");
   Bytes cut_third = glb_of({sound[0], sound[1], other});
-  cut_third.erase(cut_third.end() - 4, cut_third.end());  // resize() has g++ 12 see overflows here
+  cut_third.erase(cut_third.end() - 4, cut_third.end());  // g++ 12 warns of overflows in resize()
   set_u32(cut_third, 8, static_cast<std::uint32_t>(cut_third.size()));
   cases.push_back(bytes_case("third_chunk_cut", cut_third, "reads past the file"));
   Bytes followed = one_triangle().glb();

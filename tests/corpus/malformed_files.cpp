@@ -1,4 +1,5 @@
-// URIs that lead to what is no file of the scene, and scenes that are no files.
+// URIs of buffers that are outside of the scene's folder, missing, or not regular files; and scenes
+// that are not regular files.
 #include <sys/stat.h>
 
 #include "corpus/corpus.hpp"
@@ -24,7 +25,7 @@ void add_uri(MalformedCases& cases, const char* name, const std::string& uri, co
 
 void make_fifo(const fs::path& path) { ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0); }
 
-/// A sound buffer beside the scene's folder, which no scene may read.
+/// Writes a valid buffer beside the scene's folder, where the scene must not read it.
 void write_outside(const fs::path& folder) {
   const Bytes bytes = one_triangle().bin;
   std::ofstream(folder.parent_path() / "outside.bin", std::ios::binary)
@@ -108,7 +109,7 @@ void add_data_uris(MalformedCases& cases) {
           "its data: URI is \"image/png\"");
 }
 
-/// The scene itself is not a file.
+/// The scene itself is missing, too large or not a regular file.
 void add_scenes(MalformedCases& cases) {
   const auto add = [&](const char* name, const char* says, const Prepare& prepare) {
     cases.push_back({std::string("scene_") + name, {"scene.glb", {}, prepare}, says});
@@ -124,7 +125,7 @@ void add_scenes(MalformedCases& cases) {
       [](const fs::path& folder) { fs::create_symlink("scene.glb", folder / "scene.glb"); });
   add("of_eight_gigabytes", "scene.glb: is too large", [](const fs::path& folder) {
     std::ofstream(folder / "scene.glb") << "glTF";
-    fs::resize_file(folder / "scene.glb", std::uintmax_t{1} << 33);  // sparse
+    fs::resize_file(folder / "scene.glb", std::uintmax_t{1} << 33);  // a sparse file
   });
 }
 

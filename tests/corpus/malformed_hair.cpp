@@ -1,4 +1,5 @@
-// HAIR files that are cut short, that count more than they hold, or that hold what is no number.
+// HAIR files that are cut off, whose counts do not fit their bytes, or whose values are not valid
+// numbers.
 #include <limits>
 
 #include "corpus/corpus.hpp"
@@ -12,7 +13,7 @@ void add(MalformedCases& cases, const std::string& name, const Bytes& bytes,
   cases.push_back({"hair_" + name, {"scene.hair", {{"scene.hair", bytes}}, {}}, says});
 }
 
-/// The sound file with four bytes at `at` replaced.
+/// A valid file in which `value` replaces the four bytes at the offset `at`.
 Bytes with(std::size_t at, std::uint32_t value) {
   Bytes bytes = two_strands().bytes();
   for (std::size_t k = 0; k < 4; ++k) bytes[at + k] = static_cast<std::uint8_t>(value >> (8 * k));

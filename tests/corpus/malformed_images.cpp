@@ -1,10 +1,11 @@
-// Images whose alpha counts and that are cut, corrupt, gigantic or of another kind.
+// Images that the renderer needs for opacity, and that are cut off, corrupt, too large or in an
+// unsupported format.
 #include "corpus/corpus.hpp"
 
 namespace dapple::test {
 namespace {
 
-/// A triangle whose material blends with texture 0.
+/// A triangle whose material takes its alpha from texture 0.
 GltfBuilder blended() {
   GltfBuilder builder = one_triangle();
   builder.doc["meshes"][0]["primitives"][0]["material"] = 0;
@@ -31,7 +32,8 @@ Bytes changed(Bytes bytes, std::size_t at) {
   return bytes;
 }
 
-/// Segments of a JPEG file up to the pixels of an image of 8 by 8.
+/// A JPEG file that begins with the headers of an image of 8 x 8 pixels and continues with `tail`.
+/// `width_high` is the high byte of the width.
 Bytes jpeg_of(std::uint8_t width_high, const Bytes& tail) {
   Bytes bytes = {0xff, 0xd8, 0xff, 0xc0, 0, 11, 8, 0, 8, width_high, 8, 1, 1, 0x11, 0};
   for (const std::uint8_t byte : tail) bytes.push_back(byte);
@@ -67,7 +69,7 @@ void add_jpeg(MalformedCases& cases) {
   add_bytes(cases, "jpeg_without_pixels", jpeg_of(0, {0xff, 0xd9}), "is corrupt");
   add_bytes(cases, "jpeg_without_an_end", jpeg_of(0, {0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 1, 2}),
             "is corrupt");
-  // Sixteen lengths of 17 codes each: 272, found by fuzzing.
+  // A Huffman table of sixteen lengths with 17 codes each, 272 in all. Fuzzing found this case.
   Bytes table = {0xff, 0xc4, 0x01, 0x23, 0};
   table.resize(table.size() + 16, 17);
   table.resize(2 + 0x123 + 2, 1);

@@ -1,5 +1,5 @@
-// Text that is not JSON, or is JSON that no reader should trust: too deep, too large, with keys
-// twice.
+// Text that is not JSON, and JSON that the reader must refuse: too deep, too large, or with the
+// same key twice.
 #include "corpus/corpus.hpp"
 
 namespace dapple::test {
@@ -11,7 +11,7 @@ std::string repeated(const std::string& text, std::size_t times) {
   return result;
 }
 
-/// A sound document with `text` in place of its asset's extras.
+/// A valid document with `text` as the value of its asset's extras.
 std::string with_extras(const std::string& text) {
   GltfBuilder builder = one_triangle();
   builder.doc["buffers"] = json::array({{{"uri", "scene.bin"}, {"byteLength", 36}}});

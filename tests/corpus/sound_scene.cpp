@@ -1,10 +1,10 @@
-// The scene, element by element: see sound_scene.hpp.
+// Builds the scene element by element: see sound_scene.hpp.
 #include "corpus/sound_scene.hpp"
 
 namespace dapple::test {
 namespace {
 
-/// Mesh 0, a card of two triangles facing +Z; material 0.
+/// Mesh 0: a card of two triangles that face +Z, with material 0.
 void add_card(GltfBuilder& b) {
   const int position = b.add_positions({-1, 0, 0, 1, 0, 0, 1, 2, 0, -1, 2, 0});
   b.doc["accessors"][position]["min"] = {-1, 0, 0};
@@ -32,7 +32,7 @@ void add_card(GltfBuilder& b) {
                                       {"targets", json::array({{{"POSITION", normal}}})}}})}});
 }
 
-/// Mesh 1, a fan over y = 0 whose last corner comes from sparse values; material 1.
+/// Mesh 1: a fan in the plane y = 0 with material 1. Sparse values replace its last corner.
 void add_ground(GltfBuilder& b) {
   const int position = b.add_positions({-4, 0, 4, 4, 0, 4, 4, 0, -4, 0, 0, 0});
   const int at = b.add_view(pack<std::uint16_t>({3}));

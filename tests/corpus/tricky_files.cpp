@@ -1,4 +1,4 @@
-// The same scene in every kind of file: names, URIs, padding, encodings.
+// The plain stage in files with unusual names, URIs, padding and encodings.
 #include <algorithm>
 
 #include "corpus/stage.hpp"
@@ -35,7 +35,8 @@ std::string data_uri(const std::string& head, const std::string& data) {
   return "data:" + head + "," + data;
 }
 
-/// scene.gltf whose buffer is at `uri`, in the file `name`.
+/// scene.gltf whose buffer has the URI `uri`. The buffer is in the file `name`, unless that is
+/// empty.
 SceneFiles at_uri(const std::string& uri, const std::string& name) {
   const GltfBuilder stage = plain_stage();
   json document = stage.doc;

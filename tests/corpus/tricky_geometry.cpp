@@ -1,4 +1,4 @@
-// The same card in every way that glTF has of writing triangles down.
+// The same card in all the ways in which glTF can store triangles.
 #include <limits>
 
 #include "corpus/stage.hpp"
@@ -60,7 +60,8 @@ void add_topologies(TrickyCases& cases) {
   }));
 }
 
-/// The card's six vertices in a view of this stride, `offset` bytes into each element.
+/// The card's six vertices in a buffer view of this stride. They begin at byte `offset` of each
+/// element.
 Tricky strided(const char* name, std::size_t stride, std::size_t offset) {
   return card(name, [&](GltfBuilder& b) {
     Bytes bytes;
@@ -115,7 +116,7 @@ void add_layouts(TrickyCases& cases) {
   }));
 }
 
-/// Element i of `at` becomes triple i of `values`.
+/// Makes `accessor` sparse: triple i of `values` replaces the element `at[i]`.
 template <typename Index>
 void make_sparse(GltfBuilder& b, int accessor, int component, const std::vector<Index>& at,
                  const std::vector<float>& values) {
@@ -155,12 +156,13 @@ void add_sparse(TrickyCases& cases) {
   }));
 }
 
-/// Corners of the card as integers of `scale`, four a vertex for alignment.
+/// The card with integer positions, `scale` integers for two metres (ignored if `normalized`). Each
+/// vertex has four integers, for alignment.
 template <typename Number>
 Tricky quantized(const char* name, int component, double scale, bool normalized) {
   return card(name, [&](GltfBuilder& b) {
     b.doc["extensionsUsed"] = b.doc["extensionsRequired"] = {"KHR_mesh_quantization"};
-    // Moved by 1, so that unsigned numbers will do, and back by the node.
+    // The positions are moved by 1, so that none is negative; the node moves them back.
     const double largest = normalized ? std::numeric_limits<Number>::max() : scale;
     Bytes bytes;
     for (std::size_t v = 0; v < kCardTriangles.size(); v += 3) {
@@ -214,7 +216,7 @@ void add_faulty_triangles(TrickyCases& cases) {
   }));
 }
 
-/// The card, carried by a joint that stands where it was bound.
+/// Adds a card whose vertices follow joint 0 of skin 0. Returns its node.
 int add_skinned_card(GltfBuilder& b, const std::vector<float>& positions) {
   const std::size_t vertices = positions.size() / 3;
   std::vector<float> weights;
@@ -255,7 +257,7 @@ void add_morphs(TrickyCases& cases) {
 void add_skins(TrickyCases& cases) {
   cases.push_back(card("skin_in_its_bind_pose", [](GltfBuilder& b) {
     const int node = add_skinned_card(b, raised(kCardTriangles, -3));
-    b.doc["nodes"][node]["translation"] = {50, 60, 70};  // is ignored
+    b.doc["nodes"][node]["translation"] = {50, 60, 70};  // has no effect
     b.add("nodes", {{"translation", {0, 3, 0}}});
     b.add("skins", {{"joints", {node + 1}}});
   }));
@@ -282,7 +284,7 @@ void add_skins(TrickyCases& cases) {
 
 void add_animations(TrickyCases& cases) {
   cases.push_back(twisted("animation_at_rest", [](GltfBuilder& b) {
-    const int times = b.add_accessor(std::vector<float>{3, 1}, kFloat, "SCALAR");  // nobody looks
+    const int times = b.add_accessor(std::vector<float>{3, 1}, kFloat, "SCALAR");  // unused at rest
     const int places = b.add_positions({9, 9, 9, 9, 9, 9});
     b.add("animations", {{"samplers", {{{"input", times}, {"output", places}}}},
                          {"channels",

@@ -1,4 +1,4 @@
-// The same opacity by every way that glTF has of giving a card one.
+// The same opacity of the card in all the ways in which glTF can store one.
 #include "corpus/stage.hpp"
 
 namespace dapple::test {
@@ -9,7 +9,7 @@ constexpr double kOpacity = kAlpha / 255.0;  // 0.4
 
 GltfBuilder with_material(const json& material) {
   GltfBuilder builder = plain_stage();
-  builder.doc["materials"] = json::array({material});  // clang copies {material}
+  builder.doc["materials"] = json::array({material});  // for clang, {material} is a copy
   builder.doc["meshes"][1]["primitives"][0]["material"] = 0;
   return builder;
 }
@@ -20,13 +20,13 @@ json& attributes(GltfBuilder& builder) {
 
 json factor(double alpha) { return {{"baseColorFactor", {0.2, 0.9, 0.1, alpha}}}; }
 
-/// Twin: alphaMode BLEND and the opacity as a factor.
+/// Adds a case whose twin has the alphaMode BLEND and the opacity kOpacity as a factor.
 void add(TrickyCases& cases, const char* name, const GltfBuilder& builder) {
   const json plain = {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", factor(kOpacity)}};
   cases.push_back({name, as_glb(builder), as_glb(with_material(plain))});
 }
 
-/// Twin: no material at all.
+/// Adds a case whose twin has no material, and is opaque.
 void add_opaque(TrickyCases& cases, const char* name, const GltfBuilder& builder) {
   cases.push_back({name, as_glb(builder), as_glb(plain_stage())});
 }
@@ -121,7 +121,7 @@ void add_modes(TrickyCases& cases) {
       cases, "masked_at_cutoff_zero",
       with_material(
           {{"alphaMode", "MASK"}, {"alphaCutoff", 0}, {"pbrMetallicRoughness", factor(0.1)}}));
-  // Not the stage alone: what cannot be seen still has bounds, by which the light is placed.
+  // The twin has an invisible card, too: the light's position depends on its bounds.
   cases.push_back(
       {"masked_below_its_cutoff",
        as_glb(with_material({{"alphaMode", "MASK"}, {"pbrMetallicRoughness", factor(0.4)}})),

@@ -1,4 +1,5 @@
-// The same card under every kind of node, name and list, and beside what is not shown.
+// The same card with all kinds of node transforms, names and lists, and with elements that are not
+// shown.
 #include "corpus/stage.hpp"
 
 namespace dapple::test {

@@ -1,5 +1,6 @@
-// Accessors that are sound alone and wrong in their use: indices beyond the vertices, sparse
-// values out of order, attributes of different lengths, instances that differ in number.
+// Accessors that are valid alone but wrong where they are used: indices beyond the vertices, sparse
+// indices out of order, attributes of different lengths, instances whose attributes differ in
+// number.
 #include "corpus/corpus.hpp"
 
 namespace dapple::test {

@@ -1,4 +1,4 @@
-// One element at a time that the specification forbids, in a sound document of one triangle.
+// Documents of one triangle in which one element has a value that the specification forbids.
 #include "corpus/damage.hpp"
 
 namespace dapple::test {

@@ -1,5 +1,5 @@
-// Animations, skins and morph targets that are not what they say, and such as ask for more than
-// they bring: refused at rest already.
+// Animations, skins and morph targets with wrong elements, and small files whose skins or targets
+// would need too much work. All are refused even at rest.
 #include "corpus/corpus.hpp"
 
 namespace dapple::test {
@@ -10,7 +10,8 @@ void add(MalformedCases& cases, const std::string& name, const GltfBuilder& buil
   cases.push_back({"motion_" + name, as_glb(builder), says});
 }
 
-/// A triangle whose node is moved by two keyframes; accessor 1 are the times, 2 the places.
+/// A triangle whose node moves by two keyframes. Accessor 1 has the times, accessor 2 the
+/// translations.
 GltfBuilder moved() {
   GltfBuilder b = one_triangle();
   const int times = b.add_accessor(std::vector<float>{0, 1}, kFloat, "SCALAR");
@@ -49,7 +50,7 @@ void add_animations(MalformedCases& cases) {
          [](json& d) { d["animations"][0]["samplers"][0]["interpolation"] = "SMOOTH"; });
 }
 
-/// A triangle whose vertices one joint carries; accessors 1 and 2 are joints and weights.
+/// A triangle whose vertices follow one joint. Accessor 1 has the joints, accessor 2 the weights.
 GltfBuilder skinned(std::uint8_t joint = 0) {
   GltfBuilder b = one_triangle();
   const int joints = b.add_accessor(std::vector<std::uint8_t>(12, joint), kUint8, "VEC4");
@@ -80,7 +81,7 @@ void add_skins(MalformedCases& cases) {
   add(cases, "of_no_joints", none, "skin 0 has no joints");
 }
 
-/// Vertices of zeros, carried again and again.
+/// Many vertices, which need no bytes, with 70 sets of joints and weights each.
 void add_bombs_of_joints(MalformedCases& cases) {
   GltfBuilder b;
   constexpr int kVertices = 3999999;

@@ -1,4 +1,5 @@
-// Every property of a scene that has them all, once with a value of a type that it cannot have.
+// The scene of sound_scene.hpp, with one property at a time that has a value of a wrong type. Each
+// property that occurs in the scene is tested once.
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -9,7 +10,8 @@
 namespace dapple::test {
 namespace {
 
-/// "/meshes/0/primitives/1/mode" as "meshes_primitives_mode": elements of a kind count once.
+/// "/meshes/0/primitives/1/mode" becomes "meshes_primitives_mode", so that elements of the same
+/// kind have one name.
 std::string property_name(const std::string& pointer) {
   std::string name;
   std::string part;
@@ -31,7 +33,7 @@ std::string property_name(const std::string& pointer) {
   return name;
 }
 
-/// Pointers to all values below `value`, arrays of numbers or strings as one.
+/// Appends JSON pointers to all values below `value`. Arrays of numbers or strings are one value.
 void collect(const json& value, const std::string& pointer, std::vector<std::string>& pointers) {
   if (!pointer.empty()) pointers.push_back(pointer);
   const bool leaf_array = value.is_array() && !value.empty() && !value[0].is_structured();
@@ -39,7 +41,8 @@ void collect(const json& value, const std::string& pointer, std::vector<std::str
   for (const auto& [key, item] : value.items()) collect(item, pointer + "/" + key, pointers);
 }
 
-/// A number is never an object, an array never a number, a string never either.
+/// A value of another type: numbers, objects and arrays become strings; strings and booleans become
+/// numbers.
 json wrong_value(const json& value) {
   if (value.is_number()) return "7";
   if (value.is_string()) return 7;

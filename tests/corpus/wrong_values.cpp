@@ -1,5 +1,5 @@
-// One wrong value at a time in a sound document of one triangle: each is refused by name and
-// figures.
+// Documents of one triangle in which one value is wrong. The messages name the element and the
+// wrong values.
 #include "corpus/damage.hpp"
 
 namespace dapple::test {

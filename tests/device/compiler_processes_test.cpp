@@ -1,5 +1,5 @@
-// Kernels compiled ahead by processes of their own: to the last, so that pictures find nothing left
-// to compile, and none missed where no process can be started.
+// Child processes that compile kernels ahead (`dapple compile`). They compile every kernel, so that
+// a picture has nothing left to compile. Where no process can be started, the picture is the same.
 #include "device/programs/compiler_processes.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(KernelText, AnythingElseIsRefused) {
     EXPECT_THROW(parse_kernel(text), Error) << text;
 }
 
-/// Processes that compile for `process` now.
+/// Ids of the children of `process` that run `dapple compile` now.
 std::set<std::string> compilers_now(pid_t process) {
   const std::string id = std::to_string(process);
   std::istringstream children(bytes_of("/proc/" + id + "/task/" + id + "/children"));
@@ -67,7 +67,7 @@ class CompilingProcesses : public program_test::ProgramRun {
                                    const std::string& before = "") const {
     return dapple(arguments, "POCL_CACHE_DIR='" + path("cache") + "' " + before);
   }
-  /// How many processes compile for that run of the program.
+  /// Runs the program. Returns how many processes compiled kernels for it.
   [[nodiscard]] std::size_t compilers_of(const std::vector<std::string>& arguments) const {
     RunningProgram program(arguments, path("log"));
     std::set<std::string> compilers;
@@ -78,7 +78,7 @@ class CompilingProcesses : public program_test::ProgramRun {
     EXPECT_EQ(program.wait(), 0) << bytes_of(path("log"));
     return compilers.size();
   }
-  /// Files of machine code that are kept: programs, kernels and sizes of groups.
+  /// Files of machine code in the cache: one for each program, kernel and size of work-groups.
   [[nodiscard]] std::set<std::string> machine_code() const {
     std::set<std::string> files;
     std::error_code ignored;
@@ -88,7 +88,7 @@ class CompilingProcesses : public program_test::ProgramRun {
   }
 };
 
-/// Where all kernels are compiled, or some of them several times.
+/// Tests that compile all kernels, or some kernels several times, which takes long.
 class CompilingProcessesCold : public CompilingProcesses {};
 
 TEST_F(CompilingProcessesCold, PicturesFindNothingLeftToCompile) {
@@ -156,12 +156,12 @@ TEST_F(CompilingProcessesCold, WhereNoneCanBeStartedThePictureIsTheSame) {
   ASSERT_EQ(with_cache(picture + "with.exr").code, 0);
   const std::size_t kernels = machine_code().size();
   fs::remove_all(path("cache"));
-  // /proc/self/exe is what they are.
+  // Compiler processes are started from /proc/self/exe, which is missing in this namespace.
   const std::string no_proc = program_test::in_namespace("mount -t tmpfs none /proc");
   const Outcome run = with_cache(picture + "without.exr", no_proc);
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(machine_code().size(), kernels);
-  // Not the whole file: the CPU's name, which the file has, comes from /proc.
+  // Compares pixels and not the whole files: they contain the CPU's name, which comes from /proc.
   const Film with = read_exr(path("with.exr")), without = read_exr(path("without.exr"));
   for (const char* layer : {"ao.R", "light.key.R", "visits.nodes"}) {
     ASSERT_NE(with.find(layer), nullptr) << layer;

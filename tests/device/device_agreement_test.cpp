@@ -1,5 +1,5 @@
-// Every OpenCL device that there is finds the same along each ray. ./setup test-all has two, PoCL
-// and Intel's runtime; with one there is nothing to compare.
+// All OpenCL devices must compute the same transmittance and closest hit for each ray. The command
+// ./setup test-all has two devices, PoCL and Intel's runtime; with one device the test is skipped.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,9 +12,9 @@ namespace {
 
 using namespace scene_test;
 
-// Compilers contract and order additions as they like: near the border of a box, of a triangle or
-// of what a footprint covers, rays go either way. Such are fewer than 2 in a thousand; all others
-// agree to 1e-4, some roundings of the fixed point in which optical depths are added up.
+// Compilers may contract and reorder additions. So a ray near the border of a box, of a triangle or
+// of a footprint may hit on one device and miss on another: at most 2 rays in a thousand. All
+// others agree to 1e-4, which is a few roundings of the fixed-point sums of optical depths.
 constexpr double kOtherWay = 2e-3;
 constexpr float kTolerance = 1e-4f;
 

@@ -1,5 +1,5 @@
-// Scenes that do not fit a device: said with needed and available bytes, before they are built; and
-// memory that is used again.
+// Device memory. A scene that does not fit is refused before its BVH is built, with the needed and
+// the available bytes. Buffers and pages that are used again have the right content.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,7 +90,7 @@ TEST(PagePool, TwoTakersNeverHaveTheSamePagesAndWhatIsGivenBackIsTakenAgain) {
             static_cast<std::ptrdiff_t>(again->bytes()));
 }
 
-// Pages that were kept hold what was written to them, new ones zeros.
+// Kept pages still hold the bytes that were written to them; new pages hold zeros.
 TEST(PagePool, WhatWasGivenBackFirstGoesFirst) {
   PagePool pool;
   const auto mark_of = [](const Pages& pages) { return *static_cast<const char*>(pages.data()); };
@@ -98,7 +98,7 @@ TEST(PagePool, WhatWasGivenBackFirstGoesFirst) {
   std::memset(marked->data(), 7, marked->bytes());
   pool.give_back(std::move(marked));
   constexpr std::size_t kHalf = PagePool::kMaxKept / 2 - (std::size_t{1} << 20);
-  pool.give_back(std::make_unique<Pages>(kHalf));  // not written to: no memory yet
+  pool.give_back(std::make_unique<Pages>(kHalf));  // no memory is used before the first write
   pool.give_back(std::make_unique<Pages>(kHalf));
   marked = pool.take(4096);
   EXPECT_EQ(mark_of(*marked), 7) << "there was room";
@@ -107,7 +107,7 @@ TEST(PagePool, WhatWasGivenBackFirstGoesFirst) {
   EXPECT_EQ(mark_of(*pool.take(4096)), 0) << "there was not";
 }
 
-// More address space than there is.
+// Takes more bytes than the address space has.
 TEST(PagePool, WhatCannotBeHadIsAnErrorOfTheDevice) {
   PagePool pool;
   const Error error = error_of([&] { static_cast<void>(pool.take(std::size_t{1} << 60)); });

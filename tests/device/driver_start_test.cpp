@@ -1,5 +1,5 @@
-// OpenCL where it is missing or cannot work: each cause its own message and exit code 4, or
-// no trouble at all; never a signal.
+// OpenCL drivers that are missing or cannot work. Either the program renders nevertheless, or it
+// ends with exit code 4 and a message about this cause. It never ends by a signal.
 #include <gtest/gtest.h>
 
 #include "support/program_run.hpp"
@@ -14,7 +14,7 @@ using program_test::Outcome;
 
 namespace fs = std::filesystem;
 
-/// With kernels that are kept.
+/// Tests that may use kernels from the kernel cache.
 class DriverStart : public program_test::ProgramRun {
  protected:
   void expect_picture(const Outcome& run) const {
@@ -24,7 +24,7 @@ class DriverStart : public program_test::ProgramRun {
   }
 };
 
-/// Every kernel is compiled, which takes seconds.
+/// Tests that compile every kernel anew, which takes seconds.
 class DriverStartCold : public DriverStart {};
 
 TEST_F(DriverStart, NoPlatformIsToldFromNoSuchDevice) {
@@ -72,7 +72,7 @@ TEST_F(DriverStartCold, ACacheThatCannotBeUsedIsPassedOver) {
 
 TEST_F(DriverStart, WithNowhereToCompileKernelsIsSaid) {
   if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
-  // Read-only as it is, since the program itself may be in there.
+  // Makes /tmp read-only but keeps its content, since the program itself may be in /tmp.
   const std::string mount = "mount --rbind /tmp /tmp && mount -o remount,bind,ro /tmp";
   const std::string before = "HOME=/tmp/none TMPDIR=/tmp XDG_CACHE_HOME= POCL_CACHE_DIR= ";
   const Outcome run = dapple("devices", before + in_namespace(mount));
@@ -106,7 +106,7 @@ TEST_F(DriverStart, AKernelThatDoesNotCompileNamesFileAndLine) {
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
-// PoCL aborts where it cannot link what it compiled.
+// PoCL aborts if it cannot link the code that it compiled.
 TEST_F(DriverStartCold, ADriverThatAbortsIsAMessageNotASignal) {
   if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
   const std::string hide = "mount --bind /dev/null $(readlink -f /usr/bin/ld)";

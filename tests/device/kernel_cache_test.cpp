@@ -1,5 +1,5 @@
-// Compiled kernels from one run to the next: kept, shared by processes, and whatever became of them
-// on the disk never used unless whole.
+// The cache of compiled kernels: the next run and other processes use what one run compiled.
+// Damaged or incomplete files are never used, but compiled again.
 #include "device/programs/kernel_cache.hpp"
 
 #include <gtest/gtest.h>
@@ -25,8 +25,8 @@ const fs::path kProgram = "AB/PROGRAM";
 
 class KernelCacheFiles : public FilmFile {
  protected:
-  /// A process: compiles `text` as PoCL would, and keeps it. Whether there was something to
-  /// compile.
+  /// Does what a process does: compiles `text` as PoCL would, unless the cache has it, and keeps
+  /// the files. Returns whether it compiled.
   [[nodiscard]] bool compiles(const std::string& text) const {
     const EnvironmentWhile place("POCL_CACHE_DIR", path("cache"));
     KernelCache cache;
@@ -45,7 +45,7 @@ class KernelCacheFiles : public FilmFile {
     return compiled;
   }
 
-  /// The one file called so that is kept.
+  /// Path of a file of this name in the cache; fails if there is none.
   [[nodiscard]] fs::path kept(const std::string& name) const {
     for (const auto& entry : fs::recursive_directory_iterator(path("cache"))) {
       if (entry.path().filename() == name) return entry.path();

@@ -1,5 +1,5 @@
-// Kernel text: includes put in once, #line directives that name real places, and compiler
-// messages that therefore lead to the file and line at fault.
+// Kernel text. Each included file is inserted once, with #line directives that name the original
+// file and line, so that compiler messages name them too.
 #include "device/programs/kernel_source.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ int count(const std::string& text, const std::string& what) {
   return found;
 }
 
-/// File and line that #line directives give to the first line that contains `what`.
+/// File and line, according to the #line directives, of the first line that contains `what`.
 std::string place_of(const std::string& text, const std::string& what) {
   std::istringstream lines(text);
   std::string line, file;
@@ -63,7 +63,7 @@ TEST_F(KernelSource, EveryBuiltInKernelExpandsCompletely) {
   int kernels = 0;
   for (const EmbeddedSource& source : embedded_sources()) {
     const std::string text = expand_kernel(std::string(source.name));
-    // Only the standard headers of the C++ side are left, behind __OPENCL_VERSION__.
+    // Only #include <...> of standard headers remain, which the OpenCL compiler skips.
     EXPECT_EQ(count(text, "#include \""), 0) << source.name;
     kernels += source.name.ends_with(".cl");
   }

@@ -1,5 +1,5 @@
-// The structs that host and kernels share have one layout: a kernel reports what the
-// device's compiler made of them.
+// The structs that host and kernels share have the same layout for both compilers: a kernel reports
+// the sizes and offsets that the device's compiler uses.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct Entry {
   std::size_t value;
 };
 
-/// In the order in which tests/kernels/layout.cl reports.
+/// Sizes and offsets on the host, in the order in which tests/kernels/layout.cl reports them.
 std::vector<Entry> host_layout() {
   std::vector<Entry> entries;
 #define DAPPLE_HOST_STRUCT(Type) entries.push_back({"sizeof " #Type, sizeof(Type)});

@@ -1,5 +1,5 @@
-// OpenCL calls and allocations that fail: one Error each, nothing left allocated, and the next
-// picture is right.
+// OpenCL calls and allocations that fail, one after the other: each failure gives one Error, leaves
+// no OpenCL object allocated, and the next picture is right.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class OpenclFailure : public testing::Test {
   OpenclFailure() : picture_(render_small()), living_before_(living_objects()) {}
   ~OpenclFailure() override { fail_call(0); }
 
-  /// Renders with a failure that is armed already.
+  /// Renders after fail_call(n) or fail_allocation(n), and expects one Error.
   void expect_one_error(int n) const {
     SCOPED_TRACE("failure " + std::to_string(n));
     const Error error = film_test::error_of([] { static_cast<void>(render_small()); });
@@ -61,7 +61,7 @@ TEST_F(OpenclFailureAtEveryCall, IsOneErrorAndLeaksNothing) {
   expect_the_same_picture();
   const int count = calls();
   EXPECT_GT(count, 100);
-  // The last call waits for a queue that is idle by then, in a destructor.
+  // Leaves out the last call: in a destructor it waits for a queue that is already idle.
   for (int n = 1; n < count; ++n) {
     fail_call(n);
     expect_one_error(n);
@@ -98,8 +98,8 @@ TEST_F(OpenclFailure, LeavesTheDeviceUsable) {
   }
 }
 
-// Pixel packets take their work by tickets, which host and device count: a failure must not put
-// them out of step, that of the count's own first write neither.
+// Pixel packets take their work by tickets, which the host and the device both count. Both counts
+// must agree after a failure, even of the first write of the device's count.
 TEST_F(OpenclFailure, LeavesTurnsInStep) {
   const Scene scene = make_procedural("scene:cloud?leaves=300&opacity=0.5");
   const SceneBvh bvh = build_bvh(scene);
@@ -120,7 +120,7 @@ TEST_F(OpenclFailure, LeavesTurnsInStep) {
   };
   const std::vector<float> expected = on_new_device(0);
   const int count = calls();
-  EXPECT_EQ(std::count(expected.begin(), expected.end(), 0.0f), 0);  // as of rays not traced
+  EXPECT_EQ(std::count(expected.begin(), expected.end(), 0.0f), 0);  // rays not traced would have 0
   for (int n = 1; n < count; ++n) EXPECT_EQ(on_new_device(n), expected) << "failure " << n;
 }
 

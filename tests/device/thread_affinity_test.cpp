@@ -1,4 +1,4 @@
-// Which CPUs PoCL's threads may run on, seen in a render from outside.
+// The CPUs on which PoCL's threads may run. Another process reads them from /proc during a render.
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -16,7 +16,7 @@ namespace {
 using namespace film_test;
 using namespace program_test;
 
-/// Of each thread of a process, as /proc writes it: "0-3,6".
+/// The CPUs on which each thread of a process may run, as /proc writes them: "0-3,6".
 std::vector<std::string> cpus_of_threads(pid_t process) {
   std::vector<std::string> cpus;
   std::error_code ignored;
@@ -42,7 +42,7 @@ class ThreadAffinity : public FilmFile {
     if (std::getenv("POCL_AFFINITY") || std::getenv("POCL_MAX_PTHREAD_COUNT"))
       GTEST_SKIP() << "somebody has decided already";
   }
-  /// Numbers of the CPUs to which one thread each keeps while a picture is rendered, sorted.
+  /// Renders a picture. Returns the CPUs of the threads that may run on only one CPU, sorted.
   [[nodiscard]] std::vector<std::string> taken_cpus() const {
     RunningProgram program({"render", "scene:cube", "-o", path("out.exr"), "--spp", "1048576",
                             "--checkpoint", path("a.ckpt"), "--checkpoint-every", "0.05"},
@@ -57,7 +57,7 @@ class ThreadAffinity : public FilmFile {
     std::filesystem::remove(path("a.ckpt"));
     return taken;
   }
-  /// Beside the folder, so that it does not count as a file left behind.
+  /// The log is not in the folder, so that it does not count as a file left behind.
   [[nodiscard]] std::string log() const { return folder_.string() + ".log"; }
 
   int cpus_ = 0;
@@ -88,7 +88,7 @@ TEST_F(ThreadAffinity, AProcessThatHasNotAllCpusLeavesThemToTheSystem) {
   ASSERT_EQ(sched_setaffinity(0, sizeof fewer, &fewer), 0);
   const std::vector<std::string> taken = taken_cpus();
   ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
-  // Of two CPUs one is left, which all threads share.
+  // With two CPUs, one remains, and all threads share it.
   if (cpus_ > 2) {
     EXPECT_EQ(taken, std::vector<std::string>{});
   }

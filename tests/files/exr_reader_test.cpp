@@ -1,5 +1,5 @@
-// The EXR reader: files of other programs are understood, damaged ones refused by name,
-// and none of them makes it allocate what the file cannot hold.
+// The EXR reader. It reads files of other programs, and refuses damaged files with a message that
+// names them. It never allocates more pixels than the file can hold.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -91,7 +91,7 @@ TEST_F(ExrReader, SurvivesDamagedBytes) {
   write_exr(film, path("a.exr"));
   const std::string whole = bytes_of(path("a.exr"));
   int refused = 0;
-  // Every byte of the header, some of the pixels.
+  // Damages every byte of the header, and some bytes of the pixels.
   for (std::size_t i = 0; i < whole.size(); i += i < 1200 ? 1 : 13) {
     std::string damaged = whole;
     damaged[i] = static_cast<char>(~damaged[i]);
@@ -103,10 +103,10 @@ TEST_F(ExrReader, SurvivesDamagedBytes) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 100);  // magic, version, types, sizes and ZIP's checksums at the least
+  EXPECT_GT(refused, 100);  // at least magic, version, types, sizes and ZIP's checksums
 }
 
-// The windows that a header claims, without the pixels.
+// The file `exr` with another data window in its header, but the same pixels.
 std::string with_data_window(std::string exr, const Imath::Box2i& window) {
   const std::string name("dataWindow\0box2i\0\x10\0\0\0", 21);
   const std::size_t at = exr.find(name) + name.size();
@@ -118,7 +118,7 @@ TEST_F(ExrReader, RefusesHugeWindowsBeforeItAllocatesThem) {
   const std::string small = bytes_of(path("a.exr"));
   write_bytes(path("b.exr"), with_data_window(small, {{0, 0}, {99'999, 99'999}}));
   expect_refused(path("b.exr"), "100000 x 100000 pixels is over the limit of 268435456");
-  // Inside the limit, but the file is too short for it.
+  // The window is within the limit, but the file is too short for its pixels.
   write_bytes(path("c.exr"), with_data_window(small, {{0, 0}, {16'000, 16'000}}));
   expect_refused(path("c.exr"), "");
 }

@@ -1,5 +1,5 @@
-// Files that appear whole or not at all: paths refused beforehand, links and permissions kept,
-// and nothing left behind by a write that fails.
+// Output files. A file appears complete or not at all, and a failed write leaves nothing behind.
+// Overwriting keeps links and permissions; paths that cannot be written are refused beforehand.
 #include "files/output_file.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST_F(OutputFile, TheLongestPossibleNameCanBeWritten) {
   EXPECT_EQ(read_exr(name).width, 2);
 }
 
-// While it lives, files cannot grow past `bytes`, as on a full disk.
+// While an object of this class exists, files cannot grow past `bytes`, as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -62,7 +62,8 @@ class FileSizeLimit {
   void (*handler_)(int) = std::signal(SIGXFSZ, SIG_IGN);
 };
 
-// Large enough to spill out of any buffer, and noise, which ZIP cannot shrink below the limit.
+// A film larger than any buffer. Its pixels are noise, which ZIP cannot shrink below the limits of
+// the test.
 Film noise_film() {
   Film film = ramp_film(512, 512);
   std::uint32_t state = 1;
@@ -112,7 +113,7 @@ TEST_F(OutputFile, PendingFileWritesWhereItWasSentTo) {
 }
 
 TEST_F(OutputFile, WholeFilesHoldWhatWasGiven) {
-  std::string bytes(3'000'000, '\0');  // three buffers
+  std::string bytes(3'000'000, '\0');  // about three buffers
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * i >> 8U);
   write_whole_file(path("a.bin"), bytes);
   EXPECT_TRUE(bytes_of(path("a.bin")) == bytes);

@@ -1,5 +1,5 @@
-// Sealed files: what comes back is what was written, and a file with any bit flipped, of any
-// other length, kind or version is refused with its name.
+// Sealed files: reading returns the sections that were written. A file with a flipped bit, or of
+// another length, kind or version, is refused with a message that names it.
 #include "files/sealed_file.hpp"
 
 #include <gtest/gtest.h>
@@ -141,7 +141,8 @@ TEST_F(SealedFileOnDisk, AnOpenFileOutlivesItsReplacementAndRemoval) {
   EXPECT_EQ(file.values<std::uint32_t>(0)[0], 1u);
 }
 
-/// Writes the file over and over, each time with another number all through, until killed.
+/// Writes the file again and again until the process is killed. All values of one version of the
+/// file are the same number.
 [[noreturn]] void write_forever(const std::string& path) {
   for (std::uint32_t number = 0;; ++number) {
     const std::vector<std::uint32_t> numbers(500'000, number);
@@ -157,7 +158,7 @@ TEST(KilledWriter, LeavesTheOldFileOrTheNewAndTheNextRunCleansUp) {
   const std::vector<std::uint32_t> first(10, 42);
   write_sealed_file(path, kKind, {as_section(first)});
   std::mt19937 random(1);
-  int left_behind = 0;  // by those who were killed while they wrote
+  int left_behind = 0;  // temporary files of processes killed while they wrote
   for (int round = 0; round < 2000 && left_behind < 40; ++round) {
     const pid_t child = fork();
     if (child == 0) write_forever(path);

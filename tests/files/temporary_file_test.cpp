@@ -1,4 +1,5 @@
-// Temporary files: those of the living stay, those of the dead go, and no other file is touched.
+// Temporary files: remove_abandoned_files() removes those of processes that have ended. It keeps
+// those of running processes, and all files with other names.
 #include "files/temporary_file.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ using namespace film_test;
 
 class TemporaryFiles : public FilmFile {};
 
-/// The path of a temporary file whose maker is dead.
+/// Creates a temporary file in a process that is then killed. Returns the file's path.
 std::string abandoned_file(const std::string& folder) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);

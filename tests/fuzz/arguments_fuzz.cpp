@@ -1,4 +1,4 @@
-// Any text as what follows an option: an Error of kind usage, or options that are in range.
+// Parses any text as the argument of each option: this gives a value, or an Error of kind usage.
 #include <string>
 
 #include "commands/option_text.hpp"

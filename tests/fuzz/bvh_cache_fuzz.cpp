@@ -1,5 +1,6 @@
-// Files of the BVH cache as somebody might make them: any bytes, or sealed as ours are, so that the
-// checksum holds, around edited or any contents. Either is refused by name, or rays can walk it.
+// Reads files of the BVH cache that dapple did not write: any bytes, or sealed files with a right
+// checksum whose contents are arbitrary or edited. A file is refused with a message that names it,
+// or rays can traverse its BVH.
 #include <fuzzer/FuzzedDataProvider.h>
 #include <unistd.h>
 
@@ -46,7 +47,7 @@ Scene scene_with_textures(std::size_t count) {
   return scene;
 }
 
-/// A few random triangles, opaque and textured.
+/// A BVH over 60 triangles, opaque and textured.
 CachedObject small_object() {
   Scene scene = scene_with_textures(1);
   scene.textures[0].width = scene.textures[0].height = 1;
@@ -69,11 +70,11 @@ CachedObject small_object() {
   return {FinishedObject(std::move(built.object)), 1.0};
 }
 
-/// What rays would touch, with every index checked.
+/// Visits all nodes and primitives that rays could reach, and checks every index.
 void walk(const FinishedObject& object, std::uint32_t index, std::size_t& visits) {
   require(index < object.nodes.size());
   const BvhNode& node = object.nodes[index];
-  if (++visits > kMaxVisits) return;  // children may be shared
+  if (++visits > kMaxVisits) return;  // files may share children between nodes
   for (uint slot = 0, inner = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
     if (node.inner_mask >> slot & 1) {
       require(node.child_base + inner > index);
@@ -124,7 +125,7 @@ Contents sections_of_ours() {
   return contents;
 }
 
-/// Ours but for some bytes and sizes.
+/// A file that dapple wrote, with some bytes and sizes of sections changed.
 void write_edited(FuzzedDataProvider& data) {
   static const Contents ours = sections_of_ours();
   Contents contents = ours;

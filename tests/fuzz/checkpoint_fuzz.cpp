@@ -1,5 +1,5 @@
-// Checkpoints as somebody might make them: any bytes, or sealed and packed as ours are, so that the
-// checksum holds, around any contents. Either is refused, or all of its slices are within bounds.
+// Reads checkpoints that dapple did not write: any bytes, or sealed and compressed files with a
+// right checksum around any contents. A file is refused, or all of its slices are within bounds.
 #include <fuzzer/FuzzedDataProvider.h>
 #include <unistd.h>
 
@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dapple/error.hpp"
+#include "dapple/shared/ray.h"
 #include "files/compression.hpp"
 #include "files/sealed_file.hpp"
 #include "render/checkpoint.hpp"
@@ -30,7 +31,7 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// Goes over the rest of the round as tracing does.
+/// Advances through the rest of the round as tracing does, and checks each slice.
 void trace(Round round, std::uint32_t slice_samples) {
   for (int slices = 0; !round.is_done() && slices < kMaxSlices; ++slices) {
     const SliceParams slice = next_slice(round, slice_samples);
@@ -52,7 +53,7 @@ void read() {
     check_state(path(), state, {kPixels, state.sums.size(), state.squares.size()});
     for (const std::uint32_t samples :
          traced_samples(state.round, state.slice_samples, state.samples))
-      require(samples <= 1u << 20);
+      require(samples <= DAPPLE_MAX_CAMERA_SPLITTING << 20);
     trace(state.round, state.slice_samples);
   } catch (const Error& error) {
     require(std::string(error.what()).find("--resume " + path() + ": ") == 0);
@@ -67,14 +68,14 @@ void write_raw(FuzzedDataProvider& data) {
 void seal(const std::string& about, const std::vector<std::vector<std::byte>>& packed) {
   std::vector<Section> sections{as_section(about)};
   for (const auto& bytes : packed) sections.emplace_back(bytes);
-  write_sealed_file(path(), {"checkpoint", 1}, sections, Durable::no);
+  write_sealed_file(path(), {"checkpoint", 2}, sections, Durable::no);
 }
 
 std::vector<std::byte> any_bytes(FuzzedDataProvider& data) {
   return data.ConsumeBytes<std::byte>(data.ConsumeIntegralInRange<std::size_t>(0, 64));
 }
 
-/// Any text, any frames.
+/// Any text as the header, and any sections, compressed or not.
 void write_any(FuzzedDataProvider& data) {
   const std::string about = data.ConsumeRandomLengthString();
   std::vector<std::vector<std::byte>> packed;
@@ -83,7 +84,7 @@ void write_any(FuzzedDataProvider& data) {
   seal(about, packed);
 }
 
-/// What could almost be a state: numbers in or near the ranges that fit.
+/// A file that is similar to a checkpoint: its numbers are in or near the valid ranges.
 void write_likely(FuzzedDataProvider& data) {
   const auto number = [&](std::uint32_t most) {
     return data.ConsumeBool() ? data.ConsumeIntegralInRange<std::uint32_t>(0, most)

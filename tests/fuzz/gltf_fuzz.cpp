@@ -1,5 +1,5 @@
-// Any bytes as a scene, at rest and moving: an Error of kind input, or triangles and segments that
-// a BVH can be built over.
+// Reads any bytes as a scene, at rest and at a time, and merges its meshes. This gives a scene, or
+// an Error of kind input.
 #include <optional>
 
 #include "dapple/error.hpp"

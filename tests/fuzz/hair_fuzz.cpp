@@ -1,4 +1,5 @@
-// Any bytes as a HAIR file: an Error of kind input, or strands whose every index and radius holds.
+// Reads any bytes as a HAIR file. This gives an Error of kind input, or strands whose indices are
+// within bounds and whose numbers are finite and in range.
 #include <cmath>
 
 #include "dapple/error.hpp"

@@ -1,4 +1,4 @@
-// Any bytes as an image: an Error of kind input, or as many alphas as pixels.
+// Decodes any bytes as an image. This gives one alpha for each pixel, or an Error of kind input.
 #include "dapple/error.hpp"
 #include "scene/images/image.hpp"
 

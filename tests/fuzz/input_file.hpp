@@ -1,4 +1,5 @@
-// A file in memory's place that a fuzzer fills anew for every run: readers take paths.
+// A temporary file for readers that take a path. In: the fuzzer's bytes of each run; out: the path
+// of the file with these bytes. The destructor removes the file and its folder.
 #pragma once
 
 #include <unistd.h>

@@ -1,4 +1,5 @@
-// Any bytes as a lights file: an Error of kind input, or lights of finite numbers.
+// Reads any bytes as a lights file. This gives lights with finite numbers, or an Error of kind
+// input.
 #include <cmath>
 
 #include "dapple/error.hpp"

@@ -1,4 +1,5 @@
-// Any bytes as a dome's Radiance HDR image: an Error of kind input, or as many texels as pixels.
+// Decodes any bytes as a dome's Radiance HDR image. This gives one texel for each pixel, or an
+// Error of kind input.
 #include "dapple/error.hpp"
 #include "scene/images/radiance_hdr.hpp"
 

@@ -1,5 +1,5 @@
-// Writes the corpus's scenes, and small images, as files for fuzzers to begin with: seeds FOLDER
-// makes FOLDER/gltf and FOLDER/image.
+// Writes the scenes of the corpus, and small images, as the first inputs of the fuzzers. The
+// command `seeds FOLDER` makes the folders FOLDER/gltf and FOLDER/image.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -14,7 +14,7 @@
 
 namespace {
 
-/// What fits a fuzzer's runs; bombs do not.
+/// Maximum bytes of a seed, as in tests/fuzz/run. Larger files of the corpus (bombs) are left out.
 constexpr std::size_t kLargest = 20000;
 
 using Bytes = std::vector<std::uint8_t>;

@@ -1,5 +1,6 @@
-// What a scene without them gets: a camera that frames it, and a key light; and cameras by where
-// they look.
+// The default camera and key light of a scene that has none: the camera frames the scene's bounds,
+// and the light faces their centre with an irradiance of about 1. Also look_at(), and the views
+// that it refuses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// One, whose bounds have that corner and size.
+/// A scene of one triangle. Its bounds have this minimum corner and this size.
 Scene triangle_at(V3f corner, V3f size) {
   Scene scene;
   scene.materials.resize(1);
@@ -28,7 +29,8 @@ Scene triangle_at(V3f corner, V3f size) {
   return scene;
 }
 
-// How far outside the frame a point is: at most 1 when it is inside.
+// Distance of a point from the picture's centre, in half widths or half heights of the frame (the
+// larger of both): at most 1 inside the frame, infinite behind the camera.
 float frame_excess(const Camera& camera, float aspect, V3f point) {
   const V3f p = point * camera.to_world.inverse();
   const float tan_y = std::tan(camera.fov_y / 2);
@@ -52,7 +54,7 @@ TEST(FrameScene, EveryCornerOfTheBoundsIsInTheFrameAndOneIsNearItsEdge) {
       }
       EXPECT_LE(widest, 1);
       EXPECT_GT(widest, 0.9f);
-      EXPECT_GT(camera.to_world[3][1], box.center().y);  // a little above
+      EXPECT_GT(camera.to_world[3][1], box.center().y);  // a little above the centre
     }
   }
 }
@@ -104,7 +106,7 @@ TEST(KeyLight, HangsUpLeftInFrontAndFacesTheCentre) {
     const M44f& axes = camera.to_world;
     EXPECT_GT(from_centre.y, 0);
     EXPECT_LT(from_centre.dot(V3f(axes[0][0], axes[0][1], axes[0][2])), 0);
-    EXPECT_GT(from_centre.dot(V3f(axes[2][0], 0, axes[2][2])), 0);  // whatever its tilt
+    EXPECT_GT(from_centre.dot(V3f(axes[2][0], 0, axes[2][2])), 0);  // at any tilt of the camera
     EXPECT_TRUE((-from_centre).normalized().equalWithAbsError(key.direction, 1e-5f));
     const float radius = std::sqrt(3.0f) / 2;
     EXPECT_NEAR(from_centre.length(), 3 * radius, 1e-4);
@@ -131,7 +133,8 @@ TEST(KeyLight, GivesASurfaceAtTheCentreThatFacesItAnIrradianceOfAboutOne) {
     }
   }
   irradiance *= key.edge_u.length() * key.edge_v.length() / (kCells * kCells);
-  // The square's extent takes off 2 * (1/6)^2 * 2/3 of the first-order value 1.
+  // To first order the irradiance is 1. The extent of the square light reduces it by
+  // 2 * (1/6)^2 * 2/3.
   EXPECT_NEAR(irradiance, 1 - 0.037, 0.005);
 }
 

@@ -1,5 +1,6 @@
-// The GLB writer: chunks and JSON as the glTF 2.0 specification wants them, the scene's
-// triangles in them, the same bytes every time, and no half files.
+// The GLB writer: chunks and JSON follow the glTF 2.0 specification and hold the scene's triangles,
+// materials, instances and cameras. The same scene gives the same bytes, and a failed write leaves
+// no file.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -20,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-// A folder that is gone when the test is over.
+// A temporary folder that the destructor removes.
 class Folder {
  public:
   Folder() : path_(fs::temp_directory_path() / ("dapple_glb_" + std::to_string(getpid()))) {
@@ -55,7 +56,7 @@ struct Glb {
   std::string binary;
 };
 
-// Takes a GLB apart, checking every length on the way.
+// Splits a GLB into its JSON and its binary chunk, and checks every length.
 Glb take_apart(const std::string& bytes) {
   EXPECT_EQ(bytes.substr(0, 4), "glTF");
   EXPECT_EQ(word_at(bytes, 4), 2u);
@@ -99,7 +100,7 @@ Material material(const std::string& name, AlphaMode mode, float alpha) {
   return result;
 }
 
-// Two triangles of two materials, placed twice, and a camera.
+// Two triangles of two materials, with two instances, and a camera. A third material is unused.
 Scene small_scene() {
   Scene scene;
   scene.source = "small";

@@ -1,5 +1,5 @@
-// HAIR files: what the arrays and their defaults become, what is dropped with a count, and what is
-// refused before it is read.
+// HAIR files: the strands, radii and opacities that arrays and their defaults give, which segments
+// and strands are dropped and counted in a warning, and which files are refused.
 #include "scene/hair_file.hpp"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST(HairFile, ArraysTakeThePlaceOfDefaults) {
   EXPECT_EQ(mesh.indices, (std::vector<std::uint32_t>{0, 1, 2, 3, 3, 4, 4, 5}));
   ASSERT_EQ(mesh.radii.size(), 6u);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(mesh.radii[i], 0.125f * static_cast<float>(i + 1));
-  EXPECT_GT(mesh.radii[5], 0.0f);  // a tip of no thickness
+  EXPECT_GT(mesh.radii[5], 0.0f);  // the thickness of the tip is 0
   EXPECT_LT(mesh.radii[5], 1e-8f);
   EXPECT_EQ(mesh.vertex_alpha, (std::vector<float>{1, 0.75f, 0.5f, 0, 0, 1}));
   EXPECT_EQ(scene.materials[0].alpha, 1.0f);
@@ -107,7 +107,7 @@ TEST(HairFile, SegmentsWithoutLengthAreDroppedWithoutAGap) {
 
 TEST(HairFile, StrandsNoLongerThanThickAreDroppedWithACount) {
   HairBuilder builder = two_strands();
-  builder.thickness = {2, 2, 2, 1.75f, 1.75f, 1.75f};  // both are 2 long
+  builder.thickness = {2, 2, 2, 1.75f, 1.75f, 1.75f};  // both strands have the length 2
   const Scene scene = read(builder);
   EXPECT_EQ(scene.meshes[0].primitive_count(), 2u);
   EXPECT_EQ(scene.meshes[0].positions[0], V3f(1, 0, 0));

@@ -1,5 +1,5 @@
-// Lights files: every kind of light as the README describes it, and messages that name file,
-// light and key.
+// Lights files. Each kind of light has the position, the axes and the radiance that its keys say; a
+// wrong file is refused with a message that names the file, the light and the key.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@
 namespace dapple {
 namespace {
 
-// A file that is gone when the test is over.
+// A temporary file that the destructor removes.
 class LightsFile {
  public:
   explicit LightsFile(const std::string& text)
@@ -41,7 +41,7 @@ std::vector<Light> load_one(const std::string& fields) {
   return load("{\"lights\": [{" + fields + "}]}");
 }
 
-// The message without the file's name, which must lead it.
+// The message of the Error, without the file's name. The message must begin with that name.
 std::string complaint_about_path(const std::string& path) {
   try {
     load_lights(path);
@@ -116,7 +116,7 @@ TEST(LightsFile, ASunsIrradianceIsThatOfItsDisk) {
                           .at(0);
   EXPECT_EQ(light.kind, LightKind::sun);
   EXPECT_EQ(light.direction, V3f(0, -1, 0));
-  EXPECT_NEAR(light.angular_radius, std::numbers::pi / 6, 1e-6);  // half of the full angle
+  EXPECT_NEAR(light.angular_radius, std::numbers::pi / 6, 1e-6);  // half of the angular diameter
   // E = pi sin^2(30 degrees) L = pi / 4 L.
   EXPECT_NEAR(light.radiance.x, 4 / std::numbers::pi, 1e-5);
   EXPECT_NEAR(light.radiance.y, 8 / std::numbers::pi, 1e-5);
@@ -238,7 +238,7 @@ TEST(LightsFile, APipeIsRefusedWithoutWaitingForIt) {
 TEST(LightsFile, DeepNestingAndHugeFilesAreRefused) {
   EXPECT_EQ(complaint(std::string(1'000'000, '[')), "nests deeper than 16 levels");
   const LightsFile file("{");
-  std::filesystem::resize_file(file.path(), (16u << 20) + 1);  // sparse
+  std::filesystem::resize_file(file.path(), (16u << 20) + 1);  // a sparse file
   EXPECT_EQ(complaint_about_path(file.path()),
             "has 16777217 bytes; a lights file may have 16777216");
 }

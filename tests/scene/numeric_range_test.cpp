@@ -1,5 +1,5 @@
-// Scenes from the smallest to the largest numbers: each becomes a picture of finite pixels or
-// a clear error, and within the range that is promised it becomes a picture.
+// Scenes with very small and very large numbers: each gives a picture of finite pixels or an Error
+// of kind input. Inside the promised range each gives a picture.
 #include "scene/numeric_range.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace dapple::test {
 namespace {
 
-constexpr const char* kMayBeInfinite = "Z";  // where no ray hits
+constexpr const char* kMayBeInfinite = "Z";  // infinite where no ray hits
 
 /// The name of a channel with a pixel that is not finite; empty when there is none.
 std::string odd_channel(const Film& film) {
@@ -39,7 +39,7 @@ Scene scaled_stage(float scale) {
   return builder.load();
 }
 
-/// "picture", or the message of the Error input.
+/// Renders the scene. Returns "picture", or the message of the Error, which must be of kind input.
 std::string outcome(Scene scene, const RenderOptions& options = small_options()) {
   try {
     const RenderResult result = render(std::move(scene), options);

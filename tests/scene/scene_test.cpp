@@ -1,5 +1,5 @@
-// What is done to a scene between reading and rendering: bounds, opacity, ground, and merging into
-// world space.
+// Operations on a scene between reading and rendering: its bounds, --opacity, --ground, and merging
+// meshes into world space.
 #include "dapple/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Mesh unit_triangle(const std::string& name = "triangle") {
   return triangle_mesh(name, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
 }
 
-// More than the 256 triangles up to which a mesh that is placed often is merged.
+// A mesh of 300 triangles. Meshes with several instances are merged only if they have at most 256.
 Mesh large_mesh() {
   Mesh mesh = unit_triangle("large");
   for (std::uint32_t i = 1; i < 300; ++i) {
@@ -120,7 +120,7 @@ TEST(SceneBounds, IgnoreVerticesThatNoTriangleUses) {
 
 TEST(SceneBounds, IgnoreVerticesAtInfinity) {
   Mesh mesh = unit_triangle();
-  mesh.positions[0] = V3f(-kInfinity, -5.0f, 3.0f);  // its triangle is left out
+  mesh.positions[0] = V3f(-kInfinity, -5.0f, 3.0f);  // the bounds leave out its triangle
   const Box3f bounds = scene_bounds(scene_of({mesh}, {placed(0, translation({5, 0, 0}))}));
   EXPECT_EQ(bounds.min, V3f(5, 0, 0));
   EXPECT_EQ(bounds.max, V3f(6, 1, 0));

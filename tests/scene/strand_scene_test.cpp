@@ -1,5 +1,6 @@
-// Strands on their way from a scene to a BVH: merged apart from triangles, cleaned up with a count,
-// never written as glTF, never emitting.
+// Strands in a scene before the BVH is built: they are merged apart from triangles, and segments
+// that no ray can hit are dropped and counted in a warning. Strands are not written as glTF, and do
+// not emit light.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -49,7 +50,7 @@ TEST(StrandScene, PlacedOnceTheirRadiiGrowWithThem) {
 
 TEST(StrandScene, SegmentsThatNothingCanHitAreDroppedWithACountAndStrandsGoOnAcrossThem) {
   Mesh mesh;
-  // The second segment has no length; the last has no radius, the one before it comes to a point.
+  // The second segment has no length. The last has no radius; the one before it ends in a point.
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
   mesh.radii = {0.1f, 0.1f, 0.1f, 0.1f, 0, 0};
   for (std::uint32_t i = 0; i < 5; ++i) {

@@ -1,5 +1,6 @@
-// The tree: every triangle in one lane, boxes that contain, indices in order, the same bits
-// whatever the threads, and nothing that degenerate geometry can upset.
+// BVHs of objects, and the top level over instances: every triangle is in one lane, boxes contain
+// their content, indices are in order, and the bits do not depend on the number of threads.
+// Degenerate geometry also gives a well-formed BVH.
 #include "dapple/bvh.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +61,7 @@ std::vector<Corners> random_triangles(std::size_t count, float size) {
   return triangles;
 }
 
-/// Walks an object's nodes as a kernel would and checks everything that kernels rely on.
+/// Visits an object's nodes as a kernel does, and checks everything that kernels rely on.
 class Walk {
  public:
   Walk(const Mesh& mesh, const ObjectBvh& object) : mesh_(mesh), object_(object) {
@@ -108,7 +109,7 @@ class Walk {
     return values;
   }
 
-  /// Exact box of the triangles below node `index`.
+  /// Checks node `index` and the nodes below it. Returns the exact box of their triangles.
   Box3f node(std::uint32_t index) {
     const BvhNode& n = object_.nodes[index];
     ++visits_[index];
@@ -144,7 +145,8 @@ class Walk {
     return box;
   }
 
-  /// The box of the triangle in a lane, which is thereby used up.
+  /// Returns the box of the triangle in lane `i`, and removes the triangle from those still
+  /// missing.
   Box3f take(std::uint32_t prim_base, std::uint32_t i) {
     const std::uint32_t block = prim_base + i / 8;
     Box3f box;
@@ -169,7 +171,8 @@ class Walk {
     }
   }
 
-  /// Blocks that the nodes own, when each node's follow those of the node before it.
+  /// Number of blocks that the nodes own. Checks that the blocks of each node follow those of the
+  /// previous node.
   std::uint32_t next_blocks() const {
     std::uint32_t next = 0;
     for (const BvhNode& n : object_.nodes) {
@@ -215,9 +218,10 @@ TEST(Bvh, DegenerateGeometryMakesAWellFormedTree) {
   for (int i = 0; i < 5000; ++i) {
     const float x = static_cast<float>(i);
     cases["centres in a line"].push_back(triangle_at({x * 0.01f, 0, 0}, 0.1f));
-    // Growing about one point: all centres agree, the boxes do not.
+    // Triangles that grow around one point: the centres of all boxes are equal, the boxes differ.
     cases["concentric"].push_back({V3f(-x, -x, 0), V3f(x, -x, 0), V3f(0, x, 0)});
-    // 1e-6 to 1e6 in 5,000 equal ratios; binned splits take but a few from the small end.
+    // Scales from 1e-6 to 1e6 in 5,000 equal ratios, which binned splits divide into very unequal
+    // parts.
     const float scale = std::pow(10.0f, -6.0f + 12.0f * x / 5000.0f);
     cases["of all scales, in a row"].push_back(triangle_at({scale, 0, 0}, 0.1f * scale));
     cases["of all scales, in space"].push_back(
@@ -240,7 +244,7 @@ TEST(Bvh, DegenerateGeometryMakesAWellFormedTree) {
 }
 
 TEST(Bvh, OneThreadAndFourMakeTheSameBits) {
-  // More than 65,536 triangles, so that binning is parallel too; placed twice for a top level.
+  // More than 65,536 triangles, so that binning is parallel too. Two instances give a top level.
   Scene scene = scene_of(random_triangles(70000, 0.05f), 0.4f);
   scene.instances.push_back({0, M44f().setTranslation(V3f(1, 2, 0.5f)), -1});
   const auto build = [&](std::size_t threads) {
@@ -254,7 +258,8 @@ TEST(Bvh, OneThreadAndFourMakeTheSameBits) {
 }
 
 TEST(Bvh, NodesAndBlocksAreFewerThanHalfTheTriangles) {
-  // At every size: linear, whatever the phase in which eight-wide levels fill up.
+  // The limit must hold for several counts, since the lowest level of eight-wide nodes is not
+  // equally full for all of them.
   for (const std::size_t count : {3000, 10000, 30000, 100000}) {
     const float spacing = 2 / std::cbrt(static_cast<float>(count));
     const Scene scene = scene_of(random_triangles(count, 0.2f * spacing));
@@ -293,7 +298,7 @@ TEST(Bvh, ASceneThatNothingCanHitIsAnInputErrorNamingIt) {
   }
 }
 
-/// Instances in random affine placements, mirrored and sheared ones among them.
+/// Instances with random affine matrices, some of them mirrored or sheared.
 Scene scattered_scene(int count) {
   Scene scene = scene_of(random_triangles(50, 0.5f));
   scene.instances.clear();
@@ -309,8 +314,8 @@ Scene scattered_scene(int count) {
   return scene;
 }
 
-/// Exact world boxes of the instances below top-level node `index`, each checked to lie in
-/// its slot; counts the instances met.
+/// Returns the exact world box of the instances below top-level node `index`. Checks that each box
+/// is inside of its slot, and counts in `met` how often each instance was found.
 Box3f walk_top(const SceneBvh& bvh, const Mesh& mesh, std::uint32_t index, std::vector<int>& met) {
   const BvhNode& n = bvh.nodes[index];
   Box3f box;
@@ -333,7 +338,7 @@ Box3f walk_top(const SceneBvh& bvh, const Mesh& mesh, std::uint32_t index, std::
     }
     const Box3f grown = child_box(n, slot);
     for (int a = 0; a < 3; ++a) {
-      // Both sides round a sum of four terms below 25: a few spacings of floats there.
+      // Both sides round a sum of four terms below 25; 1e-5 is a few spacings of such floats.
       EXPECT_LE(grown.min[a], child.min[a] + 1e-5f);
       EXPECT_GE(grown.max[a], child.max[a] - 1e-5f);
     }
@@ -362,7 +367,7 @@ TEST(Bvh, TheTopLevelHoldsEveryInstanceOnceWithInverseMatrices) {
     };
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) {
-        // Entries of the inverse reach 1 / 0.05 * 2 = 40, translations 40 * 20.
+        // Entries of the inverse are up to 1 / 0.05 * 2 = 40, its translations up to 40 * 20.
         EXPECT_NEAR(product(row, column), row == column ? 1.0 : 0.0, column == 3 ? 2e-3 : 1e-4);
       }
     }

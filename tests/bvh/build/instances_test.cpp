@@ -1,5 +1,5 @@
-// An instance must occlude as the same triangles put into world space would: turned, mirrored,
-// scaled non-uniformly, sheared, and several at once.
+// Instances that are turned, mirrored, scaled non-uniformly, sheared, or that overlap. They must
+// occlude as their triangles in world space do.
 #include <gtest/gtest.h>
 
 #include "support/scene_on_device.hpp"
@@ -23,7 +23,7 @@ Scene placed(Scene scene, const std::vector<M44f>& placements) {
   return scene;
 }
 
-// All placements' triangles as one mesh in world space.
+// The triangles of all instances as one mesh in world space.
 Scene flattened(const Scene& scene) {
   Scene flat = scene;
   flat.meshes.clear();
@@ -91,8 +91,9 @@ TEST(Instance, OccludesRayByRayAsItsTrianglesInWorldSpace) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       different += std::fabs(a[i].transmittance - b[i].transmittance) > 1e-5f;
     }
-    // Rays that pass an edge within rounding (1e-6 of 15 m, leaves of some centimetres, some
-    // ten edges near a ray's way) may fall on either side of it in the two spaces.
+    // A ray that passes an edge within the rounding (1e-6 of 15 m) may be on one side of it in
+    // object space and on the other in world space. Leaves have a size of some centimetres, and
+    // about ten edges are near a ray.
     std::printf("%s: %d of %zu rays differ\n", placing.name, different, rays.size());
     EXPECT_LE(different, 10);
   }
@@ -104,9 +105,10 @@ TEST(Instance, OccludesPrefilteredInTheMeanAsItsTrianglesInWorldSpace) {
       SCOPED_TRACE(testing::Message() << placing.name << ", opacity " << opacity);
       const Scene scene = placed(tree(opacity), placing.placements);
       const SceneOnDevice instanced(scene), flat(flattened(scene));
-      // As of AO with 640, 64 and 4 rays a point. The wider, the fewer nodes stand for the
-      // tree, whose opacities blend differently along its own axes and the world's; at 0.8
-      // an instance is a single node, which the flat one's root never is.
+      // Solid angles of AO rays when a point has 640, 64 or 4 of them. For wide rays a few nodes
+      // represent the tree, and the model blends their opacities differently along the tree's own
+      // axes and along the world's. At 0.8 sr one node represents an instance; the root of the
+      // flattened scene never represents the whole scene.
       struct Width {
         float solid_angle;
         double relative_difference;

@@ -1,5 +1,5 @@
-// Quantized child boxes: never smaller than the original, hardly larger, on a grid about as
-// fine as 8 bits allow, whatever the size and place of the box.
+// Quantized child boxes, for boxes of all sizes and positions: they contain the original box, are
+// larger by about one grid step, and the grid is about as fine as 8 bits allow.
 #include "bvh/build/quantize.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Random boxes around `centre`, `size` wide at most per axis; every third is flat in one.
+/// Random boxes around `centre`, at most `size` wide along each axis. Every third box inside a
+/// parent is flat along one axis.
 class BoxSource {
  public:
   BoxSource(V3f centre, V3f size) : centre_(centre), size_(size) {}
@@ -91,7 +92,7 @@ void expect_contains(const Box3f& outer, const Box3f& inner) {
 
 void expect_margin_and_snug(const BvhNode& node, unsigned slot, const Box3f& box) {
   for (int a = 0; a < 3; ++a) {
-    // 1e-6 of a step: doubles divided, the quotient up to 255.
+    // 1e-6 of a step covers the rounding of the division, whose quotient is up to 255.
     const double step = step_of(node, a);
     const double least = (kGridMargin - 1e-6) * step;
     const double rounding_below = kGridRounding * std::fabs(box.min[a]);
@@ -100,7 +101,7 @@ void expect_margin_and_snug(const BvhNode& node, unsigned slot, const Box3f& box
     const double above = exact_upper(node, a, slot) - box.max[a];
     EXPECT_GE(below, least + 0.999999 * rounding_below) << "axis " << a;
     EXPECT_GE(above, least + 0.999999 * rounding_above) << "axis " << a;
-    // A bound is rounded to the next step beyond a margin.
+    // A bound is rounded outward to the next step beyond the margin.
     const double most = (1 + 2 * kGridMargin) * step;
     EXPECT_LE(below, most + rounding_below) << "axis " << a;
     EXPECT_LE(above, most + rounding_above) << "axis " << a;
@@ -135,9 +136,10 @@ TEST(Quantize, TheGridIsWithinTwiceTheFinestThatFits) {
       BvhNode node{};
       set_grid(node, parent);
       for (int a = 0; a < 3; ++a) {
-        if (node.exponent[a] == 27) continue;  // 2^-100: as fine as it goes
-        // The origin must be a float below the box and its margin: where floats are sparse the
-        // grid has to reach from there. 255 steps of half the size may just fail to cover this.
+        if (node.exponent[a] == 27) continue;  // 2^-100, the finest step
+        // The origin must be a float below the box and its margin. Where floats are sparse, the
+        // grid has to reach from this float to the box's end. With half the step, 255 steps may
+        // just fail to cover that range.
         const auto start =
             static_cast<float>(parent.min[a] - 2 * kGridRounding * std::fabs(parent.min[a]));
         const double reach = parent.max[a] + kGridRounding * std::fabs(parent.max[a]) -

@@ -1,4 +1,5 @@
-// A binary tree whose subtrees move: still a tree over the same primitives, and a better one.
+// Reinsertion of a binary tree's subtrees: the result is a valid tree over the same primitives,
+// with a smaller sum of areas.
 #include "bvh/build/reinsertion.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 namespace dapple {
 namespace {
 
-/// Small ones, and some as long as the whole, as of leaves and branches.
+/// Random boxes: most are small like leaves, every tenth is long like a branch.
 std::vector<PrimitiveBox> random_boxes(std::uint32_t count) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> place(0.0f, 1.0f);
@@ -39,7 +40,8 @@ double area_sum(const std::vector<BinaryNode>& tree) {
   return sum;
 }
 
-/// Each node's box is that of its primitives and each node's range that of its children.
+/// Checks that each node's box is that of its primitives, and that its range of primitives joins
+/// those of its children.
 void expect_sound(const std::vector<BinaryNode>& tree, const std::vector<PrimitiveBox>& boxes,
                   std::uint32_t n = 0) {
   const BinaryNode& node = tree[n];
@@ -58,7 +60,7 @@ void expect_sound(const std::vector<BinaryNode>& tree, const std::vector<Primiti
   expect_sound(tree, boxes, node.right);
 }
 
-/// What two rounds leave of the sum of areas.
+/// Runs two rounds of reinsertion. Returns the sum of areas after them, relative to the one before.
 double part_left(std::vector<PrimitiveBox>& boxes) {
   std::vector<BinaryNode> tree = build(boxes);
   const double before = area_sum(tree);
@@ -105,8 +107,8 @@ TEST(Reinsertion, BoxesAroundOneAnotherMakeNoChain) {
   EXPECT_EQ(part_left(boxes), 1);
 }
 
-// None in another, all about one point: searches without a limit look at nearly all
-// nodes, and take 11 s in place of 0.3.
+// No box contains another, and all have the same centre: a search without a limit would visit
+// nearly all nodes, and take far too long.
 TEST(Reinsertion, OverlappingBoxesAreLookedAtInReason) {
   std::mt19937 random(9);
   std::normal_distribution<float> exponent(0.0f, 1.0f);

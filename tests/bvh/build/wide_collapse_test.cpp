@@ -1,4 +1,5 @@
-// Nodes of eight put together from a binary tree, against all that there are.
+// Collapse of a binary tree into eight-wide nodes: its cost must equal the minimum that an
+// exhaustive search over all possible nodes finds.
 #include "bvh/build/wide_collapse.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@ namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
 
-/// Random, with areas that shrink downwards; subtrees of one or two primitives may not be split.
+/// Appends a random binary tree over `count` primitives. Areas shrink towards the leaves. Subtrees
+/// of two primitives are split or not, at random.
 void grow(std::uint32_t first, std::uint32_t count, float area, std::mt19937& random,
           std::vector<BinaryNode>& tree) {
   const std::size_t at = tree.size();
@@ -33,14 +35,14 @@ void grow(std::uint32_t first, std::uint32_t count, float area, std::mt19937& ra
   grow(first + left, count - left, area * part(random), random, tree);
 }
 
-/// By trying everything.
+/// Finds the minimum cost by an exhaustive search.
 class Exhaustive {
  public:
   explicit Exhaustive(const std::vector<BinaryNode>& tree) : tree_(tree), as_child_(tree.size()) {
     for (std::size_t n = tree.size(); n-- > 0;) as_child_[n] = as_child(static_cast<unsigned>(n));
   }
 
-  /// Of the whole tree.
+  /// Minimum cost of the whole tree.
   float cost() const { return as_child_[0]; }
 
  private:
@@ -52,7 +54,8 @@ class Exhaustive {
     return it.right == 0 ? leaf : std::min(leaf, it.area + below({node + 1, it.right}, 0));
   }
 
-  /// The least cost of the children of a node, those before `from` staying as they are.
+  /// Minimum cost of a node's children. Those before `from` stay as they are; each other child may
+  /// be replaced by its own children.
   float below(const std::vector<std::uint32_t>& children, std::size_t from) const {
     if (from == children.size()) {
       float sum = 0;

@@ -1,5 +1,5 @@
-// Closed surfaces: which triangles are found to be part of one, and that a node's opacity does
-// not count their backs.
+// Closed surfaces: which triangles the builder recognizes as part of one, and that a node's opacity
+// does not count their back faces. Also the clumping of coverage maps.
 #include "bvh/opacity/closed_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@
 namespace dapple {
 namespace {
 
-/// Appends a prism of `sides` without ends from `a` to `b`, its sides cut into `parts`.
+/// Appends a prism from `a` to `b` with `sides` sides and without end faces. Its sides are cut into
+/// `parts` rings along its length.
 void add_prism(Mesh& mesh, const V3f& a, const V3f& b, float radius, int sides, int parts) {
   const V3f along = (b - a).normalized();
   const V3f x = along.cross(V3f(0.31f, 0.17f, 0.93f)).normalized(), y = along.cross(x);
@@ -77,7 +78,7 @@ TEST(ClosedSurface, WhatLightPassesIsNone) {
 }
 
 TEST(ClosedSurface, AThinTwigHidesItsSilhouetteOnce) {
-  // Convex, so that the projected areas of its sides are twice the silhouette's.
+  // The prism is convex, so the projected areas of its sides add up to twice the silhouette's area.
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0.6f, 1, 0.8f}, 0.004f, 6, 12);
   V3f silhouette(0.0f);
@@ -92,13 +93,14 @@ TEST(ClosedSurface, AThinTwigHidesItsSilhouetteOnce) {
   const V3f twig = opacity_of(scene_of(mesh)).axes;
   for (int axis = 0; axis < 3; ++axis) {
     const float truth = silhouette[axis] / face_area(box, axis);
-    // Cells at joints count some twice; both sides independent would make nearly 2 of it.
+    // Cells at the rings count some area twice. If front and back faces counted independently, the
+    // opacity would be nearly twice the true one.
     EXPECT_NEAR(twig[axis], truth, 0.15f * truth) << axis;
   }
 }
 
 TEST(ClosedSurface, TwoTwigsOneBehindTheOtherStayTwo) {
-  // Crossing as seen along z, apart along x and y: each hides its own area.
+  // Seen along z the twigs cross, but at different depths: each occludes its own area.
   Mesh one, two;
   add_prism(one, {0, 0, 0}, {1, 1, 0.1f}, 0.004f, 6, 12);
   add_prism(two, {0, 0, 0}, {1, 1, 0.1f}, 0.004f, 6, 12);
@@ -123,7 +125,8 @@ TEST(Clumping, AClumpHidesItsProjectedAreaAndItsFactorBringsDepthsThere) {
   const V3f size(1, 1, 1), diagonal = V3f(1, 1, 1).normalized();
   const float even = opacity_along(clump, size, diagonal);
   clump.clumping = 1;
-  // Areas as an ellipsoid: 0.5 of a face, over sqrt(3) faces.
+  // The projected area is that of an ellipsoid, half of a face; along the diagonal the box has the
+  // projected area of sqrt(3) faces.
   EXPECT_NEAR(opacity_along(clump, size, diagonal), 0.5f / std::sqrt(3.0f), 1e-5f);
   EXPECT_GT(even, opacity_along(clump, size, diagonal));
   EXPECT_LT(clumping_factor(clump, size), 1.0f);

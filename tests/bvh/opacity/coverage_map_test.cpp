@@ -1,5 +1,5 @@
-// Coverage maps: areas kept when triangles are drawn and maps composited, textures averaged
-// as they will be looked up.
+// Coverage maps: drawing triangles and compositing the maps of children keep areas. Opacity
+// pyramids: means of a texture's opacity over squares of texels, with its cutoff and wrap modes.
 #include "bvh/opacity/coverage_map.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ CoveringTriangle triangle_of(const V3f& a, const V3f& b, const V3f& c, float opa
   return {a, b - a, c - a, opacity};
 }
 
-/// Share of the box's face along `axis` that the triangle covers, in double precision.
+/// Share of the box's face across `axis` that the triangle covers, in double precision.
 double projected_share(const CoveringTriangle& t, const Box3f& box, int axis) {
   const int u = column_axis(axis), v = row_axis(axis);
   const double cross =
@@ -52,7 +52,7 @@ void expect_area_kept(const CoveringTriangle& triangle, const Box3f& box) {
   CoverageMap map;
   cover(map, box, std::array{triangle}, kNotVarying);
   for (int axis = 0; axis < 3; ++axis) {
-    // 1e-5: the rounding of a sum over 256 cells of numbers up to 1.
+    // 1e-5 covers the rounding of a sum over 256 cells of numbers up to 1.
     EXPECT_NEAR(map.mean_opacity(axis), triangle.opacity * projected_share(triangle, box, axis),
                 1e-5)
         << "axis " << axis << ", triangle " << triangle.vertex << " " << triangle.edge1 << " "
@@ -82,12 +82,12 @@ TEST(CoverageMap, TrianglesMeansAreTheirProjectedAreas) {
     cover(map, kBox, std::array{triangle}, kNotVarying);
     for (int axis = 0; axis < 3; ++axis) {
       const double off = map.mean_opacity(axis) - 0.8 * projected_share(triangle, kBox, axis);
-      // Where a corner is so sharp that its cells would be more than full: half a cell.
+      // A cell at a very sharp corner would be more than full. The error is at most half a cell.
       ASSERT_NEAR(off, 0, 0.5 / kMapCells) << "triangle " << i;
       error += off / (3 * count);
     }
   }
-  // Such cells are rare; all in all nothing is lost.
+  // Such cells are rare: the mean error of all triangles is near 0.
   EXPECT_NEAR(error, 0, 1e-5);
 }
 
@@ -157,7 +157,7 @@ TEST(CoverageMap, AChildAsLargeAsItsParentIsTakenOverUnchanged) {
   const CoverageMap& map = node.map();
   for (int axis = 0; axis < 3; ++axis) {
     for (int cell = 0; cell < kMapCells; ++cell) {
-      // Cell borders of both maps agree to 16 roundings of a number up to 16.
+      // The cell borders of both maps agree to 16 roundings of a number up to 16.
       EXPECT_NEAR(map.transmittance[axis][cell], inside.transmittance[axis][cell], 2e-5f);
     }
   }
@@ -178,7 +178,8 @@ TEST(CoverageMap, SolidPartsSideBySideFillTheirParentWhereverTheyMeet) {
 }
 
 TEST(CoverageMap, PartsThatOverlapWithinACellMultiplyOnlyThere) {
-  // Boxes of 3/4 of the width from either side: they share the middle half.
+  // Each box has 3/4 of the parent's width, one from the left and one from the right. So they
+  // overlap in the middle half.
   Box3f left = kBox, right = kBox;
   left.max.x = in_box({0.75f, 0, 0}).x;
   right.min.x = in_box({0.25f, 0, 0}).x;
@@ -218,7 +219,7 @@ Texture noise_texture(std::uint32_t width, std::uint32_t height, unsigned seed) 
   texture.height = height;
   std::mt19937 random(seed);
   for (std::uint32_t i = 0; i < width * height; ++i) {
-    // Brighter to the right, so that an average over the wrong place shows.
+    // Alpha increases to the right, so that a mean over the wrong texels is noticed.
     texture.alpha.push_back(
         static_cast<std::uint8_t>((random() % 128) + 127 * (i % width) / width));
   }
@@ -237,7 +238,7 @@ TEST(OpacityPyramid, ItsTopIsTheMeanOfAllTexelsOfOddSizesToo) {
   for (const auto& [width, height] : {std::pair{64u, 64u}, {1u, 1u}, {37u, 5u}, {3u, 100u}}) {
     const Texture texture = noise_texture(width, height, 6);
     for (const float cutoff : {-1.0f, 0.5f}) {
-      // Sums of halves of up to 100 texels, seven times.
+      // From 100 texels to one the pyramid has at most seven levels, each of which rounds.
       EXPECT_NEAR(OpacityPyramid(texture, 1, cutoff).mean({0.3f, 0.8f}, 1e6f),
                   texture_mean(texture, cutoff), 1e-5)
           << width << " x " << height << ", cutoff " << cutoff;
@@ -267,7 +268,7 @@ TEST(OpacityPyramid, CutOutsAreThresholdedBeforeTheyAreAveraged) {
   EXPECT_NEAR(mean(1, 0.6f), 0.5f, 1e-6f);  // the mean, 0.5, is below the cutoff
   EXPECT_NEAR(mean(1, 0.1f), 1, 1e-6f);
   EXPECT_NEAR(mean(1, 0.9f), 0, 1e-6f);
-  EXPECT_NEAR(mean(0.5f, 0.45f), 0, 1e-6f);  // the factor comes before the threshold
+  EXPECT_NEAR(mean(0.5f, 0.45f), 0, 1e-6f);  // the factor is applied before the threshold
 }
 
 TEST(OpacityPyramid, CoordinatesFarOutMeanTheirPlaceInTheTile) {
@@ -279,14 +280,14 @@ TEST(OpacityPyramid, CoordinatesFarOutMeanTheirPlaceInTheTile) {
     texture.wrap_s = s;
     texture.wrap_t = t;
     const OpacityPyramid pyramid(texture, 1, -1);
-    // 3e9 is an even whole number of tiles, and beyond the last texel where clamped.
+    // 3e9 is an even number of whole tiles; clamped coordinates are beyond the last texel.
     const float u = s == Wrap::clamp ? 1.0f : 0.0f, v = t == Wrap::clamp ? 1.0f : 0.0f;
     EXPECT_NEAR(pyramid.mean({3e9f, 0.3f}, 1), pyramid.mean({u, 0.3f}, 1), 1e-6f);
     EXPECT_NEAR(pyramid.mean({0.3f, 3e9f}, 1), pyramid.mean({0.3f, v}, 1), 1e-6f);
   }
 }
 
-/// A square metre across z, its texture once over it, as two triangles.
+/// A square metre perpendicular to z, as two triangles. The texture covers it once.
 Scene card_scene(const Texture& texture, AlphaMode mode, float alpha) {
   Scene scene;
   scene.textures.push_back(texture);
@@ -315,8 +316,9 @@ TEST(CoverageMap, ATexturedCardsMeanIsItsTexturesMean) {
       prefilter(built, TextureIntegrals(scene, built.object.textured));
       const ObjectBvh& object = built.object;
       const double truth = alpha * texture_mean(texture, mode == AlphaMode::mask ? 0.5f : -1.0f);
-      // The two triangles add up. Blurring by two pyramid levels, wrapping around at the
-      // border and looking up at the middle of cells that the diagonal halves move little.
+      // The opacities of the two triangles add up. Three errors are small: the blur between two
+      // levels of the pyramid, the wrap at the border, and the look-up in the middle of cells that
+      // the diagonal divides.
       EXPECT_NEAR(object.opacity.axes.z, truth, 0.004) << size << " texels";
       EXPECT_NEAR(object.opacity.axes.x, 0, 1e-6f);
       EXPECT_NEAR(object.opacity.axes.y, 0, 1e-6f);

@@ -1,5 +1,6 @@
-// Prefiltering takes time linear in the triangles: a coarse guard, by the processor's time, which
-// what else the machine does hardly disturbs. dapple-bench accuracy --linear goes to millions.
+// Checks coarsely that the time of prefiltering is linear in the number of triangles. It measures
+// processor time, which other programs hardly disturb. `dapple-bench accuracy --linear` measures
+// larger scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 namespace dapple {
 namespace {
 
-/// Processor seconds of prefiltering a cloud of leaves, two triangles each, alone: the least of
-/// several.
+/// Processor time, in seconds, of prefiltering a cloud of `leaves` leaves of two triangles each,
+/// without building its BVH: the minimum of several runs.
 double prefilter_seconds(int leaves) {
   const Scene scene = make_procedural("scene:cloud?leaves=" + std::to_string(leaves));
   BuiltObject built = build_object(scene, scene.meshes[0]);
@@ -26,14 +27,15 @@ double prefilter_seconds(int leaves) {
   return least;
 }
 
-// Ten times the triangles take ten times the time, 11 or 12 where they leave the caches. Anything
-// quadratic would take a hundred times; 20 leaves room for a disturbed measurement.
+// Ten times the triangles should take ten times the time, or a little more where the data exceed
+// the caches. A quadratic algorithm would take a hundred times. The limit of 20 leaves room for
+// disturbed measurements.
 TEST(LinearTime, TenTimesTheTrianglesTakeLessThanTwentyTimesTheTimeToPrefilter) {
   const double few = prefilter_seconds(10'000), many = prefilter_seconds(100'000);
   std::printf("prefiltering 20,000 triangles takes %.3f s, 200,000 %.3f s: %.1f times\n", few, many,
               many / few);
   EXPECT_LT(many / few, 20);
-  // Otherwise the clock has measured nothing.
+  // A smaller ratio would mean that the clock did not measure the work.
   EXPECT_GT(many / few, 3);
 }
 

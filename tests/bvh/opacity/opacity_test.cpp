@@ -1,5 +1,6 @@
-// Directional opacity: the model that gives it along any direction, and the same model eight boxes
-// at a time in footprint.clh. What nodes keep of it: stored_opacity_test.cpp.
+// The model of directional opacity: the opacity and optical depth of a box along any direction, and
+// the kernels' version of the model, which computes eight boxes at once (footprint.clh). Tests of
+// what nodes store are in stored_opacity_test.cpp.
 #include "dapple/shared/opacity.h"
 
 #include <gtest/gtest.h>
@@ -25,15 +26,15 @@ V3f random_direction(std::mt19937& random) {
   return d.normalized();
 }
 
-/// Optical depth of a box of `size` along unit `d`, its normals not correlated.
+/// Optical depth of a box of `size` along the unit direction `d`, with uncorrelated normals.
 float depth_along(const V3f& opacity, const V3f& size, const V3f& d) {
   return box_depth(depth_of(opacity.x), depth_of(opacity.y), depth_of(opacity.z), 0, 0, 0,
                    size.y * size.z * std::fabs(d.x), size.z * size.x * std::fabs(d.y),
                    size.x * size.y * std::fabs(d.z));
 }
 
-/// What is in a box at random: any two kinds of surfaces, and opacities up to 0.999, whose
-/// transmittances are not cut off.
+/// Random content of a box: surfaces with two random normals, and opacities up to 0.999, whose
+/// transmittance is above the stored minimum.
 NodeOpacity random_opacity(std::mt19937& random) {
   std::uniform_real_distribution<float> part(0.0f, 0.999f);
   NodeOpacity opacity;
@@ -54,7 +55,7 @@ TEST(OpacityModel, AClumpHidesItsEllipsoidsAreaFromAnyDirection) {
                   c.y * std::copysign(1.0f, d.y * d.z), c.z * std::copysign(1.0f, d.z * d.x),
                   size.y * size.z * std::fabs(d.x), size.z * size.x * std::fabs(d.y),
                   size.x * size.y * std::fabs(d.z));
-    // Roundings of a dozen operations; the root of a difference doubles them.
+    // A dozen operations round; the root of a difference doubles their error.
     EXPECT_NEAR(opacity_along(clump, size, d), std::min(1.0f, expected), 1e-5f);
   }
 }
@@ -66,7 +67,7 @@ TEST(OpacityModel, WhatLiesEvenlyHidesItsOpacityAlongEachAxis) {
     for (int axis = 0; axis < 3; ++axis) {
       V3f direction(0.0f);
       direction[axis] = -2;
-      // The exponential is known to 4e-6 of itself.
+      // The exponential has a relative error of 4e-6.
       EXPECT_NEAR(opacity_along(even, V3f(1, 2, 3), direction), opacity, 4e-6f);
     }
   }
@@ -74,7 +75,8 @@ TEST(OpacityModel, WhatLiesEvenlyHidesItsOpacityAlongEachAxis) {
 
 TEST(OpacityModel, DepthsOfWhatLiesEvenlyNeedNoFactor) {
   std::mt19937 random(4);
-  // Opacities are known to 4e-6 of transmittances, and slopes, where boxes are dense, are small.
+  // An opacity has an error of 4e-6 of the transmittance. The factor divides this error by the
+  // slope, which is also small for dense boxes.
   for (int i = 0; i < 1000; ++i)
     EXPECT_NEAR(clumping_factor(random_opacity(random), V3f(1, 2, 0.5f)), 1.0f, 1e-4f);
   EXPECT_EQ(clumping_factor({}, V3f(1, 2, 0.5f)), 1.0f);
@@ -103,7 +105,9 @@ TEST(OpacityModel, FactorsOfClumpsAreThoseOfTheirMirrorImagesAndOfAxesRenamed) {
   EXPECT_GT(changed, 300) << "the case does not test much";
 }
 
-/// Area hidden by the box, and its change with a factor on depths, over directions from everywhere.
+/// Sums over random directions: the projected area that a clump occludes (`wanted`), the area that
+/// the same content occludes if it is spread uniformly (`given`), and the derivative of `given` by
+/// a factor on optical depths (`change`).
 struct HiddenArea {
   double wanted = 0, given = 0, change = 0;
 };
@@ -144,7 +148,8 @@ TEST(OpacityModel, FactorsMakeUpForWhatClumpsHideLessFromEverywhere) {
     expected += (hidden.wanted - hidden.given) / hidden.change;
   }
   EXPECT_LT(expected, -0.02 * 500) << "the case does not test much";
-  // Seven directions stand for all: to 3 % here. Diagonals weighted as the axes would be 11 % off.
+  // clumping_factor() integrates over seven directions, here with an error of 3 %. If the diagonals
+  // had the weights of the axes, the error would be 11 %.
   EXPECT_NEAR(factors / expected, 1, 0.05);
 }
 
@@ -153,7 +158,7 @@ TEST(OpacityModel, ASolidBoxIsOpaqueInEveryDirection) {
   for (const V3f& size : {V3f(1, 1, 1), V3f(1, 3, 0.2f), V3f(1, 0.01f, 1)}) {
     for (int i = 0; i < 1000; ++i) {
       const float depth = depth_along(V3f(1, 1, 1), size, random_direction(random));
-      // The least transmittance, 1e-4, to the power 1 / sqrt(3) at worst: 0.0049.
+      // The minimum transmittance is 1e-4, in the worst case to the power of 1 / sqrt(3): 0.0049.
       EXPECT_LT(std::exp(-depth), 0.005f);
     }
   }
@@ -167,7 +172,7 @@ TEST(OpacityModel, ASheetShowsItsOwnOpacityFaceOn) {
       size[axis] = 0;
       direction[axis] = -1;
       EXPECT_NEAR(1 - std::exp(-depth_along(opacities, size, direction)), opacity, 1e-5f);
-      // Edge on it has no area to be met.
+      // Seen edge-on, the sheet has no area that a ray can hit.
       V3f edge_on(0.0f);
       edge_on[(axis + 1) % 3] = 1;
       EXPECT_NEAR(depth_along(opacities, size, edge_on), 0, 1e-6f);
@@ -180,7 +185,8 @@ TEST(OpacityModel, SmallOpacitiesAddUpLinearly) {
   for (int i = 0; i < 1000; ++i) {
     const V3f d = random_direction(random), size(1, 2, 0.5f), opacity(1e-3f, 4e-4f, 2e-3f);
     const float once = depth_along(opacity, size, d), twice = depth_along(opacity * 2.0f, size, d);
-    // -log(1 - x) = x + x^2 / 2: off by x / 2 in ratio, x up to 4e-3; 1e-7 / x by rounding.
+    // -log(1 - x) = x + x^2 / 2: the ratio's error is x / 2, for x up to 4e-3. Rounding adds
+    // 1e-7 / x.
     EXPECT_NEAR(twice / once, 2, 3e-3f);
   }
 }
@@ -203,7 +209,7 @@ TEST(OpacityModel, MoreOpacityAlongAnyAxisIsNeverLessDepth) {
   }
 }
 
-/// Nodes with eight random boxes of random opacities each.
+/// Nodes with eight random boxes each. Their opacities are random, up to `greatest`, but at most 1.
 std::vector<BvhNode> random_nodes(std::size_t count, float greatest, bool correlated = true) {
   std::mt19937 random(4);
   std::uniform_real_distribution<float> unit(0, 1);
@@ -225,7 +231,7 @@ std::vector<BvhNode> random_nodes(std::size_t count, float greatest, bool correl
   return nodes;
 }
 
-/// The scalar model over a mean chord of what child `slot` stores.
+/// Optical depth over a mean chord of child `slot`, by the scalar model from the stored codes.
 float stored_depth(const BvhNode& node, unsigned slot, const V3f& d) {
   const V3f size = child_box(node, slot).max - child_box(node, slot).min;
   float depth[3], correlation[3];
@@ -259,14 +265,15 @@ std::vector<V3f> random_directions(std::size_t count) {
 
 TEST(OpacityModel, TheVectorizedModelEqualsTheScalarOneOverAMeanChord) {
   const auto directions = random_directions(500);
-  // Up to 1.3, cut at 1, so that full boxes are met.
+  // Opacities of up to 1.3 are clamped to 1, so that some boxes are full.
   for (const float greatest : {0.5f, 1.3f}) {
     const auto nodes = random_nodes(500, greatest);
     const auto depths = device_depths(nodes, directions, 1);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
         const float expected = stored_depth(nodes[n], slot, directions[n]);
-        // Twenty roundings on either side; cancellation where correlations take most away.
+        // Both sides round about twenty times. Where correlations subtract most of the depth,
+        // cancellation increases the error.
         ASSERT_NEAR(std::exp(-depths[8 * n + slot]), std::exp(-expected), 2e-5f)
             << "along " << directions[n];
       }
@@ -279,7 +286,7 @@ TEST(OpacityModel, TheShortLogarithmIsWithin1e5OfTheResult) {
   std::vector<float> values;
   for (int i = 0; i < 40000; ++i)
     values.push_back(std::pow(10.0f, -4.0f * static_cast<float>(i) / 40000));
-  // Close to 1, where thin nodes are.
+  // Values close to 1, as in thin nodes.
   for (int i = 1; i <= 8000; ++i) values.push_back(1 - static_cast<float>(i) * 0x1p-24f);
   const Buffer results = device().allocate(values.size() * sizeof(float));
   const auto items = static_cast<uint>(values.size() / 8);
@@ -301,12 +308,13 @@ TEST(OpacityModel, ASparseBoxsDepthGrowsWithTheChordUpToALimitAndAFullOneDoesNot
              ninety = device_depths(sparse, directions, 90);
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_NEAR(half[i], 0.5f * one[i], 1e-5f + 1e-4f * one[i]);
-    // The longest chord of a box is one to three mean chords, by direction.
+    // The longest chord of a box is one to three mean chords, depending on the direction.
     EXPECT_EQ(nine[i], ninety[i]);
     EXPECT_GE(nine[i], one[i] * (1 - 1e-4f));
     EXPECT_LE(nine[i], 3 * one[i] * (1 + 1e-4f) + 1e-5f);
   }
-  // Correlated normals may leave a way through even where every face is full.
+  // Without correlated normals, with which rays may pass between surfaces even if all faces are
+  // full.
   const auto full = random_nodes(200, 1e6f, false);
   const auto short_way = device_depths(full, directions, 0.5f),
              long_way = device_depths(full, directions, 2);
@@ -321,7 +329,8 @@ TEST(OpacityModel, CentreWeightsKeepTheMeanDepthOfRaysThatFillTheBox) {
       const V3f direction = random_direction(random);
       double weights = 0;
       constexpr int kPoints = 20000;
-      // Points that fill the box pick rays by their length inside, as depths count them.
+      // A uniform point in the box selects a ray with a probability in proportion to the ray's
+      // length inside the box. This is the weight of the ray in the mean optical depth.
       for (int i = 0; i < kPoints; ++i) {
         const V3f p(unit(random), unit(random), unit(random));
         float enter = -100, leave = 100;
@@ -333,7 +342,8 @@ TEST(OpacityModel, CentreWeightsKeepTheMeanDepthOfRaysThatFillTheBox) {
         weights +=
             centre_weight(mass_concentration, (p + direction * (0.5f * (enter + leave))).length2());
       }
-      // 0.667 to 0.707 off centre in the mean, 0.68 in the model; and the least weight.
+      // The mean off_centre is 0.667 to 0.707, depending on the direction; the model uses 0.68. The
+      // minimum weight adds to the error.
       EXPECT_NEAR(weights / kPoints, 1, 0.045 * mass_concentration + 0.005) << direction;
     }
   }

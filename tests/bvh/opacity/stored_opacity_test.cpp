@@ -1,4 +1,5 @@
-// What nodes keep of opacity: its 8-bit codes, and moments of the normals of what hides.
+// What nodes store of opacity: 8-bit codes of optical depths, and moments of the normals of the
+// occluding surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,12 +29,13 @@ TEST(OpacityCode, DecodingIsWithinHalfACodeAndKeepsSmallOpacities) {
   for (int i = 0; i <= 10000; ++i) {
     const float opacity = static_cast<float>(i) / 10000.0f;
     set_child_opacity(node, 0, {V3f(opacity, 0, 1), {}}, grown);
-    // Half a code of the depth's square root r, of 255 up to R = 3.035: the depth is off by
-    // at most 2 r h + h^2, and the opacity by that times the transmittance.
+    // The code stores the depth's square root r, in 255 steps up to 3.035. With h, half a step, the
+    // error of the depth is at most 2 r h + h^2, and that of the opacity is this times the
+    // transmittance.
     const float half = 0.5f / 255.0f * std::sqrt(DAPPLE_GREATEST_DEPTH);
     const float root = std::sqrt(depth_of(opacity));
     const float bound = (2 * root * half + half * half) * std::exp(-root * root + 2 * root * half);
-    // Opacities below 1 within rounding of it are stored as the greatest depth.
+    // Opacities that differ from 1 only by rounding are stored as the maximum depth.
     ASSERT_NEAR(stored_opacity(node, 0), opacity, bound + 1e-6f + (opacity > 0.9998f ? 1e-4f : 0));
     ASSERT_TRUE(node.depth[0][0] > 0 || opacity < 2 * half * half) << opacity;
   }
@@ -44,7 +46,7 @@ TEST(OpacityCode, DecodingIsWithinHalfACodeAndKeepsSmallOpacities) {
 TEST(OpacityCode, TheStoredOpacityIsThatOfTheGrownBox) {
   BvhNode node{};
   set_grid(node, Box3f(V3f(0, 0, 0), V3f(100, 50, 20)));
-  // A few grid steps wide, so that growing doubles some areas.
+  // The box is a few grid steps wide, so that growing it doubles some areas.
   const Box3f exact(V3f(10.1f, 10.1f, 10.1f), V3f(10.9f, 10.5f, 10.3f));
   set_child_box(node, 0, exact);
   const V3f opacity(0.9f, 0.5f, 0.7f);
@@ -53,13 +55,13 @@ TEST(OpacityCode, TheStoredOpacityIsThatOfTheGrownBox) {
   for (int axis = 0; axis < 3; ++axis) {
     const float expected = opacity[axis] * face_area(exact, axis) / face_area(grown, axis);
     EXPECT_LT(expected, 0.9f * opacity[axis]) << "the case does not test much";
-    // Half a code, as above: below 0.006 for any opacity.
+    // The error of half a step, as above, is below 0.006 for every opacity.
     EXPECT_NEAR(stored_opacity(node, axis), expected, 0.006f);
   }
 }
 
 TEST(NormalMoments, ATiltedSheetIsSeenByItsProjectedAreaFromEverywhere) {
-  // One surface of area vector g in its box: occluding area |g . d|, whatever d.
+  // One surface with the area vector g: along every direction d it occludes the area |g . d|.
   const V3f g(0.3f, 0.5f, -0.4f), size(1, 1, 1);
   NodeOpacity sheet;
   sheet.normals.add(g, 1e-3f);
@@ -69,8 +71,8 @@ TEST(NormalMoments, ATiltedSheetIsSeenByItsProjectedAreaFromEverywhere) {
   for (int i = 0; i < 1000; ++i) {
     const V3f d = V3f(normal(random), normal(random), normal(random)).normalized();
     const float facing = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
-    // Thin, so that depth and opacity agree to 1e-3 of themselves; roundings of the root of
-    // a difference near grazing.
+    // The sheet is thin, so that depth and opacity have a relative difference of 1e-3. Near grazing
+    // directions the root of a difference rounds.
     EXPECT_NEAR(opacity_along(sheet, size, d) * facing, 1e-3f * std::fabs(g.dot(d)), 2e-6f);
   }
 }
@@ -83,7 +85,7 @@ TEST(NormalMoments, TurnWithTheirPlacementWhateverTheMatrix) {
   m[0][0] = 2;
   m[1][0] = 0.5f;   // sheared
   m[2][2] = -0.3f;  // and mirrored
-  // Area vectors turn by the cofactors: det times the inverse transposed.
+  // Area vectors transform by the cofactor matrix: the determinant times the transposed inverse.
   const M44f inverse = m.inverse();
   V3f turned;
   for (int i = 0; i < 3; ++i) {

@@ -1,5 +1,5 @@
-// Refitted BVHs against fresh ones of the same moved scene: what rays meet, what boxes hold, what
-// stays as it was.
+// Compares refitted BVHs with newly built ones of the same moved scene: transmittances of rays,
+// boxes and opacities. Also checks which bytes stay unchanged, and when an object is rebuilt.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -32,7 +32,7 @@ Scene tree(int leaves = 5000) {
   return make_procedural("scene:tree?leaves=" + std::to_string(leaves));
 }
 
-/// Bounds of the triangles in a block's lanes [begin, end) of a node.
+/// Bounds of the triangles in the lanes [begin, end) of a node. Each of its blocks has eight lanes.
 Box3f leaf_box(const SceneBvh& bvh, const BvhNode& node, std::uint32_t begin, std::uint32_t end) {
   Box3f box;
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -47,7 +47,7 @@ Box3f leaf_box(const SceneBvh& bvh, const BvhNode& node, std::uint32_t begin, st
   return box;
 }
 
-/// Whether `outer` holds `inner` but for the rounding of edges.
+/// Expects that `outer` contains `inner`, except for the rounding of edges.
 void expect_inside(const Box3f& outer, const Box3f& inner) {
   for (int axis = 0; axis < 3; ++axis) {
     const float slack = 1e-5f * (1 + std::fabs(inner.min[axis]) + std::fabs(inner.max[axis]));
@@ -56,7 +56,7 @@ void expect_inside(const Box3f& outer, const Box3f& inner) {
   }
 }
 
-/// Checks all boxes below an object's node; returns what is in it and counts the triangles.
+/// Checks all boxes below an object's node. Returns the bounds of its triangles, and counts them.
 Box3f check_boxes(const SceneBvh& bvh, std::uint32_t index, std::size_t& triangles) {
   const BvhNode& node = bvh.nodes[index];
   Box3f all;
@@ -106,7 +106,7 @@ TEST(Refit, EveryRayMeetsInExactModeWhatItMeetsInAFreshBvh) {
   }
 }
 
-// On a device with memory of its own.
+// The device has its own memory, not shared with the host.
 TEST(Refit, OnlyWhatMovedIsUploaded) {
   opencl_test::pretend_own_memory(true);
   const Device device;
@@ -131,7 +131,7 @@ TEST(Refit, OnlyWhatMovedIsUploaded) {
     ASSERT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5f) << "ray " << i;
 }
 
-// The opacities that are kept and not found again must be those that building finds.
+// Refitting keeps some opacities and does not compute them again. They must be those of a build.
 TEST(Refit, OpacitiesOfWhatMovedBackAreThoseOfTheBuild) {
   const Scene still = tree();
   UpdatableBvh updatable(still);
@@ -172,7 +172,7 @@ TEST(Refit, ThreadsDontChangeABit) {
   EXPECT_EQ(bytes_of(updatable.bvh().nodes) + bytes_of(updatable.bvh().blocks), one_thread);
 }
 
-/// A tree that may sway beside a fence that never moves, both twice.
+/// A tree that may sway, beside a fence that never moves. Both have two instances.
 Scene tree_and_fence() {
   Scene scene = tree(2000);
   place(scene, square_mesh(3, 1, 12, 0), M44f().setTranslation(V3f(9, 0, 0)));
@@ -238,7 +238,7 @@ TEST(Refit, NothingIsDoneWhereNothingMoved) {
   EXPECT_TRUE(update.nodes.empty() && update.blocks.empty());
 }
 
-/// Leaves thrown anywhere: no tree over them is any good.
+/// The scene with each leaf moved by a random offset, so that a refitted BVH is slow.
 Scene scattered(const Scene& still) {
   Scene scene = still;
   scene_test::Points points(3);
@@ -263,7 +263,7 @@ TEST(Refit, AnObjectWhoseTreeHasDecayedIsBuiltAnew) {
   const SceneBvh fresh = build_bvh(moved);
   EXPECT_EQ(bytes_of(updatable.bvh().nodes, 0, fresh.nodes.size()), bytes_of(fresh.nodes));
   EXPECT_EQ(bytes_of(updatable.bvh().blocks), bytes_of(fresh.blocks));
-  // And goes on from there.
+  // Later motion refits the rebuilt object.
   EXPECT_EQ(updatable.update(swayed(moved, 0.1f, 0.2f)).objects_refitted, 1u);
 }
 
@@ -287,7 +287,8 @@ TEST(Refit, MotionThatWasNotExpectedIsBuiltOnceAndRefittedFromThenOn) {
   EXPECT_EQ(updatable.update(swayed(still, 1.1f)).objects_refitted, 1u);
 }
 
-/// Cards of leaves, cut out by a texture, that lean in the wind.
+/// Cards that a texture cuts out. `lean` moves their vertices along +X: those of higher cards more,
+/// and the upper vertices of a card more than the lower ones.
 Scene cards(float lean) {
   Scene scene = make_procedural("scene:tree?leaves=10");
   scene.meshes.clear();

@@ -1,5 +1,6 @@
-// A Renderer's pictures of a tree in the wind, one after the other, against those of fresh renders;
-// the memory that a thousand of them take.
+// Compares the pictures of one Renderer, of a scene that moves from picture to picture, with those
+// of separate renders. Also compares AO in refitted and in newly built BVHs, and checks that a
+// thousand pictures do not use more and more memory.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -71,8 +72,8 @@ TEST(Renderer, TheSamePictureTwiceIsTheSameBits) {
   }
 }
 
-// Camera rays are only traced where the scene's bounds are: these move too, with one object that is
-// refitted and with placements.
+// Camera rays are traced only in the pixels that can see the scene's bounds. The bounds must move
+// with the scene, both for one object that is refitted and for instances that are moved.
 TEST(Renderer, WhatMovesAcrossThePictureIsSeenWhereItIs) {
   const RenderOptions options = small_picture(Estimator::exact, 64, 1);
   for (const char* name : {"scene:tree?leaves=300", "scene:forest?trees=4&leaves=50"}) {
@@ -109,7 +110,8 @@ TEST(Renderer, AnotherSceneIsAnotherPicture) {
   EXPECT_EQ(mean_ao(renderer.render(cloud, options)), mean_ao(render(cloud, options)));
 }
 
-// Triangles without an area are dropped before trees are built: the tree of the others is another.
+// Triangles without an area are dropped before the BVH is built, so the BVH has fewer triangles and
+// cannot be refitted.
 TEST(Renderer, ALeafThatLosesItsAreaHasItsObjectBuiltAnew) {
   const Scene still = tree(500);
   const RenderOptions options = small_picture(Estimator::exact, 16, 4);
@@ -125,10 +127,10 @@ TEST(Renderer, ALeafThatLosesItsAreaHasItsObjectBuiltAnew) {
   EXPECT_EQ(mean_ao(dropped), mean_ao(render(moved, options)));
 }
 
-/// A film's rate: the fastest leaves turn by some 5 degrees from one frame to the next.
+/// The frame rate of films: the fastest leaves turn by about 5 degrees from frame to frame.
 constexpr float kFrameSeconds = 1.0f / 24;
 
-/// Mean occlusion of points all over the tree's box, looking up and down.
+/// Mean occlusion at random points in the tree's box. Half of the normals point up, half down.
 class CrownOcclusion {
  public:
   explicit CrownOcclusion(const Box3f& box) {
@@ -155,8 +157,8 @@ class CrownOcclusion {
   std::vector<V3f> points_, normals_;
 };
 
-// Exact occlusion of the same rays tells how much of a step is the leaves' own: prefiltered, fewer
-// rays go from one side of a leaf to the other.
+// The step of the mean occlusion from frame to frame must not be much larger than with the exact
+// estimator and the same rays, where the motion of the leaves alone causes the step.
 TEST(SwayingTree, AHundredFramesDontPop) {
   const Scene still = tree(5000);
   UpdatableBvh updatable(still);
@@ -204,20 +206,20 @@ TEST(SwayingTree, OcclusionInARefittedBvhIsThatInAFreshOne) {
   }
 }
 
-/// Occlusion by a refitted BVH against that by a fresh one.
+/// Compares the occlusion in a refitted BVH with that in a newly built one.
 void expect_same_occlusion(const Scene& still, const Scene& moved) {
   UpdatableBvh updatable(still);
   ASSERT_EQ(updatable.update(moved).objects_refitted, 1u);
   const scene_test::SceneOnDevice fresh(moved);
   const CrownOcclusion crown(fresh.bvh.bounds);
   const DeviceScene on_device = upload(scene_test::device(), moved, updatable.bvh());
-  // One seed's rays move the difference by 0.0005.
+  // The rays of a single seed change the difference by about 0.0005.
   constexpr std::uint32_t kSeeds = 4;
   EXPECT_NEAR(crown.mean(on_device, Estimator::prefiltered, kSeeds),
               crown.mean(fresh.uploaded, Estimator::prefiltered, kSeeds), 0.003);
 }
 
-// Nothing moves rigidly here: all opacities are found anew.
+// No part moves rigidly here, so refitting computes all opacities anew.
 TEST(SwayingTree, OcclusionInASquashedTreeIsThatInAFreshBvh) {
   const Scene still = tree(10000);
   Scene moved = still;
@@ -225,7 +227,7 @@ TEST(SwayingTree, OcclusionInASquashedTreeIsThatInAFreshBvh) {
   expect_same_occlusion(still, moved);
 }
 
-// All moves rigidly, but the axes are others: level leaves become upright ones.
+// All parts move rigidly but turn relative to the axes: level leaves become upright.
 TEST(SwayingTree, OcclusionInAFallenTreeIsThatInAFreshBvh) {
   const Scene still = tree(10000);
   for (const float angle : {0.4f, 0.8f, 1.57f}) {
@@ -243,7 +245,7 @@ std::size_t resident_bytes() {
   return resident * 4096;
 }
 
-/// Runs `frame` a hundred times, then 1,000 more: memory may grow by a hundredth.
+/// Runs `frame` 100 times, then 1,000 times more. In the latter memory may grow by at most 1 %.
 template <class Frame>
 void expect_flat_memory(const Frame& frame) {
   for (int i = 0; i < 100; ++i) frame(i);
@@ -263,7 +265,7 @@ TEST(FlatMemory, AThousandFramesOfOneRenderer) {
   });
 }
 
-// Built anew each time: no scene is the one before.
+// Each scene differs from the previous one, so that the renderer builds a new BVH each time.
 TEST(FlatMemory, AThousandScenesOfOneRenderer) {
   const Scene scenes[] = {tree(300), make_procedural("scene:cloud?leaves=300"), tree(200)};
   const RenderOptions options = small_picture(Estimator::prefiltered, 8, 1);

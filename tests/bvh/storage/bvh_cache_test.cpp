@@ -1,5 +1,5 @@
-// The cache of trees: what is read back is what was built, bit for bit, and whatever is wrong with
-// a file of it, the tree that comes out is the same.
+// The BVH cache: an object that is read from it has the same bits as the one that was built. If a
+// file is damaged or does not fit, the object is built again, with the same bits.
 #include "bvh/storage/bvh_cache.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,8 @@ Mesh random_mesh(unsigned seed, std::uint32_t triangles, std::uint32_t material)
   return mesh;
 }
 
-/// Two meshes, one cut out by a texture and placed twice, one blended by its vertices.
+/// Two meshes with random vertex alphas: one has a cut-out texture and two instances, the other is
+/// blended.
 Scene leafy_scene() {
   Scene scene;
   scene.source = "test";
@@ -61,7 +62,7 @@ Scene leafy_scene() {
   return scene;
 }
 
-/// One object at the world's origin, so that its arrays are the file's.
+/// One object without a transform, so that the arrays of its BVH equal those in the file.
 Scene single_object() {
   Scene scene = leafy_scene();
   scene.instances.resize(1);
@@ -108,7 +109,7 @@ class BvhCache : public FilmFile {
     return files;
   }
 
-  /// The only file, after the cache was filled with a scene of one object.
+  /// Fills the cache with a scene of one object. Returns the path of the only file.
   std::string fill_with_one() const {
     build_bvh(single_object(), cache_);
     const auto files = cached_files();
@@ -116,7 +117,8 @@ class BvhCache : public FilmFile {
     return files.empty() ? "" : files[0];
   }
 
-  /// Builds and expects that `file` was found wanting and replaced.
+  /// Builds the scene of one object. Expects that the cache refuses `file`, with `reason` in its
+  /// note, and replaces it.
   void expect_rebuilt(const std::string& file, const SceneBvh& expected,
                       const std::string& reason = "") const {
     const SceneBvh bvh = build_bvh(single_object(), cache_);
@@ -164,7 +166,7 @@ TEST_F(BvhCache, WhatDoesNotEnterAMeshsTreeLeavesItsFileInUse) {
   scene.cameras.push_back({});
   scene.meshes[0].name = scene.materials[0].name = scene.textures[0].name = "renamed";
   scene.materials[0].emission = V3f(1, 2, 3);
-  scene.materials[1].alpha = 0.1f;  // the other mesh's
+  scene.materials[1].alpha = 0.1f;  // the material of the other mesh
   const SceneBvh bvh = build_bvh(scene, cache_);
   EXPECT_EQ(bvh.statistics.cache.objects_read, 1u);
   EXPECT_EQ(bvh.statistics.cache.objects_written, 1u);
@@ -247,7 +249,7 @@ TEST_F(BvhCache, AFileCutShortAnywhereIsNotRead) {
   const Checksum key = object_key(scene, scene.meshes[0]);
   std::string note;
   ASSERT_TRUE(read_cached_object(cache_, key, scene, note).has_value());
-  // Every length of a sealed file is tried in its own test.
+  // The test of sealed files tries every length.
   for (std::size_t size = fs::file_size(file); size > 0;) {
     size -= std::min<std::size_t>(size, size > 1024 ? 97 : 1);
     fs::resize_file(file, size);
@@ -258,7 +260,8 @@ TEST_F(BvhCache, AFileCutShortAnywhereIsNotRead) {
   expect_rebuilt(file, build_bvh(scene), "it is empty");
 }
 
-/// The file as it would be had another builder, or another version of the format, written it.
+/// Rewrites the file as another version of the builder or of the format would write it. If
+/// `builder` is empty, the builder's version stays.
 void rewrite(const std::string& path, const SealedKind& kind, const std::string& builder) {
   const SealedFile file = open_sealed_file(path, {"BVH cache", 1});
   std::vector<Section> sections;

@@ -1,5 +1,6 @@
-// Strands: every segment in one lane inside its boxes, entered once by each ray that crosses, the
-// same as single rays and in packets, prefiltered as exact where footprints vanish.
+// Strands: every segment is in one lane and inside of its boxes, and a ray that crosses a strand
+// counts it once, also where segments join. Prefiltered rays without a footprint equal exact rays;
+// with one, the mean opacity is kept.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ using namespace scene_test;
 
 constexpr float kRadius = 0.01f;
 
-/// A strand along these points.
+/// A strand through these points.
 Mesh strand(const std::vector<V3f>& points, float radius = kRadius) {
   Mesh mesh;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -30,7 +31,8 @@ Mesh strand(const std::vector<V3f>& points, float radius = kRadius) {
   return mesh;
 }
 
-/// Rays down a square of `side` in the plane z = 1, on a grid of count x count.
+/// Rays from a square in the plane z = 1 towards -Z, from a grid of count x count points. `side` is
+/// the square's size; `slant` is added to the direction.
 std::vector<Ray> rays_down(float side, int count, const V3f& slant = V3f(0.0f)) {
   std::vector<Ray> rays;
   for (int i = 0; i < count * count; ++i) {
@@ -54,7 +56,8 @@ TEST(SegmentBlock, DecodedSegmentsAreThoseOfTheMeshToASmallPartOfTheirRadius) {
     for (unsigned lane = 0; lane < 8; ++lane) {
       const StrandSegment decoded = unpack_segment(block, lane);
       for (int end = 0; end < 2; ++end) {
-        // Half a step of at most 2 / 65535 of the block's size, which is below a strand's length.
+        // At most half a step. A step is at most 2 / 65535 of the block's size, which is less than
+        // a strand's length.
         EXPECT_LT((decoded.point[end] - segments[lane].point[end]).length(), 2e-5f);
         EXPECT_NEAR(decoded.radius[end], segments[lane].radius[end], 0.002f / 509);
         EXPECT_GT(decoded.plane[end].normalized().dot(segments[lane].plane[end].normalized()),
@@ -66,7 +69,8 @@ TEST(SegmentBlock, DecodedSegmentsAreThoseOfTheMeshToASmallPartOfTheirRadius) {
   }
 }
 
-/// Boxes of the segments below node `index`, each of which must hold them; counts segments.
+/// Returns the bounds of the segments below node `index`. Checks that each child box contains its
+/// segments, and counts the segments.
 Box3f walk(const ObjectBvh& object, std::uint32_t index, std::size_t& count) {
   const BvhNode& node = object.nodes[index];
   EXPECT_TRUE(node.prim_base & DAPPLE_SEGMENTS);
@@ -107,13 +111,14 @@ TEST(Strands, TakeAtMostSixtyBytesASegment) {
 }
 
 TEST(Strands, HideWhatACapsuleHides) {
-  // Straight in three segments, of which no joint must be seen: 2 r l + pi r^2.
+  // A straight strand of three segments occludes the area of a capsule, 2 r l + pi r^2: its joints
+  // must not add anything.
   const SceneOnDevice scene(
       strand_scene(strand({{-0.2f, 0, 0}, {-0.05f, 0, 0}, {0.1f, 0, 0}, {0.2f, 0, 0}}), 0.3f));
   const double hidden = 2 * kRadius * 0.4 + kPi * kRadius * kRadius;
   const double mean = mean_transmittance(scene.trace(rays_down(0.5f, 400), Estimator::exact));
   EXPECT_NEAR((1 - mean) * 0.25, 0.3 * hidden, 0.3 * hidden * 2e-3);
-  // Seen end on it is a disk.
+  // Seen end-on, a strand is a disk.
   const SceneOnDevice upright(strand_scene(strand({{0, 0, -0.2f}, {0, 0, 0.3f}}), 0.3f));
   const double disk = kPi * kRadius * kRadius, area = 9e-4;
   const double left = mean_transmittance(upright.trace(rays_down(0.03f, 200), Estimator::exact));
@@ -121,7 +126,7 @@ TEST(Strands, HideWhatACapsuleHides) {
 }
 
 TEST(Strands, AreEnteredOnceWhereSegmentsMeet) {
-  // Bent by up to a right angle, in the plane of the picture and out of it.
+  // Strands with a bend of up to a right angle, in the plane z = 0 and out of it.
   for (const V3f& last : {V3f(0.1f, 0, 0), V3f(0.1f, 0.04f, 0), V3f(0.1f, 0.1f, 0),
                           V3f(0.005f, 0.1f, 0), V3f(0.1f, 0, 0.05f), V3f(0.1f, 0.02f, -0.03f)}) {
     const SceneOnDevice scene(strand_scene(strand({{-0.1f, 0, 0}, {0, 0, 0}, last}), 0.5f));
@@ -131,7 +136,8 @@ TEST(Strands, AreEnteredOnceWhereSegmentsMeet) {
       twice += one.transmittance < 0.49f;
       once += one.transmittance < 0.51f;
     }
-    // All of 90,000 rays that see the strand, but for roundings of end points and planes.
+    // Of 90,000 rays only a few may count the strand twice, because end points and planes are
+    // rounded.
     EXPECT_LE(twice, 20u) << last;
     EXPECT_GT(once, 20'000u) << last;
   }
@@ -140,7 +146,7 @@ TEST(Strands, AreEnteredOnceWhereSegmentsMeet) {
 TEST(Strands, OutsideOfABendThereIsNoGap) {
   const V3f last(0.1f, 0.06f, 0);
   const SceneOnDevice scene(strand_scene(strand({{-0.1f, 0, 0}, {0, 0, 0}, last}), 1));
-  // Along the joint, in the sector between the two segments' own ends.
+  // Points on the outer side of the bend, in the sector between the ends of the two segments.
   const V3f outward = (V3f(-1, 0, 0) + last.normalized()).normalized() * -1.0f;
   for (int i = 0; i < 100; ++i) {
     const V3f at = outward * (kRadius * 0.0099f * static_cast<float>(i));
@@ -168,7 +174,7 @@ TEST(Strands, DontHideTheirOwnSurface) {
   ASSERT_GT(rays.size(), 4000u);
   std::size_t hidden = 0;
   for (const Occlusion& one : scene.trace(rays, Estimator::exact)) hidden += one.transmittance < 1;
-  // The strand is not quite straight: a few graze its next segment.
+  // The strand is not quite straight: a few rays graze the next segment.
   EXPECT_LT(hidden, rays.size() / 50);
 }
 
@@ -195,7 +201,7 @@ TEST(Strands, PrefilteredKeepsTheMeanOpacityOfTheWhole) {
   }
 }
 
-/// Points on strands, and what is seen of the sky from there.
+/// Compares the mean ambient occlusion at points on strands.
 TEST(Strands, PrefilteredAmbientOcclusionIsNearTheExact) {
   const SceneOnDevice scene(strand_scene(curly_strands({.strands = 3000, .radius = 0.001f}), 0.3f));
   const auto hits =
@@ -238,7 +244,7 @@ TEST(Strands, PlacedLargerAreAsThickAsTheyAreLong) {
 }
 
 TEST(Strands, LengthAndRadiusOfFileOrderDontMatter) {
-  // A chain whose segments are listed backwards and turned round is the same strand.
+  // The same strand, with its segments in the opposite order and with their ends exchanged.
   Mesh mesh = strand({{-0.1f, 0, 0}, {0, 0, 0}, {0.1f, 0.05f, 0}}), turned = mesh;
   turned.indices = {2, 1, 0, 1};
   const SceneOnDevice one(strand_scene(mesh, 0.5f)), other(strand_scene(turned, 0.5f));

@@ -1,5 +1,5 @@
-// Textured triangles in 24 bytes: coordinates within half a step but for whole tiles, alphas of
-// 12 bits, whatever the file says, the same numbers on the device; materials by index.
+// Textured triangles packed into 24 bytes: the rounding of coordinates and alphas, finite values
+// for every input, the same values on host and device, and the index of the material.
 #include "bvh/storage/textured_triangle.hpp"
 
 #include <gtest/gtest.h>
@@ -32,14 +32,15 @@ TexturedCorners packed(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t)
   return unpack_textured(pack_textured(corners, wrap_s, wrap_t));
 }
 
-/// Whole tiles that coordinates with `least` among them lose.
+/// Number of whole tiles that packing subtracts from coordinates whose minimum is `least`.
 double tiles(double least, Wrap wrap) {
   if (wrap == Wrap::clamp) return 0;
   return wrap == Wrap::repeat ? std::floor(least) : 2 * std::floor(least / 2);
 }
 
-/// How far packing may move coordinates that end up from `least` to `most`: half a step of 2^21
-/// in the least power of two, 1 or more, that they round to less than; of 2^20 where one is
+/// Maximum rounding error of coordinates that are in [least, most] after whole tiles are
+/// subtracted. Their range is the smallest power of two, 1 or more, that they are below after
+/// rounding. The error is half of 2^-21 of this range, or half of 2^-20 if a coordinate is
 /// negative.
 double allowed(double least, double most) {
   double size = 1;
@@ -117,7 +118,7 @@ TEST(TexturedTriangle, NoCoordinateOrAlphaOfAFileMakesOneThatIsNotFinite) {
               << a << " " << b;
           EXPECT_TRUE(held.alpha[corner] >= 0 && held.alpha[corner] <= 1) << a << " " << b;
         }
-        // What lies far out does not reach the bits beside it.
+        // Large coordinates must not change the other bits of the record.
         EXPECT_EQ(held.alpha[2], 0.5f);
         EXPECT_TRUE(held.has_texture);
         EXPECT_EQ(held.material, 0u);
@@ -141,7 +142,7 @@ TEST(TexturedTriangle, AlphasHaveTwelveBitsAndThoseOf8BitColoursAreExact) {
   }
   for (int i = 0; i <= 255; ++i) {
     const float colour = static_cast<float>(i) / 255;
-    EXPECT_NEAR(held(colour), colour, 6e-8) << i;  // a rounding of the largest
+    EXPECT_NEAR(held(colour), colour, 6e-8) << i;  // one rounding of a float below 1
   }
 }
 
@@ -218,14 +219,15 @@ TEST(TexturedTriangle, TheDeviceUnpacksTheSameNumbersAsTheHost) {
     EXPECT_EQ(textured[i] != 0, many[i].has_texture);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const float* at = &unpacked[9 * i + 3 * corner];
-      // Whole numbers of steps, below 2^24 of them, times a power of two: no rounding.
+      // A value is a whole number of steps, below 2^24, times a power of two. So nothing rounds.
       EXPECT_EQ(V2f(at[0], at[1]), host.uv[corner]);
       EXPECT_EQ(at[2], host.alpha[corner]);
     }
   }
 }
 
-/// A triangle in z = 0 of the last of `materials` blended materials that share one texture.
+/// A triangle in the plane z = 0. The scene has `materials` blended materials, which share one
+/// texture; the triangle has the last of them.
 Scene scene_of_materials(std::size_t materials) {
   Scene scene;
   scene.source = "many";
@@ -264,7 +266,7 @@ TEST(TexturedTriangle, AMaterialTooManyIsRefusedByName) {
 TEST(TexturedTriangle, MaterialsShareTheTexelsOfTheirTexture) {
   const scene_test::SceneOnDevice scene(scene_of_materials(3));
   const DeviceBuffers& buffers = *scene.uploaded.buffers;
-  // 4x4 texels, 2x2 from 16 on, one at 32.
+  // The mip levels begin at multiples of 16 texels: 4x4 at 0, 2x2 at 16, one texel at 32.
   EXPECT_EQ(buffers.texel_data.size(), 33u);
   ASSERT_EQ(buffers.material_records.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,5 +1,5 @@
-// Keyframe animation of nodes: every interpolation against values worked out by hand, clamping,
-// which animations play, and what is refused.
+// Keyframe animation of glTF nodes: each kind of interpolation against values computed by hand,
+// times outside of the keyframes, which animations play, and which files are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,8 @@ namespace {
 const double kHalfRoot = std::sqrt(0.5);
 constexpr float kRounding = 2e-6f;
 
-/// The index of a sampler that is added to an animation, made where there is none.
+/// Adds a sampler to an animation, and the animation first if it does not exist. Returns the
+/// sampler's index.
 int add_sampler(GltfBuilder& b, int times, int values, const char* interpolation,
                 std::size_t animation = 0) {
   json& animations = b.doc["animations"];
@@ -36,7 +37,7 @@ int add_times(GltfBuilder& b, const std::vector<float>& times) {
   return b.add_accessor(times, kFloat, "SCALAR");
 }
 
-/// A triangle whose node moves along `values` at `times`.
+/// A triangle whose node has the keyframes `values` at `times`, in seconds.
 GltfBuilder moved(const std::vector<float>& times, const std::vector<float>& values,
                   const char* interpolation, const char* path = "translation") {
   GltfBuilder b = one_triangle();
@@ -92,8 +93,8 @@ TEST(GltfAnimation, StepsHoldAKeyframeUntilTheNext) {
   EXPECT_EQ(place_at(b, 1.999), V3f(2, 0, 0));
 }
 
-// Hermite: at a quarter of the way h00 = 27/32, h10 = 9/64, h01 = 5/32, h11 = -3/64; tangents
-// count by the two seconds between the keyframes.
+// Hermite basis at a quarter of the interval: h00 = 27/32, h10 = 9/64, h01 = 5/32, h11 = -3/64.
+// Tangents are multiplied by the two seconds between the keyframes.
 TEST(GltfAnimation, CubicSplinesPassTheirKeyframesWithTheirTangents) {
   const GltfBuilder b = moved({1, 3},
                               {9, 9, 9, 0, 0, 32, 8, 0, 0,  // in-tangent, value, out-tangent
@@ -109,7 +110,7 @@ TEST(GltfAnimation, CubicSplinesPassTheirKeyframesWithTheirTangents) {
 
 TEST(GltfAnimation, RotationsTakeTheShorterWayAtASteadyPace) {
   const auto h = static_cast<float>(kHalfRoot);
-  // From none to a quarter turn about Z, written as one or with all signs turned.
+  // From no rotation to a quarter turn about Z, whose quaternion has either sign.
   for (const float sign : {1.0f, -1.0f}) {
     const GltfBuilder b =
         moved({0, 1}, {0, 0, 0, 1, 0, 0, sign * h, sign * h}, "LINEAR", "rotation");
@@ -130,7 +131,8 @@ TEST(GltfAnimation, AlmostEqualRotationsAreInterpolatedTooAndStayUnit) {
   EXPECT_NEAR(m.determinant(), 1, kRounding);
 }
 
-// The middle of the spline between two quarter turns about Z without tangents is their mean.
+// The tangents are zero: the middle of the spline is the mean of both quaternions, made
+// unit.
 TEST(GltfAnimation, SplinesOfRotationsAreMadeUnit) {
   const auto h = static_cast<float>(kHalfRoot);
   const GltfBuilder b = moved({0, 1}, {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0,  //
@@ -233,7 +235,7 @@ TEST(GltfAnimation, KeyframesThatDoNotIncreaseAreRefusedByChannel) {
   GltfBuilder named = moved({1, 0, 2}, values, "LINEAR");
   named.doc["animations"][0]["name"] = "walk";
   expect_says(refusal(named), "animation 0 (\"walk\") channel 0: the time of keyframe 1 is 0");
-  // At rest nobody reads them.
+  // Without a time the reader does not read the keyframes.
   EXPECT_EQ(named.load().instances.size(), 1u);
 }
 
@@ -273,7 +275,7 @@ TEST(MovingScene, PosesAFileAtAnyTimeAsLoadingItDoes) {
   const TempFolder folder;
   const std::string path = folder.write("scene.glb", b.glb());
   const MovingScene moving(path);
-  std::filesystem::remove(path);  // read once
+  std::filesystem::remove(path);  // at() must not read the file again
   for (const double seconds : {0.75, 0.25, 0.5})
     EXPECT_EQ(moving.at(seconds).instances.at(0).to_world[3][0], static_cast<float>(8 * seconds));
   const Scene rest = moving.at({});

@@ -1,5 +1,5 @@
-// Morph targets and skins, at rest and moving: where vertices go, worked out by hand, and what is
-// refused.
+// Morph targets and skins of glTF files, at rest and animated: positions of vertices against values
+// computed by hand, and which files are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,8 @@ V3f vertex(const Scene& scene, std::size_t i) {
   return scene.meshes[instance.mesh].positions.at(i) * instance.to_world;
 }
 
-/// One triangle with two targets: the first moves corner 1 by +Y, the second corner 2 by +Z.
+/// One triangle with two targets: the first moves corner 1 by 4 along +Y, the second moves corner 2
+/// by 8 along +Z.
 GltfBuilder morphed() {
   GltfBuilder b = one_triangle();
   b.doc["meshes"][0]["primitives"][0]["targets"] = {
@@ -63,7 +64,8 @@ TEST(GltfMorph, EqualWeightsShareAMesh) {
   EXPECT_EQ(b.load().meshes.size(), 1u);
 }
 
-/// Weights as keyframes: (0, 0) at 0 s, (1, 0.5) at 1 s.
+/// Adds a channel that animates the weights of `node`, with keyframes at 0 s and 1 s. `values` are
+/// the weights of both keyframes, with tangents if the interpolation has them.
 void animate_weights(GltfBuilder& b, int node, const char* interpolation,
                      const std::vector<float>& values) {
   const int times = b.add_accessor(std::vector<float>{0, 1}, kFloat, "SCALAR");
@@ -115,8 +117,9 @@ TEST(GltfMorph, WeightsOfTheWrongNumberAreRefusedByChannel) {
   expect_says(error_of(b), "animation 0 channel 0 has 2 keyframes of 2 values, but 2 values");
 }
 
-/// A bar of two squares above each other, (0 or 1, 0 or 1 or 2, 0), whose upper vertices go with
-/// joint 1 at (0, 1, 0), the middle ones with both. The bar's own node stands elsewhere.
+/// A bar of two unit squares, one above the other, in the plane z = 0: x is 0 or 1, y is 0, 1 or 2.
+/// Joint 0 moves the lower vertices, joint 1 at (0, 1, 0) the upper ones, both joints the middle
+/// ones. The bar's own node has another translation, which must have no effect.
 struct Bar {
   GltfBuilder b;
   int mesh_node = 0, upper = 0;
@@ -164,14 +167,14 @@ TEST(GltfSkin, InItsBindPoseAMeshIsAsItIsWrittenWhereverItsNodeIs) {
 
 TEST(GltfSkin, ABarIsBentByAQuarterTurnOfItsUpperJoint) {
   Bar bar = make_bar();
-  // About Z at (0, 1, 0): +X goes to +Y, +Y to -X.
+  // A quarter turn about Z at (0, 1, 0) takes +X to +Y, and +Y to -X.
   bar.b.doc["nodes"][bar.upper]["rotation"] = {0, 0, kHalfRoot, kHalfRoot};
   const Scene scene = bar.b.load();
   expect_near(vertex(scene, 0), V3f(0, 0, 0));
   expect_near(vertex(scene, 1), V3f(1, 0, 0));
   expect_near(vertex(scene, 4), V3f(-1, 1, 0));
   expect_near(vertex(scene, 5), V3f(-1, 2, 0));
-  // Halfway between where both joints take it: (1, 1, 0) and (0, 2, 0).
+  // The mean of (1, 1, 0) and (0, 2, 0), the positions to which the two joints move it.
   expect_near(vertex(scene, 3), V3f(0.5f, 1.5f, 0));
 }
 

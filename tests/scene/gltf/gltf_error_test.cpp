@@ -1,5 +1,5 @@
-// What the glTF reader refuses, and how: every case is an Error of kind input, of one
-// line, that names the file, the element and the figures.
+// Files that the glTF reader refuses. Each of them gives an Error of kind input, whose message is
+// one line and names the file, the element and the wrong values.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -129,7 +129,7 @@ TEST(GltfError, InstanceAttributesOfDifferentLengthAreRefused) {
   expect_says(error_of(builder), "node 0: instance attributes differ in length");
 }
 
-/// A triangle whose material blends with texture 0.
+/// A triangle whose material takes its alpha from texture 0.
 GltfBuilder blended() {
   GltfBuilder builder = one_triangle();
   builder.doc["meshes"][0]["primitives"][0]["material"] = 0;

@@ -1,6 +1,6 @@
-// The glTF reader's geometry: every way of writing down the same triangles gives the
-// same triangles. Positions are small integers, so that equality is exact wherever the
-// arithmetic is.
+// The glTF reader's geometry: all ways to store the same triangles in a file (indices, strips,
+// fans, strides, sparse and quantized accessors) give the same triangles. Positions are small
+// integers, so that they can be compared exactly.
 #include <gtest/gtest.h>
 
 #include "support/gltf_builder.hpp"
@@ -35,7 +35,8 @@ bool same_cycle(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-/// Equal up to where each triangle begins: winding counts, the first corner does not.
+/// Compares triangles in order. Their winding must be equal, but they may begin with different
+/// corners.
 void expect_same_triangles(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -84,7 +85,7 @@ TEST(GltfGeometry, InterleavedVerticesAreReadByTheirStride) {
   GltfBuilder builder;
   Bytes bytes;
   for (std::size_t i = 0; i < kSquare.size(); i += 3) {
-    append(bytes, -7.0f);  // some other attribute
+    append(bytes, -7.0f);  // another attribute
     for (std::size_t c = 0; c < 3; ++c) append(bytes, kSquare[i + c]);
   }
   const int view = builder.add_view(bytes, 16);
@@ -97,7 +98,7 @@ TEST(GltfGeometry, InterleavedVerticesAreReadByTheirStride) {
   expect_same_triangles(world_triangles(builder.load()), plain_square());
 }
 
-/// Makes `accessor` sparse: element i becomes the i-th triple of `values`.
+/// Makes `accessor` sparse: the i-th triple of `values` replaces the element `indices[i]`.
 void make_sparse(GltfBuilder& builder, int accessor, const std::vector<std::uint16_t>& indices,
                  const std::vector<float>& values) {
   const int index_view = builder.add_view(pack(indices));
@@ -147,7 +148,7 @@ TEST(GltfGeometry, QuantizedPositionsKeepTheirValueOrBecomeFractions) {
   const auto load = [](auto values, int component, bool normalized) {
     GltfBuilder builder;
     builder.doc["extensionsRequired"] = {"KHR_mesh_quantization"};
-    // Stride 4 or 8, as the extension demands.
+    // The extension requires strides that are multiples of 4 bytes.
     const int stride = component == kInt8 || component == kUint8 ? 4 : 8;
     json accessor = {{"bufferView", builder.add_view(pack(values), stride)},
                      {"componentType", component},
@@ -198,7 +199,7 @@ TEST(GltfGeometry, PrimitivesOfOneMeshAreConcatenatedWithTheirOwnMaterials) {
   EXPECT_EQ(scene.materials[0].name, "leaf");
   EXPECT_EQ(scene.materials[1].name, "default");
   EXPECT_EQ(scene.meshes[0].materials, (std::vector<std::uint32_t>{1, 0}));
-  // Each primitive uses three of the four shared vertices and brings only those.
+  // Each primitive uses three of the four shared vertices, and only those are read.
   EXPECT_EQ(scene.meshes[0].positions.size(), 6u);
 }
 
@@ -208,7 +209,7 @@ TEST(GltfGeometry, GpuInstancesAreComposedWithTheirNode) {
   builder.doc["nodes"][node]["translation"] = {10, 0, 0};
   const int translation = builder.add_positions({0, 0, 0, 0, 5, 0});
   const int scale = builder.add_positions({1, 1, 1, 2, 2, 2});
-  // Identity, and half a turn about Z.
+  // No rotation, and a half turn about Z.
   const int rotation = builder.add_accessor(
       std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, 32767, 0}, kInt16, "VEC4", true);
   builder.doc["nodes"][node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {

@@ -1,4 +1,4 @@
-// The glTF reader's node tree, and what hangs on it besides meshes: cameras and lights.
+// The glTF reader's node hierarchy: transforms and scenes, and the cameras and lights of nodes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,7 +53,8 @@ TEST(GltfHierarchy, ChildrenMoveWithTheirParents) {
   const int twig =
       builder.add("nodes", {{"children", {leaf}}, {"rotation", {0, 0, kHalfRoot, kHalfRoot}}});
   builder.add("nodes", {{"children", {twig}}, {"scale", {2, 2, 2}}});
-  // (0,0,0) to (1,0,0), a quarter turn about Z to (0,1,0), twice as far.
+  // The translation moves (0,0,0) to (1,0,0), the quarter turn about Z moves that to (0,1,0), and
+  // the scale doubles its distance.
   expect_near(world_triangles(builder.load()).at(0)[0], V3f(0, 2, 0), kRounding);
 }
 
@@ -111,7 +112,7 @@ TEST(GltfCamera, OrthographicOnesKeepTheirHeight) {
 Light load_light(const json& light, const SceneOptions& options = {}) {
   GltfBuilder builder;
   builder.add_triangle();
-  // Not = {light}: an array to g++, a copy of the light to clang 14.
+  // Not = {light}, which is an array for g++ but a copy of the light for clang 14.
   builder.doc["extensions"]["KHR_lights_punctual"]["lights"] = json::array({light});
   builder.doc["extensionsRequired"] = {"KHR_lights_punctual"};
   // A quarter turn about X takes -Z to +Y; the scale must change nothing.
@@ -130,7 +131,7 @@ TEST(GltfLight, ADirectionalLightIsASunOfTheSameIrradiance) {
   EXPECT_EQ(sun.kind, LightKind::sun);
   expect_near(sun.direction, V3f(0, 1, 0), kRounding);
   const double sine = std::sin(double{sun.angular_radius});
-  const double solid = std::numbers::pi * sine * sine;  // projected, of a disk face on
+  const double solid = std::numbers::pi * sine * sine;  // projected, of a disk face-on
   EXPECT_NEAR(sun.radiance.x * solid, 3.0, 3e-6);
   EXPECT_NEAR(sun.radiance.y * solid, 1.5, 3e-6);
   EXPECT_EQ(sun.radiance.z, 0.0f);

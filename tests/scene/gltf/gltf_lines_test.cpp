@@ -1,5 +1,6 @@
-// glTF's lines: left out with a word, or strands of --line-radius, beside the triangles of their
-// mesh and with the opacity of their material.
+// Lines in glTF files. Without --line-radius the reader leaves them out and says so; with it they
+// become strands of that radius, with the opacity of their material, in a mesh apart from the
+// triangles.
 #include <gtest/gtest.h>
 
 #include "support/gltf_builder.hpp"

@@ -1,5 +1,5 @@
-// The glTF reader's materials: what becomes opacity, what becomes emission, and which
-// images are opened for it.
+// The glTF reader's materials: opacity from factors, textures and vertex colours, emission, and
+// which images the reader opens.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace dapple::test {
 namespace {
 
-/// A triangle with texture coordinates in sets 0 and 1, vertex colours of alpha 0, 0.5
-/// and 1, and material 0.
+/// A triangle with texture coordinates in sets 0 and 1, vertex colours with the alphas 0, 0.5
+/// and 1, and the given material.
 GltfBuilder textured_triangle(const json& material) {
   GltfBuilder builder;
   const int position = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -28,7 +28,8 @@ GltfBuilder textured_triangle(const json& material) {
   return builder;
 }
 
-/// A 2 x 2 RGBA image in the binary chunk; its alphas are 10, 20 / 30, 40.
+/// Adds an RGBA image of 2 x 2 texels to the binary chunk. The alphas of its rows are 10, 20 and
+/// 30, 40.
 void add_image(GltfBuilder& builder) {
   const int view = builder.add_view(png::with_alpha(2, 2, {10, 20, 30, 40}));
   const int image = builder.add("images", {{"bufferView", view}, {"mimeType", "image/png"}});
@@ -145,8 +146,8 @@ TEST(GltfMaterial, TheTextureChoosesItsCoordinateSet) {
 TEST(GltfMaterial, TheTextureTransformIsBakedIntoTheCoordinates) {
   GltfBuilder builder = textured_triangle(blend_with_texture(0));
   add_image(builder);
-  // The extension's own example: the lower left quadrant of the image, that is u in
-  // [0, 0.5] and v in [0.5, 1].
+  // The example in the extension's text: the lower left quadrant of the image, with u in [0, 0.5]
+  // and v in [0.5, 1].
   builder.doc["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
       {"KHR_texture_transform",
        {{"offset", {0, 1}}, {"rotation", std::numbers::pi / 2}, {"scale", {0.5, 0.5}}}}};

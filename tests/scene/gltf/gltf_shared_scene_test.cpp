@@ -1,5 +1,5 @@
-// The glTF reader on scenes that other programs wrote. They are not part of the
-// repository: without them these tests are skipped.
+// The glTF reader on scenes that other programs wrote. These scenes are not part of the repository;
+// without them the tests are skipped.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ TEST(GltfSharedScene, TheSaplingHasItsTrianglesAndBounds) {
   const Scene scene = load_gltf(path);
   EXPECT_EQ(triangles_of(scene, "leaf"), 63420u);
   EXPECT_EQ(triangles_of(scene, "bark"), 95084u - 63420u);
-  // The accessors' own min and max; its two nodes have no transforms.
+  // The file's accessors state these bounds in min and max; its two nodes have no transforms.
   const Box3f bounds = world_bounds(scene);
   EXPECT_EQ(bounds.min, V3f(-5.0008697509765625f, 0, -5.2450714111328125f));
   EXPECT_EQ(bounds.max, V3f(5.077890396118164f, 14.557462692260742f, 6.085202217102051f));
@@ -65,7 +65,8 @@ TEST(GltfSharedScene, ThePineLoadsDespiteItsAbsentNormalMap) {
   EXPECT_EQ(needles.alpha_texture, 0);
 }
 
-/// Nearest texel, repeating: good enough for a mean.
+/// Alpha of the nearest texel, in [0,1], with repeated texture coordinates. Precise enough for a
+/// mean.
 double alpha_at(const Texture& texture, V2f uv) {
   const auto texel = [](float coordinate, std::uint32_t size) {
     const float fraction = coordinate - std::floor(coordinate);
@@ -76,7 +77,7 @@ double alpha_at(const Texture& texture, V2f uv) {
   return texture.alpha[at] / 255.0;
 }
 
-/// The mean of texture alpha over a triangle, at the centres of its 16^2 equal parts.
+/// Mean alpha of a triangle: the texture is looked up at the centres of 16^2 equal parts.
 double mean_alpha(const Texture& texture, V2f a, V2f b, V2f c) {
   constexpr int kParts = 16;
   double sum = 0;
@@ -113,8 +114,8 @@ TEST(GltfSharedScene, ThePinesCardsHaveAMeanAlphaOfFourTenths) {
 TEST(GltfSharedScene, ThePineStandsUpright) {
   const std::string path = shared_scene("smallpine/scene.gltf");
   if (path.empty()) GTEST_SKIP() << "smallpine/scene.gltf is not here";
-  // Its node matrices turn the accessors' Z (0.017 to 75.014) into Y at the same size:
-  // scales of 0.01 and 100 cancel.
+  // The node matrices turn the accessors' Z axis (0.017 to 75.014) into Y. Their scales of 0.01 and
+  // 100 cancel each other.
   const Box3f bounds = world_bounds(load_gltf(path));
   EXPECT_NEAR(bounds.min.y, 0.0169f, 1e-3f);
   EXPECT_NEAR(bounds.max.y, 75.0142f, 1e-3f);

@@ -1,5 +1,5 @@
-// scene:hair: a closed head, strands that grow from its scalp and stay outside of it, and the same
-// bits for a seed.
+// The procedural scene scene:hair: a closed head, and strands that start on its scalp and stay
+// outside of it. A seed always gives the same bits.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -35,7 +35,7 @@ TEST(ProceduralHair, DefaultsToTwentyThousandStrandsOfSixteenSegments) {
   const Scene scene = make_procedural("scene:hair");
   EXPECT_EQ(scene.meshes.at(0).primitive_count(), 320000u);
   EXPECT_EQ(scene.materials.at(0).alpha, 0.3f);
-  // A head of hair, in metres.
+  // In metres, as large as the hair of a human head.
   const Box3f bounds = scene_bounds(scene);
   EXPECT_NEAR(bounds.size().x, 0.35, 0.15);
   EXPECT_NEAR(bounds.size().y, 0.45, 0.15);
@@ -47,7 +47,7 @@ TEST(ProceduralHair, GrowsFromTheScalpAndStaysOutsideOfTheHead) {
     const float distance = head_distance(hair.positions[i]);
     if (i % 17 == 0) {
       EXPECT_NEAR(distance, 1, 1e-4) << i;
-      // None on the face.
+      // No strand starts on the face.
       EXPECT_FALSE(hair.positions[i].z > 0.06f && hair.positions[i].y < 0.12f);
     } else {
       EXPECT_GT(distance, 0.999f) << i;

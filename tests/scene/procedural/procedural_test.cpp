@@ -1,5 +1,5 @@
-// Procedural scenes: the same bits for a seed, the counts and sizes that were asked for, and
-// complaints that name what is allowed.
+// Procedural scenes: a seed always gives the same bits, counts and sizes are those of the
+// parameters, and the messages about wrong parameters name the allowed values.
 #include "scene/procedural/procedural.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace dapple {
 namespace {
 
-// FNV-1a, over everything that decides a picture.
+// FNV-1a, a hash of bytes. hash_of() applies it to everything in a scene that affects the picture.
 class Hash {
  public:
   template <typename T>
@@ -100,7 +100,8 @@ TEST(Procedural, TheNumberOfThreadsDoesNotChangeABit) {
   EXPECT_EQ(many, hash_of(make_procedural(name)));
 }
 
-// Recorded once: pictures are compared across machines and compilers, so the scenes must be.
+// The hashes were recorded once. Pictures are compared across machines and compilers, so their
+// scenes must have the same bits there.
 TEST(Procedural, ASceneHasTheSameBitsOnEveryMachine) {
   EXPECT_EQ(hash_of(make_procedural("scene:tree?leaves=1000")), 0xe459c3d18eea3f9bULL);
   EXPECT_EQ(hash_of(make_procedural("scene:cloud?leaves=1000")), 0xd28a0aff605cce05ULL);
@@ -128,7 +129,7 @@ TEST(Procedural, ATreeStandsOnTheOriginAndIsAboutAsTallAsAskedFor) {
     const Scene scene = make_procedural("scene:tree?leaves=20000&height=" + std::to_string(height));
     const Box3f bounds = scene_bounds(scene);
     EXPECT_EQ(bounds.min.y, 0.0f);
-    // The highest leaves end near the top of the crown, wherever the seed put its boughs.
+    // The highest leaves end near the top of the crown, for every seed.
     EXPECT_NEAR(bounds.max.y / height, 1, 0.1);
     // The crown's radius is 0.33 of the height, and leaves reach 0.05 beyond their twigs.
     EXPECT_LT(std::max(bounds.size().x, bounds.size().z) / height, 0.8f);
@@ -136,7 +137,7 @@ TEST(Procedural, ATreeStandsOnTheOriginAndIsAboutAsTallAsAskedFor) {
   }
 }
 
-// A trunk and then a crown: no leaf low down, and the crown wider in its middle than at its top.
+// No leaf is near the ground, and the crown is wider in the middle than at the top.
 TEST(Procedural, ATreeHasABareTrunkUnderAnEggShapedCrown) {
   const Scene scene = make_procedural("scene:tree?leaves=20000&wood=0");
   double radius_sum[2] = {0, 0};
@@ -157,7 +158,8 @@ TEST(Procedural, LeafAreaStaysTheSameAsLeavesGrow) {
     const Scene many = make_procedural("scene:" + plant + "?leaves=160000");
     const double ratio = area_of(many.meshes.at(0), material_named(many, "leaf")) /
                          area_of(few.meshes.at(0), material_named(few, "leaf"));
-    // Squared lengths vary by 0.3 of their mean: the mean of 10,000 has an error of 0.003.
+    // The standard deviation of squared lengths is 0.3 of their mean, so the mean of 10,000 leaves
+    // has an error of 0.003.
     EXPECT_NEAR(ratio, 1, 0.02) << plant;
   }
 }
@@ -189,7 +191,7 @@ TEST(Procedural, ACloudIsABallOfEvenDensity) {
     EXPECT_LE(r, 2.0001f);
     inner += r < 1;
   }
-  // An eighth of the volume: 5000 expected, standard deviation 66.
+  // An eighth of the volume should hold 5000 leaves, with a standard deviation of 66.
   EXPECT_NEAR(inner, 5000, 4 * 66);
 }
 
@@ -291,7 +293,7 @@ TEST(Procedural, DefaultsAreThoseThatTheHelpShows) {
       std::string value = std::to_string(parameter.default_value);  // "0.850000"
       query += (query.size() > 1 ? "&" : "") + parameter.name + "=" + value;
     }
-    if (help.name == "forest") continue;  // the same code, and it takes longer
+    if (help.name == "forest") continue;  // the same code as scene:tree, but slower
     EXPECT_EQ(hash_of(make_procedural("scene:" + help.name + query)),
               hash_of(make_procedural("scene:" + help.name)))
         << query;

@@ -1,5 +1,5 @@
-// scene:tree?wind=...: the tree of today when nothing blows, and otherwise one that sways smoothly
-// in time and space without losing a triangle.
+// The swaying tree scene:tree?wind=... Without wind, or without a time, it is the tree at rest, bit
+// for bit. With wind it has the same triangles, whose positions change smoothly in time and space.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,8 @@ TEST(TreeSway, IsTheSameAtTheSameTime) {
   EXPECT_EQ(moving.at(2.25).meshes.at(0).positions, tree_at(kWindy, 2.25).positions);
 }
 
-// The quickest is a leaf's nod of 1.7 Hz on a limb that a gust of 1.31 Hz tosses: below 6 m/s.
+// The fastest motion is that of a leaf that nods at up to 1.7 Hz, on a limb that a gust of 1.31 Hz
+// moves. Its speed is below 6 m/s.
 TEST(TreeSway, IsContinuousInTime) {
   for (const double seconds : {0.0, 3.3, 777.7}) {
     const Mesh now = tree_at(kWindy, seconds);
@@ -90,7 +91,7 @@ TEST(TreeSway, KeepsTheSizeOfEveryTriangleOfALeaf) {
   }
 }
 
-// Neighbours move alike: edges of the wood change their length by little.
+// Neighbouring vertices move alike: the edges of the wood's triangles hardly change their length.
 TEST(TreeSway, DoesNotTearTheWood) {
   const Scene scene = make_procedural("scene:tree?leaves=1&wind=2");
   const Mesh& still = scene.meshes.at(0);

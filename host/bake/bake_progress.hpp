@@ -1,0 +1,31 @@
+// How much of a bake is done, and whether it is to stop.
+#pragma once
+
+#include <algorithm>
+
+#include "dapple/render.hpp"
+
+namespace dapple {
+
+class BakeProgress {
+ public:
+  /// `samples`: expected in all.
+  BakeProgress(double samples, const RenderControl& control) : total_(samples), control_(control) {}
+
+  /// Adds samples that were not expected.
+  void expect(double samples) { total_ += samples; }
+
+  /// Adds traced samples. False if the bake is to stop.
+  bool add(std::size_t samples) {
+    done_ += static_cast<double>(samples);
+    shown_ = std::max(shown_, std::min(1.0, done_ / std::max(1.0, total_)));
+    if (control_.progress) control_.progress(shown_);
+    return !(control_.stop && control_.stop());
+  }
+
+ private:
+  double total_, done_ = 0, shown_ = 0;
+  const RenderControl& control_;
+};
+
+}  // namespace dapple

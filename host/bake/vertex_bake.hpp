@@ -1,0 +1,23 @@
+// Values at the vertices of one mesh, in rounds: a sample of each triangle, then more where the
+// values are uncertain. In: a mesh, its placements and a tracer. Out: AO and bent normals.
+#pragma once
+
+#include <optional>
+
+#include "bake/bake_progress.hpp"
+#include "bake/sample_tracer.hpp"
+#include "dapple/bake.hpp"
+
+namespace dapple {
+
+/// Whether the values of each triangle of a mesh describe both sides.
+std::vector<bool> two_sided_triangles(const Scene& scene, const Mesh& mesh, BakeSides sides);
+
+/// The values of the vertices of `mesh`, which is number `index` of its scene; nothing if
+/// `progress` says that the bake is to stop.
+std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& two_sided,
+                                   std::uint32_t index, const Placements& placements,
+                                   const BakeOptions& options, SampleTracer& tracer,
+                                   BakeProgress& progress, BakeStatistics& statistics);
+
+}  // namespace dapple
