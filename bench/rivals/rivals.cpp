@@ -5,11 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "accuracy/report.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
+#include "rivals/bake_protocol.hpp"
 #include "rivals/image_protocol.hpp"
 #include "rivals/point_protocol.hpp"
 #include "rivals/ray_protocol.hpp"
@@ -24,6 +26,7 @@ constexpr std::size_t kRayPoints = 1u << 14;
 constexpr std::uint32_t kRaySeed = 1;
 
 const std::vector<double> kPointTargets{0.05, 0.03, 0.02, 0.01};
+const std::vector<double> kBakeTargets{0.05, 0.03, 0.02};
 const std::vector<double> kImageTargets{0.05, 0.02, 0.01};
 
 struct Arguments {
@@ -44,7 +47,7 @@ void add_options(CLI::App& app, Arguments& a) {
       ->required();
   app.add_option("--opacity", a.opacity, "MATERIAL=VALUE: that opacity for a material; repeatable");
   app.add_option("--size", a.size, "Width and height of the pictures")->capture_default_str();
-  app.add_option("--points", a.points, "Shading points")
+  app.add_option("--points", a.points, "Shading points, and triangles whose vertices are baked")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
   app.add_option("--repeats", a.repeats, "Rounds of every measurement")
@@ -57,7 +60,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--cache", a.cache, "Folder for references of pictures")->capture_default_str();
   app.add_option("--protocol", a.protocol, "What to measure")
       ->capture_default_str()
-      ->check(CLI::IsMember({"points", "image", "rays", "all"}));
+      ->check(CLI::IsMember({"points", "bake", "image", "rays", "all"}));
   app.add_option("--pass", a.pass, "Of pictures: which pass")
       ->capture_default_str()
       ->check(CLI::IsMember({"ao", "light", "all"}));
@@ -106,6 +109,19 @@ void show(const std::string& text) {
   std::fflush(stdout);
 }
 
+/// How far dapple's exact values are from the truth, Embree's.
+std::string difference_text(const Truth& truth, const std::vector<double>& exact) {
+  double sum = 0, square = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const double difference = exact[i] - truth.values[i];
+    sum += difference;
+    square += difference * difference;
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(1, exact.size()));
+  return fmt::format("exact with as many rays as the reference: mean {:+.4f}, RMSE {:.4f}",
+                     sum / count, std::sqrt(square / count));
+}
+
 /// All that one scene brings to the report.
 class SceneRun {
  public:
@@ -118,10 +134,11 @@ class SceneRun {
   }
 
   void measure() {
-    if (a_.measures("rays") || a_.measures("points")) {
+    if (a_.measures("rays") || a_.measures("points") || a_.measures("bake")) {
       const PreparedRays rays = prepare_rays(points_, kRaySeed);
       if (a_.measures("rays")) measure_all_rays(rays);
       if (a_.measures("points")) measure_points(calibrated_methods(scene_, rays));
+      if (a_.measures("bake")) measure_bake(calibrated_methods(scene_, rays));
     }
     if (!a_.measures("image")) return;
     if (a_.pass != "light") measure_pictures(Pass::ao, "ao");
@@ -149,6 +166,18 @@ class SceneRun {
     report(hold_contest(point_contestants(scene_, points, methods, a_.max_rays), truth,
                         {a_.repeats, 0, show_progress}),
            kPointTargets, "points", fmt::format("AO at {} points", count), "rays a point");
+  }
+
+  void measure_bake(const std::vector<EmbreeMethod>& methods) {
+    const std::vector<BakedPart> parts = choose_parts(scene_.ours.scene(), a_.points);
+    show_progress("bake: reference");
+    const Truth truth = bake_truth(scene_, parts, a_.reference_spp);
+    const auto standings = hold_contest(bake_contestants(scene_, parts, methods), truth,
+                                        {a_.repeats, kBakeTargets.back(), show_progress});
+    report(standings, kBakeTargets, "bake",
+           fmt::format("AO baked at {} vertices\n{}", truth.values.size(),
+                       difference_text(truth, bake_exactly(scene_, parts, a_.reference_spp))),
+           "effort");
   }
 
   void measure_pictures(Pass pass, const std::string& name) {

@@ -20,6 +20,9 @@ struct VertexGroups {
 /// count as equal. Linear in the vertices but for a sort.
 VertexGroups group_vertices(const Mesh& mesh, bool two_sided);
 
+/// Sheets of at most so many vertices, such as leaves, have one better side.
+inline constexpr std::size_t kSmallPart = 64;
+
 /// For each group the connected part of the mesh that it belongs to: groups joined by triangles.
 /// Parts are numbered by their first group.
 std::vector<std::uint32_t> connected_parts(const Mesh& mesh, const VertexGroups& groups);

@@ -14,11 +14,8 @@ namespace {
 /// judged: all of a few rays may be blocked by chance.
 constexpr float kHidden = 1e-3f;
 
-/// Sheets of at most so many vertices, such as leaves, have one better side.
-constexpr std::size_t kSmallPart = 64;
-
 /// Samples after which a vertex is known to see nothing.
-constexpr float kSamplesOfHidden = 8;
+constexpr float kSamplesOfHidden = 32;
 
 /// A side is surely the brighter one if the difference is so many standard errors.
 constexpr float kSure = 1.75f;

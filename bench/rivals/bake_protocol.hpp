@@ -1,0 +1,38 @@
+// Protocol "bake": AO at the vertices of a model, as `dapple bake` computes it. In: a scene. Out:
+// contestants that bake the same vertices with the same rounds of samples; only what traces the
+// rays differs.
+#pragma once
+
+#include "bake/sample_tracer.hpp"
+#include "rivals/contest.hpp"
+#include "rivals/rival_scene.hpp"
+
+namespace dapple::bench {
+
+/// Part of a mesh that is baked in its place: some triangles, and all others at their vertices.
+struct BakedPart {
+  Mesh mesh;
+  std::vector<bool> two_sided;          ///< by triangle
+  std::vector<std::uint32_t> compared;  ///< vertices of the chosen triangles
+  Placements placements;
+};
+
+/// Parts around `triangles` evenly chosen triangles of the scene, or around all if there are fewer.
+std::vector<BakedPart> choose_parts(const Scene& scene, std::size_t triangles);
+
+/// AO at the compared vertices by Embree with `rays` rays for each triangle and side, in two
+/// halves.
+Truth bake_truth(const RivalScene& scene, const std::vector<BakedPart>& parts, int rays);
+
+/// The same by dapple's exact estimator, in one.
+std::vector<double> bake_exactly(const RivalScene& scene, const std::vector<BakedPart>& parts,
+                                 int rays);
+
+/// Embree's `methods`, with as many rays for every triangle and with the samples that dapple would
+/// take, and dapple's exact and prefiltered. With effort e a side of a triangle has 8 e rays, or a
+/// value the standard error 0.32 / sqrt(e).
+std::vector<Contestant> bake_contestants(const RivalScene& scene,
+                                         const std::vector<BakedPart>& parts,
+                                         const std::vector<EmbreeMethod>& methods);
+
+}  // namespace dapple::bench
