@@ -7,6 +7,8 @@
 
 #include "bake/instance_bake.hpp"
 #include "bake/occluder_scene.hpp"
+#include "bake/texture/texture_bake.hpp"
+#include "bake/texture/texture_layout.hpp"
 #include "bake/vertex_bake.hpp"
 #include "dapple/error.hpp"
 #include "render/stopwatch.hpp"
@@ -16,6 +18,9 @@ namespace {
 
 /// Samples of a triangle that a target needs in the mean, for the first guess of the time left.
 constexpr double kExpectedSamples = 4;
+
+/// Share of a texture that triangles cover, for the same guess.
+constexpr double kExpectedCoverage = 0.5;
 
 TracePoints trace_against(const OccluderScene& occluders) {
   return [&occluders](std::span<const V3f> positions, std::span<const V3f> normals,
@@ -45,6 +50,8 @@ double expected_samples(const Scene& scene, const BakeOptions& options) {
     samples += options.at_vertices ? static_cast<double>(mesh.positions.size())
                                    : static_cast<double>(mesh.primitive_count()) * of_triangle;
   }
+  if (options.texture)
+    samples += kExpectedCoverage * of_triangle * options.texture_size * options.texture_size;
   if (options.instances) samples += static_cast<double>(scene.instances.size()) * kInstanceSamples;
   return samples;
 }
@@ -60,22 +67,62 @@ Scene scene_of_mesh(const Scene& scene, std::size_t mesh) {
   return alone;
 }
 
-bool bake_vertices(const Scene& scene, const BakeOptions& options, const OccluderScene* together,
-                   BakeProgress& progress, BakeResult& result) {
-  result.meshes.resize(scene.meshes.size());
+/// Traces against the whole scene, or against each mesh alone.
+class MeshOccluders {
+ public:
+  MeshOccluders(const Scene& scene, const BakeOptions& options, const OccluderScene* together)
+      : scene_(scene), options_(options), together_(together) {}
+
+  /// Valid until the next call.
+  SampleTracer tracer(std::uint32_t mesh, BakeStatistics& statistics) {
+    if (!together_) alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
+    return {trace_against(together_ ? *together_ : *alone_), options_, statistics};
+  }
+
+ private:
+  const Scene& scene_;
+  const BakeOptions& options_;
+  const OccluderScene* together_;
+  std::optional<OccluderScene> alone_;
+};
+
+/// Calls bake(mesh, placements) for all meshes that can be baked. False: one returned false.
+template <class BakeOne>
+bool for_each_mesh(const Scene& scene, const BakeOptions& options, BakeOne bake_one) {
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     const Placements placements = placements_of(scene, m, options.placement);
     if (mesh.has_strands() || mesh.primitive_count() == 0 || placements.to_world.empty()) continue;
-    std::optional<OccluderScene> alone;
-    if (!together) alone.emplace(scene_of_mesh(scene, m), options, std::vector<Scene>{});
-    SampleTracer tracer(trace_against(together ? *together : *alone), options, result.statistics);
-    auto baked = bake_mesh(mesh, two_sided_triangles(scene, mesh, options.sides), m, placements,
-                           options, tracer, progress, result.statistics);
-    if (!baked) return false;
-    result.meshes[m] = std::move(*baked);
+    if (!bake_one(m, placements)) return false;
   }
   return true;
+}
+
+bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,
+                   BakeProgress& progress, BakeResult& result) {
+  result.meshes.resize(scene.meshes.size());
+  return for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
+    SampleTracer tracer = occluders.tracer(m, result.statistics);
+    auto baked =
+        bake_mesh(scene.meshes[m], two_sided_triangles(scene, scene.meshes[m], options.sides), m,
+                  placements, options, tracer, progress, result.statistics);
+    if (baked) result.meshes[m] = std::move(*baked);
+    return baked.has_value();
+  });
+}
+
+bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,
+                  BakeProgress& progress, BakeResult& result) {
+  TextureBake texture(
+      scene, options,
+      options.texture_uvs.empty() ? make_layout(scene, options) : given_layout(scene, options));
+  const bool done =
+      for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
+        SampleTracer tracer = occluders.tracer(m, result.statistics);
+        return texture.add(m, placements, tracer, progress, result.statistics);
+      });
+  if (done) result.texture = texture.finish();
+  return done;
 }
 
 }  // namespace
@@ -87,6 +134,8 @@ void validate(const BakeOptions& options) {
                 fmt::format("{} is {}; it must be from {} to {}", flag, value, low, high));
   };
   check("--rays", options.rays, kRaysPerSample, 65536);
+  check("--size", double{1.0 * options.texture_size}, 1, 16384);
+  check("--margin", options.margin, 0, 1024);
   check("--target-error", double{options.target_error}, 0, 1);
   check("--footprint", double{options.footprint}, 0, 1e6);
   check("--ao-distance", double{options.distance}, 0, 1e30);
@@ -110,9 +159,11 @@ BakeResult bake(const Scene& scene, const BakeOptions& options, const RenderCont
   }
   BakeProgress progress(expected_samples(scene, options), control);
   const Stopwatch tracing;
+  MeshOccluders mesh_occluders(scene, options, alone ? nullptr : &*together);
   if (options.vertices)
-    result.interrupted =
-        !bake_vertices(scene, options, alone ? nullptr : &*together, progress, result);
+    result.interrupted = !bake_vertices(scene, options, mesh_occluders, progress, result);
+  if (options.texture && !result.interrupted)
+    result.interrupted = !bake_texture(scene, options, mesh_occluders, progress, result);
   if (options.instances && !result.interrupted) {
     SampleTracer tracer(trace_against(*together), options, s);
     auto values = bake_instances(scene, options, tracer, progress);

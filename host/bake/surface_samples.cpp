@@ -64,7 +64,7 @@ SurfaceSample sample_triangle(const Mesh& mesh, std::size_t triangle, const Vert
   sample.back = two_sided;
   for (std::size_t k = 0; k < 3; ++k) {
     sample.position += mesh.positions[corner[k]] * barycentric[k];
-    sample.group[k] = groups.of_vertex[corner[k]];
+    sample.place[k] = groups.of_vertex[corner[k]];
     sample.weight[k] = twice_area * barycentric[k];
   }
   return sample;
@@ -82,7 +82,7 @@ std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, const VertexGroups&
       sample.normal += sample.normal.dot(area) < 0 ? -area : area;
       sample.position = mesh.positions[vertex];
       sample.back = sample.back || two_sided_triangles[t];
-      sample.group[0] = groups.of_vertex[vertex];
+      sample.place[0] = groups.of_vertex[vertex];
     }
   }
   for (SurfaceSample& sample : of_group) {

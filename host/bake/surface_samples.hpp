@@ -20,8 +20,8 @@ struct SurfaceSample {
   V3f position{0, 0, 0};
   V3f normal{0, 0, 0};                   ///< unit length, on the front side
   bool front = true, back = false;       ///< sides that are traced
-  std::array<std::uint32_t, 3> group{};  ///< vertex groups that the sample counts for
-  std::array<float, 3> weight{};         ///< area times barycentric coordinate; 0: does not count
+  std::array<std::uint32_t, 3> place{};  ///< vertex groups, or texels, whose value it is part of
+  std::array<float, 3> weight{};         ///< in these values; 0: none
 };
 
 /// Samples of each triangle and rays of each sample and side.

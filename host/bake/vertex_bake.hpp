@@ -5,13 +5,16 @@
 #include <optional>
 
 #include "bake/bake_progress.hpp"
-#include "bake/sample_tracer.hpp"
+#include "bake/value_sums.hpp"
 #include "dapple/bake.hpp"
 
 namespace dapple {
 
 /// Whether the values of each triangle of a mesh describe both sides.
 std::vector<bool> two_sided_triangles(const Scene& scene, const Mesh& mesh, BakeSides sides);
+
+/// The small parts that the vertex groups of a mesh belong to.
+SmallParts small_parts(const Mesh& mesh, const VertexGroups& groups);
 
 /// The values of the vertices of `mesh`, which is number `index` of its scene; nothing if
 /// `progress` says that the bake is to stop.

@@ -3,19 +3,18 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "commands/bake_report.hpp"
 #include "commands/baked_attributes.hpp"
+#include "commands/baked_texture.hpp"
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
 #include "dapple/error.hpp"
-#include "files/output_file.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -46,64 +45,76 @@ class SceneFile {
   bool is_made_ = false;
 };
 
-struct Seconds {
-  double load = 0, write = 0, total = 0;
-};
-
-/// Root mean square of the standard errors of the values at vertices.
-double standard_error(const BakeStatistics& s) {
-  return s.vertices > 0 ? std::sqrt(s.squared_errors / static_cast<double>(s.vertices)) : 0.0;
+/// A file beside the output: NAME`suffix``extension`.
+std::string beside(const std::string& output, const std::string& suffix,
+                   const std::string& extension) {
+  const fs::path path(output);
+  return (path.parent_path() / (path.stem().string() + suffix + extension)).string();
 }
 
-void write_statistics(const BakeStatistics& s, const Seconds& seconds, const std::string& path) {
-  const nlohmann::ordered_json json = {{"seconds",
-                                        {{"load", seconds.load},
-                                         {"build", s.seconds.build},
-                                         {"upload", s.seconds.upload},
-                                         {"trace", s.seconds.trace},
-                                         {"write", seconds.write},
-                                         {"total", seconds.total}}},
-                                       {"triangles", s.triangles},
-                                       {"vertices", s.vertices},
-                                       {"points", s.points},
-                                       {"rays", s.rays},
-                                       {"standard_error", standard_error(s)},
-                                       {"hidden_vertices", s.hidden_vertices},
-                                       {"device", s.device},
-                                       {"notes", s.notes}};
-  write_whole_file(path, json.dump(2) + "\n");
-}
+std::string bent_path(const std::string& output) { return beside(output, "_bent", ".exr"); }
 
-void print_summary(const BakeStatistics& s, const Seconds& seconds, const std::string& output) {
-  for (const std::string& note : s.notes) fmt::print(stderr, "note: {}\n", note);
-  fmt::print(
-      "{} triangles, {} vertices, {} rays from {} points ({:.1f} million rays a second)\n"
-      "load {:.2f}, build {:.2f}, trace {:.2f}, write {:.2f}, total {:.2f} s\n",
-      s.triangles, s.vertices, s.rays, s.points,
-      s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
-      seconds.load, s.seconds.build, s.seconds.trace, seconds.write, seconds.total);
-  if (s.vertices > 0)
-    fmt::print("standard error of a vertex's AO {:.3f} (root mean square)\n", standard_error(s));
-  if (s.hidden_vertices > 0)
-    fmt::print("{} vertices lie inside closed geometry and have their neighbours' values\n",
-               s.hidden_vertices);
-  fmt::print("wrote {}\n", output);
-}
-
-void run_bake(const BakeArguments& a) {
-  const BakeOptions options = to_options(a);
+/// The paths that the options name. Throws Error usage for two that are the same file, or that
+/// cannot be written.
+std::vector<OutputPath> named_outputs(const BakeArguments& a, const BakeOptions& options) {
   std::vector<OutputPath> outputs{{"--output", a.output}};
   if (!a.stats_json.empty()) outputs.push_back({"--stats-json", a.stats_json});
+  if (options.texture && options.bent) outputs.push_back({"--passes bent", bent_path(a.output)});
   check_outputs(outputs);
   const std::string extension = fs::path(a.output).extension().string();
   if (extension != ".glb" && extension != ".gltf")
     throw Error(ErrorKind::usage,
                 fmt::format("--output is {}; it must end in .glb or .gltf", a.output));
+  return outputs;
+}
+
+/// Files beside a .gltf that the command writes.
+std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArguments& a,
+                                     const BakeOptions& options) {
+  std::vector<OutputPath> sides;
+  for (const std::string& path : gltf::Editor(file, a.output).side_files_written())
+    sides.push_back({"--output", path});
+  if (options.texture && a.output.ends_with(".gltf"))
+    sides.push_back({"--output", beside(a.output, gltf::kOcclusionSuffix, ".png")});
+  return sides;
+}
+
+/// Writes the file with the baked values, and the bent normals of a texture.
+void write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArguments& a,
+                 const BakeOptions& options, std::uint32_t uv_set, const BakeResult& result) {
+  gltf::Editor editor(file, a.output);
+  if (options.vertices)
+    gltf::add_attributes(editor, file,
+                         baked_attributes(file, scene, result.meshes, parse_channel(a.channel),
+                                          a.blend == "multiply"));
+  if (options.instances) gltf::add_node_values(editor, baked_nodes(scene, result.instance_ao));
+  if (options.texture)
+    gltf::add_occlusion_texture(editor,
+                                textured_primitives(file, scene, result.texture.layout, uv_set),
+                                occlusion_png(result.texture));
+  editor.write();
+  if (options.texture && options.bent) write_bent_exr(result.texture, bent_path(a.output));
+}
+
+/// Chooses the texture coordinates. Returns a line about them.
+std::string choose_layout(const gltf::SourceFile& file, const Scene& scene, const std::string& uv,
+                          BakeOptions& options, std::uint32_t& set) {
+  if (uv == "own") return {};
+  FileUvs chosen = choose_uvs(file, scene, options.texture_size);
+  set = chosen.set;
+  options.texture_uvs = std::move(chosen.uvs);
+  if (!options.texture_uvs.empty()) return fmt::format("the texture uses TEXCOORD_{}", set);
+  return chosen.note.empty() ? "" : chosen.note + ": the texture has coordinates of its own";
+}
+
+void run_bake(const BakeArguments& a) {
+  BakeOptions options = to_options(a);
+  const std::vector<OutputPath> outputs = named_outputs(a, options);
   if (a.scene.ends_with(".hair"))
     throw Error(ErrorKind::usage, a.scene + ": strands cannot be baked; only glTF files can");
   catch_interruptions();
   const Stopwatch total;
-  Seconds seconds;
+  BakeSeconds seconds;
   ProgressBar progress(a.quiet);
   std::optional<SceneFile> input(std::in_place, a.scene, a.output);
   const Scene scene = load_gltf(input->path(), a.scene_options);
@@ -113,10 +124,10 @@ void run_bake(const BakeArguments& a) {
     occluders.push_back(load_scene(path, a.scene_options));
   const gltf::SourceFile file(input->path(), a.scene_options.allow_outside);
   input.reset();  // all of it is in memory
-  std::vector<OutputPath> sides;
-  for (const std::string& path : gltf::side_files_of(file, a.output))
-    sides.push_back({"--output", path});
-  check_outputs_spare(sides, scene.files);
+  check_outputs_spare(side_outputs(file, a, options), scene.files);
+  std::uint32_t uv_set = 0;
+  std::string layout_note;
+  if (options.texture) layout_note = choose_layout(file, scene, a.uv, options, uv_set);
   seconds.load = total.seconds();
 
   RenderControl control;
@@ -125,16 +136,13 @@ void run_bake(const BakeArguments& a) {
   progress.clear();
 
   const Stopwatch writing;
-  std::vector<gltf::NewAttribute> attributes;
-  std::vector<gltf::NodeValues> nodes;
-  if (options.vertices)
-    attributes = baked_attributes(file, scene, result.meshes, parse_channel(a.channel),
-                                  a.blend == "multiply");
-  if (options.instances) nodes = baked_nodes(scene, result.instance_ao);
-  gltf::write_with_values(file, a.output, attributes, nodes);
+  write_baked(file, scene, a, options, uv_set, result);
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
-  for (const std::string& warning : scene.warnings) result.statistics.notes.push_back(warning);
+  std::vector<std::string>& notes = result.statistics.notes;
+  if (!layout_note.empty()) notes.push_back(layout_note);
+  if (options.texture) notes.push_back(texture_note(result.texture));
+  notes.insert(notes.end(), scene.warnings.begin(), scene.warnings.end());
   if (!a.stats_json.empty()) write_statistics(result.statistics, seconds, a.stats_json);
   if (!a.quiet) print_summary(result.statistics, seconds, a.output);
 }

@@ -29,33 +29,44 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   app.add_option("-o,--output", a.output,
                  "glTF file to write, .glb or .gltf: SCENE with what was baked")
       ->required();
-  app.add_option("--to", a.to, "vertex: values at vertices; instance: a value for each placement")
+  app.add_option("--to", a.to,
+                 "vertex: values at vertices; texture: an occlusion texture; instance: a value for "
+                 "each instance")
       ->capture_default_str();
   app.add_option("--passes", a.passes,
                  "ao; or ao,bent: bent normals, the mean unoccluded direction, too")
       ->capture_default_str();
   app.add_option("--channel", a.channel,
-                 "Where AO goes: COLOR_0.rgb, COLOR_0.r, .g, .b or .a, or an attribute of its own "
-                 "such as _AO")
+                 "Where AO goes: COLOR_0.rgb, COLOR_0.r, .g, .b or .a, or a custom attribute, for "
+                 "example _AO")
       ->capture_default_str();
-  app.add_option("--blend", a.blend, "With a colour that is there: multiply or replace")
+  app.add_option("--size", o.texture_size, "Width and height of the texture")
+      ->capture_default_str();
+  app.add_option("--margin", o.margin, "Texels by which values extend over the border of charts")
+      ->capture_default_str();
+  app.add_option("--uv", a.uv,
+                 "Texture coordinates: auto (the file's, if they don't overlap) or own (a new set)")
+      ->capture_default_str();
+  app.add_option("--blend", a.blend, "If the file already has vertex colours: multiply or replace")
       ->capture_default_str();
   app.add_option("--target-error", a.target_error,
                  "Trace rays until the standard error of each value is this [0.04]");
-  app.add_option("--rays", a.rays,
-                 "Trace this number of rays for each triangle and side, without a target; with "
-                 "--target-error, at most this number");
-  app.add_option("--at", a.at,
-                 "triangles: rays start all over the triangles around a vertex; vertices: at the "
-                 "vertex alone")
+  app.add_option(
+      "--rays", a.rays,
+      "Rays per triangle (--to texture: texel) and side. With --target-error: the maximum");
+  app.add_option(
+         "--at", a.at,
+         "Ray origins. triangles: over the triangles around a vertex; vertices: only at the "
+         "vertex")
       ->capture_default_str();
   app.add_option("--sides", a.sides,
                  "Side of a surface: front, max (the brighter one) or mean; auto: max for "
                  "double-sided materials, front for others")
       ->capture_default_str();
-  app.add_option("--instances", a.instances,
-                 "Meshes that are placed several times: together, the mean over all placements; "
-                 "alone, without the rest of the scene")
+  app.add_option(
+         "--instances", a.instances,
+         "Meshes with several instances. together: mean AO over all; alone: ignore the rest "
+         "of the scene")
       ->capture_default_str();
   app.add_option("--estimator", a.estimator,
                  "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the "
@@ -68,7 +79,8 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
       ->capture_default_str();
   app.add_option("--ao-falloff", o.falloff,
-                 "Power p: a surface at t counts (1 - t / distance)^p; 0: a hard limit")
+                 "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
+                 "0: a cutoff")
       ->capture_default_str();
   app.add_option("--opacity", a.opacity,
                  "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
@@ -87,14 +99,18 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   app.footer(
       "Example:\n  dapple bake tree.glb -o tree_ao.glb\n"
       "  dapple bake tree.glb -o tree_ao.glb --passes ao,bent --channel _AO --ground\n"
+      "  dapple bake pine.glb -o pine_ao.glb --to texture --size 2048\n"
       "  dapple bake forest.glb -o forest_ao.glb --to instance");
 }
 
 BakeOptions to_options(const BakeArguments& a) {
   BakeOptions o = a.options;
-  const bool instance = choice<bool>("--to", a.to, {{"vertex", false}, {"instance", true}});
-  o.vertices = !instance;
-  o.instances = instance;
+  enum class To { vertex, texture, instance };
+  const To to = choice<To>(
+      "--to", a.to, {{"vertex", To::vertex}, {"texture", To::texture}, {"instance", To::instance}});
+  o.vertices = to == To::vertex;
+  o.texture = to == To::texture;
+  o.instances = to == To::instance;
   o.bent =
       choice<bool>("--passes", a.passes, {{"ao", false}, {"ao,bent", true}, {"bent,ao", true}});
   o.at_vertices = choice<bool>("--at", a.at, {{"triangles", false}, {"vertices", true}});
@@ -112,8 +128,11 @@ BakeOptions to_options(const BakeArguments& a) {
   if (a.target_error) o.target_error = *a.target_error;
   o.estimator = parse_estimator(a.estimator);
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
-  if (instance && o.bent)
-    throw Error(ErrorKind::usage, "--passes bent needs --to vertex: an instance has one AO value");
+  if (o.instances && o.bent)
+    throw Error(ErrorKind::usage,
+                "--passes bent needs --to vertex or texture: an instance has one AO value");
+  if (o.texture && o.at_vertices) throw Error(ErrorKind::usage, "--at vertices needs --to vertex");
+  choice<bool>("--uv", a.uv, {{"auto", false}, {"own", true}});
   parse_channel(a.channel);
   validate(o);
   return o;

@@ -71,7 +71,7 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
       const std::size_t count = file.vertex_count(source.mesh, source.primitive);
       of.ao.resize(count);
       of.weight.resize(count);
-      if (!meshes[m].bent.empty()) of.bent.resize(count);
+      if (!meshes[m].bent.empty()) of.bent.resize(count, V3f(0));
       add(source, meshes[m], of);
     }
   }

@@ -6,6 +6,7 @@
 
 #include "commands/bake_arguments.hpp"
 #include "scene/gltf/attribute_writer.hpp"
+#include "scene/gltf/source_file.hpp"
 
 namespace dapple {
 

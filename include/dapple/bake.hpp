@@ -1,5 +1,5 @@
-// Baking: ambient occlusion and bent normals at the vertices of a scene's meshes, and the mean
-// ambient occlusion of each instance. In: a scene and options. Out: values, no files.
+// Baking: ambient occlusion and bent normals at the vertices of a scene's meshes or in a texture,
+// and the mean ambient occlusion of each instance. In: a scene and options. Out: values, no files.
 #pragma once
 
 #include <cstddef>
@@ -31,10 +31,12 @@ enum class BakeInstances : std::uint8_t {
 struct BakeOptions {
   bool vertices = true;    ///< bake values at vertices
   bool instances = false;  ///< bake a value for each instance
-  bool bent = false;       ///< bent normals too, at vertices
+  bool texture = false;    ///< bake a texture that all meshes share
+  bool bent = false;       ///< bent normals too, at vertices and in the texture
   /// Standard error of each value to aim at, [0,1]; 0: `rays` for every value.
   float target_error = 0.04f;
-  /// Of each triangle and side (at_vertices: vertex and side), [8, 65536]; with a target, at most.
+  /// Of each triangle (at_vertices: vertex; texture: texel) and side, [8, 65536]; with a target, at
+  /// most.
   int rays = 1024;
   Estimator estimator = Estimator::prefiltered;
   /// As RenderOptions::footprint, for the rays of one point.
@@ -44,6 +46,10 @@ struct BakeOptions {
   bool at_vertices = false;  ///< rays start at the vertices, not from points of the triangles
   BakeSides sides = BakeSides::automatic;
   BakeInstances placement = BakeInstances::together;
+  std::uint32_t texture_size = 1024;  ///< texels along each side, [1, 16384]
+  int margin = 16;                    ///< texels by which values extend over the border of charts
+  /// Texture coordinates to use, for each mesh and vertex, in [0,1]; empty: a layout of our own.
+  std::vector<std::vector<V2f>> texture_uvs;
   std::uint32_t seed = 0;
   bool ground = false;                                 ///< an opaque plane under the scene occludes
   std::vector<std::pair<std::string, float>> opacity;  ///< of materials by name, [0,1]
@@ -60,20 +66,44 @@ struct BakedMesh {
   std::vector<V3f> bent;  ///< mean unoccluded direction, a unit vector in object space; or zero
 };
 
+/// Where triangles lie in a texture.
+struct TextureLayout {
+  static constexpr std::uint32_t kNoChart = ~0u;
+  /// For each mesh the texture coordinates of its triangles' corners, three a triangle, in [0,1];
+  /// v = 0 is the top, as in glTF. Empty for strands, and for meshes that show the same primitives
+  /// of a file as an earlier one, in another pose.
+  std::vector<std::vector<V2f>> corners;
+  /// For each mesh and triangle its chart; kNoChart for triangles without area. Empty where
+  /// BakeOptions::texture_uvs were used: there no vertex has several places.
+  std::vector<std::vector<std::uint32_t>> chart_of;
+  std::size_t charts = 0;
+};
+
+/// Values of texels, row by row from the top.
+struct BakedTexture {
+  std::uint32_t size = 0;  ///< texels along each side
+  std::vector<float> ao;   ///< [0,1]; 1 in texels beyond the margin
+  std::vector<V3f> bent;   ///< unit vectors in object space, or zero; empty if not requested
+  TextureLayout layout;
+  double coverage = 0;  ///< share of the texels that triangles cover, without the margin
+};
+
 struct BakeStatistics {
   struct {
     double build = 0, upload = 0, kernel_build = 0, trace = 0, total = 0;
   } seconds;
-  std::size_t triangles = 0, vertices = 0, points = 0;
+  std::size_t triangles = 0, vertices = 0, texels = 0, points = 0;
   std::uint64_t rays = 0;
-  double squared_errors = 0;  ///< of AO at vertices, estimated; the sum over `vertices`
+  double squared_errors = 0;        ///< of AO, estimated; the sum over vertices and texels
   std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
+  std::size_t hidden_texels = 0;    ///< the same in the texture
   std::string device;
   std::vector<std::string> notes;
 };
 
 struct BakeResult {
   std::vector<BakedMesh> meshes;   ///< as Scene::meshes
+  BakedTexture texture;            ///< size 0 if not requested
   std::vector<float> instance_ao;  ///< as Scene::instances, [0,1]; empty if not requested
   BakeStatistics statistics;
   bool interrupted = false;  ///< RenderControl::stop returned true; the values are incomplete
@@ -87,5 +117,10 @@ struct BakeResult {
 /// `control`. Throws Error usage, input, device or failed. The same arguments give the same bits.
 BakeResult bake(const Scene& scene, const BakeOptions& options = {},
                 const RenderControl& control = {}, const std::vector<Scene>& occluders = {});
+
+/// The share of the covered texels of a `size` x `size` texture that lie in several triangles at
+/// their centre, [0,1], for texture coordinates as BakeOptions::texture_uvs; infinity if some are
+/// outside of [0,1].
+double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size);
 
 }  // namespace dapple

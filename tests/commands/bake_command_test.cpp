@@ -120,6 +120,38 @@ TEST_F(BakeCommand, TextFilesKeepTheirSideFilesAndBinaryOnesEmbedThem) {
   EXPECT_EQ(load_gltf(path("other/out.glb")).meshes.size(), 1u);
 }
 
+TEST_F(BakeCommand, ATextureIsInAMaterialOfItsOwnAndTheMeshKeepsItsShape) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["materials"] = {{{"name", "leaf"}, {"doubleSided", true}}};
+  builder.doc["meshes"][0]["primitives"][0]["material"] = 0;
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --to texture --size 16 --passes ao,bent");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json after = document("out.glb");
+  const json& primitive = after["meshes"][0]["primitives"][0];
+  const json& material = after["materials"][primitive["material"].get<std::size_t>()];
+  EXPECT_EQ(material["name"], "leaf");
+  EXPECT_EQ(material["occlusionTexture"]["texCoord"], 0);
+  EXPECT_EQ(after["images"][0]["mimeType"], "image/png");
+  EXPECT_EQ(after["accessors"][primitive["attributes"]["TEXCOORD_0"].get<std::size_t>()]["count"],
+            3);
+  const json& temperature =
+      after["accessors"][primitive["attributes"]["_TEMPERATURE"].get<std::size_t>()];
+  EXPECT_EQ(temperature["count"], 3) << "unknown attributes follow their vertices";
+  const Scene before = load_gltf(path("in.glb")), scene = load_gltf(path("out.glb"));
+  ASSERT_EQ(scene.meshes.at(0).indices.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(scene.meshes[0].positions[scene.meshes[0].indices[i]],
+              before.meshes[0].positions[before.meshes[0].indices[i]]);
+  EXPECT_TRUE(std::filesystem::exists(path("out_bent.exr")));
+  // The texture's own coordinates can be used again.
+  const Outcome again = dapple("bake out.glb -o again.gltf --to texture --size 16");
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(again.err.find("TEXCOORD_0"), std::string::npos) << again.err;
+  EXPECT_TRUE(std::filesystem::exists(path("again_ao.png")));
+  EXPECT_EQ(document("again.gltf")["images"].back()["uri"], "again_ao.png");
+}
+
 TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {
   GltfBuilder builder;
   builder.add_triangle();
@@ -158,7 +190,9 @@ TEST_F(BakeCommand, ErrorsSayWhatCanBeDoneAndLeaveNothingBehind) {
       {"in.glb -o out.glb --channel NORMAL", "COLOR_0.rgb"},
       {"in.glb -o out.glb --rays 3", "--rays"},
       {"in.glb -o out.glb --sides top", "--sides"},
-      {"in.glb -o out.glb --to texture", "--to"},
+      {"in.glb -o out.glb --to light", "--to"},
+      {"in.glb -o out.glb --to texture --size 0", "--size"},
+      {"in.glb -o out.glb --to texture --at vertices", "--at"},
       {"in.glb -o out.glb --to instance --passes ao,bent", "--passes bent"},
       {"in.glb -o out.obj", ".gltf"},
       {"in.glb -o in.glb", "in.glb"},

@@ -64,6 +64,13 @@ class AccessorReader {
   [[nodiscard]] Imath::M44d matrix(std::uint64_t i) const;
   [[nodiscard]] Imath::V2f vec2(std::uint64_t i) const;
   [[nodiscard]] Imath::V3f vec3(std::uint64_t i) const;
+  /// Returns a component as it is stored, as a number.
+  [[nodiscard]] float stored(std::uint64_t i, std::uint64_t component) const {
+    return number_of(element(i), component, false);
+  }
+  /// Returns the bytes of an element, element_bytes() of them; null for zeros.
+  [[nodiscard]] const std::uint8_t* bytes(std::uint64_t i) const { return element(i); }
+  [[nodiscard]] std::uint64_t element_bytes() const { return components_ * component_bytes_; }
   /// Returns an unsigned integer, for accessors of indices.
   [[nodiscard]] std::uint32_t index(std::uint64_t i) const;
 

@@ -1,6 +1,8 @@
 // Decodes URIs and checks that paths stay inside a folder: see uri.hpp.
 #include "scene/gltf/uri.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -110,6 +112,19 @@ std::string percent_decode(std::string_view text) {
     i += 2;
   }
   return decoded;
+}
+
+std::string percent_encode(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    const bool unreserved = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                            (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '_' || c == '~';
+    if (unreserved)
+      text += c;
+    else
+      text += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return text;
 }
 
 Bytes decode_data_uri(std::string_view uri, const std::string& what) {

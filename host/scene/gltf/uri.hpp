@@ -23,6 +23,9 @@ Bytes decode_data_uri(std::string_view uri, const std::string& what);
 /// exporters do not encode file names like "100%.png".
 std::string percent_decode(std::string_view text);
 
+/// A file name as a relative URI: all but unreserved characters (RFC 3986) as %XX.
+std::string percent_encode(std::string_view name);
+
 /// A folder, and whether URIs may lead out of it.
 struct UriBase {
   std::filesystem::path folder;

@@ -1,0 +1,111 @@
+#include "bake/sample_rounds.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace dapple {
+namespace {
+
+/// Samples that are traced between two questions whether to stop: about half a second.
+constexpr std::size_t kSamplesAtOnce = 1u << 18;
+
+/// A round multiplies the samples of an element by this at most: early variances are uncertain.
+constexpr float kMaxGrowth = 4;
+
+/// A round that would take fewer samples of an element in the mean does not pay: it visits all.
+constexpr double kMinRound = 0.005;
+
+}  // namespace
+
+bool SampleRounds::run(const BakeOptions& options, std::uint32_t first, SampleCounts fixed) {
+  if (options.target_error <= 0) return take(static_cast<std::uint32_t>(fixed.samples), fixed.rays);
+  return take(first, kRaysPerSample) &&
+         refine(options.target_error, static_cast<std::uint32_t>(options.rays / kRaysPerSample));
+}
+
+// `samples` of each element, both sides. False: stopped.
+bool SampleRounds::take(std::uint32_t samples, int rays) {
+  rays_ = rays;
+  std::vector<std::uint32_t> wanted(taken_.size(), samples);
+  return round(wanted);
+}
+
+// Rounds until the standard error of nearly all values is `target`, or elements have `max_samples`
+// samples.
+bool SampleRounds::refine(float target, std::uint32_t max_samples) {
+  std::vector<std::uint32_t> wanted(taken_.size());
+  for (;;) {
+    sums_.choose_sides(true);
+    const std::vector<float> factors = sums_.missing_samples(target);
+    double more = 0;
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      float factor = 1;
+      for (const std::uint32_t place : surface_.places(i))
+        factor = std::max(factor, factors[place]);
+      const float needed = std::ceil(static_cast<float>(taken_[i]) * std::min(factor, kMaxGrowth));
+      wanted[i] = std::clamp(static_cast<std::uint32_t>(needed), taken_[i], max_samples);
+      more += wanted[i] - taken_[i];
+    }
+    if (more <= kMinRound * static_cast<double>(taken_.size())) return true;
+    progress_.expect(more);
+    if (!round(wanted)) return false;
+  }
+}
+
+// Takes samples until each element has `wanted` of them.
+bool SampleRounds::round(const std::vector<std::uint32_t>& wanted) {
+  for (std::uint32_t i = 0; i < taken_.size(); ++i) {
+    if (!surface_.can_be_sampled(i)) taken_[i] = wanted[i];
+    for (; taken_[i] < wanted[i]; ++taken_[i]) next_.push_back({i, taken_[i]});
+    if (next_.size() >= kSamplesAtOnce && !trace()) return false;
+  }
+  return trace() && trace();
+}
+
+// A sample, without the sides that count for no value.
+SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
+  SurfaceSample sample = surface_.sample(index.element, index.number);
+  bool front = false, back = false;
+  for (const std::uint32_t place : surface_.places(index.element)) {
+    front = front || sums_.counts(place, false);
+    back = back || sums_.counts(place, true);
+  }
+  sample.front = front;
+  sample.back = sample.back && back;
+  return sample;
+}
+
+// Starts tracing the samples of the list, and adds what the batch before found meanwhile.
+bool SampleRounds::trace() {
+  Batch batch;
+  batch.samples.resize(next_.size());
+  tbb::parallel_for(std::size_t{0}, next_.size(),
+                    [&](std::size_t i) { batch.samples[i] = sample(next_[i]); });
+  next_.clear();
+  if (!batch.samples.empty()) {
+    const std::uint32_t hash = hash_of(hash_, batch_++);
+    batch.placement.resize(batch.samples.size());
+    const auto count = static_cast<std::uint32_t>(placements_.to_world.size());
+    for (std::uint32_t i = 0; i < batch.placement.size() && count > 1; ++i)
+      batch.placement[i] = hash_of(hash, i) % count;
+    batch.hash = hash;
+  }
+  std::optional<TracedSamples> found;
+  if (traced_.valid()) found = traced_.get();
+  Batch before = std::move(batch_traced_);
+  batch_traced_ = std::move(batch);
+  if (!batch_traced_.samples.empty())
+    traced_ = std::async(std::launch::async, [this] {
+      return tracer_.trace(batch_traced_.samples, batch_traced_.placement, placements_, rays_,
+                           batch_traced_.hash);
+    });
+  if (!found) return true;
+  for (std::size_t i = 0; i < before.samples.size(); ++i)
+    sums_.add(before.samples[i], found->front[i], found->back[i]);
+  return progress_.add(before.samples.size());
+}
+
+}  // namespace dapple

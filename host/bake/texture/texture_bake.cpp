@@ -1,0 +1,182 @@
+#include "bake/texture/texture_bake.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/sample_rounds.hpp"
+#include "bake/texture/dilation.hpp"
+#include "bake/texture/texel_cover.hpp"
+#include "bake/vertex_bake.hpp"
+
+namespace dapple {
+namespace {
+
+/// Barycentric coordinates of `p` in a triangle of the texture.
+std::array<float, 3> barycentric(const V2f* uv, const V2f& p) {
+  const V2f a = uv[1] - uv[0], b = uv[2] - uv[0], c = p - uv[0];
+  const float area = a.cross(b);
+  const float v = c.cross(b) / area, w = a.cross(c) / area;
+  return {1 - v - w, v, w};
+}
+
+/// The covered texels of one mesh.
+class SampledTexels : public SampledSurface {
+ public:
+  SampledTexels(const Mesh& mesh, std::span<const V2f> corners, const std::vector<bool>& two_sided,
+                std::uint32_t size, std::uint32_t hash)
+      : mesh_(mesh),
+        corners_(corners),
+        two_sided_(two_sided),
+        size_(size),
+        hash_(hash),
+        cover_(cover_texels(corners, size)) {}
+
+  [[nodiscard]] std::size_t size() const override { return cover_.texel.size(); }
+  [[nodiscard]] bool can_be_sampled(std::size_t) const override { return true; }
+  [[nodiscard]] std::array<std::uint32_t, 3> places(std::size_t i) const override {
+    const auto place = static_cast<std::uint32_t>(i);
+    return {place, place, place};
+  }
+  [[nodiscard]] std::uint32_t texel(std::size_t i) const { return cover_.texel[i]; }
+  [[nodiscard]] std::span<const std::uint32_t> triangles(std::size_t i) const {
+    return std::span(cover_.triangles)
+        .subspan(cover_.first[i], cover_.first[i + 1] - cover_.first[i]);
+  }
+  [[nodiscard]] TexelPolygon polygon(std::size_t i, std::uint32_t triangle) const {
+    return clip_to_texel(&corners_[3 * triangle], size_, texel(i) % size_, texel(i) / size_);
+  }
+
+  // A point that is uniform over the parts of all triangles in the texel: an additive recurrence
+  // (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018) with a random shift.
+  [[nodiscard]] SurfaceSample sample(std::size_t i, std::uint32_t index) const override {
+    constexpr double kA = 0.7548776662466927, kB = 0.5698402909980532;
+    const std::uint32_t shift = hash_of(hash_, texel(i));
+    const auto fraction = [](double x) { return x - std::floor(x); };
+    const double u = fraction((shift & 0xffffu) / 65536.0 + index * kA);
+    const double v = fraction((shift >> 16) / 65536.0 + index * kB);
+    double area = 0;
+    for (const std::uint32_t t : triangles(i)) area += double{polygon(i, t).area()};
+    double left = u * area;
+    for (const std::uint32_t t : triangles(i)) {
+      const TexelPolygon part = polygon(i, t);
+      for (std::size_t k = 2; k < part.count; ++k) {
+        const V2f* p = part.corners.data();
+        const double fan = 0.5 * std::fabs(double{(p[k - 1] - p[0]).cross(p[k] - p[0])});
+        const bool last = t == triangles(i).back() && k + 1 == part.count;
+        if (left >= fan && !last) {
+          left -= fan;
+          continue;
+        }
+        const double s = std::sqrt(std::clamp(fan > 0 ? left / fan : 0.5, 0.0, 1.0));
+        const auto a = static_cast<float>(1 - s), b = static_cast<float>(s * (1 - v));
+        return sample_at(static_cast<std::uint32_t>(i), t,
+                         p[0] * a + p[k - 1] * b + p[k] * (1 - a - b));
+      }
+    }
+    return sample_at(static_cast<std::uint32_t>(i), triangles(i)[0],
+                     polygon(i, triangles(i)[0]).corners[0]);
+  }
+
+ private:
+  [[nodiscard]] SurfaceSample sample_at(std::uint32_t place, std::uint32_t t, const V2f& p) const {
+    const auto weights = barycentric(&corners_[3 * t], p / static_cast<float>(size_));
+    SurfaceSample sample;
+    sample.normal = area_vector(mesh_, t).normalized();
+    sample.back = two_sided_[t];
+    sample.place[0] = place;
+    sample.weight[0] = 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      sample.position += mesh_.positions[mesh_.indices[3 * t + k]] * weights[k];
+    return sample;
+  }
+
+  const Mesh& mesh_;
+  std::span<const V2f> corners_;
+  const std::vector<bool>& two_sided_;
+  std::uint32_t size_, hash_;
+  TexelCover cover_;
+};
+
+/// The small part of the mesh that a texel shows: that of its first triangle.
+SmallParts parts_of_texels(const Mesh& mesh, const SampledTexels& texels, bool any_two_sided) {
+  const VertexGroups groups = group_vertices(mesh, any_two_sided);
+  SmallParts parts = small_parts(mesh, groups);
+  std::vector<std::uint32_t> of_texel(texels.size());
+  for (std::size_t i = 0; i < of_texel.size(); ++i)
+    of_texel[i] =
+        parts.of_place[groups.of_vertex[mesh.indices[3 * std::size_t{texels.triangles(i)[0]}]]];
+  parts.of_place = std::move(of_texel);
+  return parts;
+}
+
+}  // namespace
+
+TextureBake::TextureBake(const Scene& scene, const BakeOptions& options, TextureLayout layout)
+    : scene_(scene), options_(options) {
+  const std::size_t texels = std::size_t{options.texture_size} * options.texture_size;
+  texture_.size = options.texture_size;
+  texture_.layout = std::move(layout);
+  texture_.ao.resize(texels);
+  if (options.bent) texture_.bent.resize(texels, V3f(0));
+  known_.resize(texels);
+  covered_.resize(texels);
+  weight_.resize(texels);
+}
+
+bool TextureBake::add(std::uint32_t index, const Placements& placements, SampleTracer& tracer,
+                      BakeProgress& progress, BakeStatistics& statistics) {
+  const Mesh& mesh = scene_.meshes[index];
+  const std::vector<bool> two_sided = two_sided_triangles(scene_, mesh, options_.sides);
+  const std::uint32_t hash = hash_of(options_.seed, index);
+  std::vector<V2f> corners = texture_.layout.corners[index];
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
+    if (!has_area(mesh, t))
+      std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, V2f(0));
+  const SampledTexels texels(mesh, corners, two_sided, options_.texture_size, hash);
+  const bool any = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
+  ValueSums sums(parts_of_texels(mesh, texels, any), options_.sides);
+  SampleRounds rounds(texels, hash, placements, tracer, sums, progress);
+  // Neighbouring texels share no samples, so that a variance takes two of them.
+  if (!rounds.run(options_, 2, sample_counts(options_.rays))) return false;
+  sums.choose_sides(true);
+  const std::vector<PlaceValue> values = sums.values();
+  const std::vector<float> squares = sums.squared_errors();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::uint32_t texel = texels.texel(i);
+    covered_[texel] = true;
+    statistics.squared_errors += double{squares[i]};
+    if (!values[i].known) {
+      ++statistics.hidden_texels;
+      continue;
+    }
+    float part = 0;
+    for (const std::uint32_t t : texels.triangles(i)) part += texels.polygon(i, t).area();
+    texture_.ao[texel] += part * values[i].ao;
+    if (options_.bent) texture_.bent[texel] += values[i].bent * part;
+    weight_[texel] += part;
+    known_[texel] = true;
+  }
+  statistics.triangles += mesh.primitive_count();
+  statistics.texels += values.size();
+  return true;
+}
+
+BakedTexture TextureBake::finish() {
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (!known_[i]) continue;
+    texture_.ao[i] /= weight_[i];
+    if (options_.bent) texture_.bent[i].normalize();
+  }
+  const std::vector<std::uint32_t> nearest = nearest_valid(known_, texture_.size, options_.margin);
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (known_[i]) continue;
+    // Nothing is seen from texels in a closed part; all others are empty.
+    texture_.ao[i] = nearest[i] != kNoTexel ? texture_.ao[nearest[i]] : covered_[i] ? 0.0f : 1.0f;
+    if (options_.bent && nearest[i] != kNoTexel) texture_.bent[i] = texture_.bent[nearest[i]];
+  }
+  const auto covered = std::count(covered_.begin(), covered_.end(), true);
+  texture_.coverage = static_cast<double>(covered) / static_cast<double>(covered_.size());
+  return std::move(texture_);
+}
+
+}  // namespace dapple

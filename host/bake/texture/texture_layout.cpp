@@ -1,0 +1,158 @@
+#include "bake/texture/texture_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "bake/texture/charts.hpp"
+#include "bake/texture/packing.hpp"
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+/// Part of a chart's mean width that is left free beside it, in texels kMinGap at least.
+constexpr double kGapShare = 0.05;
+constexpr std::uint32_t kMinGap = 2;
+
+/// Lengths in the world over lengths of a mesh, at its first placement.
+float scale_of(const Scene& scene, std::uint32_t mesh) {
+  for (const Instance& instance : scene.instances)
+    if (instance.mesh == mesh)
+      return static_cast<float>(std::cbrt(std::fabs(double{instance.to_world.determinant()})));
+  return 1;
+}
+
+/// Each texel of a size x size texture whose centre lies in a triangle, once for each triangle.
+template <class Visit>
+void visit_centres(const V2f* uv, std::uint32_t size, Visit visit) {
+  const auto scale = static_cast<float>(size);
+  const V2f a = uv[0] * scale, b = uv[1] * scale, c = uv[2] * scale;
+  const float turn = (b - a).cross(c - a) < 0 ? -1.0f : 1.0f;
+  const auto first = [](float x) { return static_cast<std::uint32_t>(std::max(0.0f, x - 0.5f)); };
+  const auto last = [&](float x) {
+    return static_cast<std::uint32_t>(std::clamp(x + 0.5f, 0.0f, scale - 1));
+  };
+  for (std::uint32_t y = first(std::min({a.y, b.y, c.y})); y <= last(std::max({a.y, b.y, c.y}));
+       ++y) {
+    for (std::uint32_t x = first(std::min({a.x, b.x, c.x})); x <= last(std::max({a.x, b.x, c.x}));
+         ++x) {
+      const V2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const bool inside = turn * (b - a).cross(p - a) > 0 && turn * (c - b).cross(p - b) > 0 &&
+                          turn * (a - c).cross(p - c) > 0;
+      if (inside) visit(x, y);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<bool> textured_meshes(const Scene& scene) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
+  std::vector<bool> textured;
+  for (const Mesh& mesh : scene.meshes) {
+    bool is_new = !mesh.has_strands();
+    for (const VertexSource& source : mesh.sources)
+      if (!mesh.has_strands())
+        is_new = seen.insert({source.mesh, source.primitive}).second && is_new;
+    textured.push_back(is_new);
+  }
+  return textured;
+}
+
+TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
+  struct Owner {
+    std::uint32_t mesh;
+    float scale;
+  };
+  std::vector<Chart> charts;
+  std::vector<Owner> owners;
+  std::vector<V2f> sizes;
+  const std::vector<bool> textured = textured_meshes(scene);
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+    if (!textured[m]) continue;
+    const float scale = scale_of(scene, m);
+    for (Chart& chart : make_charts(scene.meshes[m])) {
+      sizes.push_back(chart.size * scale);
+      owners.push_back({m, scale});
+      charts.push_back(std::move(chart));
+    }
+  }
+  const std::uint32_t size = options.texture_size;
+  const double width =
+      size / std::sqrt(static_cast<double>(std::max<std::size_t>(1, sizes.size())));
+  const std::uint32_t gap =
+      std::clamp(static_cast<std::uint32_t>(kGapShare * width), kMinGap,
+                 std::max(kMinGap, static_cast<std::uint32_t>(options.margin)));
+  const Packing packing = pack(sizes, size, gap);
+  if (packing.rects.size() != sizes.size())
+    throw Error(ErrorKind::usage,
+                fmt::format("--size is {}; the {} charts of this scene need at least {}", size,
+                            sizes.size(), smallest_size(sizes.size(), kMinGap)));
+  TextureLayout layout;
+  layout.charts = charts.size();
+  layout.corners.resize(scene.meshes.size());
+  layout.chart_of.resize(scene.meshes.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (!textured[m]) continue;
+    layout.corners[m].resize(scene.meshes[m].indices.size());
+    layout.chart_of[m].resize(scene.meshes[m].primitive_count(), TextureLayout::kNoChart);
+  }
+  for (std::uint32_t c = 0; c < charts.size(); ++c) {
+    const auto [mesh, scale] = owners[c];
+    const V2f first(static_cast<float>(packing.rects[c].x) + 0.5f,
+                    static_cast<float>(packing.rects[c].y) + 0.5f);
+    for (std::size_t t = 0; t < charts[c].triangles.size(); ++t) {
+      const std::uint32_t triangle = charts[c].triangles[t];
+      layout.chart_of[mesh][triangle] = c;
+      for (std::size_t k = 0; k < 3; ++k)
+        layout.corners[mesh][3 * triangle + k] =
+            (first + charts[c].corners[3 * t + k] * (scale * packing.scale)) /
+            static_cast<float>(size);
+    }
+  }
+  return layout;
+}
+
+TextureLayout given_layout(const Scene& scene, const BakeOptions& options) {
+  const std::vector<bool> textured = textured_meshes(scene);
+  TextureLayout layout;
+  layout.corners.resize(scene.meshes.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    if (textured[m])
+      for (const std::uint32_t vertex : scene.meshes[m].indices)
+        layout.corners[m].push_back(options.texture_uvs.at(m).at(vertex));
+  return layout;
+}
+
+double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
+                  std::uint32_t size) {
+  std::vector<std::uint8_t> count(std::size_t{size} * size);
+  std::size_t covered = 0, several = 0;
+  const std::vector<bool> textured = textured_meshes(scene);
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    if (!textured[m]) continue;
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+      V2f uv[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        uv[k] = uvs.at(m).at(mesh.indices[3 * t + k]);
+        const bool inside = uv[k].x >= 0 && uv[k].x <= 1 && uv[k].y >= 0 && uv[k].y <= 1;
+        if (!inside) return std::numeric_limits<double>::infinity();
+      }
+      visit_centres(uv, size, [&](std::uint32_t x, std::uint32_t y) {
+        std::uint8_t& of_texel = count[std::size_t{y} * size + x];
+        if (of_texel == 0) ++covered;
+        if (of_texel == 1) ++several;
+        of_texel = static_cast<std::uint8_t>(std::min(2, of_texel + 1));
+      });
+    }
+  }
+  return covered > 0 ? static_cast<double>(several) / static_cast<double>(covered) : 0.0;
+}
+
+}  // namespace dapple

@@ -1,0 +1,23 @@
+// Where the triangles of a scene lie in one texture. In: meshes, or texture coordinates of a file.
+// Out: texture coordinates of the corners of all triangles.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dapple/bake.hpp"
+
+namespace dapple {
+
+/// Whether each mesh is in the texture: no strands, and of meshes that are one mesh of a file in
+/// several poses only the first one.
+std::vector<bool> textured_meshes(const Scene& scene);
+
+/// Makes a layout of its own for all textured meshes: make_charts() of each, packed by size. Throws
+/// Error usage, with the size that it takes, if they don't fit in options.texture_size.
+TextureLayout make_layout(const Scene& scene, const BakeOptions& options);
+
+/// The layout that options.texture_uvs give.
+TextureLayout given_layout(const Scene& scene, const BakeOptions& options);
+
+}  // namespace dapple

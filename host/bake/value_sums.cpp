@@ -1,0 +1,206 @@
+#include "bake/value_sums.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+
+namespace dapple {
+namespace {
+
+/// Up to this AO a place sees nothing: it lies inside closed geometry. Single samples are not
+/// judged: all of a few rays may be blocked by chance.
+constexpr float kHidden = 1e-3f;
+
+/// Samples after which a place is known to see nothing.
+constexpr float kSamplesOfHidden = 8;
+
+/// A side is surely the brighter one if the difference is so many standard errors.
+constexpr float kSure = 1.75f;
+
+/// Places that one thread takes at a time.
+constexpr std::size_t kPlacesAtOnce = 1u << 14;
+
+/// The variance of samples is pooled over values in this many intervals of AO.
+constexpr int kIntervals = 16;
+
+/// Degrees of freedom that the pooled variance counts beside a place's own.
+constexpr float kPooledFreedom = 4;
+
+}  // namespace
+
+void ValueSums::Side::add(float w, const SideValue& value) {
+  weight += w;
+  weight_squares += w * w;
+  ao += w * value.ao;
+  ao_squares += w * value.ao * value.ao;
+  bent += value.bent * w;
+}
+
+float ValueSums::Side::count() const {
+  return weight_squares > 0 ? weight * weight / weight_squares : 0;
+}
+
+float ValueSums::Side::squared_deviations() const {
+  return weight > 0 ? std::max(0.0f, ao_squares / weight - mean() * mean()) * count() : 0.0f;
+}
+
+/// The variance of samples as a function of the AO of the value that they belong to: that of a few
+/// samples of one place says little.
+class ValueSums::PooledVariance {
+ public:
+  void add(const Side& side) {
+    const float freedom = side.count() - 1;
+    if (freedom < 0.5f) return;
+    for (Pool* pool : {&of_interval_[interval(side.mean())], &all_}) {
+      pool->squares += double{side.squared_deviations()};
+      pool->freedom += double{freedom};
+    }
+  }
+
+  PooledVariance& operator+=(const PooledVariance& other) {
+    for (std::size_t i = 0; i < of_interval_.size(); ++i) of_interval_[i] += other.of_interval_[i];
+    all_ += other.all_;
+    return *this;
+  }
+
+  /// Of the samples of `side`, its own deviations included.
+  [[nodiscard]] float of(const Side& side) const {
+    const float own = std::max(0.0f, side.count() - 1);
+    return (kPooledFreedom * pooled(side.mean()) + side.squared_deviations()) /
+           (kPooledFreedom + own);
+  }
+
+ private:
+  struct Pool {
+    double squares = 0, freedom = 0;
+    void operator+=(const Pool& other) {
+      squares += other.squares;
+      freedom += other.freedom;
+    }
+  };
+
+  static std::size_t interval(float ao) {
+    return static_cast<std::size_t>(
+        std::clamp(static_cast<int>(ao * kIntervals), 0, kIntervals - 1));
+  }
+
+  [[nodiscard]] float pooled(float ao) const {
+    // Without any repeated sample: of rays that each find everything or nothing.
+    const double all =
+        all_.freedom > 0 ? all_.squares / all_.freedom : double{ao * (1 - ao)} / kRaysPerSample;
+    const Pool& pool = of_interval_[interval(ao)];
+    return static_cast<float>((pool.squares + double{kPooledFreedom} * all) /
+                              (pool.freedom + double{kPooledFreedom}));
+  }
+
+  std::array<Pool, kIntervals> of_interval_;
+  Pool all_;
+};
+
+ValueSums::ValueSums(SmallParts parts, BakeSides sides)
+    : sides_(sides),
+      parts_(std::move(parts)),
+      of_place_(parts_.of_place.size()),
+      of_part_(parts_.count),
+      chosen_(of_place_.size(), Chosen::both) {}
+
+void ValueSums::add(const SurfaceSample& sample, const SideValue& front, const SideValue& back) {
+  const auto add_to = [&](BothSides& place, float weight) {
+    if (sample.front) place.front.add(weight, front);
+    if (sample.back) place.back.add(weight, back);
+  };
+  for (std::size_t k = 0; k < 3; ++k)
+    if (sample.weight[k] > 0) add_to(of_place_[sample.place[k]], sample.weight[k]);
+  const std::uint32_t part = parts_.of_place[sample.place[0]];
+  if (part != SmallParts::kLarge)
+    add_to(of_part_[part], sample.weight[0] + sample.weight[1] + sample.weight[2]);
+}
+
+// In parts of fixed size, so that the sums do not depend on the number of threads.
+ValueSums::PooledVariance ValueSums::pooled_variance() const {
+  const auto add_range = [&](const tbb::blocked_range<std::size_t>& range, PooledVariance sum) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      sum.add(of_place_[i].front);
+      sum.add(of_place_[i].back);
+    }
+    return sum;
+  };
+  return tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce), PooledVariance(),
+      add_range, [](PooledVariance a, const PooledVariance& b) { return a += b; });
+}
+
+// By sums over a small part: means of single vertices are noisy, and the larger of two is biased.
+void ValueSums::choose_sides(bool surely) {
+  if (sides_ == BakeSides::mean) return;
+  const PooledVariance variance = pooled_variance();
+  const auto choose = [&](const BothSides& values) {
+    if (values.back.weight <= 0) return Chosen::front;
+    const float difference = values.back.mean() - values.front.mean();
+    const float square = variance.of(values.front) / values.front.count() +
+                         variance.of(values.back) / values.back.count();
+    if (surely && difference * difference < kSure * kSure * square) return Chosen::both;
+    return difference > 0 ? Chosen::back : Chosen::front;
+  };
+  std::vector<Chosen> of_part(of_part_.size());
+  tbb::parallel_for(std::size_t{0}, of_part.size(),
+                    [&](std::size_t i) { of_part[i] = choose(of_part_[i]); });
+  tbb::parallel_for(std::size_t{0}, chosen_.size(), [&](std::size_t i) {
+    chosen_[i] = parts_.of_place[i] == SmallParts::kLarge ? choose(of_place_[i])
+                                                          : of_part[parts_.of_place[i]];
+  });
+}
+
+std::vector<float> ValueSums::squared_errors() const {
+  const PooledVariance variance = pooled_variance();
+  std::vector<float> squares(of_place_.size());
+  tbb::parallel_for(std::size_t{0}, squares.size(), [&](std::size_t i) {
+    const BothSides& place = of_place_[i];
+    for (const bool back : {false, true}) {
+      const Side& side = back ? place.back : place.front;
+      if (counts(static_cast<std::uint32_t>(i), back) && side.weight > 0)
+        squares[i] = std::max(squares[i], variance.of(side) / side.count());
+    }
+    if (sides_ == BakeSides::mean && place.back.weight > 0) squares[i] *= 0.5f;  // of two of them
+  });
+  return squares;
+}
+
+std::vector<float> ValueSums::missing_samples(float target) const {
+  std::vector<float> factors = squared_errors();
+  tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t i) {
+    const BothSides& place = of_place_[i];
+    const float samples = place.front.count() + place.back.count();
+    const bool may_be_hidden =
+        samples > 0 && std::max(place.front.mean(), place.back.mean()) <= kHidden;
+    factors[i] = std::max(
+        {1.0f, factors[i] / (target * target), may_be_hidden ? kSamplesOfHidden / samples : 1.0f});
+  });
+  return factors;
+}
+
+std::vector<PlaceValue> ValueSums::values() const {
+  std::vector<PlaceValue> values(of_place_.size());
+  for (std::uint32_t i = 0; i < values.size(); ++i) {
+    const BothSides& place = of_place_[i];
+    if (place.front.weight <= 0) {  // without a triangle there is nothing to occlude
+      values[i] = {1, V3f(0, 0, 0), true};
+      continue;
+    }
+    if (std::max(place.front.mean(), place.back.mean()) <= kHidden) continue;
+    // The larger of two means that differ by noise would be too large.
+    const bool both = counts(i, false) && counts(i, true) && place.back.weight > 0;
+    const bool back = both ? place.back.mean() > place.front.mean() : counts(i, true);
+    const Side& chosen = back ? place.back : place.front;
+    const float ao = both ? 0.5f * (place.front.mean() + place.back.mean()) : chosen.mean();
+    const V3f bent =
+        both && sides_ == BakeSides::mean ? place.front.bent + place.back.bent : chosen.bent;
+    values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true};
+  }
+  return values;
+}
+
+}  // namespace dapple

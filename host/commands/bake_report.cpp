@@ -1,0 +1,72 @@
+#include "commands/bake_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "files/output_file.hpp"
+
+namespace dapple {
+namespace {
+
+/// Root mean square of the standard errors of the values at vertices or texels.
+double standard_error(const BakeStatistics& s) {
+  const std::size_t values = s.vertices + s.texels;
+  return values > 0 ? std::sqrt(s.squared_errors / static_cast<double>(values)) : 0.0;
+}
+
+}  // namespace
+
+std::string texture_note(const BakedTexture& texture) {
+  const std::string charts = texture.layout.charts > 0
+                                 ? fmt::format("{} charts cover ", texture.layout.charts)
+                                 : std::string("triangles cover ");
+  return fmt::format("{}{:.0f} % of the {} x {} texels", charts, 100 * texture.coverage,
+                     texture.size, texture.size);
+}
+
+void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds,
+                      const std::string& path) {
+  const nlohmann::ordered_json json = {{"seconds",
+                                        {{"load", seconds.load},
+                                         {"build", s.seconds.build},
+                                         {"upload", s.seconds.upload},
+                                         {"trace", s.seconds.trace},
+                                         {"write", seconds.write},
+                                         {"total", seconds.total}}},
+                                       {"triangles", s.triangles},
+                                       {"vertices", s.vertices},
+                                       {"texels", s.texels},
+                                       {"points", s.points},
+                                       {"rays", s.rays},
+                                       {"standard_error", standard_error(s)},
+                                       {"hidden_vertices", s.hidden_vertices},
+                                       {"hidden_texels", s.hidden_texels},
+                                       {"device", s.device},
+                                       {"notes", s.notes}};
+  write_whole_file(path, json.dump(2) + "\n");
+}
+
+void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& output) {
+  for (const std::string& note : s.notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print(
+      "{} triangles, {}, {} rays from {} points ({:.1f} million rays per second)\n"
+      "load {:.2f}, build {:.2f}, trace {:.2f}, write {:.2f}, total {:.2f} s\n",
+      s.triangles,
+      s.texels > 0 ? fmt::format("{} texels", s.texels) : fmt::format("{} vertices", s.vertices),
+      s.rays, s.points,
+      s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
+      seconds.load, s.seconds.build, s.seconds.trace, seconds.write, seconds.total);
+  if (s.vertices + s.texels > 0)
+    fmt::print("standard error of an AO value {:.3f} (root mean square)\n", standard_error(s));
+  if (s.hidden_vertices > 0)
+    fmt::print("{} vertices lie inside closed geometry and have their neighbours' values\n",
+               s.hidden_vertices);
+  if (s.hidden_texels > 0)
+    fmt::print("{} texels lie inside closed geometry and have the nearest value\n",
+               s.hidden_texels);
+  fmt::print("wrote {}\n", output);
+}
+
+}  // namespace dapple

@@ -1,0 +1,21 @@
+// What `dapple bake` says about itself: a summary on the terminal, and statistics as JSON.
+#pragma once
+
+#include <string>
+
+#include "dapple/bake.hpp"
+
+namespace dapple {
+
+struct BakeSeconds {
+  double load = 0, write = 0, total = 0;
+};
+
+/// A line on a texture's charts and coverage.
+std::string texture_note(const BakedTexture& texture);
+
+void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& path);
+
+void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& output);
+
+}  // namespace dapple

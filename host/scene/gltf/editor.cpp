@@ -1,0 +1,175 @@
+#include "scene/gltf/editor.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "files/output_file.hpp"
+#include "scene/glb_bytes.hpp"
+#include "scene/gltf/uri.hpp"
+#include "scene/message.hpp"
+
+namespace dapple::gltf {
+namespace {
+
+namespace fs = std::filesystem;
+
+void align(std::string& bytes, std::size_t multiple) {
+  bytes.resize((bytes.size() + multiple - 1) / multiple * multiple, '\0');
+}
+
+template <class Range>
+void append(std::string& bytes, const Range& range) {
+  bytes.append(reinterpret_cast<const char*>(range.data()), range.size());
+}
+
+}  // namespace
+
+Editor::Editor(const SourceFile& source, std::string out)
+    : source_(source), out_(std::move(out)), json_(source.content->json) {
+  if (is_glb_out()) {
+    if (has_binary() && has_no_buffer_files())
+      start_from_binary();
+    else
+      embed_buffers();
+    embed_images();
+  } else if (has_binary()) {
+    start_from_binary();
+    json_["buffers"][0]["uri"] = percent_encode(side_name());
+  } else {
+    buffer_ = push("buffers", {{"uri", percent_encode(side_name())}});
+  }
+}
+
+std::size_t Editor::push(const char* array, Json entry) {
+  json_[array].push_back(std::move(entry));
+  return json_[array].size() - 1;
+}
+
+std::size_t Editor::add_view(const std::string& bytes, std::size_t stride, int target) {
+  align(bytes_, 4);
+  Json view = {{"buffer", buffer_}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}};
+  if (stride != 0) view["byteStride"] = stride;
+  if (target != 0) view["target"] = target;
+  append(bytes_, bytes);
+  return push("bufferViews", std::move(view));
+}
+
+std::size_t Editor::add_image(const std::string& png, const std::string& suffix) {
+  if (is_glb_out())
+    return push("images", {{"bufferView", add_view(png)}, {"mimeType", "image/png"}});
+  const fs::path name = fs::path(out_).stem().string() + suffix + ".png";
+  new_images_.emplace_back((fs::path(out_).parent_path() / name).string(), png);
+  return push("images", {{"uri", percent_encode(name.string())}});
+}
+
+void Editor::write() {
+  json_["buffers"][buffer_]["byteLength"] = bytes_.size();
+  const std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (is_glb_out()) {
+    align(bytes_, 4);
+    const std::string_view binary = bytes_;
+    write_glb_bytes(out_, text, {&binary, 1});
+    return;
+  }
+  copy_side_files();
+  for (const auto& [path, bytes] : new_images_) write_whole_file(path, bytes);
+  write_whole_file((fs::path(out_).parent_path() / side_name()).string(), bytes_);
+  write_whole_file(out_, text + "\n");
+}
+
+std::vector<std::string> Editor::side_files_written() const {
+  if (is_glb_out()) return {};
+  std::vector<std::string> files{(fs::path(out_).parent_path() / side_name()).string()};
+  for (const auto& [from, to] : side_files()) files.push_back(to);
+  return files;
+}
+
+bool Editor::is_glb_out() const { return fs::path(out_).extension() != ".gltf"; }
+
+// Whether the first buffer is the GLB's own, and none is in a file.
+bool Editor::has_no_buffer_files() const {
+  const auto is_file = [](const Json& buffer) { return buffer.contains("uri"); };
+  return json_.contains("buffers") && !json_["buffers"].empty() &&
+         std::none_of(json_["buffers"].begin(), json_["buffers"].end(), is_file);
+}
+
+std::string Editor::side_name() const {
+  return fs::path(out_).stem().string() + (has_binary() ? ".bin" : "_baked.bin");
+}
+
+void Editor::start_from_binary() {
+  append(bytes_, *content().container.binary);
+  buffer_ = 0;
+}
+
+// All buffers become the GLB's own.
+void Editor::embed_buffers() {
+  std::vector<std::size_t> begin;
+  for (const auto& buffer : content().document.buffers) {
+    align(bytes_, 8);
+    begin.push_back(bytes_.size());
+    append(bytes_, buffer);
+  }
+  if (json_.contains("bufferViews")) {
+    for (Json& view : json_["bufferViews"]) {
+      if (view.contains("extensions") && !view["extensions"].empty())
+        fail(content().document.file,
+             "has bufferViews with extensions, which cannot be embedded; write a .gltf file");
+      view["byteOffset"] =
+          begin.at(view["buffer"].get<std::size_t>()) + view.value("byteOffset", std::size_t{0});
+      view["buffer"] = 0;
+    }
+  }
+  json_["buffers"] = Json::array({Json::object()});
+  buffer_ = 0;
+}
+
+// Images in files of their own become bufferViews.
+void Editor::embed_images() {
+  if (!json_.contains("images")) return;
+  for (Json& image : json_["images"]) {
+    if (!image.contains("uri")) continue;
+    const auto uri = image["uri"].get<std::string>();
+    if (is_data_uri(uri)) continue;
+    const fs::path path = resolve_uri(content().document.base, uri, "image " + uri);
+    if (!fs::exists(path)) continue;  // dapple may not need it: the reference stays as it is
+    const Bytes file = read_file(path, "image " + uri);
+    image.erase("uri");
+    if (!image.contains("mimeType"))
+      image["mimeType"] = file.size() > 1 && file[0] == 0xff ? "image/jpeg" : "image/png";
+    image["bufferView"] = add_view({file.begin(), file.end()});
+  }
+}
+
+// Files that the document names, to the output's folder.
+void Editor::copy_side_files() const {
+  for (const auto& [from, to] : side_files()) {
+    const Bytes bytes = read_file(from, from);
+    if (!fs::path(to).parent_path().empty()) fs::create_directories(fs::path(to).parent_path());
+    write_whole_file(to,
+                     std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  }
+}
+
+// From where to where; none that are in place.
+std::vector<std::pair<std::string, std::string>> Editor::side_files() const {
+  const fs::path folder = fs::path(out_).parent_path();
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const char* array : {"buffers", "images"}) {
+    const Json& source = content().json;
+    if (!source.contains(array)) continue;
+    for (const Json& entry : source[array]) {
+      if (!entry.contains("uri")) continue;
+      const auto uri = entry["uri"].get<std::string>();
+      if (is_data_uri(uri)) continue;
+      const fs::path from = resolve_uri(content().document.base, uri, uri);
+      const fs::path to = folder / percent_decode(uri);
+      std::error_code ignored;
+      if (fs::exists(from) && !fs::equivalent(from, to, ignored))
+        files.emplace_back(from.string(), to.string());
+    }
+  }
+  return files;
+}
+
+}  // namespace dapple::gltf

@@ -1,0 +1,57 @@
+// Edits a copy of a glTF file: its JSON is changed in place, and new bytes come at the end of one
+// of its buffers, so that all else stays as it is, unknown extensions included.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/gltf/source_content.hpp"
+
+namespace dapple::gltf {
+
+class Editor {
+ public:
+  /// `out`: the file to write, .glb or .gltf by its name. A .glb gets the buffers and images that
+  /// the file keeps beside it.
+  Editor(const SourceFile& source, std::string out);
+
+  [[nodiscard]] Json& json() { return json_; }
+  [[nodiscard]] const SourceFile::Content& content() const { return *source_.content; }
+
+  /// Adds an entry to an array of the document. Returns its index.
+  std::size_t push(const char* array, Json entry);
+  /// Adds a bufferView with these bytes. `stride` and `target` 0: none. Returns its index.
+  std::size_t add_view(const std::string& bytes, std::size_t stride = 0, int target = 0);
+  /// Adds an image: in the buffer of a .glb, in the file NAME`suffix`.png beside a .gltf.
+  std::size_t add_image(const std::string& png, const std::string& suffix);
+
+  /// Writes `out`. Data of a .gltf go to a file beside it, and buffers and images that the file
+  /// names are copied there unless they are there already.
+  void write();
+
+  /// Other files that write() would write, without images of add_image().
+  [[nodiscard]] std::vector<std::string> side_files_written() const;
+
+ private:
+  [[nodiscard]] bool is_glb_out() const;
+  [[nodiscard]] bool has_binary() const { return content().container.binary.has_value(); }
+  [[nodiscard]] bool has_no_buffer_files() const;
+  [[nodiscard]] std::string side_name() const;
+  void start_from_binary();
+  void embed_buffers();
+  void embed_images();
+  void copy_side_files() const;
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> side_files() const;
+
+  const SourceFile& source_;
+  std::string out_;
+  Json json_;
+  std::string bytes_;
+  std::size_t buffer_ = 0;
+  std::vector<std::pair<std::string, std::string>> new_images_;  ///< path, bytes
+};
+
+inline constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+
+}  // namespace dapple::gltf

@@ -1,0 +1,26 @@
+// What a SourceFile holds, for the writers beside it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "scene/gltf/container.hpp"
+#include "scene/gltf/document.hpp"
+#include "scene/gltf/source_file.hpp"
+
+namespace dapple::gltf {
+
+using Json = nlohmann::ordered_json;
+
+struct SourceFile::Content {
+  Bytes bytes;
+  Container container;
+  Document document;
+  Json json;
+
+  [[nodiscard]] const tinygltf::Primitive& primitive(std::uint32_t mesh,
+                                                     std::uint32_t index) const {
+    return document.model.meshes[mesh].primitives[index];
+  }
+};
+
+}  // namespace dapple::gltf

@@ -1,0 +1,63 @@
+#include "scene/gltf/source_file.hpp"
+
+#include <utility>
+
+#include "scene/gltf/accessor.hpp"
+#include "scene/gltf/source_content.hpp"
+#include "scene/gltf/vertices.hpp"
+#include "scene/message.hpp"
+
+namespace dapple::gltf {
+
+SourceFile::SourceFile(const std::string& path, bool allow_outside)
+    : content(new Content{read_file(path, path), {}, load_document(path, allow_outside), {}}) {
+  content->container = split_container(content->bytes, path);
+  content->json = Json::parse(content->container.json);
+}
+SourceFile::~SourceFile() { delete content; }
+SourceFile::SourceFile(SourceFile&& other) noexcept
+    : content(std::exchange(other.content, nullptr)) {}
+
+std::size_t SourceFile::vertex_count(std::uint32_t mesh, std::uint32_t primitive) const {
+  const int positions = attribute(content->primitive(mesh, primitive), "POSITION");
+  return content->document.model.accessors[static_cast<std::size_t>(positions)].count;
+}
+
+std::uint64_t SourceFile::vertex_key(std::uint32_t mesh, std::uint32_t primitive,
+                                     const std::string& name) const {
+  const auto& p = content->primitive(mesh, primitive);
+  const auto positions = static_cast<std::uint64_t>(attribute(p, "POSITION"));
+  return positions << 32 | static_cast<std::uint32_t>(attribute(p, name) + 1);
+}
+
+PrimitiveColors SourceFile::colors(std::uint32_t mesh, std::uint32_t primitive) const {
+  const int accessor = attribute(content->primitive(mesh, primitive), "COLOR_0");
+  if (accessor < 0) return {};
+  const AccessorReader reader(content->document, accessor);
+  PrimitiveColors colors{static_cast<std::uint32_t>(reader.components()), {}};
+  colors.values.resize(4 * reader.count(), 1.0f);
+  for (std::size_t i = 0; i < reader.count(); ++i)
+    for (std::uint32_t c = 0; c < colors.components; ++c)
+      colors.values[4 * i + c] = reader.normalized(i, c);
+  return colors;
+}
+
+std::vector<Imath::V2f> SourceFile::uvs(std::uint32_t mesh, std::uint32_t primitive,
+                                        std::uint32_t set) const {
+  const int accessor =
+      attribute(content->primitive(mesh, primitive), "TEXCOORD_" + std::to_string(set));
+  if (accessor < 0) return {};
+  const AccessorReader reader(content->document, accessor);
+  std::vector<Imath::V2f> uvs(reader.count());
+  for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = reader.vec2(i);
+  return uvs;
+}
+
+std::uint32_t SourceFile::uv_sets(std::uint32_t mesh, std::uint32_t primitive) const {
+  std::uint32_t sets = 0;
+  while (attribute(content->primitive(mesh, primitive), "TEXCOORD_" + std::to_string(sets)) >= 0)
+    ++sets;
+  return sets;
+}
+
+}  // namespace dapple::gltf

@@ -1,0 +1,41 @@
+// A glTF file that has been read, with what the writers of baked files need of it.
+#pragma once
+
+#include <Imath/ImathVec.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace dapple::gltf {
+
+/// The file's COLOR_0 of a primitive, four components for each vertex, missing ones 1; empty if it
+/// has none.
+struct PrimitiveColors {
+  std::uint32_t components = 0;  ///< 3 or 4; 0: none
+  std::vector<float> values;     ///< RGBA
+};
+
+/// A glTF file that has been read, with what its writer needs. Throws Error input.
+struct SourceFile {
+  explicit SourceFile(const std::string& path, bool allow_outside = false);
+  ~SourceFile();
+  SourceFile(SourceFile&&) noexcept;
+
+  /// Vertices of a primitive: the count of its POSITION.
+  [[nodiscard]] std::size_t vertex_count(std::uint32_t mesh, std::uint32_t primitive) const;
+  /// Equal for primitives that share their vertices and their attribute `name`.
+  [[nodiscard]] std::uint64_t vertex_key(std::uint32_t mesh, std::uint32_t primitive,
+                                         const std::string& name) const;
+  [[nodiscard]] PrimitiveColors colors(std::uint32_t mesh, std::uint32_t primitive) const;
+  /// TEXCOORD_`set` of a primitive, of all its vertices; empty if it has none.
+  [[nodiscard]] std::vector<Imath::V2f> uvs(std::uint32_t mesh, std::uint32_t primitive,
+                                            std::uint32_t set) const;
+  /// The number of a primitive's TEXCOORD_n attributes.
+  [[nodiscard]] std::uint32_t uv_sets(std::uint32_t mesh, std::uint32_t primitive) const;
+
+  struct Content;
+  Content* content;
+};
+
+}  // namespace dapple::gltf

@@ -1,0 +1,180 @@
+// Layouts of textures: charts, packing, parts of triangles in texels, margins.
+#include "bake/texture/texture_layout.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "bake/texture/charts.hpp"
+#include "bake/texture/dilation.hpp"
+#include "bake/texture/packing.hpp"
+#include "bake/texture/texel_cover.hpp"
+#include "dapple/error.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+float area_of(const V2f& a, const V2f& b, const V2f& c) { return 0.5f * (b - a).cross(c - a); }
+
+TEST(Charts, ACubeHasSixSquaresAndEachTriangleIsInOne) {
+  const Scene scene = make_procedural("scene:cube?divisions=3");
+  const Mesh& mesh = scene.meshes.at(0);
+  const std::vector<Chart> charts = make_charts(mesh);
+  EXPECT_EQ(charts.size(), 6u);
+  std::set<std::uint32_t> seen;
+  for (const Chart& chart : charts) {
+    EXPECT_NEAR(chart.size.x, chart.size.y, 1e-5f * chart.size.x);
+    for (std::size_t t = 0; t < chart.triangles.size(); ++t) {
+      EXPECT_TRUE(seen.insert(chart.triangles[t]).second);
+      const std::uint32_t* corner = &mesh.indices[3 * std::size_t{chart.triangles[t]}];
+      const V3f a = mesh.positions[corner[0]], b = mesh.positions[corner[1]],
+                c = mesh.positions[corner[2]];
+      const float area = 0.5f * (b - a).cross(c - a).length();
+      EXPECT_NEAR(area_of(chart.corners[3 * t], chart.corners[3 * t + 1], chart.corners[3 * t + 2]),
+                  area, 1e-5f * area)
+          << "flat charts keep areas and orientations";
+    }
+  }
+  EXPECT_EQ(seen.size(), mesh.primitive_count());
+}
+
+TEST(Charts, AStripThatWindsOverItselfIsDividedIntoItsTriangles) {
+  // A helical ramp of two turns, nearly level: seen from above it covers itself.
+  Mesh mesh;
+  constexpr std::uint32_t kSteps = 64;
+  for (std::uint32_t i = 0; i <= kSteps; ++i) {
+    const double angle = 4 * kPi * i / kSteps;
+    for (const double radius : {1.0, 2.0})
+      mesh.positions.emplace_back(static_cast<float>(radius * std::cos(angle)),
+                                  static_cast<float>(0.01 * i),
+                                  static_cast<float>(radius * std::sin(angle)));
+    if (i == kSteps) break;
+    const std::uint32_t v = 2 * i;
+    mesh.indices.insert(mesh.indices.end(), {v, v + 2, v + 1, v + 1, v + 2, v + 3});
+  }
+  mesh.materials.resize(mesh.indices.size() / 3);
+  EXPECT_EQ(make_charts(mesh).size(), mesh.primitive_count());
+}
+
+TEST(Packing, RectanglesStayApartAndInsideTheTexture) {
+  std::vector<V2f> sizes;
+  for (int i = 0; i < 200; ++i)
+    sizes.emplace_back(1.0f + 0.37f * static_cast<float>(i % 7),
+                       0.2f + 0.1f * static_cast<float>(i % 9));
+  constexpr std::uint32_t kSize = 128, kGap = 2;
+  const Packing packing = pack(sizes, kSize, kGap);
+  ASSERT_EQ(packing.rects.size(), sizes.size());
+  std::vector<int> owner(kSize * kSize, -1);
+  for (int i = 0; i < 200; ++i) {
+    const TexelRect& rect = packing.rects[static_cast<std::size_t>(i)];
+    EXPECT_GE(static_cast<float>(rect.width - 1),
+              sizes[static_cast<std::size_t>(i)].x * packing.scale);
+    ASSERT_LE(rect.x + rect.width, kSize);
+    ASSERT_LE(rect.y + rect.height, kSize);
+    for (std::uint32_t y = rect.y; y < std::min(kSize, rect.y + rect.height + kGap); ++y) {
+      for (std::uint32_t x = rect.x; x < std::min(kSize, rect.x + rect.width + kGap); ++x) {
+        const bool in_gap = x >= rect.x + rect.width || y >= rect.y + rect.height;
+        int& of_texel = owner[y * kSize + x];
+        if (in_gap) continue;
+        EXPECT_EQ(of_texel, -1);
+        of_texel = i;
+      }
+    }
+  }
+}
+
+TEST(Packing, WhatDoesNotFitSaysSoAndTheSmallestSizeFits) {
+  const std::vector<V2f> sizes(1000, V2f(1, 1));
+  EXPECT_TRUE(pack(sizes, 64, 2).rects.empty());
+  const std::uint32_t size = smallest_size(1000, 2);
+  EXPECT_EQ(size, 128u);
+  EXPECT_EQ(pack(sizes, size, 2).rects.size(), 1000u);
+}
+
+TEST(TexelCover, PartsOfATriangleAddUpToItsArea) {
+  const V2f uv[3] = {{0.11f, 0.07f}, {0.93f, 0.31f}, {0.42f, 0.88f}};
+  constexpr std::uint32_t kSize = 16;
+  const TexelCover cover = cover_texels(uv, kSize);
+  double area = 0;
+  for (std::size_t i = 0; i < cover.texel.size(); ++i) {
+    EXPECT_EQ(cover.first[i + 1] - cover.first[i], 1u);
+    area += double{clip_to_texel(uv, kSize, cover.texel[i] % kSize, cover.texel[i] / kSize).area()};
+  }
+  EXPECT_NEAR(area, double{area_of(uv[0], uv[1], uv[2])} * kSize * kSize, 1e-3);
+}
+
+TEST(TexelCover, TrianglesWithoutAnAreaOrOutsideCoverNothing) {
+  const V2f line[3] = {{0.1f, 0.1f}, {0.5f, 0.5f}, {0.9f, 0.9f}};
+  const V2f outside[3] = {{1.5f, 0.1f}, {1.9f, 0.1f}, {1.5f, 0.6f}};
+  const V2f broken[3] = {{NAN, 0.1f}, {0.9f, 0.1f}, {0.5f, 0.6f}};
+  EXPECT_TRUE(cover_texels(line, 16).texel.empty());
+  EXPECT_TRUE(cover_texels(outside, 16).texel.empty());
+  EXPECT_TRUE(cover_texels(broken, 16).texel.empty());
+}
+
+TEST(Dilation, ATexelTakesTheNearestValidOneWithinTheMargin) {
+  constexpr std::uint32_t kSize = 32;
+  std::vector<bool> valid(kSize * kSize);
+  const std::uint32_t a = 10 * kSize + 10, b = 20 * kSize + 22;
+  valid[a] = valid[b] = true;
+  const std::vector<std::uint32_t> nearest = nearest_valid(valid, kSize, 5);
+  for (std::uint32_t y = 0; y < kSize; ++y) {
+    for (std::uint32_t x = 0; x < kSize; ++x) {
+      const auto away = [&](std::uint32_t of) {
+        return std::max(std::abs(static_cast<int>(x) - static_cast<int>(of % kSize)),
+                        std::abs(static_cast<int>(y) - static_cast<int>(of / kSize)));
+      };
+      const std::uint32_t expected = away(a) <= 5 ? a : away(b) <= 5 ? b : kNoTexel;
+      EXPECT_EQ(nearest[y * kSize + x], expected) << x << ", " << y;
+    }
+  }
+}
+
+TEST(TextureLayout, TooManyChartsForTheSizeAreAnErrorThatNamesTheSizeThatFits) {
+  const Scene scene = make_procedural("scene:cloud?leaves=2000");
+  BakeOptions options;
+  options.texture_size = 64;
+  try {
+    make_layout(scene, options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    const std::string text = error.what();
+    EXPECT_NE(text.find("--size"), std::string::npos);
+    EXPECT_NE(text.find("256"), std::string::npos) << text;
+  }
+  options.texture_size = 256;
+  EXPECT_EQ(make_layout(scene, options).charts, 2000u) << "a leaf is a chart";
+}
+
+TEST(TextureLayout, OverlapsAreFoundWithTheirShare) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.instances.resize(1);
+  Mesh mesh;
+  append_grid(mesh, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 1, 0);  // four vertices, two triangles
+  scene.meshes = {mesh};
+  const auto uvs_of = [&](float scale) {
+    std::vector<V2f> uvs;
+    for (const V3f& p : mesh.positions) uvs.emplace_back(scale * p.x, scale * p.z);
+    return std::vector<std::vector<V2f>>{uvs};
+  };
+  EXPECT_EQ(uv_overlap(scene, uvs_of(1), 64), 0);
+  EXPECT_TRUE(std::isinf(uv_overlap(scene, uvs_of(1.5f), 64)));
+  // A second mesh on half of the first one's texels.
+  Scene both = scene;
+  both.meshes.push_back(mesh);
+  both.instances.push_back({});
+  both.instances[1].mesh = 1;
+  std::vector<std::vector<V2f>> uvs = uvs_of(1);
+  uvs.push_back(uvs_of(1)[0]);
+  for (V2f& uv : uvs[1]) uv.x *= 0.5f;
+  EXPECT_NEAR(uv_overlap(both, uvs, 64), 0.5, 0.03);
+}
+
+}  // namespace
+}  // namespace dapple
