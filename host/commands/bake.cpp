@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "bake/preview.hpp"
 #include "commands/bake_report.hpp"
 #include "commands/baked_attributes.hpp"
 #include "commands/baked_texture.hpp"
@@ -14,13 +15,18 @@
 #include "commands/interruption.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
+#include "commands/unique_meshes.hpp"
 #include "dapple/error.hpp"
+#include "files/output_file.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Width and height of previews.
+constexpr int kPreviewSize = 1024;
 
 /// The file to bake. A procedural scene is written as a GLB file beside the output, and removed
 /// once it is read.
@@ -59,6 +65,7 @@ std::string bent_path(const std::string& output) { return beside(output, "_bent"
 std::vector<OutputPath> named_outputs(const BakeArguments& a, const BakeOptions& options) {
   std::vector<OutputPath> outputs{{"--output", a.output}};
   if (!a.stats_json.empty()) outputs.push_back({"--stats-json", a.stats_json});
+  if (!a.png.empty()) outputs.push_back({"--png", a.png});
   if (options.texture && options.bent) outputs.push_back({"--passes bent", bent_path(a.output)});
   check_outputs(outputs);
   const std::string extension = fs::path(a.output).extension().string();
@@ -96,6 +103,12 @@ void write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArg
   if (options.texture && options.bent) write_bent_exr(result.texture, bent_path(a.output));
 }
 
+void write_preview(const Scene& scene, const BakeResult& result, const std::string& path) {
+  const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0f) : scene.cameras.front();
+  write_whole_file(
+      path, encode_png(draw_preview(scene, result, camera, kPreviewSize, kPreviewSize), path));
+}
+
 /// Chooses the texture coordinates. Returns a line about them.
 std::string choose_layout(const gltf::SourceFile& file, const Scene& scene, const std::string& uv,
                           BakeOptions& options, std::uint32_t& set) {
@@ -117,13 +130,14 @@ void run_bake(const BakeArguments& a) {
   BakeSeconds seconds;
   ProgressBar progress(a.quiet);
   std::optional<SceneFile> input(std::in_place, a.scene, a.output);
-  const Scene scene = load_gltf(input->path(), a.scene_options);
+  Scene scene = load_gltf(input->path(), a.scene_options);
   check_outputs_spare(outputs, scene.files);
   std::vector<Scene> occluders;
   for (const std::string& path : a.occluders)
     occluders.push_back(load_scene(path, a.scene_options));
-  const gltf::SourceFile file(input->path(), a.scene_options.allow_outside);
+  gltf::SourceFile file(input->path(), a.scene_options.allow_outside);
   input.reset();  // all of it is in memory
+  if (a.instances == "unique") make_meshes_unique(file, scene);
   check_outputs_spare(side_outputs(file, a, options), scene.files);
   std::uint32_t uv_set = 0;
   std::string layout_note;
@@ -137,6 +151,7 @@ void run_bake(const BakeArguments& a) {
 
   const Stopwatch writing;
   write_baked(file, scene, a, options, uv_set, result);
+  if (!a.png.empty()) write_preview(scene, result, a.png);
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
   std::vector<std::string>& notes = result.statistics.notes;

@@ -94,6 +94,7 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--kernel-dir", o.kernel_dir,
                  "Read OpenCL kernels from this folder (for developers)");
   app.add_option("--cache", o.cache, "Keep built BVHs in this folder and reuse them");
+  app.add_option("--png", a.png, "Also draw the scene in its AO alone, as a PNG");
   app.add_option("--stats-json", a.stats_json, "Write the statistics as JSON");
   app.add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
   app.footer(
@@ -119,9 +120,10 @@ BakeOptions to_options(const BakeArguments& a) {
                                {"front", BakeSides::front},
                                {"max", BakeSides::max},
                                {"mean", BakeSides::mean}});
-  o.placement = choice<BakeInstances>(
-      "--instances", a.instances,
-      {{"together", BakeInstances::together}, {"alone", BakeInstances::alone}});
+  o.placement = choice<BakeInstances>("--instances", a.instances,
+                                      {{"together", BakeInstances::together},
+                                       {"unique", BakeInstances::together},
+                                       {"alone", BakeInstances::alone}});
   choice<bool>("--blend", a.blend, {{"multiply", true}, {"replace", false}});
   if (a.rays) o.rays = *a.rays;
   if (a.rays) o.target_error = 0;

@@ -17,7 +17,7 @@ struct BakeChannel {
 };
 
 struct BakeArguments {
-  std::string scene, output, stats_json, uv = "auto";
+  std::string scene, output, stats_json, png, uv = "auto";
   std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply";
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";
   std::vector<std::string> opacity, occluders;

@@ -60,12 +60,12 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
                                            const std::vector<BakedMesh>& meshes,
                                            const BakeChannel& channel, bool multiply) {
   // Primitives may share their vertices.
-  std::map<std::uint64_t, VertexSums> sums;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t> primitives;
+  std::map<gltf::VertexKey, VertexSums> sums;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, gltf::VertexKey> primitives;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     if (meshes[m].ao.empty()) continue;
     for (const VertexSource& source : scene.meshes[m].sources) {
-      const std::uint64_t key = file.vertex_key(source.mesh, source.primitive, channel.attribute);
+      const gltf::VertexKey key = file.vertex_key(source.mesh, source.primitive, channel.attribute);
       primitives[{source.mesh, source.primitive}] = key;
       VertexSums& of = sums[key];
       const std::size_t count = file.vertex_count(source.mesh, source.primitive);

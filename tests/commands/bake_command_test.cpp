@@ -152,6 +152,35 @@ TEST_F(BakeCommand, ATextureIsInAMaterialOfItsOwnAndTheMeshKeepsItsShape) {
   EXPECT_EQ(document("again.gltf")["images"].back()["uri"], "again_ao.png");
 }
 
+TEST_F(BakeCommand, UniqueInstancesHaveMeshesAndValuesOfTheirOwn) {
+  // Two placements of a triangle, one of them under a large one.
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.doc["nodes"].push_back({{"mesh", 0}, {"translation", {100, 0, 0}}});
+  builder.doc["nodes"].push_back(
+      {{"mesh", 1}, {"translation", {0, 0, 0.01}}, {"scale", {50, 50, 1}}});
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  builder.doc["scenes"][0]["nodes"] = {0, 1, 2};
+  write("in.glb", builder.glb());
+  ASSERT_EQ(dapple("bake in.glb -o out.glb --channel _AO --sides mean --instances unique "
+                   "--estimator exact --png out.png")
+                .code,
+            0);
+  const json after = document("out.glb");
+  ASSERT_EQ(after["meshes"].size(), 3u);
+  EXPECT_EQ(after["nodes"][0]["mesh"], 0);
+  EXPECT_EQ(after["nodes"][1]["mesh"], 2);
+  const auto attributes = [&](int mesh) {
+    return after["meshes"][mesh]["primitives"][0]["attributes"];
+  };
+  EXPECT_EQ(attributes(0)["POSITION"], attributes(2)["POSITION"]) << "positions are shared";
+  EXPECT_NE(attributes(0)["_AO"], attributes(2)["_AO"]);
+  EXPECT_TRUE(std::filesystem::exists(path("out.png")));
+  // Together they share the mean.
+  ASSERT_EQ(dapple("bake in.glb -o out.glb --channel _AO").code, 0);
+  EXPECT_EQ(document("out.glb")["meshes"].size(), 2u);
+}
+
 TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {
   GltfBuilder builder;
   builder.add_triangle();

@@ -57,9 +57,9 @@ std::size_t add_accessor(Editor& editor, const NewAttribute& attribute, bool of_
 
 void add_attributes(Editor& editor, const SourceFile& source,
                     const std::vector<NewAttribute>& attributes) {
-  std::map<std::pair<std::uint64_t, std::string>, std::size_t> stored;
+  std::map<std::pair<VertexKey, std::string>, std::size_t> stored;
   for (const NewAttribute& attribute : attributes) {
-    const std::uint64_t key =
+    const VertexKey key =
         source.vertex_key(attribute.mesh, attribute.primitive, attribute.name);
     const auto [at, is_new] = stored.try_emplace({key, attribute.name}, 0);
     if (is_new) at->second = add_accessor(editor, attribute, true);

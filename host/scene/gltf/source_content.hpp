@@ -16,6 +16,7 @@ struct SourceFile::Content {
   Container container;
   Document document;
   Json json;
+  std::uint32_t meshes_of_file = 0;  ///< later ones are copies
 
   [[nodiscard]] const tinygltf::Primitive& primitive(std::uint32_t mesh,
                                                      std::uint32_t index) const {

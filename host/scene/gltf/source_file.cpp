@@ -10,9 +10,10 @@
 namespace dapple::gltf {
 
 SourceFile::SourceFile(const std::string& path, bool allow_outside)
-    : content(new Content{read_file(path, path), {}, load_document(path, allow_outside), {}}) {
+    : content(new Content{read_file(path, path), {}, load_document(path, allow_outside), {}, 0}) {
   content->container = split_container(content->bytes, path);
   content->json = Json::parse(content->container.json);
+  content->meshes_of_file = static_cast<std::uint32_t>(content->document.model.meshes.size());
 }
 SourceFile::~SourceFile() { delete content; }
 SourceFile::SourceFile(SourceFile&& other) noexcept
@@ -23,11 +24,26 @@ std::size_t SourceFile::vertex_count(std::uint32_t mesh, std::uint32_t primitive
   return content->document.model.accessors[static_cast<std::size_t>(positions)].count;
 }
 
-std::uint64_t SourceFile::vertex_key(std::uint32_t mesh, std::uint32_t primitive,
-                                     const std::string& name) const {
+VertexKey SourceFile::vertex_key(std::uint32_t mesh, std::uint32_t primitive,
+                                 const std::string& name) const {
   const auto& p = content->primitive(mesh, primitive);
-  const auto positions = static_cast<std::uint64_t>(attribute(p, "POSITION"));
-  return positions << 32 | static_cast<std::uint32_t>(attribute(p, name) + 1);
+  return {mesh < content->meshes_of_file ? 0 : mesh,
+          static_cast<std::uint32_t>(attribute(p, "POSITION")),
+          static_cast<std::uint32_t>(attribute(p, name) + 1)};
+}
+
+std::uint32_t SourceFile::copy_mesh(std::uint32_t node, std::uint32_t mesh) {
+  auto& meshes = content->document.model.meshes;
+  meshes.push_back(tinygltf::Mesh(meshes[mesh]));
+  Json& json = content->json;
+  json["meshes"].push_back(Json(json["meshes"][mesh]));
+  json["nodes"][node]["mesh"] = meshes.size() - 1;
+  return static_cast<std::uint32_t>(meshes.size() - 1);
+}
+
+bool SourceFile::has_gpu_instances(std::uint32_t node) const {
+  const Json& json = content->json["nodes"][node];
+  return json.contains("extensions") && json["extensions"].contains("EXT_mesh_gpu_instancing");
 }
 
 PrimitiveColors SourceFile::colors(std::uint32_t mesh, std::uint32_t primitive) const {

@@ -3,6 +3,7 @@
 
 #include <Imath/ImathVec.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ struct PrimitiveColors {
   std::vector<float> values;     ///< RGBA
 };
 
+/// What identifies the vertices of a primitive: a copy of a mesh, POSITION and another attribute.
+using VertexKey = std::array<std::uint32_t, 3>;
+
 /// A glTF file that has been read, with what its writer needs. Throws Error input.
 struct SourceFile {
   explicit SourceFile(const std::string& path, bool allow_outside = false);
@@ -25,14 +29,19 @@ struct SourceFile {
   /// Vertices of a primitive: the count of its POSITION.
   [[nodiscard]] std::size_t vertex_count(std::uint32_t mesh, std::uint32_t primitive) const;
   /// Equal for primitives that share their vertices and their attribute `name`.
-  [[nodiscard]] std::uint64_t vertex_key(std::uint32_t mesh, std::uint32_t primitive,
-                                         const std::string& name) const;
+  [[nodiscard]] VertexKey vertex_key(std::uint32_t mesh, std::uint32_t primitive,
+                                     const std::string& name) const;
   [[nodiscard]] PrimitiveColors colors(std::uint32_t mesh, std::uint32_t primitive) const;
   /// TEXCOORD_`set` of a primitive, of all its vertices; empty if it has none.
   [[nodiscard]] std::vector<Imath::V2f> uvs(std::uint32_t mesh, std::uint32_t primitive,
                                             std::uint32_t set) const;
   /// The number of a primitive's TEXCOORD_n attributes.
   [[nodiscard]] std::uint32_t uv_sets(std::uint32_t mesh, std::uint32_t primitive) const;
+
+  /// Gives a node a copy of its mesh, which shares all accessors. Returns the index of the copy.
+  std::uint32_t copy_mesh(std::uint32_t node, std::uint32_t mesh);
+  /// Whether a node has many instances, by EXT_mesh_gpu_instancing.
+  [[nodiscard]] bool has_gpu_instances(std::uint32_t node) const;
 
   struct Content;
   Content* content;

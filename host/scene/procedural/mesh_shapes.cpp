@@ -32,8 +32,8 @@ void join_rings(Mesh& mesh, std::uint32_t lower, std::uint32_t upper, int sides,
   for (int i = 0; i < sides; ++i) {
     const auto here = static_cast<std::uint32_t>(i);
     const auto next = static_cast<std::uint32_t>((i + 1) % sides);
-    append_triangle(mesh, lower + here, lower + next, upper + next, material);
-    append_triangle(mesh, lower + here, upper + next, upper + here, material);
+    append_triangle(mesh, lower + here, upper + next, lower + next, material);
+    append_triangle(mesh, lower + here, upper + here, upper + next, material);
   }
 }
 
@@ -41,8 +41,8 @@ void close_ring(Mesh& mesh, std::uint32_t ring, V3f apex, int sides, std::uint32
   const std::uint32_t top = next_vertex(mesh);
   mesh.positions.push_back(apex);
   for (int i = 0; i < sides; ++i) {
-    append_triangle(mesh, ring + static_cast<std::uint32_t>(i),
-                    ring + static_cast<std::uint32_t>((i + 1) % sides), top, material);
+    append_triangle(mesh, ring + static_cast<std::uint32_t>(i), top,
+                    ring + static_cast<std::uint32_t>((i + 1) % sides), material);
   }
 }
 
