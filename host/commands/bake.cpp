@@ -91,9 +91,10 @@ void write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArg
                  const BakeOptions& options, std::uint32_t uv_set, const BakeResult& result) {
   gltf::Editor editor(file, a.output);
   if (options.vertices)
-    gltf::add_attributes(editor, file,
-                         baked_attributes(file, scene, result.meshes, parse_channel(a.channel),
-                                          a.blend == "multiply"));
+    gltf::add_attributes(
+        editor, file,
+        baked_attributes(file, scene, result.meshes,
+                         {parse_channel(a.channel), a.blend == "multiply", a.bent_channel}));
   if (options.instances) gltf::add_node_values(editor, baked_nodes(scene, result.instance_ao));
   if (options.texture)
     gltf::add_occlusion_texture(editor,
@@ -139,6 +140,7 @@ void run_bake(const BakeArguments& a) {
   input.reset();  // all of it is in memory
   if (a.instances == "unique") make_meshes_unique(file, scene);
   check_outputs_spare(side_outputs(file, a, options), scene.files);
+  if (options.vertices) check_channel(file, scene, parse_channel(a.channel));
   std::uint32_t uv_set = 0;
   std::string layout_note;
   if (options.texture) layout_note = choose_layout(file, scene, a.uv, options, uv_set);

@@ -36,9 +36,12 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--passes", a.passes,
                  "ao; or ao,bent: bent normals, the mean unoccluded direction, too")
       ->capture_default_str();
-  app.add_option("--channel", a.channel,
-                 "Where AO goes: COLOR_0.rgb, COLOR_0.r, .g, .b or .a, or a custom attribute, for "
-                 "example _AO")
+  app.add_option(
+         "--channel", a.channel,
+         "Where AO goes: COLOR_0.rgb, COLOR_0.r, .g, .b or .a, TEXCOORD_1.x or .y, or a custom "
+         "attribute, for example _AO")
+      ->capture_default_str();
+  app.add_option("--bent-channel", a.bent_channel, "Where bent normals go: _BENT_NORMAL or NORMAL")
       ->capture_default_str();
   app.add_option("--size", o.texture_size, "Width and height of the texture")
       ->capture_default_str();
@@ -136,6 +139,7 @@ BakeOptions to_options(const BakeArguments& a) {
   if (o.texture && o.at_vertices) throw Error(ErrorKind::usage, "--at vertices needs --to vertex");
   choice<bool>("--uv", a.uv, {{"auto", false}, {"own", true}});
   parse_channel(a.channel);
+  choice<bool>("--bent-channel", a.bent_channel, {{"_BENT_NORMAL", false}, {"NORMAL", true}});
   validate(o);
   return o;
 }
@@ -144,17 +148,26 @@ BakeChannel parse_channel(const std::string& text) {
   const std::size_t dot = text.find('.');
   const BakeChannel channel{text.substr(0, dot),
                             dot == std::string::npos ? "" : text.substr(dot + 1)};
+  const auto& [attribute, components] = channel;
   const bool color =
-      channel.attribute == "COLOR_0" &&
-      (channel.components == "rgb" || channel.components == "r" || channel.components == "g" ||
-       channel.components == "b" || channel.components == "a");
-  const bool own = channel.attribute.size() > 1 && channel.attribute[0] == '_' &&
-                   dot == std::string::npos && channel.attribute != "_BENT_NORMAL";
-  if (color || own) return channel;
+      attribute == "COLOR_0" && (components == "rgb" || components == "r" || components == "g" ||
+                                 components == "b" || components == "a");
+  const bool uv = uv_set_of(attribute) && (components == "x" || components == "y");
+  const bool custom = attribute.size() > 1 && attribute[0] == '_' && dot == std::string::npos &&
+                      attribute != "_BENT_NORMAL";
+  if (color || uv || custom) return channel;
   throw Error(ErrorKind::usage,
-              fmt::format("--channel is \"{}\"; it can be COLOR_0.rgb, COLOR_0.r, COLOR_0.g, "
-                          "COLOR_0.b, COLOR_0.a or a name that begins with _, such as _AO",
+              fmt::format("--channel is \"{}\"; it can be COLOR_0.rgb, .r, .g, .b or .a, "
+                          "TEXCOORD_1.x or .y, or a name that begins with _, such as _AO",
                           text));
+}
+
+std::optional<std::uint32_t> uv_set_of(const std::string& attribute) {
+  constexpr std::string_view kPrefix = "TEXCOORD_";
+  if (!attribute.starts_with(kPrefix) || attribute.size() != kPrefix.size() + 1) return {};
+  const char digit = attribute.back();
+  if (digit < '0' || digit > '9') return {};
+  return static_cast<std::uint32_t>(digit - '0');
 }
 
 }  // namespace dapple

@@ -11,14 +11,16 @@
 
 namespace dapple {
 
-/// Where AO goes: "COLOR_0.rgb" as {"COLOR_0", "rgb"}, "_AO" as {"_AO", ""}.
+/// Where AO goes: "COLOR_0.rgb" as {"COLOR_0", "rgb"}, "TEXCOORD_1.x" as {"TEXCOORD_1", "x"}, "_AO"
+/// as {"_AO", ""}.
 struct BakeChannel {
   std::string attribute, components;
 };
 
 struct BakeArguments {
   std::string scene, output, stats_json, png, uv = "auto";
-  std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply";
+  std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply",
+              bent_channel = "_BENT_NORMAL";
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";
   std::vector<std::string> opacity, occluders;
   SceneOptions scene_options;
@@ -33,5 +35,7 @@ void add_bake_options(CLI::App& app, BakeArguments& a);
 /// Throws Error usage, naming the flag.
 BakeOptions to_options(const BakeArguments& a);
 BakeChannel parse_channel(const std::string& text);
+/// n of "TEXCOORD_n", 0 to 9; nothing for other names.
+std::optional<std::uint32_t> uv_set_of(const std::string& attribute);
 
 }  // namespace dapple

@@ -1,7 +1,11 @@
 #include "commands/baked_attributes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
+
+#include "dapple/error.hpp"
 
 namespace dapple {
 namespace {
@@ -43,9 +47,22 @@ NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexSums& sum
   return attribute;
 }
 
-NewAttribute bent_attribute(const VertexSums& sums) {
+/// AO in one component of texture coordinates; the other one stays, or is 0.
+NewAttribute uv_attribute(std::vector<V2f> uvs, const VertexSums& sums,
+                          const BakeChannel& channel) {
+  uvs.resize(sums.ao.size(), V2f(0, 0));
   NewAttribute attribute;
-  attribute.name = "_BENT_NORMAL";
+  attribute.components = 2;
+  for (std::size_t v = 0; v < uvs.size(); ++v) {
+    uvs[v][channel.components == "x" ? 0 : 1] = sums.ao[v];
+    attribute.values.insert(attribute.values.end(), {uvs[v].x, uvs[v].y});
+  }
+  return attribute;
+}
+
+NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
+  NewAttribute attribute;
+  attribute.name = name;
   attribute.components = 3;
   for (const V3f& bent : sums.bent) {
     const V3f unit = bent.normalized();
@@ -54,11 +71,43 @@ NewAttribute bent_attribute(const VertexSums& sums) {
   return attribute;
 }
 
+NewAttribute ao_attribute(const SourceFile& file, std::pair<std::uint32_t, std::uint32_t> at,
+                          const VertexSums& sums, const BakeTargets& targets) {
+  const BakeChannel& channel = targets.channel;
+  NewAttribute attribute;
+  if (const auto set = uv_set_of(channel.attribute)) {
+    attribute = uv_attribute(file.uvs(at.first, at.second, *set), sums, channel);
+  } else if (channel.attribute == "COLOR_0") {
+    attribute = color_attribute(file.colors(at.first, at.second), sums, channel, targets.multiply);
+  } else {
+    attribute.values = sums.ao;
+  }
+  attribute.name = channel.attribute;
+  return attribute;
+}
+
 }  // namespace
+
+void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel& channel) {
+  const auto set = uv_set_of(channel.attribute);
+  if (!set) return;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const VertexSource& source : mesh.sources) {
+      const std::uint32_t sets = file.uv_sets(source.mesh, source.primitive);
+      if (*set <= sets) continue;
+      throw Error(ErrorKind::usage,
+                  fmt::format("--channel is {}.{}, but mesh {} primitive {} has {} sets of texture "
+                              "coordinates; TEXCOORD_{} is the next one",
+                              channel.attribute, channel.components, source.mesh, source.primitive,
+                              sets, sets));
+    }
+  }
+}
 
 std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& scene,
                                            const std::vector<BakedMesh>& meshes,
-                                           const BakeChannel& channel, bool multiply) {
+                                           const BakeTargets& targets) {
+  const BakeChannel& channel = targets.channel;
   // Primitives may share their vertices.
   std::map<gltf::VertexKey, VertexSums> sums;
   std::map<std::pair<std::uint32_t, std::uint32_t>, gltf::VertexKey> primitives;
@@ -86,18 +135,8 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
   };
   for (const auto& [primitive, key] : primitives) {
     const VertexSums& of = sums[key];
-    if (channel.attribute == "COLOR_0") {
-      NewAttribute color =
-          color_attribute(file.colors(primitive.first, primitive.second), of, channel, multiply);
-      color.name = channel.attribute;
-      push(std::move(color), primitive);
-    } else {
-      NewAttribute own;
-      own.name = channel.attribute;
-      own.values = of.ao;
-      push(std::move(own), primitive);
-    }
-    if (!of.bent.empty()) push(bent_attribute(of), primitive);
+    push(ao_attribute(file, primitive, of, targets), primitive);
+    if (!of.bent.empty()) push(bent_attribute(of, targets.bent_channel), primitive);
   }
   return attributes;
 }

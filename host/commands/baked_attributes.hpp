@@ -10,11 +10,20 @@
 
 namespace dapple {
 
-/// AO in `channel`, and _BENT_NORMAL where bent normals were baked. With `multiply`, AO is
-/// multiplied with a COLOR_0 that the file has.
+/// Where values go in the file.
+struct BakeTargets {
+  BakeChannel channel;       ///< of AO
+  bool multiply = true;      ///< AO with a COLOR_0 that the file has
+  std::string bent_channel;  ///< "_BENT_NORMAL" or "NORMAL"
+};
+
+/// Throws Error usage for a TEXCOORD_n that a primitive cannot have, because it lacks those before.
+void check_channel(const gltf::SourceFile& file, const Scene& scene, const BakeChannel& channel);
+
+/// AO, and bent normals where they were baked.
 std::vector<gltf::NewAttribute> baked_attributes(const gltf::SourceFile& file, const Scene& scene,
                                                  const std::vector<BakedMesh>& meshes,
-                                                 const BakeChannel& channel, bool multiply);
+                                                 const BakeTargets& targets);
 
 /// The mean AO of the meshes that each placement of a node shows.
 std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const std::vector<float>& ao);

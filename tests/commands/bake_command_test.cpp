@@ -79,6 +79,22 @@ TEST_F(BakeCommand, AnAttributeOfItsOwnHoldsTheValuesAndBentNormalsStandBeside) 
   EXPECT_EQ(after["accessors"][attributes["_BENT_NORMAL"].get<std::size_t>()]["type"], "VEC3");
 }
 
+TEST_F(BakeCommand, TextureCoordinatesAndNormalsCanHoldTheValues) {
+  write("in.glb", rich_triangle().glb());
+  Outcome run = dapple(
+      "bake in.glb -o out.glb --channel TEXCOORD_0.y --passes ao,bent "
+      "--bent-channel NORMAL");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json after = document("out.glb");
+  const json& attributes = after["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_EQ(after["accessors"][attributes["TEXCOORD_0"].get<std::size_t>()]["type"], "VEC2");
+  EXPECT_EQ(after["accessors"][attributes["NORMAL"].get<std::size_t>()]["type"], "VEC3");
+  EXPECT_FALSE(attributes.contains("_BENT_NORMAL"));
+  run = dapple("bake in.glb -o late.glb --channel TEXCOORD_1.x");
+  expect_failure(run, 2, "TEXCOORD_0 is the next one");
+  EXPECT_FALSE(std::filesystem::exists(path("late.glb")));
+}
+
 TEST_F(BakeCommand, AoIsMultipliedWithAColourThatIsThereOrReplacesIt) {
   GltfBuilder builder;
   builder.add_triangle();
