@@ -40,7 +40,7 @@ struct BakeOptions {
   int rays = 1024;
   Estimator estimator = Estimator::prefiltered;
   /// As RenderOptions::footprint, for the rays of one point.
-  float footprint = 1.2f;
+  float footprint = 1.5f;
   float distance = 0;        ///< metres; surfaces farther away do not occlude; 0: no limit
   float falloff = 0;         ///< as RenderOptions::ao_falloff
   bool at_vertices = false;  ///< rays start at the vertices, not from points of the triangles

@@ -2,7 +2,7 @@
 // mesh. Out: flat coordinates of the triangles. Foliage has a chart for each card; smooth parts
 // have as many as their directions need. Such planar projections stretch lengths by 1.7 at most,
 // and bakes need no continuity across seams, so this is all the unwrapping that there is
-// (experiment 626).
+//.
 #pragma once
 
 #include <cstdint>
