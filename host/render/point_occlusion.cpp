@@ -15,23 +15,10 @@
 #include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
 #include "passes/queues.hpp"
+#include "render/shared_points.hpp"
 
 namespace dapple {
 namespace {
-
-/// The offset along the normal exceeds the rounding error of float coordinates.
-SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t index) {
-  SurfacePoint point{};
-  float largest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    point.position[axis] = position[axis];
-    point.normal[axis] = normal[axis];
-    largest = std::max(largest, std::fabs(position[axis]));
-  }
-  point.offset = largest * 4e-6f;
-  point.pixel = static_cast<uint>(index);
-  return point;
-}
 
 AoParams ao_params(const OcclusionOptions& options, std::size_t points) {
   AoParams params{};
@@ -57,28 +44,6 @@ OcclusionParams occlusion_params(const OcclusionOptions& options, const DeviceBu
   }
   return params;
 }
-
-/// Points in host memory that the device reads in place. The destructor waits for the device.
-class SharedPoints {
- public:
-  SharedPoints(DeviceContext& context, std::span<const V3f> points, std::span<const V3f> normals,
-               std::span<const std::uint32_t> chosen)
-      : context_(context) {
-    points_.reserve(chosen.size());
-    for (const std::uint32_t i : chosen) points_.push_back(surface_point(points[i], normals[i], i));
-  }
-  ~SharedPoints() { context_.wait(); }
-  SharedPoints(const SharedPoints&) = delete;
-  SharedPoints& operator=(const SharedPoints&) = delete;
-
-  [[nodiscard]] Buffer buffer() const {
-    return context_.share(points_.data(), points_.size() * sizeof(SurfacePoint));
-  }
-
- private:
-  DeviceContext& context_;
-  std::vector<SurfacePoint> points_;
-};
 
 /// Results of consecutive points.
 struct Results {

@@ -132,6 +132,28 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
                              std::span<const V3f> points, std::span<const V3f> normals,
                              const OcclusionOptions& options = {});
 
+struct IrradianceOptions {
+  int rays = 16;  ///< for each point and light, [1, 2^20]
+  Estimator estimator = Estimator::prefiltered;
+  float footprint = kDefaultFootprint;
+  std::uint32_t seed = 0;
+};
+
+/// Irradiance of one light at points, linear RGB, W/m^2.
+struct PointIrradiance {
+  std::vector<V3f> irradiance;  ///< with occlusion
+  std::vector<V3f> unoccluded;  ///< the same without; 0 below the horizon of a point
+};
+
+/// Returns the irradiance that each of `lights` causes at points, as the renderer's light layers
+/// have it. `lights` are the lights of the scene that was uploaded, after finalize_domes(). Points
+/// and normals as for occlusion(). Calls with different seeds are independent of each other; their
+/// differences tell the standard error. Throws Error usage if the sizes differ.
+std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene& scene,
+                                        std::span<const Light> lights, std::span<const V3f> points,
+                                        std::span<const V3f> normals,
+                                        const IrradianceOptions& options = {});
+
 /// Returns the transmittance along each ray. The prefiltered estimator with `footprint` 0 is exact.
 /// Every `rays_per_point` consecutive rays must have one origin and one light; they may be traced
 /// as point packets. Throws Error usage if they differ.

@@ -1,0 +1,153 @@
+// irradiance(): points and lights in, irradiance out, by the passes of the renderer.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "dapple/error.hpp"
+#include "dapple/render.hpp"
+#include "dapple/shared/light_record.h"
+#include "device/upload/scene_upload.hpp"
+#include "passes/light_pass.hpp"
+#include "passes/occlusion_pass.hpp"
+#include "passes/point_order.hpp"
+#include "render/shared_points.hpp"
+#include "scene/images/dome_image.hpp"
+
+namespace dapple {
+namespace {
+
+/// The colour of a dome's light, scaled to luminance 1: dome_colour() of dome.clh.
+class DomeColor {
+ public:
+  DomeColor(const DeviceBuffers& scene, const LightRecord& light)
+      : light_(light),
+        texels_(scene.environment_data.data() + light.environment_first +
+                light.environment_height * (std::size_t{light.environment_width} + 1)),
+        sine_(std::sin(light.rotation)),
+        cosine_(std::cos(light.rotation)) {}
+
+  [[nodiscard]] V3f towards(const float* direction) const {
+    using std::numbers::pi_v;
+    const float x = direction[0] * cosine_ - direction[2] * sine_;
+    const float z = direction[0] * sine_ + direction[2] * cosine_;
+    const float u = 0.5f - std::atan2(x, z) * (0.5f / pi_v<float>);
+    const float v = std::acos(std::clamp(direction[1], -1.0f, 1.0f)) / pi_v<float>;
+    const uint width = light_.environment_width, height = light_.environment_height;
+    const uint column = std::min(static_cast<uint>(u * static_cast<float>(width)), width - 1);
+    const uint row = std::min(static_cast<uint>(v * static_cast<float>(height)), height - 1);
+    const float* rgb = texels_ + 3 * (std::size_t{row} * width + column);
+    const V3f radiance(rgb[0], rgb[1], rgb[2]);
+    const auto value = static_cast<float>(luminance(radiance));
+    return value > 0 ? radiance / value : V3f(1, 1, 1);
+  }
+
+ private:
+  const LightRecord& light_;
+  const float* texels_;
+  float sine_, cosine_;
+};
+
+/// Traces rays to one light from the points in the queue.
+class LightTracer {
+ public:
+  LightTracer(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+              const IrradianceOptions& options)
+      : context_(context), queues_(queues), scene_(scene), options_(options) {}
+
+  /// Adds to the values of the points `chosen`, which are in the queue in this order.
+  void trace(uint light, const Light& given, std::span<const std::uint32_t> chosen,
+             PointIrradiance& result) {
+    const auto rays = static_cast<std::size_t>(options_.rays);
+    run_passes(light, static_cast<uint>(chosen.size()));
+    std::vector<Occlusion> found(chosen.size() * rays);
+    context_.read(queues_.occlusions, found.data(), found.size() * sizeof(Occlusion));
+    const HostView view = context_.view(queues_.rays);
+    const std::span<const Ray> traced = view.values<Ray>();
+    const LightRecord& record = scene_.light_records[light];
+    const bool dome = record.kind == DAPPLE_LIGHT_DOME;
+    const DomeColor color(scene_, record);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      V3d seen(0, 0, 0), all(0, 0, 0);
+      for (std::size_t r = i * rays; r < (i + 1) * rays; ++r) {
+        if (!(traced[r].weight > 0)) continue;
+        const V3d value = V3d(dome ? color.towards(traced[r].direction) : V3f(1, 1, 1)) *
+                          double{traced[r].weight};
+        all += value;
+        seen += value * double{found[r].transmittance};
+      }
+      const V3d scale = V3d(given.radiance) / static_cast<double>(rays);
+      result.irradiance[chosen[i]] = V3f(seen * scale);
+      result.unoccluded[chosen[i]] = V3f(all * scale);
+    }
+  }
+
+ private:
+  void run_passes(uint light, uint points) {
+    LightParams params{};
+    params.point_count = points;
+    params.rays = static_cast<uint>(options_.rays);
+    params.inverse_count = 1.0f / static_cast<float>(options_.rays);
+    params.light = light;
+    params.seed = options_.seed;
+    light_ray_pass(context_, scene_, queues_, params);
+    OcclusionParams occlusion{};
+    occlusion.scene = scene_.params;
+    occlusion.rays_per_point = params.rays;
+    occlusion.ray_count = points * params.rays;
+    occlusion.footprint = options_.footprint;
+    occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator, occlusion);
+  }
+
+  DeviceContext& context_;
+  const Queues& queues_;
+  const DeviceBuffers& scene_;
+  const IrradianceOptions& options_;
+};
+
+void check(std::size_t points, std::size_t normals, std::size_t lights, std::size_t records,
+           int rays) {
+  if (points != normals)
+    throw Error(ErrorKind::usage,
+                fmt::format("irradiance: {} points but {} normals", points, normals));
+  if (lights != records)
+    throw Error(ErrorKind::usage,
+                fmt::format("irradiance: {} lights, but {} were uploaded", lights, records));
+  if (rays < 1 || rays > 1 << 20)
+    throw Error(ErrorKind::usage,
+                fmt::format("irradiance: rays is {}; it must be from 1 to {}", rays, 1 << 20));
+}
+
+}  // namespace
+
+std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene& scene,
+                                        std::span<const Light> lights, std::span<const V3f> points,
+                                        std::span<const V3f> normals,
+                                        const IrradianceOptions& options) {
+  check(points.size(), normals.size(), lights.size(), scene.buffers->light_records.size(),
+        options.rays);
+  const std::vector<V3f> zeros(points.size(), V3f(0, 0, 0));
+  std::vector<PointIrradiance> result(lights.size(), PointIrradiance{zeros, zeros});
+  if (points.empty() || lights.empty()) return result;
+  DeviceContext& context = device.context();
+  const auto rays = static_cast<std::size_t>(options.rays);
+  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), points.size());
+  Queues queues = make_queues(context, slice, rays);
+  std::vector<uint> active(slice);
+  std::iota(active.begin(), active.end(), 0u);
+  context.write(queues.active, active.data(), active.size() * sizeof(uint));
+  const std::vector<std::uint32_t> order = order_along_curve(points);
+  for (std::size_t begin = 0; begin < points.size(); begin += slice) {
+    const auto chosen = std::span(order).subspan(begin, std::min(slice, points.size() - begin));
+    const SharedPoints batch(context, points, normals, chosen);
+    queues.points = batch.buffer();
+    LightTracer tracer(context, queues, *scene.buffers, options);
+    for (uint l = 0; l < lights.size(); ++l) tracer.trace(l, lights[l], chosen, result[l]);
+    queues.points = {};  // `batch` is destroyed here, and the buffer refers to its memory
+  }
+  context.finish();
+  return result;
+}
+
+}  // namespace dapple

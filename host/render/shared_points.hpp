@@ -1,0 +1,33 @@
+// Points that queries start from, in memory that host and device share. In: positions and normals.
+// Out: a buffer of SurfacePoint.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dapple/scene.hpp"
+#include "dapple/shared/ray.h"
+#include "device/context.hpp"
+
+namespace dapple {
+
+/// Points in host memory that the device reads in place. The destructor waits for the device.
+class SharedPoints {
+ public:
+  /// The points with the indices `chosen`, which also seed their random numbers.
+  SharedPoints(DeviceContext& context, std::span<const V3f> points, std::span<const V3f> normals,
+               std::span<const std::uint32_t> chosen);
+  ~SharedPoints() { context_.wait(); }
+  SharedPoints(const SharedPoints&) = delete;
+  SharedPoints& operator=(const SharedPoints&) = delete;
+
+  [[nodiscard]] Buffer buffer() const {
+    return context_.share(points_.data(), points_.size() * sizeof(SurfacePoint));
+  }
+
+ private:
+  DeviceContext& context_;
+  std::vector<SurfacePoint> points_;
+};
+
+}  // namespace dapple
