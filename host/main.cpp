@@ -30,8 +30,9 @@ int run(int argc, char** argv) {
       "130, 143 interrupted by SIGINT, SIGTERM.\n"
       "dapple COMMAND --help lists the options of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
-  CLI::App& bake =
-      *app.add_subcommand("bake", "Bake AO into the vertices or instances of a glTF file");
+  CLI::App& points = *app.add_subcommand("points", "Measure sky and light at points");
+  CLI::App& bake = *app.add_subcommand(
+      "bake", "Bake AO into the vertices, a texture or the instances of a glTF file");
   CLI::App& info = *app.add_subcommand("info", "Print what a scene holds and what its BVH costs");
   CLI::App& scene = *app.add_subcommand("scene", "Write a procedural scene as a GLB file");
   CLI::App& devices = *app.add_subcommand("devices", "List the OpenCL devices");
@@ -40,6 +41,7 @@ int run(int argc, char** argv) {
   const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
       {&render, dapple::add_render_command(render)},
       {&bake, dapple::add_bake_command(bake)},
+      {&points, dapple::add_points_command(points)},
       {&info, dapple::add_info_command(info)},
       {&scene, dapple::add_scene_command(scene)},
       {&devices, dapple::add_devices_command(devices)},
@@ -54,8 +56,9 @@ int run(int argc, char** argv) {
   }
   // Not CLI11's own requirement: that hides the name of a command it does not know.
   if (app.get_subcommands().empty()) {
-    fmt::print(stderr,
-               "dapple: a subcommand is needed: render, bake, info, scene, devices or compare\n");
+    fmt::print(
+        stderr,
+        "dapple: a subcommand is needed: render, bake, points, info, scene, devices or compare\n");
     return kUsage;
   }
   for (const auto& [command, work] : commands) {

@@ -1,0 +1,183 @@
+// dapple points: sky and light at points, from a file or on a grid, into a file with columns.
+#include "dapple/points.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "commands/command.hpp"
+#include "commands/interruption.hpp"
+#include "commands/option_text.hpp"
+#include "commands/output_paths.hpp"
+#include "commands/progress.hpp"
+#include "dapple/error.hpp"
+#include "files/output_file.hpp"
+#include "points/point_file.hpp"
+#include "points/point_sources.hpp"
+#include "render/stopwatch.hpp"
+
+namespace dapple {
+namespace {
+
+struct Arguments {
+  std::string scene, output, at, suns, sky, lights, estimator = "prefiltered", stats_json;
+  std::vector<double> grid, periodic;
+  double height = 0;
+  float sky_irradiance = 1;
+  bool per_triangle = false, quiet = false;
+  std::vector<std::string> opacity;
+  SceneOptions scene_options;
+  PointOptions options;
+};
+
+void add_point_options(CLI::App& app, Arguments& a) {
+  app.add_option("SCENE", a.scene, "glTF file, HAIR file or procedural scene")->required();
+  app.add_option("-o,--output", a.output, "File to write: .csv, .npy or .ply")->required();
+  app.add_option("--at", a.at, "Points: .csv, .npy or .ply with x, y, z and, if any, nx, ny, nz");
+  app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
+      ->delimiter(',')
+      ->expected(5);
+  app.add_option("--height", a.height, "Height of the grid, metres")->capture_default_str();
+  app.add_flag("--per-triangle", a.per_triangle,
+               "The centre of each triangle of the scene, first its front, then its back");
+  PointOptions& o = a.options;
+  app.add_option("--rays", o.rays, "Rays per point and quantity, in eight independent sets")
+      ->capture_default_str();
+  app.add_flag("--bent", o.bent, "Mean unoccluded direction");
+  app.add_option("--rings", o.rings,
+                 "Gap fractions in this many zenith rings; 5: the rings of the LAI-2200");
+  app.add_option("--suns", a.suns,
+                 "CSV of suns: azimuth,elevation,irradiance (degrees from -Z to +X, W/m^2), or "
+                 "x,y,z,irradiance");
+  app.add_flag("--per-sun", o.per_sun, "A column for each sun, not their sum");
+  app.add_option("--sky", a.sky,
+                 "uniform, overcast (CIE) or an image (.exr, .hdr): irradiance of the sky");
+  app.add_option("--sky-irradiance", a.sky_irradiance,
+                 "Of a uniform or overcast sky on an open horizontal plane, W/m^2")
+      ->capture_default_str();
+  app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
+  app.add_option("--periodic", a.periodic,
+                 "X,Z: the scene repeats itself with these periods, metres")
+      ->delimiter(',')
+      ->expected(2);
+  app.add_option("--opacity", a.opacity,
+                 "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
+  app.add_flag("--ground", o.ground, "An opaque plane under the scene occludes");
+  app.add_option("--ao-distance", o.distance,
+                 "Surfaces farther than this, in metres, don't occlude for AO; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--estimator", a.estimator,
+                 "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the "
+                 "ray's footprint covers")
+      ->capture_default_str();
+  app.add_option("--footprint", o.footprint, "Footprint scale: larger is faster, 0 is exact")
+      ->capture_default_str();
+  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
+  app.add_flag("--allow-outside", a.scene_options.allow_outside,
+               "Let a glTF file name buffers and images outside of its folder");
+  app.add_option("--device", o.device, "OpenCL device, by part of its name (see dapple devices)");
+  app.add_option("--kernel-dir", o.kernel_dir,
+                 "Read OpenCL kernels from this folder (for developers)");
+  app.add_option("--cache", o.cache, "Keep built BVHs in this folder and reuse them");
+  app.add_option("--stats-json", a.stats_json, "Write the statistics as JSON");
+  app.add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
+  app.footer(
+      "Example:\n  dapple points canopy.glb --grid 0,0,10,10,0.5 -o ground.csv --rings 5\n"
+      "  dapple points canopy.glb --at sensors.csv -o light.csv --suns day.csv --sky overcast\n"
+      "  dapple points plot.glb --per-triangle --periodic 10,10 -o leaves.npy");
+}
+
+PointList points_of(const Arguments& a, const Scene& scene) {
+  const int sources = (a.at.empty() ? 0 : 1) + (a.grid.empty() ? 0 : 1) + (a.per_triangle ? 1 : 0);
+  if (sources != 1)
+    throw Error(ErrorKind::usage, "one of --at, --grid and --per-triangle says where points are");
+  if (!a.at.empty()) return read_points(a.at);
+  if (!a.grid.empty())
+    return grid_points({a.grid[0], a.grid[1], a.grid[2], a.grid[3], a.grid[4]}, a.height);
+  return triangle_points(scene);
+}
+
+void set_lights(const Arguments& a, Scene& scene) {
+  if (!a.lights.empty()) scene.lights = load_lights(a.lights);
+  if (a.sky.empty()) return;
+  Light sky;
+  if (a.sky == "uniform" || a.sky == "overcast") {
+    sky = a.sky == "uniform" ? uniform_sky() : overcast_sky();
+    sky.radiance *= a.sky_irradiance;
+  } else {
+    sky.name = "sky";
+    sky.kind = LightKind::dome;
+    sky.environment = load_environment(a.sky);
+  }
+  scene.lights.push_back(std::move(sky));
+}
+
+PointOptions options_of(const Arguments& a) {
+  PointOptions options = a.options;
+  options.estimator = parse_estimator(a.estimator);
+  for (const std::string& text : a.opacity) options.opacity.push_back(parse_opacity(text));
+  if (!a.periodic.empty()) {
+    options.period_x = static_cast<float>(a.periodic[0]);
+    options.period_z = static_cast<float>(a.periodic[1]);
+    if (!(options.period_x > 0))
+      throw Error(ErrorKind::usage, "--periodic needs two periods above 0");
+  }
+  validate(options);
+  return options;
+}
+
+void run_points(const Arguments& a) {
+  PointOptions options = options_of(a);
+  std::vector<OutputPath> outputs{{"--output", a.output}};
+  if (!a.stats_json.empty()) outputs.push_back({"--stats-json", a.stats_json});
+  check_outputs(outputs);
+  check_point_output(a.output);
+  catch_interruptions();
+  const Stopwatch total;
+  Scene scene = load_scene(a.scene, a.scene_options);
+  std::vector<std::string> inputs = scene.files;
+  for (const std::string& path : {a.at, a.suns, a.lights})
+    if (!path.empty()) inputs.push_back(path);
+  check_outputs_spare(outputs, inputs);
+  const PointList list = points_of(a, scene);
+  if (!a.suns.empty()) options.suns = read_suns(a.suns);
+  set_lights(a, scene);
+  const double load_seconds = total.seconds();
+  ProgressBar progress(a.quiet);
+  RenderControl control;
+  control.progress = progress.callback();
+  const PointResult result =
+      measure_points(std::move(scene), list.points, list.normals, options, control);
+  progress.clear();
+  write_points(a.output, list, result.columns);
+  const double seconds = total.seconds();
+  if (!a.stats_json.empty()) {
+    const nlohmann::ordered_json json = {{"seconds",
+                                          {{"load", load_seconds},
+                                           {"build", result.build_seconds},
+                                           {"trace", result.trace_seconds},
+                                           {"total", seconds}}},
+                                         {"points", list.points.size()},
+                                         {"device", result.device},
+                                         {"notes", result.notes}};
+    write_whole_file(a.stats_json, json.dump(2) + "\n");
+  }
+  if (a.quiet) return;
+  for (const std::string& note : result.notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print("{} points; load {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\nwrote {}\n",
+             list.points.size(), load_seconds, result.build_seconds, result.trace_seconds, seconds,
+             a.output);
+}
+
+}  // namespace
+
+Run add_points_command(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  add_point_options(app, *a);
+  return [a] { run_points(*a); };
+}
+
+}  // namespace dapple

@@ -1,0 +1,144 @@
+// PLY: scalar properties of the element vertex, which must be the first element.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <sstream>
+
+#include "dapple/error.hpp"
+#include "points/number_table.hpp"
+#include "scene/gltf/file.hpp"
+
+namespace dapple {
+namespace {
+
+[[noreturn]] void fail_ply(const std::string& path, const std::string& text) {
+  throw Error(ErrorKind::input, path + ": " + text);
+}
+
+enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
+
+const std::map<std::string, Type>& types() {
+  static const std::map<std::string, Type> known{
+      {"char", Type::i8},   {"int8", Type::i8},     {"uchar", Type::u8},   {"uint8", Type::u8},
+      {"short", Type::i16}, {"int16", Type::i16},   {"ushort", Type::u16}, {"uint16", Type::u16},
+      {"int", Type::i32},   {"int32", Type::i32},   {"uint", Type::u32},   {"uint32", Type::u32},
+      {"float", Type::f32}, {"float32", Type::f32}, {"double", Type::f64}, {"float64", Type::f64}};
+  return known;
+}
+
+template <class T>
+double take(const char*& at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  at += sizeof value;
+  return static_cast<double>(value);
+}
+
+double take(Type type, const char*& at) {
+  switch (type) {
+    case Type::i8:
+      return take<std::int8_t>(at);
+    case Type::u8:
+      return take<std::uint8_t>(at);
+    case Type::i16:
+      return take<std::int16_t>(at);
+    case Type::u16:
+      return take<std::uint16_t>(at);
+    case Type::i32:
+      return take<std::int32_t>(at);
+    case Type::u32:
+      return take<std::uint32_t>(at);
+    case Type::f32:
+      return take<float>(at);
+    default:
+      return take<double>(at);
+  }
+}
+
+std::size_t bytes_of(Type type) {
+  constexpr std::size_t kBytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kBytes[static_cast<std::size_t>(type)];
+}
+
+struct Header {
+  std::size_t rows = 0, end = 0, row_bytes = 0;
+  bool ascii = false;
+  std::vector<Type> types;
+};
+
+Header read_header(const std::string& path, const std::string& bytes, NumberTable& table) {
+  const std::size_t end = bytes.find("end_header");
+  if (bytes.compare(0, 3, "ply") != 0 || end == std::string::npos)
+    fail_ply(path, "is not a PLY file");
+  Header header;
+  std::istringstream lines(bytes.substr(0, end));
+  std::string line, element;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::string word, type, name;
+    words >> word >> type >> name;
+    if (word == "format") {
+      header.ascii = type == "ascii";
+      if (!header.ascii && type != "binary_little_endian")
+        fail_ply(path, "is " + type + "; it must be ascii or binary_little_endian");
+    } else if (word == "element") {
+      if (element.empty() && type != "vertex") fail_ply(path, "vertex must be its first element");
+      if (element.empty()) header.rows = std::stoull("0" + name);
+      element = type;
+    } else if (word == "property" && element == "vertex") {
+      const auto found = types().find(type);
+      if (found == types().end()) fail_ply(path, "vertex has a property of type " + type);
+      header.types.push_back(found->second);
+      header.row_bytes += bytes_of(found->second);
+      table.names.push_back(name);
+    }
+  }
+  header.end = std::min(bytes.size(), bytes.find('\n', end) + 1);
+  table.columns = table.names.size();
+  return header;
+}
+
+}  // namespace
+
+NumberTable read_ply(const std::string& path) {
+  const auto raw = gltf::read_file(path, path);
+  const std::string bytes(reinterpret_cast<const char*>(raw.data()), raw.size());
+  NumberTable table;
+  const Header header = read_header(path, bytes, table);
+  if (header.ascii) {
+    const char *at = bytes.data() + header.end, *end = bytes.data() + bytes.size();
+    for (std::size_t i = 0; i < header.rows * table.columns; ++i) {
+      while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
+      double value = 0;
+      const auto [next, error] = std::from_chars(at, end, value);
+      if (error != std::errc())
+        fail_ply(path, fmt::format("vertex {} has no number where one must be", i / table.columns));
+      table.values.push_back(value);
+      at = next;
+    }
+    return table;
+  }
+  if (header.row_bytes == 0 || header.rows > (bytes.size() - header.end) / header.row_bytes)
+    fail_ply(path, fmt::format("ends before its {} vertices", header.rows));
+  const char* at = bytes.data() + header.end;
+  for (std::size_t r = 0; r < header.rows; ++r)
+    for (const Type type : header.types) table.values.push_back(take(type, at));
+  return table;
+}
+
+std::string ply_bytes(const NumberTable& table) {
+  std::string bytes =
+      fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", table.rows());
+  for (const std::string& name : table.names) bytes += "property float " + name + "\n";
+  bytes += "end_header\n";
+  for (const double value : table.values) {
+    const auto single = static_cast<float>(value);
+    bytes.append(reinterpret_cast<const char*>(&single), 4);
+  }
+  return bytes;
+}
+
+}  // namespace dapple

@@ -1,0 +1,139 @@
+#include "points/point_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "dapple/error.hpp"
+#include "files/output_file.hpp"
+#include "points/number_table.hpp"
+
+namespace dapple {
+namespace {
+
+std::string ending(const std::string& path) {
+  return std::filesystem::path(path).extension().string();
+}
+
+NumberTable read_table(const std::string& path) {
+  if (ending(path) == ".csv") return read_csv(path);
+  if (ending(path) == ".npy") return read_npy(path);
+  if (ending(path) == ".ply") return read_ply(path);
+  throw Error(ErrorKind::usage, path + ": points are read from .csv, .npy and .ply");
+}
+
+/// Three columns as vectors, at `first` or by their names.
+class VectorColumns {
+ public:
+  VectorColumns(const NumberTable& table, const char* const (&names)[3], std::size_t first)
+      : table_(table) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int named = table.find(names[k]);
+      column_[k] = table.names.empty() ? static_cast<int>(first + k) : named;
+      exists_ = exists_ && column_[k] >= 0 && static_cast<std::size_t>(column_[k]) < table.columns;
+    }
+  }
+  [[nodiscard]] bool exist() const { return exists_; }
+  [[nodiscard]] V3d at(std::size_t row) const {
+    const auto value = [&](std::size_t k) {
+      return table_.values[row * table_.columns + static_cast<std::size_t>(column_[k])];
+    };
+    return {value(0), value(1), value(2)};
+  }
+
+ private:
+  const NumberTable& table_;
+  int column_[3] = {-1, -1, -1};
+  bool exists_ = true;
+};
+
+void check_finite(const std::string& path, std::size_t row, const V3d& value) {
+  if (std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) return;
+  throw Error(ErrorKind::input,
+              fmt::format("{}: row {} has a number that is not finite", path, row));
+}
+
+V3f direction_of(double azimuth, double elevation) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  const double ring = std::cos(elevation * kDegree);
+  return {static_cast<float>(ring * std::sin(azimuth * kDegree)),
+          static_cast<float>(std::sin(elevation * kDegree)),
+          static_cast<float>(-ring * std::cos(azimuth * kDegree))};
+}
+
+}  // namespace
+
+PointList read_points(const std::string& path) {
+  const NumberTable table = read_table(path);
+  const VectorColumns positions(table, {"x", "y", "z"}, 0), normals(table, {"nx", "ny", "nz"}, 3);
+  PointList list;
+  if (table.rows() == 0) return list;
+  if (!positions.exist())
+    throw Error(ErrorKind::input, path + ": needs the columns x, y, z (and nx, ny, nz)");
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const V3d position = positions.at(row);
+    const V3d normal = normals.exist() ? normals.at(row) : V3d(0, 1, 0);
+    check_finite(path, row, position);
+    check_finite(path, row, normal);
+    if (!(normal.length() > 0))
+      throw Error(ErrorKind::input, fmt::format("{}: the normal of row {} is zero", path, row));
+    list.points.emplace_back(position);
+    list.normals.emplace_back(normal.normalized());
+  }
+  return list;
+}
+
+std::vector<SunDirection> read_suns(const std::string& path) {
+  const NumberTable table = read_csv(path);
+  const VectorColumns directions(table, {"x", "y", "z"}, table.columns);
+  const int azimuth = table.find("azimuth"), elevation = table.find("elevation"),
+            irradiance = table.find("irradiance");
+  const bool angles = azimuth >= 0 && elevation >= 0;
+  if (irradiance < 0 || !(angles || directions.exist()))
+    throw Error(ErrorKind::input,
+                path + ": needs a line of names: azimuth,elevation,irradiance or x,y,z,irradiance");
+  std::vector<SunDirection> suns;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double* values = &table.values[row * table.columns];
+    SunDirection sun;
+    sun.irradiance = static_cast<float>(values[irradiance]);
+    const V3d given =
+        angles ? V3d(direction_of(values[azimuth], values[elevation])) : directions.at(row);
+    check_finite(path, row, given);
+    if (!(given.length() > 0) || !(sun.irradiance >= 0) || !std::isfinite(sun.irradiance))
+      throw Error(ErrorKind::input,
+                  fmt::format("{}: row {} is not a direction with an irradiance", path, row));
+    sun.direction = V3f(given.normalized());
+    suns.push_back(sun);
+  }
+  return suns;
+}
+
+void check_point_output(const std::string& path) {
+  for (const char* type : {".csv", ".npy", ".ply"})
+    if (ending(path) == type) return;
+  throw Error(ErrorKind::usage, path + ": points are written as .csv, .npy or .ply");
+}
+
+void write_points(const std::string& path, const PointList& list,
+                  const std::vector<PointColumn>& columns) {
+  NumberTable table;
+  table.names = {"x", "y", "z", "nx", "ny", "nz"};
+  for (const PointColumn& column : columns) table.names.push_back(column.name);
+  table.columns = table.names.size();
+  table.values.reserve(table.columns * list.points.size());
+  for (std::size_t i = 0; i < list.points.size(); ++i) {
+    for (const V3f& v : {list.points[i], list.normals[i]})
+      table.values.insert(table.values.end(), {double{v.x}, double{v.y}, double{v.z}});
+    for (const PointColumn& column : columns) table.values.push_back(double{column.values[i]});
+  }
+  check_point_output(path);
+  const std::string type = ending(path);
+  write_whole_file(path, type == ".csv"   ? csv_bytes(table)
+                         : type == ".npy" ? npy_bytes(table)
+                                          : ply_bytes(table));
+}
+
+}  // namespace dapple

@@ -1,0 +1,64 @@
+#include "points/ring_rays.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "bake/surface_samples.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::array<std::array<double, 2>, 5> kLai2200{
+    {{0, 13}, {16, 28}, {32, 43}, {47, 58}, {61, 74}}};
+
+}  // namespace
+
+std::vector<ZenithRing> zenith_rings(int count) {
+  std::vector<ZenithRing> rings;
+  for (int i = 0; i < count; ++i) {
+    const auto [inner, outer] =
+        count == 5 ? kLai2200[static_cast<std::size_t>(i)]
+                   : std::array<double, 2>{90.0 * i / count, 90.0 * (i + 1) / count};
+    rings.push_back({std::cos(inner * kDegree), std::cos(outer * kDegree)});
+  }
+  return rings;
+}
+
+Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float solid_angle) {
+  Ray ray{};
+  const float largest =
+      std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) * 4e-6f;
+  for (int axis = 0; axis < 3; ++axis) {
+    ray.origin[axis] = point[axis] + normal[axis] * largest;
+    ray.direction[axis] = direction[axis];
+  }
+  ray.t_max = std::numeric_limits<float>::infinity();
+  ray.solid_angle = solid_angle;
+  return ray;
+}
+
+void append_ring_rays(const V3f& point, const ZenithRing& ring, int count, std::uint32_t seed,
+                      std::uint32_t index, std::vector<Ray>& rays) {
+  using std::numbers::pi;
+  const double golden = pi * (3 - std::sqrt(5.0));
+  const std::uint32_t random = hash_of(hash_of(seed, index), rays.size() & 0xffffu);
+  const double turn = 2 * pi * (random & 0xffffu) / 65536.0, shift = (random >> 16) / 65536.0;
+  const double solid_angle = 2 * pi * (ring.cos_inner - ring.cos_outer) / count;
+  for (int i = 0; i < count; ++i) {
+    const double y =
+        ring.cos_inner + (ring.cos_outer - ring.cos_inner) * std::min(1.0, (i + shift) / count);
+    const double radius = std::sqrt(std::max(0.0, 1 - y * y)), angle = turn + golden * i;
+    Ray ray = point_ray(point, V3f(0, 1, 0),
+                        V3f(static_cast<float>(radius * std::cos(angle)), static_cast<float>(y),
+                            static_cast<float>(radius * std::sin(angle))),
+                        static_cast<float>(solid_angle));
+    ray.key = hash_of(random, static_cast<std::uint32_t>(i));
+    rays.push_back(ray);
+  }
+}
+
+}  // namespace dapple

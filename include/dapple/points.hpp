@@ -1,0 +1,76 @@
+// How much of the sky and of lights reaches points among leaves. In: a scene, points with normals,
+// options. Out: named columns of numbers with standard errors. First order only: nothing scatters.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dapple/options.hpp"
+#include "dapple/render.hpp"
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// A direction of direct light that is the same everywhere.
+struct SunDirection {
+  V3f direction{0, 1, 0};  ///< unit, towards the sun
+  float irradiance = 1;    ///< W/m^2 on a plane across it
+};
+
+struct PointOptions {
+  bool ao = true;               ///< ambient occlusion about the normal
+  bool sky_view_factor = true;  ///< the same about +Y, whatever the normal
+  bool bent = false;            ///< mean unoccluded direction
+  /// Zenith rings whose gap fraction is measured, [0, 90]; 5: those of the LAI-2200 (0-13, 16-28,
+  /// 32-43, 47-58 and 61-74 degrees), others: of equal width from 0 to 90 degrees.
+  int rings = 0;
+  bool lights = true;  ///< irradiance of each of the scene's lights
+  std::vector<SunDirection> suns;
+  bool per_sun = false;  ///< a column for each sun; else one for the sum
+  /// For each point and quantity, in eight independent sets, [8, 2^20].
+  int rays = 256;
+  Estimator estimator = Estimator::prefiltered;
+  float footprint = 1.0f;  ///< of the rays of one set
+  float distance = 0;      ///< of AO, as RenderOptions::ao_distance
+  /// The scene repeats itself with these periods along X and Z, metres; 0: it does not.
+  float period_x = 0, period_z = 0;
+  std::uint32_t seed = 0;
+  std::vector<std::pair<std::string, float>> opacity;  ///< of materials by name, [0,1]
+  bool ground = false;                                 ///< an opaque plane under the scene occludes
+  std::string device, kernel_dir, cache;               ///< as in RenderOptions
+};
+
+/// Throws Error usage, naming the command line's flag, when a value is out of range.
+void validate(const PointOptions& options);
+
+/// One value for each point.
+struct PointColumn {
+  std::string name;  ///< such as "ao" and "ao_error", its standard error
+  std::vector<float> values;
+};
+
+struct PointResult {
+  /// ao, sky_view_factor and gap_N in [0,1]; bent_x, bent_y and bent_z a unit vector or zero;
+  /// NAME_r, NAME_g and NAME_b of a light, and sun or sun_N, in W/m^2. With each an _error, its
+  /// standard error; suns have none, since each is one ray.
+  std::vector<PointColumn> columns;
+  std::vector<std::string> notes;
+  double build_seconds = 0, trace_seconds = 0;
+  std::string device;
+  bool interrupted = false;
+};
+
+/// Measures at `points`, whose unit `normals` say where the surface faces. Rays start off the
+/// points along the normals by more than rounding errors. The same arguments give the same bits.
+/// Throws Error usage (also if sizes differ, or a number is not finite), input, device or failed.
+PointResult measure_points(Scene scene, const std::vector<V3f>& points,
+                           const std::vector<V3f>& normals, const PointOptions& options = {},
+                           const RenderControl& control = {});
+
+/// A sky of the CIE standard overcast luminance (Moon and Spencer, 1942), 1 + 2 cos(zenith angle)
+/// to 3, or of uniform luminance, whose irradiance on an open horizontal plane is 1 W/m^2; dark
+/// below the horizon.
+Light overcast_sky();
+Light uniform_sky();
+
+}  // namespace dapple

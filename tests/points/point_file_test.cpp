@@ -1,0 +1,136 @@
+// Files of points: what is written is read again, and broken files are errors with a place.
+#include "points/point_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "dapple/error.hpp"
+#include "points/number_table.hpp"
+#include "points/point_sources.hpp"
+
+namespace dapple {
+namespace {
+
+class PointFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::path(testing::TempDir()) /
+        ("points_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path(name), std::ios::binary) << bytes;
+    return path(name);
+  }
+  void expect_error(const std::string& file, const std::string& part) const {
+    try {
+      read_points(file);
+      FAIL() << file;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST_F(PointFile, WhatIsWrittenIsReadAgainInAllThreeFormats) {
+  PointList list;
+  list.points = {{0.1f, -2.5f, 1e-20f}, {3e7f, 0, 1.0f / 3}};
+  list.normals = {V3f(0, 1, 0), V3f(1, 2, 3).normalized()};
+  for (const char* name : {"a.csv", "a.npy", "a.ply"}) {
+    write_points(path(name), list, {{"ao", {0.25f, 0.5f}}});
+    const PointList again = read_points(path(name));
+    ASSERT_EQ(again.points.size(), 2u) << name;
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(again.points[i], list.points[i]) << name;
+      EXPECT_LT((again.normals[i] - list.normals[i]).length(), 1e-6f) << name;
+    }
+  }
+  const NumberTable table = read_npy(path("a.npy"));
+  EXPECT_EQ(table.find("ao"), 6);
+  EXPECT_EQ(table.values.at(13), 0.5);
+}
+
+TEST_F(PointFile, CsvMayHaveNamesCommentsAndAnySeparator) {
+  const PointList named =
+      read_points(write("n.csv", "id;z;y;x\r\n7;3;2;1\r\n\r\n# nothing\n8;6;5;4"));
+  ASSERT_EQ(named.points.size(), 2u);
+  EXPECT_EQ(named.points[1], V3f(4, 5, 6));
+  EXPECT_EQ(named.normals[1], V3f(0, 1, 0));
+  const PointList plain = read_points(write("p.csv", "1 2 3 0 0 -2\n"));
+  EXPECT_EQ(plain.points.at(0), V3f(1, 2, 3));
+  EXPECT_EQ(plain.normals.at(0), V3f(0, 0, -1));
+  EXPECT_TRUE(read_points(write("e.csv", "")).points.empty());
+}
+
+TEST_F(PointFile, BrokenFilesNameTheLineOrRow) {
+  expect_error(write("a.csv", "1,2,3\n1,2\n"), "line 2");
+  expect_error(write("b.csv", "1,2,3\n1,two,3\n"), "\"two\"");
+  expect_error(write("c.csv", "a,b\n1,2\n"), "x, y, z");
+  expect_error(write("d.csv", "1,2,nan\n"), "row 0");
+  expect_error(write("e.csv", "1,2,3,0,0,0\n"), "normal");
+  expect_error(write("a.npy", "no"), "not an NPY");
+  expect_error(write("a.ply", "ply\nformat binary_big_endian 1.0\nend_header\n"), "big_endian");
+  expect_error(write("b.ply",
+                     "ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty float x\n"
+                     "property float y\nproperty float z\nend_header\n12"),
+               "9 vertices");
+  expect_error(write("a.txt", "1 2 3"), ".csv");
+  expect_error(path("missing.csv"), "missing.csv");
+}
+
+TEST_F(PointFile, ArraysOfSinglesAndDoublesAreRead) {
+  const auto npy = [&](const std::string& descr, const std::string& shape, const auto& values) {
+    std::string header =
+        "{'descr': " + descr + ", 'fortran_order': False, 'shape': " + shape + ", }";
+    header.append(63 - (10 + header.size()) % 64, ' ');
+    header += '\n';
+    std::string bytes = std::string("\x93NUMPY\x01\0", 8);
+    const auto length = static_cast<std::uint16_t>(header.size());
+    bytes.append(reinterpret_cast<const char*>(&length), 2);
+    bytes += header;
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+    return bytes;
+  };
+  const std::vector<double> doubles{1, 2, 3, 4, 5, 6};
+  const std::vector<float> singles{1, 2, 3, 0, 0, 5};
+  EXPECT_EQ(read_points(write("d.npy", npy("'<f8'", "(2, 3)", doubles))).points.at(1),
+            V3f(4, 5, 6));
+  EXPECT_EQ(read_points(write("s.npy", npy("'<f4'", "(1, 6)", singles))).normals.at(0),
+            V3f(0, 0, 1));
+  expect_error(write("i.npy", npy("'<i8'", "(2, 3)", doubles)), "float32");
+  expect_error(write("t.npy", npy("'<f8'", "(9, 3)", doubles)), "9 rows");
+  expect_error(write("o.npy", npy("'<f8'", "(6,)", doubles)), "one dimension");
+}
+
+TEST_F(PointFile, SunsAreDirectionsOrAngles) {
+  const auto suns =
+      read_suns(write("s.csv", "azimuth,elevation,irradiance\n0,0,1\n90,0,2\n0,90,3\n"));
+  ASSERT_EQ(suns.size(), 3u);
+  EXPECT_LT((suns[0].direction - V3f(0, 0, -1)).length(), 1e-6f) << "north";
+  EXPECT_LT((suns[1].direction - V3f(1, 0, 0)).length(), 1e-6f) << "east";
+  EXPECT_LT((suns[2].direction - V3f(0, 1, 0)).length(), 1e-6f);
+  EXPECT_EQ(suns[2].irradiance, 3);
+  EXPECT_THROW(read_suns(write("w.csv", "1,2,3\n")), Error);
+}
+
+TEST(PointSources, AGridHasItsLastRowAndColumnAndFacesUp) {
+  const PointList list = grid_points({0, 0, 1, 0.3, 0.1}, 2);
+  EXPECT_EQ(list.points.size(), 11u * 4u);
+  EXPECT_LT((list.points.back() - V3f(1, 2, 0.3f)).length(), 1e-6f);
+  EXPECT_THROW(grid_points({0, 0, 1, 1, 0}, 0), Error);
+  EXPECT_THROW(grid_points({1, 0, 0, 1, 0.1}, 0), Error);
+}
+
+}  // namespace
+}  // namespace dapple
