@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 
 /// Rooms in the order in which data passes through them: a room may include itself and earlier
 /// rooms.
-const std::vector<std::string> kHostRooms{"files",  "scene",   "bvh",      "device",
-                                          "camera", "film",    "sampling", "passes",
-                                          "render", "bake",   "compare",  "commands"};
+const std::vector<std::string> kHostRooms{"files",  "scene",    "bvh",     "device", "camera",
+                                          "film",   "sampling", "passes",  "render", "bake",
+                                          "points", "compare",  "commands"};
 const std::vector<std::string> kKernelRooms{"vectors",   "sampling", "geometry", "opacity",
                                             "occlusion", "camera",   "film",     "lights"};
 
@@ -40,7 +40,7 @@ const std::vector<Library> kLibraries{
     {"oneTBB",
      std::regex("tbb/.*"),
      {"host/files/", "host/scene/", "host/bvh/", "host/device/", "host/film/", "host/sampling/",
-      "host/render/", "host/bake/"}},
+      "host/render/", "host/bake/", "host/points/"}},
     {"stb", std::regex("(stb/)?stb_.*"), {"host/scene/images/", "host/film/png."}},
     {"xxHash and zstd", std::regex("xxhash\\.h|zstd\\.h"), {"host/files/"}},
     {"CLI11", std::regex("CLI/.*"), {"host/commands/", "host/main.cpp"}},
