@@ -129,7 +129,7 @@ void run_bake(const BakeArguments& a) {
   catch_interruptions();
   const Stopwatch total;
   BakeSeconds seconds;
-  ProgressBar progress(a.quiet);
+  ProgressBar progress(a.quiet, "baking");
   std::optional<SceneFile> input(std::in_place, a.scene, a.output);
   Scene scene = load_gltf(input->path(), a.scene_options);
   check_outputs_spare(outputs, scene.files);

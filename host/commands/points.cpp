@@ -146,7 +146,7 @@ void run_points(const Arguments& a) {
   if (!a.suns.empty()) options.suns = read_suns(a.suns);
   set_lights(a, scene);
   const double load_seconds = total.seconds();
-  ProgressBar progress(a.quiet);
+  ProgressBar progress(a.quiet, "measuring");
   RenderControl control;
   control.progress = progress.callback();
   const PointResult result =

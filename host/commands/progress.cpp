@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 namespace dapple {
 namespace {
@@ -23,8 +24,9 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(bool quiet)
-    : quiet_(quiet),
+ProgressBar::ProgressBar(bool quiet, std::string verb)
+    : verb_(std::move(verb)),
+      quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
       start_(std::chrono::steady_clock::now()),
       last_(start_) {}
@@ -46,8 +48,8 @@ void ProgressBar::show(double done) {
   const std::string left =
       done > begun_ ? duration_text(elapsed * (1 - done) / (done - begun_)) + " left" : "starting";
   if (!terminal_) {
-    fmt::print(stderr, "rendering{}{}: {:.0f} %, {}\n", what_.empty() ? "" : " ", what_, 100 * done,
-               left);
+    fmt::print(stderr, "{}{}{}: {:.0f} %, {}\n", verb_, what_.empty() ? "" : " ", what_,
+               100 * done, left);
     return;
   }
   const int full = static_cast<int>(done * kWidth);

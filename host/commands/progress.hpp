@@ -1,4 +1,4 @@
-// Shows the progress of a render: on a terminal a bar with the estimated time, elsewhere a line now
+// Shows the progress of a command: on a terminal a bar with the estimated time, elsewhere a line now
 // and then.
 #pragma once
 
@@ -11,8 +11,8 @@ namespace dapple {
 
 class ProgressBar {
  public:
-  /// Prints nothing if `quiet`.
-  explicit ProgressBar(bool quiet);
+  /// Prints nothing if `quiet`. `verb`: what is going on, such as "rendering".
+  ProgressBar(bool quiet, std::string verb);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -27,6 +27,7 @@ class ProgressBar {
   }
 
  private:
+  std::string verb_;
   bool quiet_, terminal_, drawn_ = false;
   std::string what_;
   double begun_ = -1;  ///< progress at the first call of show()

@@ -84,7 +84,7 @@ void print_summary(const RenderStatistics& s, const Frame& frame) {
 void run_render(const RenderArguments& a) {
   RenderOptions options = to_options(a);
   const std::vector<Frame> frames = list_frames(a);
-  ProgressBar progress(a.quiet);
+  ProgressBar progress(a.quiet, "rendering");
   const RenderControl control = to_control(a, progress);
   check_files(frames, a);
   if (!options.cache.empty()) prepare_bvh_cache(options.cache);
