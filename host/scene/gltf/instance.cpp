@@ -118,8 +118,8 @@ int add_mesh_light(const Material& material, const std::string& node_name, Scene
   return static_cast<int>(scene.lights.size()) - 1;
 }
 
-void add_placement(const std::vector<MeshPart>& parts, const M44d& to_world,
-                   int node, const std::string& node_name, Scene& scene) {
+void add_placement(const std::vector<MeshPart>& parts, const M44d& to_world, int node,
+                   const std::string& node_name, Scene& scene) {
   for (const MeshPart& part : parts) {
     Instance instance;
     instance.node = node;
@@ -143,13 +143,13 @@ void warn(const std::string& file, std::uint64_t count, const char* what, Scene&
 void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint64_t unbound,
                     Scene& scene) {
   warn(file, totals.thin_lines,
-       "line primitives are left out: --line-radius R makes strands of them", scene);
-  warn(file, totals.points, "point primitives are left out", scene);
+       "line primitives are ignored: --line-radius R makes strands of them", scene);
+  warn(file, totals.points, "point primitives are ignored", scene);
   warn(file, totals.textured_lines,
        "line primitives have a texture, which is ignored: their factor alone is their opacity",
        scene);
   warn(file, totals.shining_lines, "line primitives emit, which is ignored", scene);
-  warn(file, totals.without_position, "primitives without POSITION are left out", scene);
+  warn(file, totals.without_position, "primitives without POSITION are ignored", scene);
   warn(file, totals.without_texcoord,
        "primitives lack the TEXCOORD of their alpha texture and use its corner", scene);
   warn(file, unbound, "skinned nodes have meshes without JOINTS_0 and WEIGHTS_0, which stay rigid",
