@@ -108,7 +108,7 @@ class PlacedRays {
     }
     for (std::size_t i = 0; i < 15; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        EXPECT_NEAR(a[7 * i + axis], met_[3 * i + axis], 1e-5f) << "ray " << i;
+        EXPECT_NEAR(a[7 * i + axis], hits_[3 * i + axis], 1e-5f) << "ray " << i;
   }
 
  private:
@@ -121,20 +121,20 @@ class PlacedRays {
       block.edge1[axis][i % 8] = edge1[axis];
       block.edge2[axis][i % 8] = edge2[axis];
     }
-    V3f met = vertex + 0.3f * edge1 + 0.4f * edge2;
+    V3f hit = vertex + 0.3f * edge1 + 0.4f * edge2;
     const float* m = instances_[0].to_world;
     const auto row = [&](int r) {
-      return m[4 * r] * met.x + m[4 * r + 1] * met.y + m[4 * r + 2] * met.z + m[4 * r + 3];
+      return m[4 * r] * hit.x + m[4 * r + 1] * hit.y + m[4 * r + 2] * hit.z + m[4 * r + 3];
     };
-    if (placed) met = V3f(row(0), row(1), row(2));
+    if (placed) hit = V3f(row(0), row(1), row(2));
     const V3f direction = V3f(random(), random(), random()).normalized();
-    const V3f origin = met - 3.0f * direction;
+    const V3f origin = hit - 3.0f * direction;
     for (const float value : {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z})
       rays_.push_back(value);
     rays_.push_back(3.0f);
     primitives_.push_back(i);
     placements_.push_back(placed ? 0u : ~0u);
-    met_.insert(met_.end(), {met.x, met.y, met.z});
+    hits_.insert(hits_.end(), {hit.x, hit.y, hit.z});
   }
   /// The last ray lies in the plane of its triangle.
   void add_edge_on() {
@@ -153,7 +153,7 @@ class PlacedRays {
   std::mt19937 random_{5};
   std::vector<TriangleBlock> blocks_;
   std::vector<InstanceRecord> instances_;
-  std::vector<float> rays_, met_;
+  std::vector<float> rays_, hits_;
   std::vector<uint> primitives_, placements_;
 };
 

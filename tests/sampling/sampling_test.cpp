@@ -188,7 +188,7 @@ TEST(Sampling, FramesAreOrthonormalAndRightHandedForEveryNormal) {
   }
 }
 
-TEST(Sampling, ConeDirectionsStayInTheConeAndFillItEvenly) {
+TEST(Sampling, ConeDirectionsStayInTheConeAndFillItUniformly) {
   const auto squares = square_grid(64);
   std::mt19937 random(2);
   for (const float one_minus_cos : {1.08e-5f, 0.01f, 0.5f, 1.0f, 2.0f}) {

@@ -30,7 +30,7 @@ std::vector<BinaryNode> build(std::vector<PrimitiveBox>& boxes) {
   std::vector<PrimitiveBox> second(boxes.size());
   const Splitter splitter(boxes, second, 4);
   Part whole = splitter.all();
-  splitter.bring_home(whole);
+  splitter.move_to_result(whole);
   return build_binary_tree(splitter, whole);
 }
 
