@@ -22,29 +22,29 @@ using namespace kernel_test;
 
 constexpr std::size_t kItem = 64, kBeam = 16;
 
-struct Places {
+struct Positions {
   std::vector<float> x, y;
 };
 
-std::vector<uint> order_of(const Places& places) {
-  const Buffer x = upload(places.x), y = upload(places.y);
+std::vector<uint> order_of(const Positions& positions) {
+  const Buffer x = upload(positions.x), y = upload(positions.y);
   const Buffer order = device().allocate(kItem * sizeof(uint));
   run("film_and_camera", "camera_order", 1, {x, y, order});
   return download<uint>(order, kItem);
 }
 
 /// Samples at the middles of the cells of a grid, row by row; its first corner is (left, top).
-Places grid(int columns, float left, float top, float cell) {
-  Places places;
+Positions grid(int columns, float left, float top, float cell) {
+  Positions positions;
   for (std::size_t i = 0; i < kItem; ++i) {
-    places.x.push_back(left + (static_cast<float>(i % columns) + 0.5f) * cell);
-    places.y.push_back(top + (static_cast<float>(i / columns) + 0.5f) * cell);
+    positions.x.push_back(left + (static_cast<float>(i % columns) + 0.5f) * cell);
+    positions.y.push_back(top + (static_cast<float>(i / columns) + 0.5f) * cell);
   }
-  return places;
+  return positions;
 }
 
 /// The largest width and the largest height of the boxes around the groups of sixteen samples.
-std::pair<float, float> widest(const Places& places, const std::vector<uint>& order) {
+std::pair<float, float> widest(const Positions& positions, const std::vector<uint>& order) {
   std::pair<float, float> widest{0, 0};
   for (std::size_t beam = 0; beam < kItem; beam += kBeam) {
     const auto side = [&](const std::vector<float>& at) {
@@ -55,16 +55,17 @@ std::pair<float, float> widest(const Places& places, const std::vector<uint>& or
       }
       return high - low;
     };
-    widest = {std::max(widest.first, side(places.x)), std::max(widest.second, side(places.y))};
+    widest = {std::max(widest.first, side(positions.x)),
+              std::max(widest.second, side(positions.y))};
   }
   return widest;
 }
 
 TEST(CameraRayOrder, EachSampleIsTakenOnce) {
-  for (const Places& places :
+  for (const Positions& positions :
        {grid(8, 16, 8, 1), grid(64, 3, 5, 1.0f / 64), grid(4, 250, 300, 0.7f),
-        Places{std::vector<float>(kItem, 7.5f), std::vector<float>(kItem, 1.0f)}}) {
-    const std::vector<uint> order = order_of(places);
+        Positions{std::vector<float>(kItem, 7.5f), std::vector<float>(kItem, 1.0f)}}) {
+    const std::vector<uint> order = order_of(positions);
     EXPECT_EQ(std::set<uint>(order.begin(), order.end()).size(), kItem);
     EXPECT_LT(*std::max_element(order.begin(), order.end()), kItem);
   }
@@ -72,8 +73,8 @@ TEST(CameraRayOrder, EachSampleIsTakenOnce) {
 
 TEST(CameraRayOrder, GroupsOfSixteenFillASquareOfATileOrAQuarterOfAPixel) {
   for (const float cell : {1.0f, 1.0f / 8}) {
-    const Places places = grid(8, 24, 16, cell);
-    const auto [width, height] = widest(places, order_of(places));
+    const Positions positions = grid(8, 24, 16, cell);
+    const auto [width, height] = widest(positions, order_of(positions));
     EXPECT_FLOAT_EQ(width, 3 * cell);
     EXPECT_FLOAT_EQ(height, 3 * cell);
   }

@@ -79,14 +79,14 @@ struct Triangle {
   float opacity;
 };
 
-/// Triangles of various sizes in a cube, with opacities from `least` to nine times that.
-std::vector<Triangle> triangle_soup(std::size_t count, float least) {
+/// Triangles of various sizes in a cube, with opacities from `min_opacity` to nine times that.
+std::vector<Triangle> triangle_soup(std::size_t count, float min_opacity) {
   Points random(11);
   std::vector<Triangle> soup;
   for (std::size_t i = 0; i < count; ++i) {
     const float size = 0.05f + random.unit() * 0.6f;
     soup.push_back({random.in_cube(1), random.on_sphere() * size, random.on_sphere() * size,
-                    least * static_cast<float>(1 + i % 9)});
+                    min_opacity * static_cast<float>(1 + i % 9)});
   }
   return soup;
 }

@@ -142,13 +142,13 @@ Scene soup_of_every_material() {
   scene.source = "soup";
   add_every_material(scene, random);
   scene.meshes.push_back(random_triangles(scene, random));
-  const M44f placements[] = {
+  const M44f transforms[] = {
       {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1},
       {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1},
       {0, 3, 0, 0, -0.5f, 0, 0, 0, 0, 0, 1, 0, 0, 1, 1, 1},
       {1, 0, 0, 0, 0.7f, 0.5f, 0.2f, 0, 0, -0.4f, 1, 0, 1, 1, -1, 1},
   };
-  for (const M44f& to_world : placements) scene.instances.push_back({0, to_world, -1});
+  for (const M44f& to_world : transforms) scene.instances.push_back({0, to_world, -1});
   return scene;
 }
 
