@@ -26,7 +26,7 @@ int run(int argc, char** argv) {
       "Example:\n  dapple render scene:demo -o demo.exr --png demo.png"};
   app.set_version_flag("--version", "dapple " DAPPLE_VERSION);
   app.footer(
-      "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 pictures differ,\n"
+      "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 images differ,\n"
       "130, 143 interrupted by SIGINT, SIGTERM.\n"
       "dapple COMMAND --help lists the options of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
     say(error.what());
     return static_cast<int>(error.kind());
   } catch (const std::bad_alloc&) {
-    return say("out of memory; try a smaller picture, fewer rays or a smaller scene");
+    return say("out of memory; try a smaller image, fewer rays or a smaller scene");
   } catch (const std::exception& error) {
     return say(error.what());
   }

@@ -30,19 +30,19 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("SCENE", a.scene, "glTF file or a procedural scene, \"scene:tree?leaves=50000\"");
   app.add_option("--opacity", a.opacity, "MATERIAL=VALUE: that opacity for a material; repeatable");
   auto* nodes = app.add_flag("--nodes-only", a.nodes_only, "Only nodes; needs no OpenCL device");
-  app.add_flag("--images-only", a.images_only, "Only pictures")->excludes(nodes);
+  app.add_flag("--images-only", a.images_only, "Only images")->excludes(nodes);
   app.add_flag("--line", a.line,
                "Only whether AO pops along a line and as the camera is pulled back");
   app.add_flag("--linear", a.linear, "Only time and memory of prefiltering clouds; takes no SCENE");
-  app.add_option("--seeds", a.images.seeds, "Pictures of each footprint")
+  app.add_option("--seeds", a.images.seeds, "Images per footprint")
       ->capture_default_str()
       ->check(CLI::Range(2, 10000));
-  app.add_option("--spp", a.images.render.spp, "Camera samples a pixel")->capture_default_str();
-  app.add_option("--size", a.size, "Width and height of the pictures")->capture_default_str();
+  app.add_option("--spp", a.images.render.spp, "Camera samples per pixel")->capture_default_str();
+  app.add_option("--size", a.size, "Width and height of the images")->capture_default_str();
   app.add_option("--device", a.images.render.device, "Part of an OpenCL device's name");
   app.add_flag("--quick", a.quick, "A tenth of the work: fewer nodes, seeds and pixels");
   app.add_option("--json", a.json, "Write the figures as JSON");
-  app.add_option("--svg", a.svg, "Plot the pictures' errors against the footprint");
+  app.add_option("--svg", a.svg, "Plot the images' errors against the footprint");
   app.footer("Example:\n  dapple-bench accuracy tree.glb --opacity leaf=0.85 --svg tree.svg");
 }
 

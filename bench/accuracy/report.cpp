@@ -77,7 +77,7 @@ std::string images_text(const std::vector<ImageAccuracyRow>& rows) {
            fmt::format("{:.3f}", row.trace_seconds)});
     }
   }
-  return "Pictures, prefiltered minus exact; noise is that of one picture\n" + table_text(cells);
+  return "Images, prefiltered minus exact; noise is that of one image\n" + table_text(cells);
 }
 
 nlohmann::json images_json(const std::vector<ImageAccuracyRow>& rows) {
@@ -98,7 +98,7 @@ nlohmann::json images_json(const std::vector<ImageAccuracyRow>& rows) {
 }
 
 std::string images_svg(const std::vector<ImageAccuracyRow>& rows, const std::string& title) {
-  Plot plot{title, "footprint scale (s: occlusion rays of one picture)", "error", {}};
+  Plot plot{title, "footprint scale (s: occlusion rays of one image)", "error", {}};
   for (std::size_t i = 0; i < rows[0].passes.size(); ++i) {
     const std::string pass = rows[0].passes[i].pass;
     PlotLine bias{pass + ", converged", {}, false, static_cast<int>(i)};

@@ -88,9 +88,9 @@ struct StrandTruth::Embree {
   static void meet(const RTCOccludedFunctionNArguments* arguments) {
     if (!arguments->valid[0]) return;
     Query& query = *reinterpret_cast<Query*>(arguments->context);
-    const StrandSegment& met = segment(arguments->geometryUserPtr, arguments->primID);
-    if (enters(met, V3d(query.ray->origin), V3d(query.ray->direction), query.ray->t_max)) {
-      query.transmittance *= 1.0 - met.opacity;
+    const StrandSegment& hit = segment(arguments->geometryUserPtr, arguments->primID);
+    if (enters(hit, V3d(query.ray->origin), V3d(query.ray->direction), query.ray->t_max)) {
+      query.transmittance *= 1.0 - hit.opacity;
     }
   }
 

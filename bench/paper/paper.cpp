@@ -24,19 +24,19 @@ struct Arguments {
 void add_options(CLI::App& app, Arguments& a) {
   app.add_option("SCENE", a.scenes, "Scenes; default: a tree and a cloud of 2 million triangles");
   app.add_option("--opacity", a.opacity, "MATERIAL=VALUE: that opacity for a material; repeatable");
-  app.add_option("--size", a.size, "Width and height of the pictures")->capture_default_str();
-  app.add_option("--repeats", a.repeats, "Pictures of each variant")
+  app.add_option("--size", a.size, "Width and height of the images")->capture_default_str();
+  app.add_option("--repeats", a.repeats, "Images per variant")
       ->capture_default_str()
       ->check(CLI::Range(2, 1000));
   app.add_option("--device", a.render.device, "Part of an OpenCL device's name");
   app.add_option("--json", a.json, "Write the figures as JSON");
   app.footer(
-      "Lacewell et al. 2008: 5x5 primary samples a pixel, opacity 0.85; seconds of the occlusion "
+      "Lacewell et al. 2008: 5x5 primary samples per pixel, opacity 0.85; seconds of the occlusion "
       "rays alone.\nExample:\n  dapple-bench paper --size 256 --json paper.json");
 }
 
 std::string rows_text(const std::vector<PaperRow>& rows) {
-  std::vector<std::vector<std::string>> cells{{"estimator", "rays a sample", "AO s", "AO noise",
+  std::vector<std::vector<std::string>> cells{{"estimator", "rays per sample", "AO s", "AO noise",
                                                "AO RMSE", "light s", "light noise", "light RMSE"}};
   for (const PaperRow& row : rows) {
     cells.push_back({row.variant.name, fmt::format("{}", row.variant.rays)});
@@ -82,7 +82,7 @@ int run_paper(int argc, char** argv) {
   for (const std::string& spec : a.scenes) {
     PictureScene scene(spec, a.render);
     const auto rows = measure_paper(scene, a.render, a.repeats);
-    fmt::print("{}, {} triangles, {}x{}, 25 primary samples a pixel\n{}\n", spec,
+    fmt::print("{}, {} triangles, {}x{}, 25 primary samples per pixel\n{}\n", spec,
                scene.bvh().statistics.triangles, a.size, a.size, rows_text(rows));
     std::fflush(stdout);
     figures.push_back(

@@ -23,7 +23,7 @@ int choose_camera_splitting(const RenderOptions& options, const Scene& scene, co
 RenderOptions by_sample(const RenderOptions& options);
 
 /// Number of samples that share a camera ray: `options.camera_splitting`, or 1 if that is 0.
-inline std::uint32_t depth_count(const RenderOptions& options) {
+inline std::uint32_t splitting_factor(const RenderOptions& options) {
   return options.camera_splitting > 0 ? static_cast<std::uint32_t>(options.camera_splitting) : 1u;
 }
 

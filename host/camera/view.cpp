@@ -41,7 +41,9 @@ Camera choose_camera(const Scene& scene, const RenderOptions& options,
     }
     return scene.cameras[0];
   }
-  notes.emplace_back("no camera in the scene: framed it; --look-from and --look-at choose another");
+  notes.emplace_back(
+      "no camera in the scene: added one that shows all of it; --look-from and --look-at choose "
+      "another");
   const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
   return options.fov_degrees > 0 ? frame_scene(scene, aspect, radians(options.fov_degrees))
                                  : frame_scene(scene, aspect);
@@ -154,7 +156,7 @@ TexelFootprint texel_footprint(const RenderOptions& options, int spp) {
   if (options.estimator == Estimator::exact || options.footprint == 0) return {};
   const float footprint = options.footprint / static_cast<float>(spp);
   TexelFootprint texels;
-  if (depth_count(options) == 1) {
+  if (splitting_factor(options) == 1) {
     texels.share = texels.spread = kTexelShare * footprint;
     return texels;
   }
@@ -194,7 +196,7 @@ CameraParams camera_params(const View& view, const RenderOptions& options, const
   params.tap_offset = texels.tap_offset;
   params.tap_centring = texels.tap_centring;
   params.medium_error = medium_error(options);
-  params.splitting_bits = static_cast<uint>(std::countr_zero(depth_count(options)));
+  params.splitting_bits = static_cast<uint>(std::countr_zero(splitting_factor(options)));
   set_seen(view, bounds, params);
   return params;
 }

@@ -100,7 +100,7 @@ Run add_compare_command(CLI::App& app) {
   app.add_option("B", a->b, "OpenEXR file to compare it with: the reference")->required();
   app.add_option("--layer", a->layer, "Compare only this layer: RGBA, ao, light.key, ...");
   app.add_option("--png", a->png, "Write a heat map of |A - B|, of --layer or the first layer");
-  app.add_option("--html", a->html, "Write a page with the pictures, heat maps and figures");
+  app.add_option("--html", a->html, "Write a page with the images, heat maps and figures");
   app.add_option("--max-rmse", a->max_rmse,
                  "Exit with 5 when a layer's RMSE is larger (Z, P and samples only by --layer)");
   app.add_option("--scale", a->scale,

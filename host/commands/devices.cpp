@@ -12,7 +12,7 @@ namespace {
 const char* describe(Packets packets) {
   switch (packets) {
     case Packets::pixel:
-      return "occlusion rays in pixel packets, from 16 rays a point (exact: 32) in point packets";
+      return "occlusion rays in pixel packets, from 16 rays per point (exact: 32) in point packets";
     case Packets::point:
       return "occlusion rays in point packets";
     default:

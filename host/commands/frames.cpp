@@ -41,7 +41,7 @@ void check_sequence(const RenderArguments& a) {
   }
   if (a.checkpoint.empty() && a.resume.empty()) return;
   throw Error(ErrorKind::usage,
-              fmt::format("{} is of one picture: leave --frames out and choose it by --frame",
+              fmt::format("{} is for one image: leave --frames out and choose it by --frame",
                           a.checkpoint.empty() ? "--resume" : "--checkpoint"));
 }
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bvh/opacity/opacity_pyramid.hpp"
+#include "bvh/opacity/opacity_mip_levels.hpp"
 #include "commands/command.hpp"
 #include "commands/option_text.hpp"
 #include "commands/shot.hpp"
@@ -47,7 +47,7 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   std::size_t textures = 0;
   if (!bvh.textured.empty()) {
     textures = scene.materials.size() * sizeof(MaterialRecord);
-    for (const Texture& texture : scene.textures) textures += pyramid_texels(texture);
+    for (const Texture& texture : scene.textures) textures += mip_level_texels(texture);
   }
   const std::size_t nodes = bvh.nodes.size() * sizeof(BvhNode);
   const std::size_t triangles =
@@ -126,18 +126,17 @@ std::string report_text(const nlohmann::ordered_json& r) {
   text += fmt::format("  bounds      {} to {} m\n", r["bounds"]["min"].dump(),
                       r["bounds"]["max"].dump());
   text += fmt::format(
-      "  nodes       {}, SAH {:.1f} node visits a ray, {:.0f} % of block lanes used\n",
+      "  nodes       {}, SAH {:.1f} node visits per ray, {:.0f} % of block lanes used\n",
       r["nodes"].dump(), r["sah_node_visits"].get<double>(), 100 * r["lane_use"].get<double>());
   text +=
       fmt::format("  memory      nodes {}, triangles {}, segments {}, textures {}, instances {}\n",
                   bytes_text(number("bytes", "nodes")), bytes_text(number("bytes", "triangles")),
                   bytes_text(number("bytes", "segments")), bytes_text(number("bytes", "textures")),
                   bytes_text(number("bytes", "instances")));
-  text +=
-      fmt::format("  {:<12}{:.1f} bytes of nodes, {:.1f} of blocks, {:.1f} all in\n",
-                  r["segments"]["total"] == 0 ? "a triangle" : "a primitive",
-                  number("bytes_per_triangle", "nodes"), number("bytes_per_triangle", "triangles"),
-                  number("bytes_per_triangle", "all"));
+  text += fmt::format(
+      "  size        {:.1f} bytes of nodes, {:.1f} of blocks, {:.1f} in all per {}\n",
+      number("bytes_per_triangle", "nodes"), number("bytes_per_triangle", "triangles"),
+      number("bytes_per_triangle", "all"), r["segments"]["total"] == 0 ? "triangle" : "primitive");
   text += fmt::format("  seconds     build {:.3f}, prefilter {:.3f}\n", number("seconds", "build"),
                       number("seconds", "prefilter"));
   text += fmt::format("  opacity     {:.3f}, {:.3f}, {:.3f} of the scene's box along x, y, z\n",

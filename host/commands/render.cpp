@@ -115,7 +115,7 @@ void run_render(const RenderArguments& a) {
     statistics.seconds.total = since(start);
     if (!frame.stats_json.empty()) write_statistics(statistics, frame.stats_json);
     if (!result.checkpoint_failure.empty())
-      throw Error(ErrorKind::failed, result.checkpoint_failure + "; the picture is written");
+      throw Error(ErrorKind::failed, result.checkpoint_failure + "; the image is written");
     if (!a.quiet) {
       notes.print(statistics.notes);
       print_summary(statistics, frame);

@@ -13,36 +13,34 @@ namespace {
 
 void add_picture_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
-  app.add_option("--width", o.width, "Picture width, pixels")->capture_default_str();
-  app.add_option("--height", o.height, "Picture height, pixels")->capture_default_str();
+  app.add_option("--width", o.width, "Image width, pixels")->capture_default_str();
+  app.add_option("--height", o.height, "Image height, pixels")->capture_default_str();
   app.add_option(
       "--crop", a.crop,
       "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
-  app.add_option("--spp", a.spp, "Camera samples a pixel; with a target the minimum")
+  app.add_option("--spp", a.spp, "Camera rays per pixel; with a target the minimum")
       ->default_str(fmt::format("{}; 8 with --target-rmse", o.spp));
   app.add_option(
          "--target-error", o.target_error,
-         "Sample each pixel until its estimated standard error is below this; 0: no target. Errors "
-         "of lights are relative to their largest unoccluded irradiance")
+         "Sample each pixel until its estimated standard error is below this; 0: no target. Light "
+         "errors are divided by the largest irradiance without occlusion")
       ->capture_default_str();
   app.add_option(
          "--target-rmse", o.target_rmse,
          "Sample until the root mean square of the pixels' estimated errors is below this in every "
-         "pass; 0: no target. Faster than --target-error to the same mean error, but the errors of "
-         "single pixels differ more")
+         "pass; 0: no target. Reaches the same mean error sooner, with less even errors between "
+         "pixels.")
       ->capture_default_str();
-  app.add_option("--max-spp", o.max_spp, "With a target: the maximum of samples a pixel")
+  app.add_option("--max-spp", o.max_spp, "With a target: the maximum of camera rays per pixel")
       ->capture_default_str();
-  app.add_option(
-         "--camera-splitting", o.camera_splitting,
-         "Samples that share a camera ray, 1, 2 or 4: each is shaded at another surface that the "
-         "ray crosses. Larger factors suit thin leaves and hair; 0: chosen by the scene's "
-         "opacities")
+  app.add_option("--camera-splitting", o.camera_splitting,
+                 "Samples per camera ray (1, 2, 4), each shaded at a different surface on it. "
+                 "Larger values suit thin leaves and hair. 0: automatic, from the opacities.")
       ->capture_default_str();
   app.add_option("--ao-rays", o.ao_rays,
-                 "AO rays a camera ray, shared out among its samples, at least one each")
+                 "AO rays per camera ray, divided among its samples; at least one per sample")
       ->capture_default_str();
-  app.add_option("--light-rays", o.light_rays, "Rays a light and camera sample")
+  app.add_option("--light-rays", o.light_rays, "Rays per light per camera sample")
       ->capture_default_str();
   app.add_option(
          "--estimator", a.estimator,
@@ -60,7 +58,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
       ->capture_default_str();
   app.add_option("--ao-falloff", o.ao_falloff,
-                 "Power p: a surface at t counts (1 - t / distance)^p; 0: a hard limit")
+                 "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
+                 "0: cutoff at D")
       ->capture_default_str();
   app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
 }
@@ -68,7 +67,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
 void add_scene_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
   app.add_option("--camera", o.camera,
-                 "Camera by name; default: the scene's first, or one that frames it");
+                 "Camera by name; default: the scene's first, or one that shows all of it");
   app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
   app.add_option("--look-at", a.look_at, "Where it looks: X,Y,Z");
   app.add_option("--up", a.up, "Its up direction: X,Y,Z; default 0,1,0");
@@ -86,7 +85,7 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
                  "Radius that glTF point lights get, metres")
       ->capture_default_str();
   app.add_option("--line-radius", a.scene_options.line_radius,
-                 "Make strands of this radius, metres, of a glTF file's lines; 0: leave them out")
+                 "Make strands of this radius, metres, of a glTF file's lines; 0: ignore them")
       ->capture_default_str();
   app.add_flag("--allow-outside", a.scene_options.allow_outside,
                "Let a glTF file name buffers and images outside of its folder");
@@ -97,8 +96,9 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
 
 void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& checkpoint = *app.add_option("--checkpoint", a.checkpoint,
-                                            "Save the state of the render to this file, for "
-                                            "--resume; also on interruption and at the end");
+                                            "Write the state of the render to this file, for "
+                                            "--resume. Saved periodically, on interruption and at "
+                                            "the end");
   app.add_option("--checkpoint-every", a.checkpoint_every, "How often, as in 30, 30s, 5m or 1h")
       ->capture_default_str()
       ->needs(&checkpoint);
@@ -109,14 +109,15 @@ void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
 }
 
 void add_motion_options(CLI::App& app, RenderArguments& a) {
-  CLI::Option& frame = *app.add_option(
-      "--frame", a.frame, "Time in seconds at which moving things are shown; default: at rest");
+  CLI::Option& frame =
+      *app.add_option("--frame", a.frame,
+                      "Time in seconds at which moving objects are shown; default: the rest pose");
   CLI::Option& frames =
       *app.add_option("--frames", a.frames,
-                      "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; the outputs "
-                      "have a run of # in place of the number")
+                      "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; write # "
+                      "characters in output names for the frame number")
            ->excludes(&frame);
-  app.add_option("--fps", a.fps, "Frames a second")->capture_default_str()->needs(&frames);
+  app.add_option("--fps", a.fps, "Frames per second")->capture_default_str()->needs(&frames);
   app.add_option("--animation", a.scene_options.animation,
                  "The glTF animation that plays, by name; *: all at once; default: the first");
 }
@@ -137,16 +138,18 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
       ->required();
   app.add_option("-o,--output", a.output, "OpenEXR file to write")->required();
   app.add_option("--png", a.png,
-                 "Also write an 8-bit preview, and with visits a heat map F_visits.png");
+                 "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
+                 "NAME_visits.png");
   add_picture_options(app, a);
   add_scene_options(app, a);
   add_motion_options(app, a);
   add_checkpoint_options(app, a);
   app.add_option("--device", a.options.device,
                  "OpenCL device, by part of its name (see dapple devices)");
-  app.add_option("--packets", a.packets,
-                 "Which occlusion rays are traversed together: auto, by the device; none, single "
-                 "rays; pixel, rays of neighbouring pixels; point, rays of one point")
+  app.add_option(
+         "--packets", a.packets,
+         "Grouping of occlusion rays: none; pixel (neighbouring pixels); point (one point); "
+         "auto (by device)")
       ->capture_default_str();
   app.add_option("--kernel-dir", a.options.kernel_dir,
                  "Read OpenCL kernels from this folder (for developers)");

@@ -23,7 +23,7 @@ std::string rays_line(const char* kind, std::uint64_t rays, double seconds, doub
   const double count = static_cast<double>(rays);
   const std::string speed = seconds > 0 ? fmt::format("{}rays/s", count_text(count / seconds)) : "";
   return fmt::format(
-      "  {:<7} {:>9}rays  {:>13}  {:5.1f} node visits, {:5.1f} triangle tests a ray\n", kind,
+      "  {:<7} {:>9}rays  {:>13}  {:5.1f} node visits, {:5.1f} triangle tests per ray\n", kind,
       count_text(count), speed, visits, tests);
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/layers.hpp"
+#include "compare/layer_pairs.hpp"
 
 namespace dapple {
 

@@ -3,7 +3,7 @@
 // infinity in one film only.
 #pragma once
 
-#include "compare/layers.hpp"
+#include "compare/layer_pairs.hpp"
 #include "film/heat_color.hpp"
 #include "film/png.hpp"
 

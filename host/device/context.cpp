@@ -123,7 +123,7 @@ cl::Program& DeviceContext::State::program(const std::string& file, const Varian
   if (result != CL_SUCCESS) {
     const auto log = built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
     throw Error(ErrorKind::device,
-                fmt::format("{}: the OpenCL compiler of {} refused it ({}):\n{}", file, info.name,
+                fmt::format("{}: the OpenCL compiler of {} rejected it ({}):\n{}", file, info.name,
                             opencl_error_name(result), first_lines(log, 12)));
   }
   known_programs.push_back(known);

@@ -23,15 +23,15 @@ constexpr std::size_t kMaxGrowth = std::size_t{1} << 16;
 
 /// One thread's context and output memory, reused for every frame: allocating memory for each takes
 /// longer than compressing it.
-struct Workshop {
+struct FrameCompressor {
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
   std::size_t capacity = ZSTD_compressBound(kFrame);
   std::unique_ptr<std::byte[]> frame = std::make_unique_for_overwrite<std::byte[]>(capacity);
 };
 
-std::vector<std::byte> compress_frame(Workshop& workshop, Section bytes) {
-  std::byte* frame = workshop.frame.get();
-  const std::size_t size = ZSTD_compressCCtx(workshop.context.get(), frame, workshop.capacity,
+std::vector<std::byte> compress_frame(FrameCompressor& compressor, Section bytes) {
+  std::byte* frame = compressor.frame.get();
+  const std::size_t size = ZSTD_compressCCtx(compressor.context.get(), frame, compressor.capacity,
                                              bytes.data(), bytes.size(), kLevel);
   if (ZSTD_isError(size)) {
     throw Error(ErrorKind::failed, std::string("cannot compress: ") + ZSTD_getErrorName(size));
@@ -43,10 +43,10 @@ std::vector<std::byte> compress_frame(Workshop& workshop, Section bytes) {
 
 std::vector<std::byte> compress(Section bytes) {
   std::vector<std::vector<std::byte>> frames((bytes.size() + kFrame - 1) / kFrame);
-  tbb::enumerable_thread_specific<Workshop> workshops;
+  tbb::enumerable_thread_specific<FrameCompressor> compressors;
   tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
     const std::size_t first = i * kFrame;
-    frames[i] = compress_frame(workshops.local(),
+    frames[i] = compress_frame(compressors.local(),
                                bytes.subspan(first, std::min(kFrame, bytes.size() - first)));
   });
   std::vector<std::byte> all;

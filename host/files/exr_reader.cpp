@@ -142,7 +142,7 @@ ExrImage read_exr_image(const std::string& path, const SeeExrHeader& see_header)
   try {
     return decode(path, see_header);
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorKind::input, path + ": there is not enough memory for its picture");
+    throw Error(ErrorKind::input, path + ": there is not enough memory for its image");
   } catch (const std::exception& problem) {
     throw Error(ErrorKind::input, path + ": " + problem.what());
   }

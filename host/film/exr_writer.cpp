@@ -32,13 +32,13 @@ namespace {
 using Imath::Box2i;
 using Imath::V2i;
 
-constexpr std::size_t kLongestAttributeName = 255;
+constexpr std::size_t kMaxAttributeNameLength = 255;
 constexpr std::string_view kPrefix = "dapple:";
 
 Box2i window_of(const PixelRect& rect) { return {V2i(rect.x0, rect.y0), V2i(rect.x1, rect.y1)}; }
 
 std::string attribute_name(const std::string& name) {
-  return (std::string(kPrefix) + name).substr(0, kLongestAttributeName);
+  return (std::string(kPrefix) + name).substr(0, kMaxAttributeNameLength);
 }
 
 void insert_text(Imf::Header& header, const std::string& name, const std::string& value) {

@@ -35,7 +35,7 @@ void check_film_memory(const View& view, std::size_t light_count) {
   if (needs <= has / 2 || has <= 0) return;
   throw Error(
       ErrorKind::usage,
-      fmt::format("--width {} --height {}: the picture takes {:.1f} GB with {} light{}, and this "
+      fmt::format("--width {} --height {}: the image takes {:.1f} GB with {} light{}, and this "
                   "machine has {:.1f} GB; make it smaller, render parts with --crop, or fewer "
                   "lights with --lights or --passes ao",
                   view.width, view.height, needs / kGigabyte, light_count,

@@ -1,12 +1,11 @@
-// The layout of a picture's running sums on the device, planes of 64-bit fixed point, and their
-// conversion into a film's planes. In: sums and sample counts. Out: planes and statistics. The
-// order of planes is that of kernels/film/film.cl.
+// The layout of an image's running sums on the device, planes of 64-bit fixed point. In: view,
+// options and lights. Out: the position of each plane and its scale. The order of planes is that of
+// kernels/film/film.cl. layers.hpp converts the sums into EXR layers.
 #pragma once
 
 #include <vector>
 
 #include "camera/view.hpp"
-#include "dapple/film.hpp"
 #include "dapple/render.hpp"
 #include "device/context.hpp"
 
@@ -57,13 +56,5 @@ struct FilmLayout {
     return std::size_t{pixels} * squares * sizeof(float);
   }
 };
-
-struct TracedPicture;
-
-/// Makes the film's planes from the means of the sums; docs/layers.md lists their channels. Stores
-/// the numbers of rays, visits and tests, and the errors, in `statistics`.
-std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layout,
-                           const RenderOptions& options, const std::vector<Light>& lights,
-                           RenderStatistics& statistics);
 
 }  // namespace dapple

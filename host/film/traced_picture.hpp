@@ -1,5 +1,5 @@
 // The result of tracing a picture: sums of its samples, which may still be in device memory,
-// numbers of samples, and errors. film_sums.hpp makes the film from it.
+// numbers of samples, and errors. layers.hpp makes the film from it.
 #pragma once
 
 #include <cstddef>

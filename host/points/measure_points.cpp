@@ -6,11 +6,10 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <set>
 
 #include "dapple/error.hpp"
-#include "dapple/film.hpp"
 #include "dapple/points.hpp"
+#include "film/layers.hpp"
 #include "points/periodic.hpp"
 #include "points/ring_rays.hpp"
 #include "render/point_occlusion.hpp"
@@ -77,19 +76,6 @@ struct SceneOfPoints {
   SceneBvh bvh;
   DeviceScene uploaded;
 };
-
-/// Names of the lights for columns, all different.
-std::vector<std::string> light_names(const std::vector<Light>& lights) {
-  std::vector<std::string> names;
-  std::set<std::string> taken;
-  for (const Light& light : lights) {
-    const std::string base = layer_name(light.name);
-    std::string name = base;
-    for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}_{}", base, n);
-    names.push_back(name);
-  }
-  return names;
-}
 
 class Measurement {
  public:

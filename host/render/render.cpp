@@ -15,6 +15,7 @@
 #include "device/programs/compiler_processes.hpp"
 #include "device/upload/memory_need.hpp"
 #include "film/film_memory.hpp"
+#include "film/layers.hpp"
 #include "passes/kernel_list.hpp"
 #include "render/picture.hpp"
 #include "render/resume.hpp"

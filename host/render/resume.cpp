@@ -19,7 +19,7 @@ void require_enough_samples(const std::string& path, const TraceState& state,
   const int asked = adaptive ? options.max_spp : options.spp;
   const auto most =
       (state.samples.empty() ? 0u : *std::max_element(state.samples.begin(), state.samples.end())) /
-      depth_count(options);
+      splitting_factor(options);
   if (most <= static_cast<std::uint32_t>(asked)) return;
   throw Error(ErrorKind::usage,
               fmt::format("--resume {}: has {} samples a pixel already, {} {} asks for fewer", path,
@@ -75,7 +75,7 @@ void write_checkpoints(TraceControl& tracing, const RenderControl& control, Chec
 std::string interruption_note(const TracedPicture& picture, const RenderOptions& options,
                               const RenderControl& control) {
   const double samples = std::accumulate(picture.samples.begin(), picture.samples.end(), 0.0) /
-                         static_cast<double>(picture.samples.size() * depth_count(options));
+                         static_cast<double>(picture.samples.size() * splitting_factor(options));
   const std::string next = control.checkpoint.empty()
                                ? "with --checkpoint F it could go on"
                                : "--resume " + control.checkpoint + " goes on";

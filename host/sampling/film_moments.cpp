@@ -57,8 +57,8 @@ double FilmMoments::largest_unoccluded(const LightPlaneRange& planes, double sca
         const float mean = own[0] / samples, by_others = around[0] / around[1] * own[1] / samples;
         const float error =
             only_pilot ? 0.0f : std::sqrt(variances[p] * DAPPLE_SAMPLE_BATCH / samples);
-        float& most = of_rows[p / static_cast<std::size_t>(width_)];
-        most = std::max({most, mean - error, std::min(mean, by_others)});
+        float& max_of_row = of_rows[p / static_cast<std::size_t>(width_)];
+        max_of_row = std::max({max_of_row, mean - error, std::min(mean, by_others)});
       });
   const double largest = *std::max_element(of_rows.begin(), of_rows.end());
   return largest > 0 ? largest : 1.0;

@@ -35,10 +35,10 @@ std::vector<bool> pilot_pixels(int width, int height) {
   if (squares_of(width, height, cell) < kFewest) return {};
   std::vector<bool> pilot(static_cast<std::size_t>(width) * height, false);
   std::mt19937 random;  // the same everywhere
-  const auto place = [&] { return static_cast<int>(random() % (cell / kSquare)) * kSquare; };
+  const auto offset = [&] { return static_cast<int>(random() % (cell / kSquare)) * kSquare; };
   for (int row = 0; row < height / cell; ++row) {
     for (int column = 0; column < width / cell; ++column) {
-      const int left = column * cell + place(), top = row * cell + place();
+      const int left = column * cell + offset(), top = row * cell + offset();
       for (int y = top; y < top + kSquare; ++y) {
         const auto begin = pilot.begin() + static_cast<std::ptrdiff_t>(y) * width + left;
         std::fill_n(begin, kSquare, true);

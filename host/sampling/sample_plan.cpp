@@ -73,9 +73,9 @@ double sum_of(const std::vector<float>& variances) {
 
 /// As std::min_element(), which compilers do not vectorize.
 std::uint32_t min_of(const std::vector<std::uint32_t>& values) {
-  std::uint32_t least = values.front();
-  for (const std::uint32_t value : values) least = std::min(least, value);
-  return least;
+  std::uint32_t min = values.front();
+  for (const std::uint32_t value : values) min = std::min(min, value);
+  return min;
 }
 
 bool all_equal(const std::vector<std::uint32_t>& values) {

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kLongestKey = 120;  // bytes of a key in a message
+constexpr std::size_t kMaxKeyLength = 120;  // bytes of a key in a message
 
 class StructureCheck : public nlohmann::json_sax<Json> {
  public:
@@ -45,7 +45,7 @@ class StructureCheck : public nlohmann::json_sax<Json> {
   }
   bool key(std::string& key) override {
     if (keys_.back().insert(key).second) return true;
-    defect_ = fmt::format("has the key \"{}\" twice in one object", key.substr(0, kLongestKey));
+    defect_ = fmt::format("has the key \"{}\" twice in one object", key.substr(0, kMaxKeyLength));
     return false;
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {

@@ -5,8 +5,8 @@ namespace dapple {
 namespace {
 
 /// Limits in bytes, because names in a file may be megabytes long.
-constexpr std::size_t kLongestExcerpt = 120;
-constexpr std::size_t kLongestMessage = 1200;
+constexpr std::size_t kMaxExcerptLength = 120;
+constexpr std::size_t kMaxMessageLength = 1200;
 
 /// Returns the first `bytes` of `text` and "...", without an incomplete UTF-8 character at the end.
 std::string shorten(std::string_view text, std::size_t bytes) {
@@ -35,7 +35,7 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-std::string excerpt(std::string_view text) { return shorten(text, kLongestExcerpt); }
+std::string excerpt(std::string_view text) { return shorten(text, kMaxExcerptLength); }
 
 std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
@@ -52,7 +52,7 @@ std::string element(std::string_view kind, std::size_t index, std::string_view n
 }
 
 void fail_with(const std::string& file, const std::string& message) {
-  throw Error(ErrorKind::input, one_line(file + ": " + shorten(message, kLongestMessage)));
+  throw Error(ErrorKind::input, one_line(file + ": " + shorten(message, kMaxMessageLength)));
 }
 
 }  // namespace dapple

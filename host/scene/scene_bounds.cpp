@@ -51,14 +51,14 @@ Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
 }  // namespace
 
 Box3f scene_bounds(const Scene& scene) {
-  std::vector<std::uint32_t> placements(scene.meshes.size(), 0);
-  for (const Instance& instance : scene.instances) ++placements[instance.mesh];
+  std::vector<std::uint32_t> instance_counts(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) ++instance_counts[instance.mesh];
 
   std::vector<Box3f> object_bounds(scene.meshes.size());
   Box3f bounds;
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
-    if (placements[instance.mesh] == 1) {
+    if (instance_counts[instance.mesh] == 1) {
       bounds.extendBy(mesh_bounds(mesh, instance.to_world));
       continue;
     }

@@ -10,7 +10,7 @@
 namespace dapple {
 
 std::vector<std::uint8_t> read_side_file(const std::string& path, const char* kind,
-                                         std::uintmax_t most_bytes) {
+                                         std::uintmax_t max_bytes) {
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorKind::input, path + ": " + what);
   };
@@ -21,8 +21,7 @@ std::vector<std::uint8_t> read_side_file(const std::string& path, const char* ki
   if (!std::filesystem::is_regular_file(status)) fail("is not a regular file");
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) fail(error.message());
-  if (size > most_bytes)
-    fail(fmt::format("has {} bytes; a {} may have {}", size, kind, most_bytes));
+  if (size > max_bytes) fail(fmt::format("has {} bytes; a {} may have {}", size, kind, max_bytes));
   std::vector<std::uint8_t> bytes(size);
   std::ifstream file(path, std::ios::binary);
   if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))

@@ -10,8 +10,8 @@ namespace dapple {
 
 /// Returns the bytes of a regular file. `kind` is the name of the file in errors, as in "lights
 /// file". Throws Error input when the file does not exist, is not a regular file, cannot be read,
-/// or has more than `most_bytes` bytes.
+/// or has more than `max_bytes` bytes.
 std::vector<std::uint8_t> read_side_file(const std::string& path, const char* kind,
-                                         std::uintmax_t most_bytes);
+                                         std::uintmax_t max_bytes);
 
 }  // namespace dapple

@@ -78,7 +78,7 @@ struct RenderOptions {
   bool visits = false;                  ///< make layers of node visits and triangle tests
   float ao_distance = 0.0f;             ///< metres; 0 is no limit
   float ao_falloff = 0.0f;              ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
-  std::string camera;                   ///< by name; empty: the first, or one that frames the scene
+  std::string camera;                   ///< by name; empty: the first, or one that shows it all
   std::optional<LookAt> look;
   float fov_degrees = 0.0f;  ///< vertical; 0: the camera's own, or 40 with `look`
   std::optional<PixelRect> crop;

@@ -52,7 +52,7 @@ struct RenderStatistics {
   } bytes;  ///< device memory by part
   std::string device;
   std::string estimator;
-  std::vector<std::string> notes;  ///< for the user, such as "no camera: framed the scene"
+  std::vector<std::string> notes;  ///< for the user, such as "no camera in the scene: added one"
 };
 
 struct RenderResult {

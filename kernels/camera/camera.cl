@@ -17,20 +17,20 @@ typedef struct ItemHits {
 inline void start_group(CameraParams params, const CameraSamples* chosen, uint first, uint count,
                        ClosestHits16* closest, StochasticHits* stops) {
   for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i)
-    closest->t.f[i] = chosen->place[first + i] < count ? INFINITY : 0.0f;
+    closest->t.f[i] = chosen->index[first + i] < count ? INFINITY : 0.0f;
   stops->count = 1u << params.splitting_bits;
-  float16 least = (float16)(1.0f);
+  float16 min_threshold = (float16)(1.0f);
   for (uint d = 0; d < stops->count; ++d) {
     stops->threshold[d] = vload16(0, chosen->threshold[d] + first);
     stops->t[d].v = (float16)(INFINITY);
     stops->primitive[d].v = stops->instance[d].v = (int16)(0);
-    least = min(least, stops->threshold[d]);
+    min_threshold = min(min_threshold, stops->threshold[d]);
   }
-  start_k_buffer(least, &closest->k_buffer);
+  start_k_buffer(min_threshold, &closest->k_buffer);
   closest->primitive.v = closest->instance.v = (int16)(0);
 }
 
-/* Of the ray in lane `ray` of the points; `of_item` is its place in `chosen`. */
+/* Of the ray in lane `ray` of the points; `of_item` is its index in `chosen`. */
 inline void store_stochastic_hit(const CameraSamples* chosen, uint of_item, uint sample, uint ray, float t,
                        float area, const SurfacePoints16* at, __global SurfacePoint* point) {
   vstore4((float4)(at->position[0].f[ray], at->position[1].f[ray], at->position[2].f[ray], t), 0,
@@ -62,9 +62,9 @@ inline void store_group(Scene scene, const CameraSamples* chosen, uint first, co
     area.v = shares->first_area.v + shares->solid_angle.v * t * t;
     for (uint left = hits; left; left &= left - 1u) {
       const uint ray = lowest_bit(left);
-      const uint place = chosen->place[first + ray] * stops->count + d;
-      store_stochastic_hit(chosen, first + ray, d, ray, stops->t[d].f[ray], area.f[ray], &at, points + place);
-      found->hits[place / DAPPLE_HIT_BITS] |= 1u << place % DAPPLE_HIT_BITS;
+      const uint slot = chosen->index[first + ray] * stops->count + d;
+      store_stochastic_hit(chosen, first + ray, d, ray, stops->t[d].f[ray], area.f[ray], &at, points + slot);
+      found->hits[slot / DAPPLE_HIT_BITS] |= 1u << slot % DAPPLE_HIT_BITS;
     }
   }
 }

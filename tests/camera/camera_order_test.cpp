@@ -22,29 +22,29 @@ using namespace kernel_test;
 
 constexpr std::size_t kItem = 64, kBeam = 16;
 
-struct Places {
+struct Positions {
   std::vector<float> x, y;
 };
 
-std::vector<uint> order_of(const Places& places) {
-  const Buffer x = upload(places.x), y = upload(places.y);
+std::vector<uint> order_of(const Positions& positions) {
+  const Buffer x = upload(positions.x), y = upload(positions.y);
   const Buffer order = device().allocate(kItem * sizeof(uint));
   run("film_and_camera", "camera_order", 1, {x, y, order});
   return download<uint>(order, kItem);
 }
 
 /// Samples at the middles of the cells of a grid, row by row; its first corner is (left, top).
-Places grid(int columns, float left, float top, float cell) {
-  Places places;
+Positions grid(int columns, float left, float top, float cell) {
+  Positions positions;
   for (std::size_t i = 0; i < kItem; ++i) {
-    places.x.push_back(left + (static_cast<float>(i % columns) + 0.5f) * cell);
-    places.y.push_back(top + (static_cast<float>(i / columns) + 0.5f) * cell);
+    positions.x.push_back(left + (static_cast<float>(i % columns) + 0.5f) * cell);
+    positions.y.push_back(top + (static_cast<float>(i / columns) + 0.5f) * cell);
   }
-  return places;
+  return positions;
 }
 
 /// The largest width and the largest height of the boxes around the groups of sixteen samples.
-std::pair<float, float> widest(const Places& places, const std::vector<uint>& order) {
+std::pair<float, float> widest(const Positions& positions, const std::vector<uint>& order) {
   std::pair<float, float> widest{0, 0};
   for (std::size_t beam = 0; beam < kItem; beam += kBeam) {
     const auto side = [&](const std::vector<float>& at) {
@@ -55,16 +55,17 @@ std::pair<float, float> widest(const Places& places, const std::vector<uint>& or
       }
       return high - low;
     };
-    widest = {std::max(widest.first, side(places.x)), std::max(widest.second, side(places.y))};
+    widest = {std::max(widest.first, side(positions.x)),
+              std::max(widest.second, side(positions.y))};
   }
   return widest;
 }
 
 TEST(CameraRayOrder, EachSampleIsTakenOnce) {
-  for (const Places& places :
+  for (const Positions& positions :
        {grid(8, 16, 8, 1), grid(64, 3, 5, 1.0f / 64), grid(4, 250, 300, 0.7f),
-        Places{std::vector<float>(kItem, 7.5f), std::vector<float>(kItem, 1.0f)}}) {
-    const std::vector<uint> order = order_of(places);
+        Positions{std::vector<float>(kItem, 7.5f), std::vector<float>(kItem, 1.0f)}}) {
+    const std::vector<uint> order = order_of(positions);
     EXPECT_EQ(std::set<uint>(order.begin(), order.end()).size(), kItem);
     EXPECT_LT(*std::max_element(order.begin(), order.end()), kItem);
   }
@@ -72,8 +73,8 @@ TEST(CameraRayOrder, EachSampleIsTakenOnce) {
 
 TEST(CameraRayOrder, GroupsOfSixteenFillASquareOfATileOrAQuarterOfAPixel) {
   for (const float cell : {1.0f, 1.0f / 8}) {
-    const Places places = grid(8, 24, 16, cell);
-    const auto [width, height] = widest(places, order_of(places));
+    const Positions positions = grid(8, 24, 16, cell);
+    const auto [width, height] = widest(positions, order_of(positions));
     EXPECT_FLOAT_EQ(width, 3 * cell);
     EXPECT_FLOAT_EQ(height, 3 * cell);
   }
@@ -108,7 +109,7 @@ class PlacedRays {
     }
     for (std::size_t i = 0; i < 15; ++i)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        EXPECT_NEAR(a[7 * i + axis], met_[3 * i + axis], 1e-5f) << "ray " << i;
+        EXPECT_NEAR(a[7 * i + axis], hits_[3 * i + axis], 1e-5f) << "ray " << i;
   }
 
  private:
@@ -121,20 +122,20 @@ class PlacedRays {
       block.edge1[axis][i % 8] = edge1[axis];
       block.edge2[axis][i % 8] = edge2[axis];
     }
-    V3f met = vertex + 0.3f * edge1 + 0.4f * edge2;
+    V3f hit = vertex + 0.3f * edge1 + 0.4f * edge2;
     const float* m = instances_[0].to_world;
     const auto row = [&](int r) {
-      return m[4 * r] * met.x + m[4 * r + 1] * met.y + m[4 * r + 2] * met.z + m[4 * r + 3];
+      return m[4 * r] * hit.x + m[4 * r + 1] * hit.y + m[4 * r + 2] * hit.z + m[4 * r + 3];
     };
-    if (placed) met = V3f(row(0), row(1), row(2));
+    if (placed) hit = V3f(row(0), row(1), row(2));
     const V3f direction = V3f(random(), random(), random()).normalized();
-    const V3f origin = met - 3.0f * direction;
+    const V3f origin = hit - 3.0f * direction;
     for (const float value : {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z})
       rays_.push_back(value);
     rays_.push_back(3.0f);
     primitives_.push_back(i);
     placements_.push_back(placed ? 0u : ~0u);
-    met_.insert(met_.end(), {met.x, met.y, met.z});
+    hits_.insert(hits_.end(), {hit.x, hit.y, hit.z});
   }
   /// The last ray lies in the plane of its triangle.
   void add_edge_on() {
@@ -153,7 +154,7 @@ class PlacedRays {
   std::mt19937 random_{5};
   std::vector<TriangleBlock> blocks_;
   std::vector<InstanceRecord> instances_;
-  std::vector<float> rays_, met_;
+  std::vector<float> rays_, hits_;
   std::vector<uint> primitives_, placements_;
 };
 

@@ -48,7 +48,7 @@ struct Card {
   float side;
 };
 
-Scene cards(const std::vector<Card>& places, bool sharp) {
+Scene cards(const std::vector<Card>& layout, bool sharp) {
   Scene scene;
   scene.source = "cards";
   scene.textures.push_back(blots(sharp));
@@ -59,7 +59,7 @@ Scene cards(const std::vector<Card>& places, bool sharp) {
   material.alpha_texture = 0;
   scene.materials.push_back(material);
   Mesh mesh;
-  for (const Card& card : places) {
+  for (const Card& card : layout) {
     M44f turn;
     turn.setEulerAngles(card.degrees * static_cast<float>(kPi / 180));
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -180,12 +180,12 @@ TEST(FilterTaps, StayOnCardsSmallerThanPixels) {
   // The mean of four mip footprints reaches beyond small cards, hence these tolerances.
   for (const auto& [pixels, tolerance] :
        {std::pair{0.4f, 0.05}, std::pair{1.0f, 0.07}, std::pair{4.0f, 0.02}}) {
-    std::vector<Card> places;
+    std::vector<Card> layout;
     for (int i = 0; i < 400; ++i)
-      places.push_back(
+      layout.push_back(
           {V3f(points.unit() - 0.5f, points.unit() - 0.5f, points.unit() - 0.5f) * 1.8f,
            V3f(points.unit() - 0.5f, points.unit() - 0.5f, 1) * 90, pixels * 2 / 24});
-    Scene scene = cards(places, true);
+    Scene scene = cards(layout, true);
     scene.textures[0] = disk();
     for (V2f& uv : scene.meshes[0].uvs) uv = V2f(0.5f) + (uv - V2f(0.5f)) * 0.25f;
     add_camera(Camera::Kind::orthographic, scene);
@@ -206,12 +206,12 @@ TEST(FilterTaps, StayOnCardsSmallerThanPixels) {
 Scene scattered_cards() {
   Points points(3);
   const auto some = [&](int count, float middle, float side) {
-    std::vector<Card> places;
+    std::vector<Card> layout;
     for (int i = 0; i < count; ++i)
-      places.push_back(
+      layout.push_back(
           {V3f(points.unit() - 0.5f, points.unit() - 0.5f, points.unit() - 0.5f) * middle,
            V3f(points.unit(), points.unit(), points.unit()) * 360, side});
-    return places;
+    return layout;
   };
   Scene scene = cards(some(300, 2.2f, 0.4f), true);
   scene.meshes.push_back(cards(some(700, 1.0f, 0.1f), true).meshes[0]);

@@ -79,14 +79,14 @@ struct Triangle {
   float opacity;
 };
 
-/// Triangles of various sizes in a cube, with opacities from `least` to nine times that.
-std::vector<Triangle> triangle_soup(std::size_t count, float least) {
+/// Triangles of various sizes in a cube, with opacities from `min_opacity` to nine times that.
+std::vector<Triangle> triangle_soup(std::size_t count, float min_opacity) {
   Points random(11);
   std::vector<Triangle> soup;
   for (std::size_t i = 0; i < count; ++i) {
     const float size = 0.05f + random.unit() * 0.6f;
     soup.push_back({random.in_cube(1), random.on_sphere() * size, random.on_sphere() * size,
-                    least * static_cast<float>(1 + i % 9)});
+                    min_opacity * static_cast<float>(1 + i % 9)});
   }
   return soup;
 }
@@ -115,16 +115,16 @@ std::vector<std::pair<double, double>> crossed_by(const Ray& ray,
                                                   const std::vector<Triangle>& soup) {
   const V3d origin(ray.origin[0], ray.origin[1], ray.origin[2]);
   const V3d direction(ray.direction[0], ray.direction[1], ray.direction[2]);
-  std::vector<std::pair<double, double>> met;
+  std::vector<std::pair<double, double>> crossings;
   for (const Triangle& triangle : soup) {
     const V3d e1(triangle.edge1), e2(triangle.edge2), s = origin - V3d(triangle.vertex);
     const V3d p = direction.cross(e2), q = s.cross(e1);
     const double inverse = 1 / e1.dot(p);
     const double u = s.dot(p) * inverse, v = direction.dot(q) * inverse, t = e2.dot(q) * inverse;
-    if (u >= 0 && v >= 0 && u + v <= 1 && t > 0) met.emplace_back(t, 1.0 - triangle.opacity);
+    if (u >= 0 && v >= 0 && u + v <= 1 && t > 0) crossings.emplace_back(t, 1.0 - triangle.opacity);
   }
-  std::sort(met.begin(), met.end());
-  return met;
+  std::sort(crossings.begin(), crossings.end());
+  return crossings;
 }
 
 TEST(KBufferOnDevice, RaysStopAtTheSurfaceThatSortingFinds) {
@@ -135,13 +135,15 @@ TEST(KBufferOnDevice, RaysStopAtTheSurfaceThatSortingFinds) {
     const std::vector<SurfacePoint> hits = closest_hits(device(), scene.uploaded, rays);
     std::size_t differ = 0, missed = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const auto met = crossed_by(rays[i], soup);
+      const auto crossings = crossed_by(rays[i], soup);
       double through = 1;
       std::size_t at = 0;
-      while (at < met.size() && (through *= met[at].second) > threshold_of(rays[i])) ++at;
+      while (at < crossings.size() && (through *= crossings[at].second) > threshold_of(rays[i]))
+        ++at;
       deepest = std::max(deepest, at);
-      missed += at == met.size();
-      differ += at == met.size() ? hits[i].t >= 0 : std::fabs(hits[i].t - met[at].first) > 1e-4;
+      missed += at == crossings.size();
+      differ += at == crossings.size() ? hits[i].t >= 0
+                                       : std::fabs(hits[i].t - crossings[at].first) > 1e-4;
     }
     EXPECT_GT(missed, 50u);
     // Rays that single precision puts on the other side of an edge.

@@ -122,7 +122,8 @@ TEST_F(CacheCommand, AFolderThatCannotBeUsedIsFoundBeforeTheSceneIsRead) {
   EXPECT_EQ(bytes_of(path("cache")), "a file");
 }
 
-/// Starts a shell command in its own process group, and kills its process after that time.
+/// Starts a shell command in its own process group, and kills the whole group after that time:
+/// also the compiler processes that the command may have started.
 void kill_after(const std::string& shell, useconds_t microseconds) {
   const pid_t child = fork();
   if (child == 0) {
@@ -130,8 +131,9 @@ void kill_after(const std::string& shell, useconds_t microseconds) {
     execl("/bin/sh", "sh", "-c", ("exec " + shell).c_str(), nullptr);
     _exit(127);
   }
+  setpgid(child, child);  // here too, so that the group exists before it is killed
   usleep(microseconds);
-  kill(child, SIGKILL);
+  kill(-child, SIGKILL);
   waitpid(child, nullptr, 0);
 }
 

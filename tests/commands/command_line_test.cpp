@@ -350,9 +350,9 @@ TEST_F(CommandLine, InfoAndDevicesTellWhatThereIs) {
   EXPECT_EQ(text_run.code, 0);
   EXPECT_TRUE(contains(text_run.out, "48")) << text_run.out;
   EXPECT_TRUE(contains(text_run.out, "48 translucent")) << text_run.out;
-  EXPECT_TRUE(contains(text_run.out, "  a triangle  ")) << text_run.out;
+  EXPECT_TRUE(contains(text_run.out, " all per triangle")) << text_run.out;
   const Outcome strands = dapple("info 'scene:hair?strands=10'");
-  EXPECT_TRUE(contains(strands.out, "  a primitive ")) << strands.out;
+  EXPECT_TRUE(contains(strands.out, " per primitive")) << strands.out;
   const Outcome devices = dapple("devices");
   EXPECT_EQ(devices.code, 0);
   EXPECT_TRUE(contains(devices.out, "compute units")) << devices.out;

@@ -130,8 +130,8 @@ TEST_F(FramesCommand, WhatMakesNoSenseIsRefusedBeforeAnythingIsRendered) {
   refuses("--frames 1-2 -o 'dir#/out.exr'", "needs a place for the frame's number");
   refuses("--frames 1-2 -o o.#.exr --png p.png", "--png p.png: with --frames");
   refuses("--frames 1-2 -o o.#.exr --stats-json s.json", "--stats-json s.json: with --frames");
-  refuses("--frames 1-2 -o o.#.exr --checkpoint c", "--checkpoint is of one picture");
-  refuses("--frames 1-2 -o o.#.exr --resume c", "--resume is of one picture");
+  refuses("--frames 1-2 -o o.#.exr --checkpoint c", "--checkpoint is for one image");
+  refuses("--frames 1-2 -o o.#.exr --resume c", "--resume is for one image");
   refuses("--frames 1-2 --frame 1 -o o.#.exr", "--frame");
   refuses("--fps 24 -o o.exr", "--frames");
   refuses("--frames 2-1 -o o.#.exr", "--frames 2-1: expected the first frame before the last");

@@ -77,14 +77,14 @@ TEST(DeviceBuffers, ZerosAreZerosAlsoWhereMemoryIsUsedAgain) {
 TEST(PagePool, TwoTakersNeverHaveTheSamePagesAndWhatIsGivenBackIsTakenAgain) {
   PagePool pool;
   std::unique_ptr<Pages> first = pool.take(40'000);
-  const void* const place = first->data();
+  const void* const address = first->data();
   std::memset(first->data(), 255, first->bytes());
   const std::unique_ptr<Pages> second = pool.take(40'000);
-  EXPECT_NE(second->data(), place);
+  EXPECT_NE(second->data(), address);
   pool.give_back(std::move(first));
-  EXPECT_NE(pool.take(80'000)->data(), place) << "of another size";
+  EXPECT_NE(pool.take(80'000)->data(), address) << "of another size";
   const std::unique_ptr<Pages> again = pool.take_zeros(39'999);
-  ASSERT_EQ(again->data(), place);
+  ASSERT_EQ(again->data(), address);
   const auto* bytes = static_cast<const unsigned char*>(again->data());
   EXPECT_EQ(std::count(bytes, bytes + again->bytes(), 0),
             static_cast<std::ptrdiff_t>(again->bytes()));

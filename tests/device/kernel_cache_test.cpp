@@ -110,7 +110,7 @@ TEST_F(KernelCacheFiles, TheFolderOfAKilledProcessGoesAndThatOfALivingOneStays) 
   EXPECT_TRUE(fs::exists(living.path()));
 }
 
-TEST_F(KernelCacheFiles, FoldersOfManyThreadsNeverMeet) {
+TEST_F(KernelCacheFiles, FoldersOfManyThreadsNeverCollide) {
   std::vector<std::thread> threads;
   std::atomic<int> lost = 0;
   for (int t = 0; t < 8; ++t) {

@@ -24,7 +24,7 @@ int count(const std::string& text, const std::string& what) {
 }
 
 /// File and line, according to the #line directives, of the first line that contains `what`.
-std::string place_of(const std::string& text, const std::string& what) {
+std::string location_of(const std::string& text, const std::string& what) {
   std::istringstream lines(text);
   std::string line, file;
   int number = 0;
@@ -51,12 +51,12 @@ TEST_F(KernelSource, IncludesAreExpandedOnceWithTheLinesOfTheirFiles) {
   for (const char* once : {"in_a;", "in_b;", "after_b;", "in_main;", "last;"}) {
     EXPECT_EQ(count(text, once), 1) << once;
   }
-  EXPECT_EQ(place_of(text, "// first"), "\"main.cl\":1");
-  EXPECT_EQ(place_of(text, "in_a;"), "\"a.clh\":1");
-  EXPECT_EQ(place_of(text, "in_b;"), "\"b.clh\":3");
-  EXPECT_EQ(place_of(text, "after_b;"), "\"a.clh\":3");
-  EXPECT_EQ(place_of(text, "in_main;"), "\"main.cl\":4");
-  EXPECT_EQ(place_of(text, "last;"), "\"main.cl\":6");
+  EXPECT_EQ(location_of(text, "// first"), "\"main.cl\":1");
+  EXPECT_EQ(location_of(text, "in_a;"), "\"a.clh\":1");
+  EXPECT_EQ(location_of(text, "in_b;"), "\"b.clh\":3");
+  EXPECT_EQ(location_of(text, "after_b;"), "\"a.clh\":3");
+  EXPECT_EQ(location_of(text, "in_main;"), "\"main.cl\":4");
+  EXPECT_EQ(location_of(text, "last;"), "\"main.cl\":6");
 }
 
 TEST_F(KernelSource, EveryBuiltInKernelExpandsCompletely) {

@@ -100,7 +100,7 @@ TEST_F(OpenclFailure, LeavesTheDeviceUsable) {
 
 // Pixel packets take their work by tickets, which the host and the device both count. Both counts
 // must agree after a failure, even of the first write of the device's count.
-TEST_F(OpenclFailure, LeavesTurnsInStep) {
+TEST_F(OpenclFailure, LeavesHostAndDeviceTicketsEqual) {
   const Scene scene = make_procedural("scene:cloud?leaves=300&opacity=0.5");
   const SceneBvh bvh = build_bvh(scene);
   const auto rays = scene_test::rays_through(bvh.bounds, 700, 5, 0, 1);

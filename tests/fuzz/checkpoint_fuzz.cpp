@@ -86,8 +86,8 @@ void write_any(FuzzedDataProvider& data) {
 
 /// A file that is similar to a checkpoint: its numbers are in or near the valid ranges.
 void write_likely(FuzzedDataProvider& data) {
-  const auto number = [&](std::uint32_t most) {
-    return data.ConsumeBool() ? data.ConsumeIntegralInRange<std::uint32_t>(0, most)
+  const auto number = [&](std::uint32_t max) {
+    return data.ConsumeBool() ? data.ConsumeIntegralInRange<std::uint32_t>(0, max)
                               : data.ConsumeIntegral<std::uint32_t>();
   };
   TraceState state;

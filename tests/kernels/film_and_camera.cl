@@ -11,12 +11,12 @@ __kernel void camera_order(__global const float* x, __global const float* y,
   for (uint i = 0; i < DAPPLE_ITEM_RAYS; ++i) {
     samples.x[i] = x[i];
     samples.y[i] = y[i];
-    samples.place[i] = i;
+    samples.index[i] = i;
     samples.pixel[i] = samples.sample[i] = 0u;
     samples.threshold[0][i] = 0.0f;
   }
   sort_samples(&samples, 1u, &sorted);
-  for (uint i = 0; i < DAPPLE_ITEM_RAYS; ++i) order[i] = sorted.place[i];
+  for (uint i = 0; i < DAPPLE_ITEM_RAYS; ++i) order[i] = sorted.index[i];
 }
 
 /* Rounds to fixed point: eight values an item, already scaled. */
@@ -53,12 +53,12 @@ __kernel void placed_points(__global const TriangleBlock* blocks,
   for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i) {
     const float3 origin = vload3(0, rays + 7u * i), direction = vload3(0, rays + 7u * i + 3u);
     const SurfaceHit hit = {rays[7u * i + 6u], primitives[i], placements[i]};
-    const WorldPoint place = point_of_hit(scene, hit, origin, direction);
-    float3 normal = normalize(place.normal);
+    const WorldPoint point = point_of_hit(scene, hit, origin, direction);
+    float3 normal = normalize(point.normal);
     if (dot(normal, direction) > 0.0f) normal = -normal;
-    vstore3(place.position, 0, alone + 7u * i);
+    vstore3(point.position, 0, alone + 7u * i);
     vstore3(normal, 0, alone + 7u * i + 3u);
-    alone[7u * i + 6u] = place.offset;
+    alone[7u * i + 6u] = point.offset;
     for (uint axis = 0; axis < 3u; ++axis) {
       together[7u * i + axis] = at.position[axis].f[i];
       together[7u * i + 3u + axis] = at.normal[axis].f[i];

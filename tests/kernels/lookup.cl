@@ -8,11 +8,11 @@ __kernel void look_up(__global const TextureRecord* textures, __global const uch
   if (item >= count) return;
   const TextureRecord record = textures[texture];
   const TextureShapes shapes = {record.width, record.height, record.flags};
-  const TexelAddresses places = find_texels(&shapes, uvs[2u * item], uvs[2u * item + 1u]);
+  const TexelAddresses addresses = find_texels(&shapes, uvs[2u * item], uvs[2u * item + 1u]);
   __global const uchar* first = texels + (ulong)record.offset * 16u;
   float16 texel[4];
-  for (uint k = 0; k < 4u; ++k) texel[k] = first[places.index[k].s0];
-  alphas[item] = mix_texels(texel, &places).s0;
+  for (uint k = 0; k < 4u; ++k) texel[k] = first[addresses.index[k].s0];
+  alphas[item] = mix_texels(texel, &addresses).s0;
 }
 
 /* In: barycentric coordinates; out: opacity of the textured triangle `triangle`. */
@@ -26,21 +26,21 @@ __kernel void look_up_triangle(__global const TexturedTriangle* textured,
   TexturedHits hits;
   hits.count = 0u;
   /* Other lookups before and after it must have no effect. */
-  const uint place = item % DAPPLE_LOOKUPS;
-  for (uint i = 0; i <= place; ++i) {
-    const float2 at = vload2(item - place + i, barycentrics);
+  const uint lane = item % DAPPLE_LOOKUPS;
+  for (uint i = 0; i <= lane; ++i) {
+    const float2 at = vload2(item - lane + i, barycentrics);
     add_hit(&hits, -1.0f - (float)triangle, at.x, at.y, 0.0f);
   }
   float opacity[DAPPLE_LOOKUPS];
   vstore16(look_up_opacities(scene, &hits), 0, opacity);
   const float2 at = vload2(item, barycentrics);
   const float16 alone =
-      look_up_on_triangle(scene, 1u << place, -1.0f - (float)triangle, at.x, at.y, 0.0f, 0);
+      look_up_on_triangle(scene, 1u << lane, -1.0f - (float)triangle, at.x, at.y, 0.0f, 0);
   const float of_lane[DAPPLE_LOOKUPS] = {
       alone.s0, alone.s1, alone.s2, alone.s3, alone.s4, alone.s5, alone.s6, alone.s7,
       alone.s8, alone.s9, alone.sa, alone.sb, alone.sc, alone.sd, alone.se, alone.sf};
   /* The vector and the scalar lookup must agree. */
-  opacities[item] = of_lane[place] == opacity[place] ? opacity[place] : NAN;
+  opacities[item] = of_lane[lane] == opacity[lane] ? opacity[lane] : NAN;
 }
 
 /* In: textured triangles; out: u, v and alpha, interpolated at each corner. */

@@ -28,9 +28,9 @@ constexpr Strata kStrata{64, 64};
 /// Fails if a prefiltered step exceeds the exact one by more than kInvisible and `errors` standard
 /// errors.
 void expect_steady(const std::vector<Step>& found, const std::string& what, double errors) {
-  const LargestSteps most = largest(found);
+  const LargestSteps max = largest(found);
   std::printf("%s: largest step exact %.4f, prefiltered %.4f, beyond exact %+.4f (+- %.4f)\n",
-              what.c_str(), most.exact, most.prefiltered, most.excess, most.error);
+              what.c_str(), max.exact, max.prefiltered, max.excess, max.error);
   for (std::size_t i = 0; i < found.size(); ++i) {
     ASSERT_LE(found[i].excess(), kInvisible + errors * found[i].error)
         << what << ", step " << i << ": exact " << found[i].exact << ", prefiltered "
@@ -110,8 +110,8 @@ TEST(Popping, OcclusionOfATreeChangesLittleMoreThanExactDoesAsTheCameraIsPulledB
   std::vector<Frame> unsteady = traced(1);
   const std::vector<Frame> others = traced(65536);
   for (std::size_t i = 1; i < unsteady.size(); i += 2) unsteady[i] = others[i];
-  const LargestSteps most = largest(steps(exact, unsteady));
-  EXPECT_GT(most.excess, kInvisible);
+  const LargestSteps max = largest(steps(exact, unsteady));
+  EXPECT_GT(max.excess, kInvisible);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bvh/build/coincident_triangles.hpp"
-#include "bvh/opacity/opacity_pyramid.hpp"
+#include "bvh/opacity/opacity_mip_levels.hpp"
 #include "support/scene_on_device.hpp"
 
 namespace dapple {
@@ -75,8 +75,9 @@ std::vector<Ray> rays_at_texels(int level, float scale = 1) {
 }
 
 /// The opacity of the mip level where the ray hits the card.
-float expected_opacity(const OpacityPyramid& pyramid, const Ray& ray, int level, float scale = 1) {
-  const OpacityPyramid::Level& at = pyramid.levels()[static_cast<std::size_t>(level)];
+float expected_opacity(const OpacityMipLevels& mip_levels, const Ray& ray, int level,
+                       float scale = 1) {
+  const OpacityMipLevels::Level& at = mip_levels.levels()[static_cast<std::size_t>(level)];
   const int x = static_cast<int>(ray.origin[0] / scale * static_cast<float>(at.width));
   const int y = static_cast<int>(ray.origin[1] / scale * static_cast<float>(at.height));
   return at.opacity[static_cast<std::size_t>(y) * at.width + x];
@@ -93,12 +94,14 @@ TEST(MipFootprint, IsTheLargestSquareThatTheFootprintCovers) {
       const DeviceScene uploaded = upload(chosen, scene, bvh);
       // Blended surfaces multiply by the factor last, cut-outs before the threshold.
       const bool blended = mode == AlphaMode::blend;
-      const OpacityPyramid pyramid(scene.textures[0], blended ? 1.0f : 0.9f, blended ? -1 : 0.4f);
+      const OpacityMipLevels mip_levels(scene.textures[0], blended ? 1.0f : 0.9f,
+                                        blended ? -1 : 0.4f);
       for (const int level : {0, 1, 2, 3, 4}) {
         const auto rays = rays_at_texels(level);
         const auto found = trace(chosen, uploaded, rays, Estimator::prefiltered, 1.0f);
         for (std::size_t i = 0; i < rays.size(); ++i) {
-          const float opacity = (blended ? 0.9f : 1.0f) * expected_opacity(pyramid, rays[i], level);
+          const float opacity =
+              (blended ? 0.9f : 1.0f) * expected_opacity(mip_levels, rays[i], level);
           ASSERT_NEAR(found[i].transmittance, 1 - opacity, kCode)
               << "level " << level << ", traced " << static_cast<int>(packets);
         }
@@ -109,11 +112,11 @@ TEST(MipFootprint, IsTheLargestSquareThatTheFootprintCovers) {
 
 TEST(MipFootprint, IsAtMostAnEighthOfTheTriangle) {
   const SceneOnDevice scene(card(AlphaMode::blend));
-  const OpacityPyramid pyramid(scene.scene.textures[0], 1, -1);
+  const OpacityMipLevels mip_levels(scene.scene.textures[0], 1, -1);
   const auto rays = rays_at_texels(5);  // squares of 1024 texels; a triangle has 2048
   const auto found = scene.trace(rays, Estimator::prefiltered);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    ASSERT_NEAR(found[i].transmittance, 1 - 0.9 * expected_opacity(pyramid, rays[i], 4), kCode);
+    ASSERT_NEAR(found[i].transmittance, 1 - 0.9 * expected_opacity(mip_levels, rays[i], 4), kCode);
 }
 
 TEST(MipFootprint, IsNotUsedForExactRaysNorForZeroFootprints) {
@@ -139,13 +142,13 @@ TEST(MipFootprint, IsMeasuredInTheSpaceOfInstances) {
   const float scale = 8;
   placed.instances[0].to_world.setScale(scale);
   const SceneOnDevice scene(std::move(placed));
-  const OpacityPyramid pyramid(scene.scene.textures[0], 1, -1);
+  const OpacityMipLevels mip_levels(scene.scene.textures[0], 1, -1);
   for (const int level : {1, 3}) {
     const auto rays = rays_at_texels(level, scale);
     const auto found = scene.trace(rays, Estimator::prefiltered);
     for (std::size_t i = 0; i < rays.size(); ++i)
       ASSERT_NEAR(found[i].transmittance,
-                  1 - 0.9 * expected_opacity(pyramid, rays[i], level, scale), kCode);
+                  1 - 0.9 * expected_opacity(mip_levels, rays[i], level, scale), kCode);
   }
 }
 

@@ -311,7 +311,7 @@ struct EmbreeOracle::Embree {
     const Segment* segment;
     std::uint64_t key;
     double transmittance;
-    std::vector<unsigned> met;
+    std::vector<unsigned> intersected;
   };
 
   static Query& query_of(const RTCFilterFunctionNArguments* arguments) {
@@ -340,8 +340,9 @@ struct EmbreeOracle::Embree {
     arguments->valid[0] = 0;
     if (leaves_strand(arguments)) return;
     const unsigned primitive = query.embree->primitive_of(arguments);
-    if (std::find(query.met.begin(), query.met.end(), primitive) == query.met.end()) {
-      query.met.push_back(primitive);
+    if (std::find(query.intersected.begin(), query.intersected.end(), primitive) ==
+        query.intersected.end()) {
+      query.intersected.push_back(primitive);
       query.transmittance *= 1 - query.embree->opacity(primitive, *query.segment);
     }
     if (query.transmittance < kBlack) arguments->valid[0] = -1;

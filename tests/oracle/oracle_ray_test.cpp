@@ -28,16 +28,16 @@ bool is_a_neighbours(const EmbreeOracle& oracle, const Segment& segment, double 
   Random random(3);
   float largest = std::isfinite(segment.t_max) ? segment.t_max : 0;
   for (int k = 0; k < 3; ++k) largest = std::max(largest, std::fabs(segment.origin[k]));
-  double least = 1, most = 0;
+  double min = 1, max = 0;
   for (int i = 0; i < 256; ++i) {
     Segment neighbour = segment;
     neighbour.origin = V3f(V3d(segment.origin) + random.direction() * (kRounding * largest));
     neighbour.t_max *= static_cast<float>(1 + kRounding * random.between(-1, 1));
     const double transmittance = oracle.transmittance(neighbour);
-    least = std::min(least, transmittance);
-    most = std::max(most, transmittance);
+    min = std::min(min, transmittance);
+    max = std::max(max, transmittance);
   }
-  return ours >= least - tolerance && ours <= most + tolerance;
+  return ours >= min - tolerance && ours <= max + tolerance;
 }
 
 struct Disagreement {
@@ -142,13 +142,13 @@ Scene soup_of_every_material() {
   scene.source = "soup";
   add_every_material(scene, random);
   scene.meshes.push_back(random_triangles(scene, random));
-  const M44f placements[] = {
+  const M44f transforms[] = {
       {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1},
       {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1},
       {0, 3, 0, 0, -0.5f, 0, 0, 0, 0, 0, 1, 0, 0, 1, 1, 1},
       {1, 0, 0, 0, 0.7f, 0.5f, 0.2f, 0, 0, -0.4f, 1, 0, 1, 1, -1, 1},
   };
-  for (const M44f& to_world : placements) scene.instances.push_back({0, to_world, -1});
+  for (const M44f& to_world : transforms) scene.instances.push_back({0, to_world, -1});
   return scene;
 }
 

@@ -130,8 +130,8 @@ TEST(OracleStrands, CameraHitsAgreeWithEmbree) {
     ++hits;
     const V3f place(film.find("P.X")->pixels[p], film.find("P.Y")->pixels[p],
                     film.find("P.Z")->pixels[p]);
-    const auto met = oracle.first_hit({eye, (place - eye).normalized()}, p);
-    different += !met || (met->position - V3d(place)).length() > 0.25 * kRadius;
+    const auto hit = oracle.first_hit({eye, (place - eye).normalized()}, p);
+    different += !hit || (hit->position - V3d(place)).length() > 0.25 * kRadius;
   }
   EXPECT_GT(hits, 1000u);
   EXPECT_LE(different, hits / 50);  // grazing rays

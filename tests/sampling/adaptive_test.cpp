@@ -46,17 +46,17 @@ TEST(AdaptiveSampling, EveryPixelEndsBelowTheTargetOrAtTheMaximum) {
   const auto& samples = channel(result, "samples");
   const auto &ao = channel(result, "error.ao"), &light = channel(result, "error.light.key");
   std::uint64_t total = 0;
-  float least = 1e9f, most = 0;
+  float min = 1e9f, max = 0;
   for (std::size_t p = 0; p < samples.size(); ++p) {
     EXPECT_EQ(std::fmod(samples[p], static_cast<float>(DAPPLE_SAMPLE_BATCH)), 0) << p;
     EXPECT_TRUE(samples[p] >= 512 || (ao[p] <= 0.0301f && light[p] <= 0.0301f)) << p;
-    least = std::min(least, samples[p]);
-    most = std::max(most, samples[p]);
+    min = std::min(min, samples[p]);
+    max = std::max(max, samples[p]);
     total += static_cast<std::uint64_t>(samples[p]);
   }
-  EXPECT_EQ(least, 16) << "sky needs no more than the least";
-  EXPECT_GT(most, 64) << "leaves do";
-  EXPECT_LE(most, 512);
+  EXPECT_EQ(min, 16) << "sky needs no more than the minimum";
+  EXPECT_GT(max, 64) << "leaves do";
+  EXPECT_LE(max, 512);
   EXPECT_EQ(result.statistics.rays.camera, total) << "the samples layer tells the truth";
 }
 
@@ -127,9 +127,9 @@ TEST(AdaptiveSampling, ByRmseTheSamplesLayerIsRightAndTheSkyHasTheMinimum) {
   options.target_rmse = 0.01f;
   const RenderResult result = draw(options);
   const auto& samples = channel(result, "samples");
-  const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
-  EXPECT_EQ(*least, 8);
-  EXPECT_GT(*most, 100);
+  const auto [min, max] = std::minmax_element(samples.begin(), samples.end());
+  EXPECT_EQ(*min, 8);
+  EXPECT_GT(*max, 100);
   EXPECT_EQ(result.statistics.rays.camera,
             static_cast<std::uint64_t>(std::accumulate(samples.begin(), samples.end(), 0.0)));
 }
@@ -174,9 +174,9 @@ TEST(AdaptiveSampling, AHalvedTargetTakesAboutFourTimesTheSamples) {
   const double coarse = static_cast<double>(draw(options).statistics.rays.camera);
   options.target_error = 0.02f;
   const double fine = static_cast<double>(draw(options).statistics.rays.camera);
-  const double least = 16.0 * options.width * options.height;
-  EXPECT_GT((fine - least) / (coarse - least), 3.0);
-  EXPECT_LT((fine - least) / (coarse - least), 8.0);
+  const double min_samples = 16.0 * options.width * options.height;
+  EXPECT_GT((fine - min_samples) / (coarse - min_samples), 3.0);
+  EXPECT_LT((fine - min_samples) / (coarse - min_samples), 8.0);
 }
 
 TEST(AdaptiveSampling, InvalidOptionsAreRefused) {

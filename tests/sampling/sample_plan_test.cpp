@@ -178,7 +178,7 @@ TEST(PilotPixels, AreSquaresAllOverThePicture) {
   const int width = 130, height = 75;
   const std::vector<bool> pilot = pilot_pixels(width, height);
   ASSERT_EQ(pilot.size(), 130u * 75u);
-  std::set<std::pair<int, int>> places;
+  std::set<std::pair<int, int>> positions;
   for (int top = 0; top + 8 <= height; top += 8) {
     for (int left = 0; left + 8 <= width; left += 8) {
       std::vector<std::pair<int, int>> of_cell;
@@ -189,10 +189,10 @@ TEST(PilotPixels, AreSquaresAllOverThePicture) {
       ASSERT_EQ(of_cell.size(), 16u);
       EXPECT_EQ(of_cell.back().first - of_cell.front().first, 3);
       EXPECT_EQ(of_cell.back().second - of_cell.front().second, 3);
-      places.insert(of_cell.front());
+      positions.insert(of_cell.front());
     }
   }
-  EXPECT_EQ(places.size(), 4u) << "no grid that a scene could hide from";
+  EXPECT_EQ(positions.size(), 4u) << "no grid that a scene could hide from";
 }
 
 TEST(PilotPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {

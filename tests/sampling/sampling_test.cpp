@@ -146,14 +146,14 @@ TEST(Sampling, AVogelSpiralsPointsAreAGoldenAngleApartInRingsOfOneArea) {
   for (const auto& [jitter, turn] :
        {std::pair{0.0f, 0u}, {0.5f, 0x20000000u}, {0.999f, 0xdfffffffu}, {0.25f, 0x7fffffffu}}) {
     run("sampling", "vogel_points", kCount, {disk, jitter, turn, kCount});
-    const auto places = download<V2f>(disk, kCount);
+    const auto points = download<V2f>(disk, kCount);
     for (uint k = 0; k < kCount; ++k) {
       const double radius = std::sqrt((k + double{jitter}) / kCount);
       const double angle = turn / 0x1p32 * 2 * kPi + golden * k;
       // The kernels' golden angle, in units of 2^-32 of a turn, is off by 0.43 units.
       const double off = 1e-6 + k * 1e-9;
-      ASSERT_NEAR(places[k].x, radius * std::cos(angle), off) << k << " turned by " << turn;
-      ASSERT_NEAR(places[k].y, radius * std::sin(angle), off) << k << " turned by " << turn;
+      ASSERT_NEAR(points[k].x, radius * std::cos(angle), off) << k << " turned by " << turn;
+      ASSERT_NEAR(points[k].y, radius * std::sin(angle), off) << k << " turned by " << turn;
     }
   }
 }
@@ -188,7 +188,7 @@ TEST(Sampling, FramesAreOrthonormalAndRightHandedForEveryNormal) {
   }
 }
 
-TEST(Sampling, ConeDirectionsStayInTheConeAndFillItEvenly) {
+TEST(Sampling, ConeDirectionsStayInTheConeAndFillItUniformly) {
   const auto squares = square_grid(64);
   std::mt19937 random(2);
   for (const float one_minus_cos : {1.08e-5f, 0.01f, 0.5f, 1.0f, 2.0f}) {

@@ -144,14 +144,14 @@ struct LargestSteps {
 };
 
 inline LargestSteps largest(const std::vector<Step>& steps) {
-  LargestSteps most;
+  LargestSteps max;
   for (const Step& step : steps) {
-    most.exact = std::max(most.exact, std::fabs(step.exact));
-    most.prefiltered = std::max(most.prefiltered, std::fabs(step.prefiltered));
-    most.excess = std::max(most.excess, step.excess());
-    most.error = std::max(most.error, step.error);
+    max.exact = std::max(max.exact, std::fabs(step.exact));
+    max.prefiltered = std::max(max.prefiltered, std::fabs(step.prefiltered));
+    max.excess = std::max(max.excess, step.excess());
+    max.error = std::max(max.error, step.error);
   }
-  return most;
+  return max;
 }
 
 }  // namespace dapple::popping

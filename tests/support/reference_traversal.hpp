@@ -105,7 +105,7 @@ class ReferenceTraversal {
     const float sum = facing.x + facing.y + facing.z;
     const float mean_chord = c.size.x * c.size.y * c.size.z / (sum + 1e-37f);
     const float longest = sum / (std::max({facing.x, facing.y, facing.z}) + 1e-37f);
-    const bool thin = mean_chord <= DAPPLE_THINNEST * c.leave;
+    const bool thin = mean_chord <= DAPPLE_MIN_THICKNESS * c.leave;
     const float chord =
         thin ? 1.0f : std::min((c.leave - c.enter) / (mean_chord + 1e-37f), longest);
     float depths[3], correlations[3];

@@ -44,9 +44,9 @@ TEST_P(Lanes, OpenedNodesArePushedInOrderAndLeavesAreNot) {
     for (uint slot = 0; slot < 8; ++slot) {
       const bool inner = pattern >> slot & 1, opened = pattern >> (8 + slot) & 1;
       if (inner && opened) {
-        const uint place = expected[0]++;
-        expected[1 + place] = next;
-        expected[9 + place] = slot + 1;
+        const uint index = expected[0]++;
+        expected[1 + index] = next;
+        expected[9 + index] = slot + 1;
       }
       next += inner;
     }

@@ -16,7 +16,7 @@ struct BinaryNode {
   std::uint32_t right;         ///< index of the right child; the left is the next node; 0: a leaf
 };
 
-/// Splits `whole`, which must be in Splitter::home(), down to leaves. Parents come before their
+/// Splits `whole`, which must be in Splitter::result(), down to leaves. Parents come before their
 /// children.
 std::vector<BinaryNode> build_binary_tree(const Splitter& splitter, const Part& whole);
 

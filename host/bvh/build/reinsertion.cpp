@@ -33,7 +33,7 @@ struct LinkedNode {
 };
 
 /// A new sibling for a subtree, and the decrease of the sum of areas.
-struct Place {
+struct Insertion {
   std::uint32_t node = 0;
   float gain = 0;
 };
@@ -53,7 +53,7 @@ struct Effort {
 /// Updates `best` with the best sibling among `top` and the nodes below, within the remaining
 /// effort.
 inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candidate top,
-                       Effort& effort, Place& best) {
+                       Effort& effort, Insertion& best) {
   std::vector<Candidate>& waiting = effort.waiting;
   waiting.assign(1, top);
   for (; !waiting.empty() && effort.looks > 0; --effort.looks) {
@@ -75,8 +75,8 @@ inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candida
 /// Returns the best new sibling of node `moved`; node 0 if it should stay where it is. Its parent
 /// must not be the root.
 DAPPLE_MULTIVERSION
-Place find_place(const LinkedNode* nodes, std::uint32_t moved, Effort& effort) {
-  Place best;
+Insertion find_insertion(const LinkedNode* nodes, std::uint32_t moved, Effort& effort) {
+  Insertion best;
   std::uint32_t below = nodes[moved].parent;
   float gain = nodes[below].area;
   std::uint32_t sibling = nodes[below].other_than(moved);
@@ -114,8 +114,8 @@ class Reinsertion {
     for (const std::uint32_t node : order) {
       if (too_deep_ || effort_.looks == 0) return;
       if (nodes_[node].parent == 0) continue;
-      const Place place = find_place(nodes_.data(), node, effort_);
-      if (place.node != 0) move(node, place.node);
+      const Insertion insertion = find_insertion(nodes_.data(), node, effort_);
+      if (insertion.node != 0) move(node, insertion.node);
     }
   }
 

@@ -72,7 +72,8 @@ Part Splitter::all() const {
   std::vector<Part> measured(blocks, part);
   tbb::parallel_for(0u, blocks, [&](std::uint32_t b) {
     const std::uint32_t first = b * kBlock;
-    measure(home_ + first, std::min(kBlock, count_ - first), measured[b].box, measured[b].centres2);
+    measure(result_ + first, std::min(kBlock, count_ - first), measured[b].box,
+            measured[b].centres2);
   });
   for (const Part& block : measured) {
     part.box.add(block.box);
@@ -103,7 +104,7 @@ void Splitter::split(Part& part, Part& right) const {
     const Split split = best_split(bins, binning.used);
     if (split.axis < 0 || part.depth >= kDeepest) return halve(part, right);
     PrimitiveBox* const prims = at(part);
-    PrimitiveBox* const aside = (part.away ? home_ : second_) + part.first;
+    PrimitiveBox* const aside = (part.in_scratch ? result_ : scratch_) + part.first;
     Box8 centres2[2];
     centres2[0].clear();
     centres2[1].clear();
@@ -168,7 +169,7 @@ void Splitter::split_in_parallel(Part& part, Part& right) const {
     }
   }
   const std::uint32_t left_count = left_before[blocks];
-  PrimitiveBox* const to = (part.away ? home_ : second_) + part.first;
+  PrimitiveBox* const to = (part.in_scratch ? result_ : scratch_) + part.first;
   struct Sides {
     Box8 centres2[2];
   };
@@ -179,7 +180,7 @@ void Splitter::split_in_parallel(Part& part, Part& right) const {
               to + left_count + (b * kBlock - left_before[b]), sides[b].centres2);
   });
   divide(part, right, left_count);
-  part.away = right.away = !part.away;
+  part.in_scratch = right.in_scratch = !part.in_scratch;
   part.centres2 = sides[0].centres2[0];
   right.centres2 = sides[0].centres2[1];
   for (const Sides& block : sides) {
@@ -189,10 +190,10 @@ void Splitter::split_in_parallel(Part& part, Part& right) const {
   join_bins(all, split, binning.used, part.box, right.box);
 }
 
-void Splitter::bring_home(Part& part) const {
-  if (!part.away) return;
-  std::copy_n(second_ + part.first, part.count, home_ + part.first);
-  part.away = false;
+void Splitter::move_to_result(Part& part) const {
+  if (!part.in_scratch) return;
+  std::copy_n(scratch_ + part.first, part.count, result_ + part.first);
+  part.in_scratch = false;
 }
 
 }  // namespace dapple

@@ -12,21 +12,22 @@ namespace dapple {
 struct Part {
   Box8 box, centres2;
   std::uint32_t first = 0, count = 0;
-  float area = 0;         ///< half_area() of the box
-  int depth = 0;          ///< splits above
-  unsigned left_set = 0;  ///< for few primitives: bit i is set if primitive i goes left
-  bool leaf = false;      ///< one primitive, or not more expensive than two leaves
-  bool away = false;      ///< whether its primitives are in the second array
+  float area = 0;           ///< half_area() of the box
+  int depth = 0;            ///< splits above
+  unsigned left_set = 0;    ///< for few primitives: bit i is set if primitive i goes left
+  bool leaf = false;        ///< one primitive, or not more expensive than two leaves
+  bool in_scratch = false;  ///< whether its primitives are in the scratch array
 };
 
 /// Splits by the surface area heuristic. The result does not depend on threads.
 class Splitter {
  public:
-  /// Reorders `home`; `second`, of the same size, is scratch memory. Both must outlive the object.
-  Splitter(std::span<PrimitiveBox> home, std::span<PrimitiveBox> second, std::uint32_t leaf_size)
-      : home_(home.data()),
-        second_(second.data()),
-        count_(static_cast<std::uint32_t>(home.size())),
+  /// Reorders `result`; `scratch`, of the same size, is scratch memory. Both must outlive the
+  /// object.
+  Splitter(std::span<PrimitiveBox> result, std::span<PrimitiveBox> scratch, std::uint32_t leaf_size)
+      : result_(result.data()),
+        scratch_(scratch.data()),
+        count_(static_cast<std::uint32_t>(result.size())),
         leaf_size_(leaf_size) {}
 
   [[nodiscard]] Part all() const;
@@ -35,10 +36,10 @@ class Splitter {
   /// parallel.
   void split(Part& part, Part& right) const;
 
-  /// The array that holds all primitives at the end. bring_home() copies the primitives of a part
-  /// to it.
-  [[nodiscard]] std::span<PrimitiveBox> home() const { return {home_, count_}; }
-  void bring_home(Part& part) const;
+  /// The array that holds all primitives at the end. move_to_result() copies the primitives of a
+  /// part to it.
+  [[nodiscard]] std::span<PrimitiveBox> result() const { return {result_, count_}; }
+  void move_to_result(Part& part) const;
 
  private:
   void split_few(Part& part, Part& right) const;
@@ -47,10 +48,10 @@ class Splitter {
   /// Sets area, leaf and left_set.
   void judge(Part& part) const;
   [[nodiscard]] PrimitiveBox* at(const Part& part) const {
-    return (part.away ? second_ : home_) + part.first;
+    return (part.in_scratch ? scratch_ : result_) + part.first;
   }
 
-  PrimitiveBox *home_, *second_;
+  PrimitiveBox *result_, *scratch_;
   std::uint32_t count_, leaf_size_;
 };
 

@@ -64,24 +64,24 @@ NodeOpacity instance_opacity(const ObjectSummary& object, const M44f& to_world,
 }
 
 /// An instance that can be hit: what the top level stores of it.
-struct Placement {
+struct PlacedInstance {
   Box3f box;
   NodeOpacity opacity;
   InstanceRecord record;
 };
 
-Placement place(const Instance& instance, const ObjectSummary& object, std::uint32_t root) {
-  Placement placement;
-  placement.box = world_box(object.parts, instance.to_world);
-  placement.opacity = instance_opacity(object, instance.to_world, placement.box);
-  InstanceRecord& record = placement.record;
+PlacedInstance place(const Instance& instance, const ObjectSummary& object, std::uint32_t root) {
+  PlacedInstance placed_instance;
+  placed_instance.box = world_box(object.parts, instance.to_world);
+  placed_instance.opacity = instance_opacity(object, instance.to_world, placed_instance.box);
+  InstanceRecord& record = placed_instance.record;
   store_rows(instance.to_world, record.to_world);
   store_rows(instance.to_world.inverse(), record.to_object);
   record.inverse_area_scale = static_cast<float>(1.0 / matrix_scale(instance.to_world));
   record.root = root;
   record.light = static_cast<std::uint32_t>(instance.light + 1);
   record.spare = 0;
-  return placement;
+  return placed_instance;
 }
 
 /// Returns the coverage and the normals of a top-level node, and sets the opacities below it.
@@ -89,7 +89,7 @@ Placement place(const Instance& instance, const ObjectSummary& object, std::uint
 /// along the rotated axes.
 std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
                                                     const std::vector<PrimitiveBox>& order,
-                                                    const std::vector<Placement>& placed,
+                                                    const std::vector<PlacedInstance>& placed,
                                                     std::vector<BvhNode>& nodes,
                                                     std::uint32_t index) {
   const WideNode& wide = tree.nodes[index];
@@ -123,7 +123,7 @@ struct TopLevel {
 
 /// Builds the BVH over instances, with one instance per leaf. `first_node`: number of nodes that
 /// precede it in the scene.
-TopLevel build_top(const std::vector<Placement>& placed, std::size_t first_node) {
+TopLevel build_top(const std::vector<PlacedInstance>& placed, std::size_t first_node) {
   std::vector<PrimitiveBox> boxes;
   for (std::uint32_t i = 0; i < placed.size(); ++i)
     boxes.push_back(primitive_box(placed[i].box, i));
@@ -159,7 +159,7 @@ std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
   BvhStatistics& statistics = bvh.statistics;
   bvh.bounds.makeEmpty();
   statistics.instanced_triangles = statistics.instanced_segments = 0;
-  std::vector<Placement> placed;
+  std::vector<PlacedInstance> placed;
   std::uint32_t object_stack = 0;
   for (const Instance& instance : scene.instances) {
     const ObjectSummary& object = objects[instance.mesh];

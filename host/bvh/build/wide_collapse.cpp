@@ -25,8 +25,8 @@ CheapestNodes::Ways CheapestNodes::ways_of(const BinaryNode& node, const Ways& l
   Ways ways;
   ways.cost.fill(std::numeric_limits<float>::infinity());
   ways.left_children.fill(1);  // also valid if areas are infinite
-  const unsigned most = std::min<unsigned>(node.count, DAPPLE_BVH_WIDTH);
-  for (unsigned children = 2; children <= most; ++children) {
+  const unsigned max_children = std::min<unsigned>(node.count, DAPPLE_BVH_WIDTH);
+  for (unsigned children = 2; children <= max_children; ++children) {
     for (unsigned on_left = 1; on_left < children; ++on_left) {
       const float cost = left.cost[on_left - 1] + right.cost[children - on_left - 1];
       if (cost >= ways.cost[children - 1]) continue;
@@ -35,8 +35,8 @@ CheapestNodes::Ways CheapestNodes::ways_of(const BinaryNode& node, const Ways& l
     }
   }
   // A subtree may have fewer children than the maximum, but a node has at least two.
-  const float divided = ways.cost[most - 1];
-  ways.left_children[DAPPLE_BVH_WIDTH - 1] = ways.left_children[most - 1];
+  const float divided = ways.cost[max_children - 1];
+  ways.left_children[DAPPLE_BVH_WIDTH - 1] = ways.left_children[max_children - 1];
   const float as_leaf = node.count <= leaf_size_ ? leaf_cost(node.area, node.count)
                                                  : std::numeric_limits<float>::infinity();
   ways.cost[0] = std::min(as_leaf, divided + node.area);
@@ -55,19 +55,20 @@ CheapestNodes::Children CheapestNodes::children_of(std::uint32_t node) const {
   return children;
 }
 
-void CheapestNodes::add_children(std::uint32_t node, unsigned most, Children& children) const {
+void CheapestNodes::add_children(std::uint32_t node, unsigned max_children,
+                                 Children& children) const {
   const auto& cost = ways_[node].cost;
-  while (most > 1 && cost[most - 1] == cost[most - 2]) --most;
-  if (most > 1)
-    divide(node, most, children);
+  while (max_children > 1 && cost[max_children - 1] == cost[max_children - 2]) --max_children;
+  if (max_children > 1)
+    divide(node, max_children, children);
   else
     children.node[children.count++] = node;
 }
 
-void CheapestNodes::divide(std::uint32_t node, unsigned most, Children& children) const {
-  const unsigned on_left = ways_[node].left_children[most - 1];
+void CheapestNodes::divide(std::uint32_t node, unsigned max_children, Children& children) const {
+  const unsigned on_left = ways_[node].left_children[max_children - 1];
   add_children(node + 1, on_left, children);
-  add_children(tree_[node].right, most - on_left, children);
+  add_children(tree_[node].right, max_children - on_left, children);
 }
 
 }  // namespace dapple

@@ -38,8 +38,8 @@ class CheapestNodes {
   };
 
   [[nodiscard]] Ways ways_of(const BinaryNode& node, const Ways& left, const Ways& right) const;
-  void add_children(std::uint32_t node, unsigned most, Children& children) const;
-  void divide(std::uint32_t node, unsigned most, Children& children) const;
+  void add_children(std::uint32_t node, unsigned max_children, Children& children) const;
+  void divide(std::uint32_t node, unsigned max_children, Children& children) const;
 
   std::span<const BinaryNode> tree_;
   std::uint32_t leaf_size_;

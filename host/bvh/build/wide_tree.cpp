@@ -96,7 +96,8 @@ class Growth {
 
 std::vector<BinaryNode> binary_subtree(const Splitter& splitter, const Part& whole) {
   std::vector<BinaryNode> binary = build_binary_tree(splitter, whole);
-  if (splitter.home().size() <= kMaxReinserted) reinsert_subtrees(kRounds, splitter.home(), binary);
+  if (splitter.result().size() <= kMaxReinserted)
+    reinsert_subtrees(kRounds, splitter.result(), binary);
   return binary;
 }
 
@@ -111,7 +112,7 @@ Branch grow_branch(const Splitter& splitter, Part& whole, std::uint32_t leaf_siz
   Branch branch;
   branch.tree.nodes.emplace_back();
   if (whole.count <= kTaskPrimitives) {
-    splitter.bring_home(whole);
+    splitter.move_to_result(whole);
     const std::vector<BinaryNode> binary = binary_subtree(splitter, whole);
     branch.tree.nodes.reserve(whole.count / 8 + 1);
     branch.tree.children.reserve(whole.count + 1);
@@ -126,7 +127,7 @@ Branch grow_branch(const Splitter& splitter, Part& whole, std::uint32_t leaf_siz
   for (unsigned i = 0; i < parts.count; ++i) {
     Part& part = parts.part[i];
     children[i] = {part.box.box(), part.first, part.leaf ? part.count : 0};
-    if (part.leaf) splitter.bring_home(part);
+    if (part.leaf) splitter.move_to_result(part);
     if (!part.leaf) inner.push_back(&part);
   }
   branch.tree.nodes[0] =

@@ -52,7 +52,7 @@ inline bool scale_partial_cells(const CellTriangle& triangle, Tally& tally,
   }
   if (partial_sum <= 0.0f) return false;
   const float scale = std::max(0.0f, triangle.area - full_sum) / partial_sum;
-  const bool fills_more = largest_of(tally.largest) * scale > 1.0f;
+  const bool fills_more = max_of(tally.largest) * scale > 1.0f;
   const Row zero{}, one = zero + 1.0f;
   tally = {};
   for (int row = triangle.row0; row <= triangle.row1; ++row) {

@@ -13,7 +13,7 @@ using Row = float __attribute__((vector_size(kMapSize * sizeof(float))));
 inline void load_row(const float* from, Row& row) { std::memcpy(&row, from, sizeof row); }
 inline void store_row(float* to, const Row& row) { std::memcpy(to, &row, sizeof row); }
 
-inline void keep_least(Row& row, const Row& other) { row = row < other ? row : other; }
+inline void keep_min(Row& row, const Row& other) { row = row < other ? row : other; }
 
 /// Adds one half of the vector to the other, repeatedly: a chain of four additions, not sixteen.
 inline float sum_of(const Row& row) {
@@ -24,13 +24,13 @@ inline float sum_of(const Row& row) {
   return sum[0] + sum[1];
 }
 
-inline float largest_of(const Row& row) {
-  Row most = row;
-  const auto take = [&most](const Row& other) { most = most > other ? most : other; };
-  take(__builtin_shufflevector(most, most, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
-  take(__builtin_shufflevector(most, most, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
-  take(__builtin_shufflevector(most, most, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13));
-  return most[0] > most[1] ? most[0] : most[1];
+inline float max_of(const Row& row) {
+  Row max = row;
+  const auto take = [&max](const Row& other) { max = max > other ? max : other; };
+  take(__builtin_shufflevector(max, max, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
+  take(__builtin_shufflevector(max, max, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
+  take(__builtin_shufflevector(max, max, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13));
+  return max[0] > max[1] ? max[0] : max[1];
 }
 
 }  // namespace dapple

@@ -168,20 +168,20 @@ void merge_rows(const Rows& rows, const CellRanges& child, int axis, const Cells
     if (row >= overlapped.first && row <= overlapped.last) {
       Row both;
       load_row(&overlap[row * kMapSize], both);
-      keep_least(both, f);
-      keep_least(both, covered);
+      keep_min(both, f);
+      keep_min(both, covered);
       const Row independent = hidden * added;
       Row smaller = hidden * f;
-      keep_least(smaller, added * covered);
+      keep_min(smaller, added * covered);
       Row twice =
           both * (independent + enclosed * (smaller - independent)) / (covered * f + 1e-20f);
-      keep_least(twice, hidden);
-      keep_least(twice, added);
+      keep_min(twice, hidden);
+      keep_min(twice, added);
       now -= twice;
       all -= both;
     }
-    keep_least(now, one);
-    keep_least(all, one);
+    keep_min(now, one);
+    keep_min(all, one);
     store_row(&map[row * kMapSize], one - now);
     store_row(&map_covered[row * kMapSize], all);
   }

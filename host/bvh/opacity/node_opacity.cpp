@@ -68,7 +68,7 @@ using Four = float __attribute__((vector_size(16)));
 using FourInts = int __attribute__((vector_size(16)));
 
 Four all(float x) { return Four{x, x, x, x}; }
-Four least(Four a, Four b) { return a < b ? a : b; }
+Four smallest(Four a, Four b) { return a < b ? a : b; }
 Four largest(Four a, Four b) { return a > b ? a : b; }
 Four magnitude(Four x) { return largest(x, -x); }
 Four root(Four x) {
@@ -78,7 +78,7 @@ Four root(Four x) {
 /// Returns exp(-x) for x >= 0. The relative error is at most 4e-6 for x up to 16; x above 87 counts
 /// as 87.
 Four exp_of_minus(Four x) {
-  const Four octaves = least(x, all(87.0f)) * std::numbers::log2e_v<float>;
+  const Four octaves = smallest(x, all(87.0f)) * std::numbers::log2e_v<float>;
   const FourInts whole = __builtin_convertvector(octaves + 0.5f, FourInts);
   // Taylor's series of 2^rest for rest in [-1/2, 1/2].
   const Four rest = __builtin_convertvector(whole, Four) - octaves;
@@ -99,8 +99,8 @@ struct FourVectors {
 Four chord_variances(const FourVectors& facing) {
   // The mean square follows from the covariogram of the box: the integral over the longest chord of
   // prod (1 - q_k s), where q_k is the share of side k that this chord spans.
-  const Four most = largest(largest(facing.x, facing.y), largest(facing.z, all(1e-37f)));
-  const Four per = 1.0f / most;
+  const Four longest = largest(largest(facing.x, facing.y), largest(facing.z, all(1e-37f)));
+  const Four per = 1.0f / longest;
   const Four qx = facing.x * per, qy = facing.y * per, qz = facing.z * per;
   const Four e1 = qx + qy + qz, e2 = qx * qy + qy * qz + qz * qx, e3 = qx * qy * qz;
   return largest(all(0.0f),
@@ -114,7 +114,7 @@ Four depth_variances(Four depth, Four chords, float mass_concentration) {
   // The share of a chord's deviation from the mean chord that counts: chord_depth().
   constexpr float kPerDepth = 1.0f / (DAPPLE_FILLED_DEPTH - DAPPLE_SPARSE_DEPTH);
   const Four counted =
-      least(largest((DAPPLE_FILLED_DEPTH - depth) * kPerDepth, all(0.0f)), all(1.0f));
+      smallest(largest((DAPPLE_FILLED_DEPTH - depth) * kPerDepth, all(0.0f)), all(1.0f));
   return chords * counted * counted * (1.0f + 1.3f * mass_concentration) +
          0.17f * mass_concentration * mass_concentration;
 }
@@ -131,12 +131,12 @@ Four mean_transmittances(Four depth, Four variance) {
 }  // namespace
 
 unsigned variance_class(const NodeOpacity& opacity) {
-  float greatest = 0, most = 0;
+  float greatest = 0, max_opacity = 0;
   for (int axis = 0; axis < 3; ++axis) {
     greatest += opacity.axes[axis] * (1.0f - opacity.axes[axis]);
-    most = std::max(most, opacity.axes[axis]);
+    max_opacity = std::max(max_opacity, opacity.axes[axis]);
   }
-  const float square = std::max(opacity.clumping * greatest / 3, std::pow(most, 4.0f));
+  const float square = std::max(opacity.clumping * greatest / 3, std::pow(max_opacity, 4.0f));
   unsigned of_seven = 0;
   for (float limit = DAPPLE_MIN_VARIANCE; of_seven < DAPPLE_NOT_UNIFORM && !(square <= limit);
        limit *= 2)
@@ -184,8 +184,8 @@ class DirectionalOpacity {
 
   struct Views {
     Four facing;   ///< projected area of the box
-    Four met;      ///< mean opacity of rays by the kernels' model
-    Four slope;    ///< derivative of `met` by a factor on depths
+    Four model;    ///< mean opacity of rays by the kernels' model
+    Four slope;    ///< derivative of `model` by a factor on depths
     Four opacity;  ///< mean opacity that rays should have
   };
 
@@ -201,7 +201,7 @@ class DirectionalOpacity {
     // are empty: mass concentration reduces the variance.
     const Four even = 1.0f - mean_transmittances(depth, (1.0f - mass_concentration_) *
                                                             depth_variances(depth, chords, 0.0f));
-    const Four clump = least(blend(axes_, seen, area), all(1.0f));
+    const Four clump = smallest(blend(axes_, seen, area), all(1.0f));
     views.opacity = even + clumping_ * (clump - even);
     return views;
   }
@@ -257,7 +257,7 @@ float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
   // Occluded area summed over directions: the wanted area minus the area by the depths, and the
   // derivative of the latter by the factor.
   const Four wanted =
-      of_axes * (axes.opacity - axes.met) + of_diagonals * (diagonals.opacity - diagonals.met);
+      of_axes * (axes.opacity - axes.model) + of_diagonals * (diagonals.opacity - diagonals.model);
   const Four changed = of_axes * axes.slope + of_diagonals * diagonals.slope;
   const float wanting = wanted[0] + wanted[1] + wanted[2] + wanted[3];
   const float slope = changed[0] + changed[1] + changed[2] + changed[3];

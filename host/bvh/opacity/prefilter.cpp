@@ -21,7 +21,7 @@ constexpr std::uint32_t kTaskPrimitives = 2048;
 constexpr float kNearlySolid = 0.9f;
 
 uchar encode_depth(float depth) {
-  return static_cast<uchar>(std::lround(std::sqrt(depth / DAPPLE_GREATEST_DEPTH) * 255.0f));
+  return static_cast<uchar>(std::lround(std::sqrt(depth / DAPPLE_MAX_DEPTH) * 255.0f));
 }
 
 /// Maximum number of primitives of a leaf.
@@ -269,17 +269,17 @@ V3f grown_opacity(const V3f& axes, const Box3f& exact, const Box3f& box) {
 
 /// Returns the code nearest to `correlation` whose lowest bit is `bit`.
 schar encode_correlation(float correlation, unsigned bit) {
-  const int last = static_cast<int>(bit), most = 126 + last;
+  const int last = static_cast<int>(bit), max = 126 + last;
   const auto half =
       static_cast<int>(std::lround((127.0f * correlation - static_cast<float>(bit)) / 2));
-  return static_cast<schar>(std::clamp(2 * half + last, -most, most));
+  return static_cast<schar>(std::clamp(2 * half + last, -max, max));
 }
 
 void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
                   const V3f& correlation, unsigned opacity_variance) {
   for (int axis = 0; axis < 3; ++axis) {
     node.depth[axis][slot] =
-        encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_GREATEST_DEPTH));
+        encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_MAX_DEPTH));
     node.correlation[axis][slot] =
         encode_correlation(correlation[axis], opacity_variance >> axis & 1u);
   }

@@ -100,8 +100,8 @@ TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::ui
 
 TextureIntegrals::Key TextureIntegrals::key_of(const TexturedCorners& corners) const {
   // The mean of a blended texture is linear in the factor, which is applied later. The mean of a
-  // cut-out texture is not, so there is a pyramid for each factor. The factor is the mean over the
-  // corners, rounded.
+  // cut-out texture is not, so there are mip levels for each factor. The factor is the mean over
+  // the corners, rounded.
   const Material& material = materials_[corners.material];
   const float cutoff = cutoff_of(material);
   if (cutoff < 0.0f) return {material.alpha_texture, 1.0f, -1.0f};
@@ -121,17 +121,17 @@ TextureIntegrals::TextureIntegrals(const Scene& scene, std::span<const TexturedT
   }
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  pyramids_.reserve(keys.size());
+  mip_levels_.reserve(keys.size());
   for (const Key& key : keys) {
-    pyramids_.emplace_back(key,
-                           OpacityPyramid(scene.textures[key.texture], key.factor, key.cutoff));
+    mip_levels_.emplace_back(key,
+                             OpacityMipLevels(scene.textures[key.texture], key.factor, key.cutoff));
   }
 }
 
-const OpacityPyramid* TextureIntegrals::find(const Key& key) const {
-  const auto at = std::lower_bound(pyramids_.begin(), pyramids_.end(), key,
+const OpacityMipLevels* TextureIntegrals::find(const Key& key) const {
+  const auto at = std::lower_bound(mip_levels_.begin(), mip_levels_.end(), key,
                                    [](const auto& entry, const Key& k) { return entry.first < k; });
-  return at != pyramids_.end() && at->first == key ? &at->second : nullptr;
+  return at != mip_levels_.end() && at->first == key ? &at->second : nullptr;
 }
 
 float TextureIntegrals::mean(const TexturedTriangle& triangle, float u, float v,
@@ -141,12 +141,12 @@ float TextureIntegrals::mean(const TexturedTriangle& triangle, float u, float v,
   const float cutoff = cutoff_of(materials_[corners.material]);
   const float alpha = materials_[corners.material].alpha *
                       (corners.alpha[0] * w + corners.alpha[1] * u + corners.alpha[2] * v);
-  const OpacityPyramid* pyramid = corners.has_texture ? find(key_of(corners)) : nullptr;
-  if (!pyramid) return thresholded(alpha, cutoff);
+  const OpacityMipLevels* mip_levels = corners.has_texture ? find(key_of(corners)) : nullptr;
+  if (!mip_levels) return thresholded(alpha, cutoff);
   const auto& [a, b, c] = corners.uv;
-  const V2f e1 = (b - a) * pyramid->size(), e2 = (c - a) * pyramid->size();
+  const V2f e1 = (b - a) * mip_levels->size(), e2 = (c - a) * mip_levels->size();
   const float texels = 0.5f * std::fabs(e1.x * e2.y - e1.y * e2.x) * share;
-  const float mean = pyramid->mean(a * w + b * u + c * v, std::sqrt(texels));
+  const float mean = mip_levels->mean(a * w + b * u + c * v, std::sqrt(texels));
   return cutoff < 0.0f ? std::clamp(mean * alpha, 0.0f, 1.0f) : mean;
 }
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "bvh/opacity/opacity_pyramid.hpp"
+#include "bvh/opacity/opacity_mip_levels.hpp"
 #include "bvh/storage/textured_triangle.hpp"
 #include "dapple/scene.hpp"
 
@@ -39,7 +39,7 @@ TexturedTriangle textured_triangle(const Scene& scene, const Mesh& mesh, std::ui
 /// Mean opacities of parts of textured triangles.
 class TextureIntegrals {
  public:
-  /// Makes the mip pyramids that the `textured` triangles need, each once. `scene` must outlive
+  /// Makes the mip levels that the `textured` triangles need, each once. `scene` must outlive
   /// this object.
   TextureIntegrals(const Scene& scene, std::span<const TexturedTriangle> textured);
 
@@ -54,10 +54,10 @@ class TextureIntegrals {
     auto operator<=>(const Key&) const = default;
   };
   [[nodiscard]] Key key_of(const TexturedCorners& corners) const;
-  [[nodiscard]] const OpacityPyramid* find(const Key& key) const;
+  [[nodiscard]] const OpacityMipLevels* find(const Key& key) const;
 
   const std::vector<Material>& materials_;
-  std::vector<std::pair<Key, OpacityPyramid>> pyramids_;  ///< sorted by key
+  std::vector<std::pair<Key, OpacityMipLevels>> mip_levels_;  ///< sorted by key
 };
 
 }  // namespace dapple

@@ -50,14 +50,14 @@ bool nodes_are_sound(const FinishedObject& object) {
 
 /// Whether all opacities are in [0,1] or refer to existing textured triangles. False for NaN.
 bool blocks_are_sound(const FinishedObject& object) {
-  const float least = -static_cast<float>(object.textured.size());
+  const float min = -static_cast<float>(object.textured.size());
   const tbb::blocked_range<std::size_t> all(0, object.blocks.size(), 4096);
   return tbb::parallel_reduce(
       all, true,
       [&](const auto& range, bool sound) {
         for (std::size_t b = range.begin(); sound && b < range.end(); ++b) {
           for (const float opacity : object.blocks[b].opacity) {
-            sound &= opacity >= least && opacity <= 1.0f && (opacity >= 0.0f || opacity <= -1.0f);
+            sound &= opacity >= min && opacity <= 1.0f && (opacity >= 0.0f || opacity <= -1.0f);
           }
         }
         return sound;

@@ -11,7 +11,7 @@ namespace {
 int step_power(float size) {
   int power = -126;
   if (size > 0.0f) {
-    power = static_cast<int>(std::ceil(std::log2(double{size} / (DAPPLE_GREATEST_GRID_CODE - 1))));
+    power = static_cast<int>(std::ceil(std::log2(double{size} / (DAPPLE_MAX_GRID_CODE - 1))));
   }
   return std::clamp(power, -126, 127);
 }
@@ -33,12 +33,12 @@ void set_grid(SegmentBlock& block, const Box3f& points) {
 
 ushort grid_code(const SegmentBlock& block, float coordinate, int axis) {
   const double steps = (double{coordinate} - block.origin[axis]) / segment_step(&block);
-  return static_cast<ushort>(std::clamp(std::round(steps), 0.0, double{DAPPLE_GREATEST_GRID_CODE}));
+  return static_cast<ushort>(std::clamp(std::round(steps), 0.0, double{DAPPLE_MAX_GRID_CODE}));
 }
 
 void set_plane(schar (&codes)[3][8], unsigned lane, const V3f& normal) {
   const float largest = std::max({std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)});
-  const float scale = largest > 0.0f ? DAPPLE_GREATEST_PLANE_CODE / largest : 0.0f;
+  const float scale = largest > 0.0f ? DAPPLE_MAX_PLANE_CODE / largest : 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     codes[axis][lane] = static_cast<schar>(std::lround(normal[axis] * scale));
   }

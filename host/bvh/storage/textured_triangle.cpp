@@ -16,9 +16,9 @@ constexpr double kFarthest = 0x1p60;  // floats represent single tiles only far 
 
 using Coordinates = std::array<std::array<double, 2>, 3>;
 
-double whole_tiles(double least, Wrap wrap) {
+double whole_tiles(double min, Wrap wrap) {
   if (wrap == Wrap::clamp) return 0;
-  return wrap == Wrap::mirror ? 2 * std::floor(0.5 * least) : std::floor(least);
+  return wrap == Wrap::mirror ? 2 * std::floor(0.5 * min) : std::floor(min);
 }
 
 Coordinates without_whole_tiles(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t) {
@@ -28,8 +28,8 @@ Coordinates without_whole_tiles(const TexturedCorners& corners, Wrap wrap_s, Wra
       const double at = corners.uv[corner][axis];
       uv[corner][axis] = std::isnan(at) ? 0 : std::clamp(at, -kFarthest, kFarthest);
     }
-    const double least = std::min({uv[0][axis], uv[1][axis], uv[2][axis]});
-    const double tiles = whole_tiles(least, axis == 0 ? wrap_s : wrap_t);
+    const double min = std::min({uv[0][axis], uv[1][axis], uv[2][axis]});
+    const double tiles = whole_tiles(min, axis == 0 ? wrap_s : wrap_t);
     for (auto& corner : uv) corner[axis] -= tiles;
   }
   return uv;
@@ -46,11 +46,10 @@ struct Steps {
 };
 
 Steps steps_for(const Coordinates& uv) {
-  const auto [least, most] =
-      std::minmax({uv[0][0], uv[0][1], uv[1][0], uv[1][1], uv[2][0], uv[2][1]});
+  const auto [min, max] = std::minmax({uv[0][0], uv[0][1], uv[1][0], uv[1][1], uv[2][0], uv[2][1]});
   Steps steps;
-  if (steps.code(least) < 0) steps.origin = 0.5 * DAPPLE_UV_CODES;
-  while (steps.code(least) < 0 || steps.code(most) >= DAPPLE_UV_CODES) ++steps.exponent;
+  if (steps.code(min) < 0) steps.origin = 0.5 * DAPPLE_UV_CODES;
+  while (steps.code(min) < 0 || steps.code(max) >= DAPPLE_UV_CODES) ++steps.exponent;
   return steps;
 }
 

@@ -60,39 +60,39 @@ bool is_missing(const DeviceContext& context, const KernelName& kernel, CompileT
 
 /// Kernels that one process compiles. Those of one program stay together, because a program is
 /// compiled as a whole.
-struct Share {
+struct Batch {
   std::size_t source_size = 0;  ///< bytes: about proportional to the time of compiling
   std::vector<KernelName> kernels;
 };
 
-/// The missing kernels, in one share for each program.
-std::vector<Share> by_program(const DeviceContext& context, const std::set<KernelName>& kernels,
+/// The missing kernels, in one batch for each program.
+std::vector<Batch> by_program(const DeviceContext& context, const std::set<KernelName>& kernels,
                               CompileTo to) {
-  std::map<std::pair<std::string, Variant>, Share> programs;
+  std::map<std::pair<std::string, Variant>, Batch> programs;
   for (const KernelName& kernel : kernels) {
     if (!is_missing(context, kernel, to)) continue;
     const std::string file = kernel.source_file();
-    Share& share = programs[{file, kernel.variant}];
-    if (share.kernels.empty()) share.source_size = expand_kernel(file, context.kernel_dir()).size();
-    share.kernels.push_back(kernel);
+    Batch& batch = programs[{file, kernel.variant}];
+    if (batch.kernels.empty()) batch.source_size = expand_kernel(file, context.kernel_dir()).size();
+    batch.kernels.push_back(kernel);
   }
-  std::vector<Share> shares;
-  for (auto& [program, share] : programs) shares.push_back(std::move(share));
-  return shares;
+  std::vector<Batch> batches;
+  for (auto& [program, batch] : programs) batches.push_back(std::move(batch));
+  return batches;
 }
 
-/// Merges the programs into at most `count` shares with sources of about the same size: from the
-/// largest program to the smallest, each joins the share that is smallest so far.
-std::vector<Share> deal(std::vector<Share> programs, std::size_t count) {
-  const auto less = [](const Share& a, const Share& b) { return a.source_size < b.source_size; };
-  std::vector<Share> hands(std::min(count, programs.size()));
+/// Merges the programs into at most `count` batches with sources of about the same size: from the
+/// largest program to the smallest, each joins the batch that is smallest so far.
+std::vector<Batch> distribute(std::vector<Batch> programs, std::size_t count) {
+  const auto less = [](const Batch& a, const Batch& b) { return a.source_size < b.source_size; };
+  std::vector<Batch> batches(std::min(count, programs.size()));
   std::stable_sort(programs.rbegin(), programs.rend(), less);
-  for (const Share& program : programs) {
-    Share& hand = *std::min_element(hands.begin(), hands.end(), less);
-    hand.source_size += program.source_size;
-    hand.kernels.insert(hand.kernels.end(), program.kernels.begin(), program.kernels.end());
+  for (const Batch& program : programs) {
+    Batch& batch = *std::min_element(batches.begin(), batches.end(), less);
+    batch.source_size += program.source_size;
+    batch.kernels.insert(batch.kernels.end(), program.kernels.begin(), program.kernels.end());
   }
-  return hands;
+  return batches;
 }
 
 }  // namespace
@@ -132,9 +132,9 @@ void CompilerProcesses::start(const DeviceContext& context, const std::vector<Ke
   add_option("--device", context.chosen_by());
   add_option("--kernel-dir", context.kernel_dir());
   const auto programs = by_program(context, {kernels.begin(), kernels.end()}, to);
-  for (const Share& share : deal(programs, std::min(cpus, kMaxProcesses))) {
+  for (const Batch& batch : distribute(programs, std::min(cpus, kMaxProcesses))) {
     Arguments arguments = common;
-    for (const KernelName& kernel : share.kernels) arguments.push_back(text_of(kernel));
+    for (const KernelName& kernel : batch.kernels) arguments.push_back(text_of(kernel));
     if (const pid_t process = start_process(program_in_use(), std::move(arguments)))
       running_.push_back(process);
   }

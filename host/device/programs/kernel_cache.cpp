@@ -24,7 +24,7 @@ constexpr std::uint64_t kBytesNeeded = 8u << 20;
 
 /// Characters. PoCL builds paths in 1,024 characters and does not check their length; about 200 of
 /// them are its own.
-constexpr std::size_t kLongestPath = 700;
+constexpr std::size_t kMaxPathLength = 700;
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
@@ -32,7 +32,7 @@ std::string variable(const char* name) {
 }
 
 /// The folder to keep compiled kernels in; empty when none of the environment variables is set.
-fs::path cache_place() {
+fs::path cache_path() {
   if (const std::string chosen = variable("POCL_CACHE_DIR"); !chosen.empty()) return chosen;
   if (const std::string cache = variable("XDG_CACHE_HOME"); !cache.empty())
     return fs::path(cache) / "dapple" / "kernels";
@@ -44,7 +44,7 @@ fs::path cache_place() {
 /// Why PoCL could not compile in `folder`, which exists; empty when it can.
 std::string refusal(const fs::path& folder) {
   struct statvfs status {};
-  if (folder.native().size() > kLongestPath) return "the name is too long for PoCL";
+  if (folder.native().size() > kMaxPathLength) return "the name is too long for PoCL";
   if (statvfs(folder.c_str(), &status) != 0) return {};
   if (status.f_flag & ST_NOEXEC) return "programs may not be run from there (mounted noexec)";
   const auto bytes = static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
@@ -62,9 +62,9 @@ KernelCache& KernelCache::of_process() {
 }
 
 KernelCache::KernelCache() {
-  const fs::path place = cache_place();
-  if (!place.empty() && use(place)) {
-    store_ = fs::absolute(place);
+  const fs::path chosen = cache_path();
+  if (!chosen.empty() && use(chosen)) {
+    store_ = fs::absolute(chosen);
     return;
   }
   // Kernels are not kept there: where everybody may write, others could plant kernels.
@@ -74,17 +74,17 @@ KernelCache::KernelCache() {
   if (temporary != "/tmp") use("/tmp");
 }
 
-bool KernelCache::use(const fs::path& place) {
+bool KernelCache::use(const fs::path& parent) {
   std::string reason;
   try {
-    auto folder = std::make_unique<PrivateFolder>(fs::absolute(place));
+    auto folder = std::make_unique<PrivateFolder>(fs::absolute(parent));
     reason = refusal(folder->path());
     if (reason.empty()) private_ = std::move(folder);
   } catch (const std::exception& error) {
     reason = error.what();
   }
   if (private_) return true;
-  refusals_ += (refusals_.empty() ? "" : "; ") + place.string() + ": " + reason;
+  refusals_ += (refusals_.empty() ? "" : "; ") + parent.string() + ": " + reason;
   return false;
 }
 

@@ -51,7 +51,7 @@ class KernelCache {
     Files kept;     ///< files that are in the store
   };
 
-  bool use(const std::filesystem::path& place);
+  bool use(const std::filesystem::path& parent);
   void restore(const std::filesystem::path& entry, Program& program) const;
   [[nodiscard]] Files program_folders() const;
   [[nodiscard]] Files compiled_files(const Program& program) const;

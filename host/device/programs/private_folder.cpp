@@ -31,7 +31,7 @@ bool is_removed(int descriptor) {
   return fstat(descriptor, &status) != 0 || status.st_nlink == 0;
 }
 
-void remove_those_of_the_dead(const fs::path& parent) {
+void remove_stale_folders(const fs::path& parent) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(parent, ignored)) {
     if (!entry.path().filename().native().starts_with(kPrefix)) continue;
@@ -48,7 +48,7 @@ PrivateFolder::PrivateFolder(const fs::path& parent) : owner_(getpid()) {
   std::error_code error;
   fs::create_directories(parent, error);
   if (error) throw Error(ErrorKind::failed, error.message());
-  remove_those_of_the_dead(parent);
+  remove_stale_folders(parent);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::string name = (parent / (std::string(kPrefix) + "XXXXXX")).string();
     if (!mkdtemp(name.data())) throw Error(ErrorKind::failed, std::strerror(errno));

@@ -72,7 +72,7 @@ std::optional<std::vector<SealedFile>> read_list(const fs::path& folder) {
 }
 
 /// Makes `to` a hard link to `from`, or a copy when that is not possible. False when both fail.
-bool place(const fs::path& from, const fs::path& to) {
+bool link_or_copy(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::create_directories(to.parent_path(), error);
   fs::create_hard_link(from, to, error);
@@ -106,17 +106,17 @@ bool unseal(const fs::path& sealed, const fs::path& target, std::vector<fs::path
   const auto list = read_list(sealed);
   if (!list) return false;
   // The checksum is taken of the file in `target`: the sealed folder may be replaced at any moment.
-  std::vector<fs::path> placed;
+  std::vector<fs::path> made;
   for (const SealedFile& file : *list) {
-    if (!place(sealed / file.path, target / file.path)) break;
-    placed.push_back(file.path);
+    if (!link_or_copy(sealed / file.path, target / file.path)) break;
+    made.push_back(file.path);
     const auto bytes = bytes_of(target / file.path);
     if (!bytes || sum_of(*bytes) != file.sum) break;
     files.push_back(file.path);
   }
   if (files.size() == list->size()) return true;
   std::error_code ignored;
-  for (const fs::path& file : placed) fs::remove(target / file, ignored);
+  for (const fs::path& file : made) fs::remove(target / file, ignored);
   files.clear();
   return false;
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "bvh/opacity/opacity_pyramid.hpp"
+#include "bvh/opacity/opacity_mip_levels.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -13,7 +13,7 @@ MemoryNeed min_need(const Scene& scene) {
   std::size_t triangles = 0, segments = 0, texels = 0;
   for (const Mesh& mesh : scene.meshes)
     (mesh.has_strands() ? segments : triangles) += mesh.primitive_count();
-  for (const Texture& texture : scene.textures) texels += pyramid_texels(texture);
+  for (const Texture& texture : scene.textures) texels += mip_level_texels(texture);
   MemoryNeed need;
   const std::size_t blocks = (triangles + 7) / 8 * sizeof(TriangleBlock);
   const std::size_t segment_blocks = (segments + 7) / 8 * sizeof(SegmentBlock);

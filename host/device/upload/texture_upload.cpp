@@ -34,12 +34,12 @@ TextureRecord pack_texture(const Texture& texture, std::vector<uchar>& texels) {
 /// finest first.
 std::vector<uint> pack_mips(const Texture& texture, float factor, float cutoff,
                             std::vector<uchar>& texels) {
-  const OpacityPyramid pyramid(texture, factor, cutoff);
+  const OpacityMipLevels mip_levels(texture, factor, cutoff);
   std::vector<uint> offsets;
-  for (std::size_t level = 1; level < pyramid.levels().size(); ++level) {
+  for (std::size_t level = 1; level < mip_levels.levels().size(); ++level) {
     if (offsets.size() == DAPPLE_MAX_MIPS) break;
     offsets.push_back(next_offset(texels));
-    for (const float opacity : pyramid.levels()[level].opacity)
+    for (const float opacity : mip_levels.levels()[level].opacity)
       texels.push_back(static_cast<uchar>(std::lround(255.0f * opacity)));
   }
   return offsets;

@@ -51,7 +51,7 @@ class ChannelSampler {
         who_(who),
         values_(document, channel.values),
         width_(width),
-        place_(find_key(times, seconds)) {}
+        position_(find_key(times, seconds)) {}
 
   void move(NodePose& node) const {
     switch (channel_.part) {
@@ -77,26 +77,26 @@ class ChannelSampler {
   }
 
   [[nodiscard]] bool is_between() const {
-    return place_.fraction > 0 && channel_.interpolation != Interpolation::step;
+    return position_.fraction > 0 && channel_.interpolation != Interpolation::step;
   }
 
   /// Returns component `i` of the value at the sampled time.
   [[nodiscard]] double sample(std::size_t i) const {
-    const std::size_t key = place_.key;
+    const std::size_t key = position_.key;
     const double from = value(key, i);
     if (!is_between()) return from;
     const double to = value(key + 1, i);
     if (channel_.interpolation == Interpolation::cubic)
-      return cubic_spline(from, number(3 * key + 2, i), number(3 * key + 3, i), to, place_);
-    return from + (to - from) * place_.fraction;
+      return cubic_spline(from, number(3 * key + 2, i), number(3 * key + 3, i), to, position_);
+    return from + (to - from) * position_.fraction;
   }
 
   [[nodiscard]] V3d vec3() const { return {sample(0), sample(1), sample(2)}; }
 
   [[nodiscard]] V4d rotation() const {
     if (is_between() && channel_.interpolation == Interpolation::linear)
-      return slerp(unit(key_rotation(place_.key)), unit(key_rotation(place_.key + 1)),
-                   place_.fraction);
+      return slerp(unit(key_rotation(position_.key)), unit(key_rotation(position_.key + 1)),
+                   position_.fraction);
     return unit({sample(0), sample(1), sample(2), sample(3)});
   }
 
@@ -108,7 +108,7 @@ class ChannelSampler {
     const double length = rotation.length();
     if (length > 1e-6) return rotation / length;
     fail(document_.file, "{}: the rotation at keyframe {} has length zero", who_,
-         grouped(place_.key));
+         grouped(position_.key));
   }
 
   [[nodiscard]] double number(std::size_t element, std::size_t i) const {
@@ -126,22 +126,22 @@ class ChannelSampler {
   const std::string& who_;
   AccessorReader values_;
   std::size_t width_;
-  KeyPlace place_;
+  KeyframePosition position_;
 };
 
 }  // namespace
 
-KeyPlace find_key(const std::vector<float>& times, double seconds) {
+KeyframePosition find_key(const std::vector<float>& times, double seconds) {
   const auto after =
       std::upper_bound(times.begin(), times.end(), seconds,
                        [](double value, float time) { return value < double{time}; });
   if (after == times.begin()) return {};
-  KeyPlace place;
-  place.key = static_cast<std::size_t>(after - times.begin()) - 1;
-  if (after == times.end()) return place;
-  place.interval = double{*after} - double{times[place.key]};
-  place.fraction = (seconds - double{times[place.key]}) / place.interval;
-  return place;
+  KeyframePosition position;
+  position.key = static_cast<std::size_t>(after - times.begin()) - 1;
+  if (after == times.end()) return position;
+  position.interval = double{*after} - double{times[position.key]};
+  position.fraction = (seconds - double{times[position.key]}) / position.interval;
+  return position;
 }
 
 V4d slerp(const V4d& from, V4d to, double fraction) {
@@ -159,10 +159,10 @@ V4d slerp(const V4d& from, V4d to, double fraction) {
 }
 
 double cubic_spline(double from, double out_tangent, double in_tangent, double to,
-                    const KeyPlace& place) {
-  const double t = place.fraction, t2 = t * t, t3 = t2 * t;
-  return (2 * t3 - 3 * t2 + 1) * from + place.interval * (t3 - 2 * t2 + t) * out_tangent +
-         (3 * t2 - 2 * t3) * to + place.interval * (t3 - t2) * in_tangent;
+                    const KeyframePosition& position) {
+  const double t = position.fraction, t2 = t * t, t3 = t2 * t;
+  return (2 * t3 - 3 * t2 + 1) * from + position.interval * (t3 - 2 * t2 + t) * out_tangent +
+         (3 * t2 - 2 * t3) * to + position.interval * (t3 - t2) * in_tangent;
 }
 
 std::vector<Animation> list_animations(const Document& document) {

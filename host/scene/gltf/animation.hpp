@@ -43,13 +43,13 @@ class Player {
 
 /// The position of a time among keyframes: between `key` and the next keyframe, at `fraction` of
 /// the interval. A time before the first or after the last keyframe is clamped; its fraction is 0.
-struct KeyPlace {
+struct KeyframePosition {
   std::size_t key = 0;
   double fraction = 0;
   double interval = 0;  ///< seconds from `key` to the next
 };
 
-KeyPlace find_key(const std::vector<float>& times, double seconds);
+KeyframePosition find_key(const std::vector<float>& times, double seconds);
 
 /// Spherical linear interpolation of unit quaternions, along the shorter arc.
 Imath::V4d slerp(const Imath::V4d& from, Imath::V4d to, double fraction);
@@ -57,6 +57,6 @@ Imath::V4d slerp(const Imath::V4d& from, Imath::V4d to, double fraction);
 /// Cubic spline of glTF 2.0, appendix C.5. `out_tangent` belongs to the value `from`, `in_tangent`
 /// to the value `to`.
 double cubic_spline(double from, double out_tangent, double in_tangent, double to,
-                    const KeyPlace& place);
+                    const KeyframePosition& position);
 
 }  // namespace dapple::gltf

@@ -80,7 +80,7 @@ void add_camera(const Document& document, const PlacedNode& placed,
   const std::optional<M44f> to_world = rigid(placed.to_world);
   if (!to_world) {
     scene.warnings.push_back(one_line(
-        fmt::format("{}: {} is left out: its node is scaled to nothing", document.file, who)));
+        fmt::format("{}: {} is ignored: its node is scaled to nothing", document.file, who)));
     return;
   }
   camera.to_world = *to_world;

@@ -10,7 +10,7 @@
 namespace dapple::gltf {
 namespace {
 
-constexpr std::uint32_t kMaxInOnePlace = 1000;
+constexpr std::uint32_t kMaxAtOnePosition = 1000;
 
 /// FNV-1a over 32-bit words. Among some million different instances, equal hashes are unlikely, and
 /// only a thousand of them would cause a wrong error.
@@ -27,13 +27,13 @@ std::uint64_t hash(const Instance& instance) {
 }  // namespace
 
 void check_crowding(const Scene& scene) {
-  if (scene.instances.size() <= kMaxInOnePlace) return;
-  std::unordered_map<std::uint64_t, std::uint32_t> placed;
-  placed.reserve(scene.instances.size());
+  if (scene.instances.size() <= kMaxAtOnePosition) return;
+  std::unordered_map<std::uint64_t, std::uint32_t> counts;
+  counts.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
-    if (++placed[hash(instance)] <= kMaxInOnePlace) continue;
-    fail(scene.source, "mesh \"{}\" is placed more than {} times in one place",
-         excerpt(scene.meshes[instance.mesh].name), grouped(kMaxInOnePlace));
+    if (++counts[hash(instance)] <= kMaxAtOnePosition) continue;
+    fail(scene.source, "mesh \"{}\" has more than {} instances at one position",
+         excerpt(scene.meshes[instance.mesh].name), grouped(kMaxAtOnePosition));
   }
 }
 

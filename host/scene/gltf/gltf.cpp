@@ -48,7 +48,8 @@ Scene MovingGltf::at(std::optional<double> seconds) const {
   add_punctual_lights(document_, placed, options_, scene);
   add_cameras(document_, placed, scene);
   if (seconds && document_.motion.clips.empty())
-    scene.warnings.push_back(one_line(document_.file + ": has no animations, and stays at rest"));
+    scene.warnings.push_back(
+        one_line(document_.file + ": has no animations, and stays in its rest pose"));
   return scene;
 }
 

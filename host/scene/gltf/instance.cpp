@@ -25,33 +25,33 @@ std::uint64_t max_instances(const Document& document) {
 }
 
 /// The accessors of EXT_mesh_gpu_instancing; each of them may be absent.
-struct Placements {
+struct InstanceAttributes {
   std::optional<AccessorReader> translation;
   std::optional<AccessorReader> rotation;
   std::optional<AccessorReader> scale;
   std::uint64_t count = 0;
 };
 
-std::optional<AccessorReader> placement_attribute(const Document& document,
-                                                  const tinygltf::Value& attributes,
-                                                  const char* name, const std::string& who,
-                                                  int type,
-                                                  std::initializer_list<Component> components) {
+std::optional<AccessorReader> instance_attribute(const Document& document,
+                                                 const tinygltf::Value& attributes,
+                                                 const char* name, const std::string& who, int type,
+                                                 std::initializer_list<Component> components) {
   if (!attributes.Has(name)) return {};
   const int accessor = attributes.Get(name).GetNumberAsInt();
   require_type(document, accessor, fmt::format("{} instance {}", who, name), {type}, components);
   return AccessorReader(document, accessor);
 }
 
-Placements read_placements(const Document& document, const tinygltf::Value& attributes,
-                           const std::string& who) {
-  Placements result;
-  result.translation = placement_attribute(document, attributes, "TRANSLATION", who,
-                                           TINYGLTF_TYPE_VEC3, {Component::float32});
-  result.rotation = placement_attribute(document, attributes, "ROTATION", who, TINYGLTF_TYPE_VEC4,
-                                        {Component::float32, Component::int8, Component::int16});
-  result.scale = placement_attribute(document, attributes, "SCALE", who, TINYGLTF_TYPE_VEC3,
-                                     {Component::float32});
+InstanceAttributes read_instance_attributes(const Document& document,
+                                            const tinygltf::Value& attributes,
+                                            const std::string& who) {
+  InstanceAttributes result;
+  result.translation = instance_attribute(document, attributes, "TRANSLATION", who,
+                                          TINYGLTF_TYPE_VEC3, {Component::float32});
+  result.rotation = instance_attribute(document, attributes, "ROTATION", who, TINYGLTF_TYPE_VEC4,
+                                       {Component::float32, Component::int8, Component::int16});
+  result.scale = instance_attribute(document, attributes, "SCALE", who, TINYGLTF_TYPE_VEC3,
+                                    {Component::float32});
   bool first = true;
   for (const std::string& name : attributes.Keys()) {
     const int accessor = attributes.Get(name).GetNumberAsInt();
@@ -75,35 +75,34 @@ V4d unit_rotation(const AccessorReader& rotations, std::uint64_t i) {
   return length > 0 ? rotation / length : V4d(0, 0, 0, 1);
 }
 
-M44d placement_matrix(const Placements& placements, std::uint64_t i) {
-  const V3d translation = placements.translation ? V3d(placements.translation->vec3(i)) : V3d(0.0);
-  const V4d rotation =
-      placements.rotation ? unit_rotation(*placements.rotation, i) : V4d(0, 0, 0, 1);
-  const V3d scale = placements.scale ? V3d(placements.scale->vec3(i)) : V3d(1.0);
+M44d instance_matrix(const InstanceAttributes& instances, std::uint64_t i) {
+  const V3d translation = instances.translation ? V3d(instances.translation->vec3(i)) : V3d(0.0);
+  const V4d rotation = instances.rotation ? unit_rotation(*instances.rotation, i) : V4d(0, 0, 0, 1);
+  const V3d scale = instances.scale ? V3d(instances.scale->vec3(i)) : V3d(1.0);
   return compose(translation, rotation, scale);
 }
 
 /// Returns the world matrices of all instances that one node makes of its mesh. `so_far` is the
 /// number of instances before them.
-std::vector<M44d> node_placements(const Document& document, const PlacedNode& placed,
-                                  std::uint64_t so_far) {
+std::vector<M44d> node_matrices(const Document& document, const PlacedNode& placed,
+                                std::uint64_t so_far) {
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
   const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
   if (instancing == node.extensions.end() || !instancing->second.Has("attributes")) {
     return {placed.to_world};
   }
   const std::string who = element("node", static_cast<std::size_t>(placed.node), node.name);
-  const Placements placements =
-      read_placements(document, instancing->second.Get("attributes"), who);
-  if (so_far + placements.count > max_instances(document)) {
+  const InstanceAttributes instances =
+      read_instance_attributes(document, instancing->second.Get("attributes"), who);
+  if (so_far + instances.count > max_instances(document)) {
     fail(document.file, "{} brings the instances to {} (at most {} in a scene of {} bytes)", who,
-         grouped(so_far + placements.count), grouped(max_instances(document)),
+         grouped(so_far + instances.count), grouped(max_instances(document)),
          grouped(document.bytes));
   }
   std::vector<M44d> matrices;
-  matrices.reserve(placements.count);
-  for (std::uint64_t i = 0; i < placements.count; ++i) {
-    matrices.push_back(placement_matrix(placements, i) * placed.to_world);
+  matrices.reserve(instances.count);
+  for (std::uint64_t i = 0; i < instances.count; ++i) {
+    matrices.push_back(instance_matrix(instances, i) * placed.to_world);
   }
   return matrices;
 }
@@ -118,8 +117,8 @@ int add_mesh_light(const Material& material, const std::string& node_name, Scene
   return static_cast<int>(scene.lights.size()) - 1;
 }
 
-void add_placement(const std::vector<MeshPart>& parts, const M44d& to_world,
-                   int node, const std::string& node_name, Scene& scene) {
+void add_placement(const std::vector<MeshPart>& parts, const M44d& to_world, int node,
+                   const std::string& node_name, Scene& scene) {
   for (const MeshPart& part : parts) {
     Instance instance;
     instance.node = node;
@@ -143,13 +142,13 @@ void warn(const std::string& file, std::uint64_t count, const char* what, Scene&
 void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint64_t unbound,
                     Scene& scene) {
   warn(file, totals.thin_lines,
-       "line primitives are left out: --line-radius R makes strands of them", scene);
-  warn(file, totals.points, "point primitives are left out", scene);
+       "line primitives are ignored: --line-radius R makes strands of them", scene);
+  warn(file, totals.points, "point primitives are ignored", scene);
   warn(file, totals.textured_lines,
        "line primitives have a texture, which is ignored: their factor alone is their opacity",
        scene);
   warn(file, totals.shining_lines, "line primitives emit, which is ignored", scene);
-  warn(file, totals.without_position, "primitives without POSITION are left out", scene);
+  warn(file, totals.without_position, "primitives without POSITION are ignored", scene);
   warn(file, totals.without_texcoord,
        "primitives lack the TEXCOORD of their alpha texture and use its corner", scene);
   warn(file, unbound, "skinned nodes have meshes without JOINTS_0 and WEIGHTS_0, which stay rigid",
@@ -205,7 +204,7 @@ void add_instances(const Document& document, const std::vector<PlacedNode>& plac
     if (known->second.empty()) continue;
     // Joints place a skinned mesh; glTF says that its node's own matrix is ignored.
     const PlacedNode stands{at.node, use.skin >= 0 ? M44d() : at.to_world};
-    for (const M44d& to_world : node_placements(document, stands, scene.instances.size())) {
+    for (const M44d& to_world : node_matrices(document, stands, scene.instances.size())) {
       add_placement(known->second, to_world, at.node, node.name, scene);
     }
   }

@@ -73,7 +73,7 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
                                              : fmt::format("light_{}", index));
   if (!place(light, placed.to_world)) {
     scene.warnings.push_back(one_line(
-        fmt::format("{}: {} is left out: its node is scaled to nothing", document.file, who)));
+        fmt::format("{}: {} is ignored: its node is scaled to nothing", document.file, who)));
     return;
   }
   if (given.type == "directional") {

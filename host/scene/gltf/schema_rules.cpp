@@ -49,8 +49,9 @@ constexpr Rule object(std::string_view key, Rules children) {
 }
 
 constexpr Rule objects(std::string_view key, Rules children, std::string_view noun,
-                       std::size_t most) {
-  return {.key = key, .kind = Kind::objects, .children = children, .noun = noun, .length = most};
+                       std::size_t max_length) {
+  return {
+      .key = key, .kind = Kind::objects, .children = children, .noun = noun, .length = max_length};
 }
 
 constexpr Rule kAsset[] = {required({"version", Kind::text}),

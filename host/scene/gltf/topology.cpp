@@ -45,7 +45,7 @@ std::vector<std::uint32_t> read_indices(const Document& document,
 
 /// Returns the positions in the indices of triangle `i` of a strip or fan, in the winding of glTF
 /// 2.0, section 3.7.2.1.
-std::array<std::size_t, 3> corner_places(int mode, std::size_t i) {
+std::array<std::size_t, 3> corner_positions(int mode, std::size_t i) {
   if (mode == TINYGLTF_MODE_TRIANGLE_FAN) return {i + 1, i + 2, 0};
   return {i, i + 1 + i % 2, i + 2 - i % 2};
 }
@@ -53,10 +53,10 @@ std::array<std::size_t, 3> corner_places(int mode, std::size_t i) {
 void append_triangles(std::vector<std::uint32_t>& corners, int mode,
                       const std::vector<std::uint32_t>& indices, std::uint64_t count) {
   for (std::size_t i = 0; i < count; ++i) {
-    const auto places = corner_places(mode, i);
-    const std::uint32_t a = indices[places[0]];
-    const std::uint32_t b = indices[places[1]];
-    const std::uint32_t c = indices[places[2]];
+    const auto positions = corner_positions(mode, i);
+    const std::uint32_t a = indices[positions[0]];
+    const std::uint32_t b = indices[positions[1]];
+    const std::uint32_t c = indices[positions[2]];
     if (a != b && b != c && c != a) corners.insert(corners.end(), {a, b, c});
   }
 }

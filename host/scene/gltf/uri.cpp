@@ -55,12 +55,12 @@ Bytes decode_base64(std::string_view text, const std::string& what) {
 }
 
 /// Linux's limits in bytes: no file can have a longer name or path.
-constexpr std::size_t kLongestName = 255;
-constexpr std::size_t kLongestPath = 4095;
+constexpr std::size_t kMaxNameLength = 255;
+constexpr std::size_t kMaxPathLength = 4095;
 
 void check_length(const fs::path& file, const std::string& what) {
-  bool sound = file.native().size() <= kLongestPath;
-  for (const fs::path& name : file) sound = sound && name.native().size() <= kLongestName;
+  bool sound = file.native().size() <= kMaxPathLength;
+  for (const fs::path& name : file) sound = sound && name.native().size() <= kMaxNameLength;
   if (!sound)
     fail(what, "its uri \"{}\" is longer than a file's name can be", excerpt(file.native()));
 }

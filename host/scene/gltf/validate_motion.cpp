@@ -85,10 +85,10 @@ class MotionValidator {
 }  // namespace
 
 std::uint64_t morph_target_count(const Document& document, int mesh) {
-  std::size_t most = 0;
+  std::size_t count = 0;
   for (const auto& primitive : document.model.meshes[static_cast<std::size_t>(mesh)].primitives)
-    most = std::max(most, primitive.targets.size());
-  return most;
+    count = std::max(count, primitive.targets.size());
+  return count;
 }
 
 void validate_motion(const Document& document) { MotionValidator(document).run(); }

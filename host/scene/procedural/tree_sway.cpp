@@ -26,21 +26,22 @@ struct Gust {
   double phase;
 };
 
-double at(const Gust& gust, const V3d& place, double seconds) {
-  return std::sin(2 * std::numbers::pi * gust.hertz * seconds - gust.waves.dot(place) + gust.phase);
+double at(const Gust& gust, const V3d& position, double seconds) {
+  return std::sin(2 * std::numbers::pi * gust.hertz * seconds - gust.waves.dot(position) +
+                  gust.phase);
 }
 
-/// The force on a limb at `place` (in tree heights). Slow gusts act on thick and thin limbs, the
+/// The force on a limb at `position` (in tree heights). Slow gusts act on thick and thin limbs, the
 /// quick one mainly on thin limbs. `thinness` is 0 for the trunk's foot and up to 1.
-V3d wind_force(const V3d& place, double thinness, const Wind& wind) {
+V3d wind_force(const V3d& position, double thinness, const Wind& wind) {
   static const Gust kAlong[] = {{0.17, {1.3, 0.2, 0.4}, 0.0}, {0.43, {2.9, 0.5, 1.1}, 1.9}};
   static const Gust kAcross[] = {{0.29, {1.7, 0.9, 1.5}, 4.1}, {0.71, {3.7, 1.3, 2.3}, 0.7}};
   static const Gust kQuick = {1.31, {7.9, 3.1, 6.1}, 2.7};
-  const double quick = 0.25 * thinness * at(kQuick, place, wind.seconds);
-  const double along = 0.55 + 0.3 * at(kAlong[0], place, wind.seconds) +
-                       0.15 * at(kAlong[1], place, wind.seconds) + quick;
-  const double across = 0.25 * at(kAcross[0], place, wind.seconds) +
-                        0.15 * at(kAcross[1], place, wind.seconds) + quick;
+  const double quick = 0.25 * thinness * at(kQuick, position, wind.seconds);
+  const double along = 0.55 + 0.3 * at(kAlong[0], position, wind.seconds) +
+                       0.15 * at(kAlong[1], position, wind.seconds) + quick;
+  const double across = 0.25 * at(kAcross[0], position, wind.seconds) +
+                        0.15 * at(kAcross[1], position, wind.seconds) + quick;
   return V3d(along, 0, across) * wind.strength;
 }
 

@@ -13,11 +13,11 @@ using std::sqrt;
 
 /* Transmittances below this count as 0. The largest stored depth is -log(1e-4). */
 #define DAPPLE_MIN_TRANSMITTANCE 1e-4f
-#define DAPPLE_GREATEST_DEPTH 9.2103404f
+#define DAPPLE_MAX_DEPTH 9.2103404f
 
 /* Chords are not computed for boxes whose mean chord is below this fraction of the distance:
    rounding would dominate the length. */
-#define DAPPLE_THINNEST 3e-5f
+#define DAPPLE_MIN_THICKNESS 3e-5f
 
 /* Mean of off_centre, the squared distance from the box's centre to the middle of a ray's chord:
    the sum of squares of its coordinates in half sizes of the box. The mean over uniformly
@@ -35,7 +35,7 @@ using std::sqrt;
    0. */
 DAPPLE_FUNCTION float depth_decode(uchar code) {
   const float root = (float)code * (1.0f / 255.0f);
-  return root * root * DAPPLE_GREATEST_DEPTH;
+  return root * root * DAPPLE_MAX_DEPTH;
 }
 
 /* Variance class of a child's opacity, stored in the lowest bits of its three correlations. The

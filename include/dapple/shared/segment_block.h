@@ -34,8 +34,8 @@ typedef struct DAPPLE_CACHE_ALIGNED SegmentBlock {
   uchar opacity_code[8];
 } SegmentBlock;
 
-#define DAPPLE_GREATEST_GRID_CODE 65535
-#define DAPPLE_GREATEST_PLANE_CODE 127
+#define DAPPLE_MAX_GRID_CODE 65535
+#define DAPPLE_MAX_PLANE_CODE 127
 
 DAPPLE_FUNCTION float segment_step(DAPPLE_GLOBAL const SegmentBlock* block) {
   return dapple_bits_to_float((uint)block->exponent << 23);

@@ -65,7 +65,8 @@ std::vector<Corners> random_triangles(std::size_t count, float size) {
 class Walk {
  public:
   Walk(const Mesh& mesh, const ObjectBvh& object) : mesh_(mesh), object_(object) {
-    for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t) places_[lane_of(t)].push_back(t);
+    for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t)
+      triangles_of_lane_[lane_of(t)].push_back(t);
     visits_.resize(object.nodes.size(), 0);
   }
 
@@ -81,7 +82,7 @@ class Walk {
   /// Triangles of the mesh that no lane holds.
   [[nodiscard]] std::vector<std::uint32_t> missing() const {
     std::vector<std::uint32_t> left;
-    for (const auto& [lane, triangles] : places_) {
+    for (const auto& [lane, triangles] : triangles_of_lane_) {
       left.insert(left.end(), triangles.begin(), triangles.end());
     }
     return left;
@@ -152,7 +153,7 @@ class Walk {
     Box3f box;
     EXPECT_LT(block, object_.blocks.size());
     if (block >= object_.blocks.size()) return box;
-    auto& triangles = places_[lane_of(object_.blocks[block], i % 8)];
+    auto& triangles = triangles_of_lane_[lane_of(object_.blocks[block], i % 8)];
     EXPECT_FALSE(triangles.empty()) << "a lane holds no triangle of the mesh, or one twice";
     if (triangles.empty()) return box;
     for (int c = 0; c < 3; ++c) box.extendBy(corner(triangles.back(), c));
@@ -184,7 +185,7 @@ class Walk {
 
   const Mesh& mesh_;
   const ObjectBvh& object_;
-  std::map<Lane, std::vector<std::uint32_t>> places_;
+  std::map<Lane, std::vector<std::uint32_t>> triangles_of_lane_;
   std::vector<int> visits_;
 };
 
@@ -315,19 +316,20 @@ Scene scattered_scene(int count) {
 }
 
 /// Returns the exact world box of the instances below top-level node `index`. Checks that each box
-/// is inside of its slot, and counts in `met` how often each instance was found.
-Box3f walk_top(const SceneBvh& bvh, const Mesh& mesh, std::uint32_t index, std::vector<int>& met) {
+/// is inside of its slot, and counts in `found` how often each instance was found.
+Box3f walk_top(const SceneBvh& bvh, const Mesh& mesh, std::uint32_t index,
+               std::vector<int>& found) {
   const BvhNode& n = bvh.nodes[index];
   Box3f box;
   for (unsigned slot = 0, inner = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
     if (n.lower[0][slot] > n.upper[0][slot]) continue;
     Box3f child;
     if (n.inner_mask >> slot & 1) {
-      child = walk_top(bvh, mesh, n.child_base + inner++, met);
+      child = walk_top(bvh, mesh, n.child_base + inner++, found);
     } else {
       EXPECT_EQ(bvh_leaf_end(n.leaf_end, slot), bvh_leaf_begin(n.leaf_end, slot) + 1);
       const std::uint32_t instance = n.prim_base + bvh_leaf_end(n.leaf_end, slot) - 1u;
-      ++met.at(instance);
+      ++found.at(instance);
       const float* m = bvh.instances[instance].to_world;
       for (const V3f& p : mesh.positions) {
         const auto row = [&](int r) {
@@ -352,9 +354,9 @@ TEST(Bvh, TheTopLevelHoldsEveryInstanceOnceWithInverseMatrices) {
   const SceneBvh bvh = build_bvh(scene);
   ASSERT_TRUE(bvh.has_top);
   ASSERT_EQ(bvh.instances.size(), 200u);
-  std::vector<int> met(200, 0);
-  walk_top(bvh, scene.meshes[0], bvh.root, met);
-  EXPECT_TRUE(std::all_of(met.begin(), met.end(), [](int count) { return count == 1; }));
+  std::vector<int> found(200, 0);
+  walk_top(bvh, scene.meshes[0], bvh.root, found);
+  EXPECT_TRUE(std::all_of(found.begin(), found.end(), [](int count) { return count == 1; }));
   EXPECT_EQ(bvh.statistics.instanced_triangles, 200u * 50u);
   EXPECT_EQ(bvh.statistics.triangles, 50u);
   for (const InstanceRecord& record : bvh.instances) {

@@ -13,10 +13,10 @@ Scene tree(float opacity) {
   return make_procedural("scene:tree?leaves=1500&opacity=" + std::to_string(opacity));
 }
 
-Scene placed(Scene scene, const std::vector<M44f>& placements) {
+Scene placed(Scene scene, const std::vector<M44f>& transforms) {
   const Instance model = scene.instances.at(0);
   scene.instances.clear();
-  for (const M44f& to_world : placements) {
+  for (const M44f& to_world : transforms) {
     scene.instances.push_back(model);
     scene.instances.back().to_world = to_world;
   }
@@ -60,7 +60,7 @@ M44f moved(const V3f& by) {
 
 struct Placing {
   const char* name;
-  std::vector<M44f> placements;
+  std::vector<M44f> transforms;
 };
 
 const std::vector<Placing>& placings() {
@@ -80,7 +80,7 @@ const std::vector<Placing>& placings() {
 TEST(Instance, OccludesRayByRayAsItsTrianglesInWorldSpace) {
   for (const Placing& placing : placings()) {
     SCOPED_TRACE(placing.name);
-    const Scene scene = placed(tree(0.3f), placing.placements);
+    const Scene scene = placed(tree(0.3f), placing.transforms);
     const SceneOnDevice instanced(scene), flat(flattened(scene));
     ASSERT_TRUE(instanced.bvh.has_top);
     ASSERT_FALSE(flat.bvh.has_top);
@@ -103,7 +103,7 @@ TEST(Instance, OccludesPrefilteredInTheMeanAsItsTrianglesInWorldSpace) {
   for (const Placing& placing : placings()) {
     for (const float opacity : {0.3f, 0.85f}) {
       SCOPED_TRACE(testing::Message() << placing.name << ", opacity " << opacity);
-      const Scene scene = placed(tree(opacity), placing.placements);
+      const Scene scene = placed(tree(opacity), placing.transforms);
       const SceneOnDevice instanced(scene), flat(flattened(scene));
       // Solid angles of AO rays when a point has 640, 64 or 4 of them. For wide rays a few nodes
       // represent the tree, and the model blends their opacities differently along the tree's own

@@ -94,17 +94,17 @@ void expect_margin_and_snug(const BvhNode& node, unsigned slot, const Box3f& box
   for (int a = 0; a < 3; ++a) {
     // 1e-6 of a step covers the rounding of the division, whose quotient is up to 255.
     const double step = step_of(node, a);
-    const double least = (kGridMargin - 1e-6) * step;
+    const double min = (kGridMargin - 1e-6) * step;
     const double rounding_below = kGridRounding * std::fabs(box.min[a]);
     const double rounding_above = kGridRounding * std::fabs(box.max[a]);
     const double below = box.min[a] - exact_lower(node, a, slot);
     const double above = exact_upper(node, a, slot) - box.max[a];
-    EXPECT_GE(below, least + 0.999999 * rounding_below) << "axis " << a;
-    EXPECT_GE(above, least + 0.999999 * rounding_above) << "axis " << a;
+    EXPECT_GE(below, min + 0.999999 * rounding_below) << "axis " << a;
+    EXPECT_GE(above, min + 0.999999 * rounding_above) << "axis " << a;
     // A bound is rounded outward to the next step beyond the margin.
-    const double most = (1 + 2 * kGridMargin) * step;
-    EXPECT_LE(below, most + rounding_below) << "axis " << a;
-    EXPECT_LE(above, most + rounding_above) << "axis " << a;
+    const double max = (1 + 2 * kGridMargin) * step;
+    EXPECT_LE(below, max + rounding_below) << "axis " << a;
+    EXPECT_LE(above, max + rounding_above) << "axis " << a;
   }
 }
 

@@ -15,13 +15,13 @@ namespace {
 /// Random boxes: most are small like leaves, every tenth is long like a branch.
 std::vector<PrimitiveBox> random_boxes(std::uint32_t count) {
   std::mt19937 random(5);
-  std::uniform_real_distribution<float> place(0.0f, 1.0f);
+  std::uniform_real_distribution<float> position(0.0f, 1.0f);
   std::vector<PrimitiveBox> boxes;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const V3f corner(place(random), place(random), place(random));
+    const V3f corner(position(random), position(random), position(random));
     const float length = i % 10 == 0 ? 0.5f : 0.02f;
     boxes.push_back(
-        primitive_box({corner, corner + V3f(0.01f, length, 0.02f) * (0.5f + place(random))}, i));
+        primitive_box({corner, corner + V3f(0.01f, length, 0.02f) * (0.5f + position(random))}, i));
   }
   return boxes;
 }
@@ -30,7 +30,7 @@ std::vector<BinaryNode> build(std::vector<PrimitiveBox>& boxes) {
   std::vector<PrimitiveBox> second(boxes.size());
   const Splitter splitter(boxes, second, 4);
   Part whole = splitter.all();
-  splitter.bring_home(whole);
+  splitter.move_to_result(whole);
   return build_binary_tree(splitter, whole);
 }
 

@@ -62,15 +62,15 @@ class Exhaustive {
       for (const std::uint32_t child : children) sum += as_child_[child];
       return sum;
     }
-    float least = below(children, from + 1);
+    float min = below(children, from + 1);
     const std::uint32_t opened = children[from];
     if (tree_[opened].right != 0 && children.size() < DAPPLE_BVH_WIDTH) {
       std::vector<std::uint32_t> more = children;
       more[from] = opened + 1;
       more.push_back(tree_[opened].right);
-      least = std::min(least, below(more, from));
+      min = std::min(min, below(more, from));
     }
-    return least;
+    return min;
   }
 
   const std::vector<BinaryNode>& tree_;
@@ -100,8 +100,8 @@ TEST(WideCollapse, NoOtherNodesAreCheaper) {
     std::vector<BinaryNode> tree;
     grow(0, static_cast<std::uint32_t>(2 + random() % 23), 1.0f, random, tree);
     const CheapestNodes nodes(tree, kLeafSize);
-    const float found = cost_of(tree, nodes, 0), least = Exhaustive(tree).cost();
-    EXPECT_NEAR(found, least, 1e-5f * least) << "tree " << i;
+    const float found = cost_of(tree, nodes, 0), min = Exhaustive(tree).cost();
+    EXPECT_NEAR(found, min, 1e-5f * min) << "tree " << i;
     if (nodes.is_leaf(0)) continue;
     const CheapestNodes::Children children = nodes.children_of(0);
     for (unsigned c = 0; c < children.count; ++c)

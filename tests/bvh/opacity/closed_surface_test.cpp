@@ -59,7 +59,7 @@ NodeOpacity opacity_of(const Scene& scene) {
   return built.object.opacity;
 }
 
-TEST(ClosedSurface, APrismIsOneEvenWithOpenEndsACardIsNot) {
+TEST(ClosedSurface, APrismIsClosedEvenWithOpenEndsACardIsNot) {
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0.3f, 1, 0.2f}, 0.02f, 6, 4);
   const std::size_t prism = mesh.primitive_count();
@@ -77,7 +77,7 @@ TEST(ClosedSurface, WhatLightPassesIsNone) {
   EXPECT_TRUE(closed_triangles(mesh, std::vector<float>(mesh.primitive_count(), -1.0f)).empty());
 }
 
-TEST(ClosedSurface, AThinTwigHidesItsSilhouetteOnce) {
+TEST(ClosedSurface, AThinTwigOccludesItsSilhouetteOnce) {
   // The prism is convex, so the projected areas of its sides add up to twice the silhouette's area.
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0.6f, 1, 0.8f}, 0.004f, 6, 12);
@@ -109,7 +109,7 @@ TEST(ClosedSurface, TwoTwigsOneBehindTheOtherStayTwo) {
   EXPECT_NEAR(both, 2 * single, 0.12f * both);
 }
 
-TEST(Clumping, IsNoneOfAnEvenMapAndAllOfOneOfClearAndFullCells) {
+TEST(Clumping, IsZeroForAUniformMapAndOneForAMapOfClearAndFullCells) {
   CoverageMap map = uniform_map({0.3f, 0.5f, 0.9f});
   EXPECT_NEAR(map.clumping(), 0, 1e-5f);
   for (auto& axis : map.transmittance) {
@@ -119,7 +119,7 @@ TEST(Clumping, IsNoneOfAnEvenMapAndAllOfOneOfClearAndFullCells) {
   EXPECT_EQ(uniform_map({1, 1, 1}).clumping(), 0) << "a solid is even";
 }
 
-TEST(Clumping, AClumpHidesItsProjectedAreaAndItsFactorBringsDepthsThere) {
+TEST(Clumping, AClumpOccludesItsProjectedAreaAndItsFactorMatchesDepths) {
   NodeOpacity clump;
   clump.axes = {0.5f, 0.5f, 0.5f};
   const V3f size(1, 1, 1), diagonal = V3f(1, 1, 1).normalized();

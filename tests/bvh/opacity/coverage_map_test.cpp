@@ -1,5 +1,5 @@
 // Coverage maps: drawing triangles and compositing the maps of children keep areas. Opacity
-// pyramids: means of a texture's opacity over squares of texels, with its cutoff and wrap modes.
+// mip levels: means of a texture's opacity over squares of texels, with its cutoff and wrap modes.
 #include "bvh/opacity/coverage_map.hpp"
 
 #include <gtest/gtest.h>
@@ -163,7 +163,7 @@ TEST(CoverageMap, AChildAsLargeAsItsParentIsTakenOverUnchanged) {
   }
 }
 
-TEST(CoverageMap, SolidPartsSideBySideFillTheirParentWhereverTheyMeet) {
+TEST(CoverageMap, AdjacentSolidPartsFillTheirParentWhereverTheyTouch) {
   for (const float at : {0.5f, 0.25f, 0.37f, 0.501f}) {
     Box3f left = kBox, right = kBox;
     left.max.x = right.min.x = in_box({at, 0, 0}).x;
@@ -234,35 +234,35 @@ double texture_mean(const Texture& texture, float cutoff) {
   return sum / static_cast<double>(texture.alpha.size());
 }
 
-TEST(OpacityPyramid, ItsTopIsTheMeanOfAllTexelsOfOddSizesToo) {
+TEST(OpacityMipLevels, ItsTopIsTheMeanOfAllTexelsOfOddSizesToo) {
   for (const auto& [width, height] : {std::pair{64u, 64u}, {1u, 1u}, {37u, 5u}, {3u, 100u}}) {
     const Texture texture = noise_texture(width, height, 6);
     for (const float cutoff : {-1.0f, 0.5f}) {
-      // From 100 texels to one the pyramid has at most seven levels, each of which rounds.
-      EXPECT_NEAR(OpacityPyramid(texture, 1, cutoff).mean({0.3f, 0.8f}, 1e6f),
+      // From 100 texels to one there are at most seven mip levels, each of which rounds.
+      EXPECT_NEAR(OpacityMipLevels(texture, 1, cutoff).mean({0.3f, 0.8f}, 1e6f),
                   texture_mean(texture, cutoff), 1e-5)
           << width << " x " << height << ", cutoff " << cutoff;
     }
   }
 }
 
-TEST(OpacityPyramid, OneTexelWideIsTheTexelItself) {
+TEST(OpacityMipLevels, OneTexelWideIsTheTexelItself) {
   const Texture texture = noise_texture(16, 8, 7);
-  const OpacityPyramid pyramid(texture, 0.5f, -1);
+  const OpacityMipLevels mip_levels(texture, 0.5f, -1);
   for (std::uint32_t y = 0; y < 8; ++y) {
     for (std::uint32_t x = 0; x < 16; ++x) {
       const V2f uv((static_cast<float>(x) + 0.5f) / 16, (static_cast<float>(y) + 0.5f) / 8);
-      EXPECT_NEAR(pyramid.mean(uv, 1), 0.5f * texture.alpha[y * 16 + x] / 255.0f, 1e-6f);
+      EXPECT_NEAR(mip_levels.mean(uv, 1), 0.5f * texture.alpha[y * 16 + x] / 255.0f, 1e-6f);
     }
   }
 }
 
-TEST(OpacityPyramid, CutOutsAreThresholdedBeforeTheyAreAveraged) {
+TEST(OpacityMipLevels, CutOutsAreThresholdedBeforeTheyAreAveraged) {
   Texture checks;
   checks.width = checks.height = 4;
   for (int i = 0; i < 16; ++i) checks.alpha.push_back((i + i / 4) % 2 ? 204 : 51);  // 0.8, 0.2
   const auto mean = [&](float factor, float cutoff) {
-    return OpacityPyramid(checks, factor, cutoff).mean({0.5f, 0.5f}, 4);
+    return OpacityMipLevels(checks, factor, cutoff).mean({0.5f, 0.5f}, 4);
   };
   EXPECT_NEAR(mean(1, -1), 0.5f, 1e-6f);
   EXPECT_NEAR(mean(1, 0.6f), 0.5f, 1e-6f);  // the mean, 0.5, is below the cutoff
@@ -271,7 +271,7 @@ TEST(OpacityPyramid, CutOutsAreThresholdedBeforeTheyAreAveraged) {
   EXPECT_NEAR(mean(0.5f, 0.45f), 0, 1e-6f);  // the factor is applied before the threshold
 }
 
-TEST(OpacityPyramid, CoordinatesFarOutMeanTheirPlaceInTheTile) {
+TEST(OpacityMipLevels, CoordinatesFarOutWrapToTheirPositionInTheTile) {
   for (const auto& [s, t] : {std::pair{Wrap::repeat, Wrap::repeat},
                              {Wrap::repeat, Wrap::clamp},
                              {Wrap::mirror, Wrap::clamp},
@@ -279,11 +279,11 @@ TEST(OpacityPyramid, CoordinatesFarOutMeanTheirPlaceInTheTile) {
     Texture texture = noise_texture(16, 8, 9);
     texture.wrap_s = s;
     texture.wrap_t = t;
-    const OpacityPyramid pyramid(texture, 1, -1);
+    const OpacityMipLevels mip_levels(texture, 1, -1);
     // 3e9 is an even number of whole tiles; clamped coordinates are beyond the last texel.
     const float u = s == Wrap::clamp ? 1.0f : 0.0f, v = t == Wrap::clamp ? 1.0f : 0.0f;
-    EXPECT_NEAR(pyramid.mean({3e9f, 0.3f}, 1), pyramid.mean({u, 0.3f}, 1), 1e-6f);
-    EXPECT_NEAR(pyramid.mean({0.3f, 3e9f}, 1), pyramid.mean({0.3f, v}, 1), 1e-6f);
+    EXPECT_NEAR(mip_levels.mean({3e9f, 0.3f}, 1), mip_levels.mean({u, 0.3f}, 1), 1e-6f);
+    EXPECT_NEAR(mip_levels.mean({0.3f, 3e9f}, 1), mip_levels.mean({0.3f, v}, 1), 1e-6f);
   }
 }
 
@@ -317,7 +317,7 @@ TEST(CoverageMap, ATexturedCardsMeanIsItsTexturesMean) {
       const ObjectBvh& object = built.object;
       const double truth = alpha * texture_mean(texture, mode == AlphaMode::mask ? 0.5f : -1.0f);
       // The opacities of the two triangles add up. Three errors are small: the blur between two
-      // levels of the pyramid, the wrap at the border, and the look-up in the middle of cells that
+      // mip levels, the wrap at the border, and the look-up in the middle of cells that
       // the diagonal divides.
       EXPECT_NEAR(object.opacity.axes.z, truth, 0.004) << size << " texels";
       EXPECT_NEAR(object.opacity.axes.x, 0, 1e-6f);

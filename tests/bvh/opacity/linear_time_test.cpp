@@ -18,13 +18,13 @@ double prefilter_seconds(int leaves) {
   const Scene scene = make_procedural("scene:cloud?leaves=" + std::to_string(leaves));
   BuiltObject built = build_object(scene, scene.meshes[0]);
   const TextureIntegrals integrals(scene, built.object.textured);
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 5; ++i) {
     const std::clock_t start = std::clock();
     prefilter(built, integrals);
-    least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    min = std::min(min, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
-  return least;
+  return min;
 }
 
 // Ten times the triangles should take ten times the time, or a little more where the data exceed

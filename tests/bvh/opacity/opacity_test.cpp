@@ -44,7 +44,7 @@ NodeOpacity random_opacity(std::mt19937& random) {
   return opacity;
 }
 
-TEST(OpacityModel, AClumpHidesItsEllipsoidsAreaFromAnyDirection) {
+TEST(OpacityModel, AClumpOccludesItsEllipsoidsAreaFromAnyDirection) {
   std::mt19937 random(3);
   for (int i = 0; i < 1000; ++i) {
     NodeOpacity clump = random_opacity(random);
@@ -60,7 +60,7 @@ TEST(OpacityModel, AClumpHidesItsEllipsoidsAreaFromAnyDirection) {
   }
 }
 
-TEST(OpacityModel, WhatLiesEvenlyHidesItsOpacityAlongEachAxis) {
+TEST(OpacityModel, UniformlySpreadContentsOccludeTheirOpacityAlongEachAxis) {
   for (const float opacity : {0.0f, 0.001f, 0.3f, 0.7f, 0.99f, 0.9999f}) {
     NodeOpacity even;
     even.axes = V3f(opacity);
@@ -73,7 +73,7 @@ TEST(OpacityModel, WhatLiesEvenlyHidesItsOpacityAlongEachAxis) {
   }
 }
 
-TEST(OpacityModel, DepthsOfWhatLiesEvenlyNeedNoFactor) {
+TEST(OpacityModel, DepthsOfUniformlySpreadContentsNeedNoFactor) {
   std::mt19937 random(4);
   // An opacity has an error of 4e-6 of the transmittance. The factor divides this error by the
   // slope, which is also small for dense boxes.
@@ -136,7 +136,7 @@ HiddenArea hidden_area(const NodeOpacity& clump, const V3f& size, std::mt19937& 
   return hidden;
 }
 
-TEST(OpacityModel, FactorsMakeUpForWhatClumpsHideLessFromEverywhere) {
+TEST(OpacityModel, FactorsCorrectTheLowerMeanOcclusionOfClumps) {
   std::mt19937 random(6);
   double factors = 0, expected = 0;
   for (int i = 0; i < 500; ++i) {

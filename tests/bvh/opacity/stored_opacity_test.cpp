@@ -32,7 +32,7 @@ TEST(OpacityCode, DecodingIsWithinHalfACodeAndKeepsSmallOpacities) {
     // The code stores the depth's square root r, in 255 steps up to 3.035. With h, half a step, the
     // error of the depth is at most 2 r h + h^2, and that of the opacity is this times the
     // transmittance.
-    const float half = 0.5f / 255.0f * std::sqrt(DAPPLE_GREATEST_DEPTH);
+    const float half = 0.5f / 255.0f * std::sqrt(DAPPLE_MAX_DEPTH);
     const float root = std::sqrt(depth_of(opacity));
     const float bound = (2 * root * half + half * half) * std::exp(-root * root + 2 * root * half);
     // Opacities that differ from 1 only by rounding are stored as the maximum depth.

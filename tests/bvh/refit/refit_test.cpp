@@ -89,7 +89,7 @@ TEST(Refit, BoxesContainTheMovedTriangles) {
   EXPECT_EQ(updatable.bvh().bounds, build_bvh(moved).bounds);
 }
 
-TEST(Refit, EveryRayMeetsInExactModeWhatItMeetsInAFreshBvh) {
+TEST(Refit, EveryExactRayIntersectsWhatItIntersectsInAFreshBvh) {
   const Scene still = tree();
   UpdatableBvh updatable(still);
   const Device& device = scene_test::device();
@@ -138,7 +138,7 @@ TEST(Refit, OpacitiesOfWhatMovedBackAreThoseOfTheBuild) {
   updatable.update(swayed(still, 1));
   updatable.update(still);
   const SceneBvh &refitted = updatable.bvh(), fresh = build_bvh(still);
-  double sum = 0, most = 0, count = 0;
+  double sum = 0, max = 0, count = 0;
   for (std::size_t n = 0; n < fresh.nodes.size(); ++n) {
     const BvhNode &a = refitted.nodes[n], &b = fresh.nodes[n];
     EXPECT_EQ(std::memcmp(a.lower, b.lower, sizeof a.lower), 0);
@@ -147,14 +147,14 @@ TEST(Refit, OpacitiesOfWhatMovedBackAreThoseOfTheBuild) {
       for (int slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
         const double off = a.depth[axis][slot] - b.depth[axis][slot];
         sum += off;
-        most = std::max(most, std::fabs(off));
+        max = std::max(max, std::fabs(off));
         ++count;
       }
     }
   }
-  std::printf("depth codes off by %.4f in the mean, %.0f at most\n", sum / count, most);
+  std::printf("depth codes off by %.4f in the mean, %.0f at most\n", sum / count, max);
   EXPECT_NEAR(sum / count, 0, 0.1);
-  EXPECT_LE(most, 8);
+  EXPECT_LE(max, 8);
 }
 
 TEST(Refit, ThreadsDontChangeABit) {

@@ -110,7 +110,7 @@ TEST(Strands, TakeAtMostSixtyBytesASegment) {
   EXPECT_LE(static_cast<double>(bytes) / 80'000, 60.0);
 }
 
-TEST(Strands, HideWhatACapsuleHides) {
+TEST(Strands, OccludeWhatACapsuleOccludes) {
   // A straight strand of three segments occludes the area of a capsule, 2 r l + pi r^2: its joints
   // must not add anything.
   const SceneOnDevice scene(
@@ -125,7 +125,7 @@ TEST(Strands, HideWhatACapsuleHides) {
   EXPECT_NEAR((1 - left) * area, 0.3 * disk, 0.3 * disk * 5e-3);
 }
 
-TEST(Strands, AreEnteredOnceWhereSegmentsMeet) {
+TEST(Strands, AreEnteredOnceWhereSegmentsJoin) {
   // Strands with a bend of up to a right angle, in the plane z = 0 and out of it.
   for (const V3f& last : {V3f(0.1f, 0, 0), V3f(0.1f, 0.04f, 0), V3f(0.1f, 0.1f, 0),
                           V3f(0.005f, 0.1f, 0), V3f(0.1f, 0, 0.05f), V3f(0.1f, 0.02f, -0.03f)}) {
@@ -155,7 +155,7 @@ TEST(Strands, OutsideOfABendThereIsNoGap) {
   }
 }
 
-TEST(Strands, DontHideTheirOwnSurface) {
+TEST(Strands, DontOccludeTheirOwnSurface) {
   const SceneOnDevice scene(
       strand_scene(strand({{-0.2f, 0, 0}, {-0.05f, 0.01f, 0}, {0.1f, 0, 0}, {0.2f, 0, 0.01f}}), 1));
   std::vector<SurfacePoint> points =

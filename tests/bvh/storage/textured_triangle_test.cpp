@@ -32,37 +32,37 @@ TexturedCorners packed(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t)
   return unpack_textured(pack_textured(corners, wrap_s, wrap_t));
 }
 
-/// Number of whole tiles that packing subtracts from coordinates whose minimum is `least`.
-double tiles(double least, Wrap wrap) {
+/// Number of whole tiles that packing subtracts from coordinates whose minimum is `min`.
+double tiles(double min, Wrap wrap) {
   if (wrap == Wrap::clamp) return 0;
-  return wrap == Wrap::repeat ? std::floor(least) : 2 * std::floor(least / 2);
+  return wrap == Wrap::repeat ? std::floor(min) : 2 * std::floor(min / 2);
 }
 
-/// Maximum rounding error of coordinates that are in [least, most] after whole tiles are
+/// Maximum rounding error of coordinates that are in [min, max] after whole tiles are
 /// subtracted. Their range is the smallest power of two, 1 or more, that they are below after
 /// rounding. The error is half of 2^-21 of this range, or half of 2^-20 if a coordinate is
 /// negative.
-double allowed(double least, double most) {
+double allowed(double min, double max) {
   double size = 1;
-  while (most >= size * (1 - 0x1p-21) || -least > size) size *= 2;
-  return size * (least <= -0x1p-22 ? 0x1p-21 : 0x1p-22);
+  while (max >= size * (1 - 0x1p-21) || -min > size) size *= 2;
+  return size * (min <= -0x1p-22 ? 0x1p-21 : 0x1p-22);
 }
 
 void expect_within_half_a_step(const TexturedCorners& given, Wrap wrap_s, Wrap wrap_t) {
   const TexturedCorners held = packed(given, wrap_s, wrap_t);
   const Wrap wraps[2] = {wrap_s, wrap_t};
-  double folded[3][2], least = 1e300, most = -1e300;
+  double folded[3][2], min = 1e300, max = -1e300;
   for (int axis = 0; axis < 2; ++axis) {
     const double first = std::min({given.uv[0][axis], given.uv[1][axis], given.uv[2][axis]});
     for (int corner = 0; corner < 3; ++corner) {
       folded[corner][axis] = given.uv[corner][axis] - tiles(first, wraps[axis]);
-      least = std::min(least, folded[corner][axis]);
-      most = std::max(most, folded[corner][axis]);
+      min = std::min(min, folded[corner][axis]);
+      max = std::max(max, folded[corner][axis]);
     }
   }
   for (int axis = 0; axis < 2; ++axis) {
     for (int corner = 0; corner < 3; ++corner) {
-      EXPECT_NEAR(held.uv[corner][axis], folded[corner][axis], allowed(least, most))
+      EXPECT_NEAR(held.uv[corner][axis], folded[corner][axis], allowed(min, max))
           << given.uv[0] << given.uv[1] << given.uv[2];
     }
   }
@@ -250,8 +250,8 @@ Scene scene_of_materials(std::size_t materials) {
 }
 
 TEST(TexturedTriangle, AMaterialTooManyIsRefusedByName) {
-  const Scene most = scene_of_materials(DAPPLE_MAX_TEXTURED_MATERIALS);
-  EXPECT_EQ(unpack_textured(build_bvh(most).textured[0]).material,
+  const Scene max_materials = scene_of_materials(DAPPLE_MAX_TEXTURED_MATERIALS);
+  EXPECT_EQ(unpack_textured(build_bvh(max_materials).textured[0]).material,
             DAPPLE_MAX_TEXTURED_MATERIALS - 1u);
   try {
     build_bvh(scene_of_materials(DAPPLE_MAX_TEXTURED_MATERIALS + 1));

@@ -58,7 +58,7 @@ M44f matrix_at(const GltfBuilder& b, double seconds, const std::string& animatio
   return b.load(at(seconds, animation)).instances.at(0).to_world;
 }
 
-V3f place_at(const GltfBuilder& b, double seconds, const std::string& animation = "") {
+V3f position_at(const GltfBuilder& b, double seconds, const std::string& animation = "") {
   const M44f m = matrix_at(b, seconds, animation);
   return {m[3][0], m[3][1], m[3][2]};
 }
@@ -69,16 +69,16 @@ std::string refusal(const GltfBuilder& b, double seconds = 0.5) {
 
 TEST(GltfAnimation, LinearTranslationsAreMeansOfTheirKeyframes) {
   const GltfBuilder b = moved({1, 2, 4}, {0, 0, 0, 4, 8, 0, 4, 8, 6}, "LINEAR");
-  EXPECT_EQ(place_at(b, 1.25), V3f(1, 2, 0));
-  EXPECT_EQ(place_at(b, 2), V3f(4, 8, 0));
-  EXPECT_EQ(place_at(b, 3), V3f(4, 8, 3));
+  EXPECT_EQ(position_at(b, 1.25), V3f(1, 2, 0));
+  EXPECT_EQ(position_at(b, 2), V3f(4, 8, 0));
+  EXPECT_EQ(position_at(b, 3), V3f(4, 8, 3));
 }
 
 TEST(GltfAnimation, TimesBeforeTheFirstKeyframeAndAfterTheLastAreThose) {
   for (const char* interpolation : {"LINEAR", "STEP"}) {
     const GltfBuilder b = moved({1, 2}, {1, 2, 3, 4, 5, 6}, interpolation);
-    for (const double early : {-7.0, 0.0, 1.0}) EXPECT_EQ(place_at(b, early), V3f(1, 2, 3));
-    for (const double late : {2.0, 2.5, 1e30}) EXPECT_EQ(place_at(b, late), V3f(4, 5, 6));
+    for (const double early : {-7.0, 0.0, 1.0}) EXPECT_EQ(position_at(b, early), V3f(1, 2, 3));
+    for (const double late : {2.0, 2.5, 1e30}) EXPECT_EQ(position_at(b, late), V3f(4, 5, 6));
   }
 }
 
@@ -88,9 +88,9 @@ TEST(GltfAnimation, WithoutATimeNodesStayAsTheyAreWritten) {
 
 TEST(GltfAnimation, StepsHoldAKeyframeUntilTheNext) {
   const GltfBuilder b = moved({0, 1, 2}, {1, 0, 0, 2, 0, 0, 3, 0, 0}, "STEP");
-  EXPECT_EQ(place_at(b, 0.999), V3f(1, 0, 0));
-  EXPECT_EQ(place_at(b, 1), V3f(2, 0, 0));
-  EXPECT_EQ(place_at(b, 1.999), V3f(2, 0, 0));
+  EXPECT_EQ(position_at(b, 0.999), V3f(1, 0, 0));
+  EXPECT_EQ(position_at(b, 1), V3f(2, 0, 0));
+  EXPECT_EQ(position_at(b, 1.999), V3f(2, 0, 0));
 }
 
 // Hermite basis at a quarter of the interval: h00 = 27/32, h10 = 9/64, h01 = 5/32, h11 = -3/64.
@@ -100,12 +100,12 @@ TEST(GltfAnimation, CubicSplinesPassTheirKeyframesWithTheirTangents) {
                               {9, 9, 9, 0, 0, 32, 8, 0, 0,  // in-tangent, value, out-tangent
                                0, 16, 0, 32, 0, 32, 9, 9, 9},
                               "CUBICSPLINE");
-  const V3f quarter = place_at(b, 1.5);
+  const V3f quarter = position_at(b, 1.5);
   EXPECT_NEAR(quarter.x, 2 * 9.0 / 64 * 8 + 5.0 / 32 * 32, 1e-5);
   EXPECT_NEAR(quarter.y, 2 * -3.0 / 64 * 16, 1e-6);
   EXPECT_NEAR(quarter.z, 32, 1e-5);
-  EXPECT_EQ(place_at(b, 1), V3f(0, 0, 32));
-  EXPECT_EQ(place_at(b, 3), V3f(32, 0, 32));
+  EXPECT_EQ(position_at(b, 1), V3f(0, 0, 32));
+  EXPECT_EQ(position_at(b, 3), V3f(32, 0, 32));
 }
 
 TEST(GltfAnimation, RotationsTakeTheShorterWayAtASteadyPace) {
@@ -188,12 +188,12 @@ GltfBuilder two_animations() {
 
 TEST(GltfAnimation, TheFirstPlaysUnlessAnotherOrAllAreChosen) {
   const GltfBuilder b = two_animations();
-  EXPECT_EQ(place_at(b, 0), V3f(1, 0, 0));
-  EXPECT_EQ(place_at(b, 0, "walk"), V3f(1, 0, 0));
+  EXPECT_EQ(position_at(b, 0), V3f(1, 0, 0));
+  EXPECT_EQ(position_at(b, 0, "walk"), V3f(1, 0, 0));
   EXPECT_EQ(matrix_at(b, 0, "walk")[0][0], 1.0f);
-  EXPECT_EQ(place_at(b, 0, "animation_1"), V3f(0, 7, 0));
+  EXPECT_EQ(position_at(b, 0, "animation_1"), V3f(0, 7, 0));
   EXPECT_EQ(matrix_at(b, 0, "*")[0][0], 2.0f);
-  EXPECT_EQ(place_at(b, 0, "*"), V3f(0, 7, 0)) << "the last that moves something decides";
+  EXPECT_EQ(position_at(b, 0, "*"), V3f(0, 7, 0)) << "the last that moves something decides";
 }
 
 TEST(GltfAnimation, TheSceneListsAnimationsWithTheirLengths) {
@@ -222,7 +222,7 @@ TEST(GltfAnimation, ANameThatThereIsNotIsRefusedWithThoseThatThereAre) {
 TEST(GltfAnimation, AFileWithoutOneSaysThatItStaysAtRest) {
   const Scene scene = one_triangle().load(at(3));
   ASSERT_EQ(scene.warnings.size(), 1u);
-  expect_says(scene.warnings[0], "has no animations, and stays at rest");
+  expect_says(scene.warnings[0], "has no animations, and stays in its rest pose");
 }
 
 TEST(GltfAnimation, KeyframesThatDoNotIncreaseAreRefusedByChannel) {
@@ -267,7 +267,7 @@ TEST(GltfAnimation, ValuesThatAreNoneAreRefusedByChannel) {
 TEST(GltfAnimation, ChannelsOfWhatDappleDoesNotKnowMoveNothing) {
   GltfBuilder b = moved({0, 1}, {1, 0, 0, 1, 0, 0}, "STEP");
   b.doc["animations"][0]["channels"][0]["target"].erase("node");
-  EXPECT_EQ(place_at(b, 0), V3f(0, 0, 0));
+  EXPECT_EQ(position_at(b, 0), V3f(0, 0, 0));
 }
 
 TEST(MovingScene, PosesAFileAtAnyTimeAsLoadingItDoes) {

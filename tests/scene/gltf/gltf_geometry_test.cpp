@@ -243,8 +243,8 @@ TEST(GltfGeometry, SkippedFeaturesGiveOneWarningEach) {
   const Scene scene = builder.load();
   EXPECT_EQ(world_triangles(scene).size(), 1u);
   ASSERT_EQ(scene.warnings.size(), 3u);
-  expect_says(scene.warnings[0], "line primitives are left out: --line-radius R makes strands");
-  expect_says(scene.warnings[1], "point primitives are left out (1");
+  expect_says(scene.warnings[0], "line primitives are ignored: --line-radius R makes strands");
+  expect_says(scene.warnings[1], "point primitives are ignored (1");
   expect_says(scene.warnings[2], "skinned nodes have meshes without JOINTS_0 and WEIGHTS_0");
 }
 

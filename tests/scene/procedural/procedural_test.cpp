@@ -199,7 +199,7 @@ TEST(Procedural, ALeafIsTwoTrianglesThatShareAnEdge) {
   }
 }
 
-TEST(Procedural, ACloudIsABallOfEvenDensity) {
+TEST(Procedural, ACloudIsABallOfUniformDensity) {
   const Mesh mesh = make_procedural("scene:cloud?leaves=40000").meshes.at(0);
   int inner = 0;
   for (std::size_t leaf = 0; leaf < 40000; ++leaf) {

@@ -1,4 +1,4 @@
-#include "compare/layers.hpp"
+#include "compare/layer_pairs.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "bvh/opacity/opacity_pyramid.hpp"
+#include "bvh/opacity/opacity_mip_levels.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -44,8 +44,8 @@ std::vector<Shares> shares_of(int fine, int coarse) {
   return all;
 }
 
-OpacityPyramid::Level coarser(const OpacityPyramid::Level& fine) {
-  OpacityPyramid::Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
+OpacityMipLevels::Level coarser(const OpacityMipLevels::Level& fine) {
+  OpacityMipLevels::Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
   coarse.opacity.resize(static_cast<std::size_t>(coarse.width) * coarse.height);
   const std::vector<Shares> columns = shares_of(fine.width, coarse.width);
   const std::vector<Shares> rows = shares_of(fine.height, coarse.height);
@@ -75,7 +75,7 @@ float thresholded(float alpha, float cutoff) {
   return alpha >= cutoff ? 1.0f : 0.0f;
 }
 
-OpacityPyramid::OpacityPyramid(const Texture& texture, float factor, float cutoff)
+OpacityMipLevels::OpacityMipLevels(const Texture& texture, float factor, float cutoff)
     : size_(static_cast<float>(texture.width), static_cast<float>(texture.height)),
       wrap_s_(texture.wrap_s),
       wrap_t_(texture.wrap_t) {
@@ -90,7 +90,7 @@ OpacityPyramid::OpacityPyramid(const Texture& texture, float factor, float cutof
     levels_.push_back(coarser(levels_.back()));
 }
 
-float OpacityPyramid::bilinear(const Level& level, V2f uv) const {
+float OpacityMipLevels::bilinear(const Level& level, V2f uv) const {
   const float x = uv.x * static_cast<float>(level.width) - 0.5f;
   const float y = uv.y * static_cast<float>(level.height) - 0.5f;
   const float left = std::floor(x), top = std::floor(y);
@@ -105,7 +105,7 @@ float OpacityPyramid::bilinear(const Level& level, V2f uv) const {
   return upper * (1 - fy) + lower * fy;
 }
 
-float OpacityPyramid::mean(V2f uv, float width_texels) const {
+float OpacityMipLevels::mean(V2f uv, float width_texels) const {
   const V2f at(folded_coordinate(uv.x, wrap_s_), folded_coordinate(uv.y, wrap_t_));
   const float level = std::clamp(std::log2(std::max(width_texels, 1.0f)), 0.0f,
                                  static_cast<float>(levels_.size() - 1));
@@ -115,7 +115,7 @@ float OpacityPyramid::mean(V2f uv, float width_texels) const {
   return bilinear(levels_[fine], at) * (1 - blend) + bilinear(levels_[coarse], at) * blend;
 }
 
-std::size_t pyramid_texels(const Texture& texture) {
+std::size_t mip_level_texels(const Texture& texture) {
   std::size_t sum = texture.alpha.size();
   for (std::size_t width = texture.width, height = texture.height; width > 1 || height > 1;) {
     width = std::max<std::size_t>(1, width / 2);

@@ -1,4 +1,4 @@
-// Mip pyramids of a texture's opacity, for prefiltering nodes and for rays whose footprints cover
+// Mip levels of a texture's opacity, for prefiltering nodes and for rays whose footprints cover
 // many texels (kernels/opacity/opacity_lookup.clh).
 #pragma once
 
@@ -15,7 +15,7 @@ float thresholded(float alpha, float cutoff);
 
 /// The opacities of a texture, averaged over 1, 2, 4... texels along each axis (Williams,
 /// "Pyramidal Parametrics", 1983). Cut-out textures are thresholded before they are averaged.
-class OpacityPyramid {
+class OpacityMipLevels {
  public:
   /// Level k is half as wide and high as level k - 1, rounded down, and at least 1.
   struct Level {
@@ -24,7 +24,7 @@ class OpacityPyramid {
   };
 
   /// `factor` multiplies alpha before the threshold; `cutoff` < 0: blended.
-  OpacityPyramid(const Texture& texture, float factor, float cutoff);
+  OpacityMipLevels(const Texture& texture, float factor, float cutoff);
 
   /// Mean opacity around uv over a square `width_texels` wide.
   [[nodiscard]] float mean(V2f uv, float width_texels) const;
@@ -43,6 +43,6 @@ class OpacityPyramid {
 };
 
 /// Returns the number of texels of all levels, including the texture itself.
-std::size_t pyramid_texels(const Texture& texture);
+std::size_t mip_level_texels(const Texture& texture);
 
 }  // namespace dapple

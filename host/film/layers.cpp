@@ -1,0 +1,257 @@
+#include "film/layers.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <span>
+
+#include "camera/camera_splitting.hpp"
+#include "film/film_sums.hpp"
+#include "film/traced_picture.hpp"
+
+namespace dapple {
+namespace {
+
+/// EXR cuts channel names at 255 bytes; this leaves room for "error.light." and "_2".
+constexpr std::size_t kMaxLayerNameLength = 200;
+
+bool is_name_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/// Whether `c` is the second or a later byte of a UTF-8 character. In "größe" the characters ö and
+/// ß become one underscore each.
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
+
+/// The picture's fixed-point sums, by plane and pixel, as doubles.
+class Sums {
+ public:
+  Sums(std::span<const std::int64_t> sums, std::uint32_t pixels) : sums_(sums), pixels_(pixels) {}
+  [[nodiscard]] double at(std::uint32_t plane, std::uint32_t pixel) const {
+    return static_cast<double>(sums_[std::size_t{plane} * pixels_ + pixel]);
+  }
+  [[nodiscard]] double total(std::uint32_t plane) const {
+    double sum = 0;
+    for (std::uint32_t p = 0; p < pixels_; ++p) sum += at(plane, p);
+    return sum;
+  }
+
+ private:
+  std::span<const std::int64_t> sums_;
+  std::uint32_t pixels_;
+};
+
+/// The number that a pixel's sums are divided by. Without samples the sums are 0 and this is 1: the
+/// pixel looks as if all its rays missed.
+double sample_count(const TracedPicture& picture, std::uint32_t pixel) {
+  return std::max(1u, picture.samples[pixel]);
+}
+
+/// Irradiance of the lights at a pixel, linear RGB: with occlusion, of all lights together or of
+/// one; and the largest without occlusion, of all lights together, over all pixels and channels.
+class LightPlanes {
+ public:
+  LightPlanes(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
+              const RenderOptions& options, const std::vector<Light>& lights)
+      : sums_(sums),
+        picture_(picture),
+        layout_(layout),
+        lights_(lights),
+        inverse_(1.0 / (double{layout.light_scale} * options.light_rays)) {}
+
+  [[nodiscard]] V3d shadowed(std::uint32_t pixel) const {
+    V3d value(0.0);
+    for (std::size_t l = 0; l < lights_.size(); ++l) value += one(l, pixel);
+    return value;
+  }
+  [[nodiscard]] V3d one(std::size_t light, std::uint32_t pixel) const {
+    return of_planes(light, layout_.lights[light].first, pixel);
+  }
+  [[nodiscard]] double largest_unoccluded() const {
+    double largest = 0;
+    for (std::uint32_t p = 0; p < layout_.pixels; ++p) {
+      V3d value(0.0);
+      for (std::size_t l = 0; l < lights_.size(); ++l)
+        value += of_planes(l, layout_.lights[l].unoccluded(), p);
+      largest = std::max({largest, value.x, value.y, value.z});
+    }
+    return largest;
+  }
+
+ private:
+  /// Irradiance from the light's one plane, or its three, from `first` on.
+  [[nodiscard]] V3d of_planes(std::size_t light, std::uint32_t first, std::uint32_t pixel) const {
+    const std::uint32_t last = layout_.lights[light].channels - 1;
+    const V3d sum(sums_.at(first, pixel), sums_.at(first + std::min(1u, last), pixel),
+                  sums_.at(first + last, pixel));
+    return V3d(lights_[light].radiance) * sum * (inverse_ / sample_count(picture_, pixel));
+  }
+
+  const Sums& sums_;
+  const TracedPicture& picture_;
+  const FilmLayout& layout_;
+  const std::vector<Light>& lights_;
+  double inverse_;
+};
+
+class Planes {
+ public:
+  explicit Planes(std::uint32_t pixels) : pixels_(pixels) {}
+
+  template <class Value>
+  void add(const std::string& channel, const Value& value) {
+    Plane plane{channel, std::vector<float>(pixels_)};
+    tbb::parallel_for(0u, pixels_,
+                      [&](std::uint32_t p) { plane.pixels[p] = static_cast<float>(value(p)); });
+    planes_.push_back(std::move(plane));
+  }
+  template <class Value>
+  void add3(const std::string& layer, const char (&suffixes)[4], const Value& value) {
+    for (int i = 0; i < 3; ++i) {
+      const std::string prefix = layer.empty() ? "" : layer + ".";
+      add(prefix + suffixes[i], [&](std::uint32_t p) { return value(p)[i]; });
+    }
+  }
+  std::vector<Plane> take() { return std::move(planes_); }
+
+ private:
+  std::uint32_t pixels_;
+  std::vector<Plane> planes_;
+};
+
+double per_ray(double sum, std::uint64_t rays) {
+  return rays ? sum / static_cast<double>(rays) : 0.0;
+}
+
+double root_mean_square(const std::vector<float>& values) {
+  const double sum = std::transform_reduce(values.begin(), values.end(), 0.0, std::plus<>(),
+                                           [](float value) { return double{value} * value; });
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
+                  const RenderOptions& options, std::size_t lights, RenderStatistics& s) {
+  const double hits = sums.total(0);
+  s.rays.camera =
+      std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0}) /
+      splitting_factor(options);
+  s.camera = {per_ray(sums.total(kCameraVisits) / DAPPLE_ITEM_RAYS, s.rays.camera),
+              per_ray(sums.total(kCameraVisits + 1) / DAPPLE_ITEM_RAYS, s.rays.camera)};
+  if (options.ao) {
+    s.rays.ao = static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.ao_rays);
+    s.ao = {per_ray(sums.total(layout.ao_visits()), s.rays.ao),
+            per_ray(sums.total(layout.ao_visits() + 1), s.rays.ao)};
+  }
+  s.rays.light =
+      static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.light_rays) * lights;
+  double visits = 0, tests = 0;
+  for (const LightPlaneRange& planes : layout.lights) {
+    visits += sums.total(planes.visits());
+    tests += sums.total(planes.visits() + 1);
+  }
+  s.light = {per_ray(visits, s.rays.light), per_ray(tests, s.rays.light)};
+}
+
+/// Adds the layers of node visits and triangle tests: those of a camera ray and of the AO and light
+/// rays of its samples, as a mean of each pixel.
+void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
+                const FilmLayout& layout, const RenderOptions& options) {
+  const auto total = [&](std::uint32_t p, std::uint32_t which) {
+    double sum = sums.at(kCameraVisits + which, p) / DAPPLE_ITEM_RAYS;
+    if (options.ao) sum += sums.at(layout.ao_visits() + which, p);
+    for (const LightPlaneRange& light : layout.lights) sum += sums.at(light.visits() + which, p);
+    return sum * splitting_factor(options) / sample_count(picture, p);
+  };
+  planes.add("visits.nodes", [&](std::uint32_t p) { return total(p, 0); });
+  planes.add("visits.triangles", [&](std::uint32_t p) { return total(p, 1); });
+}
+
+}  // namespace
+
+std::vector<std::string> light_names(const std::vector<Light>& lights) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const Light& light : lights) {
+    const std::string base = layer_name(light.name);
+    std::string name = base;
+    for (int n = 2; !taken.insert(name).second; ++n) name = base + "_" + std::to_string(n);
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::string layer_name(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    if (name.size() == kMaxLayerNameLength) break;
+    if (!continues_character(c)) name += is_name_character(c) ? c : '_';
+  }
+  return name.empty() ? "unnamed" : name;
+}
+
+std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layout,
+                           const RenderOptions& options, const std::vector<Light>& lights,
+                           RenderStatistics& statistics) {
+  const Sums sums(picture.sums.values<std::int64_t>(), layout.pixels);
+  const auto spp = [&](std::uint32_t p) { return sample_count(picture, p); };
+  const auto hits = [&](std::uint32_t p) { return sums.at(0, p); };
+  const auto ao = [&](std::uint32_t p) {
+    if (!options.ao) return 1.0;
+    return sums.at(layout.ao, p) / (double{layout.unit_scale} * options.ao_rays * spp(p)) + 1.0 -
+           hits(p) / spp(p);
+  };
+  const LightPlanes light(sums, picture, layout, options, lights);
+  const double largest = lights.empty() ? 0.0 : light.largest_unoccluded();
+
+  Planes planes(layout.pixels);
+  // RGB is premultiplied by A: camera rays that miss the scene count as 0.
+  planes.add3("", "RGB", [&](std::uint32_t p) {
+    const double covered = ao(p) - (1.0 - hits(p) / spp(p));
+    if (lights.empty()) return V3d(covered);
+    const double over_hits = hits(p) > 0 ? covered * spp(p) / hits(p) : 0.0;
+    return largest > 0 ? light.shadowed(p) * (over_hits / largest) : V3d(0.0);
+  });
+  planes.add("A", [&](std::uint32_t p) { return hits(p) / spp(p); });
+  if (options.ao) {
+    planes.add3("ao", "RGB", [&](std::uint32_t p) { return V3d(ao(p)); });
+    planes.add3("bent", "XYZ", [&](std::uint32_t p) {
+      V3d bent(sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p), sums.at(layout.ao + 3, p));
+      return bent.length2() > 0 ? bent.normalized() : V3d(0.0);
+    });
+  }
+  const std::vector<std::string> names = light_names(lights);
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    planes.add3("light." + names[l], "RGB", [&](std::uint32_t p) { return light.one(l, p); });
+  }
+  const auto mean3 = [&](std::uint32_t plane, double scale) {
+    return [&, plane, scale](std::uint32_t p) {
+      if (hits(p) == 0) return V3d(0.0);
+      return V3d(sums.at(plane, p), sums.at(plane + 1, p), sums.at(plane + 2, p)) /
+             (scale * hits(p));
+    };
+  };
+  planes.add3("N", "XYZ", mean3(1, layout.unit_scale));
+  planes.add3("P", "XYZ", mean3(4, layout.position_scale));
+  planes.add("Z", [&](std::uint32_t p) {
+    return hits(p) > 0 ? sums.at(7, p) / (double{layout.depth_scale} * hits(p))
+                       : std::numeric_limits<double>::infinity();
+  });
+  planes.add("samples",
+             [&](std::uint32_t p) { return picture.samples[p] / splitting_factor(options); });
+  if (options.visits) add_visits(planes, sums, picture, layout, options);
+  for (std::size_t pass = 0; pass < picture.errors.size(); ++pass) {
+    const bool is_ao = options.ao && pass == 0;
+    const std::string layer = is_ao ? "ao" : "light." + names[pass - (options.ao ? 1 : 0)];
+    const std::vector<float>& errors = picture.errors[pass];
+    planes.add("error." + layer, [&](std::uint32_t p) { return errors[p]; });
+    statistics.rmse[layer] = root_mean_square(errors);
+  }
+  count_visits(sums, picture, layout, options, lights.size(), statistics);
+  return planes.take();
+}
+
+}  // namespace dapple

@@ -1,0 +1,25 @@
+// The layers of an EXR file: their names, channels and values. To add or rename one, change
+// develop() and docs/layers.md; for its preview layer_tone() in png.cpp; for its memory the counts
+// in film_memory.cpp. In: sums and sample counts. Out: named planes and statistics.
+#pragma once
+
+#include <vector>
+
+#include "dapple/film.hpp"
+#include "dapple/render.hpp"
+
+namespace dapple {
+
+struct FilmLayout;
+struct TracedPicture;
+
+/// A name for each light, all different: the part of its layers' names after "light.".
+std::vector<std::string> light_names(const std::vector<Light>& lights);
+
+/// Makes the film's planes from the means of the sums; docs/layers.md lists their channels. Stores
+/// the numbers of rays, visits and tests, and the errors, in `statistics`.
+std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layout,
+                           const RenderOptions& options, const std::vector<Light>& lights,
+                           RenderStatistics& statistics);
+
+}  // namespace dapple
