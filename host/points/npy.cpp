@@ -2,9 +2,11 @@
 // numpy.org/doc/stable/reference/generated/numpy.lib.format.html
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <regex>
+#include <string_view>
 
 #include "dapple/error.hpp"
 #include "points/number_table.hpp"
@@ -33,21 +35,58 @@ Header read_header(const std::string& path, const std::string& bytes) {
   return {bytes.substr(begin, length), begin + length};
 }
 
-/// Types by column, '4' or '8' bytes, and their names.
-void read_types(const std::string& path, const std::string& header, NumberTable& table,
+/// What follows 'key': in the header, a Python dictionary; empty if there is no such key.
+std::string_view value_of(std::string_view header, const std::string& key) {
+  const std::string quoted = "'" + key + "':";
+  const std::size_t at = header.find(quoted);
+  if (at == std::string_view::npos) return {};
+  header.remove_prefix(at + quoted.size());
+  header.remove_prefix(std::min(header.find_first_not_of(' '), header.size()));
+  return header;
+}
+
+/// Takes the next 'text' out of `from`; empty if there is none before `end`.
+std::string_view take_quoted(std::string_view& from, char end) {
+  const std::size_t open = from.find('\'');
+  if (open == std::string_view::npos || from.find(end) < open) return {};
+  const std::size_t close = from.find('\'', open + 1);
+  if (close == std::string_view::npos) return {};
+  const std::string_view text = from.substr(open + 1, close - open - 1);
+  from.remove_prefix(close + 1);
+  return text;
+}
+
+/// Bytes of a little-endian float, 0 for other types.
+std::size_t float_bytes(std::string_view type) { return type == "<f4" ? 4 : type == "<f8" ? 8 : 0; }
+
+/// Bytes of each column, and names of the columns of a structured array.
+void read_types(const std::string& path, std::string_view descr, NumberTable& table,
                 std::vector<std::size_t>& sizes) {
-  std::smatch match;
-  if (std::regex_search(header, match, std::regex("'descr': *'([<|=]?)f([48])'"))) {
-    sizes.assign(1, match[2] == "4" ? 4 : 8);
-    return;
+  const bool structured = descr.starts_with('[');
+  do {
+    if (structured) {
+      const std::string_view name = take_quoted(descr, ']');
+      if (name.empty() && !sizes.empty()) return;
+      table.names.emplace_back(name);
+    }
+    sizes.push_back(float_bytes(take_quoted(descr, ']')));
+    if (sizes.back() == 0)
+      fail_npy(path, "must hold little-endian float32 or float64, plain or as named fields");
+  } while (structured);
+}
+
+/// The numbers of a tuple, such as (3, 4) or (5,).
+std::vector<std::size_t> read_shape(std::string_view text) {
+  std::vector<std::size_t> shape;
+  text = text.substr(0, text.find(')'));
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_of("0123456789"), text.size()));
+    std::size_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || error != std::errc()) return shape;
+    shape.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   }
-  const std::regex field(R"(\('(\w+)', *'<f([48])'\))");
-  for (std::sregex_iterator i(header.begin(), header.end(), field), end; i != end; ++i) {
-    table.names.push_back((*i)[1]);
-    sizes.push_back((*i)[2] == "4" ? 4 : 8);
-  }
-  if (sizes.empty())
-    fail_npy(path, "must hold little-endian float32 or float64, plain or as named fields");
 }
 
 }  // namespace
@@ -58,17 +97,18 @@ NumberTable read_npy(const std::string& path) {
   const Header header = read_header(path, bytes);
   NumberTable table;
   std::vector<std::size_t> sizes;
-  read_types(path, header.text, table, sizes);
-  if (header.text.find("'fortran_order': True") != std::string::npos)
+  read_types(path, value_of(header.text, "descr"), table, sizes);
+  if (value_of(header.text, "fortran_order").starts_with("True"))
     fail_npy(path, "is in Fortran order; save numpy.ascontiguousarray of it");
-  std::smatch shape;
-  if (!std::regex_search(header.text, shape, std::regex(R"('shape': *\((\d+), *(\d*)\))")))
-    fail_npy(path, "must have a shape of rows and columns, or rows of named fields");
-  const std::size_t rows = std::stoull(shape[1]);
-  if (table.names.empty()) {
-    if (shape[2].length() == 0) fail_npy(path, "has one dimension; it must have rows and columns");
-    sizes.assign(std::stoull(shape[2]), sizes[0]);
-  }
+  const std::vector<std::size_t> shape = read_shape(value_of(header.text, "shape"));
+  if (shape.size() != (table.names.empty() ? 2 : 1))
+    fail_npy(path,
+             fmt::format("has {} dimension{}; it must have rows and columns, or rows of named "
+                         "fields",
+                         shape.size(), shape.size() == 1 ? "" : "s"));
+  const std::size_t rows = shape[0];
+  constexpr std::size_t kMaxColumns = 1u << 20;
+  if (table.names.empty()) sizes.assign(std::min(shape[1], kMaxColumns), sizes[0]);
   table.columns = sizes.size();
   std::size_t row_bytes = 0;
   for (const std::size_t size : sizes) row_bytes += size;

@@ -110,7 +110,7 @@ TEST_F(PointFile, ArraysOfSinglesAndDoublesAreRead) {
             V3f(0, 0, 1));
   expect_error(write("i.npy", npy("'<i8'", "(2, 3)", doubles)), "float32");
   expect_error(write("t.npy", npy("'<f8'", "(9, 3)", doubles)), "9 rows");
-  expect_error(write("o.npy", npy("'<f8'", "(6,)", doubles)), "one dimension");
+  expect_error(write("o.npy", npy("'<f8'", "(6,)", doubles)), "1 dimension;");
 }
 
 TEST_F(PointFile, SunsAreDirectionsOrAngles) {
