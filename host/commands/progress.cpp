@@ -48,8 +48,8 @@ void ProgressBar::show(double done) {
   const std::string left =
       done > begun_ ? duration_text(elapsed * (1 - done) / (done - begun_)) + " left" : "starting";
   if (!terminal_) {
-    fmt::print(stderr, "{}{}{}: {:.0f} %, {}\n", verb_, what_.empty() ? "" : " ", what_,
-               100 * done, left);
+    fmt::print(stderr, "{}{}{}: {:.0f} %, {}\n", verb_, what_.empty() ? "" : " ", what_, 100 * done,
+               left);
     return;
   }
   const int full = static_cast<int>(done * kWidth);

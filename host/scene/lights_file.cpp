@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uintmax_t kMaxFileBytes = 16u << 20;
-constexpr std::size_t kMaxDepth = 16;  // the format needs 4
+constexpr std::size_t kMaxDepth = 16;     // the format needs 4
 constexpr double kSunDegrees = 0.533;     // angular diameter of the real sun
 constexpr std::size_t kMaxMessage = 300;  // bytes; messages quote keys and text of the file
 constexpr std::size_t kMaxName = 200;

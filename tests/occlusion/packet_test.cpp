@@ -315,7 +315,8 @@ TEST(Packet, FewRaysAreTracedSinglyAndRaysOfOtherPointsAreRefused) {
   // A packet's visits are counted once: fewer than a third of the visits of single rays.
   const double shared_visits = sum_of_visits(packets(scene, rays, 1, 64));
   const double own_visits = sum_of_visits(alone);
-  std::printf("visits per ray: %.2f together, %.2f alone\n", shared_visits / 6400, own_visits / 6400);
+  std::printf("visits per ray: %.2f together, %.2f alone\n", shared_visits / 6400,
+              own_visits / 6400);
   EXPECT_GT(shared_visits, 0);
   EXPECT_LT(shared_visits, own_visits / 3);
 

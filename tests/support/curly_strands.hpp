@@ -14,7 +14,7 @@ struct Curls {
   std::size_t segments = 16;  ///< of each strand
   float radius = 0.002f;      ///< at the root, metres
   float tip = 1.0f;           ///< radius at the tip as a share of the root's
-  float turns = 2;          ///< full turns of a strand's helix around its axis
+  float turns = 2;            ///< full turns of a strand's helix around its axis
   std::uint32_t seed = 1;
 };
 

@@ -59,8 +59,7 @@ void add_attributes(Editor& editor, const SourceFile& source,
                     const std::vector<NewAttribute>& attributes) {
   std::map<std::pair<VertexKey, std::string>, std::size_t> stored;
   for (const NewAttribute& attribute : attributes) {
-    const VertexKey key =
-        source.vertex_key(attribute.mesh, attribute.primitive, attribute.name);
+    const VertexKey key = source.vertex_key(attribute.mesh, attribute.primitive, attribute.name);
     const auto [at, is_new] = stored.try_emplace({key, attribute.name}, 0);
     if (is_new) at->second = add_accessor(editor, attribute, true);
     editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive]["attributes"]

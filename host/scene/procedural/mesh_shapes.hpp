@@ -19,7 +19,8 @@ void append_quad(Mesh& mesh, V3f a, V3f b, V3f c, V3f d, std::uint32_t material)
 void append_square(Mesh& mesh, float side, float y, std::uint32_t material);
 
 /// Appends a tube through `points` (two or more) that is open at its beginning and ends in a point
-/// at the last one. Front sides are outside. Its radius at points[i] is radii[i]; the last radius is not used.
+/// at the last one. Front sides are outside. Its radius at points[i] is radii[i]; the last radius
+/// is not used.
 void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float> radii, int sides,
                  std::uint32_t material);
 
