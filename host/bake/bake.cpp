@@ -6,11 +6,13 @@
 #include <optional>
 
 #include "bake/instance_bake.hpp"
+#include "bake/light_bake.hpp"
 #include "bake/occluder_scene.hpp"
 #include "bake/texture/texture_bake.hpp"
 #include "bake/texture/texture_layout.hpp"
 #include "bake/vertex_bake.hpp"
 #include "dapple/error.hpp"
+#include "film/layers.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -47,6 +49,7 @@ double expected_samples(const Scene& scene, const BakeOptions& options) {
   double samples = 0;
   for (const Mesh& mesh : scene.meshes) {
     if (!options.vertices || mesh.has_strands()) continue;
+    if (options.light) samples += static_cast<double>(mesh.primitive_count()) * kLightSamples;
     samples += options.at_vertices ? static_cast<double>(mesh.positions.size())
                                    : static_cast<double>(mesh.primitive_count()) * of_triangle;
   }
@@ -76,8 +79,11 @@ class MeshOccluders {
   /// Valid until the next call.
   SampleTracer tracer(std::uint32_t mesh, BakeStatistics& statistics) {
     if (!together_) alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
-    return {trace_against(together_ ? *together_ : *alone_), options_, statistics};
+    return {trace_against(occluders()), options_, statistics};
   }
+
+  /// Those of the last tracer.
+  [[nodiscard]] const OccluderScene& occluders() const { return together_ ? *together_ : *alone_; }
 
  private:
   const Scene& scene_;
@@ -106,8 +112,15 @@ bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders
     auto baked =
         bake_mesh(scene.meshes[m], two_sided_triangles(scene, scene.meshes[m], options.sides), m,
                   placements, options, tracer, progress, result.statistics);
-    if (baked) result.meshes[m] = std::move(*baked);
-    return baked.has_value();
+    if (!baked) return false;
+    result.meshes[m] = std::move(*baked);
+    if (!options.light) return true;
+    auto light =
+        bake_lights(scene.meshes[m], two_sided_triangles(scene, scene.meshes[m], options.sides), m,
+                    placements, options, occluders.occluders(), progress);
+    if (light) result.meshes[m].light = std::move(*light);
+    result.light_names = light_names(occluders.occluders().lights);
+    return light.has_value();
   });
 }
 
@@ -134,6 +147,7 @@ void validate(const BakeOptions& options) {
                 fmt::format("{} is {}; it must be from {} to {}", flag, value, low, high));
   };
   check("--rays", options.rays, kRaysPerSample, 65536);
+  check("--light-rays", options.light_rays, 1, 4096);
   check("--size", double{1.0 * options.texture_size}, 1, 16384);
   check("--margin", options.margin, 0, 1024);
   check("--target-error", double{options.target_error}, 0, 1);

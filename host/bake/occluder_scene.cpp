@@ -28,11 +28,15 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
                              const std::vector<Scene>& others)
     : device(options.device, options.kernel_dir) {
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
-  scene.lights.clear();
-  for (Instance& instance : scene.instances) instance.light = -1;
+  if (!options.light || !options.lights.empty()) {
+    scene.lights = options.light ? options.lights : std::vector<Light>{};
+    for (Instance& instance : scene.instances) instance.light = -1;
+  }
   for (const Scene& other : others) append_scene(scene, other);
   if (options.ground) add_ground(scene);
   merge_single_instances(scene);
+  finalize_domes(scene);
+  lights = scene.lights;
   const Stopwatch building;
   bvh = build_bvh(scene, options.cache);
   build_seconds = building.seconds();

@@ -18,6 +18,7 @@ struct OccluderScene {
   Device device;
   SceneBvh bvh;
   DeviceScene uploaded;
+  std::vector<Light> lights;  ///< as uploaded; empty unless options.light
   double build_seconds = 0, upload_seconds = 0;
   std::vector<std::string> notes;
 };

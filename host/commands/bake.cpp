@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -93,7 +95,7 @@ void write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArg
   if (options.vertices)
     gltf::add_attributes(
         editor, file,
-        baked_attributes(file, scene, result.meshes,
+        baked_attributes(file, scene, result,
                          {parse_channel(a.channel), a.blend == "multiply", a.bent_channel}));
   if (options.instances) gltf::add_node_values(editor, baked_nodes(scene, result.instance_ao));
   if (options.texture)
@@ -108,6 +110,25 @@ void write_preview(const Scene& scene, const BakeResult& result, const std::stri
   const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0f) : scene.cameras.front();
   write_whole_file(
       path, encode_png(draw_preview(scene, result, camera, kPreviewSize, kPreviewSize), path));
+}
+
+/// The lights to bake; none: the scene's own. With --dome its mesh lights are ignored. Throws Error
+/// usage if there are none at all.
+std::vector<Light> baked_lights(const BakeArguments& a, const Scene& scene) {
+  std::vector<Light> lights;
+  if (!a.lights.empty()) lights = load_lights(a.lights);
+  if (a.dome.empty() && lights.empty() && scene.lights.empty())
+    throw Error(ErrorKind::usage,
+                "--passes light: the scene has no lights; --lights or --dome brings some");
+  if (a.dome.empty()) return lights;
+  if (a.lights.empty())
+    std::copy_if(scene.lights.begin(), scene.lights.end(), std::back_inserter(lights),
+                 [](const Light& light) { return light.kind != LightKind::mesh; });
+  lights.emplace_back();
+  lights.back().name = "dome";
+  lights.back().kind = LightKind::dome;
+  lights.back().environment = load_environment(a.dome);
+  return lights;
 }
 
 /// Chooses the texture coordinates. Returns a line about them.
@@ -140,6 +161,7 @@ void run_bake(const BakeArguments& a) {
   input.reset();  // all of it is in memory
   if (a.instances == "unique") make_meshes_unique(file, scene);
   check_outputs_spare(side_outputs(file, a, options), scene.files);
+  if (options.light) options.lights = baked_lights(a, scene);
   if (options.vertices) check_channel(file, scene, parse_channel(a.channel));
   std::uint32_t uv_set = 0;
   std::string layout_note;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
+#include <sstream>
 
 #include "commands/option_text.hpp"
 #include "dapple/error.hpp"
@@ -19,6 +21,17 @@ T choice(const char* flag, const std::string& text, const std::map<std::string, 
   throw Error(ErrorKind::usage, fmt::format("{} is \"{}\"; it can be {}", flag, text, known));
 }
 
+void parse_bake_passes(const std::string& text, BakeOptions& options) {
+  std::set<std::string> passes;
+  std::istringstream list(text);
+  for (std::string pass; std::getline(list, pass, ',');) passes.insert(pass);
+  options.bent = passes.erase("bent") > 0;
+  options.light = passes.erase("light") > 0;
+  if (passes != std::set<std::string>{"ao"})
+    throw Error(ErrorKind::usage,
+                "--passes is \"" + text + "\"; it can be ao, with bent and light, by commas");
+}
+
 }  // namespace
 
 void add_bake_options(CLI::App& app, BakeArguments& a) {
@@ -33,8 +46,15 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
                  "vertex: values at vertices; texture: an occlusion texture; instance: a value for "
                  "each instance")
       ->capture_default_str();
-  app.add_option("--passes", a.passes,
-                 "ao; or ao,bent: bent normals, the mean unoccluded direction, too")
+  app.add_option(
+         "--passes", a.passes,
+         "ao; with bent: also bent normals, the mean unoccluded direction; with light: also "
+         "the irradiance of each light as _LIGHT_NAME. For example ao,bent,light")
+      ->capture_default_str();
+  app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
+  app.add_option("--dome", a.dome, "Environment map (.exr, .hdr) as a light, beside the others");
+  app.add_option("--light-rays", o.light_rays,
+                 "Rays per light, for each of four samples of a triangle and side")
       ->capture_default_str();
   app.add_option(
          "--channel", a.channel,
@@ -115,8 +135,7 @@ BakeOptions to_options(const BakeArguments& a) {
   o.vertices = to == To::vertex;
   o.texture = to == To::texture;
   o.instances = to == To::instance;
-  o.bent =
-      choice<bool>("--passes", a.passes, {{"ao", false}, {"ao,bent", true}, {"bent,ao", true}});
+  parse_bake_passes(a.passes, o);
   o.at_vertices = choice<bool>("--at", a.at, {{"triangles", false}, {"vertices", true}});
   o.sides = choice<BakeSides>("--sides", a.sides,
                               {{"auto", BakeSides::automatic},
@@ -136,6 +155,9 @@ BakeOptions to_options(const BakeArguments& a) {
   if (o.instances && o.bent)
     throw Error(ErrorKind::usage,
                 "--passes bent needs --to vertex or texture: an instance has one AO value");
+  if (o.light && !o.vertices) throw Error(ErrorKind::usage, "--passes light needs --to vertex");
+  if ((!a.lights.empty() || !a.dome.empty()) && !o.light)
+    throw Error(ErrorKind::usage, "--lights and --dome need --passes ao,light");
   if (o.texture && o.at_vertices) throw Error(ErrorKind::usage, "--at vertices needs --to vertex");
   choice<bool>("--uv", a.uv, {{"auto", false}, {"own", true}});
   parse_channel(a.channel);

@@ -18,7 +18,7 @@ struct BakeChannel {
 };
 
 struct BakeArguments {
-  std::string scene, output, stats_json, png, uv = "auto";
+  std::string scene, output, stats_json, png, lights, dome, uv = "auto";
   std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply",
               bent_channel = "_BENT_NORMAL";
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";

@@ -17,6 +17,7 @@ using gltf::SourceFile;
 struct VertexSums {
   std::vector<float> ao, weight;
   std::vector<V3f> bent;
+  std::vector<std::vector<V3f>> light;  ///< by light
 };
 
 void add(const VertexSource& source, const BakedMesh& baked, VertexSums& sums) {
@@ -26,6 +27,7 @@ void add(const VertexSource& source, const BakedMesh& baked, VertexSums& sums) {
     sums.ao[to] += baked.ao[from];
     sums.weight[to] += 1;
     if (!baked.bent.empty()) sums.bent[to] += baked.bent[from];
+    for (std::size_t l = 0; l < baked.light.size(); ++l) sums.light[l][to] += baked.light[l][from];
   }
 }
 
@@ -71,6 +73,17 @@ NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
   return attribute;
 }
 
+NewAttribute light_attribute(const VertexSums& sums, std::size_t light, const std::string& name) {
+  NewAttribute attribute;
+  attribute.name = name;
+  attribute.components = 3;
+  for (std::size_t v = 0; v < sums.weight.size(); ++v) {
+    const V3f value = sums.light[light][v] / std::max(1.0f, sums.weight[v]);
+    attribute.values.insert(attribute.values.end(), {value.x, value.y, value.z});
+  }
+  return attribute;
+}
+
 NewAttribute ao_attribute(const SourceFile& file, std::pair<std::uint32_t, std::uint32_t> at,
                           const VertexSums& sums, const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
@@ -105,9 +118,9 @@ void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel
 }
 
 std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& scene,
-                                           const std::vector<BakedMesh>& meshes,
-                                           const BakeTargets& targets) {
+                                           const BakeResult& result, const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
+  const std::vector<BakedMesh>& meshes = result.meshes;
   // Primitives may share their vertices.
   std::map<gltf::VertexKey, VertexSums> sums;
   std::map<std::pair<std::uint32_t, std::uint32_t>, gltf::VertexKey> primitives;
@@ -121,6 +134,8 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
       of.ao.resize(count);
       of.weight.resize(count);
       if (!meshes[m].bent.empty()) of.bent.resize(count, V3f(0));
+      of.light.resize(meshes[m].light.size());
+      for (std::vector<V3f>& light : of.light) light.resize(count, V3f(0));
       add(source, meshes[m], of);
     }
   }
@@ -137,6 +152,8 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
     const VertexSums& of = sums[key];
     push(ao_attribute(file, primitive, of, targets), primitive);
     if (!of.bent.empty()) push(bent_attribute(of, targets.bent_channel), primitive);
+    for (std::size_t l = 0; l < of.light.size(); ++l)
+      push(light_attribute(of, l, "_LIGHT_" + result.light_names[l]), primitive);
   }
   return attributes;
 }

@@ -20,9 +20,9 @@ struct BakeTargets {
 /// Throws Error usage for a TEXCOORD_n that a primitive cannot have, because it lacks those before.
 void check_channel(const gltf::SourceFile& file, const Scene& scene, const BakeChannel& channel);
 
-/// AO, and bent normals where they were baked.
+/// AO, and bent normals and lights where they were baked; of these _LIGHT_ and their names.
 std::vector<gltf::NewAttribute> baked_attributes(const gltf::SourceFile& file, const Scene& scene,
-                                                 const std::vector<BakedMesh>& meshes,
+                                                 const BakeResult& result,
                                                  const BakeTargets& targets);
 
 /// The mean AO of the meshes that each placement of a node shows.

@@ -29,11 +29,14 @@ enum class BakeInstances : std::uint8_t {
 };
 
 struct BakeOptions {
-  bool vertices = true;    ///< bake values at vertices
-  bool instances = false;  ///< bake a value for each instance
-  bool texture = false;    ///< bake a texture that all meshes share
-  bool bent = false;       ///< bent normals too, at vertices and in the texture
-  /// Standard error of each value to aim at, [0,1]; 0: `rays` for every value.
+  bool vertices = true;       ///< bake values at vertices
+  bool instances = false;     ///< bake a value for each instance
+  bool texture = false;       ///< bake a texture that all meshes share
+  bool bent = false;          ///< bent normals too, at vertices and in the texture
+  bool light = false;         ///< irradiance of each light too, at vertices
+  std::vector<Light> lights;  ///< in place of the scene's; empty: those
+  int light_rays = 8;  ///< per light, for each of four samples of a triangle and side, [1, 4096]
+  /// Standard error of each AO value to aim at, [0,1]; 0: `rays` for every value.
   float target_error = 0.04f;
   /// Of each triangle (at_vertices: vertex; texture: texel) and side, [8, 65536]; with a target, at
   /// most.
@@ -64,6 +67,8 @@ void validate(const BakeOptions& options);
 struct BakedMesh {
   std::vector<float> ao;  ///< [0,1], 1: unoccluded
   std::vector<V3f> bent;  ///< mean unoccluded direction, a unit vector in object space; or zero
+  /// Irradiance by light, as BakeResult::light_names, and vertex, W/m^2, linear RGB.
+  std::vector<std::vector<V3f>> light;
 };
 
 /// Where triangles lie in a texture.
@@ -102,7 +107,8 @@ struct BakeStatistics {
 };
 
 struct BakeResult {
-  std::vector<BakedMesh> meshes;   ///< as Scene::meshes
+  std::vector<BakedMesh> meshes;  ///< as Scene::meshes
+  std::vector<std::string> light_names;
   BakedTexture texture;            ///< size 0 if not requested
   std::vector<float> instance_ao;  ///< as Scene::instances, [0,1]; empty if not requested
   BakeStatistics statistics;

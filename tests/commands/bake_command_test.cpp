@@ -95,6 +95,22 @@ TEST_F(BakeCommand, TextureCoordinatesAndNormalsCanHoldTheValues) {
   EXPECT_FALSE(std::filesystem::exists(path("late.glb")));
 }
 
+TEST_F(BakeCommand, LightsAreAttributesWithTheirNames) {
+  write("in.glb", rich_triangle().glb());
+  std::ofstream(path("lights.json")) << R"({"lights": [{"type": "sun", "name": "noon",
+      "direction": [0, 0, -1], "irradiance": [1, 1, 1]}]})";
+  const Outcome run = dapple("bake in.glb -o out.glb --passes ao,light --lights lights.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json after = document("out.glb");
+  const json& attributes = after["meshes"][0]["primitives"][0]["attributes"];
+  ASSERT_TRUE(attributes.contains("_LIGHT_noon")) << attributes;
+  EXPECT_EQ(after["accessors"][attributes["_LIGHT_noon"].get<std::size_t>()]["type"], "VEC3");
+  expect_failure(dapple("bake in.glb -o no.glb --passes ao,light"), 2, "--lights");
+  expect_failure(dapple("bake in.glb -o no.glb --lights lights.json"), 2, "--passes");
+  expect_failure(dapple("bake in.glb -o no.glb --passes light,shine"), 2, "--passes");
+  EXPECT_FALSE(std::filesystem::exists(path("no.glb")));
+}
+
 TEST_F(BakeCommand, AoIsMultipliedWithAColourThatIsThereOrReplacesIt) {
   GltfBuilder builder;
   builder.add_triangle();
