@@ -79,9 +79,8 @@ struct SceneOfPoints {
 
 class Measurement {
  public:
-  Measurement(const SceneOfPoints& on, const std::vector<V3f>& points,
-              const std::vector<V3f>& normals, const PointOptions& options,
-              const RenderControl& control, PointResult& result)
+  Measurement(const SceneOfPoints& on, std::span<const V3f> points, std::span<const V3f> normals,
+              const PointOptions& options, const RenderControl& control, PointResult& result)
       : on_(on),
         points_(points),
         normals_(normals),
@@ -243,15 +242,15 @@ class Measurement {
   }
 
   const SceneOfPoints& on_;
-  const std::vector<V3f>& points_;
-  const std::vector<V3f>& normals_;
+  std::span<const V3f> points_;
+  std::span<const V3f> normals_;
   const PointOptions& options_;
   const RenderControl& control_;
   PointResult& result_;
   double steps_ = 0, done_ = 0;
 };
 
-void check_points(const std::vector<V3f>& points, const std::vector<V3f>& normals) {
+void check_points(std::span<const V3f> points, std::span<const V3f> normals) {
   if (points.size() != normals.size())
     throw Error(ErrorKind::usage,
                 fmt::format("{} points but {} normals", points.size(), normals.size()));
@@ -283,9 +282,8 @@ void validate(const PointOptions& options) {
     throw Error(ErrorKind::usage, "--periodic needs two periods above 0");
 }
 
-PointResult measure_points(Scene scene, const std::vector<V3f>& points,
-                           const std::vector<V3f>& normals, const PointOptions& options,
-                           const RenderControl& control) {
+PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<const V3f> normals,
+                           const PointOptions& options, const RenderControl& control) {
   validate(options);
   check_points(points, normals);
   PointResult result;

@@ -124,7 +124,8 @@ void check(std::size_t points, std::size_t normals, std::size_t lights, std::siz
 std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene& scene,
                                         std::span<const Light> lights, std::span<const V3f> points,
                                         std::span<const V3f> normals,
-                                        const IrradianceOptions& options) {
+                                        const IrradianceOptions& options,
+                                        const RenderControl& control) {
   check(points.size(), normals.size(), lights.size(), scene.buffers->light_records.size(),
         options.rays);
   const std::vector<V3f> zeros(points.size(), V3f(0, 0, 0));
@@ -139,6 +140,7 @@ std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene&
   context.write(queues.active, active.data(), active.size() * sizeof(uint));
   const std::vector<std::uint32_t> order = order_along_curve(points);
   for (std::size_t begin = 0; begin < points.size(); begin += slice) {
+    report_slice(control, "irradiance", begin, points.size());
     const auto chosen = std::span(order).subspan(begin, std::min(slice, points.size() - begin));
     const SharedPoints batch(context, points, normals, chosen);
     queues.points = batch.buffer();

@@ -94,7 +94,8 @@ void occlusion_in_passes(DeviceContext& context, const Queues& queues, const Dev
 
 PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
                                std::span<const V3f> points, std::span<const V3f> normals,
-                               const OcclusionOptions& options, bool bent) {
+                               const OcclusionOptions& options, bool bent,
+                               const RenderControl& control) {
   if (points.size() != normals.size()) {
     throw Error(ErrorKind::usage,
                 fmt::format("occlusion: {} points but {} normals", points.size(), normals.size()));
@@ -114,6 +115,7 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
                         std::vector<V3f>(bent ? points.size() : 0)};
   PointOcclusion found;
   for (std::size_t begin = 0; begin < points.size(); begin += slice) {
+    report_slice(control, "occlusion", begin, points.size());
     const auto chosen = std::span(order).subspan(begin, std::min(slice, points.size() - begin));
     const SharedPoints batch(context, points, normals, chosen);
     queues.points = batch.buffer();
@@ -133,8 +135,8 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
 
 std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
                              std::span<const V3f> points, std::span<const V3f> normals,
-                             const OcclusionOptions& options) {
-  return point_occlusion(device, scene, points, normals, options, false).ao;
+                             const OcclusionOptions& options, const RenderControl& control) {
+  return point_occlusion(device, scene, points, normals, options, false, control).ao;
 }
 
 }  // namespace dapple

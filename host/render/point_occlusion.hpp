@@ -16,6 +16,7 @@ struct PointOcclusion {
 /// occlusion(), with bent normals if `bent`. These take rays through queues, which is slower.
 PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
                                std::span<const V3f> points, std::span<const V3f> normals,
-                               const OcclusionOptions& options, bool bent);
+                               const OcclusionOptions& options, bool bent,
+                               const RenderControl& control = {});
 
 }  // namespace dapple

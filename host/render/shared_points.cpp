@@ -1,7 +1,11 @@
 #include "render/shared_points.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "dapple/error.hpp"
 
 namespace dapple {
 namespace {
@@ -27,6 +31,14 @@ SharedPoints::SharedPoints(DeviceContext& context, std::span<const V3f> points,
     : context_(context) {
   points_.reserve(chosen.size());
   for (const std::uint32_t i : chosen) points_.push_back(surface_point(points[i], normals[i], i));
+}
+
+void report_slice(const RenderControl& control, const char* name, std::size_t done,
+                  std::size_t all) {
+  if (control.progress) control.progress(static_cast<double>(done) / static_cast<double>(all));
+  if (control.stop && control.stop())
+    throw Error(ErrorKind::failed,
+                fmt::format("{}: stopped after {} of {} points", name, done, all));
 }
 
 }  // namespace dapple

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "dapple/render.hpp"
 #include "dapple/scene.hpp"
 #include "dapple/shared/ray.h"
 #include "device/context.hpp"
@@ -29,5 +30,10 @@ class SharedPoints {
   DeviceContext& context_;
   std::vector<SurfacePoint> points_;
 };
+
+/// Between two slices of the query `name`: reports that `done` of `all` points are finished. Throws
+/// Error failed if the caller wants to stop.
+void report_slice(const RenderControl& control, const char* name, std::size_t done,
+                  std::size_t all);
 
 }  // namespace dapple

@@ -8,5 +8,6 @@
 #include "dapple/film.hpp"
 #include "dapple/moving_scene.hpp"
 #include "dapple/options.hpp"
+#include "dapple/points.hpp"
 #include "dapple/render.hpp"
 #include "dapple/scene.hpp"

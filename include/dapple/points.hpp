@@ -2,6 +2,7 @@
 // options. Out: named columns of numbers with standard errors. First order only: nothing scatters.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,9 +64,8 @@ struct PointResult {
 /// Measures at `points`, whose unit `normals` say where the surface faces. Rays start off the
 /// points along the normals by more than rounding errors. The same arguments give the same bits.
 /// Throws Error usage (also if sizes differ, or a number is not finite), input, device or failed.
-PointResult measure_points(Scene scene, const std::vector<V3f>& points,
-                           const std::vector<V3f>& normals, const PointOptions& options = {},
-                           const RenderControl& control = {});
+PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<const V3f> normals,
+                           const PointOptions& options = {}, const RenderControl& control = {});
 
 /// A sky of the CIE standard overcast luminance (Moon and Spencer, 1942), 1 + 2 cos(zenith angle)
 /// to 3, or of uniform luminance, whose irradiance on an open horizontal plane is 1 W/m^2; dark

@@ -127,10 +127,12 @@ struct OcclusionOptions {
 
 /// Returns the ambient occlusion at points, for baking: [0,1], 1 = unoccluded. `normals` are unit
 /// vectors. Rays start off the points along the normals, by more than the rounding error of the
-/// coordinates. Throws Error usage if the sizes differ.
+/// coordinates. Uses only progress and stop of `control`. Throws Error usage if the sizes differ,
+/// failed if `stop` returned true.
 std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
                              std::span<const V3f> points, std::span<const V3f> normals,
-                             const OcclusionOptions& options = {});
+                             const OcclusionOptions& options = {},
+                             const RenderControl& control = {});
 
 struct IrradianceOptions {
   int rays = 16;  ///< for each point and light, [1, 2^20]
@@ -148,11 +150,12 @@ struct PointIrradiance {
 /// Returns the irradiance that each of `lights` causes at points, as the renderer's light layers
 /// have it. `lights` are the lights of the scene that was uploaded, after finalize_domes(). Points
 /// and normals as for occlusion(). Calls with different seeds are independent of each other; their
-/// differences tell the standard error. Throws Error usage if the sizes differ.
+/// differences tell the standard error. Uses `control` and throws as occlusion() does.
 std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene& scene,
                                         std::span<const Light> lights, std::span<const V3f> points,
                                         std::span<const V3f> normals,
-                                        const IrradianceOptions& options = {});
+                                        const IrradianceOptions& options = {},
+                                        const RenderControl& control = {});
 
 /// Returns the transmittance along each ray. The prefiltered estimator with `footprint` 0 is exact.
 /// Every `rays_per_point` consecutive rays must have one origin and one light; they may be traced

@@ -203,8 +203,8 @@ TEST(PointTheory, SkiesGiveTheirIrradianceOnAnOpenPlaneAndLessOnAWall) {
     PointOptions options;
     options.ao = options.sky_view_factor = false;
     options.rays = 8192;
-    const PointResult found =
-        measure_points(scene, {V3f(0, 0, 0), V3f(0, 0, 0)}, {V3f(0, 1, 0), V3f(1, 0, 0)}, options);
+    const PointResult found = measure_points(scene, std::vector{V3f(0, 0, 0), V3f(0, 0, 0)},
+                                             std::vector{V3f(0, 1, 0), V3f(1, 0, 0)}, options);
     for (const PointColumn& column : found.columns) {
       if (column.name != "sky_r") continue;
       EXPECT_NEAR(column.values.at(0), 1, 0.005);
@@ -217,9 +217,10 @@ TEST(PointTheory, SkiesGiveTheirIrradianceOnAnOpenPlaneAndLessOnAWall) {
 
 TEST(Points, WrongInputIsAnErrorAndNoPointsAreNoValues) {
   const Scene scene = canopy(0.01, 1);
-  EXPECT_THROW(measure_points(scene, {V3f(0, 0, 0)}, {}), Error);
-  EXPECT_THROW(measure_points(scene, {V3f(NAN, 0, 0)}, {V3f(0, 1, 0)}), Error);
-  EXPECT_THROW(measure_points(scene, {V3f(0, 0, 0)}, {V3f(0, 2, 0)}), Error);
+  EXPECT_THROW(measure_points(scene, std::vector{V3f(0, 0, 0)}, {}), Error);
+  EXPECT_THROW(measure_points(scene, std::vector{V3f(NAN, 0, 0)}, std::vector{V3f(0, 1, 0)}),
+               Error);
+  EXPECT_THROW(measure_points(scene, std::vector{V3f(0, 0, 0)}, std::vector{V3f(0, 2, 0)}), Error);
   PointOptions options;
   options.rays = 4;
   EXPECT_THROW(measure_points(scene, {}, {}, options), Error);

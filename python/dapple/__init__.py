@@ -1,0 +1,38 @@
+"""How much of the sky and of lights gets through foliage, hair and forests.
+
+>>> import dapple
+>>> scene = dapple.Scene.from_arrays(
+...     [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]], [[0, 1, 2], [0, 2, 3]], opacity=0.5)
+>>> ao = scene.occlusion([[0, 0, 0], [9, 0, 9]], [0, 1, 0], rays=4096)
+>>> print(ao.round(2))
+[0.72 1.  ]
+
+World space is right-handed, +Y up, in metres, as in glTF. Directions are unit vectors. Everything
+is of first order: light that scatters off a surface is not followed.
+"""
+
+from ._drivers import use_driver_of_pip as _use_driver_of_pip
+
+_use_driver_of_pip()
+
+from ._errors import DeviceError, Error, InputError, UsageError  # noqa: E402
+from ._native import devices, version as _version  # noqa: E402
+from ._picture import Picture  # noqa: E402
+from ._scene import Bake, Irradiance, Mesh, Scene, load  # noqa: E402
+
+__version__ = _version()
+
+__all__ = [
+    "Bake",
+    "DeviceError",
+    "Error",
+    "InputError",
+    "Irradiance",
+    "Mesh",
+    "Picture",
+    "Scene",
+    "UsageError",
+    "__version__",
+    "devices",
+    "load",
+]

@@ -1,0 +1,91 @@
+"""Arguments as NumPy arrays of the engine's layout: float32 or uint32, C-contiguous.
+
+An array that has this layout is passed on as it is; others are copied.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import UsageError
+
+FloatArray = npt.NDArray[np.float32]
+IndexArray = npt.NDArray[np.uint32]
+
+
+def _shape_text(shape: tuple[int, ...]) -> str:
+    return "(" + ", ".join(str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
+
+
+def _numbers(name: str, values: npt.ArrayLike, kinds: str) -> npt.NDArray[Any]:
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise UsageError(f"{name} is not an array of numbers: {error}") from None
+    if array.size and array.dtype.kind not in kinds:
+        raise UsageError(f"{name} has the type {array.dtype}; it must be of numbers")
+    return array
+
+
+def vectors(name: str, values: npt.ArrayLike) -> FloatArray:
+    """`values` as (n, 3) float32; an empty sequence becomes (0, 3)."""
+    array = _numbers(name, values, "fiu")
+    if array.ndim == 1 and array.size == 0:
+        array = array.reshape(0, 3)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise UsageError(f"{name} has the shape {_shape_text(array.shape)}; it must be (n, 3)")
+    with np.errstate(over="ignore"):
+        result: FloatArray = np.ascontiguousarray(array, dtype=np.float32)
+    if not np.isfinite(result).all():
+        bad = int(np.flatnonzero(~np.isfinite(result).all(axis=1))[0])
+        raise UsageError(f"{name}[{bad}] is not finite")
+    return result
+
+
+def unit_vectors(name: str, values: npt.ArrayLike, count: int) -> FloatArray:
+    """`values` as (count, 3) unit vectors; one vector (3,) stands for all of them."""
+    array = _numbers(name, values, "fiu")
+    if array.shape == (3,):
+        array = np.broadcast_to(array, (count, 3))
+    result = vectors(name, array)
+    if len(result) != count:
+        raise UsageError(f"{name} has {len(result)} vectors, but there are {count} points")
+    lengths = np.linalg.norm(result, axis=1)
+    wrong = np.flatnonzero(~(np.abs(lengths - 1) < 1e-3))
+    if wrong.size:
+        raise UsageError(f"{name}[{int(wrong[0])}] has the length {lengths[wrong[0]]:.6g}, not 1")
+    return result
+
+
+def indices(name: str, values: npt.ArrayLike, limit: int) -> IndexArray:
+    """`values` as (m, 3) uint32 below `limit`."""
+    array = _numbers(name, values, "iu")
+    if array.size == 0:
+        return np.zeros((0, 3), np.uint32)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise UsageError(f"{name} has the shape {_shape_text(array.shape)}; it must be (m, 3)")
+    if int(array.min()) < 0 or int(array.max()) >= limit:
+        wrong = int(array.min()) if int(array.min()) < 0 else int(array.max())
+        raise UsageError(f"{name} has the index {wrong}, but there are {limit} vertices")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def opacities(values: float | npt.ArrayLike, count: int) -> tuple[list[float], IndexArray]:
+    """Distinct opacities, and for each of `count` triangles which of them it has."""
+    array = _numbers("opacity", values, "fiu").astype(np.float32)
+    if array.ndim == 0:
+        array = np.broadcast_to(array, (count,))
+    if array.shape != (count,):
+        raise UsageError(
+            f"opacity has the shape {_shape_text(array.shape)}; it must be a number or one for "
+            f"each of {count} triangles"
+        )
+    if not ((array >= 0) & (array <= 1)).all():
+        raise UsageError("opacity has a value outside of [0, 1]")
+    distinct, which = np.unique(array, return_inverse=True)
+    if distinct.size == 0:
+        distinct = np.ones(1, np.float32)
+    return [float(x) for x in distinct], np.ascontiguousarray(which.reshape(count), np.uint32)

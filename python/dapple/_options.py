@@ -1,0 +1,131 @@
+"""Keyword arguments of the engine's calls, for type checkers, and how they are applied."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Sequence, Tuple, TypedDict, TypeVar
+
+from ._errors import UsageError
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+    Estimator = Literal["exact", "prefiltered"]
+
+
+class QueryOptions(TypedDict, total=False):
+    """Of occlusion() and irradiance()."""
+
+    rays: int
+    estimator: Estimator
+    footprint: float
+    seed: int
+
+
+class OcclusionOptions(QueryOptions, total=False):
+    """Of occlusion()."""
+
+    distance: float
+    falloff: float
+
+
+class MeasureOptions(QueryOptions, total=False):
+    """Of measure(), as the program's `dapple points`."""
+
+    ao: bool
+    sky_view_factor: bool
+    bent: bool
+    rings: int
+    lights: bool
+    per_sun: bool
+    distance: float
+    opacity: Mapping[str, float]
+    ground: bool
+    device: str
+    cache: str
+
+
+class RenderOptions(TypedDict, total=False):
+    """Of render(), as the program's `dapple render`."""
+
+    width: int
+    height: int
+    spp: int
+    target_error: float
+    target_rmse: float
+    max_spp: int
+    camera_splitting: int
+    ao_rays: int
+    light_rays: int
+    estimator: Estimator
+    footprint: float
+    ao: bool
+    light: bool
+    visits: bool
+    ao_distance: float
+    ao_falloff: float
+    camera: str
+    look: Sequence[Sequence[float]]
+    fov_degrees: float
+    crop: Tuple[int, int, int, int]
+    seed: int
+    device: str
+    packets: str
+    cache: str
+    ground: bool
+    opacity: Mapping[str, float]
+
+
+class BakeOptions(TypedDict, total=False):
+    """Of bake(), as the program's `dapple bake`."""
+
+    vertices: bool
+    instances: bool
+    bent: bool
+    light: bool
+    light_rays: int
+    target_error: float
+    rays: int
+    estimator: Estimator
+    footprint: float
+    distance: float
+    falloff: float
+    at_vertices: bool
+    sides: str
+    placement: str
+    seed: int
+    ground: bool
+    opacity: Mapping[str, float]
+    device: str
+    cache: str
+
+
+Options = TypeVar("Options")
+
+_EXPECTED = {
+    "look": "three vectors: (from, at, up)",
+    "crop": "four integers: (x0, y0, x1, y1)",
+    "opacity": "numbers by the materials' names",
+}
+
+
+def apply(call: str, options: Options, values: Mapping[str, Any]) -> Options:
+    """Sets the fields of `options`; raises UsageError for unknown names and wrong types."""
+    known = [name.removeprefix("set_") for name in dir(options) if not name.startswith("_")]
+    for name, value in values.items():
+        if name not in known:
+            close = difflib.get_close_matches(name, known, 1)
+            hint = f"; did you mean {close[0]}?" if close else f"; known are {', '.join(known)}"
+            raise UsageError(f"{call}() has no argument {name}{hint}")
+        if name == "opacity" and isinstance(value, Mapping):
+            value = list(value.items())
+        try:
+            if name in ("look", "crop"):
+                getattr(options, "set_" + name)(*value)
+            else:
+                setattr(options, name, value)
+        except TypeError:
+            wanted = _EXPECTED.get(name) or type(getattr(options, name)).__name__
+            raise UsageError(f"{call}(): {name} is {value!r}; it must be {wanted}") from None
+    return options

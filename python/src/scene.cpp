@@ -1,0 +1,217 @@
+// Scenes: read from files, made from arrays, and their parts as arrays.
+#include "dapple/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "dapple/error.hpp"
+#include "dapple/points.hpp"
+#include "engine_call.hpp"
+#include "film/layers.hpp"
+#include "nanobind/stl/array.h"
+#include "nanobind/stl/optional.h"
+#include "nanobind/stl/string.h"
+#include "nanobind/stl/vector.h"
+#include "scene_on_device.hpp"
+
+namespace dapple::python {
+namespace {
+
+using Vector = std::array<float, 3>;
+
+V3f to_vector(const Vector& v) { return {v[0], v[1], v[2]}; }
+Vector from_vector(const V3f& v) { return {v.x, v.y, v.z}; }
+
+SceneOnDevice load(const std::string& path, std::optional<double> time,
+                   const std::string& animation, bool allow_outside) {
+  SceneOptions options;
+  options.time = time;
+  options.animation = animation;
+  options.allow_outside = allow_outside;
+  const nb::gil_scoped_release released;
+  return SceneOnDevice(load_scene(path, options));
+}
+
+/// One mesh with one instance. `opacities` are those of materials "0", "1" and so on, `materials`
+/// says which one a triangle has.
+SceneOnDevice from_arrays(const VectorsIn& vertices, const IndicesIn& triangles,
+                          const std::vector<float>& opacities, const IndicesIn& materials) {
+  Scene scene;
+  scene.source = "arrays";
+  for (const float opacity : opacities) {
+    Material material;
+    material.name = std::to_string(scene.materials.size());
+    material.alpha_mode = opacity < 1 ? AlphaMode::blend : AlphaMode::opaque;
+    material.alpha = opacity;
+    material.double_sided = true;
+    scene.materials.push_back(material);
+  }
+  Mesh mesh;
+  mesh.name = "mesh";
+  const std::span<const V3f> positions = vectors(vertices);
+  mesh.positions.assign(positions.begin(), positions.end());
+  mesh.indices.assign(triangles.data(), triangles.data() + triangles.size());
+  mesh.materials.assign(materials.data(), materials.data() + materials.size());
+  if (mesh.materials.size() * 3 != mesh.indices.size())
+    throw Error(ErrorKind::usage, "three indices and one material belong to each triangle");
+  for (const std::uint32_t index : mesh.indices)
+    if (index >= mesh.positions.size())
+      throw Error(ErrorKind::usage, "triangles has the index " + std::to_string(index) +
+                                        ", but there are only " +
+                                        std::to_string(mesh.positions.size()) + " vertices");
+  for (const std::uint32_t index : mesh.materials)
+    if (index >= scene.materials.size())
+      throw Error(ErrorKind::usage, "there is no material " + std::to_string(index));
+  scene.meshes.push_back(std::move(mesh));
+  scene.instances.push_back({});
+  return SceneOnDevice(std::move(scene));
+}
+
+/// Values of the scene as an array that keeps the scene alive; read-only.
+template <class Number, class Value>
+auto view(const std::shared_ptr<const Scene>& scene, const std::vector<Value>& values,
+          std::size_t columns) {
+  auto* kept = new std::shared_ptr<const Scene>(scene);
+  nb::capsule owner(kept,
+                    [](void* p) noexcept { delete static_cast<std::shared_ptr<const Scene>*>(p); });
+  const std::size_t rows = values.size() * (sizeof(Value) / sizeof(Number)) / columns;
+  return nb::ndarray<const Number, nb::numpy>(reinterpret_cast<const Number*>(values.data()),
+                                              {rows, columns}, owner);
+}
+
+const Mesh& mesh_of(const Scene& scene, std::size_t index) {
+  if (index >= scene.meshes.size())
+    throw Error(ErrorKind::usage, "there is no mesh " + std::to_string(index) + "; there are " +
+                                      std::to_string(scene.meshes.size()));
+  return scene.meshes[index];
+}
+
+void add_sun(Scene& scene, const Vector& towards, float irradiance, float degrees,
+             const std::string& name) {
+  const V3f direction = to_vector(towards);
+  if (!(direction.length() > 0) || !std::isfinite(direction.length()))
+    throw Error(ErrorKind::usage, "direction has no length");
+  if (!(degrees > 0) || !(degrees < 180))
+    throw Error(ErrorKind::usage, "angular_diameter must be above 0 and below 180 degrees");
+  if (!(irradiance >= 0) || !std::isfinite(irradiance))
+    throw Error(ErrorKind::usage, "irradiance must be 0 or more, and finite");
+  Light light;
+  light.name = name;
+  light.kind = LightKind::sun;
+  light.direction = -direction.normalized();
+  light.angular_radius = degrees * 0.5f * 3.14159265f / 180;
+  const float sine = std::sin(light.angular_radius);
+  light.radiance = V3f(irradiance / (3.14159265f * sine * sine));
+  scene.lights.push_back(light);
+}
+
+void add_sky(Scene& scene, const std::string& kind, float irradiance) {
+  Light sky;
+  if (kind == "uniform" || kind == "overcast") {
+    sky = kind == "uniform" ? uniform_sky() : overcast_sky();
+  } else {
+    sky.name = "sky";
+    sky.kind = LightKind::dome;
+    sky.environment = load_environment(kind);
+  }
+  sky.radiance *= irradiance;
+  scene.lights.push_back(sky);
+}
+
+void bind_parts(nb::class_<SceneOnDevice>& bound) {
+  bound.def_prop_ro("source", [](const SceneOnDevice& s) { return s.scene()->source; })
+      .def_prop_ro("warnings", [](const SceneOnDevice& s) { return s.scene()->warnings; })
+      .def_prop_ro("mesh_names",
+                   [](const SceneOnDevice& s) {
+                     std::vector<std::string> names;
+                     for (const Mesh& mesh : s.scene()->meshes) names.push_back(mesh.name);
+                     return names;
+                   })
+      .def_prop_ro("material_names",
+                   [](const SceneOnDevice& s) {
+                     std::vector<std::string> names;
+                     for (const Material& m : s.scene()->materials) names.push_back(m.name);
+                     return names;
+                   })
+      .def_prop_ro("light_names",
+                   [](const SceneOnDevice& s) { return light_names(s.scene()->lights); })
+      .def_prop_ro("bounds",
+                   [](const SceneOnDevice& s) {
+                     const Box3f box = scene_bounds(*s.scene());
+                     return std::vector<Vector>{from_vector(box.min), from_vector(box.max)};
+                   })
+      .def("positions",
+           [](const SceneOnDevice& s, std::size_t mesh) {
+             const auto scene = s.scene();
+             return view<float>(scene, mesh_of(*scene, mesh).positions, 3);
+           })
+      .def("indices",
+           [](const SceneOnDevice& s, std::size_t mesh) {
+             const auto scene = s.scene();
+             const Mesh& found = mesh_of(*scene, mesh);
+             return view<std::uint32_t>(scene, found.indices, found.has_strands() ? 2 : 3);
+           })
+      .def("instances", [](const SceneOnDevice& s, std::size_t mesh) {
+        std::vector<float> matrices;  // column vectors, as NumPy users write them: p' = M p
+        const auto scene = s.scene();
+        mesh_of(*scene, mesh);
+        for (const Instance& instance : scene->instances) {
+          if (instance.mesh != mesh) continue;
+          for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column)
+              matrices.push_back(instance.to_world[column][row]);
+        }
+        const std::size_t count = matrices.size() / 16;
+        return array_of<float>(std::move(matrices), {count, 4, 4});
+      });
+}
+
+}  // namespace
+
+void bind_scene(nb::module_& module) {
+  nb::class_<SceneOnDevice> bound(module, "Scene");
+  bind_parts(bound);
+  bound
+      .def(
+          "override_opacity",
+          [](SceneOnDevice& s, const std::string& material, float value) {
+            override_opacity(s.change(), material, value);
+          },
+          nb::arg("material"), nb::arg("value"))
+      .def("add_ground", [](SceneOnDevice& s) { add_ground(s.change()); })
+      .def("clear_lights", [](SceneOnDevice& s) { s.change().lights.clear(); })
+      .def(
+          "add_lights",
+          [](SceneOnDevice& s, const std::string& path) {
+            for (Light& light : load_lights(path)) s.change().lights.push_back(std::move(light));
+          },
+          nb::arg("path"))
+      .def(
+          "add_sun",
+          [](SceneOnDevice& s, const Vector& direction, float irradiance, float angular_diameter,
+             const std::string& name) {
+            add_sun(s.change(), direction, irradiance, angular_diameter, name);
+          },
+          nb::arg("direction"), nb::arg("irradiance"), nb::arg("angular_diameter"), nb::arg("name"))
+      .def(
+          "add_sky",
+          [](SceneOnDevice& s, const std::string& kind, float irradiance) {
+            add_sky(s.change(), kind, irradiance);
+          },
+          nb::arg("kind"), nb::arg("irradiance"))
+      .def(
+          "write_glb",
+          [](const SceneOnDevice& s, const std::string& path) { write_glb(*s.scene(), path); },
+          nb::arg("path"));
+  module.def("load", load, nb::arg("path"), nb::arg("time").none(), nb::arg("animation"),
+             nb::arg("allow_outside"));
+  module.def("from_arrays", from_arrays, nb::arg("vertices"), nb::arg("triangles"),
+             nb::arg("opacities"), nb::arg("materials"));
+}
+
+}  // namespace dapple::python

@@ -1,0 +1,150 @@
+"""What calls return: closed forms, and the program's numbers."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import dapple
+import numpy as np
+import pytest
+from conftest import plate_scene
+
+
+def cosine_form_factor(half: float, height: float) -> float:
+    """Of a square of side 2 `half` from a point below its centre (Siegel and Howell, four corners)."""
+    x = half / height
+    r = np.sqrt(1 + x * x)
+    return 4 * (x / r * np.arctan(x / r)) / np.pi
+
+
+@pytest.mark.parametrize("estimator", ["exact", "prefiltered"])
+@pytest.mark.parametrize("opacity", [1.0, 0.4])
+def test_occlusion_below_a_square_is_its_form_factor(estimator: str, opacity: float) -> None:
+    scene = plate_scene(opacity)
+    ao = scene.occlusion([[0, 0, 0]], [0, 1, 0], rays=1 << 16, estimator=estimator)
+    # 65,536 rays: a standard error of at most 0.002.
+    assert ao[0] == pytest.approx(1 - opacity * cosine_form_factor(1, 1), abs=0.008)
+
+
+def test_opacity_may_differ_from_triangle_to_triangle() -> None:
+    corners = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]
+    scene = dapple.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], [0.2, 0.8])
+    ao = scene.occlusion([[0, 0, 0]], [0, 1, 0], rays=1 << 16)
+    assert ao[0] == pytest.approx(1 - 0.5 * cosine_form_factor(1, 1), abs=0.008)
+
+
+def test_irradiance_of_a_sun_is_its_cosine(plate: dapple.Scene) -> None:
+    plate.add_sun([0, 3, 4], irradiance=10)
+    found = plate.irradiance([[0, 0, 0], [9, 0, 9]], [0, 1, 0], rays=256)["sun"]
+    np.testing.assert_allclose(found.unoccluded, 6, rtol=1e-3)
+    np.testing.assert_allclose(found.irradiance[1], 6, rtol=1e-3)
+    overhead = plate_scene()
+    overhead.add_sun([0, 1, 0], irradiance=10)
+    assert overhead.irradiance([[0, 0, 0]], [0, 1, 0])["sun"].irradiance.max() == 0
+
+
+def test_skies_have_their_irradiance_on_open_ground(plate: dapple.Scene) -> None:
+    plate.add_sky("overcast", irradiance=120)
+    found = plate.irradiance([[50, 0, 50]], [0, 1, 0], rays=4096)["sky"]
+    assert found.unoccluded[0, 0] == pytest.approx(120, rel=0.01)
+
+
+def test_measure_has_the_columns_of_the_program(
+    tree: dapple.Scene, ground: np.ndarray, tmp_path: Path
+) -> None:
+    program = os.environ.get("DAPPLE_PROGRAM") or shutil.which("dapple")
+    if not program:
+        pytest.skip("there is no program dapple in PATH or DAPPLE_PROGRAM")
+    points = tmp_path / "points.npy"
+    out = tmp_path / "out.npy"
+    np.save(points, ground)
+    arguments = [program, "points", tree._native.source, "--at", points, "-o", out, "-q"]
+    subprocess.run([*arguments, "--rings", "5"], check=True)
+    table = np.load(out)
+    columns = tree.measure(ground, rings=5)
+    assert set(columns) <= set(table.dtype.names or ())
+    for name, values in columns.items():
+        np.testing.assert_array_equal(table[name], values)
+
+
+def test_the_same_call_gives_the_same_bits(tree: dapple.Scene, ground: np.ndarray) -> None:
+    first = tree.occlusion(ground, [0, 1, 0])
+    np.testing.assert_array_equal(first, tree.occlusion(ground, [0, 1, 0]))
+    assert (first != tree.occlusion(ground, [0, 1, 0], seed=1)).any()
+
+
+def test_pictures_are_arrays_and_files(tree: dapple.Scene, tmp_path: Path) -> None:
+    fractions: list[float] = []
+    picture = tree.render(width=32, height=18, spp=4, progress=fractions.append)
+    assert picture["ao"].shape == (18, 32, 3)
+    assert picture["ao.R"].shape == (18, 32)
+    assert picture["Z"].shape == (18, 32)
+    assert not picture["ao.R"].flags.writeable
+    np.testing.assert_array_equal(picture["ao"][..., 0], picture["ao.R"])
+    assert set(picture) >= {"ao", "N", "P", "Z", "RGBA"}
+    assert fractions == sorted(fractions) and fractions[-1] <= 1
+    with pytest.raises(KeyError):
+        picture["nothing"]
+    for name in ("a.exr", "a.png"):
+        picture.save(tmp_path / name)
+        assert (tmp_path / name).stat().st_size > 100
+
+
+def test_cameras_and_crops(plate: dapple.Scene) -> None:
+    look = [(0, 3, 0), (0, 0, 0), (0, 0, -1)]
+    whole = plate.render(width=16, height=16, spp=4, look=look, fov_degrees=40, light=False)
+    part = plate.render(
+        width=16, height=16, spp=4, look=look, fov_degrees=40, light=False, crop=(4, 4, 7, 7)
+    )
+    np.testing.assert_array_equal(part["ao.R"], whole["ao.R"][4:8, 4:8])
+
+
+def test_pictures_become_xarray(plate: dapple.Scene) -> None:
+    pytest.importorskip("xarray")
+    data = plate.render(width=8, height=4, spp=4, light=False).to_xarray()
+    assert data["ao"].dims == ("y", "x", "channel_ao")
+    assert data["Z"].shape == (4, 8)
+
+
+def test_bakes_have_a_value_for_each_vertex(tree: dapple.Scene) -> None:
+    baked = tree.bake(bent=True, instances=True, rays=64, target_error=0)
+    for mesh, arrays in zip(tree.meshes, baked.meshes):
+        assert arrays["ao"].shape == (len(mesh.positions),)
+        assert arrays["bent"].shape == (len(mesh.positions), 3)
+        assert 0 <= arrays["ao"].min() and arrays["ao"].max() <= 1
+    assert baked.instance_ao.shape == (1,)
+
+
+def test_bakes_are_darker_below_an_occluder(plate: dapple.Scene) -> None:
+    low = plate_scene(half=0.5, height=0)
+    free = low.bake(sides="max", rays=256).meshes[0]["ao"]
+    hidden = low.bake(sides="max", rays=256, occluders=[plate]).meshes[0]["ao"]
+    assert free.min() == 1
+    # The other side of the square is free, so both sides are asked for.
+    assert low.bake(sides="mean", rays=256, occluders=[plate]).meshes[0]["ao"].max() < 0.95
+    assert hidden.shape == free.shape
+
+
+def test_meshes_are_views_and_round_trip(tree: dapple.Scene, tmp_path: Path) -> None:
+    mesh = tree.meshes[0]
+    assert mesh.positions.shape[1] == 3 and mesh.triangles.max() < len(mesh.positions)
+    assert not mesh.positions.flags.writeable
+    np.testing.assert_array_equal(mesh.instances[0], np.eye(4))
+    tree.save(tmp_path / "tree.glb")
+    again = dapple.load(tmp_path / "tree.glb")
+    np.testing.assert_allclose(again.bounds, tree.bounds, atol=1e-5)
+
+
+def test_views_stay_valid_after_changes_and_without_their_scene() -> None:
+    scene = plate_scene()
+    positions = scene.meshes[0].positions
+    scene.add_ground()
+    del scene
+    np.testing.assert_array_equal(positions[:, 1], 1)
+
+
+def test_scenes_change_between_calls(plate: dapple.Scene) -> None:
+    before = plate.occlusion([[0, 0, 0]], [0, 1, 0])[0]
+    plate.set_opacity(plate.materials[0], 0.01)
+    assert before < 0.7 and plate.occlusion([[0, 0, 0]], [0, 1, 0])[0] > 0.98
