@@ -1,5 +1,5 @@
 // Shows the progress of a command: on a terminal a bar with the estimated time, elsewhere a line
-// now and then.
+// every ten seconds.
 #pragma once
 
 #include <chrono>

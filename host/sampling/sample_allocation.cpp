@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 
+#include "sampling/tile_order.hpp"
+
 namespace dapple {
 namespace {
 
@@ -15,6 +17,11 @@ constexpr std::size_t kSumGrain = 4096;
 
 std::uint32_t rounded_up(double batches, std::uint32_t max) {
   return batches < max ? static_cast<std::uint32_t>(std::ceil(batches)) : max;
+}
+
+template <class T>
+T larger(T a, T b) {
+  return std::max(a, b);
 }
 
 }  // namespace
@@ -43,6 +50,30 @@ void want_error(const std::vector<float>& variances, float target, std::uint32_t
   const double enough = 1.0 / (double{target} * target);
   for (std::size_t pixel = 0; pixel < wanted.size(); ++pixel)
     wanted[pixel] = std::max(wanted[pixel], rounded_up(variances[pixel] * enough, max));
+}
+
+double squared_target(float rmse, std::size_t pixels) {
+  return double{rmse} * rmse * static_cast<double>(pixels);
+}
+
+BatchCounts block_maxima(const BatchCounts& batches, int width) {
+  return by_block(batches, width, larger<std::uint32_t>);
+}
+
+BatchCounts allocate_batches(const PassVariances& variances, const BatchCounts& have, int width,
+                             ErrorTarget target, std::uint32_t max) {
+  const double enough = squared_target(target.rmse, have.size());
+  BatchCounts wanted = block_maxima(have, width);
+  for (const std::vector<float>& pass : variances) {
+    const std::vector<float> of_blocks = by_block(pass, width, larger<float>);
+    if (target.error > 0) {
+      want_error(of_blocks, target.error, max, wanted);
+    } else if (squared_errors(pass, have) > enough) {
+      const double all = squared_errors(pass, BatchCounts(pass.size(), 1));
+      want_equal(of_blocks, all / enough, max, wanted);
+    }
+  }
+  return wanted;
 }
 
 }  // namespace dapple

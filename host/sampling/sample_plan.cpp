@@ -45,11 +45,6 @@ double fraction_above_0(const std::vector<float>& values) {
   return static_cast<double>(above) / static_cast<double>(values.size());
 }
 
-template <class T>
-T larger(T a, T b) {
-  return std::max(a, b);
-}
-
 /// The values of those pixels that have samples, in the order of tracing.
 std::vector<float> of_sampled(const std::vector<std::uint32_t>& order,
                               const std::vector<std::uint32_t>& samples,
@@ -107,8 +102,7 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
       samples_(std::move(samples)),
       min_(static_cast<std::uint32_t>(options.spp)),
       max_(min_),
-      target_error_(options.target_error),
-      target_rmse_(options.target_rmse) {
+      target_{options.target_error, options.target_rmse} {
   samples_.resize(order_.size(), 0);
   if (!is_adaptive()) return;
   min_ = std::max(2 * DAPPLE_SAMPLE_BATCH, whole_batches(options.spp));  // one has no variance
@@ -116,7 +110,7 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
 }
 
 std::vector<WorkGroup> SamplePlan::pilot() {
-  if (target_rmse_ <= 0 || samples_.front() > 0 || !all_equal(samples_)) return {};
+  if (target_.rmse <= 0 || samples_.front() > 0 || !all_equal(samples_)) return {};
   const std::vector<bool> pilot = pilot_pixels(width_, height());
   if (pilot.empty()) return {};
   Groups groups;
@@ -129,16 +123,12 @@ bool SamplePlan::only_pilot_has_samples() const {
   return is_adaptive() && min_of(samples_) == 0 && !all_equal(samples_);
 }
 
-double SamplePlan::squared_target(std::size_t pixels) const {
-  return double{target_rmse_} * target_rmse_ * static_cast<double>(pixels);
-}
-
 std::vector<WorkGroup> SamplePlan::after_pilot(const PassVariances& variances) {
   double batches = 0, varied = 0;
   for (const std::vector<float>& pass : variances) {
     const std::vector<float> pilot = of_sampled(order_, samples_, pass);
     varied = std::max(varied, fraction_above_0(pilot));
-    batches = std::max(batches, sum_of(pilot) / squared_target(pilot.size()));
+    batches = std::max(batches, sum_of(pilot) / squared_target(target_.rmse, pilot.size()));
   }
   const double samples = std::min<double>(batches * DAPPLE_SAMPLE_BATCH, max_);
   min_ = std::max(min_, std::min({well_stratified(samples), kMaxAfterPilot * min_, max_}));
@@ -177,37 +167,21 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
   return groups;
 }
 
-BatchCounts SamplePlan::wanted(const PassVariances& variances, const BatchCounts& have) const {
-  const BatchCounts have_by_pixel = batches_of(samples_);
-  const double enough = squared_target(samples_.size());
-  const std::uint32_t max = max_ / DAPPLE_SAMPLE_BATCH;
-  BatchCounts wanted = have;
-  for (const std::vector<float>& pass : variances) {
-    const std::vector<float> of_blocks = by_block(pass, width_, larger<float>);
-    if (target_error_ > 0) {
-      want_error(of_blocks, target_error_, max, wanted);
-    } else if (squared_errors(pass, have_by_pixel) > enough) {
-      want_equal(of_blocks, sum_of(pass) / enough, max, wanted);
-    }
-  }
-  return wanted;
-}
-
 std::vector<WorkGroup> SamplePlan::next(const PassVariances& variances) {
-  const BatchCounts have = by_block(batches_of(samples_), width_, larger<std::uint32_t>);
-  const BatchCounts of_blocks = wanted(variances, have);
-  if (of_blocks == have) {
+  const BatchCounts have = batches_of(samples_);
+  const std::uint32_t max = max_ / DAPPLE_SAMPLE_BATCH;
+  const BatchCounts of_blocks = allocate_batches(variances, have, width_, target_, max);
+  if (of_blocks == block_maxima(have, width_)) {
     fraction_done_ = 1;
     return {};
   }
   BatchCounts all(samples_.size());
   visit_blocks(width_, all.size(),
                [&](std::size_t block, std::uint32_t pixel) { all[pixel] = of_blocks[block]; });
-  const std::uint32_t max = max_ / DAPPLE_SAMPLE_BATCH;
   double done = 0, missing = 0;
   Groups groups;
   for (const std::uint32_t pixel : order_) {
-    const std::uint32_t has = samples_[pixel] / DAPPLE_SAMPLE_BATCH;
+    const std::uint32_t has = have[pixel];
     const std::uint32_t missing_here = std::min(whole_units(all[pixel] - has), max - has);
     const std::uint32_t more = std::min(missing_here, kMaxMore * has);
     done += has + more;

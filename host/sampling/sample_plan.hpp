@@ -1,7 +1,7 @@
-// Decides which pixels are sampled next, and how often. In: the samples that pixels have, and their
-// variances. Out: groups of pixels with the number of samples to trace. Without a target all pixels
-// get the same number. With a target, rounds add what is missing. Before a target RMSE, pilot
-// pixels are sampled; from them follows what every pixel needs (Kirk and Arvo, "Unbiased Sampling
+// Divides sampling into rounds. In: the samples that pixels have, and their variances. Out: groups
+// of pixels with the number of samples to trace. Without a target all pixels get the same number.
+// With a target, rounds add what sample_allocation.hpp says is missing. Before a target RMSE, pilot
+// pixels are sampled; they tell what every pixel needs (Kirk and Arvo, "Unbiased Sampling
 // Techniques for Image Synthesis", 1991).
 #pragma once
 
@@ -21,10 +21,6 @@ enum class SampleOrder {
   passes,
 };
 
-/// By pass and pixel: the variance of the mean of one sample batch, as batch_variances() returns
-/// it.
-using PassVariances = std::vector<std::vector<float>>;
-
 /// Decisions depend on the pixels' values, not on threads.
 class SamplePlan {
  public:
@@ -32,7 +28,7 @@ class SamplePlan {
   SamplePlan(int width, int height, const RenderOptions& options,
              std::vector<std::uint32_t> samples = {});
 
-  [[nodiscard]] bool is_adaptive() const { return target_error_ > 0 || target_rmse_ > 0; }
+  [[nodiscard]] bool is_adaptive() const { return target_.error > 0 || target_.rmse > 0; }
 
   /// The minimum for pilot_pixels(). Empty without a target RMSE, for small pictures, and once
   /// pixels have samples.
@@ -62,17 +58,13 @@ class SamplePlan {
   [[nodiscard]] std::uint32_t lacks(std::uint32_t has, SampleOrder order) const;
   /// least() if all pixels have the same number of samples.
   std::vector<WorkGroup> least_of_all(SampleOrder order);
-  /// Batches that each block should have in all.
-  [[nodiscard]] BatchCounts wanted(const PassVariances& variances, const BatchCounts& have) const;
-  /// The sum of squared errors of so many pixels at the target RMSE.
-  [[nodiscard]] double squared_target(std::size_t pixels) const;
   [[nodiscard]] int height() const { return static_cast<int>(samples_.size()) / width_; }
 
   int width_;
   std::vector<std::uint32_t> order_;  ///< pixels in the order of tracing
   std::vector<std::uint32_t> samples_;
   std::uint32_t min_, max_;
-  float target_error_, target_rmse_;
+  ErrorTarget target_;
   double fraction_done_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Changes that the command line makes in a scene after reading: the opacity of a material, and a
-// ground under the scene. In and out: a scene.
+// Changes of a scene after it was loaded: the opacity of a material, and a ground under the scene. In
+// and out: a scene.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -20,8 +20,8 @@ inline long8 in_order_of_planes(long8 s) {
   return (long8)(s.s7, s.s4, s.s5, s.s6, s.s0, s.s1, s.s2, s.s3);
 }
 
-/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Of nodes and triangles each ray is
-   given those of its whole item. */
+/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Each ray is charged
+   the visits and tests of its whole work-item. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
                               __global const SampleHits* sample_hits, __global long* film,
                               ResolveParams params) {

@@ -159,16 +159,16 @@ inline void sample_light(__global const LightRecord* light,
 
 /* A ray without a contribution gets t_max < 0 and is not traced. */
 inline void aim_light_rays(const PointRays* rays, const LightSamples* samples, float inverse_count,
-                           RayDirections* signs) {
+                           RayDirections* directions) {
   float16 cosine = (float16)(0.0f);
   DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
-    signs->direction[axis].v = samples->direction[axis].v;
+    directions->direction[axis].v = samples->direction[axis].v;
     cosine += rays->normal[axis].v * samples->direction[axis].v;
   }
   const float16 solid_angle = samples->solid_angle.v;
-  signs->weight.v = solid_angle * at_least_0(cosine) * samples->radiance.v;
-  signs->t_max.v = signs->weight.v > 0.0f ? samples->distance.v : (float16)(-1.0f);
-  signs->solid_angle.v = min(solid_angle * inverse_count, 2.0f * M_PI_F);
+  directions->weight.v = solid_angle * at_least_0(cosine) * samples->radiance.v;
+  directions->t_max.v = directions->weight.v > 0.0f ? samples->distance.v : (float16)(-1.0f);
+  directions->solid_angle.v = min(solid_angle * inverse_count, 2.0f * M_PI_F);
 }
 
 __kernel void light_rays(__global const SurfacePoint* points, __global const uint* active_list,
@@ -182,10 +182,10 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   __global const LightRecord* light = lights + params.light;
   PointRays rays;
   LightSamples samples;
-  RayDirections signs;
+  RayDirections directions;
   load_points(points, active_list, first, end, params.rays, &rays);
-  choose_points(DAPPLE_PAIR_LIGHT + params.light, params.seed, &rays);
+  sample_unit_squares(DAPPLE_PAIR_LIGHT + params.light, params.seed, &rays);
   sample_light(light, emitters, environments, &rays, &samples);
-  aim_light_rays(&rays, &samples, params.inverse_count, &signs);
-  store_rays(&rays, &signs, light->id, queue + first);
+  aim_light_rays(&rays, &samples, params.inverse_count, &directions);
+  store_rays(&rays, &directions, light->id, queue + first);
 }

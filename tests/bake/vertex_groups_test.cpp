@@ -98,7 +98,7 @@ TEST(SurfaceSamples, WeightsOfASampleAddUpToTwiceTheArea) {
   EXPECT_TRUE(sample.front && sample.back);
 }
 
-TEST(SurfaceSamples, TrianglesWithoutAnAreaHaveNone) {
+TEST(SurfaceSamples, DegenerateTrianglesHaveNoArea) {
   const Mesh mesh = triangles({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}});
   EXPECT_FALSE(has_area(mesh, 0));
   EXPECT_FALSE(has_area(mesh, 1));

@@ -1,2 +1,2 @@
-/* lanes_of_patterns.h as the device's compiler sees it. */
+/* The functions of lanes.clh with the device's own built-ins; lanes_without_*.cl force the fallbacks. */
 #include "lanes_of_patterns.h"

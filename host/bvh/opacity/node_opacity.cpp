@@ -199,10 +199,11 @@ class DirectionalOpacity {
     Views views = meet(area, depth, chords);
     // Content in the middle of the box does not become less opaque because the corners of the box
     // are empty: mass concentration reduces the variance.
-    const Four even = 1.0f - mean_transmittances(depth, (1.0f - mass_concentration_) *
-                                                            depth_variances(depth, chords, 0.0f));
+    const Four uniform =
+        1.0f - mean_transmittances(
+                   depth, (1.0f - mass_concentration_) * depth_variances(depth, chords, 0.0f));
     const Four clump = smallest(blend(axes_, seen, area), all(1.0f));
-    views.opacity = even + clumping_ * (clump - even);
+    views.opacity = uniform + clumping_ * (clump - uniform);
     return views;
   }
 

@@ -59,14 +59,14 @@ CoverageMap SmallMap::with_means(const V3f& axes) const {
     unsigned sum = 0;
     for (const std::uint8_t opacity : opacity_[axis]) sum += opacity;
     // A map that was empty may have content now: all cells get the same opacity.
-    const float even = sum == 0 ? axes[axis] : 0.0f;
+    const float uniform = sum == 0 ? axes[axis] : 0.0f;
     const float scale =
         sum == 0 ? 0.0f : axes[axis] * static_cast<float>(kSize * kSize) / static_cast<float>(sum);
     for (int row = 0; row < kMapSize; ++row) {
       for (int column = 0; column < kMapSize; ++column) {
         const float opacity = opacity_[axis][row / 2 * kSize + column / 2];
         map.transmittance[axis][row * kMapSize + column] =
-            1.0f - std::min(1.0f, even + scale * opacity);
+            1.0f - std::min(1.0f, uniform + scale * opacity);
       }
     }
   }
