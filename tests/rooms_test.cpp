@@ -1,6 +1,7 @@
 // The rooms (folders) of the source tree: which room may include which other room, and which
-// folders may include a third-party library. In: every source file; out: one failure for each
-// include that breaks a rule, with file and line. docs/design.md shows the same order.
+// folders may include a third-party library. README and CONTRIBUTING list the rooms in this order.
+// In: every source file; out: one failure for each include that breaks a rule, with file and line.
+// docs/design.md shows the same order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rooms in the order in which data passes through them: a room may include itself and earlier
-/// rooms.
+/// Rooms in the order of data flow: a room may include itself and earlier rooms.
 const std::vector<std::string> kHostRooms{"files",  "scene",    "bvh",     "device", "camera",
                                           "film",   "sampling", "passes",  "render", "bake",
                                           "points", "compare",  "commands"};
@@ -50,7 +50,7 @@ struct Include {
   std::string file;  ///< path below the source folder
   int line;          ///< counted from 1
   std::string name;  ///< the text between the quotes or brackets
-  [[nodiscard]] std::string place() const { return file + ":" + std::to_string(line); }
+  [[nodiscard]] std::string position() const { return file + ":" + std::to_string(line); }
 };
 
 std::vector<Include> includes_of(const fs::path& path, const std::string& file) {
@@ -103,9 +103,10 @@ void expect_order(const std::string& tree, const std::vector<std::string>& rooms
     if (room.empty()) continue;  // main.cpp, queue_kernels.cl
     seen.insert(room);
     const std::ptrdiff_t rank = rank_of(rooms, room);
-    EXPECT_GE(rank, 0) << include.place() << ": the room " << room << " is not in rooms_test.cpp";
+    EXPECT_GE(rank, 0) << include.position() << ": the room " << room
+                       << " is not in rooms_test.cpp";
     EXPECT_LE(rank_of(rooms, folder_at(include.name, 0)), rank)
-        << include.place() << ": " << room << " includes \"" << include.name
+        << include.position() << ": " << room << " includes \"" << include.name
         << "\" of a later room";
   }
   EXPECT_EQ(seen.size(), rooms.size()) << tree << ": a room is gone; take it out of rooms_test.cpp";
@@ -127,10 +128,21 @@ TEST(Rooms, LibrariesAreIncludedInTheirRoomsOnly) {
       EXPECT_TRUE(std::ranges::any_of(
           library.allowed,
           [&](const std::string& beginning) { return include.file.starts_with(beginning); }))
-          << include.place() << ": " << library.name << " is included outside of its rooms";
+          << include.position() << ": " << library.name << " is included outside of its rooms";
     }
   }
   EXPECT_EQ(used.size(), kLibraries.size()) << "a rule matches no include at all";
+}
+
+/// The Python package uses the installed library, as any other program does.
+TEST(Rooms, PythonIncludesPublicHeadersOnly) {
+  const std::vector<Include> includes = includes_below("python/src");
+  EXPECT_GT(includes.size(), 20u);
+  for (const Include& include : includes) {
+    const std::string folder = folder_at(include.name, 0);
+    EXPECT_TRUE(folder.empty() || folder == "dapple" || folder == "nanobind")
+        << include.position() << ": the package includes \"" << include.name << "\"";
+  }
 }
 
 TEST(Rooms, PublicHeadersIncludeNoPrivateOnes) {
@@ -139,7 +151,7 @@ TEST(Rooms, PublicHeadersIncludeNoPrivateOnes) {
   for (const Include& include : includes) {
     const std::string folder = folder_at(include.name, 0);
     EXPECT_TRUE(folder.empty() || folder == "dapple" || folder == "Imath")
-        << include.place() << ": a public header includes \"" << include.name << "\"";
+        << include.position() << ": a public header includes \"" << include.name << "\"";
   }
 }
 

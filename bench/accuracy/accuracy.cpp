@@ -31,8 +31,7 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--opacity", a.opacity, "MATERIAL=VALUE: that opacity for a material; repeatable");
   auto* nodes = app.add_flag("--nodes-only", a.nodes_only, "Only nodes; needs no OpenCL device");
   app.add_flag("--images-only", a.images_only, "Only images")->excludes(nodes);
-  app.add_flag("--line", a.line,
-               "Only whether AO pops along a line and as the camera is pulled back");
+  app.add_flag("--line", a.line, "Only whether AO pops along a line and as the camera moves away");
   app.add_flag("--linear", a.linear, "Only time and memory of prefiltering clouds; takes no SCENE");
   app.add_option("--seeds", a.images.seeds, "Images per footprint")
       ->capture_default_str()
@@ -56,7 +55,7 @@ void make_quick(Arguments& a) {
   a.lines.frames = 20;
 }
 
-void settle(Arguments& a) {
+void apply_options(Arguments& a) {
   if (a.scene.empty() != a.linear)
     throw Error(ErrorKind::usage, a.linear ? "--linear takes no SCENE" : "SCENE is missing");
   if (a.quick) make_quick(a);
@@ -97,7 +96,7 @@ int run_accuracy(int argc, char** argv) {
                "dapple-bench accuracy");
   add_options(app, a);
   CLI11_PARSE(app, argc, argv);
-  settle(a);
+  apply_options(a);
   if (ran_study(a)) return 0;
   PictureScene scene(a.scene, a.images.render);
   nlohmann::json figures{{"scene", a.scene}, {"opacity", a.opacity}};

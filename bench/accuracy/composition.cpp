@@ -108,10 +108,10 @@ class Composer {
     V3f transmittance(1.0f);
     NormalMoments normals;
     for (const StrandSegment& segment : leaf_segments(bvh_, node, slot)) {
-      SurfaceAreas hidden;
-      add_surface(segment, normals, hidden);
+      SurfaceAreas occluded;
+      add_surface(segment, normals, occluded);
       for (int axis = 0; axis < 3; ++axis) {
-        transmittance[axis] *= 1.0f - std::min(1.0f, hidden.other[axis] / face(box, axis));
+        transmittance[axis] *= 1.0f - std::min(1.0f, occluded.other[axis] / face(box, axis));
       }
     }
     for (std::size_t k = 0; k < 6; ++k) made.moments[k] = normals.sum[k];

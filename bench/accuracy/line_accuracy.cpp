@@ -16,7 +16,7 @@ Scene prepared(const std::string& spec, const RenderOptions& options) {
   return scene;
 }
 
-/// A scene on the device of the options.
+/// Builds a scene and uploads it to the device that the options name.
 struct Uploaded {
   Uploaded(const std::string& spec, const RenderOptions& options)
       : scene(prepared(spec, options)),

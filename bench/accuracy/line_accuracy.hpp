@@ -24,7 +24,7 @@ struct LineAccuracyRow {
   std::string what;  ///< which rays, or the camera
   float footprint = 0;
   double exact = 0, prefiltered = 0;  ///< largest change of mean AO
-  double excess = 0;  ///< the largest (prefiltered change - exact change) at one place
+  double excess = 0;  ///< the largest (prefiltered change - exact change) at one step
   double error = 0;   ///< largest standard error of the difference of the two changes
 };
 

@@ -44,7 +44,7 @@ std::string nodes_text(const std::vector<NodeAccuracyRow>& rows) {
     for (std::size_t m = 0; m < names.size(); ++m)
       cells[3 + m].push_back(fmt::format("{:+.3f}/{:.3f}", row.errors[m].bias, row.errors[m].rms));
   }
-  return "Opacity of nodes minus that met by rays: bias/rms, the rays' noise taken out\n" +
+  return "Opacity of nodes minus that of traced rays: bias/rms, without the noise of the rays\n" +
          table_text(cells);
 }
 

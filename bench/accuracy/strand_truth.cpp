@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "oracle/embree_ray.hpp"
+
 namespace dapple::bench {
 namespace {
 
@@ -19,23 +21,24 @@ bool is_between(const StrandSegment& s, const V3d& p) {
 }
 
 bool enters_side(const StrandSegment& s, const V3d& origin, const V3d& direction, double t_max) {
-  const V3d axis = V3d(s.point[1]) - V3d(s.point[0]), place = origin - V3d(s.point[0]);
+  const V3d axis = V3d(s.point[1]) - V3d(s.point[0]), offset = origin - V3d(s.point[0]);
   const double square = axis.dot(axis), taper = double{s.radius[1]} - s.radius[0];
-  const double along = place.dot(axis) / square, slope = direction.dot(axis) / square;
-  const V3d across = place - axis * along, way = direction - axis * slope;
+  const double along = offset.dot(axis) / square, slope = direction.dot(axis) / square;
+  const V3d across = offset - axis * along, slant = direction - axis * slope;
   const double radius = s.radius[0] + taper * along, growth = taper * slope;
-  const double t = first_root(way.dot(way) - growth * growth, across.dot(way) - radius * growth,
-                              across.dot(across) - radius * radius);
+  const double t =
+      first_root(slant.dot(slant) - growth * growth, across.dot(slant) - radius * growth,
+                 across.dot(across) - radius * radius);
   return t > 0 && t < t_max && radius + growth * t > 0 && is_between(s, origin + direction * t);
 }
 
 bool enters_cap(const StrandSegment& s, int end, const V3d& origin, const V3d& direction,
                 double t_max) {
-  const V3d middle(s.point[end]), place = origin - middle;
+  const V3d middle(s.point[end]), offset = origin - middle;
   const double radius = s.radius[end];
-  const double t = first_root(direction.dot(direction), place.dot(direction),
-                              place.dot(place) - radius * radius);
-  const double height = (place + direction * t).dot(V3d(s.plane[end]));
+  const double t = first_root(direction.dot(direction), offset.dot(direction),
+                              offset.dot(offset) - radius * radius);
+  const double height = (offset + direction * t).dot(V3d(s.plane[end]));
   return t > 0 && t < t_max && (end ? height >= 0 : height < 0);
 }
 
@@ -63,7 +66,7 @@ struct StrandTruth::Embree {
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(segments.size()));
     rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryBoundsFunction(geometry, &bound, nullptr);
-    rtcSetGeometryOccludedFunction(geometry, &meet);
+    rtcSetGeometryOccludedFunction(geometry, &intersect);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -85,7 +88,7 @@ struct StrandTruth::Embree {
     *arguments->bounds_o = {box.min.x, box.min.y, box.min.z, 0, box.max.x, box.max.y, box.max.z, 0};
   }
 
-  static void meet(const RTCOccludedFunctionNArguments* arguments) {
+  static void intersect(const RTCOccludedFunctionNArguments* arguments) {
     if (!arguments->valid[0]) return;
     Query& query = *reinterpret_cast<Query*>(arguments->context);
     const StrandSegment& hit = segment(arguments->geometryUserPtr, arguments->primID);
@@ -106,16 +109,8 @@ StrandTruth::~StrandTruth() = default;
 double StrandTruth::transmittance(const oracle::Segment& ray) const {
   Query query{{}, &ray, 1.0};
   rtcInitIntersectContext(&query.context);
-  RTCRay asked{};
-  asked.org_x = ray.origin.x;
-  asked.org_y = ray.origin.y;
-  asked.org_z = ray.origin.z;
-  asked.dir_x = ray.direction.x;
-  asked.dir_y = ray.direction.y;
-  asked.dir_z = ray.direction.z;
-  asked.tfar = ray.t_max;
-  asked.mask = ~0u;
-  rtcOccluded1(embree_->scene, &query.context, &asked);
+  RTCRay embree_ray = oracle::embree_ray(ray);
+  rtcOccluded1(embree_->scene, &query.context, &embree_ray);
   return query.transmittance;
 }
 

@@ -101,7 +101,7 @@ def median(values):
 
 
 def seconds_to(rows, target):
-    """Interpolated between the logarithms of neighbouring rows; None if the target is not met."""
+    """Interpolated between the logarithms of neighbouring rows; None if the target is not reached."""
     before = None
     for row in rows:
         if row["rmse"] <= target:
@@ -114,7 +114,7 @@ def seconds_to(rows, target):
 
 
 def measure(name, efforts, repeats, bake, reference):
-    """Rows of effort, median seconds and median RMSE, until the last target is met."""
+    """Rows of effort, median seconds and median RMSE, until the last target is reached."""
     rows = []
     for effort in efforts:
         runs = [bake(effort, seed) for seed in range(1, repeats + 1)]

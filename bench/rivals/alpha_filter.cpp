@@ -11,7 +11,7 @@
 namespace dapple::bench {
 namespace {
 
-/// Lanes whose `valid` is -1, as bits. Packets often come with one lane left.
+/// Lanes whose `valid` is -1, as bits. Embree often calls filters with a single lane.
 unsigned valid_lanes(const int* valid, unsigned count) {
   if (count == 1) return valid[0] ? 1u : 0u;
   unsigned lanes = 0;
@@ -30,7 +30,7 @@ const OpacityTable& table_of(const RTCFilterFunctionNArguments& a) {
   return *static_cast<const OpacityTable*>(a.geometryUserPtr);
 }
 
-/// A strand stops what enters it, once.
+/// Whether the ray leaves a strand. Only rays that enter a strand are stopped by it.
 bool leaves_strand(const RTCFilterFunctionNArguments& a, unsigned lane) {
   if (!table_of(a).of_strands()) return false;
   return RTCHitN_Ng_x(a.hit, a.N, lane) * RTCRayN_dir_x(a.ray, a.N, lane) +
@@ -49,15 +49,15 @@ struct LaneHit {
                                        : table_of(a).opacity(primitive, RTCHitN_u(a.hit, a.N, lane),
                                                              RTCHitN_v(a.hit, a.N, lane))) {}
 
-  /// The same for a triangle however often it is reported, and for no two likely to be met by
-  /// one ray.
+  /// A hash of the triangle and its instance: always the same for one triangle, and probably
+  /// different for the other triangles of a ray.
   [[nodiscard]] std::uint32_t triangle() const { return primitive + instance * 0x9e3779b1u; }
 
   unsigned ray, primitive, instance;
   float opacity;
 };
 
-/// Whether chance stops the ray: the same answer each time this hit is reported.
+/// Whether the ray is stopped at random. The result is the same each time this hit is reported.
 bool is_stopped(const AlphaContext& context, const LaneHit& hit) {
   const std::uint32_t bits = hash_pair(hash_uint(hit.triangle()), context.keys[hit.ray]);
   return unit_float(bits) < hit.opacity;
@@ -79,7 +79,7 @@ void filter_multiplicative(const RTCFilterFunctionNArguments& a, const AlphaCont
       a.valid[lane] = 0;
       continue;
     }
-    if (!context.met || context.met[hit.ray % kMaxLanes].add(hit.triangle()))
+    if (!context.hit || context.hit[hit.ray % kMaxLanes].add(hit.triangle()))
       transmittance *= 1.0f - hit.opacity;
     if (transmittance >= context.black) a.valid[lane] = 0;
   }

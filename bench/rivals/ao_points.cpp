@@ -13,7 +13,7 @@
 namespace dapple::bench {
 namespace {
 
-/// What one thread works with.
+/// Buffers of one thread.
 struct Worker {
   Worker(const EmbreeScenes& scenes, float black) : tracer(scenes, black) {}
   EmbreeTracer tracer;
@@ -23,7 +23,7 @@ struct Worker {
 
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<Worker>>;
 
-/// Points first... of all, whose means go to `ao`.
+/// Writes the AO of the points [first, end) to `ao`.
 void occlude(Worker& worker, const EmbreeMethod& method, std::span<const Surface> points,
              std::size_t rays, std::size_t first, std::size_t end, std::uint32_t seed, double* ao) {
   const FlushDenormals flush;
@@ -69,7 +69,7 @@ void fill_ao_rays(std::span<const Surface> points, std::size_t rays, std::size_t
   sample_squares(pixel, index, count, kAoPair, seed, x, y);
   const float* const about[3] = {normal[0], normal[1], normal[2]};
   float* const into[3] = {batch.direction[0], batch.direction[1], batch.direction[2]};
-  vogel_places(pixel, index, count, rays, seed, x, y);
+  vogel_points(pixel, index, count, rays, seed, x, y);
   lift_to_directions(x, y, about, count, into);
   ray_keys(pixel, index, count, kAoPair, seed, batch.key);
 }

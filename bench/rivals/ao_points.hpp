@@ -1,5 +1,5 @@
-// AO from points by Embree, as a baker would write it: rays of many points side by side in
-// batches, points over threads.
+// AO at points by Embree: batches hold rays of many points, and threads share the points. In:
+// scenes and points. Out: the AO of each point.
 #pragma once
 
 #include <span>
@@ -11,16 +11,17 @@
 
 namespace dapple::bench {
 
-/// Roundings by which dapple::occlusion() starts rays off their points; Embree's do as well.
+/// Offset of ray origins from their points, in roundings (ray_start()): that of
+/// dapple::occlusion().
 inline constexpr float kPointRoundings = 4e-6f * 0x1p24f;
 
-/// What the camera sees through stratified places of every pixel, one sample each, by tiles of
-/// 8x8 pixels; evenly thinned to `most`.
+/// The points that camera rays hit, one stratified ray per pixel, in tiles of 8x8 pixels. If there
+/// are more than `most`, returns `most` of them at regular intervals.
 std::vector<Surface> visible_points(const EmbreeScenes& scenes, const CameraRays& camera,
                                     std::size_t most);
 
-/// Writes rays `first`... of all `rays` * points rays, point by point, until the batch is full
-/// or there are no more.
+/// Fills the batch with AO rays, beginning with ray `first` of all: ray number point * `rays` + i
+/// is ray i of the point. Stops when the batch is full or after the last ray.
 void fill_ao_rays(std::span<const Surface> points, std::size_t rays, std::size_t first,
                   std::uint32_t seed, RayBatch& batch);
 

@@ -16,7 +16,7 @@ constexpr std::uint32_t kReferenceSeeds[2] = {0x7e000001u, 0x7e000002u};
 constexpr double kFirstTarget = 0.32;
 constexpr double kMaxEffort = 1024;
 
-/// For each vertex group the triangles around it, one after the other.
+/// For each vertex group the triangles around it: [first[group], first[group + 1]) of `triangles`.
 struct GroupTriangles {
   std::vector<std::uint32_t> first, triangles;
 
@@ -30,8 +30,8 @@ struct GroupTriangles {
   }
 };
 
-/// The triangles that decide the values of `chosen` ones: those of the same small part, or those
-/// that share a vertex. In order.
+/// The triangles that affect the values of the `chosen` ones: those of the same small part, and
+/// those that share a vertex. Sorted.
 std::vector<std::uint32_t> with_neighbours(const Mesh& mesh, const VertexGroups& groups,
                                            const std::vector<std::uint32_t>& chosen) {
   const GroupTriangles around(mesh, groups);
@@ -125,10 +125,10 @@ BakeOptions with_rays(int rays, std::uint32_t seed) {
   return options;
 }
 
-/// Efforts 1, 2, 4 and so on: the options of the bake that they stand for.
+/// Returns the options of a bake for an effort (1, 2, 4 and so on).
 using OptionsOfEffort = std::function<BakeOptions(double)>;
 
-/// Rounds until the standard error of a value is at most 0.32 / sqrt(effort).
+/// Samples are added until the standard error of each value is at most 0.32 / sqrt(effort).
 OptionsOfEffort to_target(Estimator estimator) {
   return [estimator](double effort) {
     BakeOptions options = with_rays(65536, 0);
@@ -138,7 +138,7 @@ OptionsOfEffort to_target(Estimator estimator) {
   };
 }
 
-/// As many rays for each side of every triangle.
+/// The same number of rays for each side of every triangle.
 BakeOptions uniformly(double effort) { return with_rays(kRaysPerSample * int(effort), 0); }
 
 Contestant contestant(const std::string& name, bool is_embree, const OptionsOfEffort& options_of,
@@ -155,7 +155,7 @@ Contestant contestant(const std::string& name, bool is_embree, const OptionsOfEf
   };
   std::vector<double> ladder;
   for (double effort = 1; effort <= kMaxEffort; effort *= 2) ladder.push_back(effort);
-  // The brighter side of two uncertain ones is a little too bright, so none is exactly the truth.
+  // The maximum of two noisy sides is biased, so no contestant is expected to equal the truth.
   return {name, is_embree, false, ladder, run};
 }
 

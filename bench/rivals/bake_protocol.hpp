@@ -1,6 +1,6 @@
 // Protocol "bake": AO at the vertices of a model, as `dapple bake` computes it. In: a scene. Out:
-// contestants that bake the same vertices with the same rounds of samples; only what traces the
-// rays differs.
+// contestants that bake the same vertices with the same rounds of samples, but trace the rays with
+// different programs.
 #pragma once
 
 #include "bake/sample_tracer.hpp"
@@ -9,7 +9,8 @@
 
 namespace dapple::bench {
 
-/// Part of a mesh that is baked in its place: some triangles, and all others at their vertices.
+/// Part of a mesh that is baked instead of the mesh: some triangles, and all others at their
+/// vertices.
 struct BakedPart {
   Mesh mesh;
   std::vector<bool> two_sided;          ///< by triangle
@@ -20,11 +21,11 @@ struct BakedPart {
 /// Parts around `triangles` evenly chosen triangles of the scene, or around all if there are fewer.
 std::vector<BakedPart> choose_parts(const Scene& scene, std::size_t triangles);
 
-/// AO at the compared vertices by Embree with `rays` rays for each triangle and side, in two
-/// halves.
+/// AO at the compared vertices by Embree with `rays` rays for each triangle and side, as two
+/// independent halves.
 Truth bake_truth(const RivalScene& scene, const std::vector<BakedPart>& parts, int rays);
 
-/// The same by dapple's exact estimator, in one.
+/// The same by dapple's exact estimator, not in halves.
 std::vector<double> bake_exactly(const RivalScene& scene, const std::vector<BakedPart>& parts,
                                  int rays);
 

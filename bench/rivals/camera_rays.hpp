@@ -1,4 +1,5 @@
-// Camera rays for Embree, from the very view that dapple renders.
+// Camera rays for Embree. In: the view that dapple renders, and samples of pixels. Out: a batch of
+// rays.
 #pragma once
 
 #include "camera/view.hpp"
@@ -13,8 +14,8 @@ class CameraRays {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
-  /// Rays through stratified places of pixels (row * width + column), sample by sample; `x` and
-  /// `y` are scratch. Fills `rays.count` rays.
+  /// Fills the batch with `count` rays through stratified positions in pixels (row * width +
+  /// column). `x` and `y` are scratch memory.
   void fill(const std::uint32_t* pixel, const std::uint32_t* sample, unsigned count,
             std::uint32_t seed, float* x, float* y, RayBatch& rays) const;
 

@@ -12,12 +12,12 @@
 namespace dapple::bench {
 namespace {
 
-/// For the threads of who ran before to fall asleep.
+/// Time for the threads of the previous contestant to become idle.
 constexpr auto kPause = std::chrono::milliseconds(2);
 
 constexpr double kLongSeconds = 10, kShortSeconds = 0.5;
 
-/// Contestants' first seed; the truth's are elsewhere.
+/// Seed of the contestants' first round. The truth uses other seeds.
 constexpr std::uint32_t kFirstSeed = 1000;
 
 /// One contestant's rounds at one effort.
@@ -62,18 +62,19 @@ class RungSums {
   double effort_;
   const Truth& truth_;
   std::vector<double> seconds_;
-  std::vector<double> square_errors_;  // of a value, by round
+  std::vector<double> square_errors_;  // mean over the values, by round
   double sum_ = 0;
 };
 
-/// Whether the contestant has another effort to make.
+/// Whether the contestant runs at another effort.
 bool goes_on(const Contestant& contestant, const Standing& standing, std::size_t step,
              double stop_below) {
   if (step >= contestant.ladder.size()) return false;
   return standing.rungs.empty() || standing.rungs.back().rmse >= stop_below;
 }
 
-/// Runs unmeasured first where that is cheap: kernels are compiled and caches filled then.
+/// Runs the contestant once without measuring, if that is cheap: this compiles kernels and fills
+/// caches.
 void warm_up(const Contestant& contestant, const Standing& standing, double effort) {
   if (standing.rungs.empty() || standing.rungs.back().seconds < kShortSeconds)
     contestant.run(effort, kFirstSeed - 1);
@@ -134,7 +135,8 @@ std::optional<TimeToError> time_to_error(const Standing& standing, double rmse) 
   };
   for (std::size_t i = 1; i < rungs.size(); ++i)
     if (rungs[i].rmse <= rmse) return TimeToError{between(rungs[i - 1], rungs[i]), false};
-  // Only noise falls nearly as the inverse root of time; where bias shows, nothing is said.
+  // Noise decreases with the inverse root of the effort. A slower decrease shows a bias, which must
+  // not be extrapolated.
   if (rungs.size() < 2 || rungs.back().rmse > 2 * rmse) return std::nullopt;
   const Rung &a = rungs[rungs.size() - 2], &b = rungs.back();
   const double slope = std::log(b.rmse / a.rmse) / std::log(b.effort / a.effort);

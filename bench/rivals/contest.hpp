@@ -1,5 +1,7 @@
-// A fair race: all contestants estimate the same values at rising effort, in turn, several times;
-// what counts is how soon each comes below an error.
+// Compares contestants that estimate the same values. In: contestants and the true values. Out:
+// time and error of each contestant at increasing effort, and the time that each needs to reach an
+// error. Rounds are interleaved, so that changes of the machine's speed affect all contestants
+// equally.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +12,13 @@
 
 namespace dapple::bench {
 
-/// Values known well, and the mean variance of what is still unknown of one.
+/// Reference values, and their mean variance.
 struct Truth {
   std::vector<double> values;
   double variance = 0;
 };
 
-/// Two independent estimates of equal effort -> their mean, and its variance.
+/// The mean of two independent estimates of equal effort, and its variance.
 Truth truth_of_halves(const std::vector<double>& first, const std::vector<double>& second);
 
 struct Outcome {
@@ -28,7 +30,7 @@ struct Contestant {
   std::string name;
   bool is_embree = false;
   bool is_exact = false;       ///< must agree with the truth within its noise
-  std::vector<double> ladder;  ///< efforts, rising: rays a point, samples a pixel, ...
+  std::vector<double> ladder;  ///< efforts, increasing: rays per point, samples per pixel, ...
   std::function<Outcome(double effort, std::uint32_t seed)> run;
 };
 
@@ -37,8 +39,8 @@ struct Rung {
   double effort = 0;
   double seconds = 0;                ///< median over the rounds
   double spread = 0;                 ///< (largest - smallest) / median of the seconds
-  double rmse = 0;                   ///< of a value, the rounds' median, the truth's variance out
-  double mean_difference = 0;        ///< of all values' mean, contestant minus truth
+  double rmse = 0;                   ///< median over the rounds, without the variance of the truth
+  double mean_difference = 0;        ///< of the mean of all values, contestant minus truth
   double mean_difference_error = 0;  ///< its standard error
   int rounds = 0;
 };
@@ -51,31 +53,31 @@ struct Standing {
 
 struct ContestOptions {
   int rounds = 5;
-  double stop_below = 0;  ///< no higher effort for who has come below this RMSE
+  double stop_below = 0;  ///< contestants stop once their RMSE is below this
   std::function<void(const std::string&)> progress;
 };
 
-/// Round robin over contestants at each effort. Those that take longer than ten seconds run two
-/// rounds only: noise of the machine is small beside them.
+/// At each effort, runs all contestants in turn, several rounds. Contestants that take more than
+/// ten seconds run only two rounds, because the machine's noise is small compared with their time.
 std::vector<Standing> hold_contest(const std::vector<Contestant>& contestants, const Truth& truth,
                                    const ContestOptions& options);
 
-/// Seconds to an error, on a straight line between logarithms.
+/// Seconds to reach an error, interpolated linearly between logarithms.
 struct TimeToError {
   double seconds = 0;
-  bool extrapolated = false;  ///< past the last effort, by no more than a factor 2 in error
+  bool extrapolated = false;  ///< beyond the last effort, by at most a factor of 2 in error
 };
 
-/// Nothing where the contestant never gets there: its bias or its ladder ends above. Who begins
-/// below it needs no more than the first effort's seconds, which are then the answer.
+/// Nothing if the contestant does not reach the error, because of its bias or its last effort. If
+/// it is below the error at its first effort, returns the seconds of that effort.
 std::optional<TimeToError> time_to_error(const Standing& standing, double rmse);
 
-/// The shortest of Embree's, nothing where none gets there.
+/// The shortest time of Embree's contestants; nothing if none reaches the error.
 std::optional<TimeToError> best_embree(const std::vector<Standing>& standings, double rmse);
 
-/// A line for every exact contestant whose mean is further from the truth's, at its last effort,
-/// than four standard errors and what cutting off rays below a transmittance of `black` explains;
-/// empty: all agree.
+/// A line for every exact contestant whose mean differs from the truth, at its last effort, by more
+/// than four standard errors plus the bias of ending rays below the transmittance `black`. Empty if
+/// all agree.
 std::string disagreements(const std::vector<Standing>& standings, double black);
 
 }  // namespace dapple::bench

@@ -26,7 +26,7 @@ EmbreeMesh curves_by_opacity(const Scene& scene, const Mesh& mesh) {
     const V3f& p = mesh.positions[vertex];
     sorted.curve_vertices.insert(sorted.curve_vertices.end(), {p.x, p.y, p.z, mesh.radii[vertex]});
   };
-  const std::uint32_t* before = nullptr;  // ends of the segment that was appended last
+  const std::uint32_t* before = nullptr;  // vertices of the segment that was appended last
   for (std::size_t s = 0; s < mesh.primitive_count(); ++s) {
     const float opacity = segment_opacity(scene, mesh, s);
     if (opacity <= 0.0f) continue;

@@ -17,84 +17,86 @@
 namespace dapple::bench {
 namespace {
 
-/// Roundings of the largest coordinate by which rays start off surfaces;
-/// kernels/camera/closest_hit.cl takes 16 of a sum that is little larger.
+/// Offset of ray origins from surfaces, in roundings of the largest coordinate (ray_start()).
+/// kernels/camera/closest_hit.cl uses 16 roundings of a slightly larger sum.
 constexpr float kRoundings = 16;
 
-/// Camera samples, or those of them that met something.
+/// Camera samples: all of a batch, or only those that hit something.
 struct SampleBatch {
   alignas(64) std::uint32_t pixel[kBatchCapacity], sample[kBatchCapacity];
-  std::uint32_t slot[kBatchCapacity];  ///< the pixel's place in its tile
+  std::uint32_t slot[kBatchCapacity];  ///< index of the pixel in its tile
 };
 
 }  // namespace
 
-/// What one thread works with. A tile's sums are plane after plane of kTilePixels.
+/// Buffers and steps of one thread. `sums` has kTilePixels values for each plane of a tile.
 struct EmbreePictures::Worker {
   Worker(const EmbreePictures& pictures, float black)
       : renderer(pictures), tracer(pictures.scenes_, black) {}
 
-  /// Samples first... of all the tile's, and what their camera rays meet.
-  void look(const PixelTile& tile, std::size_t first, int spp, std::uint32_t seed,
-            const EmbreeMethod& method) {
-    const auto samples = static_cast<std::size_t>(spp);
-    const auto count =
-        static_cast<unsigned>(std::min<std::size_t>(kBatchCapacity, tile.count * samples - first));
-    std::size_t slot = first / samples, sample = first % samples;
+  /// Traces the camera rays of a batch of the tile's samples, beginning with sample `first`.
+  void trace_camera(const PixelTile& tile, std::size_t first, int spp, std::uint32_t seed,
+                    const EmbreeMethod& method) {
+    const auto per_pixel = static_cast<std::size_t>(spp);
+    const auto count = static_cast<unsigned>(
+        std::min<std::size_t>(kBatchCapacity, tile.count * per_pixel - first));
+    std::size_t slot = first / per_pixel, sample = first % per_pixel;
     for (unsigned i = 0; i < count; ++i, ++sample) {
-      if (sample == samples) {
+      if (sample == per_pixel) {
         sample = 0;
         ++slot;
       }
-      asked.slot[i] = static_cast<std::uint32_t>(slot);
-      asked.pixel[i] = tile.pixels[slot];
-      asked.sample[i] = static_cast<std::uint32_t>(sample);
+      samples.slot[i] = static_cast<std::uint32_t>(slot);
+      samples.pixel[i] = tile.pixels[slot];
+      samples.sample[i] = static_cast<std::uint32_t>(sample);
     }
-    renderer.camera_.fill(asked.pixel, asked.sample, count, seed, x, y, rays);
+    renderer.camera_.fill(samples.pixel, samples.sample, count, seed, x, y, rays);
     tracer.intersection(method, rays, hits);
   }
 
-  /// Points that the last camera rays met, side by side. Samples that met nothing add `sky`.
+  /// Collects the points that the last camera rays hit. Samples without a hit add `sky` to the
+  /// sums.
   void gather(double sky) {
-    met_count = 0;
+    hit_count = 0;
     for (unsigned i = 0; i < rays.count; ++i) {
       if (hits.geometry[i] == RTC_INVALID_GEOMETRY_ID) {
-        sums[asked.slot[i]] += sky;
+        sums[samples.slot[i]] += sky;
         continue;
       }
       const Surface surface = surface_of(renderer.scenes_.medium.geometry(), rays, hits, i);
       const V3f start = ray_start(surface, kRoundings);
       for (int axis = 0; axis < 3; ++axis) {
-        origin[axis][met_count] = start[axis];
-        normal[axis][met_count] = surface.normal[axis];
+        origin[axis][hit_count] = start[axis];
+        normal[axis][hit_count] = surface.normal[axis];
       }
-      met.pixel[met_count] = asked.pixel[i];
-      met.sample[met_count] = asked.sample[i];
-      met.slot[met_count++] = asked.slot[i];
+      hit_samples.pixel[hit_count] = samples.pixel[i];
+      hit_samples.sample[hit_count] = samples.sample[i];
+      hit_samples.slot[hit_count++] = samples.slot[i];
     }
   }
 
-  /// The `ray`th of `of` from every point.
+  /// Traces one AO ray from every hit point: number `ray` of the `of` rays of each.
   void add_ao(std::uint32_t seed, const EmbreeMethod& method, std::uint32_t ray, std::uint32_t of) {
-    for (unsigned i = 0; i < met_count; ++i) index[i] = met.sample[i] * of + ray;
-    sample_squares(met.pixel, index, met_count, kAoPair, seed, x, y);
+    for (unsigned i = 0; i < hit_count; ++i) index[i] = hit_samples.sample[i] * of + ray;
+    sample_squares(hit_samples.pixel, index, hit_count, kAoPair, seed, x, y);
     const float* const about[3] = {normal[0], normal[1], normal[2]};
     float* const into[3] = {rays.direction[0], rays.direction[1], rays.direction[2]};
-    cosine_directions(x, y, about, met_count, into);
-    ray_keys(met.pixel, index, met_count, kAoPair, seed, rays.key);
-    for (int axis = 0; axis < 3; ++axis) std::copy_n(origin[axis], met_count, rays.origin[axis]);
-    std::fill_n(rays.t_max, met_count, std::numeric_limits<float>::infinity());
-    rays.count = met_count;
+    cosine_directions(x, y, about, hit_count, into);
+    ray_keys(hit_samples.pixel, index, hit_count, kAoPair, seed, rays.key);
+    for (int axis = 0; axis < 3; ++axis) std::copy_n(origin[axis], hit_count, rays.origin[axis]);
+    std::fill_n(rays.t_max, hit_count, std::numeric_limits<float>::infinity());
+    rays.count = hit_count;
     tracer.occlusion(method, rays, found);
-    for (unsigned i = 0; i < met_count; ++i)
-      sums[met.slot[i]] += static_cast<double>(found.transmittance[i]) / of;
+    for (unsigned i = 0; i < hit_count; ++i)
+      sums[hit_samples.slot[i]] += static_cast<double>(found.transmittance[i]) / of;
   }
 
-  /// Rays that can bring nothing are not traced.
+  /// Traces one ray to the light from every hit point. Rays that cannot add light are left out.
   void add_light(unsigned light, std::uint32_t seed, const EmbreeMethod& method) {
-    sample_squares(met.pixel, met.sample, met_count, kLightPair + light, seed, x, y);
+    sample_squares(hit_samples.pixel, hit_samples.sample, hit_count, kLightPair + light, seed, x,
+                   y);
     rays.count = 0;
-    for (unsigned i = 0; i < met_count; ++i) {
+    for (unsigned i = 0; i < hit_count; ++i) {
       const V3f from(origin[0][i], origin[1][i], origin[2][i]);
       const LightSample sample = sample_light(renderer.lights_[light], from, x[i], y[i]);
       const float cosine = normal[0][i] * sample.direction.x + normal[1][i] * sample.direction.y +
@@ -106,9 +108,10 @@ struct EmbreePictures::Worker {
         rays.direction[axis][ray] = sample.direction[axis];
       }
       rays.t_max[ray] = sample.distance;
-      rays.key[ray] = ray_key(met.pixel[i], met.sample[i], kLightPair + light, seed);
+      rays.key[ray] =
+          ray_key(hit_samples.pixel[i], hit_samples.sample[i], kLightPair + light, seed);
       weight[ray] = cosine * sample.weight;
-      lit_slot[ray] = light * kTilePixels + met.slot[i];
+      lit_slot[ray] = light * kTilePixels + hit_samples.slot[i];
     }
     tracer.occlusion(method, rays, found);
     for (unsigned i = 0; i < rays.count; ++i)
@@ -120,9 +123,9 @@ struct EmbreePictures::Worker {
   RayBatch rays;
   HitBatch hits;
   TransmittanceBatch found;
-  SampleBatch asked, met;
+  SampleBatch samples, hit_samples;
   alignas(64) std::uint32_t index[kBatchCapacity];
-  unsigned met_count = 0;
+  unsigned hit_count = 0;
   alignas(64) float origin[3][kBatchCapacity], normal[3][kBatchCapacity];
   alignas(64) float x[kBatchCapacity], y[kBatchCapacity];
   float weight[kBatchCapacity];
@@ -163,7 +166,7 @@ std::vector<double> EmbreePictures::render(Pass pass, int spp, std::uint32_t see
     worker.sums.assign(planes * kTilePixels, 0.0);
     const std::size_t samples = tile.count * static_cast<std::size_t>(spp);
     for (std::size_t first = 0; first < samples; first += kBatchCapacity) {
-      worker.look(tile, first, spp, seed, method.camera);
+      worker.trace_camera(tile, first, spp, seed, method.camera);
       worker.gather(pass == Pass::ao ? 1.0 : 0.0);
       if (pass == Pass::ao) {
         for (std::uint32_t ray = 0; ray < method.ao_rays; ++ray)
@@ -184,7 +187,7 @@ void EmbreePictures::trace_camera_rays(int spp, std::uint32_t seed,
   for_each_tile(kContestBlack, [&](Worker& worker, const PixelTile& tile) {
     const std::size_t samples = tile.count * static_cast<std::size_t>(spp);
     for (std::size_t first = 0; first < samples; first += kBatchCapacity)
-      worker.look(tile, first, spp, seed, method);
+      worker.trace_camera(tile, first, spp, seed, method);
   });
 }
 

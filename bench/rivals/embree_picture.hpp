@@ -1,5 +1,6 @@
-// Pictures by Embree: a small renderer as one would write it today. Tiles over threads; within a
-// tile batches of camera rays, then AO rays or one ray a light from every point they met.
+// A small renderer that traces with Embree. In: scenes, a view and lights. Out: AO or irradiance of
+// each pixel. Threads take tiles. Within a tile it traces batches of camera rays, then AO rays or
+// one ray per light from every hit point.
 #pragma once
 
 #include <vector>
@@ -11,7 +12,7 @@ namespace dapple::bench {
 
 enum class Pass : std::uint8_t { ao, light };
 
-/// How the two kinds of rays of a picture are traced, and AO rays a camera sample.
+/// How camera rays and occlusion rays are traced, and the number of AO rays per camera sample.
 struct PictureMethod {
   EmbreeMethod camera, occlusion;
   std::uint32_t ao_rays = 1;
@@ -19,17 +20,17 @@ struct PictureMethod {
 
 class EmbreePictures {
  public:
-  /// Throws Error usage when a light cannot be sampled here.
+  /// Throws Error usage for a light that sample_light() cannot sample.
   EmbreePictures(const EmbreeScenes& scenes, const View& view, std::vector<Light> lights);
 
   [[nodiscard]] const CameraRays& camera() const { return camera_; }
 
-  /// AO pixels row by row (1 where a camera ray meets nothing), or each light's irradiance at
-  /// radiance 1, light after light. `spp` samples a pixel.
+  /// Renders with `spp` samples per pixel. Returns AO, row by row (1 for camera rays without a
+  /// hit), or the irradiance of each light at radiance 1, light after light.
   [[nodiscard]] std::vector<double> render(Pass pass, int spp, std::uint32_t seed,
                                            const PictureMethod& method, float black) const;
 
-  /// Every pixel's camera rays alone, for choosing how to trace them.
+  /// Traces only the camera rays, to find the fastest method for them.
   void trace_camera_rays(int spp, std::uint32_t seed, const EmbreeMethod& method) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace dapple::bench {
 namespace {
 
-/// Called by Embree before or after every change of what it holds, from any thread.
+/// Embree calls this at every change of its memory use, from any thread.
 bool count_bytes(void* counter, ssize_t bytes, bool) {
   *static_cast<std::atomic<std::int64_t>*>(counter) += bytes;
   return true;
@@ -79,7 +79,7 @@ EmbreeScene::~EmbreeScene() {
 
 RTCScene EmbreeScene::new_scene() {
   const RTCScene scene = rtcNewScene(device_);
-  // Neither robust nor compact: the fastest there is.
+  // Neither robust nor compact, which is Embree's fastest mode.
   rtcSetSceneBuildQuality(scene, quality_);
   return scene;
 }
@@ -98,7 +98,7 @@ void EmbreeScene::attach_placements() {
   for (const EmbreePlacement& placement : geometry_.placements) {
     const RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, objects_[placement.mesh]);
-    // Imath's rows, which vectors are multiplied by from the left, are Embree's columns.
+    // Imath multiplies row vectors by matrices, Embree column vectors: rows become columns.
     float columns[12];
     for (int c = 0; c < 4; ++c)
       for (int axis = 0; axis < 3; ++axis) columns[3 * c + axis] = placement.to_world[c][axis];

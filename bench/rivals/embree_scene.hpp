@@ -1,4 +1,5 @@
-// Embree's acceleration structure of a scene, at one build quality. Traced by embree_trace.hpp.
+// Embree's BVH of a scene at one build quality. In: EmbreeGeometry. Out: an RTCScene, which
+// embree_trace.hpp traces, its build time and its memory.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -12,8 +13,8 @@ namespace dapple::bench {
 
 class EmbreeScene {
  public:
-  /// One RTCScene a mesh, instanced where the scene has several placements. `geometry` must
-  /// outlive it. Throws Error failed when Embree reports an error.
+  /// Builds one RTCScene per mesh, instanced unless the geometry is flat. `geometry` must outlive
+  /// this object. Throws Error failed when Embree reports an error.
   EmbreeScene(const EmbreeGeometry& geometry, RTCBuildQuality quality);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
@@ -21,12 +22,12 @@ class EmbreeScene {
 
   [[nodiscard]] RTCScene top() const { return top_; }
   [[nodiscard]] const EmbreeGeometry& geometry() const { return geometry_; }
-  /// Whether a triangle may be in several leaves, and so be reported several times.
+  /// Whether a triangle may be in several leaves, so that Embree may report it several times.
   [[nodiscard]] bool has_spatial_splits() const { return quality_ == RTC_BUILD_QUALITY_HIGH; }
 
-  /// Wall time from the first geometry to the last commit.
+  /// Wall time of building.
   [[nodiscard]] double build_seconds() const { return build_seconds_; }
-  /// What Embree holds once built; positions, indices and opacities are not among it.
+  /// Memory that Embree uses after building, without positions, indices and opacities.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
  private:

@@ -28,7 +28,7 @@ struct PacketTypes<16> {
   static constexpr auto kIntersect = rtcIntersect16;
 };
 
-/// What is the same for all packets of a batch.
+/// Sets the members that are equal for all packets of a batch.
 template <unsigned kWidth>
 void prepare(typename PacketTypes<kWidth>::Ray& packet) {
   for (unsigned i = 0; i < kWidth; ++i) {
@@ -38,7 +38,7 @@ void prepare(typename PacketTypes<kWidth>::Ray& packet) {
   }
 }
 
-/// Rays first..first + kWidth of the batch; those past its end are marked in `valid`.
+/// Copies the rays [first, first + kWidth) of the batch. Lanes past its end are invalid in `valid`.
 template <unsigned kWidth>
 void load(const RayBatch& rays, unsigned first, typename PacketTypes<kWidth>::Ray& packet,
           int* valid) {
@@ -56,12 +56,12 @@ void load(const RayBatch& rays, unsigned first, typename PacketTypes<kWidth>::Ra
   }
 }
 
-void forget_met(AlphaContext& context) {
-  if (!context.met) return;
-  for (unsigned i = 0; i < kMaxLanes; ++i) context.met[i].count = 0;
+void clear_hit_triangles(AlphaContext& context) {
+  if (!context.hit) return;
+  for (unsigned i = 0; i < kMaxLanes; ++i) context.hit[i].count = 0;
 }
 
-/// Embree says that a ray was stopped by a negative end.
+/// Sets the transmittance of stopped rays to 0: Embree makes their tfar negative.
 void darken_stopped(const float* tfar, unsigned count, float* transmittance) {
   for (unsigned i = 0; i < count; ++i) transmittance[i] = tfar[i] < 0.0f ? 0.0f : transmittance[i];
 }
@@ -74,7 +74,7 @@ void occlusion_packets(RTCScene scene, AlphaContext& context, const RayBatch& ra
   prepare<kWidth>(packet);
   for (unsigned first = 0; first < rays.count; first += kWidth) {
     load<kWidth>(rays, first, packet, valid);
-    forget_met(context);
+    clear_hit_triangles(context);
     PacketTypes<kWidth>::kOccluded(valid, scene, &context.embree, &packet);
     darken_stopped(packet.tfar, std::min(kWidth, rays.count - first), transmittance + first);
   }
@@ -98,7 +98,7 @@ void occlusion_singles(RTCScene scene, AlphaContext& context, const RayBatch& ra
                        float* transmittance) {
   for (unsigned i = 0; i < rays.count; ++i) {
     RTCRay ray = single_ray(rays, i);
-    forget_met(context);
+    clear_hit_triangles(context);
     rtcOccluded1(scene, &context.embree, &ray);
     darken_stopped(&ray.tfar, 1, transmittance + i);
   }
@@ -167,7 +167,7 @@ std::vector<EmbreeMethod> camera_methods(bool coherent) {
   return methods;
 }
 
-// The filter writes through the pointer, which clang-tidy does not see.
+// The filter writes to `transmittance`, which clang-tidy does not see.
 AlphaContext EmbreeTracer::context(
     const EmbreeMethod& method, const RayBatch& rays,
     float* transmittance) {  // NOLINT(readability-non-const-parameter)
@@ -183,7 +183,7 @@ void EmbreeTracer::occlusion(const EmbreeMethod& method, const RayBatch& rays,
   std::fill_n(found.transmittance, rays.count, 1.0f);
   const EmbreeScene& scene = method.scene(scenes_);
   if (method.alpha == Alpha::multiplicative && scene.has_spatial_splits()) {
-    context.met = met_;
+    context.hit = hit_;
   }
   if (method.width == 1) {
     occlusion_singles(scene.top(), context, rays, found.transmittance);

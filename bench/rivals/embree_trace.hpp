@@ -1,4 +1,5 @@
-// Tracing batches of rays through an EmbreeScene, in the ways that Embree offers.
+// Traces batches of rays with Embree: single rays or packets, with each alpha and build quality.
+// In: an EmbreeScene and rays. Out: transmittances, or closest hits.
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace dapple::bench {
 
-/// Both build qualities of a scene. HIGH has spatial splits.
+/// A scene at both build qualities. High quality has spatial splits.
 struct EmbreeScenes {
   explicit EmbreeScenes(const EmbreeGeometry& geometry)
       : medium(geometry, RTC_BUILD_QUALITY_MEDIUM), high(geometry, RTC_BUILD_QUALITY_HIGH) {}
@@ -20,35 +21,36 @@ struct EmbreeScenes {
 /// One way to trace.
 struct EmbreeMethod {
   Alpha alpha = Alpha::stochastic;
-  int width = 1;          ///< rays a call: 1, 8 or 16
+  int width = 1;          ///< rays per call: 1, 8 or 16
   bool high = false;      ///< build quality
   bool coherent = false;  ///< packets traversed together instead of split into single rays
 
-  /// "stochastic 8 coherent high"
+  /// For example "stochastic 8 coherent high".
   [[nodiscard]] std::string name() const;
   [[nodiscard]] const EmbreeScene& scene(const EmbreeScenes& scenes) const {
     return high ? scenes.high : scenes.medium;
   }
 };
 
-/// Below this transmittance contestants' rays count as black, far under any error measured.
+/// Rays of contestants end below this transmittance, which is far below all measured errors.
 inline constexpr float kContestBlack = 1e-3f;
-/// The reference's: its bias is no more than this.
+/// The same for the reference, whose bias is at most this.
 inline constexpr float kReferenceBlack = 1e-5f;
 
-/// Every alpha, width and quality; also coherent packets where `coherent`. Not at instances: there
-/// Embree 3.13.5's rtcOccluded16 does not always come back from coherent rays.
+/// Every combination of alpha, width and quality; with `coherent` also coherent packets. Scenes
+/// with instances must not use these: Embree 3.13.5's rtcOccluded16 sometimes never returns from
+/// them.
 std::vector<EmbreeMethod> occlusion_methods(bool coherent);
-/// The same of camera rays, which are stochastic.
+/// The same for camera rays, which are always stochastic.
 std::vector<EmbreeMethod> camera_methods(bool coherent);
 
-/// What one thread needs to trace.
+/// Traces the rays of one thread.
 class EmbreeTracer {
  public:
   EmbreeTracer(const EmbreeScenes& scenes, float black) : scenes_(scenes), black_(black) {}
 
   void occlusion(const EmbreeMethod& method, const RayBatch& rays, TransmittanceBatch& found);
-  /// Nearest surface that stops each ray, one of opacity a with probability a.
+  /// The closest surface that stops each ray. A surface of opacity a stops it with probability a.
   void intersection(const EmbreeMethod& method, const RayBatch& rays, HitBatch& found);
 
  private:
@@ -56,10 +58,11 @@ class EmbreeTracer {
 
   const EmbreeScenes& scenes_;
   float black_;
-  MetTriangles met_[kMaxLanes];
+  HitTriangles hit_[kMaxLanes];
 };
 
-/// Denormals count as zero on this thread while it lives, as Embree advises.
+/// While an object of this class exists, its thread treats denormal numbers as zero, as Embree
+/// recommends.
 class FlushDenormals {
  public:
   FlushDenormals();

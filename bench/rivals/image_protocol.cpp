@@ -17,16 +17,16 @@ namespace {
 constexpr std::uint32_t kReferenceSeeds[2] = {0x7e000001u, 0x7e000002u};
 constexpr int kCalibrationRounds = 5;
 
-/// Samples a pixel from which the largest unoccluded irradiance is known well enough.
+/// Samples per pixel of the picture that gives the largest unoccluded irradiance.
 constexpr int kLargestSpp = 256;
 
-/// Samples that the adaptive contestants give every pixel at least: what tells an error.
+/// Minimum samples per pixel of the adaptive contestants.
 constexpr int kAdaptiveSpp = 1;
 
-/// AO rays a camera sample with which Embree takes part: with either of them.
+/// Numbers of AO rays per camera sample of Embree's contestants.
 constexpr std::uint32_t kEmbreeRays[] = {1, 2};
 
-/// AO rays a camera sample of the packet contestant.
+/// AO rays per camera sample of the contestant with point packets.
 constexpr int kPacketRays = 16;
 
 double seconds_of(const std::function<void()>& work) {
@@ -35,8 +35,8 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Seconds of each method's fastest round, tried in turn: a choice between methods must not hang
-/// on who was disturbed.
+/// Seconds of the fastest of several interleaved rounds of each method, so that disturbances do not
+/// decide the choice.
 std::vector<double> try_out(const std::vector<EmbreeMethod>& methods,
                             const std::function<void(const EmbreeMethod&)>& work) {
   std::vector<double> fastest(methods.size(), std::numeric_limits<double>::infinity());
@@ -129,7 +129,8 @@ std::vector<Contestant> ImageStudy::contestants() {
   changes.estimator = Estimator::prefiltered;
   contestants.push_back(by_dapple("prefiltered", changes));
   if (pass_ == Pass::ao) {
-    // With few rays a sample there is little to share: this trades camera rays for AO rays.
+    // Point packets need many rays per sample. This has fewer camera rays, and more AO rays for
+    // each.
     changes.ao_rays = kPacketRays;
     contestants.push_back(by_dapple("prefiltered, 16 rays a sample", changes));
   }

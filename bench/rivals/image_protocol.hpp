@@ -1,4 +1,5 @@
-// Protocol "image": whole pictures, camera rays included, one pass at a time.
+// Protocol "image": whole pictures of one pass, with their camera rays. In: a scene. Out: a
+// reference picture, and contestants that render it with Embree and dapple.
 #pragma once
 
 #include "rivals/contest.hpp"
@@ -7,25 +8,26 @@
 namespace dapple::bench {
 
 struct ImageOptions {
-  int most_spp = 256;  ///< the ladder's end
+  int most_spp = 256;  ///< samples per pixel at the largest effort
   int reference_spp = 4096;
-  std::string cache;  ///< folder of references
+  std::string cache;  ///< folder in which references are kept
 };
 
-/// One pass of one scene, ready for its contest. Light values are relative to the largest
-/// irradiance that any pixel would have unoccluded; several lights' pictures follow each other.
+/// The contest for one pass of one scene. Light values are relative to the largest unoccluded
+/// irradiance of any pixel; the pictures of several lights follow each other.
 class ImageStudy {
  public:
   ImageStudy(RivalScene& scene, Pass pass, ImageOptions options);
 
-  /// Embree, exact, at the reference's samples, from the cache where it is there.
+  /// Embree's exact picture with reference_spp samples, from the cache if it is there.
   Truth truth();
 
-  /// Embree's best of each alpha, found by trying all at a sample a pixel, for AO with one ray a
-  /// sample and with two; dapple's exact and prefiltered; AO also by packets.
+  /// The fastest method of Embree for each alpha, found by trying all methods with one sample per
+  /// pixel; for AO with one ray per sample and with two. Then dapple's exact and prefiltered
+  /// pictures.
   std::vector<Contestant> contestants();
 
-  /// How the contestants' camera rays are traced, and their occlusion rays, for the report.
+  /// The methods of Embree's contestants, for the report.
   [[nodiscard]] const std::vector<PictureMethod>& methods() const { return methods_; }
 
  private:
@@ -34,7 +36,8 @@ class ImageStudy {
   void calibrate();
   Contestant by_embree(const PictureMethod& method);
   Outcome render(const RenderOptions& options);
-  /// By a target, of pixels or of the picture: efforts are one over that, from `first` up.
+  /// Renders to a target error of each pixel or of the picture. Efforts are the inverse of the
+  /// target, increasing from `first`.
   Contestant adaptive(const std::string& name, float RenderOptions::*target, double first);
   Contestant by_dapple(const std::string& name, const RenderOptions& changes);
   [[nodiscard]] std::vector<double> relative(std::vector<double> irradiance) const;
@@ -44,7 +47,7 @@ class ImageStudy {
   Pass pass_;
   ImageOptions options_;
   EmbreePictures pictures_;
-  std::vector<double> largest_;  ///< by plane; 1 of AO
+  std::vector<double> largest_;  ///< divisor of each plane; 1 for AO
   std::vector<PictureMethod> methods_;
 };
 

@@ -9,8 +9,8 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// About a unit axis, uniform in the cone whose 1 - cosine is `one_minus_cos` (Duff et al.,
-/// "Building an Orthonormal Basis, Revisited", 2017).
+/// A unit vector, uniform in the cone around a unit axis; `one_minus_cos` is that of the cone's
+/// half angle (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
 V3f cone_direction(const V3f& axis, float one_minus_cos, float x, float y) {
   const float height = x * one_minus_cos, angle = 2 * kPi * y;
   const float radius = std::sqrt(std::max(0.0f, height * (2 - height)));
@@ -30,7 +30,7 @@ LightSample sample_rect(const Light& light, const V3f& origin, float x, float y)
   return {direction, distance, area * std::max(0.0f, -direction.dot(light.direction)) / square};
 }
 
-/// KHR_lights_punctual's falloff between the spot's cones.
+/// The falloff of KHR_lights_punctual between the cones of a spot.
 float spot_share(const Light& light, const V3f& axis) {
   if (light.cos_outer <= -1) return 1;
   const float inside = -axis.dot(light.direction) - light.cos_outer;
@@ -39,7 +39,7 @@ float spot_share(const Light& light, const V3f& axis) {
   return edge * edge;
 }
 
-/// Uniform in the cone that the sphere fills; from inside, over all directions.
+/// Uniform in the cone of directions to the sphere; from inside, uniform over all directions.
 LightSample sample_sphere(const Light& light, const V3f& origin, float x, float y) {
   const V3f way = light.position - origin;
   const float distance = way.length(), radius = light.radius;

@@ -1,5 +1,6 @@
-// Shadow rays to a light for the Embree side: the same densities as kernels/lights/light.cl, so
-// that the noise is the same.
+// Samples of lights for Embree's shadow rays. In: a light, a point and a position in the unit
+// square. Out: direction, distance and weight. The densities are those of kernels/lights/light.cl,
+// so that the noise is the same.
 #pragma once
 
 #include "dapple/scene.hpp"
@@ -12,10 +13,10 @@ struct LightSample {
   float weight;    ///< irradiance at radiance 1 is the mean of weight * cosine * transmittance
 };
 
-/// Whether sample_light() knows this light: all but mesh lights.
+/// Whether sample_light() can sample this light: rects, spheres and suns.
 bool can_sample(const Light& light);
 
-/// From `origin`; (x, y) is a point of the unit square.
+/// A sample as seen from `origin`; (x, y) is a point of the unit square.
 LightSample sample_light(const Light& light, const V3f& origin, float x, float y);
 
 }  // namespace dapple::bench

@@ -7,21 +7,21 @@
 namespace dapple::bench {
 namespace {
 
-/// std::floor of SSE2 is a call.
+/// With SSE2 std::floor is a function call.
 int floor_to_int(float x) {
   const int cell = static_cast<int>(x);
   return cell - (x < static_cast<float>(cell) ? 1 : 0);
 }
 
-/// One axis of a lookup: two neighbouring texels and how far it is from the first to the second.
+/// One axis of a lookup: two adjacent texels, and the position between them.
 struct Neighbours {
   int first, second;
   float share;
 };
 
-/// Coordinate -> texels, without a division: repeating coordinates are brought into [0,1) and
-/// mirrored ones folded there, so that at most one texel is off the edge. A mirror repeats the
-/// texel at its edge, as clamping does.
+/// The texels for a coordinate, without a division. Repeated and mirrored coordinates are mapped to
+/// [0,1] first, so that at most one texel is beyond the edge. Mirroring repeats the texel at the
+/// edge, as clamping does.
 Neighbours neighbours(float coordinate, std::uint32_t size, Wrap wrap, bool nearest) {
   const int n = static_cast<int>(size);
   float u = coordinate;

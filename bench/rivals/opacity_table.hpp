@@ -1,6 +1,7 @@
-// Opacity of a mesh's translucent triangles for Embree's filters, in float: one number where it
-// is the same all over, else factors and a texture looked up bilinearly as glTF says. Apart from
-// the product's own lookup, so that neither side inherits the other's mistakes.
+// Opacities of a mesh's translucent triangles for Embree's filters, in float. In: a triangle and
+// barycentric coordinates. Out: its opacity, which is a constant or factors times a texture, looked
+// up bilinearly as glTF defines it. Shares no code with dapple's lookup, so that no error is in
+// both.
 #pragma once
 
 #include <bit>
@@ -13,24 +14,24 @@
 
 namespace dapple::bench {
 
-/// The triangle's opacity in [0,1] if it is the same all over, else nothing.
+/// The triangle's opacity in [0,1] if it is constant, else nothing.
 std::optional<float> constant_opacity(const Scene& scene, const Mesh& mesh, std::size_t triangle);
 
-/// Of a segment of a strand: its ends' mean.
+/// The opacity of a strand's segment: the mean of its ends.
 float segment_opacity(const Scene& scene, const Mesh& mesh, std::size_t segment);
 
 class OpacityTable {
  public:
-  /// It is of curves: what leaves a strand is not stopped.
+  /// Marks the geometry as curves, which do not stop rays that leave a strand.
   void set_strands() { strands_ = true; }
   [[nodiscard]] bool of_strands() const { return strands_; }
   void append(float opacity) { codes_.push_back(opacity); }
 
-  /// Appends `triangle` of `mesh`; opacities are then asked for by the order of appending. The
-  /// scene's textures must stay where they are.
+  /// Appends `triangle` of `mesh`, which gets the next index. Keeps pointers to the scene's
+  /// textures.
   void append(const Scene& scene, const Mesh& mesh, std::size_t triangle);
 
-  /// In [0,1], at Embree's barycentrics: weight u of the second corner, v of the third.
+  /// Opacity in [0,1] at Embree's barycentrics: weight u for the second corner, v for the third.
   [[nodiscard]] float opacity(unsigned triangle, float u, float v) const {
     const float code = codes_[triangle];
     return std::signbit(code) ? varying(std::bit_cast<std::uint32_t>(code) & ~kVarying, u, v)
@@ -43,7 +44,7 @@ class OpacityTable {
  private:
   static constexpr std::uint32_t kVarying = 0x80000000u;
 
-  /// Vertex alpha times base colour alpha times the texture's; then thresholded if cutoff >= 0.
+  /// Vertex alpha times base colour alpha times texture alpha, thresholded if cutoff >= 0.
   struct Varying {
     float uv[3][2];
     float alpha[3];

@@ -1,5 +1,6 @@
-// A picture cut into tiles of 8x8 pixels, which one thread renders at a time. Within a tile
-// pixels follow a Z-shaped curve, so that neighbours in a packet are neighbours in the picture.
+// Divides a picture into tiles of 8x8 pixels, the units of work of the threads. In: the picture's
+// size. Out: tiles with their pixels along a Z curve (Morton 1966), so that packets hold adjacent
+// pixels.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ struct PixelTile {
   std::uint32_t pixels[kTilePixels];  ///< row * width + column
 };
 
-/// The even bits of a number below 64, side by side.
+/// The even bits of a number below 64, compacted.
 inline int even_bits(unsigned x) {
   return static_cast<int>((x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u));
 }

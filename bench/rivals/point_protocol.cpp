@@ -12,7 +12,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Points as dapple::occlusion() takes them; it starts rays off them itself.
+/// Points in the form of dapple::occlusion(), which offsets the ray origins itself.
 struct BakedPoints {
   std::vector<V3f> positions, normals;
 };

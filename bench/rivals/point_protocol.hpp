@@ -1,4 +1,5 @@
-// Protocol "points": AO at fixed shading points, which is what baking needs.
+// Protocol "points": AO at fixed shading points, as for baking. In: points. Out: a reference, and
+// contestants that compute AO with Embree and dapple.
 #pragma once
 
 #include "rivals/contest.hpp"
@@ -7,14 +8,14 @@
 namespace dapple::bench {
 
 struct PointOptions {
-  std::size_t max_rays = 1024;        ///< a point: the ladder's end
-  std::size_t reference_rays = 4096;  ///< a point
+  std::size_t max_rays = 1024;        ///< per point, at the largest effort
+  std::size_t reference_rays = 4096;  ///< per point
 };
 
-/// Exact AO by multiplying, in two halves; not cached, as it takes seconds.
+/// Exact AO by Embree with multiplicative alpha, as two independent halves.
 Truth point_truth(const RivalScene& scene, std::span<const Surface> points, std::size_t rays);
 
-/// Embree's `methods` and dapple's exact, prefiltered and packet, at 1, 2, 4... rays a point.
+/// Embree's `methods`, and dapple's exact, prefiltered and packets, with 1, 2, 4... rays per point.
 std::vector<Contestant> point_contestants(const RivalScene& scene, std::span<const Surface> points,
                                           const std::vector<EmbreeMethod>& methods,
                                           std::size_t max_rays);

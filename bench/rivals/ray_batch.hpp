@@ -1,12 +1,13 @@
-// Rays side by side, as Embree's packets and vector loops take them: what one thread works on.
+// Batches of rays and of their results, as structures of arrays for Embree's packets and for
+// vectorized loops. A thread works on one batch at a time.
 #pragma once
 
 #include <cstdint>
 
 namespace dapple::bench {
 
-/// Small enough for a core's second-level cache, large enough that half-filled packets at its
-/// end don't count.
+/// Small enough for a core's second-level cache, and so large that a partly filled packet at its
+/// end hardly matters.
 inline constexpr unsigned kBatchCapacity = 1024;
 
 struct RayBatch {
@@ -19,12 +20,12 @@ struct RayBatch {
   [[nodiscard]] bool is_full() const { return count == kBatchCapacity; }
 };
 
-/// What a batch of occlusion rays found.
+/// Results of a batch of occlusion rays.
 struct TransmittanceBatch {
   alignas(64) float transmittance[kBatchCapacity];  ///< [0,1]
 };
 
-/// What a batch of camera rays met. Where `geometry` is RTC_INVALID_GEOMETRY_ID: nothing.
+/// Hits of a batch of camera rays. `geometry` is RTC_INVALID_GEOMETRY_ID for rays without a hit.
 struct HitBatch {
   alignas(64) float u[kBatchCapacity], v[kBatchCapacity];  ///< Embree's barycentrics
   alignas(64) float t[kBatchCapacity];                     ///< metres

@@ -52,7 +52,7 @@ Traced trace_by_embree(const EmbreeScenes& scenes, const EmbreeMethod& method,
   return traced;
 }
 
-/// The rays on dapple's device.
+/// The rays in the memory of dapple's device.
 class DeviceRays {
  public:
   DeviceRays(RivalScene& scene, const PreparedRays& rays)
@@ -137,7 +137,7 @@ PreparedRays prepare_rays(std::span<const Surface> points, std::uint32_t seed) {
         cosine += normal[axis] * ray.direction[axis];
       }
       ray.t_max = batch.t_max[i];
-      // 1 / (n pdf), as kernels/occlusion/ao_rays.clh has it.
+      // 1 / (n pdf), as in kernels/occlusion/ao_rays.clh.
       constexpr float kPi = std::numbers::pi_v<float>;
       ray.solid_angle = std::min(2 * kPi, kPi / (kRaysAPoint * std::max(1e-4f, cosine)));
       ray.weight = 1;

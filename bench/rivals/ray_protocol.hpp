@@ -1,17 +1,18 @@
-// Protocol "rays": occlusion rays a second, on rays that lie ready in memory.
+// Protocol "rays": occlusion rays per second, for rays that are prepared in memory. In: shading
+// points. Out: speed and mean transmittance of each method of Embree and dapple.
 #pragma once
 
 #include "rivals/rival_scene.hpp"
 
 namespace dapple::bench {
 
-/// AO rays of a shading point, which also sets their footprints.
+/// AO rays per shading point; their footprints depend on it.
 inline constexpr std::size_t kRaysAPoint = 16;
 
-/// Rays of one set of points, the same for both sides.
+/// The same rays for both programs.
 struct PreparedRays {
   std::vector<std::unique_ptr<RayBatch>> batches;  ///< for Embree
-  std::vector<Ray> rays;                           ///< for dapple; batch after batch
+  std::vector<Ray> rays;                           ///< for dapple, in the order of the batches
 };
 
 PreparedRays prepare_rays(std::span<const Surface> points, std::uint32_t seed);
@@ -19,15 +20,15 @@ PreparedRays prepare_rays(std::span<const Surface> points, std::uint32_t seed);
 struct RayRow {
   std::string name;
   bool is_embree = false;
-  double rays_a_second = 0;       ///< median; of dapple by the device's clock, copies left out
+  double rays_a_second = 0;       ///< median; for dapple by the device's clock, without copies
   double fastest_seconds = 0;     ///< of all rounds
   double spread = 0;              ///< (largest - smallest) / median of the seconds
   double mean_transmittance = 0;  ///< over all rays
-  double visits = 0, tests = 0;   ///< a ray; dapple's only
+  double visits = 0, tests = 0;   ///< per ray; only for dapple
 };
 
-/// Embree's `methods` and, where `ours`, dapple's exact and prefiltered single rays and packets,
-/// `repeats` times in turn.
+/// Measures Embree's `methods` and, with `ours`, dapple's exact and prefiltered single rays and
+/// packets: `repeats` interleaved rounds.
 std::vector<RayRow> measure_rays(RivalScene& scene, const PreparedRays& rays,
                                  const std::vector<EmbreeMethod>& methods, bool ours, int repeats);
 
@@ -35,7 +36,7 @@ std::vector<RayRow> measure_rays(RivalScene& scene, const PreparedRays& rays,
 std::vector<EmbreeMethod> best_of_each_alpha(const std::vector<EmbreeMethod>& methods,
                                              const std::vector<double>& seconds);
 
-/// The same by measuring all methods on the rays.
+/// The same, after measuring all methods with these rays.
 std::vector<EmbreeMethod> calibrated_methods(RivalScene& scene, const PreparedRays& rays);
 
 }  // namespace dapple::bench

@@ -12,31 +12,16 @@
 
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
+#include "support/fingerprint.hpp"
 
 namespace dapple::bench {
 namespace {
 
-/// Changed when the renderer of references changes what it makes.
+/// Must change whenever the reference renderer gives other results.
 constexpr int kFormat = 1;
 
-/// 64-bit FNV-1a over the bytes of plain values.
-class Fingerprint {
- public:
-  void add_bytes(const void* data, std::size_t bytes) {
-    const auto* at = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < bytes; ++i) hash_ = (hash_ ^ at[i]) * 0x100000001b3u;
-  }
-  template <class T>
-  void add(const std::vector<T>& values) {
-    add_bytes(values.data(), values.size() * sizeof(T));
-  }
-  [[nodiscard]] std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
-
-/// Of what a ray can meet and what lights there are: files change under the same name.
+/// A hash of everything that rays can hit and of all lights, since a file of the same name may
+/// change.
 std::uint64_t content_of(const Scene& scene) {
   Fingerprint print;
   for (const Mesh& mesh : scene.meshes) {
@@ -70,7 +55,7 @@ std::string file_of(const std::string& folder, const std::string& key) {
       .string();
 }
 
-/// The file is the key, a zero byte, and the numbers of both halves.
+/// The file holds the key, a zero byte, and the numbers of both halves.
 std::string packed(const std::string& key, const ReferenceHalves& halves) {
   std::string bytes = key + '\0';
   for (const auto* half : {&halves.first, &halves.second})

@@ -1,4 +1,5 @@
-// References take minutes, so they are kept on disk: two halves of independent samples each.
+// Keeps reference pictures on disk, because they take minutes to render. In: a key, and a function
+// that renders. Out: two halves of independent samples.
 #pragma once
 
 #include <functional>
@@ -13,16 +14,16 @@ struct ReferenceHalves {
   std::vector<double> first, second;
 };
 
-/// Everything that a reference depends on, as text: the scene's name, opacities, content, camera
-/// and size, the pass and the samples a pixel.
+/// All that a reference depends on, as text: the scene's name, opacities, content, camera and size,
+/// the pass and the samples per pixel.
 std::string reference_key_text(const RivalScene& scene, const std::string& pass, int spp);
 
-/// $XDG_CACHE_HOME/dapple-bench, or ~/.cache/dapple-bench. Empty where neither is known.
+/// $XDG_CACHE_HOME/dapple-bench, or ~/.cache/dapple-bench; empty if neither variable is set.
 std::string default_cache_folder();
 
-/// The halves of `key`, `values` numbers each, from a file in `folder`; where there is none, or
-/// one that does not match, made by `make` (given 0, then 1) and written, whole or not at all. An
-/// empty folder keeps nothing. Throws Error failed when the folder cannot be written.
+/// Reads the halves of `key`, `values` numbers each, from a file in `folder`. If there is no
+/// matching file, calls make(0) and make(1), and writes the file atomically. With an empty `folder`
+/// nothing is written. Throws Error failed if the folder cannot be written.
 ReferenceHalves cached_reference(const std::string& folder, const std::string& key,
                                  std::size_t values,
                                  const std::function<std::vector<double>(int)>& make);

@@ -13,7 +13,7 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-/// Bytes a distinct triangle, or segment, of everything, and of the acceleration structure alone.
+/// Bytes per distinct triangle or segment: of the acceleration structure, and of all memory.
 struct Bytes {
   double structure, all;
 };

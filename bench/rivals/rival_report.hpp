@@ -1,4 +1,4 @@
-// What the rivals bench says: tables for people, JSON for programs, lines for a plot.
+// Reports of the rivals bench. In: measurements. Out: tables as text, JSON, and plots.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,21 +11,21 @@
 
 namespace dapple::bench {
 
-/// Build seconds and bytes a triangle of both sides, and the number of threads.
+/// Build times and bytes per triangle of both programs, and the number of threads.
 std::string building_text(const RivalScene& scene);
 nlohmann::json building_json(const RivalScene& scene);
 
 std::string rays_text(const std::vector<RayRow>& rows);
 nlohmann::json rays_json(const std::vector<RayRow>& rows);
 
-/// Seconds and RMSE at each effort, then seconds to each of `targets` with Embree's best over
-/// them. `unit` says what effort counts.
+/// Seconds and RMSE at each effort, then the seconds to each of `targets` and the ratio of Embree's
+/// best time to them. `unit` is the unit of effort.
 std::string contest_text(const std::vector<Standing>& standings, const std::vector<double>& targets,
                          const std::string& unit);
 nlohmann::json contest_json(const std::vector<Standing>& standings,
                             const std::vector<double>& targets);
 
-/// Error against seconds.
+/// Error over seconds.
 Plot contest_plot(const std::vector<Standing>& standings, const std::string& title);
 
 }  // namespace dapple::bench

@@ -3,7 +3,8 @@
 namespace dapple::bench {
 namespace {
 
-/// As PictureScene chooses it: of the scene as it comes, before lights and merging.
+/// The view that PictureScene chooses: that of the loaded scene, before lights are added and meshes
+/// merged.
 View view_of(const std::string& spec, const RenderOptions& options) {
   std::vector<std::string> notes;
   return choose_view(load_scene(spec), options, notes);

@@ -1,4 +1,5 @@
-// One scene as both sides have it: dapple's on its device, Embree's at both qualities, one camera.
+// One scene for both programs. In: a scene's name and options. Out: dapple's BVH on its device,
+// Embree's BVHs at both qualities, and the camera that both use.
 #pragma once
 
 #include "accuracy/picture_scene.hpp"
@@ -9,7 +10,7 @@
 namespace dapple::bench {
 
 struct RivalScene {
-  /// Builds everything; dapple's BVH first. Throws Error.
+  /// Builds both, dapple's BVH first. Throws Error.
   RivalScene(const std::string& scene_spec, const RenderOptions& render_options);
   RivalScene(const RivalScene&) = delete;
   RivalScene& operator=(const RivalScene&) = delete;
@@ -21,7 +22,7 @@ struct RivalScene {
   EmbreeGeometry geometry;
   EmbreeScenes embree;
   CameraRays camera;
-  Device device;          ///< for rays and points; `ours` opens one of its own for pictures
+  Device device;          ///< for rays and points; `ours` has its own for pictures
   DeviceScene on_device;  ///< `ours`' BVH on it
 };
 

@@ -21,7 +21,7 @@
 namespace dapple::bench {
 namespace {
 
-/// Points whose rays the rays protocol shoots.
+/// Number of points for the protocol "rays".
 constexpr std::size_t kRayPoints = 1u << 14;
 constexpr std::uint32_t kRaySeed = 1;
 
@@ -86,7 +86,7 @@ void make_quick(Arguments& a) {
   a.ray_points = 2048;
 }
 
-void settle(Arguments& a) {
+void apply_options(Arguments& a) {
   if (a.quick) make_quick(a);
   a.render.width = a.render.height = a.size;
   for (const std::string& text : a.opacity)
@@ -96,7 +96,7 @@ void settle(Arguments& a) {
   if (!a.svg.empty()) check_output_path(a.svg);
 }
 
-/// What goes on, on a line that is overwritten; nothing where nobody watches.
+/// Shows the progress on a line that is overwritten. Prints nothing without a terminal.
 void show_progress(const std::string& text) {
   if (!isatty(STDERR_FILENO)) return;
   fmt::print(stderr, "\r\033[K{}", text);
@@ -109,7 +109,7 @@ void show(const std::string& text) {
   std::fflush(stdout);
 }
 
-/// How far dapple's exact values are from the truth, Embree's.
+/// Difference of dapple's exact values from Embree's reference.
 std::string difference_text(const Truth& truth, const std::vector<double>& exact) {
   double sum = 0, square = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -122,7 +122,7 @@ std::string difference_text(const Truth& truth, const std::vector<double>& exact
                      sum / count, std::sqrt(square / count));
 }
 
-/// All that one scene brings to the report.
+/// Runs the protocols for one scene and collects its report.
 class SceneRun {
  public:
   SceneRun(const Arguments& arguments, const std::string& spec)
@@ -215,7 +215,7 @@ int run_rivals(int argc, char** argv) {
                "dapple-bench rivals");
   add_options(app, a);
   CLI11_PARSE(app, argc, argv);
-  settle(a);
+  apply_options(a);
   nlohmann::json figures = nlohmann::json::array();
   std::vector<Plot> plots;
   for (const std::string& spec : a.scenes) {

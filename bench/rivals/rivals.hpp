@@ -1,5 +1,5 @@
-// dapple-bench rivals: Embree and dapple side by side, in one run, on the same camera, points,
-// directions and threads.
+// dapple-bench rivals: measures Embree and dapple in one run, with the same camera, points,
+// directions and number of threads. In: scenes and protocols. Out: tables, JSON and plots.
 #pragma once
 
 namespace dapple::bench {

@@ -27,7 +27,7 @@ inline std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
   return x ^ x * 0x8d22f6e6u;
 }
 
-/// The second Sobol dimension, bits reversed: Pascal's triangle modulo 2 times the index.
+/// The second Sobol dimension with reversed bits: Pascal's triangle modulo 2, times the index.
 inline std::uint32_t sobol_second(std::uint32_t index) {
   index ^= (index & 0xaaaaaaaau) >> 1;
   index ^= (index & 0xccccccccu) >> 2;
@@ -47,7 +47,8 @@ inline float cosine(float a) {
   return 1.0f + s * (-1.0f / 2 + s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320))));
 }
 
-/// From the unit square, by Shirley and Chiu, "A Low Distortion Map Between Disk and Square", 1997.
+/// Maps the unit square to the disk: Shirley and Chiu, "A Low Distortion Map Between Disk and
+/// Square", 1997.
 struct Concentric {
   void operator()(float x, float y, float& u, float& v) const {
     constexpr float kQuarterPi = std::numbers::pi_v<float> / 4;
@@ -70,8 +71,8 @@ struct OnDisk {
 
 /// The frame is that of Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
 ///
-/// What is written is told apart from what is read by parameters: only there is the promise kept
-/// when this is inlined, and the compiler checks no more than ten pairs of arrays for overlap.
+/// Outputs are restrict parameters, because the compiler checks at most ten pairs of arrays for
+/// overlap, and keeps the promise of restrict only for parameters when it inlines the function.
 template <class ToDisk>
 inline void fill_cosine_directions(const ToDisk& to_disk, const float* x, const float* y,
                                    const float* nx, const float* ny, const float* nz,
@@ -124,7 +125,7 @@ void lift_to_directions(const float* x, const float* y, const float* const norma
 }
 
 DAPPLE_MULTIVERSION
-void vogel_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
+void vogel_points(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
                   std::size_t rays, std::uint32_t seed, float* x, float* y) {
   constexpr float kQuarterTurn = std::numbers::pi_v<float> / 2;
   constexpr float kQuarter = 0x1p30f;

@@ -1,7 +1,7 @@
-// Stratified random points and directions for the Embree side: the sequences that
-// kernels/sampling/random.clh documents (a Sobol (0,2) sequence a pixel and dimension pair,
-// Owen-scrambled by hashing), so that both sides pay for the same quality. Plain loops over floats,
-// which the compiler turns into vector code.
+// Stratified points and directions for Embree's rays. In: pixels or points, and indices of samples.
+// Out: the sequences of kernels/sampling/random.clh (for each pixel and dimension pair an
+// Owen-scrambled Sobol (0,2) sequence), so that both programs use samples of the same quality at
+// the same cost. Plain loops over floats, which the compiler vectorizes.
 #pragma once
 
 #include <cstddef>
@@ -39,22 +39,22 @@ inline std::uint32_t ray_key(std::uint32_t pixel, std::uint32_t index, std::uint
 void sample_squares(const std::uint32_t* pixel, const std::uint32_t* index, unsigned count,
                     std::uint32_t pair, std::uint32_t seed, float* x, float* y);
 
-/// ray_key() of each.
+/// ray_key() of each ray.
 void ray_keys(const std::uint32_t* pixel, const std::uint32_t* index, unsigned count,
               std::uint32_t pair, std::uint32_t seed, std::uint32_t* keys);
 
-/// Places of the unit disk in sets of `rays` each, place `index[i]` of the set of `point[i]`, as
-/// vogel_disk() of kernels/sampling/direction.clh has them; `x` is in the unit square at first, for
-/// where in its ring a place lies.
-void vogel_places(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
+/// Points of the unit disk: for each i, point `index[i]` of the Vogel spiral of `rays` points that
+/// belongs to `point[i]`, as vogel_disk() of kernels/sampling/direction.clh computes it. On entry
+/// `x` holds the jitter within each point's ring, [0,1).
+void vogel_points(const std::uint32_t* point, const std::uint32_t* index, unsigned count,
                   std::size_t rays, std::uint32_t seed, float* x, float* y);
 
-/// Points of the unit disk -> unit directions about unit normals, cosine-weighted. The arrays must
-/// not overlap.
+/// Maps points of the unit disk to cosine-weighted unit directions about unit normals. The arrays
+/// must not overlap.
 void lift_to_directions(const float* x, const float* y, const float* const normal[3],
                         unsigned count, float* const direction[3]);
 
-/// The same of points of the unit square.
+/// The same for points of the unit square.
 void cosine_directions(const float* x, const float* y, const float* const normal[3], unsigned count,
                        float* const direction[3]);
 

@@ -7,18 +7,18 @@ namespace dapple::bench {
 
 namespace {
 
-/// In object space, the place nearest to `met` on the segment's side.
-Surface place_on_segment(const EmbreeMesh& mesh, unsigned geometry, unsigned segment, float u,
-                         const V3f& met) {
+/// The point of the segment's surface that is closest to `hit`, in object space.
+Surface point_on_segment(const EmbreeMesh& mesh, unsigned geometry, unsigned segment, float u,
+                         const V3f& hit) {
   const float* a = mesh.curve_end(geometry, segment, 0);
   const float* b = mesh.curve_end(geometry, segment, 1);
   const V3f begin(a[0], a[1], a[2]), axis = V3f(b[0], b[1], b[2]) - begin;
   const V3f middle = begin + axis * u;
-  const V3f normal = (met - middle).normalized();
+  const V3f normal = (hit - middle).normalized();
   return {middle + normal * (a[3] + u * (b[3] - a[3])), normal};
 }
 
-Surface place_on_triangle(const EmbreeMesh& mesh, const HitBatch& hits, unsigned i) {
+Surface point_on_triangle(const EmbreeMesh& mesh, const HitBatch& hits, unsigned i) {
   const auto corner = [&](unsigned k) {
     return mesh.corner(hits.geometry[i], hits.primitive[i], k);
   };
@@ -37,11 +37,11 @@ Surface surface_of(const EmbreeGeometry& geometry, const RayBatch& rays, const H
   Surface surface;
   if (mesh.has_strands()) {
     const V3f origin(rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]);
-    const V3f met = origin + direction * hits.t[i];
-    surface = place_on_segment(mesh, hits.geometry[i], hits.primitive[i], hits.u[i],
-                               geometry.flat ? met : met * placement.to_world.inverse());
+    const V3f hit = origin + direction * hits.t[i];
+    surface = point_on_segment(mesh, hits.geometry[i], hits.primitive[i], hits.u[i],
+                               geometry.flat ? hit : hit * placement.to_world.inverse());
   } else {
-    surface = place_on_triangle(mesh, hits, i);
+    surface = point_on_triangle(mesh, hits, i);
   }
   if (!geometry.flat) {
     surface.position = surface.position * placement.to_world;

@@ -1,4 +1,5 @@
-// Where a hit of Embree's lies, made from the triangle itself: more exact than the ray's end.
+// Position and normal of a hit of Embree. In: a batch of rays and hits. Out: the point, computed
+// from the primitive, which is more accurate than origin + t * direction.
 #pragma once
 
 #include "rivals/embree_geometry.hpp"
@@ -8,15 +9,15 @@ namespace dapple::bench {
 
 struct Surface {
   V3f position;  ///< world space
-  V3f normal;    ///< geometric, unit, turned against the ray
+  V3f normal;    ///< geometric, unit, on the side of the ray's origin
 };
 
-/// Of hit `i`, which must have met something, of `rays`.
+/// The surface of hit `i`, which must not be a miss.
 Surface surface_of(const EmbreeGeometry& geometry, const RayBatch& rays, const HitBatch& hits,
                    unsigned i);
 
-/// Where rays from a surface start: off it along the normal by `roundings` of the largest
-/// coordinate, which are 2^-24 each.
+/// Origin of rays from a surface: offset along the normal by `roundings` times 2^-24 of the largest
+/// coordinate.
 V3f ray_start(const Surface& surface, float roundings);
 
 }  // namespace dapple::bench

@@ -1,4 +1,4 @@
-// The options of `dapple bake`, as typed.
+// The arguments of `dapple bake`. In: text as typed. Out: BakeOptions, and where results go.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,5 @@
-// What `dapple bake` says about itself: a summary on the terminal, and statistics as JSON.
+// The report of `dapple bake`. In: the result of bake(). Out: a summary as text, and statistics as
+// JSON.
 #pragma once
 
 #include <string>

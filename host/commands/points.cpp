@@ -13,6 +13,7 @@
 #include "commands/option_text.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
+#include "commands/shared_options.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
 #include "points/point_file.hpp"
@@ -69,21 +70,13 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.add_option("--ao-distance", o.distance,
                  "Surfaces farther than this, in metres, don't occlude for AO; 0: no limit")
       ->capture_default_str();
-  app.add_option("--estimator", a.estimator,
-                 "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the "
-                 "ray's footprint covers")
-      ->capture_default_str();
+  add_estimator_option(app, a.estimator);
   app.add_option("--footprint", o.footprint, "Footprint scale: larger is faster, 0 is exact")
       ->capture_default_str();
   app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
-  app.add_flag("--allow-outside", a.scene_options.allow_outside,
-               "Let a glTF file name buffers and images outside of its folder");
-  app.add_option("--device", o.device, "OpenCL device, by part of its name (see dapple devices)");
-  app.add_option("--kernel-dir", o.kernel_dir,
-                 "Read OpenCL kernels from this folder (for developers)");
-  app.add_option("--cache", o.cache, "Keep built BVHs in this folder and reuse them");
-  app.add_option("--stats-json", a.stats_json, "Write the statistics as JSON");
-  app.add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
+  add_outside_option(app, a.scene_options.allow_outside);
+  add_device_options(app, o.device, o.kernel_dir, o.cache);
+  add_report_options(app, a.stats_json, a.quiet);
   app.footer(
       "Example:\n  dapple points canopy.glb --grid 0,0,10,10,0.5 -o ground.csv --rings 5\n"
       "  dapple points canopy.glb --at sensors.csv -o light.csv --suns day.csv --sky overcast\n"

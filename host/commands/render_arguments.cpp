@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "commands/option_text.hpp"
+#include "commands/shared_options.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -28,7 +29,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
          "--target-rmse", o.target_rmse,
          "Sample until the root mean square of the pixels' estimated errors is below this in every "
-         "pass; 0: no target. Reaches the same mean error sooner, with less even errors between "
+         "pass; 0: no target. Reaches the same mean error sooner, with larger differences of error "
+         "between "
          "pixels.")
       ->capture_default_str();
   app.add_option("--max-spp", o.max_spp, "With a target: the maximum of camera rays per pixel")
@@ -42,11 +44,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option("--light-rays", o.light_rays, "Rays per light per camera sample")
       ->capture_default_str();
-  app.add_option(
-         "--estimator", a.estimator,
-         "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the ray's "
-         "footprint covers")
-      ->capture_default_str();
+  add_estimator_option(app, a.estimator);
   app.add_option(
          "--footprint", o.footprint,
          "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
@@ -69,8 +67,8 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--camera", o.camera,
                  "Camera by name; default: the scene's first, or one that shows all of it");
   app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
-  app.add_option("--look-at", a.look_at, "Where it looks: X,Y,Z");
-  app.add_option("--up", a.up, "Its up direction: X,Y,Z; default 0,1,0");
+  app.add_option("--look-at", a.look_at, "Point that this camera looks at: X,Y,Z");
+  app.add_option("--up", a.up, "Up direction of this camera: X,Y,Z; default 0,1,0");
   app.add_option("--fov", o.fov_degrees,
                  "Vertical field of view, degrees; default: the camera's own, or 40");
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
@@ -87,8 +85,7 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--line-radius", a.scene_options.line_radius,
                  "Make strands of this radius, metres, of a glTF file's lines; 0: ignore them")
       ->capture_default_str();
-  app.add_flag("--allow-outside", a.scene_options.allow_outside,
-               "Let a glTF file name buffers and images outside of its folder");
+  add_outside_option(app, a.scene_options.allow_outside);
   app.add_option("--opacity", a.opacity,
                  "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
@@ -105,7 +102,7 @@ void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
       "--resume", a.resume,
       "Continue from this checkpoint, with the same scene and options; --spp, --max-spp and "
-      "the targets may ask for more");
+      "the targets may demand more");
 }
 
 void add_motion_options(CLI::App& app, RenderArguments& a) {
@@ -144,20 +141,13 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
   add_scene_options(app, a);
   add_motion_options(app, a);
   add_checkpoint_options(app, a);
-  app.add_option("--device", a.options.device,
-                 "OpenCL device, by part of its name (see dapple devices)");
   app.add_option(
          "--packets", a.packets,
          "Grouping of occlusion rays: none; pixel (neighbouring pixels); point (one point); "
          "auto (by device)")
       ->capture_default_str();
-  app.add_option("--kernel-dir", a.options.kernel_dir,
-                 "Read OpenCL kernels from this folder (for developers)");
-  app.add_option("--cache", a.options.cache,
-                 "Keep built BVHs in this folder, made if there is none, and reuse them; it may be "
-                 "deleted at any time");
-  app.add_option("--stats-json", a.stats_json, "Write the statistics as JSON");
-  app.add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
+  add_device_options(app, a.options.device, a.options.kernel_dir, a.options.cache);
+  add_report_options(app, a.stats_json, a.quiet);
 }
 
 RenderOptions to_options(const RenderArguments& a) {

@@ -27,7 +27,7 @@ std::string rays_line(const char* kind, std::uint64_t rays, double seconds, doub
       count_text(count), speed, visits, tests);
 }
 
-/// Whether BVHs were built or read from the cache, in a word or two; small objects do not count.
+/// Whether BVHs were built or read from the cache, in a few words; small objects do not count.
 const char* bvh_source(const RenderStatistics& s) {
   if (s.refit.used) return s.refit.objects_rebuilt > 0 ? "rebuilt" : "refitted";
   const bool read = s.cache.objects_read > 0;

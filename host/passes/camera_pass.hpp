@@ -18,11 +18,11 @@ KernelName camera_kernel(bool orthographic);
 inline const KernelName kClosestHit{"closest_hit", "camera/closest_hit", {}};
 inline const KernelName kCompactHits{"compact_hits", "queue_kernels", {}};
 
-/// First surfaces of the slice's camera rays into `points` and `sample_hits`.
+/// Writes the first surfaces of the slice's camera rays to `points` and `sample_hits`.
 void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                  const CameraParams& params);
 
-/// First surface of each ray in `rays` into `points`.
+/// Writes the first surface of each ray in `rays` to `points`.
 void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                       std::size_t rays);
 

@@ -9,7 +9,7 @@ namespace dapple {
 
 inline const KernelName kLightRays{"light_rays", "queue_kernels", {}};
 
-/// Rays from the active points to one light into `rays`.
+/// Writes rays from the active points to one light to `rays`.
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params);
 

@@ -5,7 +5,8 @@
 namespace dapple {
 namespace {
 
-/// Work-items of a work-group of point packets on devices that run a group's items side by side.
+/// Work-items of a work-group of point packets on devices that run the items of a group in
+/// parallel.
 constexpr std::size_t kPacketGroup = 16;
 
 }  // namespace
@@ -20,7 +21,7 @@ KernelName point_ao_kernel(Estimator estimator) {
   return {"point_ao", "occlusion/point_ao", {estimator != Estimator::exact, true}};
 }
 
-// Several items only where those of a group run side by side: packets take so much memory that
+// Several items only if those of a group run in parallel: packets take so much memory that
 // Intel's CPU runtime refuses groups of 16.
 std::size_t packet_group(const DeviceContext& context, Packets with) {
   return with == Packets::point && context.info().kind != "CPU" ? kPacketGroup : 1;

@@ -24,12 +24,12 @@ inline const KernelName kAoRays{"ao_rays", "queue_kernels", {}};
 /// Work-items of a work-group of occlusion_kernel() with packets.
 std::size_t packet_group(const DeviceContext& context, Packets with);
 
-/// AO rays of the active points into `rays`.
+/// Writes the AO rays of the active points to `rays`.
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params);
 
-/// Transmittance of each ray in `rays` into `occlusions`. On CPUs in point packets, where
-/// `params.rays_per_point` is large enough for that to pay, else in pixel packets; on other devices
-/// as single rays, unless the device was opened with other packets.
+/// Writes the transmittance of each ray in `rays` to `occlusions`. CPUs trace point packets if
+/// `params.rays_per_point` is large enough, else pixel packets; other devices trace single rays. A
+/// device that was opened with given packets uses these.
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order = RayOrder::any);
@@ -39,12 +39,12 @@ void occlusion_pass_with(Packets with, DeviceContext& context, const Queues& que
                          const DeviceBuffers& scene, const std::string& label, Estimator estimator,
                          const OcclusionParams& params);
 
-/// Whether point_ao_pass() is to be used: AO rays of points are generated, traced and averaged by
-/// one kernel without queues. On CPUs, with point packets, where one batch holds a point's rays.
+/// Whether to use point_ao_pass(), which generates, traces and averages the AO rays of points in
+/// one kernel without queues: on CPUs, with point packets, if one batch holds the rays of a point.
 bool has_point_ao_pass(const DeviceContext& context, Estimator estimator,
                        std::size_t rays_per_point);
 
-/// AO in [0,1] of the points in `points` into `occlusions`, where has_point_ao_pass().
+/// Writes the AO, [0,1], of `points` to `occlusions`; has_point_ao_pass() must be true.
 void point_ao_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                    Estimator estimator, const AoParams& ao_params, const OcclusionParams& params);
 

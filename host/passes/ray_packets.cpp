@@ -8,23 +8,22 @@
 namespace dapple {
 namespace {
 
-/// Smallest number of rays of a point for which packets pay: experiment 301.
+/// Minimum number of rays per point for packets: experiment 301.
 constexpr uint kMinPacketRays = 4;
 
-/// Smallest number of rays of a point for which a packet of their own, with a shared origin, pays:
-/// experiment 302.
+/// Minimum number of rays per point for point packets: experiment 302.
 constexpr uint kMinPointPacketRays = 16;
 
 /// The same for exact rays, which spend their time on triangles: with fewer rays full packets over
 /// several points are faster (experiment 303).
 constexpr uint kMinExactPointPacketRays = 32;
 
-/// Quarters of the pixel rays that go in large batches. The rest goes in small ones, so that
-/// threads end at about the same time: experiment 304.
+/// Quarters of the pixel rays that are in large batches. The others are in small batches, so that
+/// threads finish at about the same time: experiment 304.
 constexpr uint kLargeBatchQuarters = 3;
 
-/// Most rays of points that one ticket stands for on a CPU, unless a single point has more. With a
-/// ticket a point all threads would read the same nodes (experiment 601).
+/// Maximum number of rays in a ticket of points on a CPU, unless a single point has more. With one
+/// point per ticket all threads would read the same nodes (experiment 601).
 constexpr uint kRaysPerTicket = 256;
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace dapple {
 namespace {
 
-/// What passes take, with room for nothing.
+/// Arguments of passes, with the smallest buffers.
 struct EmptyStage {
   explicit EmptyStage(const Device& device)
       : context(device.context()), scene(device), queues(make_queues(context, 0, 0)) {

@@ -1,4 +1,5 @@
-// Kernels compiled to the last: launched, as passes launch them, over nothing.
+// Warm-up: compiles kernels completely, by launching each as its pass does but without work. In: a
+// kernel of kernel_list.hpp. Out: compiled machine code in PoCL's cache.
 #pragma once
 
 #include "dapple/device.hpp"
@@ -6,7 +7,7 @@
 
 namespace dapple {
 
-/// One of every_kernel(). Throws Error usage for any other.
+/// Launches one of every_kernel(). Throws Error usage for other kernels.
 void warm_up(const Device& device, const std::vector<KernelName>& kernels);
 
 }  // namespace dapple

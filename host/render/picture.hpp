@@ -1,4 +1,5 @@
-// Tracing one picture, slice by slice, into its film sums.
+// Traces one picture, slice by slice. In: scene, view and options. Out: film sums. Adaptive
+// sampling chooses the pixels of each round.
 #pragma once
 
 #include "dapple/render.hpp"
@@ -19,7 +20,7 @@ struct TraceControl {
   SampleOrder order = SampleOrder::pixels;
 };
 
-/// Runs every pass that `options` ask for over the view's crop. The result depends on
+/// Runs every pass that `options` select over the view's crop. The result depends on
 /// neither the slices nor the device's threads. Continues from `state`, which must fit the picture,
 /// unless it is empty.
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,

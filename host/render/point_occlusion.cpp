@@ -48,7 +48,7 @@ OcclusionParams occlusion_params(const OcclusionOptions& options, const DeviceBu
 /// Results of consecutive points.
 struct Results {
   std::span<float> ao;
-  std::span<V3f> bent;  ///< empty: not asked for
+  std::span<V3f> bent;  ///< empty: not computed
 };
 
 /// AO of the points in the queue by point_ao_pass(); rays stay on the device.

@@ -125,7 +125,7 @@ struct Renderer::Kept {
   DeviceScene on_device;
 
   void open(const RenderOptions& options, RenderStatistics& statistics);
-  void bring(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
+  void update_scene(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
   void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                RenderStatistics& statistics) const;
 };
@@ -142,13 +142,13 @@ void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statis
 }
 
 /// Builds or refits the BVH and uploads the scene.
-void Renderer::Kept::bring(const Scene& scene, const RenderOptions& options,
-                           RenderStatistics& statistics) {
-  const Stopwatch bringing;
+void Renderer::Kept::update_scene(const Scene& scene, const RenderOptions& options,
+                                  RenderStatistics& statistics) {
+  const Stopwatch updating;
   if (bvh) {
     const BvhUpdate changes = update(*device, on_device, *bvh, scene);
     add_update_statistics(statistics, changes, bvh->bvh().statistics);
-    statistics.seconds.upload = bringing.seconds() - changes.seconds;
+    statistics.seconds.upload = updating.seconds() - changes.seconds;
   } else {
     bvh.emplace(scene, UpdatableBvh::Motion::maybe, options.cache);
     const BvhStatistics& built = bvh->bvh().statistics;
@@ -195,7 +195,7 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   const auto kernels = picture_kernels(device.context(), sampled, view.camera, scene.lights);
   CompilerProcesses processes;
   processes.start(device.context(), kernels, CompileTo::machine_code);
-  kept.bring(scene, options, statistics);
+  kept.update_scene(scene, options, statistics);
   kept.compile(kernels, processes, statistics);
   const SceneBvh& bvh = kept.bvh->bvh();
   const DeviceScene& on_device = kept.on_device;

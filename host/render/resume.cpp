@@ -12,7 +12,7 @@
 namespace dapple {
 namespace {
 
-/// More samples may be asked for than a checkpoint has, not fewer.
+/// The number of samples may be larger than that of the checkpoint, but not smaller.
 void require_enough_samples(const std::string& path, const TraceState& state,
                             const RenderOptions& options) {
   const bool adaptive = is_adaptive(options);

@@ -16,7 +16,7 @@ std::vector<std::vector<float>> FilmMoments::variances() const {
   return out;
 }
 
-// Of occlusion, which is 0 where samples missed.
+// Occlusion is 0 where samples missed.
 std::vector<float> FilmMoments::ao_variances() const {
   const double scale = 1.0 / (double{layout_.unit_scale} * options_.ao_rays);
   return variances_of(
@@ -38,7 +38,7 @@ std::vector<float> FilmMoments::light_variances(std::size_t light) const {
 
 // The largest of noisy means is biased upwards. So each mean counts less its standard error,
 // estimated from the occluded irradiance, but not less than the mean of its neighbours (experiment
-// 503). Of pilot pixels it is the largest mean, as the pixels in between may be brighter.
+// 503). For pilot pixels the largest mean is used, because pixels between them may be brighter.
 double FilmMoments::largest_unoccluded(const LightPlaneRange& planes, double scale,
                                        const std::vector<float>& variances) const {
   const bool only_pilot = std::find(samples_.begin(), samples_.end(), 0u) != samples_.end();

@@ -1,4 +1,5 @@
-// Sums over the pixels around each pixel.
+// Sums over the 3x3 pixels around each pixel. In: values of pixels, N of each. Out: values and
+// sums, pixel by pixel.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -10,11 +11,11 @@
 
 namespace dapple {
 
-/// Rows that a thread goes through in one go.
+/// Rows that a thread takes at a time.
 inline constexpr int kNeighbourhoodRows = 16;
 
-/// Values of a row of pixels, N each, those of one kind side by side: sums of rows are vectors
-/// then. Columns lie from 1 on, with zeros on either side.
+/// Values of a row of pixels, N of each, as a structure of arrays, so that sums of rows are
+/// vectorized. Columns begin at 1; columns 0 and width + 1 are zero.
 template <std::size_t N>
 class NeighbourhoodRow {
  public:
@@ -30,13 +31,13 @@ class NeighbourhoodRow {
     for (std::size_t i = 0; i < N; ++i) values[i] = kind(i)[column + 1];
     return values;
   }
-  /// This row's values become the sums of the three.
+  /// Sets the values to the sums of the three rows.
   void set_sums(const NeighbourhoodRow& above, const NeighbourhoodRow& own,
                 const NeighbourhoodRow& below) {
     for (std::size_t i = 0; i < values_.size(); ++i)
       values_[i] = above.values_[i] + own.values_[i] + below.values_[i];
   }
-  /// And these of each value and those on either side of it in `columns`.
+  /// Sets each value to the sum of three adjacent values of `columns`.
   void set_sums_of_three(const NeighbourhoodRow& columns) {
     for (std::size_t i = 0; i < N; ++i) {
       const float* from = columns.kind(i);
@@ -51,9 +52,10 @@ class NeighbourhoodRow {
   std::vector<float> values_;
 };
 
-/// Calls `take` with each of so many pixels, `width` a row: its number, its values and their sums
-/// over it and its up to eight neighbours. `value`: a pixel's std::array<float, N>; asked for up to
-/// three times. Nothing of the size of a picture is kept.
+/// Calls `take` for each of `pixels` pixels, `width` per row, with its index, its values, and the
+/// sums of the values over it and its up to eight neighbours. `value` returns a pixel's
+/// std::array<float, N>, and is called up to three times per pixel. Memory is needed for a few rows
+/// only.
 template <class Value, class Take>
 void visit_neighbourhoods(std::size_t pixels, int width, const Value& value, const Take& take) {
   using Values = decltype(value(std::size_t{}));

@@ -7,14 +7,15 @@
 namespace dapple {
 namespace {
 
-/// Samples a pixel and slice: all if they fit, else whole pairs of batches, or one batch.
+/// Samples per pixel in a slice: all if they fit, else whole pairs of batches, or one batch.
 std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
   if (group.samples <= slice_samples) return group.samples;
   const std::uint32_t pairs = slice_samples / (2 * DAPPLE_SAMPLE_BATCH);
   return pairs ? pairs * 2 * DAPPLE_SAMPLE_BATCH : DAPPLE_SAMPLE_BATCH;
 }
 
-/// Pixels a slice: of 65,535 work-items and more PoCL compiles kernels once again.
+/// Maximum number of pixels in a slice: for 65,535 work-items or more PoCL compiles kernels again
+/// (experiment 707).
 constexpr std::uint32_t kMaxEntries = 65'472;
 
 std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {

@@ -1,5 +1,6 @@
-/* The camera pass: intersects the slice's camera rays with the scene, one packet an item: from one
-   point (DAPPLE_SHARED_ORIGIN 1), or side by side (0). */
+/* The camera pass: intersects the camera rays of a slice with the scene, one packet per work-item. In: the
+   scene, the camera and the slice's pixels. Out: for each sample whether it hits, and its surface point.
+   DAPPLE_SHARED_ORIGIN 1: perspective cameras; 0: orthographic ones. */
 #include "camera/surface_points16.clh"
 #include "camera/camera.clh"
 #include "camera/closest_search.clh"
@@ -7,13 +8,13 @@
 
 #define DAPPLE_MAX_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MAX_CAMERA_SPLITTING / DAPPLE_HIT_BITS)
 
-/* What an item found: bits of the samples that hit, by SampleHits, and what that cost. */
+/* Results of a work-item: bits of the samples that hit, as in SampleHits, and the costs. */
 typedef struct ItemHits {
   uint hits[DAPPLE_MAX_RECORDS];
-  uint visits, tests;  /* as SampleHits has them */
+  uint visits, tests;  /* as in SampleHits */
 } ItemHits;
 
-/* The sixteen rays of the item from `first` on. Rays beyond its `count` end before they start. */
+/* The item's sixteen rays from `first` on. Rays beyond `count` have t_max <= 0. */
 inline void start_group(CameraParams params, const CameraSamples* chosen, uint first, uint count,
                        ClosestHits16* closest, StochasticHits* stops) {
   for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i)
@@ -42,7 +43,7 @@ inline void store_stochastic_hit(const CameraSamples* chosen, uint of_item, uint
           (__global uint*)&point->area);
 }
 
-/* Stores the hits of the group whose first ray is `first`, sample by sample; `points`: of the item. */
+/* Stores the hits of the group whose first ray is `first`, for each sample; `points` are the item's. */
 inline void store_group(Scene scene, const CameraSamples* chosen, uint first, const Rays16* group,
                        const CameraShares16* shares, const uint* keys, const StochasticHits* stops,
                        __global SurfacePoint* points, ItemHits* found) {
@@ -52,7 +53,7 @@ inline void store_group(Scene scene, const CameraSamples* chosen, uint first, co
     const float16 t = stops->t[d].v;
     const int16 hit = t < INFINITY;
     const uint hits = bits_of_16(hit);
-    if (!hits) return; /* nor do the samples after it, whose thresholds are lower */
+    if (!hits) return; /* later samples have lower thresholds, so they do not hit either */
     uint others = hits;
     if (d)
       others &= bits_of_16((stops->primitive[d].v != stops->primitive[d - 1u].v) |
@@ -69,7 +70,8 @@ inline void store_group(Scene scene, const CameraSamples* chosen, uint first, co
   }
 }
 
-/* How many pixels a medium's box may cover varies as footprints do, so that nothing pops. */
+/* The number of pixels that a medium's box may cover varies randomly, as footprints do, so that nothing
+   pops. */
 inline void set_medium(CameraParams params, const CameraShares16* shares, ClosestPacket* packet) {
   packet->medium_error = params.medium_error;
   packet->share_of_sample = 1.0f / (1u << params.splitting_bits);
@@ -77,7 +79,7 @@ inline void set_medium(CameraParams params, const CameraShares16* shares, Closes
     const float16 scale = DAPPLE_MAX_MEDIUM_PIXELS / params.inverse_spp * shares[b].spread.v;
     Floats16 first_area, solid_angle;
     first_area.v = scale * shares[b].first_area.v;
-    solid_angle.v = 0.25f * scale * shares[b].solid_angle.v; /* a quarter, as PacketRay has it */
+    solid_angle.v = 0.25f * scale * shares[b].solid_angle.v; /* a quarter, as in PacketRay */
     PacketRay* rays = packet->world.rays + b * DAPPLE_GROUP_RAYS;
     for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i) {
       rays[i].first_area = first_area.f[i];
@@ -86,7 +88,7 @@ inline void set_medium(CameraParams params, const CameraShares16* shares, Closes
   }
 }
 
-/* Intersects the item's rays, `count` of them, with the scene. */
+/* Intersects the item's `count` rays with the scene. */
 inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* chosen,
                        const Entries* entries, uint count, __global SurfacePoint* points,
                        ItemHits* found) {
@@ -112,7 +114,7 @@ inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* ch
   found->tests += packet.tests;
 }
 
-/* Of all `rays` those of one item. Points of samples that miss are left as they are. */
+/* Traces the rays of one item, of `rays` in all. Points of samples that miss are not written. */
 DAPPLE_INLINE void trace_item(Scene scene, CameraParams params, uint item, uint rays,
                               __global const PixelWork* work, __global SurfacePoint* points,
                               __global SampleHits* sample_hits) {

@@ -1,9 +1,10 @@
-/* What stops each ray of a queue. */
+/* Finds the surface that stops each ray of a queue. In: the scene and rays. Out: hits, with position and
+   normal. */
 #include "camera/closest_ray.clh"
 #include "dapple/shared/pass_params.h"
 #include "camera/surface_point.clh"
 
-/* Different rays have unrelated thresholds even where their keys are equal. */
+/* The threshold depends on the ray's index too, so that rays with equal keys have unrelated thresholds. */
 inline float threshold_of(__global const Ray* ray) {
   uint bits = ray->key;
   for (uint axis = 0; axis < 3u; ++axis) {

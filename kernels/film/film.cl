@@ -4,8 +4,8 @@
 #include "vectors/lanes.clh"
 #include "geometry/scene.clh"
 
-/* A SurfacePoint in fixed point: position (3), depth, normal (3), one hit. Depth and hit take the places of
-   the point's t and offset. */
+/* A SurfacePoint in fixed point: position (3), depth, normal (3), one hit. Depth and hit replace the point's
+   t and offset. */
 inline long8 surface_sums(ResolveParams params, float8 scale, __global const SurfacePoint* point) {
   float8 values = vload8(0, point->position);
   values.s3 = 0.0f;

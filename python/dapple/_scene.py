@@ -47,9 +47,9 @@ class Irradiance:
 class Bake:
     """Values at vertices and of instances."""
 
-    #: For each mesh "ao" (n,), "bent" (n, 3) and "light.NAME" (n, 3), as far as asked for.
+    #: For each mesh "ao" (n,), "bent" (n, 3) and "light.NAME" (n, 3), if baked.
     meshes: list[dict[str, FloatArray]] = field(default_factory=list)
-    #: Mean ambient occlusion of each instance in the file's order, (k,); empty if not asked for.
+    #: Mean ambient occlusion of each instance in the file's order, (k,); empty if not baked.
     instance_ao: FloatArray = field(default_factory=lambda: np.zeros(0, np.float32))
 
 
@@ -250,8 +250,8 @@ class Scene:
     ) -> Bake:
         """Bakes values at the vertices of the meshes. Options are those of `dapple bake`.
 
-        bent, light and instances ask for more than AO. occluders hide and are not baked. The
-        command writes glTF files and textures, too.
+        bent, light and instances add values beside AO. occluders occlude but are not baked. The
+        command can also write glTF files and textures.
         """
         chosen = _options.apply("bake", _native.BakeOptions(), options)
         others = [scene._native for scene in occluders]

@@ -119,11 +119,11 @@ def test_bakes_have_a_value_for_each_vertex(tree: dapple.Scene) -> None:
 def test_bakes_are_darker_below_an_occluder(plate: dapple.Scene) -> None:
     low = plate_scene(half=0.5, height=0)
     free = low.bake(sides="max", rays=256).meshes[0]["ao"]
-    hidden = low.bake(sides="max", rays=256, occluders=[plate]).meshes[0]["ao"]
+    occluded = low.bake(sides="max", rays=256, occluders=[plate]).meshes[0]["ao"]
     assert free.min() == 1
-    # The other side of the square is free, so both sides are asked for.
+    # The other side of the square is unoccluded, so the mean of both sides is compared.
     assert low.bake(sides="mean", rays=256, occluders=[plate]).meshes[0]["ao"].max() < 0.95
-    assert hidden.shape == free.shape
+    assert occluded.shape == free.shape
 
 
 def test_meshes_are_views_and_round_trip(tree: dapple.Scene, tmp_path: Path) -> None:

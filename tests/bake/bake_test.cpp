@@ -1,4 +1,5 @@
-// bake(): closed forms at vertices, sides, hidden vertices, instances, determinism.
+// bake(): AO at vertices against closed forms, the side of a surface that counts, vertices inside
+// closed geometry, instances, and equal bits in every run.
 #include "dapple/bake.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Previews of baked scenes: grey levels, depth, cut-outs.
+// Previews of baked scenes: grey levels are the AO as sRGB, the nearer surface is visible, and
+// transparent surfaces are not drawn.
 #include "bake/preview.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Layouts of textures: charts, packing, parts of triangles in texels, margins.
+// Texture layouts: triangles are grouped into charts, charts are packed without overlaps, each
+// texel knows the triangles in it, and margins are filled from the nearest texel.
 #include "bake/texture/texture_layout.hpp"
 
 #include <gtest/gtest.h>

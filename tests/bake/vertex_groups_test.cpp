@@ -1,4 +1,5 @@
-// Groups of vertices that share a baked value, and the samples of triangles.
+// Groups of vertices that share a baked value (smooth seams, hard edges, two-sided sheets), and the
+// positions and weights of samples on triangles.
 #include "bake/vertex_groups.hpp"
 
 #include <gtest/gtest.h>

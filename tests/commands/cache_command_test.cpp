@@ -137,7 +137,7 @@ void kill_after(const std::string& shell, useconds_t microseconds) {
   waitpid(child, nullptr, 0);
 }
 
-TEST_F(CacheCommand, KilledOnTheWayToItsFileTheNextRunCleansUpAndSucceeds) {
+TEST_F(CacheCommand, KilledBeforeItsFileIsCompleteTheNextRunCleansUpAndSucceeds) {
   const char* scene = "scene:tree?leaves=100000";
   ASSERT_EQ(run(command("first", scene)), 0);
   const auto json = statistics("first")["seconds"];

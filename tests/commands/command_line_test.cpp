@@ -104,7 +104,7 @@ TEST_F(CommandLine, PictureSizesOutOfRangeNameTheirFlag) {
   EXPECT_EQ(files_in_folder(), 0u);
 }
 
-TEST_F(CommandLine, ACommandLineThatLacksSomethingIsAUsageError) {
+TEST_F(CommandLine, MissingArgumentsAreUsageErrors) {
   expect_failure(dapple(""), 2, "subcommand");
   expect_failure(dapple("nosuch"), 2, "nosuch");
   expect_failure(dapple("render scene:demo"), 2, "--output");
@@ -283,7 +283,7 @@ TEST_F(CommandLine, AQuietRenderPrintsNothingAndWritesItsThreeFiles) {
   EXPECT_EQ(json.at("estimator"), "prefiltered");
 }
 
-TEST_F(CommandLine, ARenderSaysWhatItMadeAndACropKeepsItsPlace) {
+TEST_F(CommandLine, ARenderReportsItsOutputAndACropKeepsItsPosition) {
   const Outcome run = render("--crop 2,3,5,4 --estimator exact --passes ao");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(contains(run.out, "wrote out.exr")) << run.out;
@@ -314,7 +314,7 @@ TEST_F(CommandLine, VisitsAreALayerAndAHeatMapBesideThePreview) {
     counted += json["node_visits_per_ray"][kind].get<double>() * json["rays"][kind].get<double>();
   EXPECT_NEAR(sum * samples, counted, 1e-3 * counted);
   EXPECT_EQ(render("--passes ao").code, 0);
-  EXPECT_EQ(read_exr(path("out.exr")).find("visits.nodes"), nullptr) << "only when asked for";
+  EXPECT_EQ(read_exr(path("out.exr")).find("visits.nodes"), nullptr) << "only with --passes visits";
 }
 
 TEST_F(CommandLine, OnePixelAndOneColumnArePictures) {
@@ -338,7 +338,7 @@ TEST_F(CommandLine, AProceduralSceneAsAGlbFileRenders) {
   EXPECT_EQ(read_exr(path("tree.exr")).width, 8);
 }
 
-TEST_F(CommandLine, InfoAndDevicesTellWhatThereIs) {
+TEST_F(CommandLine, InfoAndDevicesPrintTheSceneAndTheDevices) {
   const Outcome json_run = dapple("info 'scene:cube?divisions=2' --json");
   EXPECT_EQ(json_run.code, 0);
   const auto json = nlohmann::json::parse(json_run.out);

@@ -121,7 +121,7 @@ TEST_F(FramesCommand, AWindyTreeMovesFromFrameToFrame) {
   EXPECT_NE(ao("a.0.exr"), ao("a.1.exr"));
 }
 
-TEST_F(FramesCommand, WhatMakesNoSenseIsRefusedBeforeAnythingIsRendered) {
+TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   const auto refuses = [&](const std::string& arguments, const std::string& part) {
     SCOPED_TRACE(arguments);
     expect_failure(dapple("render scene:cube " + arguments), 2, part);
@@ -147,7 +147,7 @@ TEST_F(FramesCommand, WhatMakesNoSenseIsRefusedBeforeAnythingIsRendered) {
   EXPECT_EQ(files_in_folder(), 0u);
 }
 
-TEST_F(FramesCommand, OutputsOfNoFrameMayBeAFileThatIsRead) {
+TEST_F(FramesCommand, AnOutputOfAFrameThatIsTheInputIsRefused) {
   write_climb();
   std::filesystem::copy(path("climb.glb"), path("climb.2.glb"));
   const Outcome run =
@@ -156,7 +156,7 @@ TEST_F(FramesCommand, OutputsOfNoFrameMayBeAFileThatIsRead) {
   EXPECT_EQ(files_in_folder(), 2u);
 }
 
-TEST_F(FramesCommand, AnInterruptionEndsTheSequenceWithTheFrameThatItIsIn) {
+TEST_F(FramesCommand, AnInterruptionEndsTheSequenceAfterTheCurrentFrame) {
   const std::string log = folder_.string() + ".log";
   for (int delay = 300; !is_there("a.0.exr") && delay < 60'000; delay *= 2) {
     RunningProgram program({"render", "scene:tree?leaves=2000&wind=1", "--frames", "0-9", "-o",

@@ -109,7 +109,7 @@ TEST_F(CompilingProcessesCold, PicturesFindNothingLeftToCompile) {
   }
 }
 
-TEST_F(CompilingProcesses, OfProgramsAloneNoMachineCodeIsMade) {
+TEST_F(CompilingProcesses, BuildingProgramsMakesNoMachineCode) {
   ASSERT_EQ(with_cache("compile --programs compact_hits:queue_kernels:0:0").code, 0);
   EXPECT_TRUE(machine_code().empty());
   EXPECT_FALSE(fs::is_empty(path("cache")));

@@ -47,11 +47,11 @@ TEST_F(DeviceMemory, ABufferLargerThanTheDeviceGivesIsSaidToo) {
   opencl_test::pretend_memory(0, 100'000);
   const Error error = render_error();
   EXPECT_EQ(error.kind(), ErrorKind::device);
-  EXPECT_TRUE(contains(error.what(), " bytes in one piece, ")) << error.what();
+  EXPECT_TRUE(contains(error.what(), " bytes in one buffer, ")) << error.what();
   EXPECT_TRUE(contains(error.what(), " gives 100000 at most;")) << error.what();
 }
 
-TEST_F(DeviceMemory, TheLeastNeedIsNeverMoreThanWhatIsUploaded) {
+TEST_F(DeviceMemory, TheMinimumNeedIsAtMostTheUploadedBytes) {
   for (const char* name : {"scene:cube?divisions=1", "scene:tree?leaves=3000",
                            "scene:cloud?leaves=3000", "scene:forest?trees=9&leaves=500"}) {
     const Scene scene = make_procedural(name);
@@ -74,7 +74,7 @@ TEST(DeviceBuffers, ZerosAreZerosAlsoWhereMemoryIsUsedAgain) {
   }
 }
 
-TEST(PagePool, TwoTakersNeverHaveTheSamePagesAndWhatIsGivenBackIsTakenAgain) {
+TEST(PagePool, PagesHaveOneOwnerAndAreReusedAfterRelease) {
   PagePool pool;
   std::unique_ptr<Pages> first = pool.take(40'000);
   const void* const address = first->data();
@@ -91,7 +91,7 @@ TEST(PagePool, TwoTakersNeverHaveTheSamePagesAndWhatIsGivenBackIsTakenAgain) {
 }
 
 // Kept pages still hold the bytes that were written to them; new pages hold zeros.
-TEST(PagePool, WhatWasGivenBackFirstGoesFirst) {
+TEST(PagePool, TheOldestReleasedPagesAreFreedFirst) {
   PagePool pool;
   const auto mark_of = [](const Pages& pages) { return *static_cast<const char*>(pages.data()); };
   std::unique_ptr<Pages> marked = pool.take(4096);
@@ -108,7 +108,7 @@ TEST(PagePool, WhatWasGivenBackFirstGoesFirst) {
 }
 
 // Takes more bytes than the address space has.
-TEST(PagePool, WhatCannotBeHadIsAnErrorOfTheDevice) {
+TEST(PagePool, AnImpossibleAllocationIsADeviceError) {
   PagePool pool;
   const Error error = error_of([&] { static_cast<void>(pool.take(std::size_t{1} << 60)); });
   EXPECT_EQ(error.kind(), ErrorKind::device);

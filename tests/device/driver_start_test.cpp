@@ -27,7 +27,7 @@ class DriverStart : public program_test::ProgramRun {
 /// Tests that compile every kernel anew, which takes seconds.
 class DriverStartCold : public DriverStart {};
 
-TEST_F(DriverStart, NoPlatformIsToldFromNoSuchDevice) {
+TEST_F(DriverStart, NoPlatformAndNoSuchDeviceHaveDifferentMessages) {
   fs::create_directory(path("no_vendors"));
   const std::string no_icd = "OCL_ICD_VENDORS='" + path("no_vendors") + "'";
   expect_failure(render("", no_icd), 4, "no OpenCL platform found where OCL_ICD_VENDORS points");
@@ -39,7 +39,7 @@ TEST_F(DriverStart, NoPlatformIsToldFromNoSuchDevice) {
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
-TEST_F(DriverStart, ADriverThatIsNoLibraryIsNoPlatform) {
+TEST_F(DriverStart, ADriverThatIsNotALibraryGivesNoPlatform) {
   fs::create_directory(path("vendors"));
   write_bytes(path("vendors/broken.icd"), path("broken.so") + "\n");
   write_bytes(path("broken.so"), "no library");
@@ -53,11 +53,11 @@ TEST_F(DriverStartCold, WithoutHomeKernelsAreCompiledElsewhere) {
   EXPECT_TRUE(fs::is_empty(path("tmp"))) << "nothing is kept where others could write";
 }
 
-TEST_F(DriverStartCold, AMissingTemporaryFolderIsNoTrouble) {
+TEST_F(DriverStartCold, RendersWithoutATemporaryFolder) {
   expect_picture(render("", "TMPDIR=/nonexistent POCL_CACHE_DIR=/dev/null/cache"));
 }
 
-TEST_F(DriverStartCold, ACacheThatCannotBeUsedIsPassedOver) {
+TEST_F(DriverStartCold, ACacheThatCannotBeUsedIsIgnoredWithANote) {
   if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
   fs::create_directory(path("cache"));
   const std::string with_cache = "POCL_CACHE_DIR='" + path("cache") + "' ";
@@ -70,7 +70,7 @@ TEST_F(DriverStartCold, ACacheThatCannotBeUsedIsPassedOver) {
   }
 }
 
-TEST_F(DriverStart, WithNowhereToCompileKernelsIsSaid) {
+TEST_F(DriverStart, NoWritableFolderForKernelsIsAnError) {
   if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
   // Makes /tmp read-only but keeps its content, since the program itself may be in /tmp.
   const std::string mount = "mount --rbind /tmp /tmp && mount -o remount,bind,ro /tmp";
@@ -80,7 +80,7 @@ TEST_F(DriverStart, WithNowhereToCompileKernelsIsSaid) {
   EXPECT_TRUE(contains(run.err, "Read-only file system")) << run.err;
 }
 
-TEST_F(DriverStart, AReadOnlyWorkingFolderIsNoTrouble) {
+TEST_F(DriverStart, RendersInAReadOnlyWorkingFolder) {
   if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
   fs::create_directories(path("work"));
   const std::string mount = "mount -t tmpfs -o ro none work && cd work";

@@ -59,7 +59,7 @@ class KernelCacheFiles : public FilmFile {
   }
 };
 
-TEST_F(KernelCacheFiles, WhatOneRunCompiledTheNextOneHas) {
+TEST_F(KernelCacheFiles, TheNextRunReusesCompiledKernels) {
   EXPECT_TRUE(compiles("one"));
   EXPECT_FALSE(compiles("one"));
   EXPECT_TRUE(compiles("two")) << "another program";
@@ -93,7 +93,7 @@ TEST_F(KernelCacheFiles, ADamagedFileIsCompiledAgainAndKeptAgain) {
   }
 }
 
-TEST_F(KernelCacheFiles, ASealNeverReachesOutOfItsFolder) {
+TEST_F(KernelCacheFiles, ADamagedSealNamesNoFileOutsideOfItsFolder) {
   static_cast<void>(compiles("one"));
   const std::string line = "0000000000000000 ../../../outside\n";
   write_bytes(kept("sealed"), line);
@@ -101,7 +101,7 @@ TEST_F(KernelCacheFiles, ASealNeverReachesOutOfItsFolder) {
   EXPECT_FALSE(fs::exists(path("outside")));
 }
 
-TEST_F(KernelCacheFiles, TheFolderOfAKilledProcessGoesAndThatOfALivingOneStays) {
+TEST_F(KernelCacheFiles, FoldersOfKilledProcessesAreRemovedAndThoseOfRunningOnesKept) {
   const PrivateFolder living(path("cache"));
   const fs::path dead = path("cache/dapple-run-killed");
   fs::create_directories(dead / "pocl");
@@ -127,7 +127,7 @@ TEST_F(KernelCacheFiles, FoldersOfManyThreadsNeverCollide) {
   EXPECT_EQ(entries(), 0u);
 }
 
-TEST_F(KernelCacheFiles, TheLeastRecentlyUsedProgramsGo) {
+TEST_F(KernelCacheFiles, TheLeastRecentlyUsedProgramsAreRemoved) {
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(compiles("program " + std::to_string(i)));
   EXPECT_EQ(entries(), 96u);
   EXPECT_FALSE(compiles("program 99"));

@@ -70,7 +70,7 @@ TEST_F(KernelSource, EveryBuiltInKernelExpandsCompletely) {
   EXPECT_GE(kernels, 6);
 }
 
-TEST_F(KernelSource, AFolderComesBeforeTheBinaryAndTheBinaryFillsIn) {
+TEST_F(KernelSource, AKernelFolderReplacesBuiltInFilesOfTheSameName) {
   write_bytes(path("sampling/random.clh"), "replaced;\n");
   const std::string text = expand_kernel("occlusion/ao.cl", folder_.string());
   EXPECT_EQ(count(text, "replaced;"), 1);

@@ -67,7 +67,7 @@ void expect_refused(const std::string& path, const std::string& why) {
   EXPECT_TRUE(contains(error.what(), why)) << error.what();
 }
 
-TEST_F(ExrReader, RefusesFilesThatAreNone) {
+TEST_F(ExrReader, RefusesFilesThatAreNotExr) {
   write_bytes(path("text.exr"), "this is no picture at all");
   write_bytes(path("empty.exr"), "");
   expect_refused(path("text.exr"), "not an EXR file");

@@ -101,7 +101,7 @@ TEST_F(OutputFile, AnUncommittedFileVanishes) {
   EXPECT_EQ(files_in_folder(), 0U);
 }
 
-TEST_F(OutputFile, PendingFileWritesWhereItWasSentTo) {
+TEST_F(OutputFile, PendingFileWritesAtThePositionOfASeek) {
   PendingFile file(path("a.bin"));
   file.write("abcdef", 6);
   file.seek(1);

@@ -114,7 +114,7 @@ TEST_F(SealedFileOnDisk, AnotherKindAndVersionAreToldApart) {
   EXPECT_TRUE(contains(refusal_of(), "it is empty"));
 }
 
-TEST_F(SealedFileOnDisk, WhatIsNoFileIsRefusedAndNotWaitedFor) {
+TEST_F(SealedFileOnDisk, PathsThatAreNotRegularFilesAreRefusedWithoutBlocking) {
   EXPECT_TRUE(contains(refusal_of(), "No such file"));
   ASSERT_EQ(mkfifo(path("a.bin").c_str(), 0600), 0);
   EXPECT_TRUE(contains(refusal_of(), "not a regular file"));

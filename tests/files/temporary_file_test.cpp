@@ -37,7 +37,7 @@ std::string abandoned_file(const std::string& folder) {
   return {path, static_cast<std::size_t>(std::max<ssize_t>(length, 0))};
 }
 
-TEST_F(TemporaryFiles, ThoseOfTheLivingStayAndThoseOfTheDeadGo) {
+TEST_F(TemporaryFiles, FilesOfRunningProcessesAreKeptAndOthersRemoved) {
   const TemporaryFile living = create_temporary_file(folder_);
   ASSERT_GE(living.descriptor, 0);
   const std::string dead = abandoned_file(folder_);
@@ -71,7 +71,7 @@ TEST_F(TemporaryFiles, ThoseOfOtherHostsStayForADay) {
   EXPECT_EQ(remove_abandoned_files(folder_), 1u);
 }
 
-TEST_F(TemporaryFiles, OtherNamesAreNobodysBusiness) {
+TEST_F(TemporaryFiles, FilesWithOtherNamesAreKept) {
   for (const char* name : {".dapple-1-2.tmp", ".dapple-.tmp", "a.exr", "dapple-0-1-2.tmp",
                            ".dapple-0000000g-1-0000000000000000.tmp", ".dapple-0-1-2.tmpx"}) {
     write_bytes(path(name), "x");

@@ -106,7 +106,7 @@ TEST_F(FilmExr, MetadataIsWhereOtherProgramsLookForIt) {
 TEST_F(FilmExr, SettingsCannotReplaceMetadata) {
   Film film = ramp_film(2, 2);
   film.metadata = some_metadata();
-  film.metadata.settings = {{"device", "what was asked for"}, {"samples", "1"}};
+  film.metadata.settings = {{"device", "value of the option"}, {"samples", "1"}};
   write_exr(film, path("a.exr"));
   const FilmMetadata back = read_exr(path("a.exr")).metadata;
   EXPECT_EQ(back.device, "pthread-model");

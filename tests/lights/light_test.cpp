@@ -59,40 +59,67 @@ Light sun(const std::string& name, V3f towards, float angular_radius) {
   return light;
 }
 
-TEST(Light, IrradianceOfRectsSpheresAndSunsIsTheirClosedForm) {
+/// Lights over the ground, and the irradiance of each at radiance 1.
+struct ExpectedLights {
   Scene scene = point_on_ground();
-  std::vector<double> expected;
-  const auto add = [&](Light light, double irradiance) {
+  std::vector<double> irradiance;
+
+  void add(Light light, double expected) {
     scene.lights.push_back(std::move(light));
-    expected.push_back(irradiance);
-  };
+    irradiance.push_back(expected);
+  }
+
+  /// Renders the lights with a radiance that is different in each channel.
+  void expect_irradiance() {
+    for (Light& light : scene.lights) light.radiance = V3f(1, 2, 0.25f);
+    RenderOptions options = one_pixel();
+    options.ao = false;
+    const Film film = render(scene, options).film;
+    for (std::size_t i = 0; i < irradiance.size(); ++i) {
+      const std::string layer = "light." + layer_name(scene.lights[i].name);
+      SCOPED_TRACE(layer);
+      // The sampling error, and the film's fixed-point steps of 2^-26.
+      const double error = kSampling * irradiance[i] + 2e-8;
+      EXPECT_NEAR(value(film, layer + ".R"), irradiance[i], error);
+      EXPECT_NEAR(value(film, layer + ".G"), 2 * irradiance[i], 2 * error);
+      EXPECT_NEAR(value(film, layer + ".B"), irradiance[i] / 4, error / 4);
+    }
+  }
+};
+
+TEST(Light, IrradianceOfRectsIsTheirClosedFormAndZeroBehindThem) {
+  ExpectedLights lights;
   // A rect parallel to the ground, centred above the point: 4 times B-3 of Howell's form factor
   // catalogue.
   const auto parallel = [](double x, double y) {
     const double p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
     return 2 * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
   };
-  add(rect("parallel", {0, 2, 0}, {1, 0, 0}, {0, 0, 3}, {0, -1, 0}), parallel(0.25, 0.75));
-  add(rect("large", {0, 1, 0}, {8, 0, 0}, {0, 0, 6}, {0, -1, 0}), parallel(4, 3));
+  lights.add(rect("parallel", {0, 2, 0}, {1, 0, 0}, {0, 0, 3}, {0, -1, 0}), parallel(0.25, 0.75));
+  lights.add(rect("large", {0, 1, 0}, {8, 0, 0}, {0, 0, 6}, {0, -1, 0}), parallel(4, 3));
   const Light wall = rect("perpendicular", {0, 1, -2}, {3, 0, 0}, {0, 2, 0}, {0, 0, 1});
-  add(wall, rect_irradiance(wall));
+  lights.add(wall, rect_irradiance(wall));
   const Light tilted =
       rect("tilted", {1, 2, -1}, {1, 0.5f, 0}, {0, 0.7f, 1.2f}, {-0.6f, 1.2f, -0.7f});
   Light facing = tilted;
   facing.direction = tilted.edge_u.cross(tilted.edge_v).normalized();
   if (facing.direction.dot(facing.position) > 0) facing.direction = -facing.direction;
-  add(facing, rect_irradiance(facing));
-  // A rect emits only from its front.
+  lights.add(facing, rect_irradiance(facing));
   Light away = facing;
   away.name = "away";
   away.direction = -away.direction;
-  add(away, 0);
+  lights.add(away, 0);
+  lights.expect_irradiance();
+}
+
+TEST(Light, IrradianceOfSpheresAndSpotsIsTheirClosedForm) {
+  ExpectedLights lights;
   // A sphere that is completely above the horizon: pi (r / d)^2 cos.
   const V3f there(1, 2, -1);
   const double cosine = 2 / std::sqrt(6.0);
-  add(sphere("sphere", there, 0.5f), kPi * 0.25 / 6 * cosine);
-  add(sphere("near", {0, 1.2f, 0}, 1), kPi / 1.44);
-  add(sphere("tiny", there, 1e-3f), kPi * 1e-6 / 6 * cosine);
+  lights.add(sphere("sphere", there, 0.5f), kPi * 0.25 / 6 * cosine);
+  lights.add(sphere("near", {0, 1.2f, 0}, 1), kPi / 1.44);
+  lights.add(sphere("tiny", there, 1e-3f), kPi * 1e-6 / 6 * cosine);
   // Spot cones as in KHR_lights_punctual: 1 inside the inner one, between the two
   // ((c - outer) / (inner - outer))^2.
   Light spot = sphere("spot", {0, 2, 0}, 0.1f);
@@ -100,29 +127,22 @@ TEST(Light, IrradianceOfRectsSpheresAndSunsIsTheirClosedForm) {
   spot.cos_outer = 0.5f;
   spot.cos_inner = 0.9f;
   const double edge = (std::sqrt(0.5) - 0.5) / 0.4;
-  add(spot, kPi * 0.01 / 4 * edge * edge);
+  lights.add(spot, kPi * 0.01 / 4 * edge * edge);
+  lights.expect_irradiance();
+}
+
+TEST(Light, IrradianceOfSunsIsTheirProjectedSolidAngle) {
+  ExpectedLights lights;
   for (const double radius : {0.00465, 0.2, 1.0}) {
     // Every sun is completely above the horizon; the widest is straight above.
-    const V3f up = radius < 0.5 ? there : V3f(0, 1, 0);
+    const V3f up = radius < 0.5 ? V3f(1, 2, -1) : V3f(0, 1, 0);
+    const double cosine = radius < 0.5 ? 2 / std::sqrt(6.0) : 1.0;
     const double sine = std::sin(radius);
-    add(sun("sun" + std::to_string(scene.lights.size()), up, static_cast<float>(radius)),
-        kPi * sine * sine * (radius < 0.5 ? cosine : 1.0));
+    lights.add(
+        sun("sun" + std::to_string(lights.scene.lights.size()), up, static_cast<float>(radius)),
+        kPi * sine * sine * cosine);
   }
-
-  // The radiance multiplies each channel.
-  for (Light& light : scene.lights) light.radiance = V3f(1, 2, 0.25f);
-  RenderOptions options = one_pixel();
-  options.ao = false;
-  const Film film = render(scene, options).film;
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    const std::string layer = "light." + layer_name(scene.lights[i].name);
-    SCOPED_TRACE(layer);
-    // The sampling error, and the film's fixed-point steps of 2^-26.
-    const double error = kSampling * expected[i] + 2e-8;
-    EXPECT_NEAR(value(film, layer + ".R"), expected[i], error);
-    EXPECT_NEAR(value(film, layer + ".G"), 2 * expected[i], 2 * error);
-    EXPECT_NEAR(value(film, layer + ".B"), expected[i] / 4, error / 4);
-  }
+  lights.expect_irradiance();
 }
 
 TEST(Light, AnOccluderBetweenTakesItsOpacityFromEveryKind) {

@@ -69,20 +69,12 @@ TEST(AoDistance, APlaneOverheadFallsOffAsItsIntegral) {
   }
 }
 
-// One slanted square that the ray would hit just beyond its end. The square's node contains the
-// ray's end, so it must be opened at every footprint, and the square must not count.
 TEST(AoDistance, ANodeThatHoldsTheRaysEndIsOpenedAtEveryDistance) {
   int wrong = 0;
   const auto check = [&](float distance) {
-    Scene scene;
-    scene.materials.push_back(material_of(1));
-    Mesh mesh;
-    const float half = 0.05f * distance, tilt = 0.02f * distance;
-    append_grid(mesh, {-half, 1.001f * distance - tilt, -half}, {2 * half, 2 * tilt, 0},
-                {0, 0, 2 * half}, 1, 0);
-    place(scene, std::move(mesh));
-    const SceneOnDevice traced(std::move(scene));
-    const std::vector<Ray> rays{make_ray({1e-3f * half, 0, 2e-3f * half}, {0, 1, 0}, 6, distance)};
+    const SquareBeyond square(distance);
+    const SceneOnDevice traced(square.scene);
+    const std::vector<Ray> rays{make_ray(square.origin, {0, 1, 0}, 6, distance)};
     const float found = traced.trace(rays, Estimator::prefiltered, 1e6f)[0].transmittance;
     EXPECT_EQ(found, 1.0f) << "distance " << distance;
     wrong += found != 1.0f;

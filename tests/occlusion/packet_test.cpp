@@ -279,21 +279,12 @@ TEST(Packet, MatchesClosedFormsOfADiskAStackAndAPlaneWithFalloff) {
   }
 }
 
-// One slanted square that the rays would hit just beyond their end. The square's node contains that
-// end, so it must be opened at every footprint, and the square must not count.
 TEST(Packet, ANodeThatHoldsTheRaysEndIsOpened) {
   for (const float distance : {0.5f, 1.0f, 3.0f, 10.0f, 30.0f}) {
-    Scene scene;
-    scene.materials.push_back(material_of(1));
-    Mesh mesh;
-    const float half = 0.05f * distance, tilt = 0.02f * distance;
-    append_grid(mesh, {-half, 1.001f * distance - tilt, -half}, {2 * half, 2 * tilt, 0},
-                {0, 0, 2 * half}, 1, 0);
-    place(scene, std::move(mesh));
-    const SceneOnDevice traced(std::move(scene));
-    const V3f origin(1e-3f * half, 0, 2e-3f * half);
-    const std::vector<Ray> ending(8, make_ray(origin, {0, 1, 0}, 6, distance));
-    const std::vector<Ray> endless(8, make_ray(origin, {0, 1, 0}, 6));
+    const SquareBeyond square(distance);
+    const SceneOnDevice traced(square.scene);
+    const std::vector<Ray> ending(8, make_ray(square.origin, {0, 1, 0}, 6, distance));
+    const std::vector<Ray> endless(8, make_ray(square.origin, {0, 1, 0}, 6));
     for (int i = 0; i < 8; ++i) {
       EXPECT_EQ(packets(traced, ending, 1e6f, 8)[i].transmittance, 1.0f) << distance;
       EXPECT_LT(packets(traced, endless, 1e6f, 8)[i].transmittance, 0.9f) << distance;

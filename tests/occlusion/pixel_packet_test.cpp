@@ -190,17 +190,17 @@ Scene far_sheets(float half) {
 TEST(PixelPacketRaysFarAway, FlatBoxesAreAsDeepAsForSingleRays) {
   const SceneOnDevice scene(far_sheets(0.04f));
   const std::vector<Ray> rays = rays_through(scene.bvh.bounds, 5003, 1, 0.02f, 7);
-  double difference = 0, hidden = 0;
+  double difference = 0, occluded = 0;
   const auto alone = scene.trace(rays, Estimator::prefiltered);
   const auto found = together(scene, rays, Estimator::prefiltered);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     difference += alone[i].transmittance - found[i].transmittance;
-    hidden += 1 - alone[i].transmittance;
+    occluded += 1 - alone[i].transmittance;
   }
   const auto count = static_cast<double>(rays.size());
-  EXPECT_GT(hidden / count, 0.2) << "the case does not test much";
+  EXPECT_GT(occluded / count, 0.2) << "the case does not test much";
   // Roundings of thousands of depths, with both signs. Without the chord model it would be 0.0012.
-  EXPECT_LT(std::fabs(difference), 3e-4 * hidden);
+  EXPECT_LT(std::fabs(difference), 3e-4 * occluded);
 }
 
 /// An oblique ray from five centimetres away through the square with this first corner. It crosses

@@ -111,7 +111,7 @@ TEST(PointSets, RaysOfAPointDoNotDependOnOtherPoints) {
 }
 
 /// Compares points whose rays are made, traced and summed by one kernel (point packets) with points
-/// whose rays go through queues and are traced as single rays.
+/// whose rays are written to queues and traced as single rays.
 class PointAo : public testing::Test {
  protected:
   using Found = std::pair<std::vector<float>, std::vector<float>>;

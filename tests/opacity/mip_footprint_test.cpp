@@ -1,7 +1,7 @@
 // Mip footprints (Williams, "Pyramidal Parametrics", 1983): a footprint that covers many texels
-// looks up their mean, over the largest square of texels that it covers. Tests each grouping of
-// rays, instances and camera rays. Exact rays, and surfaces that an average would change, are
-// looked up at full resolution.
+// looks up their mean, in the highest mip level whose texels it covers. Tests each grouping of rays,
+// instances and camera rays. Exact rays, and surfaces that an average would change, are looked up
+// at full resolution.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -129,7 +129,7 @@ TEST(MipFootprint, IsNotUsedForExactRaysNorForZeroFootprints) {
   int between = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const float found = exact[i].transmittance;
-    ASSERT_TRUE(found == 0.0f || found == 1.0f) << "cut-outs hide all or nothing";
+    ASSERT_TRUE(found == 0.0f || found == 1.0f) << "cut-outs are opaque or invisible";
     ASSERT_EQ(none[i].transmittance, found);
     ASSERT_EQ(fine[i].transmittance, found);
     between += wide[i].transmittance > 0.0f && wide[i].transmittance < 1.0f;

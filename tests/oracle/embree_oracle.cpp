@@ -2,14 +2,14 @@
 // stop the ray. The hit point is then computed again in double from the triangle itself.
 #include "oracle/embree_oracle.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
+
+#include "oracle/embree_ray.hpp"
 
 namespace dapple::oracle {
 namespace {
@@ -199,20 +199,6 @@ RTCGeometry strand_geometry(RTCDevice device, const std::vector<Curve>& curves) 
   std::memcpy(indices, first.data(), first.size() * sizeof(unsigned));
   rtcCommitGeometry(geometry);
   return geometry;
-}
-
-RTCRay embree_ray(const Segment& segment) {
-  RTCRay ray{};
-  ray.org_x = segment.origin.x;
-  ray.org_y = segment.origin.y;
-  ray.org_z = segment.origin.z;
-  ray.dir_x = segment.direction.x;
-  ray.dir_y = segment.direction.y;
-  ray.dir_z = segment.direction.z;
-  ray.tnear = 0;
-  ray.tfar = segment.t_max;
-  ray.mask = 0xffffffffu;
-  return ray;
 }
 
 /// All triangles as one geometry of Embree; primitive numbers are positions in `triangles`.

@@ -18,7 +18,7 @@ struct Estimate {
 };
 
 struct Picture {
-  Estimate ao;           ///< 1 = unoccluded, and where a camera ray meets nothing
+  Estimate ao;           ///< 1 = unoccluded, also where a camera ray hits nothing
   Estimate light;        ///< irradiance of the light at radiance 1, relative to `brightest`
   double brightest = 0;  ///< the largest unoccluded irradiance of any pixel at radiance 1
 };

@@ -1,4 +1,5 @@
-// Files of points: what is written is read again, and broken files are errors with a place.
+// Files of points in CSV, NPY and PLY: reading returns what was written, and errors of invalid
+// files name the line or row. Also lists of suns, and grids of points.
 #include "points/point_file.hpp"
 
 #include <gtest/gtest.h>
@@ -73,7 +74,7 @@ TEST_F(PointFile, CsvMayHaveNamesCommentsAndAnySeparator) {
   EXPECT_TRUE(read_points(write("e.csv", "")).points.empty());
 }
 
-TEST_F(PointFile, BrokenFilesNameTheLineOrRow) {
+TEST_F(PointFile, ErrorsOfInvalidFilesNameTheLineOrRow) {
   expect_error(write("a.csv", "1,2,3\n1,2\n"), "line 2");
   expect_error(write("b.csv", "1,2,3\n1,two,3\n"), "\"two\"");
   expect_error(write("c.csv", "a,b\n1,2\n"), "x, y, z");

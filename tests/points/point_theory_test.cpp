@@ -1,5 +1,5 @@
-// measure_points() against theory: canopies of randomly placed leaves, a ball of them, a wall,
-// rings, suns and skies.
+// measure_points() against closed forms: canopies of randomly placed leaves (Ross 1981), a
+// ball of leaves, a wall, rings of the sky, suns and skies.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -85,9 +85,9 @@ PointOptions periodic(Estimator estimator) {
   return options;
 }
 
-// Ross: leaves at random with spherical angles have the transmittance exp(-a L / (2 cos)). The mean
-// over the cosine-weighted hemisphere is 2 E3(a L / 2).
-TEST(PointTheory, TheGroundUnderARandomCanopySeesTheSkyAsTheoryHasIt) {
+// Ross 1981: the transmittance of random leaves with spherical angles is exp(-a L / (2 cos)). Its
+// mean over the cosine-weighted hemisphere is 2 E3(a L / 2).
+TEST(PointTheory, TheSkyViewFactorUnderARandomCanopyIsThatOfTheory) {
   struct Case {
     double area_index, opacity, expected;
   };
@@ -108,7 +108,7 @@ TEST(PointTheory, TheGroundUnderARandomCanopySeesTheSkyAsTheoryHasIt) {
   }
 }
 
-TEST(PointTheory, ASunAtTwentyDegreesFromTheZenithIsAttenuatedAsBeerAndLambertHaveIt) {
+TEST(PointTheory, ASunAtTwentyDegreesFromTheZenithIsAttenuatedByTheBeerLambertLaw) {
   const Scene scene = canopy(2, 1);
   PointOptions options = periodic(Estimator::exact);
   options.sky_view_factor = options.ao = false;

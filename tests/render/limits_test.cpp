@@ -71,7 +71,7 @@ TEST_F(Limits, AFullDiskIsAnErrorThatKeepsTheFormerFile) {
 }
 
 TEST_F(Limits, UnwritableMessagesDoNotCauseASignal) {
-  // The '#' turns the redirections that dapple() appends into a comment.
+  // The '#' makes a comment of the redirections that dapple() appends.
   EXPECT_EQ(dapple("render nosuch.glb -o out.exr 2>/dev/full #").code, 3);
   const std::string err = " 2>'" + (logs() / "err").string() + "' #";
   expect_failure(dapple("info scene:cube >/dev/full" + err), 1,

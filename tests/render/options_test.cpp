@@ -146,7 +146,7 @@ TEST(Options, ValuesOutOfRangeAreRefusedWithTheirFlag) {
   }
 }
 
-TEST(FootprintSamples, AreThoseAskedForOrWhatATargetNeeds) {
+TEST(FootprintSamples, AreTheOptionOrWhatATargetNeeds) {
   RenderOptions options;
   options.spp = 12;
   EXPECT_EQ(footprint_samples(options), 12);

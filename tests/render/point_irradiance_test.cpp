@@ -1,4 +1,5 @@
-// irradiance(): closed forms of lights over points, with and without occluders.
+// irradiance() at points against closed forms: suns, rects and domes, with and without occluders,
+// and arguments that are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -335,7 +335,7 @@ TEST_F(Resume, OtherSettingsAreRefusedAndNamed) {
   EXPECT_TRUE(contains(error_of(other_tree).what(), "another scene"));
 }
 
-TEST_F(Resume, ManySavesOnTheWayChangeNothing) {
+TEST_F(Resume, FrequentCheckpointsDoNotChangeThePicture) {
   const RenderOptions options = small_picture();
   RenderControl control;
   control.checkpoint = path("a.ckpt");

@@ -60,7 +60,7 @@ TEST(AdaptiveSampling, EveryPixelEndsBelowTheTargetOrAtTheMaximum) {
   EXPECT_EQ(result.statistics.rays.camera, total) << "the samples layer tells the truth";
 }
 
-TEST(AdaptiveSampling, ThePictureIsAsFarFromTheTruthAsTheErrorLayersSay) {
+TEST(AdaptiveSampling, TheErrorOfThePictureIsThatOfTheErrorLayers) {
   RenderOptions options = small_picture();
   options.target_error = 0.03f;
   const RenderResult adaptive = draw(options);
@@ -90,7 +90,7 @@ double irradiance_scale(const RenderOptions& of_picture) {
   return mean(channel(result, "light.key.R")) / mean(channel(result, "R"));
 }
 
-TEST(AdaptiveSampling, ByRmseThePictureIsAsFarFromTheTruthAsWasAsked) {
+TEST(AdaptiveSampling, ByRmseTheErrorOfThePictureIsTheTarget) {
   RenderOptions options = small_picture();
   options.spp = 8;
   options.target_rmse = 0.015f;

@@ -32,7 +32,7 @@ std::vector<std::uint32_t> given(std::uint32_t samples) {
 
 // Slices of 7 and 12 samples divide pixels and batches unevenly; 64 holds several pixels; 1000
 // holds all.
-TEST(Round, EverySampleIsTracedOnceInOrderAndCountedWhereverItIsLeft) {
+TEST(Round, EverySampleIsTracedOnceInOrderAndCountedWhereverARoundStops) {
   for (const std::uint32_t samples : {3u, 16u, 50u}) {
     for (const std::uint32_t slice_samples : {7u, 12u, 64u, 1000u}) {
       Round round = two_groups(samples);

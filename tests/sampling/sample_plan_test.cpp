@@ -192,7 +192,7 @@ TEST(PilotPixels, AreSquaresAllOverThePicture) {
       positions.insert(of_cell.front());
     }
   }
-  EXPECT_EQ(positions.size(), 4u) << "no grid that a scene could hide from";
+  EXPECT_EQ(positions.size(), 4u) << "no regular grid, which could miss the scene";
 }
 
 TEST(PilotPixels, AreSomeHundredSquaresOfLargePicturesAndNoneOfSmallOnes) {

@@ -243,7 +243,7 @@ TEST(GlbWriter, AFileThatCannotBeWrittenLeavesNothingBehind) {
   EXPECT_EQ(folder.count(), 0);
 }
 
-TEST(GlbWriter, AFolderInTheWayIsNotReplaced) {
+TEST(GlbWriter, AFolderWithTheNameOfTheOutputIsNotReplaced) {
   const Folder folder;
   fs::create_directory(folder.file("scene.glb"));
   try {

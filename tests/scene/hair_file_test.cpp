@@ -50,7 +50,7 @@ TEST(HairFile, TheDefaultThicknessIsADiameterAndTheDefaultTransparencyTheMateria
   EXPECT_EQ(scene.materials[0].alpha, 0.25f);
 }
 
-TEST(HairFile, ArraysTakeThePlaceOfDefaults) {
+TEST(HairFile, ArraysReplaceDefaults) {
   HairBuilder builder = two_strands();
   builder.segments = {1, 3};
   builder.default_segments = 77;
@@ -159,7 +159,7 @@ TEST(HairFile, CountsThatItsBytesCannotHoldAreRefusedBeforeAnythingIsAllocated) 
   expect_says(with(4, 0), "has 6 points, but its 0 strands");
 }
 
-TEST(HairFile, ThicknessesAndTransparenciesThatAreNoneAreRefusedByPoint) {
+TEST(HairFile, InvalidThicknessesAndTransparenciesAreRefusedByPoint) {
   HairBuilder builder = two_strands();
   builder.default_thickness = -1;
   expect_says(refusal(builder), "a.hair: its header has a thickness of -1");
@@ -193,7 +193,7 @@ TEST(HairFile, OnlyRegularFilesAreRead) {
   expect_says(refusal_of(fifo), "pipe.hair: is not a regular file");
 }
 
-TEST(HairFile, RealHairStandsUprightAndLosesOnlyItsSpecks) {
+TEST(HairFile, RealHairIsUprightAndLosesOnlyDegenerateStrands) {
   const std::string path = std::string(DAPPLE_SHARED_SCENES) + "/mohawk.hair";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
   const Scene scene = load_scene(path);

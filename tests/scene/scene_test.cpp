@@ -131,7 +131,7 @@ TEST(SceneBounds, OfAnEmptySceneAreEmpty) {
   EXPECT_TRUE(scene_bounds(scene_of({unit_triangle()}, {})).isEmpty());
 }
 
-TEST(OverrideOpacity, TakesThePlaceOfTextureFactorModeAndVertexAlpha) {
+TEST(OverrideOpacity, ReplacesTextureFactorModeAndVertexAlpha) {
   Scene scene = scene_of({}, {});
   scene.materials[0] = {"leaf", AlphaMode::mask, 0.5f, 0.5f, 3, true, {0, 0, 0}, false};
   override_opacity(scene, "leaf", 0.85f);
@@ -196,7 +196,7 @@ TEST(Merge, ALargeMeshThatIsPlacedOftenStaysAnInstance) {
   EXPECT_EQ(large, 2);
 }
 
-TEST(Merge, AMeshPlacedOnceWhereItIsIsMovedAndNotCopied) {
+TEST(Merge, AMeshWithASingleIdentityInstanceIsNotCopied) {
   Scene scene = scene_of({large_mesh()}, {placed(0)});
   const V3f* const positions = scene.meshes[0].positions.data();
   const std::uint32_t* const indices = scene.meshes[0].indices.data();
@@ -254,7 +254,7 @@ TEST(Merge, BrokenTrianglesAreDroppedAndCountedByKind) {
                                       "dropped 2 triangles without an area"}));
 }
 
-TEST(Merge, MeshesThatNobodyPlacesAndSingularInstancesGo) {
+TEST(Merge, UnusedMeshesAndSingularInstancesAreDropped) {
   Scene scene =
       scene_of({unit_triangle("unplaced"), large_mesh(), unit_triangle()},
                {placed(1), placed(1, translation({2, 0, 0})), placed(2, scaling({1, 0, 1})),

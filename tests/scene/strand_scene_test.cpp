@@ -40,7 +40,7 @@ TEST(StrandScene, StrandsThatAPlacementWouldFlattenStayInstances) {
   EXPECT_EQ(scene.meshes[0].radii[0], 0.002f);
 }
 
-TEST(StrandScene, PlacedOnceTheirRadiiGrowWithThem) {
+TEST(StrandScene, RadiiScaleWithASingleInstance) {
   Scene scene = strand_scene(curly_strands({.strands = 3}), 0.3f);
   scene.instances[0].to_world.scale(V3f(3, 3, 3));
   merge_single_instances(scene);
@@ -89,7 +89,7 @@ TEST(StrandScene, StrandsAreNotWrittenAsGltf) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(StrandScene, StrandsEmitNothingAndSaySo) {
+TEST(StrandScene, StrandsDoNotEmitAndAWarningSaysSo) {
   Scene scene = strand_scene(curly_strands({.strands = 1}), 1);
   Light glow;
   glow.name = "glow";

@@ -135,7 +135,7 @@ class ReferenceTraversal {
   }
 
   /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
-  static bool meets(const TriangleBlock& block, unsigned lane, const Space& space, float t_max) {
+  static bool hits(const TriangleBlock& block, unsigned lane, const Space& space, float t_max) {
     const auto at = [&](const float(&a)[3][8]) { return V3f(a[0][lane], a[1][lane], a[2][lane]); };
     const V3f edge1 = at(block.edge1), edge2 = at(block.edge2);
     const V3f p = space.direction.cross(edge2);
@@ -194,7 +194,7 @@ class ReferenceTraversal {
         const float opacity = block.opacity[i % 8];
         if (opacity < 0) std::abort();  // textured triangles are not supported here
         ++walk.result.tests;
-        if (meets(block, i % 8, space, walk.ray.t_max)) walk.result.transmittance *= 1 - opacity;
+        if (hits(block, i % 8, space, walk.ray.t_max)) walk.result.transmittance *= 1 - opacity;
       }
     }
   }

@@ -164,6 +164,23 @@ inline Mesh square_mesh(float side, float height, int divisions, std::uint32_t m
   return mesh;
 }
 
+/// One slanted opaque square that a ray along +Y hits just beyond `distance`. Its node contains the
+/// ray's end, so it must be opened at every footprint, and the square must not count.
+struct SquareBeyond {
+  Scene scene;
+  V3f origin;  ///< of the ray
+
+  explicit SquareBeyond(float distance) {
+    scene.materials.push_back(material_of(1));
+    const float half = 0.05f * distance, tilt = 0.02f * distance;
+    Mesh mesh;
+    append_grid(mesh, {-half, 1.001f * distance - tilt, -half}, {2 * half, 2 * tilt, 0},
+                {0, 0, 2 * half}, 1, 0);
+    place(scene, std::move(mesh));
+    origin = V3f(1e-3f * half, 0, 2e-3f * half);
+  }
+};
+
 /// Appends 1000 triangles at z >= 9, behind cameras that look along -z from a smaller z. With them
 /// a mesh is large enough to stay an instance.
 inline void add_triangles_out_of_sight(Mesh& mesh) {

@@ -47,18 +47,18 @@ struct Candidate {
 /// The remaining effort of the searches, and their working memory.
 struct Effort {
   std::size_t looks = 0;
-  std::vector<Candidate> waiting;
+  std::vector<Candidate> pending;
 };
 
 /// Updates `best` with the best sibling among `top` and the nodes below, within the remaining
 /// effort.
 inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candidate top,
                        Effort& effort, Insertion& best) {
-  std::vector<Candidate>& waiting = effort.waiting;
-  waiting.assign(1, top);
-  for (; !waiting.empty() && effort.looks > 0; --effort.looks) {
-    const Candidate at = waiting.back();
-    waiting.pop_back();
+  std::vector<Candidate>& pending = effort.pending;
+  pending.assign(1, top);
+  for (; !pending.empty() && effort.looks > 0; --effort.looks) {
+    const Candidate at = pending.back();
+    pending.pop_back();
     if (at.gain - moved.area <= best.gain) continue;
     const LinkedNode& node = nodes[at.node];
     Box8 both = node.box;
@@ -67,8 +67,8 @@ inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candida
     if (at.gain - area > best.gain) best = {at.node, at.gain - area};
     const float below = at.gain - (area - node.area);
     if (node.child[0] == 0 || below - moved.area <= best.gain) continue;
-    waiting.push_back({node.child[0], below});
-    waiting.push_back({node.child[1], below});
+    pending.push_back({node.child[0], below});
+    pending.push_back({node.child[1], below});
   }
 }
 
@@ -120,13 +120,13 @@ class Reinsertion {
   }
 
   [[nodiscard]] bool is_too_deep() const {
-    std::vector<std::pair<std::uint32_t, unsigned>> waiting{{0, 1}};  // with their levels
-    while (!waiting.empty()) {
-      const auto [node, level] = waiting.back();
-      waiting.pop_back();
+    std::vector<std::pair<std::uint32_t, unsigned>> pending{{0, 1}};  // with their levels
+    while (!pending.empty()) {
+      const auto [node, level] = pending.back();
+      pending.pop_back();
       if (level > kDeepest) return true;
       if (nodes_[node].child[0] == 0) continue;
-      for (const std::uint32_t child : nodes_[node].child) waiting.push_back({child, level + 1});
+      for (const std::uint32_t child : nodes_[node].child) pending.push_back({child, level + 1});
     }
     return too_deep_;
   }

@@ -44,12 +44,12 @@ std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opac
   if (std::none_of(opacities.begin(), opacities.end(), [](float o) { return o == 1.0f; })) {
     return {};
   }
-  ConnectedVertices ticket_count(mesh.positions.size());
+  ConnectedVertices components(mesh.positions.size());
   for (std::size_t t = 0; t < opacities.size(); ++t) {
     if (!opaque(t)) continue;
     const std::uint32_t* index = &mesh.indices[3 * t];
-    ticket_count.join(index[0], index[1]);
-    ticket_count.join(index[0], index[2]);
+    components.join(index[0], index[1]);
+    components.join(index[0], index[2]);
   }
   struct Sums {
     V3f vector{0, 0, 0};
@@ -60,16 +60,16 @@ std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opac
     if (!opaque(t)) continue;
     const std::uint32_t* index = &mesh.indices[3 * t];
     const V3f vector = area_vector(mesh, index);
-    Sums& ticket = sums[ticket_count.root(index[0])];
-    ticket.vector += vector;
-    ticket.area += vector.length();
+    Sums& component = sums[components.root(index[0])];
+    component.vector += vector;
+    component.area += vector.length();
   }
   std::vector<bool> closed(opacities.size());
   bool any = false;
   for (std::size_t t = 0; t < opacities.size(); ++t) {
     if (!opaque(t)) continue;
-    const Sums& ticket = sums[ticket_count.root(mesh.indices[3 * t])];
-    closed[t] = ticket.vector.length() < kOpenShare * ticket.area;
+    const Sums& component = sums[components.root(mesh.indices[3 * t])];
+    closed[t] = component.vector.length() < kOpenShare * component.area;
     any |= closed[t];
   }
   return any ? closed : std::vector<bool>{};
@@ -92,11 +92,11 @@ float enclosed_share(const SurfaceAreas& a, const SurfaceAreas& b, int axis) {
   // The area whose opposite side is not in the same node; fronts are positive, backs negative.
   const float single_a = a.front[axis] - a.back[axis], single_b = b.front[axis] - b.back[axis];
   if (single_a * single_b >= 0.0f) return 0.0f;
-  const auto hidden = [&](const SurfaceAreas& node) {
+  const auto occluded = [&](const SurfaceAreas& node) {
     return std::max(node.front[axis], node.back[axis]) + node.other[axis];
   };
   const float paired = std::min(std::fabs(single_a), std::fabs(single_b));
-  return std::min(1.0f, paired / std::min(hidden(a), hidden(b)));
+  return std::min(1.0f, paired / std::min(occluded(a), occluded(b)));
 }
 
 }  // namespace dapple

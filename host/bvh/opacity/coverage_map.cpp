@@ -188,24 +188,24 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
 }
 
 DAPPLE_MULTIVERSION
-void HiddenCells::add_uniform(const CellTriangle& triangle, const CellCoverage& coverage,
-                              float opacity) {
+void OccludedCells::add_uniform(const CellTriangle& triangle, const CellCoverage& coverage,
+                                float opacity) {
   row0 = std::min(row0, triangle.row0);
   row1 = std::max(row1, triangle.row1);
   for (int cell = triangle.row0 * kMapSize; cell < (triangle.row1 + 1) * kMapSize; ++cell) {
-    hidden[cell] += opacity * coverage.share[cell];
+    occluded[cell] += opacity * coverage.share[cell];
   }
 }
 
-void HiddenCells::clear() {
-  for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) hidden[cell] = 0.0f;
+void OccludedCells::clear() {
+  for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) occluded[cell] = 0.0f;
   row0 = kMapSize;
   row1 = -1;
 }
 
-void HiddenCells::enclose(HiddenCells& back) {
+void OccludedCells::enclose(OccludedCells& back) {
   for (int cell = back.row0 * kMapSize; cell < (back.row1 + 1) * kMapSize; ++cell) {
-    hidden[cell] = std::max(hidden[cell], back.hidden[cell]);
+    occluded[cell] = std::max(occluded[cell], back.occluded[cell]);
   }
   row0 = std::min(row0, back.row0);
   row1 = std::max(row1, back.row1);
@@ -213,15 +213,15 @@ void HiddenCells::enclose(HiddenCells& back) {
 }
 
 DAPPLE_MULTIVERSION
-void HiddenCells::flush(std::array<float, kMapCells>& map) {
+void OccludedCells::flush(std::array<float, kMapCells>& map) {
   for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) {
-    map[cell] *= 1.0f - std::min(1.0f, hidden[cell]);
+    map[cell] *= 1.0f - std::min(1.0f, occluded[cell]);
   }
   clear();
 }
 
 std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
-                          CellCoverage& coverage, HiddenCells& cells, HiddenCells& back) {
+                          CellCoverage& coverage, OccludedCells& cells, OccludedCells& back) {
   std::uint64_t done = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (!triangles[t].closed) continue;

@@ -90,15 +90,15 @@ void rasterize(const CellTriangle& triangle, CellCoverage& coverage);
 
 /// The share of each cell that a group of triangles occludes, in the map of one axis. The triangles
 /// lie side by side.
-struct HiddenCells {
-  std::array<float, kMapCells> hidden;
+struct OccludedCells {
+  std::array<float, kMapCells> occluded;
   int row0 = kMapSize, row1 = -1;  ///< rows touched, inclusive
 
-  HiddenCells() { fill_cells(hidden, 0.0f); }
+  OccludedCells() { fill_cells(occluded, 0.0f); }
   void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
   /// Sets each cell to the maximum of this and `back`: fronts and backs of closed surfaces. Clears
   /// `back`.
-  void enclose(HiddenCells& back);
+  void enclose(OccludedCells& back);
   void clear();
   /// Multiplies the remaining transmittance into `map`, then clears this.
   void flush(std::array<float, kMapCells>& map);
@@ -140,7 +140,7 @@ class NodeCoverage {
   CoverageMap map_;
   std::array<std::array<float, kMapCells>, 3> covered_;  ///< share of each cell that boxes cover
   SurfaceAreas areas_;
-  HiddenCells layer_;  ///< scratch of add_layer(); empty between calls
+  OccludedCells layer_;  ///< scratch of add_layer(); empty between calls
   std::array<CellRanges, DAPPLE_BVH_WIDTH> children_;
   int child_count_ = 0;
 };
@@ -159,7 +159,7 @@ CoverageMap uniform_map(const V3f& opacity);
 unsigned side_by_side(const CoveringTriangle& a, const CoveringTriangle& b);
 
 template <class OpacityAt>
-void add_varying(HiddenCells& cells, const CellTriangle& t, const CellCoverage& coverage,
+void add_varying(OccludedCells& cells, const CellTriangle& t, const CellCoverage& coverage,
                  const OpacityAt& opacity_at) {
   cells.row0 = std::min(cells.row0, t.row0);
   cells.row1 = std::max(cells.row1, t.row1);
@@ -173,7 +173,7 @@ void add_varying(HiddenCells& cells, const CellTriangle& t, const CellCoverage& 
       const float u = std::clamp((p.x * t.edge2.y - p.y * t.edge2.x) * inverse, 0.0f, 1.0f);
       const float v = std::clamp((t.edge1.x * p.y - t.edge1.y * p.x) * inverse, 0.0f, 1.0f);
       const float excess = std::max(u + v, 1.0f);
-      cells.hidden[cell] += opacity_at(u / excess, v / excess, share) * coverage.share[cell];
+      cells.occluded[cell] += opacity_at(u / excess, v / excess, share) * coverage.share[cell];
     }
   }
 }
@@ -181,13 +181,13 @@ void add_varying(HiddenCells& cells, const CellTriangle& t, const CellCoverage& 
 /// Rasterizes the triangles of closed surfaces into `cells`, with `back` as scratch. Returns a mask
 /// with a bit for each triangle done; leaves hold at most 8 primitives.
 std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
-                          CellCoverage& coverage, HiddenCells& cells, HiddenCells& back);
+                          CellCoverage& coverage, OccludedCells& cells, OccludedCells& back);
 
 template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
            const OpacityAt& opacity_at) {
   CellCoverage coverage;
-  HiddenCells cells, back;
+  OccludedCells cells, back;
   for (int axis = 0; axis < 3; ++axis) {
     const std::span<const CoveringTriangle> triangles = covering[axis];
     std::uint64_t done = draw_closed(box, triangles, axis, coverage, cells, back);

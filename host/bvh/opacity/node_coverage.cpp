@@ -163,19 +163,19 @@ void merge_rows(const Rows& rows, const CellRanges& child, int axis, const Cells
     load_row(&map[row * kMapSize], transmittance);
     load_row(&map_covered[row * kMapSize], covered);
     load_row(&opacity[row * kMapSize], added);
-    const Row hidden = one - transmittance;
-    Row now = hidden + added, all = covered + f;
+    const Row occluded = one - transmittance;
+    Row now = occluded + added, all = covered + f;
     if (row >= overlapped.first && row <= overlapped.last) {
       Row both;
       load_row(&overlap[row * kMapSize], both);
       keep_min(both, f);
       keep_min(both, covered);
-      const Row independent = hidden * added;
-      Row smaller = hidden * f;
+      const Row independent = occluded * added;
+      Row smaller = occluded * f;
       keep_min(smaller, added * covered);
       Row twice =
           both * (independent + enclosed * (smaller - independent)) / (covered * f + 1e-20f);
-      keep_min(twice, hidden);
+      keep_min(twice, occluded);
       keep_min(twice, added);
       now -= twice;
       all -= both;
@@ -235,7 +235,7 @@ void NodeCoverage::add_layer(const Covering& covering, const Box3f& child_box,
       rasterize(projected, coverage);
       layer_.add_uniform(projected, coverage, triangle.opacity);
     }
-    merge(ranges, axis, layer_.row0, layer_.row1, layer_.hidden, areas);
+    merge(ranges, axis, layer_.row0, layer_.row1, layer_.occluded, areas);
     layer_.clear();
   }
   areas_.add(areas);

@@ -196,7 +196,7 @@ class DirectionalOpacity {
     const Four area = facing.x + facing.y + facing.z;
     const Four depth = blend(depths_, seen, area);
     const Four chords = chord_variances(facing);
-    Views views = meet(area, depth, chords);
+    Views views = by_model(area, depth, chords);
     // Content in the middle of the box does not become less opaque because the corners of the box
     // are empty: mass concentration reduces the variance.
     const Four uniform =
@@ -210,14 +210,15 @@ class DirectionalOpacity {
   /// Views along the axes. Their opacities are known, and the chords of a view have equal lengths:
   /// the variance is 0. The fourth lane has area 0.
   [[nodiscard]] Views along_axes() const {
-    Views views = meet(Four{faces_.x, faces_.y, faces_.z, 0.0f},
-                       Four{depths_.x, depths_.y, depths_.z, 0.0f}, all(0.0f));
+    Views views = by_model(Four{faces_.x, faces_.y, faces_.z, 0.0f},
+                           Four{depths_.x, depths_.y, depths_.z, 0.0f}, all(0.0f));
     views.opacity = Four{axes_.x, axes_.y, axes_.z, 0.0f};
     return views;
   }
 
  private:
-  [[nodiscard]] Views meet(Four area, Four depth, Four chords) const {
+  /// Sets all members but `opacity`.
+  [[nodiscard]] Views by_model(Four area, Four depth, Four chords) const {
     const Four variance = depth_variances(depth, chords, compensated_);
     const Four transmittance = mean_transmittances(depth, variance);
     return {area, 1.0f - transmittance, depth * transmittance / (1.0f + variance * depth),
@@ -226,8 +227,8 @@ class DirectionalOpacity {
 
   /// box_depth() of dapple/shared/opacity.h. There, correlations are multiplied by the signs of the
   /// direction; here, the areas `seen` have these signs.
-  [[nodiscard]] Four blend(const V3f& along, const FourVectors& seen, Four area) const {
-    const Four x = along.x * seen.x, y = along.y * seen.y, z = along.z * seen.z;
+  [[nodiscard]] Four blend(const V3f& axes, const FourVectors& seen, Four area) const {
+    const Four x = axes.x * seen.x, y = axes.y * seen.y, z = axes.z * seen.z;
     const Four mixed = correlation_.x * x * y + correlation_.y * y * z + correlation_.z * z * x;
     return root(largest(x * x + y * y + z * z + 2.0f * mixed, all(0.0f))) / (area + 1e-37f);
   }

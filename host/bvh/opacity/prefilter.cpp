@@ -68,17 +68,17 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const float face = face_area(box, axis);
     if (!(face > 0.0f)) continue;
-    float hidden = 0, square = 0;
+    float occluded = 0, square = 0;
     for (const CoveringTriangle& t : leaf.along(axis)) {
       const float share = 0.5f * std::fabs(t.edge1.cross(t.edge2)[axis]) / face;
-      hidden += t.opacity * share;
+      occluded += t.opacity * share;
       square += t.opacity * t.opacity * share;
       off_centre += t.opacity * share * face * mean_off_centre(t, box, axis);
       total += t.opacity * share * face;
     }
-    opacity.axes[axis] = hidden = std::min(hidden, 1.0f);
-    variance += std::max(0.0f, square - hidden * hidden);
-    greatest += hidden * (1.0f - hidden);
+    opacity.axes[axis] = occluded = std::min(occluded, 1.0f);
+    variance += std::max(0.0f, square - occluded * occluded);
+    greatest += occluded * (1.0f - occluded);
   }
   if (greatest > 1e-6f) opacity.clumping = std::min(1.0f, variance / greatest);
   if (total > 0.0f) opacity.mass_concentration = mass_concentration_of(off_centre / total);

@@ -15,7 +15,8 @@ constexpr float kSamePoint = 1e-3f;
 /// disk.
 constexpr float kCapReach = static_cast<float>(std::numbers::pi / 4);
 
-bool meet(const StrandSegment& a, const StrandSegment& b) {
+/// Whether the segments share an end point.
+bool are_joined(const StrandSegment& a, const StrandSegment& b) {
   const float tolerance = kSamePoint * (b.point[1] - b.point[0]).length();
   for (const V3f& p : a.point) {
     for (const V3f& q : b.point) {
@@ -52,22 +53,24 @@ void add_surface(const StrandSegment& segment, NormalMoments& normals, SurfaceAr
   const V3f along = segment.point[1] - segment.point[0];
   const float width = segment.radius[0] + segment.radius[1];
   normals.add_cylinder(along, 0.5f * width, segment.opacity);
-  V3f hidden;
+  V3f occluded;
   for (int axis = 0; axis < 3; ++axis) {
-    hidden[axis] = width * std::hypot(along[column_axis(axis)], along[row_axis(axis)]);
+    occluded[axis] = width * std::hypot(along[column_axis(axis)], along[row_axis(axis)]);
     for (int end = 0; end < 2; ++end) {
       const float radius = segment.radius[end];
-      hidden[axis] += segment.cap[end] ? 2 * kCapReach * radius * radius : 0.0f;
+      occluded[axis] += segment.cap[end] ? 2 * kCapReach * radius * radius : 0.0f;
     }
   }
-  areas.add(hidden, segment.opacity, false);
+  areas.add(occluded, segment.opacity, false);
 }
 
 bool is_one_strand(std::span<const StrandSegment> segments) {
   for (std::size_t s = 1; s < segments.size(); ++s) {
     const auto before = segments.first(s);
-    const auto meets = [&](const StrandSegment& other) { return meet(other, segments[s]); };
-    if (std::none_of(before.begin(), before.end(), meets)) return false;
+    const auto is_joined = [&](const StrandSegment& other) {
+      return are_joined(other, segments[s]);
+    };
+    if (std::none_of(before.begin(), before.end(), is_joined)) return false;
   }
   return true;
 }

@@ -31,7 +31,7 @@ void check_memory(const DeviceInfo& device, const MemoryNeed& need, const char* 
   }
   if (need.largest_buffer > device.largest_buffer_bytes) {
     throw Error(ErrorKind::device,
-                fmt::format("the scene {} {} bytes in one piece, {} gives {} at most; {}", how,
+                fmt::format("the scene {} {} bytes in one buffer, {} gives {} at most; {}", how,
                             need.largest_buffer, device.name, device.largest_buffer_bytes, kNext));
   }
 }

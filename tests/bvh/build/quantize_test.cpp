@@ -162,7 +162,7 @@ TEST(Quantize, SidesOfFlatBoxesAreNoDenormalNumbers) {
   }
 }
 
-TEST(Quantize, EmptySlotsHaveTheirBoundsTheWrongWayRound) {
+TEST(Quantize, EmptySlotsHaveLowerBoundsAboveUpperOnes) {
   BvhNode node{};
   set_grid(node, Box3f(V3f(0, 0, 0), V3f(1, 2, 3)));
   set_child_box(node, 3, Box3f(V3f(0, 0, 0), V3f(1, 1, 1)));

@@ -98,7 +98,7 @@ TEST(Reinsertion, TreesWithoutGrandparentsStayAsTheyAre) {
   }
 }
 
-TEST(Reinsertion, BoxesAroundOneAnotherMakeNoChain) {
+TEST(Reinsertion, NestedBoxesMakeNoChain) {
   std::vector<PrimitiveBox> boxes;
   for (std::uint32_t i = 0; i < 20000; ++i) {
     const V3f corner(static_cast<float>(i + 1));
@@ -109,7 +109,7 @@ TEST(Reinsertion, BoxesAroundOneAnotherMakeNoChain) {
 
 // No box contains another, and all have the same centre: a search without a limit would visit
 // nearly all nodes, and take far too long.
-TEST(Reinsertion, OverlappingBoxesAreLookedAtInReason) {
+TEST(Reinsertion, OverlappingBoxesTakeLimitedTime) {
   std::mt19937 random(9);
   std::normal_distribution<float> exponent(0.0f, 1.0f);
   std::vector<PrimitiveBox> boxes;
@@ -133,7 +133,7 @@ TEST(Reinsertion, InfiniteAreasAreLeftAlone) {
   EXPECT_EQ(tree[0].count, 100u);
 }
 
-TEST(Reinsertion, BoxesInOnePlaceAreNoReasonToMove) {
+TEST(Reinsertion, EqualBoxesAreNotMoved) {
   std::vector<PrimitiveBox> boxes(200, random_boxes(1)[0]);
   for (std::uint32_t i = 0; i < 200; ++i) boxes[i].primitive = i;
   EXPECT_EQ(part_left(boxes), 1);

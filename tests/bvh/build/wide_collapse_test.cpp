@@ -115,11 +115,11 @@ TEST(WideCollapse, InfiniteAreasMakeNoLargeLeaves) {
   std::vector<BinaryNode> tree;
   grow(0, 1000, std::numeric_limits<float>::infinity(), random, tree);
   const CheapestNodes nodes(tree, kLeafSize);
-  std::vector<std::uint32_t> waiting{0};
+  std::vector<std::uint32_t> pending{0};
   std::uint32_t in_leaves = 0;
-  while (!waiting.empty()) {
-    const std::uint32_t node = waiting.back();
-    waiting.pop_back();
+  while (!pending.empty()) {
+    const std::uint32_t node = pending.back();
+    pending.pop_back();
     if (nodes.is_leaf(node)) {
       ASSERT_LE(tree[node].count, kLeafSize);
       in_leaves += tree[node].count;
@@ -127,7 +127,7 @@ TEST(WideCollapse, InfiniteAreasMakeNoLargeLeaves) {
     }
     const CheapestNodes::Children children = nodes.children_of(node);
     ASSERT_GE(children.count, 2u);
-    waiting.insert(waiting.end(), children.node.begin(), children.node.begin() + children.count);
+    pending.insert(pending.end(), children.node.begin(), children.node.begin() + children.count);
   }
   EXPECT_EQ(in_leaves, 1000u);
 }

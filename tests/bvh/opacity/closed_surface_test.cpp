@@ -70,7 +70,7 @@ TEST(ClosedSurface, APrismIsClosedEvenWithOpenEndsACardIsNot) {
   for (std::size_t t = 0; t < closed.size(); ++t) EXPECT_EQ(closed[t], t < prism) << t;
 }
 
-TEST(ClosedSurface, WhatLightPassesIsNone) {
+TEST(ClosedSurface, TransparentSurfacesAreNotClosed) {
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0, 1, 0}, 0.02f, 6, 4);
   EXPECT_TRUE(closed_triangles(mesh, std::vector<float>(mesh.primitive_count(), 0.9f)).empty());
@@ -99,7 +99,7 @@ TEST(ClosedSurface, AThinTwigOccludesItsSilhouetteOnce) {
   }
 }
 
-TEST(ClosedSurface, TwoTwigsOneBehindTheOtherStayTwo) {
+TEST(ClosedSurface, TwoCrossedTwigsBothOcclude) {
   // Seen along z the twigs cross, but at different depths: each occludes its own area.
   Mesh one, two;
   add_prism(one, {0, 0, 0}, {1, 1, 0.1f}, 0.004f, 6, 12);
@@ -116,19 +116,19 @@ TEST(Clumping, IsZeroForAUniformMapAndOneForAMapOfClearAndFullCells) {
     for (int cell = 0; cell < kMapCells; ++cell) axis[cell] = cell % 3 == 0 ? 0.0f : 1.0f;
   }
   EXPECT_NEAR(map.clumping(), 1, 1e-5f);
-  EXPECT_EQ(uniform_map({1, 1, 1}).clumping(), 0) << "a solid is even";
+  EXPECT_EQ(uniform_map({1, 1, 1}).clumping(), 0) << "a solid is uniform";
 }
 
 TEST(Clumping, AClumpOccludesItsProjectedAreaAndItsFactorMatchesDepths) {
   NodeOpacity clump;
   clump.axes = {0.5f, 0.5f, 0.5f};
   const V3f size(1, 1, 1), diagonal = V3f(1, 1, 1).normalized();
-  const float even = opacity_along(clump, size, diagonal);
+  const float uniform = opacity_along(clump, size, diagonal);
   clump.clumping = 1;
   // The projected area is that of an ellipsoid, half of a face; along the diagonal the box has the
   // projected area of sqrt(3) faces.
   EXPECT_NEAR(opacity_along(clump, size, diagonal), 0.5f / std::sqrt(3.0f), 1e-5f);
-  EXPECT_GT(even, opacity_along(clump, size, diagonal));
+  EXPECT_GT(uniform, opacity_along(clump, size, diagonal));
   EXPECT_LT(clumping_factor(clump, size), 1.0f);
   EXPECT_NEAR(opacity_along(clump, size, V3f(1, 0, 0)), 0.5f, 1e-5f);
 }

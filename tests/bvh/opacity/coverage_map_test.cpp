@@ -1,5 +1,5 @@
 // Coverage maps: drawing triangles and compositing the maps of children keep areas. Opacity
-// mip levels: means of a texture's opacity over squares of texels, with its cutoff and wrap modes.
+// mip levels: means of a texture's opacity over mip footprints, with its cutoff and wrap modes.
 #include "bvh/opacity/coverage_map.hpp"
 
 #include <gtest/gtest.h>
@@ -246,7 +246,7 @@ TEST(OpacityMipLevels, ItsTopIsTheMeanOfAllTexelsOfOddSizesToo) {
   }
 }
 
-TEST(OpacityMipLevels, OneTexelWideIsTheTexelItself) {
+TEST(OpacityMipLevels, AMeanOverOneTexelIsThatTexel) {
   const Texture texture = noise_texture(16, 8, 7);
   const OpacityMipLevels mip_levels(texture, 0.5f, -1);
   for (std::uint32_t y = 0; y < 8; ++y) {

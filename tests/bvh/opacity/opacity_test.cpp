@@ -62,13 +62,13 @@ TEST(OpacityModel, AClumpOccludesItsEllipsoidsAreaFromAnyDirection) {
 
 TEST(OpacityModel, UniformlySpreadContentsOccludeTheirOpacityAlongEachAxis) {
   for (const float opacity : {0.0f, 0.001f, 0.3f, 0.7f, 0.99f, 0.9999f}) {
-    NodeOpacity even;
-    even.axes = V3f(opacity);
+    NodeOpacity uniform;
+    uniform.axes = V3f(opacity);
     for (int axis = 0; axis < 3; ++axis) {
       V3f direction(0.0f);
       direction[axis] = -2;
       // The exponential has a relative error of 4e-6.
-      EXPECT_NEAR(opacity_along(even, V3f(1, 2, 3), direction), opacity, 4e-6f);
+      EXPECT_NEAR(opacity_along(uniform, V3f(1, 2, 3), direction), opacity, 4e-6f);
     }
   }
 }
@@ -108,32 +108,32 @@ TEST(OpacityModel, FactorsOfClumpsAreThoseOfTheirMirrorImagesAndOfAxesRenamed) {
 /// Sums over random directions: the projected area that a clump occludes (`wanted`), the area that
 /// the same content occludes if it is spread uniformly (`given`), and the derivative of `given` by
 /// a factor on optical depths (`change`).
-struct HiddenArea {
+struct OccludedArea {
   double wanted = 0, given = 0, change = 0;
 };
 
-HiddenArea hidden_area(const NodeOpacity& clump, const V3f& size, std::mt19937& random) {
+OccludedArea occluded_area(const NodeOpacity& clump, const V3f& size, std::mt19937& random) {
   constexpr float kStep = 0.01f;
   const auto with_factor = [&](float factor) {
-    NodeOpacity even = clump;
-    even.clumping = 0;
+    NodeOpacity uniform = clump;
+    uniform.clumping = 0;
     for (int axis = 0; axis < 3; ++axis)
-      even.axes[axis] = 1.0f - std::exp(-factor * depth_of(clump.axes[axis]));
-    return even;
+      uniform.axes[axis] = 1.0f - std::exp(-factor * depth_of(clump.axes[axis]));
+    return uniform;
   };
-  const NodeOpacity less = with_factor(1 - kStep), even = with_factor(1),
+  const NodeOpacity less = with_factor(1 - kStep), uniform = with_factor(1),
                     more = with_factor(1 + kStep);
-  HiddenArea hidden;
+  OccludedArea occluded;
   for (int i = 0; i < 400; ++i) {
     const V3f d = random_direction(random);
     const double facing = size.y * size.z * std::fabs(d.x) + size.z * size.x * std::fabs(d.y) +
                           size.x * size.y * std::fabs(d.z);
-    hidden.wanted += facing * opacity_along(clump, size, d);
-    hidden.given += facing * opacity_along(even, size, d);
-    hidden.change +=
+    occluded.wanted += facing * opacity_along(clump, size, d);
+    occluded.given += facing * opacity_along(uniform, size, d);
+    occluded.change +=
         facing * (opacity_along(more, size, d) - opacity_along(less, size, d)) / (2 * kStep);
   }
-  return hidden;
+  return occluded;
 }
 
 TEST(OpacityModel, FactorsCorrectTheLowerMeanOcclusionOfClumps) {
@@ -143,9 +143,9 @@ TEST(OpacityModel, FactorsCorrectTheLowerMeanOcclusionOfClumps) {
     NodeOpacity clump = random_opacity(random);
     clump.clumping = 0.3f;
     const V3f size(1, 2, 1.5f);
-    const HiddenArea hidden = hidden_area(clump, size, random);
+    const OccludedArea occluded = occluded_area(clump, size, random);
     factors += clumping_factor(clump, size) - 1;
-    expected += (hidden.wanted - hidden.given) / hidden.change;
+    expected += (occluded.wanted - occluded.given) / occluded.change;
   }
   EXPECT_LT(expected, -0.02 * 500) << "the case does not test much";
   // clumping_factor() integrates over seven directions, here with an error of 3 %. If the diagonals
@@ -164,7 +164,7 @@ TEST(OpacityModel, ASolidBoxIsOpaqueInEveryDirection) {
   }
 }
 
-TEST(OpacityModel, ASheetShowsItsOwnOpacityFaceOn) {
+TEST(OpacityModel, ASheetSeenFaceOnHasItsOwnOpacity) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const float opacity : {0.01f, 0.3f, 0.7f, 0.93f, 0.99f}) {
       V3f opacities(0.0f), size(2, 3, 4), direction(0.0f);
@@ -349,8 +349,8 @@ TEST(OpacityModel, CentreWeightsKeepTheMeanDepthOfRaysThatFillTheBox) {
   }
 }
 
-TEST(OpacityModel, ThingsAcrossTheMiddleOfABoxAreFoundConcentrated) {
-  CoverageMap middle, even = uniform_map({0.3f, 0.3f, 0.3f}), corners;
+TEST(OpacityModel, SurfacesThroughTheMiddleOfABoxHaveMassConcentration) {
+  CoverageMap middle, uniform = uniform_map({0.3f, 0.3f, 0.3f}), corners;
   for (int axis = 0; axis < 3; ++axis) {
     for (int row = 4; row < 12; ++row) {
       for (int column = 4; column < 12; ++column)
@@ -361,7 +361,7 @@ TEST(OpacityModel, ThingsAcrossTheMiddleOfABoxAreFoundConcentrated) {
   }
   const Box3f box(V3f(0, 0, 0), V3f(1, 2, 3));
   EXPECT_EQ(map_opacity(middle, {}, box).mass_concentration, 1);
-  EXPECT_NEAR(map_opacity(even, {}, box).mass_concentration, 0, 0.02f);
+  EXPECT_NEAR(map_opacity(uniform, {}, box).mass_concentration, 0, 0.02f);
   EXPECT_EQ(map_opacity(corners, {}, box).mass_concentration, 0);
 }
 

@@ -43,7 +43,7 @@ TEST(OpacityCode, DecodingIsWithinHalfACodeAndKeepsSmallOpacities) {
   EXPECT_NEAR(stored_opacity(node, 2), 1 - DAPPLE_MIN_TRANSMITTANCE, 1e-6f);
 }
 
-TEST(OpacityCode, TheStoredOpacityIsThatOfTheGrownBox) {
+TEST(OpacityCode, TheStoredOpacityIsThatOfTheEnlargedBox) {
   BvhNode node{};
   set_grid(node, Box3f(V3f(0, 0, 0), V3f(100, 50, 20)));
   // The box is a few grid steps wide, so that growing it doubles some areas.
@@ -77,7 +77,7 @@ TEST(NormalMoments, ATiltedSheetIsSeenByItsProjectedAreaFromEverywhere) {
   }
 }
 
-TEST(NormalMoments, TurnWithTheirPlacementWhateverTheMatrix) {
+TEST(NormalMoments, TransformWithTheirInstanceForEveryMatrix) {
   const V3f g(0.2f, -0.7f, 0.4f);
   NormalMoments moments;
   moments.add(g, 0.5f);

@@ -75,6 +75,17 @@ Box3f check_boxes(const SceneBvh& bvh, std::uint32_t index, std::size_t& triangl
   return all;
 }
 
+/// Expects that exact rays through the updated scene have the transmittances of a newly built one.
+void expect_fresh_transmittances(const Device& device, const DeviceScene& updated,
+                                 const Scene& moved, std::size_t count) {
+  const scene_test::SceneOnDevice fresh(moved);
+  const auto rays = scene_test::rays_through(fresh.bvh.bounds, count, 30, 0, 7);
+  const auto found = trace(device, updated, rays, Estimator::exact);
+  const auto expected = fresh.trace(rays, Estimator::exact);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    ASSERT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5f) << "ray " << i;
+}
+
 TEST(Refit, BoxesContainTheMovedTriangles) {
   const Scene still = tree();
   UpdatableBvh updatable(still);
@@ -97,12 +108,7 @@ TEST(Refit, EveryExactRayIntersectsWhatItIntersectsInAFreshBvh) {
   for (const float time : {0.4f, 1.2f, 2.9f}) {
     const Scene moved = swayed(still, time, 1.5f);
     update(device, on_device, updatable, moved);
-    const scene_test::SceneOnDevice fresh(moved);
-    const auto rays = scene_test::rays_through(fresh.bvh.bounds, 20000, 30, 0, 7);
-    const auto found = trace(device, on_device, rays, Estimator::exact);
-    const auto expected = fresh.trace(rays, Estimator::exact);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-      ASSERT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5f) << "ray " << i;
+    expect_fresh_transmittances(device, on_device, moved, 20000);
   }
 }
 
@@ -123,12 +129,7 @@ TEST(Refit, OnlyWhatMovedIsUploaded) {
   EXPECT_EQ(changes.objects_refitted, 1u);
   EXPECT_GT(written, 288u * 40);
   EXPECT_LT(written, on_device.bytes / 20);
-  const scene_test::SceneOnDevice fresh(moved);
-  const auto rays = scene_test::rays_through(fresh.bvh.bounds, 5000, 30, 0, 7);
-  const auto found = trace(device, on_device, rays, Estimator::exact);
-  const auto expected = fresh.trace(rays, Estimator::exact);
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    ASSERT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5f) << "ray " << i;
+  expect_fresh_transmittances(device, on_device, moved, 5000);
 }
 
 // Refitting keeps some opacities and does not compute them again. They must be those of a build.
@@ -229,7 +230,7 @@ TEST(Refit, InstancesThatMoveTouchTheTopLevelOnly) {
   EXPECT_EQ(bytes_of(updatable.bvh().instances), bytes_of(fresh.instances));
 }
 
-TEST(Refit, NothingIsDoneWhereNothingMoved) {
+TEST(Refit, AnUnchangedSceneChangesNothing) {
   const Scene scene = tree_and_fence();
   UpdatableBvh updatable(scene);
   const BvhUpdate update = updatable.update(scene);
@@ -267,7 +268,7 @@ TEST(Refit, AnObjectWhoseTreeHasDecayedIsBuiltAnew) {
   EXPECT_EQ(updatable.update(swayed(moved, 0.1f, 0.2f)).objects_refitted, 1u);
 }
 
-TEST(Refit, WhereTrianglesComeOrGoTheObjectIsBuiltAnew) {
+TEST(Refit, AnObjectWithAnotherNumberOfTrianglesIsBuiltAnew) {
   Scene scene = tree_and_fence();
   UpdatableBvh updatable(scene);
   scene.meshes[0].indices.resize(scene.meshes[0].indices.size() - 30);
@@ -351,7 +352,7 @@ double bytes_in(const std::vector<T>& values) {
   return static_cast<double>(values.size() * sizeof(T));
 }
 
-TEST(Refit, WhatItNeedsTakesUnderTwentyBytesATriangle) {
+TEST(Refit, RecordsTakeLessThanTwentyBytesPerTriangle) {
   const Scene scene = tree(50000);
   BuiltObject built = build_object(scene, scene.meshes[0], true);
   RefitRecord record;

@@ -149,14 +149,14 @@ TEST_F(BvhCache, ASecondBuildReadsTheSameBitsAndBuildsNothing) {
   }
 }
 
-TEST_F(BvhCache, ATreeOutlivesItsFile) {
+TEST_F(BvhCache, ABvhRemainsValidAfterItsFileIsRemoved) {
   fill_with_one();
   const SceneBvh bvh = build_bvh(single_object(), cache_);
   fs::remove_all(cache_);
   expect_same(bvh, build_bvh(single_object()));
 }
 
-TEST_F(BvhCache, WhatDoesNotEnterAMeshsTreeLeavesItsFileInUse) {
+TEST_F(BvhCache, ChangesThatDoNotAffectABvhKeepItsFile) {
   build_bvh(leafy_scene(), cache_);
   Scene scene = leafy_scene();
   scene.source = "another";
@@ -173,7 +173,7 @@ TEST_F(BvhCache, WhatDoesNotEnterAMeshsTreeLeavesItsFileInUse) {
   expect_same(bvh, build_bvh(scene));
 }
 
-TEST_F(BvhCache, WhateverEntersATreeChangesItsKey) {
+TEST_F(BvhCache, EveryInputOfABvhChangesItsKey) {
   const Scene original = single_object();
   const Checksum key = object_key(original, original.meshes[0]);
   const std::vector<std::function<void(Scene&)>> edits = {
@@ -303,7 +303,7 @@ ObjectBvh copy_of(const FinishedObject& object) {
   return copy;
 }
 
-TEST_F(BvhCache, ATreeWhoseIndicesLeaveItsArraysIsNotWalkedWhoeverSealedIt) {
+TEST_F(BvhCache, ASealedFileWithIndicesOutOfBoundsIsRefused) {
   fill_with_one();
   const Scene scene = single_object();
   const Checksum key = object_key(scene, scene.meshes[0]);
@@ -332,7 +332,7 @@ TEST_F(BvhCache, ATreeWhoseIndicesLeaveItsArraysIsNotWalkedWhoeverSealedIt) {
   }
 }
 
-TEST_F(BvhCache, StrandsOfOpacitiesOrIndicesThatCannotBeAreNotWalked) {
+TEST_F(BvhCache, ASealedFileWithInvalidStrandsIsRefused) {
   Scene scene = single_object();
   scene.meshes = {scene_test::curly_strands({.strands = 40}, 1)};
   build_bvh(scene, cache_);

@@ -115,9 +115,9 @@ TEST(Strands, OccludeWhatACapsuleOccludes) {
   // must not add anything.
   const SceneOnDevice scene(
       strand_scene(strand({{-0.2f, 0, 0}, {-0.05f, 0, 0}, {0.1f, 0, 0}, {0.2f, 0, 0}}), 0.3f));
-  const double hidden = 2 * kRadius * 0.4 + kPi * kRadius * kRadius;
+  const double occluded = 2 * kRadius * 0.4 + kPi * kRadius * kRadius;
   const double mean = mean_transmittance(scene.trace(rays_down(0.5f, 400), Estimator::exact));
-  EXPECT_NEAR((1 - mean) * 0.25, 0.3 * hidden, 0.3 * hidden * 2e-3);
+  EXPECT_NEAR((1 - mean) * 0.25, 0.3 * occluded, 0.3 * occluded * 2e-3);
   // Seen end-on, a strand is a disk.
   const SceneOnDevice upright(strand_scene(strand({{0, 0, -0.2f}, {0, 0, 0.3f}}), 0.3f));
   const double disk = kPi * kRadius * kRadius, area = 9e-4;
@@ -125,7 +125,7 @@ TEST(Strands, OccludeWhatACapsuleOccludes) {
   EXPECT_NEAR((1 - left) * area, 0.3 * disk, 0.3 * disk * 5e-3);
 }
 
-TEST(Strands, AreEnteredOnceWhereSegmentsJoin) {
+TEST(Strands, AreCountedOnceWhereSegmentsJoin) {
   // Strands with a bend of up to a right angle, in the plane z = 0 and out of it.
   for (const V3f& last : {V3f(0.1f, 0, 0), V3f(0.1f, 0.04f, 0), V3f(0.1f, 0.1f, 0),
                           V3f(0.005f, 0.1f, 0), V3f(0.1f, 0, 0.05f), V3f(0.1f, 0.02f, -0.03f)}) {
@@ -172,10 +172,11 @@ TEST(Strands, DontOccludeTheirOwnSurface) {
     }
   }
   ASSERT_GT(rays.size(), 4000u);
-  std::size_t hidden = 0;
-  for (const Occlusion& one : scene.trace(rays, Estimator::exact)) hidden += one.transmittance < 1;
+  std::size_t occluded = 0;
+  for (const Occlusion& one : scene.trace(rays, Estimator::exact))
+    occluded += one.transmittance < 1;
   // The strand is not quite straight: a few rays graze the next segment.
-  EXPECT_LT(hidden, rays.size() / 50);
+  EXPECT_LT(occluded, rays.size() / 50);
 }
 
 TEST(Strands, PrefilteredWithoutAFootprintIsExact) {

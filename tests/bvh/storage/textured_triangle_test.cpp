@@ -102,7 +102,7 @@ TEST(TexturedTriangle, TexelsOfPowersOfTwoAreExactAndNeighboursAgree) {
       packed(corners_at(shared, {0.3f, 0.7f}, {0.2f, 0.2f}), Wrap::repeat, Wrap::clamp).uv[0]);
 }
 
-TEST(TexturedTriangle, NoCoordinateOrAlphaOfAFileMakesOneThatIsNotFinite) {
+TEST(TexturedTriangle, EveryCoordinateAndAlphaPacksToAFiniteValue) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const float values[] = {0,     1,          -1e30f,    1e30f,
                           3e38f, -kInfinity, kInfinity, std::nanf(""),
@@ -146,7 +146,7 @@ TEST(TexturedTriangle, AlphasHaveTwelveBitsAndThoseOf8BitColoursAreExact) {
   }
 }
 
-TEST(TexturedTriangle, SizesOfTexelsComeBackAsPowersOfTwo) {
+TEST(TexturedTriangle, SizesOfTexelsAreStoredAsPowersOfTwo) {
   const auto held = [](float size) {
     TexturedCorners corners = corners_at({0, 0}, {1, 0}, {0, 1});
     corners.material = DAPPLE_MAX_TEXTURED_MATERIALS - 1;
@@ -166,7 +166,7 @@ TEST(TexturedTriangle, SizesOfTexelsComeBackAsPowersOfTwo) {
     EXPECT_EQ(held(unknown), 0) << unknown;
 }
 
-TEST(TexturedTriangle, MaterialsAndWhetherTexturesCountComeBack) {
+TEST(TexturedTriangle, MaterialsAndTextureFlagsAreUnpackedUnchanged) {
   TexturedCorners corners = corners_at({0.99f, 0.01f}, {0.5f, 0.9f}, {-7, 1});
   corners.alpha = {0.1f, 0.9f, 0.5f};
   for (const std::uint32_t material :

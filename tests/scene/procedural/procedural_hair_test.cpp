@@ -16,7 +16,7 @@ const V3f kCentre(0, 0.12f, 0), kRadii(0.075f, 0.115f, 0.095f);
 
 float head_distance(V3f p) { return ((p - kCentre) / kRadii).length(); }
 
-TEST(ProceduralHair, HasTheStrandsSegmentsRadiiAndOpacityAskedFor) {
+TEST(ProceduralHair, HasTheStrandsSegmentsRadiiAndOpacityOfItsParameters) {
   const Scene scene = make_procedural("scene:hair?strands=70&segments=5&radius=0.001&opacity=0.4");
   const Mesh& hair = scene.meshes.at(0);
   ASSERT_TRUE(hair.has_strands());

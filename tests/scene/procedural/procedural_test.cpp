@@ -11,29 +11,13 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
-
+#include "support/fingerprint.hpp"
 namespace dapple {
 namespace {
 
-// FNV-1a, a hash of bytes. hash_of() applies it to everything in a scene that affects the picture.
-class Hash {
- public:
-  template <typename T>
-  void add(const std::vector<T>& values) {
-    add_bytes(values.data(), values.size() * sizeof(T));
-  }
-  void add_bytes(const void* data, std::size_t count) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < count; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3ULL;
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
-
+// A hash of everything in a scene that affects the picture.
 std::uint64_t hash_of(const Scene& scene) {
-  Hash hash;
+  Fingerprint hash;
   for (const Mesh& mesh : scene.meshes) {
     hash.add(mesh.positions);
     hash.add(mesh.indices);
@@ -108,7 +92,7 @@ TEST(Procedural, ASceneHasTheSameBitsOnEveryMachine) {
   EXPECT_EQ(hash_of(make_procedural("scene:forest?leaves=50&trees=9")), 0xa09a6504e03f22e4ULL);
 }
 
-TEST(Procedural, ATreeHasExactlyTheLeavesAskedFor) {
+TEST(Procedural, ATreeHasExactlyTheNumberOfLeavesOfItsParameter) {
   for (const std::size_t leaves : {1u, 2u, 77u, 1234u, 50001u}) {
     const Scene scene = make_procedural("scene:tree?leaves=" + std::to_string(leaves));
     const Mesh& mesh = scene.meshes.at(0);
@@ -141,7 +125,7 @@ TEST(Procedural, TheFrontSidesOfBarkAreOutside) {
   EXPECT_GT(flux, 0);
 }
 
-TEST(Procedural, ATreeStandsOnTheOriginAndIsAboutAsTallAsAskedFor) {
+TEST(Procedural, ATreeStandsOnTheOriginAndHasAboutTheHeightOfItsParameter) {
   for (const float height : {1.0f, 8.0f, 30.0f}) {
     const Scene scene = make_procedural("scene:tree?leaves=20000&height=" + std::to_string(height));
     const Box3f bounds = scene_bounds(scene);
@@ -237,7 +221,7 @@ TEST(Procedural, ForestTreesAreTurnedAboutYAndScaledWithinBounds) {
   }
 }
 
-TEST(Procedural, SheetsLieWhereAStackSaysSo) {
+TEST(Procedural, SheetsOfAStackHaveTheGapsOfItsParameters) {
   const Scene scene = make_procedural("scene:stack?layers=3&gap=0.5&opacity=0.4");
   EXPECT_EQ(scene.materials.at(0).name, "sheet");
   EXPECT_EQ(scene.materials.at(0).alpha_mode, AlphaMode::blend);

@@ -1,0 +1,32 @@
+#include "commands/shared_options.hpp"
+
+namespace dapple {
+
+void add_estimator_option(CLI::App& app, std::string& estimator) {
+  app.add_option("--estimator", estimator,
+                 "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the "
+                 "ray's footprint covers")
+      ->capture_default_str();
+}
+
+void add_outside_option(CLI::App& app, bool& allow_outside) {
+  app.add_flag("--allow-outside", allow_outside,
+               "Let a glTF file name buffers and images outside of its folder");
+}
+
+void add_device_options(CLI::App& app, std::string& device, std::string& kernel_dir,
+                        std::string& cache) {
+  app.add_option("--device", device, "OpenCL device, by part of its name (see dapple devices)");
+  app.add_option("--kernel-dir", kernel_dir,
+                 "Read OpenCL kernels from this folder (for developers)");
+  app.add_option("--cache", cache,
+                 "Keep built BVHs in this folder, made if there is none, and reuse them; it may be "
+                 "deleted at any time");
+}
+
+void add_report_options(CLI::App& app, std::string& stats_json, bool& quiet) {
+  app.add_option("--stats-json", stats_json, "Write the statistics as JSON");
+  app.add_flag("-q,--quiet", quiet, "Print nothing but errors");
+}
+
+}  // namespace dapple
