@@ -100,6 +100,12 @@ double parse_seconds(const std::string& flag, const std::string& text) {
               fmt::format("{} {}: expected a time above 0, as in 30, 30s, 5m or 1h", flag, text));
 }
 
+Normals parse_normals(const std::string& text) {
+  if (text == "shading") return Normals::shading;
+  if (text == "geometric") return Normals::geometric;
+  throw Error(ErrorKind::usage, fmt::format("--normals {}: it is shading or geometric", text));
+}
+
 Packets parse_packets(const std::string& text) {
   if (text == "auto") return Packets::automatic;
   if (text == "none") return Packets::none;

@@ -17,6 +17,8 @@ PixelRect parse_crop(const std::string& text);
 std::pair<std::string, float> parse_opacity(const std::string& text);
 /// "exact" or "prefiltered"
 Estimator parse_estimator(const std::string& text);
+/// "shading" or "geometric"
+Normals parse_normals(const std::string& text);
 /// "auto", "none", "pixel" or "point"
 Packets parse_packets(const std::string& text);
 /// "ao", "light", "ao,light"

@@ -52,6 +52,9 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--passes", a.passes,
                  "Passes to render, with commas between: ao, light; visits: the cost of their rays")
       ->capture_default_str();
+  app.add_option("--normals", a.normals,
+                 "shading: surfaces are lit as the normals of their mesh say; geometric: as facets")
+      ->capture_default_str();
   app.add_option("--ao-distance", o.ao_distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
       ->capture_default_str();
@@ -155,6 +158,7 @@ RenderOptions to_options(const RenderArguments& a) {
   if (a.spp) o.spp = *a.spp;
   if (!a.spp && o.target_rmse > 0) o.spp = 1;
   o.estimator = parse_estimator(a.estimator);
+  o.normals = parse_normals(a.normals);
   o.packets = parse_packets(a.packets);
   parse_passes(a.passes, o);
   if (!a.crop.empty()) o.crop = parse_crop(a.crop);

@@ -9,14 +9,14 @@
 namespace dapple {
 namespace {
 
-constexpr std::size_t kSurfaceChannels = 18;  // RGBA, ao, bent, N, P, Z, samples
+constexpr std::size_t kSurfaceChannels = 21;  // RGBA, ao, bent, N, Ng, P, Z, samples
 constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
 constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if all were domes
 
 /// All values count twice. Sums are on the device, which on a CPU uses the same memory, and in the
 /// host's copy; channels are in the film and in the file that is being written.
 std::size_t bytes_per_pixel(std::size_t lights) {
-  const std::size_t sums = kSurfacePlanes + kAoPlanes + kLightPlanes * lights;
+  const std::size_t sums = kSurfacePlanes + kAoPlanes + kShadingPlanes + kLightPlanes * lights;
   const std::size_t channels = kSurfaceChannels + kLightChannels * lights;
   return 2 * (sums * sizeof(std::int64_t) + channels * sizeof(float));
 }

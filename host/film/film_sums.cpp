@@ -28,7 +28,7 @@ double largest_coordinate(const Box3f& box) {
 }  // namespace
 
 FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
-                       const std::vector<Light>& scene_lights)
+                       const std::vector<Light>& scene_lights, bool shaded)
     : pixels(view.pixel_count()), plane_count(kSurfacePlanes) {
   if (options.ao) {
     ao = plane_count;
@@ -39,6 +39,10 @@ FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box
     lights.push_back({plane_count, light.kind == LightKind::dome ? 3u : 1u});
     plane_count += lights.back().count();
     squares += 2;
+  }
+  if (shaded) {
+    shading = plane_count;
+    plane_count += kShadingPlanes;
   }
   unit_scale = scale_for(1.0);
   light_scale = scale_for(1024.0 * std::numbers::pi);

@@ -13,6 +13,7 @@ namespace dapple {
 
 inline constexpr std::uint32_t kSurfacePlanes = 10;
 inline constexpr std::uint32_t kAoPlanes = 6;
+inline constexpr std::uint32_t kShadingPlanes = 3;
 
 /// The plane of node visits of camera rays. Triangle tests are in the plane after it, as for all
 /// other rays.
@@ -33,7 +34,8 @@ struct LightPlaneRange {
 struct FilmLayout {
   std::uint32_t pixels = 0;
   std::uint32_t plane_count = 0;
-  std::uint32_t ao = 0;  ///< first AO plane
+  std::uint32_t ao = 0;       ///< first AO plane
+  std::uint32_t shading = 0;  ///< first plane of the shading pass; 0: there is no such pass
   std::vector<LightPlaneRange> lights;
   std::uint32_t squares = 0;  ///< number of planes of squares: two for AO, two for each light
   float unit_scale = 0;       ///< for values up to 1
@@ -42,7 +44,7 @@ struct FilmLayout {
   float depth_scale = 0;
 
   FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
-             const std::vector<Light>& lights);
+             const std::vector<Light>& lights, bool shaded = false);
   [[nodiscard]] std::uint32_t ao_visits() const { return ao + 4; }
   /// The plane of a light's squared means of sample batches. The next plane is for pairs of
   /// batches. AO's planes are 0 and 1.

@@ -234,7 +234,9 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
              (scale * hits(p));
     };
   };
-  planes.add3("N", "XYZ", mean3(1, layout.unit_scale));
+  // Geometric normals are a layer of their own where the shading pass made others.
+  planes.add3("N", "XYZ", mean3(layout.shading ? layout.shading : 1, layout.unit_scale));
+  if (layout.shading) planes.add3("Ng", "XYZ", mean3(1, layout.unit_scale));
   planes.add3("P", "XYZ", mean3(4, layout.position_scale));
   planes.add("Z", [&](std::uint32_t p) {
     return hits(p) > 0 ? sums.at(7, p) / (double{layout.depth_scale} * hits(p))

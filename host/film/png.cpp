@@ -70,7 +70,7 @@ Range finite_range(const Planes& planes) {
 }
 
 Tone tone_of(const std::string& layer, const Planes& planes) {
-  if (layer == "N") return {-1.0f, 0.5f, false};
+  if (layer == "N" || layer == "Ng") return {-1.0f, 0.5f, false};
   const Range range = finite_range(planes);
   if (layer == "Z" || layer == "P") {
     const float span = range.high - range.low;

@@ -4,14 +4,15 @@
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/resolve_pass.hpp"
+#include "passes/shading_pass.hpp"
 
 namespace dapple {
 
 std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   std::vector<KernelShape> kernels{
-      {kClosestHit, kRayGroup},         {kCompactHits, kScanItems}, {kAoRays, kRayGeneratorGroup},
-      {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
-      {kResolveSurface, kRayGroup},     {kResolveLight, kRayGroup},
+      {kClosestHit, kRayGroup},         {kCompactHits, kScanItems},   {kAoRays, kRayGeneratorGroup},
+      {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},    {kResolveAo, kRayGroup},
+      {kShadePoints, kRayGroup},        {kResolveSurface, kRayGroup}, {kResolveLight, kRayGroup},
   };
   for (const bool orthographic : {false, true})
     kernels.push_back({camera_kernel(orthographic), kCameraGroup});
@@ -25,9 +26,11 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
 }
 
 std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
-                                        const Camera& camera, const std::vector<Light>& lights) {
+                                        const Camera& camera, const std::vector<Light>& lights,
+                                        bool shaded) {
   std::vector<KernelName> kernels{camera_kernel(camera.kind == Camera::Kind::orthographic),
                                   kCompactHits, kResolveSurface};
+  if (shaded) kernels.push_back(kShadePoints);
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(
         occlusion_kernel(options.estimator, packets_in_picture(context, options.estimator, rays)));

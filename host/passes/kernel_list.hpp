@@ -20,6 +20,7 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context);
 
 /// The kernels that a picture with these options, camera and lights launches.
 std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
-                                        const Camera& camera, const std::vector<Light>& lights);
+                                        const Camera& camera, const std::vector<Light>& lights,
+                                        bool shaded = false);
 
 }  // namespace dapple

@@ -10,6 +10,7 @@
 #include "passes/occlusion_pass.hpp"
 #include "passes/queues.hpp"
 #include "passes/resolve_pass.hpp"
+#include "passes/shading_pass.hpp"
 
 namespace dapple {
 namespace {
@@ -20,8 +21,8 @@ struct EmptyStage {
       : context(device.context()), scene(device), queues(make_queues(context, 0, 0)) {
     for (Buffer* buffer :
          {&scene.nodes, &scene.blocks, &scene.segments, &scene.textured, &scene.materials,
-          &scene.texels, &scene.instances, &scene.lights, &scene.emitters, &scene.environments,
-          &queues.work, &film.sums, &film.squares})
+          &scene.texels, &scene.instances, &scene.normals, &scene.lights, &scene.emitters,
+          &scene.environments, &queues.work, &film.sums, &film.squares})
       *buffer = context.allocate(0);
   }
 
@@ -74,6 +75,10 @@ const std::map<std::string, Pass>& passes() {
       {"resolve_surface",
        [](EmptyStage& s, const Variant&) {
          resolve_surface_pass(s.context, s.queues, s.film, {});
+       }},
+      {"shade_points",
+       [](EmptyStage& s, const Variant&) {
+         shading_pass(s.context, s.scene, s.queues, s.film, {});
        }},
       {"resolve_ao",
        [](EmptyStage& s, const Variant&) { resolve_ao_pass(s.context, s.queues, s.film, {}); }},

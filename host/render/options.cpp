@@ -84,6 +84,10 @@ std::string name_of(Estimator estimator) {
   return "";
 }
 
+std::string name_of(Normals normals) {
+  return normals == Normals::shading ? "shading" : "geometric";
+}
+
 std::string name_of(Packets packets) {
   switch (packets) {
     case Packets::automatic:

@@ -15,6 +15,7 @@
 #include "passes/queues.hpp"
 #include "passes/ray_packets.hpp"
 #include "passes/resolve_pass.hpp"
+#include "passes/shading_pass.hpp"
 #include "sampling/film_moments.hpp"
 #include "sampling/sample_plan.hpp"
 
@@ -51,6 +52,7 @@ class PictureTracer {
         width_(view.crop.width()),
         camera_(camera_params(view, options, scene_.bounds)),
         state_(std::move(state)) {
+    camera_.keep_hits = is_shaded();
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
     if (state_.slice_samples == 0)
@@ -221,6 +223,10 @@ class PictureTracer {
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);
+    if (is_shaded()) {
+      resolve_.plane = layout_.shading;
+      shading_pass(context_, scene_, queues_, film_, resolve_);
+    }
     const std::uint32_t hits = compact_pass(context_, queues_, samples);
     if (hits == 0) return;
     if (options_.ao) trace_ao(hits);
@@ -236,6 +242,7 @@ class PictureTracer {
     ao.t_max =
         options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
     ao.seed = options_.seed;
+    ao.shaded = is_shaded();
     ao_ray_pass(context_, queues_, ao);
     OcclusionParams params = occlusion_params(hits, ao.rays);
     if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
@@ -259,6 +266,7 @@ class PictureTracer {
                                    static_cast<float>(options_.light_rays));
     params.light = light;
     params.seed = options_.seed;
+    params.shaded = is_shaded();
     light_ray_pass(context_, scene_, queues_, params);
     occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator,
                    occlusion_params(hits, params.rays), RayOrder::by_pixel);
@@ -280,6 +288,8 @@ class PictureTracer {
     params.footprint = options_.footprint;
     return params;
   }
+
+  [[nodiscard]] uint is_shaded() const { return layout_.shading ? 1u : 0u; }
 
   DeviceContext& context_;
   const DeviceBuffers& scene_;

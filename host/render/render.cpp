@@ -55,6 +55,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
     m.settings.emplace_back(name, fmt::format("{}", value));
   };
   set("estimator", name_of(options.estimator));
+  set("normals", name_of(options.normals));
   set("footprint", options.footprint);
   if (options.packets != Packets::automatic) set("packets", name_of(options.packets));
   if (options.target_error > 0) set("target_error", options.target_error);
@@ -70,6 +71,17 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
     m.settings.emplace_back("opacity_" + layer_name(material), fmt::format("{}", value));
   }
   return m;
+}
+
+/// Whether a shading pass may be needed; whether all normals are flat is not known yet.
+bool may_be_shaded(const Scene& scene, const RenderOptions& options) {
+  return options.normals == Normals::shading &&
+         std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                     [](const Mesh& mesh) { return !mesh.normals.empty(); });
+}
+
+UploadOptions uploading_of(const RenderOptions& options) {
+  return {options.normals == Normals::shading};
 }
 
 void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
@@ -98,7 +110,7 @@ void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBu
   s.segments = bvh.statistics.segments;
   s.nodes = bvh.nodes.size();
   s.bytes.nodes = buffers.nodes.bytes();
-  s.bytes.triangles = buffers.blocks.bytes() + buffers.textured.bytes();
+  s.bytes.triangles = buffers.blocks.bytes() + buffers.textured.bytes() + buffers.normals.bytes();
   s.bytes.segments = buffers.segments.bytes();
   s.bytes.textures = buffers.texels.bytes() + buffers.materials.bytes();
   s.bytes.instances = buffers.instances.bytes();
@@ -146,7 +158,7 @@ void Renderer::Kept::update_scene(const Scene& scene, const RenderOptions& optio
                                   RenderStatistics& statistics) {
   const Stopwatch updating;
   if (bvh) {
-    const BvhUpdate changes = update(*device, on_device, *bvh, scene);
+    const BvhUpdate changes = update(*device, on_device, *bvh, scene, uploading_of(options));
     add_update_statistics(statistics, changes, bvh->bvh().statistics);
     statistics.seconds.upload = updating.seconds() - changes.seconds;
   } else {
@@ -155,7 +167,7 @@ void Renderer::Kept::update_scene(const Scene& scene, const RenderOptions& optio
     add_build_seconds(statistics, built);
     if (!options.cache.empty()) add_cache_statistics(statistics, built);
     const Stopwatch uploading;
-    on_device = upload(*device, scene, bvh->bvh());
+    on_device = upload(*device, scene, bvh->bvh(), uploading_of(options));
     statistics.seconds.upload = uploading.seconds();
   }
   add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
@@ -192,7 +204,8 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   kept.open(options, statistics);
   const Device& device = *kept.device;
   check_memory(device.info(), min_need(scene), "needs at least");
-  const auto kernels = picture_kernels(device.context(), sampled, view.camera, scene.lights);
+  const auto kernels = picture_kernels(device.context(), sampled, view.camera, scene.lights,
+                                       may_be_shaded(scene, sampled));
   CompilerProcesses processes;
   processes.start(device.context(), kernels, CompileTo::machine_code);
   kept.update_scene(scene, options, statistics);
@@ -201,7 +214,8 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   const DeviceScene& on_device = kept.on_device;
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
-  const FilmLayout layout(view, sampled, bvh.bounds, lights);
+  const FilmLayout layout(view, sampled, bvh.bounds, lights,
+                          !on_device.buffers->corner_normals.empty());
   TraceControl tracing{control.progress, control.stop, {}, 0, SampleOrder::pixels};
   if (resumed || !control.checkpoint.empty()) {
     Checkpoint about{option_settings(options, view),

@@ -37,6 +37,7 @@ std::string scene_checksum(const SceneBvh& bvh, const DeviceBuffers& scene) {
   stream.add_range(bvh.instances);
   stream.add_range(scene.material_records);
   stream.add_range(scene.texel_data);
+  stream.add_range(scene.corner_normals);
   stream.add_value(bvh.root);
   for (int axis = 0; axis < 3; ++axis) {
     stream.add_value(bvh.bounds.min[axis]);
@@ -79,6 +80,7 @@ Settings option_settings(const RenderOptions& options, const View& view) {
       {"--estimator", name_of(options.estimator)},
       {"--packets", name_of(options.packets)},
       {"--footprint", number(options.footprint)},
+      {"--normals", name_of(options.normals)},
       {"--passes", passes_text(options)},
       {"--camera-splitting", number(options.camera_splitting)},
       {"--ao-rays", number(options.ao_rays)},

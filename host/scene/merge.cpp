@@ -105,7 +105,7 @@ std::vector<Instance> take_merged_instances(Scene& scene, const std::vector<bool
 
 struct Totals {
   std::size_t vertices = 0, triangles = 0;
-  bool uvs = false, vertex_alpha = false, radii = false;
+  bool normals = false, uvs = false, vertex_alpha = false, radii = false;
 };
 
 Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
@@ -114,6 +114,7 @@ Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     totals.vertices += mesh.positions.size();
     totals.triangles += mesh.primitive_count();
+    totals.normals |= !mesh.normals.empty();
     totals.uvs |= !mesh.uvs.empty();
     totals.vertex_alpha |= !mesh.vertex_alpha.empty();
     totals.radii |= mesh.has_strands();
@@ -130,8 +131,14 @@ Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
 void transform_vertices(Mesh& mesh, std::size_t first, const M44f& to_world) {
   if (to_world == M44f{}) return;
   const float scale = mesh.has_strands() ? uniform_scale(to_world) : 1;
+  const M44f of_normals = to_world.inverse().transposed();
   tbb::parallel_for(first, mesh.positions.size(), [&](std::size_t i) {
     mesh.positions[i] = mesh.positions[i] * to_world;
+    if (i < mesh.normals.size()) {
+      V3f normal;
+      of_normals.multDirMatrix(mesh.normals[i], normal);
+      mesh.normals[i] = normal.normalized();  // zero stays zero
+    }
     if (mesh.has_strands()) mesh.radii[i] *= scale;
   });
 }
@@ -143,6 +150,10 @@ void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const T
   merged.positions.insert(merged.positions.end(), mesh.positions.begin(), mesh.positions.end());
   if (totals.radii) {
     merged.radii.insert(merged.radii.end(), mesh.radii.begin(), mesh.radii.end());
+  }
+  if (totals.normals) {
+    merged.normals.insert(merged.normals.end(), mesh.normals.begin(), mesh.normals.end());
+    merged.normals.resize(merged.positions.size(), V3f(0, 0, 0));
   }
   transform_vertices(merged, first, to_world);
   const auto offset = static_cast<std::uint32_t>(first);

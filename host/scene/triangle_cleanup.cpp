@@ -119,6 +119,7 @@ void keep_used_vertices(Mesh& mesh) {
   for (std::uint32_t& index : mesh.indices) index = new_numbers[index];
   keep_at(mesh.positions, new_numbers, kept);
   keep_at(mesh.radii, new_numbers, kept);
+  keep_at(mesh.normals, new_numbers, kept);
   keep_at(mesh.uvs, new_numbers, kept);
   keep_at(mesh.vertex_alpha, new_numbers, kept);
   mesh.sources.clear();

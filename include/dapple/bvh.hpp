@@ -36,12 +36,26 @@ struct BvhStatistics {
   } cache;
 };
 
+/// A lane of a block that holds no triangle or segment.
+inline constexpr std::uint32_t kNoPrimitive = 0xffffffffu;
+
+/// Number of elements that precede an object in each array of the scene. An object has blocks of
+/// triangles or of segments, not both.
+struct ObjectOffsets {
+  std::uint32_t node = 0, block = 0, segments = 0, textured = 0;
+
+  /// Index in SceneBvh::primitives.
+  [[nodiscard]] std::size_t lane() const { return 8 * (std::size_t{block} + segments); }
+};
+
 struct SceneBvh {
   ConstArray<BvhNode> nodes;  ///< nodes of all objects, then of the top level
   ConstArray<TriangleBlock> blocks;
   ConstArray<SegmentBlock> segments;
   ConstArray<TexturedTriangle> textured;
   ConstArray<InstanceRecord> instances;  ///< in the order of the top level's leaves
+  ConstArray<std::uint32_t> primitives;  ///< of each lane: index in its mesh, or kNoPrimitive
+  std::vector<ObjectOffsets> objects;    ///< of each mesh, and one more with the totals
   std::uint32_t root = 0;                ///< node to start from
   bool has_top = false;  ///< false: `root` belongs to the only object, in world space
   Box3f bounds;          ///< world space

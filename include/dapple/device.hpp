@@ -55,14 +55,22 @@ struct DeviceScene {
   std::size_t bytes = 0;
 };
 
+/// What is uploaded besides what rays intersect.
+struct UploadOptions {
+  bool normals = false;  ///< Mesh::normals, 8 bytes per triangle of scenes that have any
+  bool operator==(const UploadOptions&) const = default;
+};
+
 /// Copies the parts that kernels read to the device. A device that shares the host's memory reads
 /// them in place. Throws Error device if they do not fit.
-DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh);
+DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh,
+                   const UploadOptions& options = {});
 
 /// Updates `bvh`, from which `on_device` was made, to `moved`, and uploads what changed. On devices
-/// that share the host's memory it uploads only lights. Throws as UpdatableBvh::update() and
+/// that share the host's memory it uploads only lights and normals. Uploads everything anew if
+/// `options` changed. Throws as UpdatableBvh::update() and
 /// upload().
 BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
-                 const Scene& moved);
+                 const Scene& moved, const UploadOptions& options = {});
 
 }  // namespace dapple

@@ -23,7 +23,14 @@ enum class Estimator : std::uint8_t {
   prefiltered,  ///< stops at BVH nodes that the ray's footprint covers
 };
 
+/// On which normals the hemisphere of a surface stands.
+enum class Normals : std::uint8_t {
+  shading,    ///< those of the mesh, interpolated; of the faces where it has none
+  geometric,  ///< those of the faces
+};
+
 /// The value's name on the command line.
+std::string name_of(Normals normals);
 std::string name_of(Estimator estimator);
 std::string name_of(Packets packets);
 
@@ -73,12 +80,13 @@ struct RenderOptions {
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
   Estimator estimator = Estimator::prefiltered;
   float footprint = kDefaultFootprint;  ///< scale, >= 0; 0 is exact
-  bool ao = true;                       ///< make the AO pass
-  bool light = true;                    ///< make the light passes
-  bool visits = false;                  ///< make layers of node visits and triangle tests
-  float ao_distance = 0.0f;             ///< metres; 0 is no limit
-  float ao_falloff = 0.0f;              ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
-  std::string camera;                   ///< by name; empty: the first, or one that shows it all
+  Normals normals = Normals::shading;
+  bool ao = true;            ///< make the AO pass
+  bool light = true;         ///< make the light passes
+  bool visits = false;       ///< make layers of node visits and triangle tests
+  float ao_distance = 0.0f;  ///< metres; 0 is no limit
+  float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
+  std::string camera;        ///< by name; empty: the first, or one that shows it all
   std::optional<LookAt> look;
   float fov_degrees = 0.0f;  ///< vertical; 0: the camera's own, or 40 with `look`
   std::optional<PixelRect> crop;

@@ -69,7 +69,8 @@ struct Mesh {
   std::vector<std::uint32_t> indices;    ///< three per triangle, two per segment
   std::vector<std::uint32_t> materials;  ///< one per primitive, index into Scene::materials
   std::vector<float> radii;              ///< strands: per vertex, metres, > 0; empty: triangles
-  std::vector<V2f> uvs;  ///< per vertex, for the alpha texture, transforms applied; or empty
+  std::vector<V3f> normals;  ///< per vertex, unit, or zero for that of the face; or empty
+  std::vector<V2f> uvs;      ///< per vertex, for the alpha texture, transforms applied; or empty
   std::vector<float> vertex_alpha;    ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
   std::vector<VertexSource> sources;  ///< of a glTF file's mesh; empty once meshes are merged
 

@@ -31,22 +31,26 @@ inline void start_group(CameraParams params, const CameraSamples* chosen, uint f
   closest->primitive.v = closest->instance.v = (int16)(0);
 }
 
-/* Of the ray in lane `ray` of the points; `of_item` is its index in `chosen`. */
-inline void store_stochastic_hit(const CameraSamples* chosen, uint of_item, uint sample, uint ray, float t,
-                       float area, const SurfacePoints16* at, __global SurfacePoint* point) {
-  vstore4((float4)(at->position[0].f[ray], at->position[1].f[ray], at->position[2].f[ray], t), 0,
-          point->position);
+/* Of the ray in lane `ray` of the points; `of_item` is its index in `chosen`. `keep_hit`: for the shading
+   pass, `t` becomes the bits of the hit's instance, and `visits` its primitive. */
+inline void store_stochastic_hit(const CameraSamples* chosen, uint of_item, uint sample, uint ray,
+                                 SurfaceHit hit, bool keep_hit, float area,
+                                 const SurfacePoints16* at, __global SurfacePoint* point) {
+  vstore4((float4)(at->position[0].f[ray], at->position[1].f[ray], at->position[2].f[ray],
+                   keep_hit ? as_float(hit.instance) : hit.t),
+          0, point->position);
   vstore4((float4)(at->normal[0].f[ray], at->normal[1].f[ray], at->normal[2].f[ray],
                    at->offset.f[ray]),
           0, point->normal);
-  vstore4((uint4)(as_uint(area), chosen->pixel[of_item], chosen->sample[of_item] + sample, 0u), 0,
-          (__global uint*)&point->area);
+  vstore4((uint4)(as_uint(area), chosen->pixel[of_item], chosen->sample[of_item] + sample,
+                  keep_hit ? hit.primitive : 0u),
+          0, (__global uint*)&point->area);
 }
 
 /* Stores the hits of the group whose first ray is `first`, for each sample; `points` are the item's. */
 inline void store_group(Scene scene, const CameraSamples* chosen, uint first, const Rays16* group,
                        const CameraShares16* shares, const uint* keys, const StochasticHits* stops,
-                       __global SurfacePoint* points, ItemHits* found) {
+                       bool keep_hits, __global SurfacePoint* points, ItemHits* found) {
   SurfacePoints16 at;
   clear_points(&at);
   for (uint d = 0; d < stops->count; ++d) {
@@ -64,7 +68,10 @@ inline void store_group(Scene scene, const CameraSamples* chosen, uint first, co
     for (uint left = hits; left; left &= left - 1u) {
       const uint ray = lowest_bit(left);
       const uint slot = chosen->index[first + ray] * stops->count + d;
-      store_stochastic_hit(chosen, first + ray, d, ray, stops->t[d].f[ray], area.f[ray], &at, points + slot);
+      const SurfaceHit hit_of_ray = {stops->t[d].f[ray], (uint)stops->primitive[d].i[ray],
+                                     (uint)stops->instance[d].i[ray]};
+      store_stochastic_hit(chosen, first + ray, d, ray, hit_of_ray, keep_hits, area.f[ray], &at,
+                           points + slot);
       found->hits[slot / DAPPLE_HIT_BITS] |= 1u << slot % DAPPLE_HIT_BITS;
     }
   }
@@ -107,8 +114,8 @@ inline void trace_rays(Scene scene, CameraParams params, const CameraSamples* ch
   find_closest(scene, params.scene, entries, &packet, stops);
   for (uint b = 0; b < DAPPLE_PACKET_GROUPS; ++b) {
     const uint first = b * DAPPLE_GROUP_RAYS;
-    store_group(scene, chosen, first, groups + b, shares + b, packet.key + first, stops + b, points,
-               found);
+    store_group(scene, chosen, first, groups + b, shares + b, packet.key + first, stops + b,
+                params.keep_hits != 0u, points, found);
   }
   found->visits += packet.visits;
   found->tests += packet.tests;

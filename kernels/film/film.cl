@@ -52,7 +52,7 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
 }
 
 /* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
-   is 0 where samples missed. */
+   is 0 where samples missed. A ray of weight 0 is hidden, any other has weight 1. */
 __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHits* sample_hits,
                          __global const Ray* rays,
                          __global const Occlusion* occlusions, __global long* film,
@@ -71,7 +71,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
     const uint end = ray + (sample_hit(sample_hits, begin + s) ? params.rays : 0u);
     for (; ray < end; ++ray) {
       const Occlusion found = occlusions[ray];
-      const float seen = found.transmittance;
+      const float seen = found.transmittance * rays[ray].weight;
       value += (1.0f - seen) * inverse_rays;
       __global const float* direction = rays[ray].direction;
       sums += fixed_points((float8)(seen, seen * direction[0], seen * direction[1],

@@ -31,6 +31,8 @@ constexpr Names<Packets, 4> kPackets{{{"auto", Packets::automatic},
                                       {"none", Packets::none},
                                       {"pixel", Packets::pixel},
                                       {"point", Packets::point}}};
+constexpr Names<Normals, 2> kNormals{
+    {{"shading", Normals::shading}, {"geometric", Normals::geometric}}};
 constexpr Names<BakeSides, 4> kSides{{{"auto", BakeSides::automatic},
                                       {"front", BakeSides::front},
                                       {"max", BakeSides::max},
@@ -87,6 +89,7 @@ void bind_render_options(nb::module_& module) {
       .def_rw("ground", &RenderOptions::ground)
       .def_rw("opacity", &RenderOptions::opacity);
   add_choice(bound, "estimator", &RenderOptions::estimator, kEstimators);
+  add_choice(bound, "normals", &RenderOptions::normals, kNormals);
   add_choice(bound, "packets", &RenderOptions::packets, kPackets);
   using Vector = std::array<float, 3>;
   bound.def(

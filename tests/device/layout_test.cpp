@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dapple/shared/bvh_node.h"
+#include "dapple/shared/corner_normals.h"
 #include "dapple/shared/geometry.h"
 #include "dapple/shared/light_record.h"
 #include "dapple/shared/pass_params.h"

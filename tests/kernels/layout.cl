@@ -1,6 +1,7 @@
 /* Reports the layout of every shared struct as the device's compiler sees it, in the order of
    layout_members.h: the size of each struct, and offset and size of each member. */
 #include "dapple/shared/bvh_node.h"
+#include "dapple/shared/corner_normals.h"
 #include "dapple/shared/geometry.h"
 #include "layout_members.h"
 #include "dapple/shared/light_record.h"

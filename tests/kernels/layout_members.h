@@ -21,6 +21,7 @@
   MEMBER(SegmentBlock, end_radius) MEMBER(SegmentBlock, opacity_code)                        \
   STRUCT(TexturedTriangle)                                                                   \
   MEMBER(TexturedTriangle, corner)                                                           \
+  STRUCT(CornerNormals) MEMBER(CornerNormals, words)                                         \
   STRUCT(TextureRecord)                                                                      \
   MEMBER(TextureRecord, offset) MEMBER(TextureRecord, width) MEMBER(TextureRecord, height)   \
   MEMBER(TextureRecord, flags)                                                               \
@@ -76,16 +77,18 @@
   MEMBER(CameraParams, crop_width) MEMBER(CameraParams, seed)                                \
   MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, texel_share)                        \
   MEMBER(CameraParams, tap_offset) MEMBER(CameraParams, tap_centring) MEMBER(CameraParams, medium_error)                             \
-  MEMBER(CameraParams, splitting_bits)                                                           \
+  MEMBER(CameraParams, splitting_bits) MEMBER(CameraParams, keep_hits)                       \
   MEMBER(CameraParams, seen_left)                                                            \
   MEMBER(CameraParams, seen_above) MEMBER(CameraParams, seen_right)                          \
   MEMBER(CameraParams, seen_below)                                                           \
   STRUCT(AoParams)                                                                           \
   MEMBER(AoParams, point_count) MEMBER(AoParams, rays) MEMBER(AoParams, inverse_count)       \
   MEMBER(AoParams, t_max) MEMBER(AoParams, seed) MEMBER(AoParams, whole_sets)                \
+  MEMBER(AoParams, shaded)                                                                   \
   STRUCT(LightParams)                                                                        \
   MEMBER(LightParams, point_count) MEMBER(LightParams, rays)                                 \
   MEMBER(LightParams, inverse_count) MEMBER(LightParams, light) MEMBER(LightParams, seed)    \
+  MEMBER(LightParams, shaded)                                                                \
   STRUCT(ResolveParams)                                                                      \
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \

@@ -28,6 +28,7 @@ struct Triangle {
   V3f corner[3];
   Imath::V2d uv[3];
   double vertex_alpha[3];
+  V3d normal[3];  ///< unit; zeros: the triangle's own
   std::uint32_t material;
 };
 
@@ -129,6 +130,25 @@ double opacity_of(double alpha, const Material& material) {
   return alpha;
 }
 
+/// The hit with the triangle's shading normal. At convex points rays start from the mean of the
+/// point's projections to the planes of the corners' normals.
+Hit shaded(const Triangle& triangle, const Weights& weights, Hit hit) {
+  V3d sum(0.0), projected(0.0);
+  for (int k = 0; k < 3; ++k) {
+    const V3d& normal = triangle.normal[k];
+    const V3d from_corner = hit.position - V3d(triangle.corner[k]);
+    sum += normal * weights.of[k];
+    projected += (hit.position - normal * from_corner.dot(normal)) * weights.of[k];
+  }
+  if (!(sum.length2() > 0)) return hit;
+  const V3d total = triangle.normal[0] + triangle.normal[1] + triangle.normal[2];
+  const bool other_side = total.dot(hit.facet) < 0;
+  hit.normal = sum.normalized() * (other_side ? -1 : 1);
+  hit.hides = !((projected - hit.position).dot(hit.facet) > 0);
+  if (!hit.hides) hit.start = projected;
+  return hit;
+}
+
 Triangle place(const Mesh& mesh, std::size_t index, const Instance& instance) {
   const Imath::M44d to_world(instance.to_world);
   Triangle triangle{};
@@ -137,6 +157,11 @@ Triangle place(const Mesh& mesh, std::size_t index, const Instance& instance) {
     const std::uint32_t vertex = mesh.indices[3 * index + k];
     triangle.corner[k] = V3f(V3d(mesh.positions[vertex]) * to_world);
     if (!mesh.uvs.empty()) triangle.uv[k] = Imath::V2d(mesh.uvs[vertex]);
+    if (!mesh.normals.empty()) {
+      V3d normal;
+      to_world.inverse().transposed().multDirMatrix(V3d(mesh.normals[vertex]), normal);
+      triangle.normal[k] = normal.normalized();
+    }
     triangle.vertex_alpha[k] = mesh.vertex_alpha.empty() ? 1.0 : mesh.vertex_alpha[vertex];
   }
   return triangle;
@@ -374,15 +399,17 @@ std::optional<Hit> EmbreeOracle::first_hit(const Segment& segment, std::uint64_t
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   if (found.hit.geomID == Embree::kStrands) {
     const V3d normal(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
-    return Hit{V3d(segment.origin) + V3d(segment.direction) * double{found.ray.tfar},
-               normal.normalized()};
+    const V3d position = V3d(segment.origin) + V3d(segment.direction) * double{found.ray.tfar};
+    return Hit{position, normal.normalized(), normal.normalized(), position};
   }
   const Triangle& triangle = embree_->triangles[found.hit.primID];
   const V3d direction(segment.direction);
   const V3d corner[3] = {V3d(triangle.corner[0]), V3d(triangle.corner[1]), V3d(triangle.corner[2])};
-  V3d normal = normal_of(triangle).normalized();
-  if (normal.dot(direction) > 0) normal = -normal;
-  return Hit{interpolate(weights_at(triangle, V3d(segment.origin), direction), corner), normal};
+  const Weights weights = weights_at(triangle, V3d(segment.origin), direction);
+  const V3d position = interpolate(weights, corner);
+  V3d facet = normal_of(triangle).normalized();
+  if (facet.dot(direction) > 0) facet = -facet;
+  return shaded(triangle, weights, {position, facet, facet, position});
 }
 
 }  // namespace dapple::oracle

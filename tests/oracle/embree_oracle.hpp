@@ -34,10 +34,13 @@ struct Segment {
   float t_max = std::numeric_limits<float>::infinity();
 };
 
-/// Where a segment hits a surface. The normal is geometric and points against the segment.
+/// Where a segment hits a surface. Both normals are on the side from which the segment comes.
 struct Hit {
   V3d position;
-  V3d normal;
+  V3d normal;          ///< of the shading: that of the mesh, interpolated; geometric if it has none
+  V3d facet;           ///< geometric
+  V3d start;           ///< where rays start: `position`, or the smooth surface above it
+  bool hides = false;  ///< the facet itself hides what goes below it
 };
 
 class EmbreeOracle {

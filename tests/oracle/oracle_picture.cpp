@@ -23,14 +23,19 @@ Segment camera_segment(const Camera& camera, double aspect, double x, double y) 
 /// An origin above the surface by several roundings of its position to float, so that the surface
 /// does not occlude itself. Leaves are thousands of times further apart.
 V3f start_of(const Hit& hit) {
-  const V3d p = hit.position;
+  const V3d p = hit.start;
   const double largest = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-  return V3f(p + hit.normal * (largest * 1e-6));
+  return V3f(p + hit.facet * (largest * 1e-6));
 }
 
 /// A cosine-weighted direction: the normal plus a point of the unit sphere.
 V3d cosine_direction(const V3d& normal, Random& random) {
   return (normal * (1 + 1e-9) + random.direction()).normalized();
+}
+
+/// Whether the surface hides a direction from its own point.
+bool is_hidden(const Hit& hit, const V3d& direction) {
+  return hit.hides && direction.dot(hit.facet) <= 0;
 }
 
 /// A / d^2 cos cos' for a uniformly chosen point of the rect. Sets `toward` to end at that point.
@@ -44,7 +49,8 @@ double sample_rect(const Light& rect, const Hit& hit, Random& random, Segment& t
   toward.t_max = static_cast<float>(distance);
   const double area = V3d(rect.edge_u).cross(V3d(rect.edge_v)).length();
   const double at_light = std::max(0.0, -direction.dot(V3d(rect.direction)));
-  const double at_surface = std::max(0.0, direction.dot(hit.normal));
+  const double at_surface =
+      is_hidden(hit, direction) ? 0 : std::max(0.0, direction.dot(hit.normal));
   return area * at_light * at_surface / (distance * distance);
 }
 
@@ -102,7 +108,8 @@ class Artist {
         continue;
       }
       const V3f start = start_of(*hit);
-      ao.add(scene_.transmittance({start, V3f(cosine_direction(hit->normal, random))}));
+      const V3d direction = cosine_direction(hit->normal, random);
+      ao.add(is_hidden(*hit, direction) ? 0 : scene_.transmittance({start, V3f(direction)}));
       Segment toward{start, V3f(0)};
       const double unoccluded = sample_rect(rect_, *hit, random, toward);
       unoccluded_[pixel] += unoccluded / spp_;

@@ -10,9 +10,13 @@
 
 #include "camera/view.hpp"
 #include "oracle/oracle_scenes.hpp"
+#include "support/smooth_shapes.hpp"
 
 namespace dapple::oracle {
 namespace {
+
+using test::set_smooth_normals;
+using test::smooth_torus;
 
 constexpr int kSide = 96;  // pixels
 constexpr int kBlock = 8;  // pixels; side of the squares that are compared one by one
@@ -117,6 +121,17 @@ TEST(OraclePicture, ATreeHasEmbreesOcclusionAndLight) {
 TEST(OraclePicture, TheSaplingHasEmbreesOcclusionAndLight) {
   DAPPLE_SKIP_WITHOUT(shared_scene("sapling_100k.glb"));
   expect_equal_pictures("sapling", load_sapling());
+}
+
+TEST(OraclePicture, ASmoothTorusHasEmbreesOcclusionAndLight) {
+  expect_equal_pictures("torus", smooth_torus(50, 20));
+}
+
+TEST(OraclePicture, TheSaplingWithSmoothNormalsHasEmbreesOcclusionAndLight) {
+  DAPPLE_SKIP_WITHOUT(shared_scene("sapling_100k.glb"));
+  Scene sapling = load_sapling();
+  for (Mesh& mesh : sapling.meshes) set_smooth_normals(mesh);
+  expect_equal_pictures("smooth sapling", sapling);
 }
 
 TEST(OraclePicture, TheTexturedPineHasEmbreesOcclusionAndLight) {

@@ -23,6 +23,7 @@ void shift(TriangleBlock& block, const ObjectOffsets& by, int sign) {
 
 void shift(SegmentBlock&, const ObjectOffsets&, int) {}
 void shift(TexturedTriangle&, const ObjectOffsets&, int) {}
+void shift(std::uint32_t&, const ObjectOffsets&, int) {}
 
 /// Concatenates the parts' values, each shifted by its offsets, with `spare` more elements. Parts
 /// are freed one by one, so that only one is in memory twice.
@@ -79,6 +80,8 @@ void join_constant(SceneBvh& bvh, std::vector<FinishedObject>& objects,
                    const std::vector<ObjectOffsets>& offsets) {
   bvh.segments = joined<SegmentBlock>(arrays_of(objects, &FinishedObject::segments), offsets);
   bvh.textured = joined<TexturedTriangle>(arrays_of(objects, &FinishedObject::textured), offsets);
+  bvh.primitives = joined<std::uint32_t>(arrays_of(objects, &FinishedObject::primitives), offsets);
+  bvh.objects = offsets;
 }
 
 }  // namespace
@@ -142,6 +145,7 @@ FinishedObject separate(const SceneBvh& bvh, const ObjectSummary& summary,
   object.blocks = part_of(bvh.blocks, first.block, end.block, first);
   object.segments = part_of(bvh.segments, first.segments, end.segments, first);
   object.textured = part_of(bvh.textured, first.textured, end.textured, first);
+  object.primitives = part_of(bvh.primitives, first.lane(), end.lane(), first);
   return object;
 }
 

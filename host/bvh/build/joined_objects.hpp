@@ -12,11 +12,6 @@
 
 namespace dapple {
 
-/// Number of elements that precede an object in each array of the scene.
-struct ObjectOffsets {
-  std::uint32_t node = 0, block = 0, segments = 0, textured = 0;
-};
-
 /// Returns one entry for each object, and one more with the totals. Throws Error failed if there
 /// are more elements than indices can represent.
 std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,

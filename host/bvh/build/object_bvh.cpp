@@ -99,8 +99,7 @@ void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> box
 /// Packs the triangles of each node's leaves, in the order of the slots. Each node begins a new
 /// block.
 void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
-                    const std::vector<float>& opacities, const std::vector<bool>& closed,
-                    bool keep_triangles) {
+                    const std::vector<float>& opacities, const std::vector<bool>& closed) {
   ObjectBvh& object = built.object;
   const WideTree& wide = built.tree;
   std::uint32_t blocks = 0;
@@ -109,7 +108,7 @@ void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, con
     blocks += blocks_of(wide.nodes[n]);
   }
   if (!closed.empty()) built.closed.assign(blocks, 0);
-  if (keep_triangles) built.triangles.assign(8 * std::size_t{blocks}, 0);
+  object.primitives.assign(8 * std::size_t{blocks}, kNoPrimitive);
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
         for (std::size_t n = range.begin(); n < range.end(); ++n) {
@@ -119,7 +118,7 @@ void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, con
               const std::uint32_t triangle = boxes[child.first + i].primitive;
               const std::uint32_t block = object.nodes[n].prim_base + next / 8;
               set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
-              if (keep_triangles) built.triangles[8 * std::size_t{block} + next % 8] = triangle;
+              object.primitives[8 * std::size_t{block} + next % 8] = triangle;
               if (!closed.empty() && closed[triangle]) {
                 built.closed[block] |= static_cast<std::uint8_t>(1u << next % 8);
               }
@@ -214,14 +213,14 @@ void summarize(BuiltObject& built) {
 }
 
 void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
-                     std::span<PrimitiveBox> boxes, bool keep_triangles, BuiltObject& built) {
+                     std::span<PrimitiveBox> boxes, BuiltObject& built) {
   fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
   std::vector<bool> closed;
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
                        [&] { closed = closed_triangles(mesh, opacities); });
   tbb::parallel_invoke([&] { built.object.blocks.resize(count_blocks(built.tree)); },
                        [&] { summarize(built); });
-  pack_triangles(built, boxes, mesh, opacities, closed, keep_triangles);
+  pack_triangles(built, boxes, mesh, opacities, closed);
 }
 
 void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
@@ -231,6 +230,7 @@ void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
   built.tree = build_wide_tree(boxes, kLeafSize);
   PackedStrands packed = pack_strands(built.tree, boxes, mesh, joints, opacities);
   built.object.segments = std::move(packed.blocks);
+  built.object.primitives = std::move(packed.primitives);
   summarize(built);
   for (std::size_t n = 0; n < built.object.nodes.size(); ++n) {
     built.object.nodes[n].prim_base = DAPPLE_SEGMENTS | packed.first_block[n];
@@ -239,7 +239,7 @@ void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
 
 }  // namespace
 
-BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangles) {
+BuiltObject build_object(const Scene& scene, const Mesh& mesh) {
   BuiltObject built;
   ObjectBvh& object = built.object;
   object.has_strands = mesh.has_strands();
@@ -251,7 +251,7 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangl
   if (mesh.has_strands())
     build_strands(mesh, opacities, boxes, built);
   else
-    build_triangles(mesh, opacities, boxes, keep_triangles, built);
+    build_triangles(mesh, opacities, boxes, built);
   return built;
 }
 

@@ -34,6 +34,7 @@ struct ObjectBvh : ObjectSummary {
   std::vector<TriangleBlock> blocks;
   std::vector<SegmentBlock> segments;
   std::vector<TexturedTriangle> textured;
+  std::vector<std::uint32_t> primitives;  ///< by lane of the blocks: index in the mesh
 };
 
 /// A built object, and the data that prefiltering needs.
@@ -41,16 +42,15 @@ struct BuiltObject {
   ObjectBvh object;
   WideTree tree;                     ///< the tree from which the object was packed
   std::vector<std::uint8_t> closed;  ///< by block: bit l for lane l, closed_triangles(); or empty
-  std::vector<std::uint32_t> triangles;  ///< by lane of the blocks: index in the mesh; or empty
 };
 
 /// Builds and packs the triangles or segments of `mesh` that are not fully transparent. If there
-/// are none, the object has no nodes. `keep_triangles`: fill BuiltObject::triangles.
-BuiltObject build_object(const Scene& scene, const Mesh& mesh, bool keep_triangles = false);
+/// are none, the object has no nodes.
+BuiltObject build_object(const Scene& scene, const Mesh& mesh);
 
 /// Computes the opacities of the nodes and `opacity` of a packed object: bottom-up, in parallel and
 /// in time linear in the number of triangles. Fills the `record` for refitting unless it is
-/// nullptr; this moves BuiltObject::triangles, which must be filled, into the record.
+/// nullptr.
 void prefilter(BuiltObject& built, const TextureIntegrals& integrals,
                RefitRecord* record = nullptr);
 

@@ -53,7 +53,7 @@ void build_missing(const Scene& scene, std::vector<Work>& works, BvhStatistics& 
     if (work.is_read) return;
     if (records) (*records)[m] = {};
     const Mesh& mesh = scene.meshes[m];
-    work.built = build_object(scene, mesh, records && !mesh.has_strands());
+    work.built = build_object(scene, mesh);
   });
   statistics.prefilter_seconds = for_each(works, [&](Work& work, std::size_t m) {
     if (work.is_read) return;

@@ -321,7 +321,7 @@ namespace {
 
 void start_record(BuiltObject& built, const TextureIntegrals& integrals, RefitRecord& record) {
   record = {};
-  record.triangles = std::move(built.triangles);
+  record.triangles = built.object.primitives;
   record.closed = built.closed;
   for (const TexturedTriangle& triangle : built.object.textured)
     record.textured_opacity.push_back(integrals.mean(triangle, 1.0f / 3, 1.0f / 3, 1.0f));

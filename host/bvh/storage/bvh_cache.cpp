@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr SealedKind kKind{"BVH cache", 1};
 
 constexpr std::size_t kRecord = 0, kBuilder = 1, kNodes = 2, kBlocks = 3, kTextured = 4,
-                      kSegments = 5;
+                      kSegments = 5, kPrimitives = 6;
 
 using BoxRecord = std::array<float, 6>;
 
@@ -116,6 +116,7 @@ CachedObject read_object(const std::string& path, const Checksum& key, const Sce
   cached.object.segments = {file.values<SegmentBlock>(kSegments), file.keeper()};
   cached.object.has_strands = !cached.object.segments.empty();
   cached.object.textured = {file.values<TexturedTriangle>(kTextured), file.keeper()};
+  cached.object.primitives = {file.values<std::uint32_t>(kPrimitives), file.keeper()};
   if (records[0].part_count > DAPPLE_BVH_WIDTH || !is_sound(cached.object, scene)) {
     throw Error(ErrorKind::input, path + ": no tree that rays could walk");
   }
@@ -133,7 +134,8 @@ FinishedObject::FinishedObject(ObjectBvh&& object)
       nodes(std::move(object.nodes)),
       blocks(std::move(object.blocks)),
       segments(std::move(object.segments)),
-      textured(std::move(object.textured)) {}
+      textured(std::move(object.textured)),
+      primitives(std::move(object.primitives)) {}
 
 void prepare_bvh_cache(const std::string& folder) {
   std::error_code problem;
@@ -169,7 +171,8 @@ void write_cached_object(const std::string& folder, const Checksum& key,
   write_sealed_file(
       file_of(folder, key), kKind,
       {as_section(std::span(&record, 1)), as_section(builder), as_section(object.nodes),
-       as_section(object.blocks), as_section(object.textured), as_section(object.segments)},
+       as_section(object.blocks), as_section(object.textured), as_section(object.segments),
+       as_section(object.primitives)},
       Durable::no);
 }
 

@@ -19,6 +19,7 @@ struct FinishedObject : ObjectSummary {
   ConstArray<TriangleBlock> blocks;
   ConstArray<SegmentBlock> segments;
   ConstArray<TexturedTriangle> textured;
+  ConstArray<std::uint32_t> primitives;
 };
 
 /// The content of a cache file.

@@ -83,11 +83,16 @@ bool textured_are_sound(const FinishedObject& object, const Scene& scene) {
       });
 }
 
+/// Whether each lane has a number. Those who look the primitives up compare it with the mesh.
+bool primitives_are_sound(const FinishedObject& object) {
+  return object.primitives.size() == 8 * (object.blocks.size() + object.segments.size());
+}
+
 }  // namespace
 
 bool is_sound(const FinishedObject& object, const Scene& scene) {
   return nodes_are_sound(object) && blocks_are_sound(object) && segments_are_sound(object) &&
-         textured_are_sound(object, scene);
+         textured_are_sound(object, scene) && primitives_are_sound(object);
 }
 
 }  // namespace dapple

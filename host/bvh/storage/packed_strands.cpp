@@ -10,16 +10,18 @@ namespace {
 
 using Segments = std::vector<StrandSegment>;
 
-/// Sets `segments` to those of the node's leaves, in the order of the slots.
+/// Sets `segments`, and the first of `lanes`, to those of the node's leaves, in the order of the
+/// slots.
 void gather(const WideTree& tree, const WideNode& node, std::span<const PrimitiveBox> order,
             const Mesh& mesh, const StrandJoints& joints, const std::vector<float>& opacities,
-            Segments& segments) {
+            Segments& segments, std::uint32_t* lanes) {
   segments.clear();
   for (const WideChild& child : tree.children_of(node)) {
     for (std::uint32_t i = 0; i < child.count; ++i) {
       const std::uint32_t index = order[child.first + i].primitive;
       segments.push_back(joints.segment(mesh, index));
       segments.back().opacity = opacities[index];
+      *lanes++ = index;
     }
   }
 }
@@ -62,12 +64,14 @@ PackedStrands pack_strands(WideTree& tree, std::span<const PrimitiveBox> order, 
     count += blocks_of(node);
   }
   packed.blocks.resize(count);
+  packed.primitives.assign(8 * std::size_t{count}, kNoPrimitive);
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, tree.nodes.size(), 1024), [&](const auto& range) {
         Segments segments;
         for (std::size_t n = range.begin(); n < range.end(); ++n) {
           const WideNode& node = tree.nodes[n];
-          gather(tree, node, order, mesh, joints, opacities, segments);
+          gather(tree, node, order, mesh, joints, opacities, segments,
+                 packed.primitives.data() + 8 * std::size_t{packed.first_block[n]});
           const std::span all(segments);
           SegmentBlock* const blocks = packed.blocks.data() + packed.first_block[n];
           for (std::size_t i = 0; i < all.size(); i += 8) {

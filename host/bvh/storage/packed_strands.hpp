@@ -7,12 +7,14 @@
 
 #include "bvh/build/wide_tree.hpp"
 #include "bvh/storage/segment_block.hpp"
+#include "dapple/bvh.hpp"
 
 namespace dapple {
 
 struct PackedStrands {
   std::vector<SegmentBlock> blocks;
   std::vector<std::uint32_t> first_block;  ///< of each node
+  std::vector<std::uint32_t> primitives;   ///< by lane: index in the mesh, or kNoPrimitive
 };
 
 /// Packs in the order of the slots; each node begins a new block. `opacities`: one for each segment

@@ -7,6 +7,7 @@
 #include "device/upload/dome_upload.hpp"
 #include "device/upload/light_upload.hpp"
 #include "device/upload/memory_need.hpp"
+#include "device/upload/normal_upload.hpp"
 #include "device/upload/texture_upload.hpp"
 
 namespace dapple {
@@ -25,7 +26,7 @@ std::size_t bytes_of(const Array& data) {
 std::size_t bytes_of_all(const DeviceBuffers& b) {
   return b.nodes.bytes() + b.blocks.bytes() + b.segments.bytes() + b.textured.bytes() +
          b.instances.bytes() + b.materials.bytes() + b.texels.bytes() + b.lights.bytes() +
-         b.emitters.bytes() + b.environments.bytes();
+         b.emitters.bytes() + b.environments.bytes() + b.normals.bytes();
 }
 
 /// Replaces `values` by `now`, and shares them as `buffer`, unless both are the same already.
@@ -69,18 +70,21 @@ void write_ranges(DeviceContext& context, const Buffer& buffer, const Array& dat
 
 }  // namespace
 
-DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh) {
+DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh,
+                   const UploadOptions& options) {
   auto buffers = std::make_shared<DeviceBuffers>(device);
   if (!bvh.textured.empty()) pack_materials(scene, buffers->material_records, buffers->texel_data);
   pack_lights(scene, buffers->light_records, buffers->emitter_triangles);
   pack_domes(scene, buffers->light_records, buffers->environment_data);
+  buffers->uploaded = options;
+  if (options.normals) buffers->corner_normals = pack_normals(scene, bvh);
   DeviceContext& context = device.context();
   DeviceScene result;
   result.bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(bvh.segments) +
                  bytes_of(bvh.textured) + bytes_of(bvh.instances) +
                  bytes_of(buffers->material_records) + bytes_of(buffers->texel_data) +
                  bytes_of(buffers->light_records) + bytes_of(buffers->emitter_triangles) +
-                 bytes_of(buffers->environment_data);
+                 bytes_of(buffers->environment_data) + bytes_of(buffers->corner_normals);
   check_memory(
       device.info(),
       {result.bytes, std::max({bytes_of(bvh.nodes), bytes_of(bvh.blocks), bytes_of(bvh.segments)})},
@@ -100,13 +104,14 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   buffers->lights = share(context, buffers->light_records);
   buffers->emitters = share(context, buffers->emitter_triangles);
   buffers->environments = share(context, buffers->environment_data);
+  buffers->normals = share(context, buffers->corner_normals);
   context.finish();
   result.buffers = std::move(buffers);
   return result;
 }
 
 BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
-                 const Scene& moved) {
+                 const Scene& moved, const UploadOptions& options) {
   DeviceContext& context = device.context();
   DeviceBuffers& buffers = *on_device.buffers;
   BvhUpdate changes;
@@ -116,9 +121,9 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
     changes = bvh.update(moved);
   }
   const SceneBvh& now = bvh.bvh();
-  if (changes.is_new) {
+  if (changes.is_new || options != buffers.uploaded) {
     on_device = {};
-    on_device = upload(device, moved, now);
+    on_device = upload(device, moved, now, options);
     return changes;
   }
   if (!context.shares_memory()) {
@@ -128,6 +133,9 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
   buffers.bounds = now.bounds;
   if (changes.placement) share_placement(context, now, buffers);
   share_lights(context, moved, buffers);
+  if (options.normals) {
+    share_if_new(context, pack_normals(moved, now), buffers.corner_normals, buffers.normals);
+  }
   context.finish();
   on_device.bytes = bytes_of_all(buffers);
   return changes;

@@ -2,6 +2,7 @@
 // by upload() and update(). Out: buffers.
 #pragma once
 
+#include "dapple/shared/corner_normals.h"
 #include "dapple/shared/light_record.h"
 #include "dapple/shared/pass_params.h"
 #include "device/context.hpp"
@@ -16,7 +17,9 @@ struct DeviceBuffers {
   DeviceBuffers& operator=(const DeviceBuffers&) = delete;
   Device device;
   Buffer nodes, blocks, segments, textured, materials, texels, instances;
+  Buffer normals;  ///< of a scene that is uploaded for shading; empty: all triangles are flat
   Buffer lights, emitters, environments;
+  UploadOptions uploaded;
   SceneParams params{};
   Box3f bounds;  ///< world space
   // The buffers use these values themselves when device and host share memory.
@@ -27,6 +30,7 @@ struct DeviceBuffers {
   ConstArray<InstanceRecord> instance_records;
   std::vector<MaterialRecord> material_records;
   std::vector<uchar> texel_data;
+  std::vector<CornerNormals> corner_normals;
   std::vector<LightRecord> light_records;
   std::vector<EmitterTriangle> emitter_triangles;
   std::vector<float> environment_data;

@@ -28,13 +28,15 @@ int influence_sets(const tinygltf::Primitive& primitive) {
   return sets;
 }
 
-/// Returns the targets that change a primitive: their weight and the accessor of their positions.
+/// Returns the targets that change an attribute of a primitive: their weight and the accessor of
+/// its differences.
 std::vector<std::pair<double, int>> active_targets(const tinygltf::Primitive& primitive,
-                                                   const std::vector<double>& weights) {
+                                                   const std::vector<double>& weights,
+                                                   const char* attribute) {
   std::vector<std::pair<double, int>> active;
   for (std::size_t t = 0; t < std::min(primitive.targets.size(), weights.size()); ++t) {
-    const int positions = find(primitive.targets[t], "POSITION");
-    if (weights[t] != 0 && positions >= 0) active.emplace_back(weights[t], positions);
+    const int differences = find(primitive.targets[t], attribute);
+    if (weights[t] != 0 && differences >= 0) active.emplace_back(weights[t], differences);
   }
   return active;
 }
@@ -53,8 +55,10 @@ bool has_joints(const tinygltf::Primitive& primitive) { return influence_sets(pr
 std::uint64_t deformation_cost(const Document& document, const tinygltf::Primitive& primitive,
                                const Deformation& deformation, std::uint64_t vertices) {
   std::uint64_t cost = 0;
-  for (const auto& [weight, accessor] : active_targets(primitive, deformation.weights))
-    cost += vertices + sparse_count(document, accessor);
+  for (const char* attribute : {"POSITION", "NORMAL"}) {
+    for (const auto& [weight, accessor] : active_targets(primitive, deformation.weights, attribute))
+      cost += vertices + sparse_count(document, accessor);
+  }
   if (deformation.joints != nullptr)
     cost += vertices * 4 * static_cast<std::uint64_t>(influence_sets(primitive));
   return cost;
@@ -68,12 +72,17 @@ VertexDeformer::VertexDeformer(const Document& document, const tinygltf::Primiti
 }
 
 void VertexDeformer::read_targets(const Document& document, const tinygltf::Primitive& primitive) {
-  for (const auto& [weight, accessor] : active_targets(primitive, deformation_.weights)) {
-    require_type(document, accessor, who_ + " target POSITION", {TINYGLTF_TYPE_VEC3},
-                 {Component::float32, Component::int8, Component::uint8, Component::int16,
-                  Component::uint16});
-    targets_.emplace_back(weight, AccessorReader(document, accessor));
-  }
+  const auto read = [&](const std::string& attribute, auto& targets) {
+    for (const auto& [weight, accessor] :
+         active_targets(primitive, deformation_.weights, attribute.c_str())) {
+      require_type(document, accessor, who_ + " target " + attribute, {TINYGLTF_TYPE_VEC3},
+                   {Component::float32, Component::int8, Component::uint8, Component::int16,
+                    Component::uint16});
+      targets.emplace_back(weight, AccessorReader(document, accessor));
+    }
+  };
+  read("POSITION", targets_);
+  read("NORMAL", normal_targets_);
 }
 
 void VertexDeformer::read_influences(const Document& document,
@@ -97,6 +106,35 @@ V3f VertexDeformer::position(V3f base, std::uint64_t i) const {
   V3d position(base);
   for (const auto& [weight, target] : targets_) position += V3d(target.vec3(i)) * weight;
   return V3f(influences_.empty() ? position : carried(position, i));
+}
+
+/// Planes turn by the cofactors of the matrix that moves the vertices. A mirroring joint turns the
+/// sign of its normals, which does not matter: a triangle's normals are kept on the side of its
+/// face's (pack_normals()).
+V3d VertexDeformer::normal(V3f base, std::uint64_t i) const {
+  V3d normal(base);
+  for (const auto& [weight, target] : normal_targets_) normal += V3d(target.vec3(i)) * weight;
+  if (influences_.empty()) return normal;
+  const M44d m = blended(i);
+  const V3d rows[3] = {
+      {m[0][0], m[0][1], m[0][2]}, {m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}};
+  return rows[1].cross(rows[2]) * normal.x + rows[2].cross(rows[0]) * normal.y +
+         rows[0].cross(rows[1]) * normal.z;
+}
+
+/// The matrix of carried(), times the sum of the weights.
+M44d VertexDeformer::blended(std::uint64_t i) const {
+  M44d sum(0.0);
+  bool any = false;
+  for (const Influences& set : influences_) {
+    for (std::uint64_t k = 0; k < 4; ++k) {
+      const double weight = double{set.weights.normalized(i, k)};
+      if (weight == 0) continue;
+      sum += joint(set, i, k) * weight;
+      any = true;
+    }
+  }
+  return any ? sum : joint(influences_.front(), i, 0);
 }
 
 /// Divides by the sum of the weights, because exporters round them. A vertex without weights moves

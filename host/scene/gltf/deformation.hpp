@@ -1,5 +1,6 @@
-// Deforms vertices: morph targets are added to their positions, then joints move them (skinning).
-// In: the weights and joint matrices of a node's mesh; out: the position of each vertex.
+// Deforms vertices: morph targets are added to their positions and normals, then joints move them
+// (skinning). In: the weights and joint matrices of a node's mesh; out: the position and normal of
+// each vertex.
 #pragma once
 
 #include <Imath/ImathMatrix.h>
@@ -39,6 +40,10 @@ class VertexDeformer {
   /// Error input for a joint that the skin does not have.
   [[nodiscard]] Imath::V3f position(Imath::V3f base, std::uint64_t i) const;
 
+  /// Returns the deformed normal of vertex `i`, whose normal in the file is `base`; of any length.
+  /// Throws like position().
+  [[nodiscard]] Imath::V3d normal(Imath::V3f base, std::uint64_t i) const;
+
  private:
   struct Influences {
     AccessorReader joints, weights;  ///< four per vertex
@@ -47,13 +52,14 @@ class VertexDeformer {
   void read_targets(const Document& document, const tinygltf::Primitive& primitive);
   void read_influences(const Document& document, const tinygltf::Primitive& primitive);
   [[nodiscard]] Imath::V3d carried(const Imath::V3d& position, std::uint64_t i) const;
+  [[nodiscard]] Imath::M44d blended(std::uint64_t i) const;
   [[nodiscard]] const Imath::M44d& joint(const Influences& set, std::uint64_t i,
                                          std::uint64_t k) const;
 
   const Deformation& deformation_;
   const std::string& file_;
   const std::string& who_;
-  std::vector<std::pair<double, AccessorReader>> targets_;
+  std::vector<std::pair<double, AccessorReader>> targets_, normal_targets_;
   std::vector<Influences> influences_;
 };
 

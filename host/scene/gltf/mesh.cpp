@@ -43,7 +43,7 @@ AttributeNeeds needs_of(const Material& material, const AlphaLookup& lookup, boo
                         MeshTotals& totals) {
   if (lines && lookup.has_texture && material.alpha_mode != AlphaMode::opaque)
     ++totals.textured_lines;
-  return {!lines && material.alpha_texture >= 0, material.alpha_mode != AlphaMode::opaque};
+  return {!lines, !lines && material.alpha_texture >= 0, material.alpha_mode != AlphaMode::opaque};
 }
 
 void append_elements(Mesh& mesh, const std::vector<std::uint32_t>& corners, std::size_t base,

@@ -19,6 +19,16 @@ AccessorReader read_positions(const Document& document, const tinygltf::Primitiv
   return {document, accessor};
 }
 
+std::optional<AccessorReader> read_normals(const Document& document,
+                                           const tinygltf::Primitive& primitive,
+                                           const std::string& who) {
+  const int accessor = attribute(primitive, "NORMAL");
+  if (accessor < 0) return {};
+  require_type(document, accessor, who + " NORMAL", {TINYGLTF_TYPE_VEC3},
+               {Component::float32, Component::int8, Component::int16});
+  return AccessorReader(document, accessor);
+}
+
 std::optional<AccessorReader> read_uvs(const Document& document,
                                        const tinygltf::Primitive& primitive,
                                        const AlphaLookup& lookup, const std::string& who) {
@@ -44,6 +54,12 @@ std::optional<AccessorReader> read_colors(const Document& document,
 
 V2f finite_or_zero(V2f uv) { return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : V2f(0, 0); }
 
+/// Zero, which stands for the normal of the face, for a vector without a direction.
+V3f unit_or_zero(const Imath::V3d& normal) {
+  const double length = normal.length();
+  return length > 0 && std::isfinite(length) ? V3f(normal / length) : V3f(0, 0, 0);
+}
+
 /// Clamps to [0, 1]; NaN becomes 0.
 float clamp_alpha(float alpha) { return alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f; }
 
@@ -57,7 +73,8 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
 Attributes read_attributes(const Document& document, const tinygltf::Primitive& primitive,
                            const AttributeNeeds& needs, const AlphaLookup& lookup,
                            const std::string& who) {
-  Attributes attributes{read_positions(document, primitive, who), {}, {}};
+  Attributes attributes{read_positions(document, primitive, who), {}, {}, {}};
+  if (needs.normals) attributes.normals = read_normals(document, primitive, who);
   if (needs.uvs) attributes.uvs = read_uvs(document, primitive, lookup, who);
   if (needs.colors) attributes.colors = read_colors(document, primitive, who);
   return attributes;
@@ -85,6 +102,13 @@ void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDefor
   mesh.positions.resize(base + count);
   for (std::size_t i = 0; i < count; ++i) {
     mesh.positions[base + i] = deformer.position(attributes.positions.vec3(source(i)), source(i));
+  }
+  if (attributes.normals || !mesh.normals.empty()) mesh.normals.resize(base + count, V3f(0, 0, 0));
+  if (attributes.normals) {
+    for (std::size_t i = 0; i < count; ++i) {
+      mesh.normals[base + i] =
+          unit_or_zero(deformer.normal(attributes.normals->vec3(source(i)), source(i)));
+    }
   }
   if (attributes.uvs || !mesh.uvs.empty()) mesh.uvs.resize(base + count, V2f(0, 0));
   if (attributes.uvs) {

@@ -1,5 +1,5 @@
 // Reads the vertices of one primitive. In: its accessors and what its material needs; out:
-// positions, texture coordinates and alphas appended to a Mesh.
+// positions, normals, texture coordinates and alphas appended to a Mesh.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,14 @@ namespace dapple::gltf {
 /// The accessors of one primitive that dapple reads.
 struct Attributes {
   AccessorReader positions;
+  std::optional<AccessorReader> normals;
   std::optional<AccessorReader> uvs;
   std::optional<AccessorReader> colors;  ///< only colours with an alpha
 };
 
 /// Which optional attributes the material needs.
 struct AttributeNeeds {
+  bool normals = false;
   bool uvs = false;
   bool colors = false;
 };
@@ -44,9 +46,9 @@ Attributes read_attributes(const Document& document, const tinygltf::Primitive& 
 std::optional<std::vector<std::uint32_t>> compact(std::vector<std::uint32_t>& corners,
                                                   std::uint64_t vertices);
 
-/// Appends the vertices `used`, or all, to `mesh`, at the positions that `deformer` returns. When
-/// only some primitives have texture coordinates or alphas, the others get the defaults: uv (0, 0)
-/// and alpha 1.
+/// Appends the vertices `used`, or all, to `mesh`, at the positions and with the normals that
+/// `deformer` returns. When only some primitives have normals, texture coordinates or alphas, the
+/// others get the defaults: normal (0, 0, 0), uv (0, 0) and alpha 1.
 void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDeformer& deformer,
                      const AlphaLookup& lookup,
                      const std::optional<std::vector<std::uint32_t>>& used);

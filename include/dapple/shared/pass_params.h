@@ -75,6 +75,7 @@ typedef struct CameraParams {
   float tap_centring;  /* shift of the filter taps from the hit to the pixel's centre, [0,1] */
   float medium_error;  /* allowed deviation of a medium's opacity in a pixel; 0: no media */
   uint splitting_bits; /* log2 of the number of consecutive samples that share a camera ray */
+  uint keep_hits;      /* 1: a shading pass follows, see SurfacePoint */
   /* Pixels that may show the scene: columns [left, right), rows [above, below). */
   uint seen_left, seen_above, seen_right, seen_below;
 } CameraParams;
@@ -88,6 +89,7 @@ typedef struct AoParams {
   uint seed;
   uint whole_sets; /* 1: a point has no other rays, and its sample is 0. The directions are
                       then points of a Vogel spiral of that number of points. */
+  uint shaded;     /* 1: the shading pass set SurfacePoint::t */
 } AoParams;
 
 typedef struct LightParams {
@@ -96,6 +98,7 @@ typedef struct LightParams {
   float inverse_count;
   uint light; /* index of the LightRecord */
   uint seed;
+  uint shaded; /* as in AoParams */
 } LightParams;
 
 /* Adds the samples of each pixel to planes of 64-bit fixed-point numbers. Each scale is a power of

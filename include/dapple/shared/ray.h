@@ -58,11 +58,13 @@ typedef struct SampleHits {
   uint visits, tests;
 } SampleHits;
 
-/* Where a camera ray hit a surface; t < 0: it hit none. */
+/* Where a camera ray hit a surface; t < 0: it hit none. Where a shading pass follows the camera
+   pass, `t` holds bits of whole numbers: until then of the instance that was hit, whose primitive
+   is in `visits`; from then on of a direction_code() or 0, see shade_point(). */
 typedef struct SurfacePoint {
   float position[3];
   float t;
-  float normal[3]; /* geometric, unit, turned to the viewer */
+  float normal[3]; /* unit, turned to the viewer; geometric until the shading pass */
   float offset;    /* metres along the normal to the origins of rays; exceeds rounding errors */
   float area;      /* square metres across the ray that the pixel's share covers */
   uint pixel;      /* index in the whole picture, row-major; seeds the random numbers */

@@ -354,7 +354,7 @@ double bytes_in(const std::vector<T>& values) {
 
 TEST(Refit, RecordsTakeLessThanTwentyBytesPerTriangle) {
   const Scene scene = tree(50000);
-  BuiltObject built = build_object(scene, scene.meshes[0], true);
+  BuiltObject built = build_object(scene, scene.meshes[0]);
   RefitRecord record;
   prefilter(built, TextureIntegrals(scene, built.object.textured), &record);
   const double bytes = bytes_in(record.triangles) + bytes_in(record.closed) +

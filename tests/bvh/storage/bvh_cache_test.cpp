@@ -87,6 +87,7 @@ void expect_same(const SceneBvh& a, const SceneBvh& b) {
   EXPECT_TRUE(same_bits(a.blocks, b.blocks));
   EXPECT_TRUE(same_bits(a.segments, b.segments));
   EXPECT_TRUE(same_bits(a.textured, b.textured));
+  EXPECT_TRUE(same_bits(a.primitives, b.primitives));
   EXPECT_TRUE(same_bits(a.instances, b.instances));
   EXPECT_EQ(a.root, b.root);
   EXPECT_EQ(a.has_top, b.has_top);
@@ -300,6 +301,7 @@ ObjectBvh copy_of(const FinishedObject& object) {
   copy.blocks.assign(object.blocks.begin(), object.blocks.end());
   copy.segments.assign(object.segments.begin(), object.segments.end());
   copy.textured.assign(object.textured.begin(), object.textured.end());
+  copy.primitives.assign(object.primitives.begin(), object.primitives.end());
   return copy;
 }
 
@@ -321,6 +323,7 @@ TEST_F(BvhCache, ASealedFileWithIndicesOutOfBoundsIsRefused) {
       [](ObjectBvh& o) { o.blocks[3].opacity[0] = -400; },
       [](ObjectBvh& o) { o.blocks[3].opacity[0] = std::numeric_limits<float>::quiet_NaN(); },
       [](ObjectBvh& o) { o.textured[7].corner[0][1] |= 1023u; },
+      [](ObjectBvh& o) { o.primitives.pop_back(); },
       [](ObjectBvh& o) { --o.stack; },
   };
   for (std::size_t e = 0; e < edits.size(); ++e) {

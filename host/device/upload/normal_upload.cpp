@@ -1,0 +1,84 @@
+#include "device/upload/normal_upload.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace dapple {
+namespace {
+
+/// Cosine of the angle up to which a normal counts as the face's: 0.1 degrees.
+constexpr double kFlat = 1 - 1.5e-6;
+
+std::uint32_t code_of(const V3f& normal) {
+  float x = 0, y = 0;
+  octahedral_point(&normal.x, &x, &y);
+  const auto steps = [](float coordinate) {
+    constexpr float kLast = DAPPLE_NORMAL_SIDE - 1;
+    return static_cast<std::uint32_t>(
+        std::lround(std::clamp(0.5f * (coordinate + 1) * kLast, 0.0f, kLast)));
+  };
+  return 1 + steps(x) + DAPPLE_NORMAL_SIDE * steps(y);
+}
+
+/// The normals of a triangle as they are packed; zeros if it is flat.
+CornerNormals normals_of(const Mesh& mesh, std::size_t triangle) {
+  const std::uint32_t* corner = &mesh.indices[3 * triangle];
+  const V3d a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]),
+      c(mesh.positions[corner[2]]);
+  const V3d face = (b - a).cross(c - a).normalized();
+  std::array<V3d, 3> normals;
+  V3d sum(0.0);
+  bool is_flat = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V3d given(mesh.normals[corner[k]]);
+    normals[k] = given.length2() > 0 ? given.normalized() : face;
+    sum += normals[k];
+  }
+  if (!(sum.length2() > 0)) return {};  // or not a number
+  const double side = sum.dot(face) < 0 ? -1 : 1;
+  std::array<V3f, 3> turned;
+  for (std::size_t k = 0; k < 3; ++k) {
+    is_flat &= side * normals[k].dot(face) >= kFlat;
+    turned[k] = V3f(normals[k] * side);
+  }
+  return is_flat ? CornerNormals{} : pack_corner_normals(turned);
+}
+
+}  // namespace
+
+CornerNormals pack_corner_normals(const std::array<V3f, 3>& normals) {
+  const std::uint32_t a = code_of(normals[0]), b = code_of(normals[1]), c = code_of(normals[2]);
+  return {{a | b << 21, b >> 11 | c << 10}};
+}
+
+std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh) {
+  std::vector<CornerNormals> all;
+  std::atomic<bool> any = false;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    if (mesh.normals.empty() || mesh.has_strands()) continue;
+    all.resize(8 * bvh.blocks.size(), CornerNormals{});
+    // Where the object's lanes lie among those of triangles, and among all.
+    const ObjectOffsets &first = bvh.objects[m], &end = bvh.objects[m + 1];
+    const std::size_t lanes = 8 * std::size_t{end.block - first.block};
+    const std::uint32_t* primitives = bvh.primitives.data() + first.lane();
+    CornerNormals* normals = all.data() + 8 * std::size_t{first.block};
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lanes, 8192), [&](const auto& range) {
+      bool found = false;
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        if (primitives[i] >= mesh.primitive_count()) continue;
+        normals[i] = normals_of(mesh, primitives[i]);
+        found |= normals[i].words[0] != 0;
+      }
+      if (found) any = true;
+    });
+  }
+  if (!any) all.clear();
+  return all;
+}
+
+}  // namespace dapple

@@ -1,0 +1,23 @@
+// Normals of the corners of triangles, as the shading pass reads them. In: a scene and its BVH.
+// Out: 8 bytes for each lane of the triangle blocks.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "dapple/bvh.hpp"
+#include "dapple/scene.hpp"
+#include "dapple/shared/corner_normals.h"
+
+namespace dapple {
+
+/// Packs three normals, which need not be unit vectors. The angle between a normal and its code is
+/// at most 0.17 degrees.
+CornerNormals pack_corner_normals(const std::array<V3f, 3>& normals);
+
+/// Returns nothing if all triangles are flat: if no mesh has normals, or if all are those of the
+/// faces, to 0.1 degrees. A triangle's normals are turned to the side of its face's normal, as
+/// triangles' corners are ordered; corners without a normal get that of the face.
+std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh);
+
+}  // namespace dapple

@@ -1,0 +1,16 @@
+// The shading pass: surface points get what their meshes say about the surface. In: points that the
+// camera pass stored with their triangles. Out: points with shading normals, sums of the film.
+#pragma once
+
+#include "device/upload/scene_upload.hpp"
+#include "passes/queues.hpp"
+
+namespace dapple {
+
+inline const KernelName kShadePoints{"shade_points", "film/shading", {}};
+
+/// Comes after resolve_surface_pass(), because it moves points to where their rays start.
+void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                  const FilmBuffers& film, const ResolveParams& params);
+
+}  // namespace dapple

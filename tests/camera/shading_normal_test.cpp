@@ -1,0 +1,314 @@
+// Shading normals: closed forms of smooth and tilted surfaces, flat surfaces bit for bit, the same
+// through instances and refits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "dapple/render.hpp"
+#include "device/upload/normal_upload.hpp"
+#include "support/scene_on_device.hpp"
+#include "support/smooth_shapes.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+using test::scene_of;
+using test::smooth_sphere;
+
+RenderOptions options_of(Normals normals, Estimator estimator = Estimator::exact) {
+  RenderOptions options;
+  options.width = 80;
+  options.height = 60;
+  options.spp = 16;
+  options.normals = normals;
+  options.estimator = estimator;
+  options.look = LookAt{V3f(0, 1, 4), V3f(0, 0, 0), V3f(0, 1, 0)};
+  return options;
+}
+
+/// A small sun of irradiance 1 across its direction.
+Light small_sun(const V3f& towards) {
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::sun;
+  sun.direction = -towards.normalized();
+  sun.angular_radius = 0.02f;
+  sun.radiance = V3f(1 / (std::numbers::pi_v<float> * 4e-4f));
+  return sun;
+}
+
+V3f three(const Film& film, const std::string& layer, std::size_t pixel) {
+  return {film.find(layer + ".X")->pixels[pixel], film.find(layer + ".Y")->pixels[pixel],
+          film.find(layer + ".Z")->pixels[pixel]};
+}
+
+/// A square of side 2 around the origin that faces +Z, whose normals are `normal`.
+Mesh square(const V3f& normal) {
+  Mesh mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.normals.assign(4, normal.normalized());
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return mesh;
+}
+
+TEST(CornerNormals, AnglesBetweenNormalsAndTheirCodesAreBelowASixthOfADegree) {
+  Points points(3);
+  double worst = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const std::array<V3f, 3> given{points.on_sphere(), points.on_sphere(), points.on_sphere()};
+    const CornerNormals packed = pack_corner_normals(given);
+    for (uint corner = 0; corner < 3; ++corner) {
+      V3f decoded;
+      corner_vector(corner_code(packed, corner), &decoded.x);
+      const V3d a(decoded), b(given[corner]);
+      worst = std::max(worst, std::atan2(a.cross(b).length(), a.dot(b)));
+    }
+  }
+  EXPECT_LE(worst * 180 / kPi, 0.17);
+}
+
+TEST(CornerNormals, DirectionCodesAreExactToAHundredthOfADegree) {
+  Points points(4);
+  for (int i = 0; i < 10000; ++i) {
+    const V3f given = points.on_sphere();
+    const uint code = direction_code(&given.x);
+    ASSERT_NE(code, 0u);
+    V3f decoded;
+    octahedral_vector(static_cast<float>((code & 65535u) - 1) / 32767 - 1,
+                      static_cast<float>((code >> 16) - 1) / 32767 - 1, &decoded.x);
+    const V3d a(decoded), b(given);
+    EXPECT_LE(std::atan2(a.cross(b).length(), a.dot(b)) * 180 / kPi, 0.01);
+  }
+}
+
+TEST(PackNormals, NormalsOfTheFaceTakeNoMemoryAndOthersAreOnItsSide) {
+  const auto pack = [](const V3f& normal) {
+    const Scene scene = scene_of(square(normal));
+    return pack_normals(scene, build_bvh(scene));
+  };
+  EXPECT_TRUE(pack({0, 0, 1}).empty());
+  EXPECT_TRUE(pack({0, 0, -1}).empty()) << "wound the other way";
+  EXPECT_TRUE(pack({0, 0.0005f, 1}).empty()) << "rounding";
+  for (const float side : {1.0f, -1.0f}) {
+    const std::vector<CornerNormals> packed = pack(V3f(0, 0.5f, 1) * side);
+    ASSERT_EQ(packed.size(), 8u);
+    V3f decoded;
+    corner_vector(corner_code(packed[0], 1), &decoded.x);
+    EXPECT_LE((decoded.normalized() - V3f(0, 0.5f, 1).normalized()).length(), 0.002f);
+  }
+  Scene scene = scene_of(square({0, 0.5f, 1}));
+  scene.meshes[0].normals[0] = V3f(0, 0, 0);
+  V3f decoded;
+  corner_vector(corner_code(pack_normals(scene, build_bvh(scene))[0], 0), &decoded.x);
+  EXPECT_LE((decoded.normalized() - V3f(0, 0, 1)).length(), 0.002f) << "that of the face";
+}
+
+// A convex surface occludes nothing of its own hemispheres.
+TEST(ShadingNormal, ASphereOf504TrianglesIsUnoccludedEverywhere) {
+  Scene scene = scene_of(smooth_sphere());
+  EXPECT_EQ(scene.meshes[0].primitive_count(), 504u);
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    RenderOptions options = options_of(Normals::shading, estimator);
+    options.light = false;
+    const Film film = render(scene, options).film;
+    const auto& ao = film.find("ao.R")->pixels;
+    const double mean = std::accumulate(ao.begin(), ao.end(), 0.0) / static_cast<double>(ao.size());
+    EXPECT_NEAR(mean, 1, estimator == Estimator::exact ? 1e-5 : 1e-3);
+    EXPECT_GE(*std::min_element(ao.begin(), ao.end()),
+              estimator == Estimator::exact ? 0.999f : 0.95f);
+  }
+}
+
+// The irradiance of a distant sun is the cosine, up to the terminator and behind it.
+TEST(ShadingNormal, ASphereInTheSunIsAsBrightAsItsCosine) {
+  Scene scene = scene_of(smooth_sphere());
+  const V3f towards = V3f(1, 0.3f, 0.4f).normalized();
+  scene.lights = {small_sun(towards)};
+  const Film film = render(scene, options_of(Normals::shading)).film;
+  int lit = 0, dark = 0;
+  for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
+    if (film.find("A")->pixels[p] < 1) continue;
+    // The middle of the pixel's samples lies on the facet; its direction is the sphere's normal.
+    const float cosine = three(film, "P", p).normalized().dot(towards);
+    const float light = film.find("light.sun.R")->pixels[p];
+    EXPECT_NEAR(light, std::max(0.0f, cosine), 0.03f) << "pixel " << p;
+    EXPECT_LE((three(film, "N", p).normalized() - three(film, "P", p).normalized()).length(),
+              0.03f);
+    lit += cosine > 0.03f;
+    dark += cosine < -0.03f;
+  }
+  EXPECT_GT(lit, 300);
+  EXPECT_GT(dark, 100);
+  EXPECT_NE(film.find("Ng.X"), nullptr);
+}
+
+TEST(ShadingNormal, FacetsAreThereWithGeometricNormals) {
+  Scene scene = scene_of(smooth_sphere());
+  scene.lights = {small_sun({1, 0.3f, 0.4f})};
+  const Film film = render(scene, options_of(Normals::geometric)).film;
+  EXPECT_EQ(film.find("Ng.X"), nullptr);
+  double worst = 0;
+  for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
+    if (film.find("A")->pixels[p] < 1) continue;
+    worst = std::max<double>(
+        worst, (three(film, "N", p).normalized() - three(film, "P", p).normalized()).length());
+  }
+  EXPECT_GT(worst, 0.1);
+}
+
+// A hemisphere that leans by theta against a plane sees (1 + cos theta) / 2 above it.
+TEST(ShadingNormal, ATiltedHemisphereIsHiddenBelowThePlane) {
+  for (const double degrees : {0.0, 30.0, 60.0, 85.0}) {
+    const double theta = degrees * kPi / 180;
+    Scene scene = scene_of(
+        square(V3f(0, static_cast<float>(std::sin(theta)), static_cast<float>(std::cos(theta)))));
+    // From above the surface by its leaning normal, from below, and from across.
+    scene.lights = {small_sun({0, 1, 0.05f}), small_sun({0, 1, -0.05f}), small_sun({0, 0, 1})};
+    RenderOptions options = options_of(Normals::shading);
+    options.look = LookAt{V3f(0, 0, 3), V3f(0, 0, 0), V3f(0, 1, 0)};
+    options.crop = PixelRect{30, 20, 49, 39};
+    options.spp = 256;
+    const Film film = render(scene, options).film;
+    const auto mean = [&](const std::string& channel) {
+      const auto& pixels = film.find(channel)->pixels;
+      return std::accumulate(pixels.begin(), pixels.end(), 0.0) /
+             static_cast<double>(pixels.size());
+    };
+    ASSERT_EQ(mean("A"), 1) << "the square fills the picture";
+    EXPECT_NEAR(mean("ao.R"), (1 + std::cos(theta)) / 2, 0.002) << degrees << " degrees";
+    const double length = std::sqrt(1 + 0.05 * 0.05);
+    EXPECT_NEAR(mean("light.sun.R"), (std::sin(theta) + 0.05 * std::cos(theta)) / length, 0.002);
+    EXPECT_EQ(mean("light.sun_2.R"), 0) << "below the surface";
+    EXPECT_NEAR(mean("light.sun_3.R"), std::cos(theta), 0.002);
+  }
+}
+
+/// Layers that both films have, at pixels where `counts` is true, are the same bits.
+template <class Counts>
+void expect_same_bits(const Film& a, const Film& b, const Counts& counts) {
+  for (const char* channel :
+       {"R", "A", "ao.R", "bent.X", "bent.Y", "light.key.R", "N.X", "N.Y", "N.Z", "P.X", "Z"}) {
+    const auto &of_a = a.find(channel)->pixels, &of_b = b.find(channel)->pixels;
+    std::size_t different = 0;
+    for (std::size_t p = 0; p < of_a.size(); ++p) different += counts(p) && of_a[p] != of_b[p];
+    EXPECT_EQ(different, 0u) << channel;
+  }
+}
+
+/// Every triangle of the mesh with corners of its own, whose normals are the face's.
+Mesh faceted(const Mesh& mesh) {
+  Mesh flat;
+  for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+    const std::uint32_t* corner = &mesh.indices[3 * t];
+    const V3f a = mesh.positions[corner[0]], b = mesh.positions[corner[1]],
+              c = mesh.positions[corner[2]];
+    for (const V3f& p : {a, b, c}) {
+      flat.indices.push_back(static_cast<std::uint32_t>(flat.positions.size()));
+      flat.positions.push_back(p);
+      flat.normals.push_back((b - a).cross(c - a).normalized());
+    }
+  }
+  return flat;
+}
+
+TEST(ShadingNormal, FlatScenesAreTheSameBitForBit) {
+  Scene scene = scene_of(faceted(smooth_sphere()));
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    const Film shading = render(scene, options_of(Normals::shading, estimator)).film;
+    const Film geometric = render(scene, options_of(Normals::geometric, estimator)).film;
+    expect_same_bits(shading, geometric, [](std::size_t) { return true; });
+    EXPECT_EQ(shading.find("Ng.X"), nullptr);
+  }
+}
+
+// Beside a smooth mesh the shading pass runs, and leaves the flat one as it is.
+TEST(ShadingNormal, AFlatMeshBesideASmoothOneIsTheSameBitForBit) {
+  Scene scene = scene_of(faceted(smooth_sphere()));
+  Mesh smooth = smooth_sphere();
+  for (V3f& p : smooth.positions) p += V3f(2.2f, 0, 0);
+  smooth.materials.assign(504, 0);
+  scene.meshes.push_back(smooth);
+  scene.instances.resize(2);
+  scene.instances[1].mesh = 1;
+  const Film shading = render(scene, options_of(Normals::shading)).film;
+  const Film geometric = render(scene, options_of(Normals::geometric)).film;
+  ASSERT_NE(shading.find("Ng.X"), nullptr);
+  const auto& x = shading.find("P.X")->pixels;
+  expect_same_bits(shading, geometric, [&](std::size_t p) { return x[p] < 0.5f; });
+}
+
+/// The largest difference of two pictures' shading normals, at pixels that are full in both.
+double worst_normal(const Film& a, const Film& b) {
+  double worst = 0;
+  const auto &full = a.find("A")->pixels, &also = b.find("A")->pixels;
+  int counted = 0;
+  for (std::size_t p = 0; p < full.size(); ++p) {
+    if (full[p] < 1 || also[p] < 1) continue;
+    ++counted;
+    worst = std::max<double>(worst, (three(a, "N", p) - three(b, "N", p)).length());
+  }
+  EXPECT_GT(counted, 200);
+  return worst;
+}
+
+double mean_of(const Film& film, const std::string& channel) {
+  const auto& pixels = film.find(channel)->pixels;
+  return std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
+}
+
+// Two placements keep the mesh an instance, which is a mirrored, stretched and turned sphere; two
+// meshes of one placement each are merged. More than 256 triangles, so that instances stay.
+TEST(ShadingNormal, InstancesHaveTheNormalsOfTheSameMeshInWorldSpace) {
+  Scene placed = scene_of(smooth_sphere());
+  M44f matrix;
+  matrix.rotate(V3f(0.3f, 0.9f, 0));
+  matrix.scale(V3f(-0.9f, 0.5f, 0.9f));
+  placed.instances.resize(2);
+  placed.instances[0].to_world = matrix;
+  placed.instances[1].to_world.setTranslation(V3f(50, 0, 0));
+  Scene merged = placed;
+  merged.meshes.push_back(merged.meshes[0]);
+  merged.instances[1].mesh = 1;
+  placed.lights = merged.lights = {small_sun({1, 1, 1})};
+  const RenderOptions options = options_of(Normals::shading);
+  const Film a = render(placed, options).film, b = render(merged, options).film;
+  // Stretching and interpolating do not commute, but nearly do over a small triangle.
+  EXPECT_LE(worst_normal(a, b), 0.02);
+  EXPECT_NEAR(mean_of(a, "ao.R"), mean_of(b, "ao.R"), 5e-4);
+  EXPECT_NEAR(mean_of(a, "light.sun.R"), mean_of(b, "light.sun.R"), 5e-4);
+}
+
+TEST(ShadingNormal, RefittedMeshesHaveTheNormalsOfTheirNewForm) {
+  Scene scene = scene_of(smooth_sphere());
+  scene.lights = {small_sun({1, 1, 1})};
+  const auto bent = [&](float amount) {
+    Scene moved = scene;
+    for (std::size_t v = 0; v < moved.meshes[0].positions.size(); ++v) {
+      const float angle = amount * moved.meshes[0].positions[v].y;
+      M44f turn;
+      turn.rotate(V3f(0, angle, angle));
+      turn.multVecMatrix(scene.meshes[0].positions[v], moved.meshes[0].positions[v]);
+      turn.multDirMatrix(scene.meshes[0].normals[v], moved.meshes[0].normals[v]);
+    }
+    return moved;
+  };
+  const RenderOptions options = options_of(Normals::shading);
+  Renderer renderer;
+  renderer.render(scene, options);
+  renderer.render(bent(0.1f), options);
+  const RenderResult refitted = renderer.render(bent(0.4f), options);
+  EXPECT_EQ(refitted.statistics.refit.objects_refitted, 1u);
+  const Film fresh = render(bent(0.4f), options).film;
+  EXPECT_LE(worst_normal(refitted.film, fresh), 1e-5);
+  EXPECT_NEAR(mean_of(refitted.film, "light.sun.R"), mean_of(fresh, "light.sun.R"), 1e-5);
+  // Another choice of normals uploads the scene anew.
+  EXPECT_EQ(renderer.render(bent(0.4f), options_of(Normals::geometric)).film.find("Ng.X"), nullptr);
+  EXPECT_NE(renderer.render(bent(0.4f), options).film.find("Ng.X"), nullptr);
+}
+
+}  // namespace
+}  // namespace dapple
