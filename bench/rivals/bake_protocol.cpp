@@ -87,12 +87,11 @@ std::vector<double> bake_parts(const std::vector<BakedPart>& parts, const TraceP
   BakeStatistics statistics;
   const RenderControl control;
   BakeProgress progress(1, control);
-  SampleTracer tracer(trace, options, statistics);
+  BakeTracing tracing{ao_tracer(trace, options), {}, 0, progress, statistics};
   std::vector<double> values;
   for (std::uint32_t i = 0; i < parts.size(); ++i) {
     const BakedPart& part = parts[i];
-    const auto baked = bake_mesh(part.mesh, part.two_sided, i, part.placements, options, tracer,
-                                 progress, statistics);
+    const auto baked = bake_mesh(part.mesh, part.two_sided, i, part.placements, options, tracing);
     for (const std::uint32_t vertex : part.compared) values.push_back(double{baked->ao[vertex]});
   }
   return values;

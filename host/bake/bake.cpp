@@ -5,8 +5,10 @@
 
 #include <optional>
 
+#include "bake/bake_checkpoint.hpp"
+#include "bake/bake_settings.hpp"
 #include "bake/instance_bake.hpp"
-#include "bake/light_bake.hpp"
+#include "bake/light_tracer.hpp"
 #include "bake/occluder_scene.hpp"
 #include "bake/texture/texture_bake.hpp"
 #include "bake/texture/texture_layout.hpp"
@@ -31,6 +33,26 @@ TracePoints trace_against(const OccluderScene& occluders) {
   };
 }
 
+/// Who is told about the samples that are traced.
+struct BakeRecords {
+  BakeProgress& progress;
+  BakeCheckpoint& checkpoint;
+  BakeStatistics& statistics;
+};
+
+BakeTracing tracing_against(const OccluderScene& occluders, const BakeOptions& options,
+                            const BakeRecords& records) {
+  BakeTracing tracing{records.checkpoint.with(ao_tracer(trace_against(occluders), options)),
+                      {},
+                      0,
+                      records.progress,
+                      records.statistics};
+  if (!options.light || occluders.lights.empty()) return tracing;
+  tracing.light = records.checkpoint.with(light_tracer(options, occluders));
+  tracing.lights = occluders.lights.size();
+  return tracing;
+}
+
 Placements placements_of(const Scene& scene, std::uint32_t mesh, BakeInstances kind) {
   Placements placements;
   if (kind == BakeInstances::alone) {
@@ -49,14 +71,18 @@ double expected_samples(const Scene& scene, const BakeOptions& options) {
   double samples = 0;
   for (const Mesh& mesh : scene.meshes) {
     if (!options.vertices || mesh.has_strands()) continue;
-    if (options.light) samples += static_cast<double>(mesh.primitive_count()) * kLightSamples;
     samples += options.at_vertices ? static_cast<double>(mesh.positions.size())
                                    : static_cast<double>(mesh.primitive_count()) * of_triangle;
   }
   if (options.texture)
     samples += kExpectedCoverage * of_triangle * options.texture_size * options.texture_size;
   if (options.instances) samples += static_cast<double>(scene.instances.size()) * kInstanceSamples;
-  return samples;
+  return options.light ? 2 * samples : samples;
+}
+
+/// Names of the lights that are baked.
+std::vector<std::string> baked_light_names(const Scene& scene, const BakeOptions& options) {
+  return light_names(options.lights.empty() ? scene.lights : options.lights);
 }
 
 /// The part of a scene that is one mesh, as it is in object space.
@@ -77,13 +103,10 @@ class MeshOccluders {
       : scene_(scene), options_(options), together_(together) {}
 
   /// Valid until the next call.
-  SampleTracer tracer(std::uint32_t mesh, BakeStatistics& statistics) {
+  BakeTracing tracing(std::uint32_t mesh, const BakeRecords& records) {
     if (!together_) alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
-    return {trace_against(occluders()), options_, statistics};
+    return tracing_against(together_ ? *together_ : *alone_, options_, records);
   }
-
-  /// Those of the last tracer.
-  [[nodiscard]] const OccluderScene& occluders() const { return together_ ? *together_ : *alone_; }
 
  private:
   const Scene& scene_;
@@ -105,37 +128,41 @@ bool for_each_mesh(const Scene& scene, const BakeOptions& options, BakeOne bake_
 }
 
 bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,
-                   BakeProgress& progress, BakeResult& result) {
+                   const BakeRecords& records, BakeResult& result) {
   result.meshes.resize(scene.meshes.size());
   return for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
-    SampleTracer tracer = occluders.tracer(m, result.statistics);
-    auto baked =
-        bake_mesh(scene.meshes[m], two_sided_triangles(scene, scene.meshes[m], options.sides), m,
-                  placements, options, tracer, progress, result.statistics);
-    if (!baked) return false;
-    result.meshes[m] = std::move(*baked);
-    if (!options.light) return true;
-    auto light =
-        bake_lights(scene.meshes[m], two_sided_triangles(scene, scene.meshes[m], options.sides), m,
-                    placements, options, occluders.occluders(), progress);
-    if (light) result.meshes[m].light = std::move(*light);
-    result.light_names = light_names(occluders.occluders().lights);
-    return light.has_value();
+    BakeTracing tracing = occluders.tracing(m, records);
+    const Mesh& mesh = scene.meshes[m];
+    auto baked = bake_mesh(mesh, two_sided_triangles(scene, mesh, options.sides), m, placements,
+                           options, tracing);
+    if (baked) result.meshes[m] = std::move(*baked);
+    return baked.has_value();
   });
 }
 
 bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,
-                  BakeProgress& progress, BakeResult& result) {
+                  const BakeRecords& records, BakeResult& result) {
   TextureBake texture(
       scene, options,
       options.texture_uvs.empty() ? make_layout(scene, options) : given_layout(scene, options));
   const bool done =
       for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
-        SampleTracer tracer = occluders.tracer(m, result.statistics);
-        return texture.add(m, placements, tracer, progress, result.statistics);
+        BakeTracing tracing = occluders.tracing(m, records);
+        return texture.add(m, placements, tracing);
       });
   if (done) result.texture = texture.finish();
   return done;
+}
+
+bool bake_all_instances(const Scene& scene, const BakeOptions& options,
+                        const OccluderScene& together, const BakeRecords& records,
+                        BakeResult& result) {
+  BakeTracing tracing = tracing_against(together, options, records);
+  auto values = bake_instances(scene, options, tracing);
+  if (!values) return false;
+  result.instance_ao = std::move(values->ao);
+  result.instance_light = std::move(values->light);
+  return true;
 }
 
 }  // namespace
@@ -154,6 +181,9 @@ void validate(const BakeOptions& options) {
   check("--footprint", double{options.footprint}, 0, 1e6);
   check("--ao-distance", double{options.distance}, 0, 1e30);
   check("--ao-falloff", double{options.falloff}, 0, 100);
+  if (options.light && options.placement == BakeInstances::alone)
+    throw Error(ErrorKind::usage,
+                "--passes light needs --instances together or unique: a mesh alone is not lit");
 }
 
 BakeResult bake(const Scene& scene, const BakeOptions& options, const RenderControl& control,
@@ -171,19 +201,25 @@ BakeResult bake(const Scene& scene, const BakeOptions& options, const RenderCont
     s.device = together->device.info().name;
     s.notes = together->notes;
   }
+  if (options.light) result.light_names = baked_light_names(scene, options);
   BakeProgress progress(expected_samples(scene, options), control);
+  Settings settings = bake_settings(scene, options, occluders);
+  if (together) settings.emplace_back("device", s.device);
+  BakeCheckpoint checkpoint(control, std::move(settings));
+  const BakeRecords records{progress, checkpoint, s};
   const Stopwatch tracing;
   MeshOccluders mesh_occluders(scene, options, alone ? nullptr : &*together);
   if (options.vertices)
-    result.interrupted = !bake_vertices(scene, options, mesh_occluders, progress, result);
+    result.interrupted = !bake_vertices(scene, options, mesh_occluders, records, result);
   if (options.texture && !result.interrupted)
-    result.interrupted = !bake_texture(scene, options, mesh_occluders, progress, result);
-  if (options.instances && !result.interrupted) {
-    SampleTracer tracer(trace_against(*together), options, s);
-    auto values = bake_instances(scene, options, tracer, progress);
-    result.interrupted = !values;
-    if (values) result.instance_ao = std::move(*values);
-  }
+    result.interrupted = !bake_texture(scene, options, mesh_occluders, records, result);
+  if (options.instances && !result.interrupted)
+    result.interrupted = !bake_all_instances(scene, options, *together, records, result);
+  checkpoint.save(true);
+  result.checkpoint_failure = checkpoint.failure();
+  if (checkpoint.points_read() > 0)
+    s.notes.push_back(fmt::format("went on from {}: {} of {} points", control.resume,
+                                  checkpoint.points_read(), s.points));
   s.seconds.trace = tracing.seconds();
   s.seconds.total = total.seconds();
   return result;

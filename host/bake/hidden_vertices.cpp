@@ -1,37 +1,31 @@
 #include "bake/hidden_vertices.hpp"
 
+#include <algorithm>
+
 namespace dapple {
 
-// Breadth first over the triangles' edges, a ring of vertices each round.
-void spread_to_hidden(const Mesh& mesh, const VertexGroups& groups,
-                      std::vector<PlaceValue>& values) {
-  struct Sum {
-    double ao = 0;
-    V3f bent{0, 0, 0};
-    int count = 0;
-  };
-  for (bool spreads = true; spreads;) {
-    std::vector<std::pair<std::uint32_t, Sum>> ring;
-    std::vector<std::uint32_t> index(values.size(), ~0u);
+std::vector<HiddenGroup> hidden_groups(const Mesh& mesh, const VertexGroups& groups,
+                                       std::vector<bool> known) {
+  std::vector<HiddenGroup> all;
+  if (std::find(known.begin(), known.end(), false) == known.end()) return all;
+  // A ring of vertices each round.
+  for (std::size_t begin = 0;; begin = all.size()) {
+    std::vector<std::uint32_t> index(known.size(), ~0u);
     for (std::size_t corner = 0; corner < mesh.indices.size(); ++corner) {
       const std::uint32_t hidden = groups.of_vertex[mesh.indices[corner]];
-      if (values[hidden].known) continue;
+      if (known[hidden]) continue;
       for (std::size_t other = corner / 3 * 3; other < corner / 3 * 3 + 3; ++other) {
-        const PlaceValue& neighbour = values[groups.of_vertex[mesh.indices[other]]];
-        if (!neighbour.known) continue;
+        const std::uint32_t neighbour = groups.of_vertex[mesh.indices[other]];
+        if (!known[neighbour]) continue;
         if (index[hidden] == ~0u) {
-          index[hidden] = static_cast<std::uint32_t>(ring.size());
-          ring.push_back({hidden, {}});
+          index[hidden] = static_cast<std::uint32_t>(all.size());
+          all.push_back({hidden, {}});
         }
-        Sum& sum = ring[index[hidden]].second;
-        sum.ao += double{neighbour.ao};
-        sum.bent += neighbour.bent;
-        ++sum.count;
+        all[index[hidden]].sources.push_back(neighbour);
       }
     }
-    for (const auto& [group, sum] : ring)
-      values[group] = {static_cast<float>(sum.ao / sum.count), sum.bent.normalized(), true};
-    spreads = !ring.empty();
+    if (all.size() == begin) return all;
+    for (std::size_t i = begin; i < all.size(); ++i) known[all[i].group] = true;
   }
 }
 

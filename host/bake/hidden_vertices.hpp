@@ -1,15 +1,23 @@
-// Values of vertices that lie inside closed geometry, from those of their neighbours. In: a mesh
-// and values of its vertex groups. Out: all values known, but in parts of the mesh that are hidden
-// as a whole.
+// Vertices that lie inside closed geometry, and the neighbours whose values they take. In: a mesh
+// and which of its vertex groups are known. Out: for each hidden group the groups whose mean it
+// takes, in an order in which these are known.
 #pragma once
 
 #include <vector>
 
-#include "bake/value_sums.hpp"
+#include "bake/vertex_groups.hpp"
 
 namespace dapple {
 
-void spread_to_hidden(const Mesh& mesh, const VertexGroups& groups,
-                      std::vector<PlaceValue>& values);
+/// The mean of `sources` is the value of `group`. A neighbour counts once for each shared edge.
+struct HiddenGroup {
+  std::uint32_t group = 0;
+  std::vector<std::uint32_t> sources;
+};
+
+/// Breadth first over the triangles' edges. Parts of the mesh that are hidden as a whole are not in
+/// the list: they keep their values.
+std::vector<HiddenGroup> hidden_groups(const Mesh& mesh, const VertexGroups& groups,
+                                       std::vector<bool> known);
 
 }  // namespace dapple

@@ -32,13 +32,6 @@ std::vector<SurfaceSample> samples_by_area(const Scene& scene, const Mesh& mesh,
   return samples;
 }
 
-/// The value of a sample as an instance's mean takes it.
-float sample_value(const SurfaceSample& sample, const SideValue& front, const SideValue& back,
-                   BakeSides sides) {
-  if (!sample.back) return front.ao;
-  return sides == BakeSides::mean ? 0.5f * (front.ao + back.ao) : std::max(front.ao, back.ao);
-}
-
 /// A flat list of samples of consecutive instances.
 struct InstanceSlice {
   std::vector<SurfaceSample> samples;
@@ -46,16 +39,42 @@ struct InstanceSlice {
   Placements placements;
 };
 
-}  // namespace
+/// Sums over the samples of each instance.
+struct InstanceSums {
+  std::vector<double> scalar, count;
+  std::vector<std::vector<V3f>> light;
 
-std::optional<std::vector<float>> bake_instances(const Scene& scene, const BakeOptions& options,
-                                                 SampleTracer& tracer, BakeProgress& progress) {
+  InstanceSums(std::size_t instances, std::size_t lights)
+      : scalar(instances), count(instances), light(lights, std::vector<V3f>(instances, V3f(0))) {}
+
+  /// Of a two-sided sample the brighter side, or the mean.
+  void add(const InstanceSlice& slice, const TracedSamples& found, BakeSides sides) {
+    for (std::size_t s = 0; s < slice.samples.size(); ++s) {
+      float front = 1, back = 0;
+      if (slice.samples[s].back) {
+        const bool behind = found.back[s].scalar > found.front[s].scalar;
+        back = sides == BakeSides::mean ? 0.5f : behind ? 1.0f : 0.0f;
+        front = 1 - back;
+      }
+      const std::uint32_t i = slice.instance[s];
+      scalar[i] += double{front * found.front[s].scalar + back * found.back[s].scalar};
+      ++count[i];
+      for (std::size_t l = 0; l < light.size(); ++l)
+        light[l][i] += found.front_light[s * light.size() + l] * front +
+                       found.back_light[s * light.size() + l] * back;
+    }
+  }
+};
+
+/// The means of AO, or of lights. False: stopped.
+bool trace_instances(const Scene& scene, const BakeOptions& options, BakeTracing& tracing,
+                     bool lights, InstanceSums& sums) {
   std::vector<std::vector<SurfaceSample>> of_mesh(scene.meshes.size());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m)
     if (!scene.meshes[m].has_strands())
       of_mesh[m] = samples_by_area(scene, scene.meshes[m], options);
-  const int rays = std::min(options.rays, kInstanceRays);
-  std::vector<double> sums(scene.instances.size()), counts(scene.instances.size());
+  const int rays = lights ? options.light_rays : std::min(options.rays, kInstanceRays);
+  const TraceSamples& trace = lights ? tracing.light : tracing.ao;
   InstanceSlice slice;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     for (const SurfaceSample& sample : of_mesh[scene.instances[i].mesh]) {
@@ -66,20 +85,32 @@ std::optional<std::vector<float>> bake_instances(const Scene& scene, const BakeO
     slice.placements.add(scene.instances[i].to_world);
     const bool last = i + 1 == scene.instances.size();
     if ((slice.samples.size() < kSamplesAtOnce && !last) || slice.samples.empty()) continue;
-    const TracedSamples found = tracer.trace(slice.samples, slice.placement, slice.placements, rays,
-                                             hash_of(options.seed, ~i));
-    for (std::size_t s = 0; s < slice.samples.size(); ++s) {
-      sums[slice.instance[s]] +=
-          double{sample_value(slice.samples[s], found.front[s], found.back[s], options.sides)};
-      ++counts[slice.instance[s]];
-    }
-    if (!progress.add(slice.samples.size())) return {};
+    const TracedSamples found = trace(slice.samples, slice.placement, slice.placements, rays,
+                                      hash_of(options.seed, lights ? i ^ 0x55555555u : ~i));
+    sums.add(slice, found, options.sides);
+    tracing.statistics.points += found.points;
+    tracing.statistics.rays += found.rays;
+    if (!tracing.progress.add(slice.samples.size())) return false;
     slice = {};
   }
-  std::vector<float> ao(sums.size(), 1.0f);
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    if (counts[i] > 0) ao[i] = static_cast<float>(sums[i] / counts[i]);
-  return ao;
+  return true;
+}
+
+}  // namespace
+
+std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptions& options,
+                                             BakeTracing& tracing) {
+  const std::size_t count = scene.instances.size();
+  InstanceSums ao(count, 0), light(count, tracing.lights);
+  if (!trace_instances(scene, options, tracing, false, ao)) return {};
+  if (tracing.light && !trace_instances(scene, options, tracing, true, light)) return {};
+  InstanceValues values{std::vector<float>(count, 1.0f), std::move(light.light)};
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(ao.count[i] > 0)) continue;
+    values.ao[i] = static_cast<float>(ao.scalar[i] / ao.count[i]);
+    for (std::vector<V3f>& of_light : values.light) of_light[i] /= static_cast<float>(ao.count[i]);
+  }
+  return values;
 }
 
 }  // namespace dapple

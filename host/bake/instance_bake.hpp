@@ -1,12 +1,11 @@
-// The mean ambient occlusion of each instance of a scene. In: a scene and a tracer. Out: a value
-// for each instance.
+// The mean ambient occlusion, or irradiance, of each instance of a scene. In: a scene and what
+// traces. Out: a value for each instance.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "bake/bake_progress.hpp"
-#include "bake/sample_tracer.hpp"
+#include "bake/sample_rounds.hpp"
 #include "dapple/bake.hpp"
 
 namespace dapple {
@@ -17,9 +16,13 @@ inline constexpr int kInstanceSamples = 16;
 /// Rays of such a sample, at most.
 inline constexpr int kInstanceRays = 192;
 
-/// AO of each instance, [0,1]; 1 for strands and meshes without an area. Nothing if `progress` says
-/// that the bake is to stop.
-std::optional<std::vector<float>> bake_instances(const Scene& scene, const BakeOptions& options,
-                                                 SampleTracer& tracer, BakeProgress& progress);
+struct InstanceValues {
+  std::vector<float> ao;                ///< [0,1]; 1 for strands and meshes without an area
+  std::vector<std::vector<V3f>> light;  ///< irradiance by light and instance; 0 for such
+};
+
+/// Nothing if the bake is to stop.
+std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptions& options,
+                                             BakeTracing& tracing);
 
 }  // namespace dapple

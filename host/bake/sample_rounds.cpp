@@ -20,10 +20,23 @@ constexpr double kMinRound = 0.005;
 
 }  // namespace
 
-bool SampleRounds::run(const BakeOptions& options, std::uint32_t first, SampleCounts fixed) {
-  if (options.target_error <= 0) return take(static_cast<std::uint32_t>(fixed.samples), fixed.rays);
-  return take(first, kRaysPerSample) &&
-         refine(options.target_error, static_cast<std::uint32_t>(options.rays / kRaysPerSample));
+SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
+                           const Placements& placements, BakeTracing& tracing, ValueSums& sums,
+                           bool lights)
+    : surface_(surface),
+      hash_(hash),
+      placements_(placements),
+      tracing_(tracing),
+      trace_(lights ? tracing.light : tracing.ao),
+      sums_(sums),
+      samples_at_once_(std::max<std::size_t>(
+          1, kSamplesAtOnce / (lights ? std::max<std::size_t>(1, tracing.lights) : 1))),
+      taken_(surface.size()) {}
+
+bool SampleRounds::run(const RoundOptions& options) {
+  if (options.target_error <= 0)
+    return take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays);
+  return take(options.first, options.rays) && refine(options.target_error, options.limit);
 }
 
 // `samples` of each element, both sides. False: stopped.
@@ -50,7 +63,7 @@ bool SampleRounds::refine(float target, std::uint32_t max_samples) {
       more += wanted[i] - taken_[i];
     }
     if (more <= kMinRound * static_cast<double>(taken_.size())) return true;
-    progress_.expect(more);
+    tracing_.progress.expect(more);
     if (!round(wanted)) return false;
   }
 }
@@ -60,7 +73,7 @@ bool SampleRounds::round(const std::vector<std::uint32_t>& wanted) {
   for (std::uint32_t i = 0; i < taken_.size(); ++i) {
     if (!surface_.can_be_sampled(i)) taken_[i] = wanted[i];
     for (; taken_[i] < wanted[i]; ++taken_[i]) next_.push_back({i, taken_[i]});
-    if (next_.size() >= kSamplesAtOnce && !trace()) return false;
+    if (next_.size() >= samples_at_once_ && !trace()) return false;
   }
   return trace() && trace();
 }
@@ -99,13 +112,14 @@ bool SampleRounds::trace() {
   batch_traced_ = std::move(batch);
   if (!batch_traced_.samples.empty())
     traced_ = std::async(std::launch::async, [this] {
-      return tracer_.trace(batch_traced_.samples, batch_traced_.placement, placements_, rays_,
-                           batch_traced_.hash);
+      return trace_(batch_traced_.samples, batch_traced_.placement, placements_, rays_,
+                    batch_traced_.hash);
     });
   if (!found) return true;
-  for (std::size_t i = 0; i < before.samples.size(); ++i)
-    sums_.add(before.samples[i], found->front[i], found->back[i]);
-  return progress_.add(before.samples.size());
+  sums_.add(before.samples, *found);
+  tracing_.statistics.points += found->points;
+  tracing_.statistics.rays += found->rays;
+  return tracing_.progress.add(before.samples.size());
 }
 
 }  // namespace dapple

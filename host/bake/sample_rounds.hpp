@@ -11,22 +11,33 @@
 
 namespace dapple {
 
+/// What a bake traces with, and whom it tells.
+struct BakeTracing {
+  TraceSamples ao;
+  TraceSamples light;      ///< empty: lights are not baked
+  std::size_t lights = 0;  ///< their number
+  BakeProgress& progress;
+  BakeStatistics& statistics;
+};
+
+/// How many samples and rays to take.
+struct RoundOptions {
+  float target_error = 0;     ///< 0: `fixed` samples of each element
+  std::uint32_t first = 1;    ///< samples of each element before the first error is known
+  std::uint32_t limit = 128;  ///< samples of an element, with a target
+  int rays = kRaysPerSample;  ///< of a sample, with a target
+  SampleCounts fixed = {};
+};
+
 class SampleRounds {
  public:
-  /// `hash`: random bits of the surface. All references must outlive the rounds.
+  /// `hash`: random bits of the surface. `lights`: trace lights, not AO. All references must
+  /// outlive the rounds.
   SampleRounds(const SampledSurface& surface, std::uint32_t hash, const Placements& placements,
-               SampleTracer& tracer, ValueSums& sums, BakeProgress& progress)
-      : surface_(surface),
-        hash_(hash),
-        placements_(placements),
-        tracer_(tracer),
-        sums_(sums),
-        progress_(progress),
-        taken_(surface.size()) {}
+               BakeTracing& tracing, ValueSums& sums, bool lights);
 
-  /// As many samples as the options say: `first` of each element, then more until the standard
-  /// error is their target, or `fixed` without a target. False: stopped.
-  bool run(const BakeOptions& options, std::uint32_t first, SampleCounts fixed);
+  /// Takes samples as the options say. False: stopped.
+  bool run(const RoundOptions& options);
 
  private:
   struct SampleIndex {
@@ -47,9 +58,10 @@ class SampleRounds {
   const SampledSurface& surface_;
   std::uint32_t hash_, batch_ = 0;
   const Placements& placements_;
-  SampleTracer& tracer_;
+  BakeTracing& tracing_;
+  const TraceSamples& trace_;
   ValueSums& sums_;
-  BakeProgress& progress_;
+  std::size_t samples_at_once_;
   int rays_ = kRaysPerSample;
   std::vector<std::uint32_t> taken_;  ///< samples of each element
   std::vector<SampleIndex> next_;     ///< to be traced

@@ -5,16 +5,25 @@
 namespace dapple {
 namespace {
 
-/// Points in the world.
-struct WorldPoints {
-  explicit WorldPoints(std::size_t count) : positions(count), normals(count) {}
-  std::vector<V3f> positions, normals;
-};
-
 V3f unit_normal(const V3f& normal, const M44f& inverse) {
   V3f out;
   inverse.transposed().multDirMatrix(normal, out);
   return out.normalized();
+}
+
+std::vector<SideValue> trace_side(const TracePoints& trace, const BakeOptions& bake,
+                                  std::span<const std::uint32_t> placement,
+                                  const Placements& placements, const WorldPoints& points,
+                                  const OcclusionOptions& options) {
+  std::vector<SideValue> values(placement.size());
+  if (points.sample.empty()) return values;
+  const PointOcclusion traced = trace(points.positions, points.normals, options, bake.bent);
+  for (std::size_t k = 0; k < points.sample.size(); ++k) {
+    const std::uint32_t i = points.sample[k];
+    values[i].scalar = traced.ao[k];
+    if (bake.bent) placements.to_object[placement[i]].multDirMatrix(traced.bent[k], values[i].bent);
+  }
+  return values;
 }
 
 }  // namespace
@@ -24,47 +33,43 @@ void Placements::add(const M44f& matrix) {
   to_object.push_back(matrix.inverse());
 }
 
-TracedSamples SampleTracer::trace(std::span<const SurfaceSample> samples,
-                                  std::span<const std::uint32_t> placement,
-                                  const Placements& placements, int rays, std::uint32_t hash) {
-  return {trace_side(samples, placement, placements, rays, hash, false),
-          trace_side(samples, placement, placements, rays, hash_of(hash, 1), true)};
+WorldPoints::WorldPoints(std::span<const SurfaceSample> samples,
+                         std::span<const std::uint32_t> placement, const Placements& placements,
+                         bool back) {
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    if (back ? samples[i].back : samples[i].front) sample.push_back(i);
+  positions.resize(sample.size());
+  normals.resize(sample.size());
+  tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {
+    const SurfaceSample& at = samples[sample[k]];
+    const std::size_t place = placement[sample[k]];
+    positions[k] = at.position * placements.to_world[place];
+    const V3f normal = unit_normal(at.normal, placements.to_object[place]);
+    normals[k] = back ? -normal : normal;
+  });
 }
 
-std::vector<SideValue> SampleTracer::trace_side(std::span<const SurfaceSample> samples,
-                                                std::span<const std::uint32_t> placement,
-                                                const Placements& placements, int rays,
-                                                std::uint32_t hash, bool back) {
-  std::vector<SideValue> values(samples.size());
-  std::vector<std::uint32_t> chosen;
-  for (std::uint32_t i = 0; i < samples.size(); ++i)
-    if (back ? samples[i].back : samples[i].front) chosen.push_back(i);
-  if (chosen.empty()) return values;
-  WorldPoints points(chosen.size());
-  tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t k) {
-    const SurfaceSample& sample = samples[chosen[k]];
-    const std::size_t at = placement[chosen[k]];
-    points.positions[k] = sample.position * placements.to_world[at];
-    const V3f normal = unit_normal(sample.normal, placements.to_object[at]);
-    points.normals[k] = back ? -normal : normal;
-  });
-  OcclusionOptions options;
-  options.rays = rays;
-  options.estimator = options_.estimator;
-  options.footprint = options_.footprint;
-  options.distance = options_.distance;
-  options.falloff = options_.falloff;
-  options.seed = hash_of(options_.seed, hash);
-  const PointOcclusion traced = trace_(points.positions, points.normals, options, options_.bent);
-  statistics_.points += chosen.size();
-  statistics_.rays += chosen.size() * static_cast<std::uint64_t>(rays);
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    SideValue& value = values[chosen[k]];
-    value.ao = traced.ao[k];
-    if (options_.bent)
-      placements.to_object[placement[chosen[k]]].multDirMatrix(traced.bent[k], value.bent);
-  }
-  return values;
+TraceSamples ao_tracer(TracePoints trace, const BakeOptions& bake) {
+  return [trace = std::move(trace), &bake](
+             std::span<const SurfaceSample> samples, std::span<const std::uint32_t> placement,
+             const Placements& placements, int rays, std::uint32_t hash) {
+    OcclusionOptions options;
+    options.rays = rays;
+    options.estimator = bake.estimator;
+    options.footprint = bake.footprint;
+    options.distance = bake.distance;
+    options.falloff = bake.falloff;
+    TracedSamples traced;
+    for (const bool back : {false, true}) {
+      options.seed = hash_of(bake.seed, back ? hash_of(hash, 1) : hash);
+      const WorldPoints points(samples, placement, placements, back);
+      (back ? traced.back : traced.front) =
+          trace_side(trace, bake, placement, placements, points, options);
+      traced.points += points.sample.size();
+      traced.rays += points.sample.size() * static_cast<std::uint64_t>(rays);
+    }
+    return traced;
+  };
 }
 
 }  // namespace dapple

@@ -1,6 +1,6 @@
-// AO and bent normals of samples. In: samples of a mesh and the matrices of its placements. Out: a
-// value for each sample and side. What traces the rays is a function, so that others than dapple
-// can be compared.
+// What is traced at samples: AO with bent normals, or lights. In: samples of a mesh and the
+// matrices of its placements. Out: a value for each sample and side. What traces the rays is a
+// function, so that others than dapple can be compared.
 #pragma once
 
 #include <functional>
@@ -17,10 +17,10 @@ using TracePoints =
     std::function<PointOcclusion(std::span<const V3f> positions, std::span<const V3f> normals,
                                  const OcclusionOptions& options, bool bent)>;
 
-/// AO and the sum of unoccluded directions, in object space, seen from one side of a sample.
+/// What is seen from one side of a sample.
 struct SideValue {
-  float ao = 0;
-  V3f bent{0, 0, 0};
+  float scalar = 0;   ///< AO; of lights the brightness of all of them together
+  V3f bent{0, 0, 0};  ///< sum of unoccluded directions, in object space
 };
 
 /// Placements of a mesh: their matrices and the inverses.
@@ -32,28 +32,28 @@ struct Placements {
 /// Values of samples; zero for sides that are not traced.
 struct TracedSamples {
   std::vector<SideValue> front, back;
+  /// Irradiance by each light, those of a sample one after the other; empty for AO.
+  std::vector<V3f> front_light, back_light;
+  float largest = 1;  ///< scalar of a sample that nothing occludes, at most
+  std::uint64_t points = 0, rays = 0;
 };
 
-class SampleTracer {
- public:
-  SampleTracer(TracePoints trace, const BakeOptions& options, BakeStatistics& statistics)
-      : trace_(std::move(trace)), options_(options), statistics_(statistics) {}
+/// Traces samples. `placement`: of each sample, index into `placements`. `rays`: of each sample and
+/// side. `hash`: random bits that differ between calls.
+using TraceSamples = std::function<TracedSamples(
+    std::span<const SurfaceSample> samples, std::span<const std::uint32_t> placement,
+    const Placements& placements, int rays, std::uint32_t hash)>;
 
-  /// `placement`: of each sample, index into `placements`. `rays`: of each sample and side. `hash`:
-  /// random bits that differ between calls.
-  TracedSamples trace(std::span<const SurfaceSample> samples,
-                      std::span<const std::uint32_t> placement, const Placements& placements,
-                      int rays, std::uint32_t hash);
-
- private:
-  std::vector<SideValue> trace_side(std::span<const SurfaceSample> samples,
-                                    std::span<const std::uint32_t> placement,
-                                    const Placements& placements, int rays, std::uint32_t hash,
-                                    bool back);
-
-  TracePoints trace_;
-  const BakeOptions& options_;
-  BakeStatistics& statistics_;
+/// The samples of which one side is traced, as points of the world.
+struct WorldPoints {
+  /// `back`: which side.
+  WorldPoints(std::span<const SurfaceSample> samples, std::span<const std::uint32_t> placement,
+              const Placements& placements, bool back);
+  std::vector<std::uint32_t> sample;
+  std::vector<V3f> positions, normals;
 };
+
+/// AO and, with options.bent, bent normals. `options` must outlive the function.
+TraceSamples ao_tracer(TracePoints trace, const BakeOptions& options);
 
 }  // namespace dapple

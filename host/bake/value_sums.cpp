@@ -34,8 +34,8 @@ constexpr float kPooledFreedom = 4;
 void ValueSums::Side::add(float w, const SideValue& value) {
   weight += w;
   weight_squares += w * w;
-  ao += w * value.ao;
-  ao_squares += w * value.ao * value.ao;
+  sum += w * value.scalar;
+  sum_squares += w * value.scalar * value.scalar;
   bent += value.bent * w;
 }
 
@@ -44,13 +44,16 @@ float ValueSums::Side::count() const {
 }
 
 float ValueSums::Side::squared_deviations() const {
-  return weight > 0 ? std::max(0.0f, ao_squares / weight - mean() * mean()) * count() : 0.0f;
+  return weight > 0 ? std::max(0.0f, sum_squares / weight - mean() * mean()) * count() : 0.0f;
 }
 
-/// The variance of samples as a function of the AO of the value that they belong to: that of a few
-/// samples of one place says little.
+/// The variance of samples as a function of the value that they belong to: that of a few samples of
+/// one place says little.
 class ValueSums::PooledVariance {
  public:
+  /// Values are from 0 to `scale`.
+  explicit PooledVariance(float scale) : scale_(scale) {}
+
   void add(const Side& side) {
     const float freedom = side.count() - 1;
     if (freedom < 0.5f) return;
@@ -82,38 +85,54 @@ class ValueSums::PooledVariance {
     }
   };
 
-  static std::size_t interval(float ao) {
+  [[nodiscard]] std::size_t interval(float value) const {
     return static_cast<std::size_t>(
-        std::clamp(static_cast<int>(ao * kIntervals), 0, kIntervals - 1));
+        std::clamp(static_cast<int>(value / scale_ * kIntervals), 0, kIntervals - 1));
   }
 
-  [[nodiscard]] float pooled(float ao) const {
+  [[nodiscard]] float pooled(float value) const {
     // Without any repeated sample: of rays that each find everything or nothing.
-    const double all =
-        all_.freedom > 0 ? all_.squares / all_.freedom : double{ao * (1 - ao)} / kRaysPerSample;
-    const Pool& pool = of_interval_[interval(ao)];
+    const double all = all_.freedom > 0 ? all_.squares / all_.freedom
+                                        : double{value * (scale_ - value)} / kRaysPerSample;
+    const Pool& pool = of_interval_[interval(value)];
     return static_cast<float>((pool.squares + double{kPooledFreedom} * all) /
                               (pool.freedom + double{kPooledFreedom}));
   }
 
+  float scale_;
   std::array<Pool, kIntervals> of_interval_;
   Pool all_;
 };
 
-ValueSums::ValueSums(SmallParts parts, BakeSides sides)
+ValueSums::ValueSums(SmallParts parts, BakeSides sides, std::size_t lights)
     : sides_(sides),
       parts_(std::move(parts)),
       of_place_(parts_.of_place.size()),
       of_part_(parts_.count),
-      chosen_(of_place_.size(), Chosen::both) {}
+      chosen_(of_place_.size(), Chosen::both),
+      lights_(lights),
+      front_light_(of_place_.size() * lights, V3f(0, 0, 0)),
+      back_light_(front_light_) {}
 
-void ValueSums::add(const SurfaceSample& sample, const SideValue& front, const SideValue& back) {
+void ValueSums::add(std::span<const SurfaceSample> samples, const TracedSamples& found) {
+  largest_ = std::max(largest_, found.largest);
+  for (std::size_t i = 0; i < samples.size(); ++i) add(samples[i], found, i);
+}
+
+void ValueSums::add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index) {
   const auto add_to = [&](BothSides& place, float weight) {
-    if (sample.front) place.front.add(weight, front);
-    if (sample.back) place.back.add(weight, back);
+    if (sample.front) place.front.add(weight, found.front[index]);
+    if (sample.back) place.back.add(weight, found.back[index]);
   };
-  for (std::size_t k = 0; k < 3; ++k)
-    if (sample.weight[k] > 0) add_to(of_place_[sample.place[k]], sample.weight[k]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(sample.weight[k] > 0)) continue;
+    add_to(of_place_[sample.place[k]], sample.weight[k]);
+    for (std::size_t l = 0; l < lights_; ++l) {
+      const std::size_t from = index * lights_ + l, to = sample.place[k] * lights_ + l;
+      front_light_[to] += found.front_light[from] * sample.weight[k];
+      back_light_[to] += found.back_light[from] * sample.weight[k];
+    }
+  }
   const std::uint32_t part = parts_.of_place[sample.place[0]];
   if (part != SmallParts::kLarge)
     add_to(of_part_[part], sample.weight[0] + sample.weight[1] + sample.weight[2]);
@@ -129,7 +148,7 @@ ValueSums::PooledVariance ValueSums::pooled_variance() const {
     return sum;
   };
   return tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce), PooledVariance(),
+      tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce), PooledVariance(scale()),
       add_range, [](PooledVariance a, const PooledVariance& b) { return a += b; });
 }
 
@@ -165,6 +184,7 @@ std::vector<float> ValueSums::squared_errors() const {
         squares[i] = std::max(squares[i], variance.of(side) / side.count());
     }
     if (sides_ == BakeSides::mean && place.back.weight > 0) squares[i] *= 0.5f;  // of two of them
+    squares[i] /= scale() * scale();
   });
   return squares;
 }
@@ -175,7 +195,7 @@ std::vector<float> ValueSums::missing_samples(float target) const {
     const BothSides& place = of_place_[i];
     const float samples = place.front.count() + place.back.count();
     const bool may_be_hidden =
-        samples > 0 && std::max(place.front.mean(), place.back.mean()) <= kHidden;
+        lights_ == 0 && samples > 0 && std::max(place.front.mean(), place.back.mean()) <= kHidden;
     factors[i] = std::max(
         {1.0f, factors[i] / (target * target), may_be_hidden ? kSamplesOfHidden / samples : 1.0f});
   });
@@ -199,6 +219,21 @@ std::vector<PlaceValue> ValueSums::values() const {
     const V3f bent =
         both && sides_ == BakeSides::mean ? place.front.bent + place.back.bent : chosen.bent;
     values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true};
+  }
+  return values;
+}
+
+std::vector<V3f> ValueSums::light_values(std::size_t light) const {
+  std::vector<V3f> values(of_place_.size(), V3f(0, 0, 0));
+  for (std::uint32_t i = 0; i < values.size(); ++i) {
+    const float sides[2] = {of_place_[i].front.weight, of_place_[i].back.weight};
+    float used = 0;
+    for (const bool back : {false, true}) {
+      if (!counts(i, back) || !(sides[back] > 0)) continue;
+      values[i] += (back ? back_light_ : front_light_)[i * lights_ + light] / sides[back];
+      ++used;
+    }
+    if (used > 0) values[i] /= used;
   }
   return values;
 }

@@ -1,7 +1,9 @@
-// From what was found at samples to values of places: vertices or texels. In: AO and bent normals
-// of samples, both sides. Out: one value for each place, and how many more samples it needs.
+// From what was found at samples to values of places: vertices or texels. In: AO and bent normals,
+// or irradiance, of samples, both sides. Out: one value for each place, and how many more samples
+// it needs.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "bake/sample_tracer.hpp"
@@ -25,10 +27,11 @@ struct PlaceValue {
 
 class ValueSums {
  public:
-  ValueSums(SmallParts parts, BakeSides sides);
+  /// `lights`: 0 for AO; else the scalar of a sample is the brightness of so many lights.
+  ValueSums(SmallParts parts, BakeSides sides, std::size_t lights = 0);
 
-  /// Adds what one sample found on the sides that were traced.
-  void add(const SurfaceSample& sample, const SideValue& front, const SideValue& back);
+  /// Adds what was found at samples on the sides that were traced.
+  void add(std::span<const SurfaceSample> samples, const TracedSamples& found);
 
   /// Chooses the brighter side of each small part and of each place of larger ones, from the
   /// samples so far. `surely`: only where the difference is significant. Sides that were not chosen
@@ -40,8 +43,8 @@ class ValueSums {
     return chosen_[place] == Chosen::both || (chosen_[place] == Chosen::back) == back;
   }
 
-  /// The squared standard error of each place's AO, estimated from its samples and from those of
-  /// places of similar AO.
+  /// The squared standard error of each place's scalar, estimated from its samples and from those
+  /// of places of similar value; relative to the largest unoccluded value so far (of AO: 1).
   [[nodiscard]] std::vector<float> squared_errors() const;
 
   /// For each place, by what factor the number of its samples must grow for a standard error of
@@ -51,13 +54,16 @@ class ValueSums {
   /// The values of all places. Places without samples have AO 1: there is nothing to occlude.
   [[nodiscard]] std::vector<PlaceValue> values() const;
 
+  /// The irradiance of a light at all places; 0 at places without samples.
+  [[nodiscard]] std::vector<V3f> light_values(std::size_t light) const;
+
  private:
   /// Sums over the samples of one side.
   struct Side {
-    float weight = 0, weight_squares = 0, ao = 0, ao_squares = 0;
+    float weight = 0, weight_squares = 0, sum = 0, sum_squares = 0;
     V3f bent{0, 0, 0};
     void add(float w, const SideValue& value);
-    [[nodiscard]] float mean() const { return weight > 0 ? ao / weight : 0; }
+    [[nodiscard]] float mean() const { return weight > 0 ? sum / weight : 0; }
     /// Number of samples of equal weight that would have the same standard error.
     [[nodiscard]] float count() const;
     /// Sum of squared deviations, for count() - 1 degrees of freedom.
@@ -69,6 +75,8 @@ class ValueSums {
   enum class Chosen : std::uint8_t { both, front, back };
   class PooledVariance;
 
+  void add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index);
+  [[nodiscard]] float scale() const { return largest_ > 0 ? largest_ : 1; }
   [[nodiscard]] PooledVariance pooled_variance() const;
 
   BakeSides sides_;
@@ -76,6 +84,9 @@ class ValueSums {
   std::vector<BothSides> of_place_;
   std::vector<BothSides> of_part_;
   std::vector<Chosen> chosen_;  ///< by place
+  float largest_ = 0;           ///< the largest TracedSamples::largest
+  std::size_t lights_;
+  std::vector<V3f> front_light_, back_light_;  ///< weighted sums, the lights of a place together
 };
 
 }  // namespace dapple

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "bake/hidden_vertices.hpp"
-#include "bake/sample_rounds.hpp"
 
 namespace dapple {
 namespace {
@@ -56,22 +55,50 @@ class SampledMesh : public SampledSurface {
   bool is_at_vertices_ = false;
 };
 
-BakedMesh vertex_values(const Mesh& mesh, const VertexGroups& groups, const ValueSums& sums,
-                        bool bent, std::size_t& hidden) {
-  std::vector<PlaceValue> values = sums.values();
-  const auto hidden_groups =
-      std::count_if(values.begin(), values.end(), [](const PlaceValue& v) { return !v.known; });
-  if (hidden_groups > 0) spread_to_hidden(mesh, groups, values);
-  hidden += static_cast<std::size_t>(hidden_groups);
-  BakedMesh baked;
-  baked.ao.resize(mesh.positions.size());
-  if (bent) baked.bent.resize(mesh.positions.size());
-  for (std::size_t vertex = 0; vertex < baked.ao.size(); ++vertex) {
-    const PlaceValue& value = values[groups.of_vertex[vertex]];
-    baked.ao[vertex] = value.ao;
-    if (bent) baked.bent[vertex] = value.bent;
+/// Values of one mesh by vertex group.
+struct GroupValues {
+  std::vector<float> ao;
+  std::vector<V3f> bent;
+  std::vector<std::vector<V3f>> light;
+
+  GroupValues(const std::vector<PlaceValue>& values, bool with_bent) {
+    for (const PlaceValue& value : values) {
+      ao.push_back(value.ao);
+      if (with_bent) bent.push_back(value.bent);
+    }
   }
-  return baked;
+
+  /// Gives a hidden group the mean of others.
+  void fill(const HiddenGroup& hidden) {
+    const auto count = static_cast<float>(hidden.sources.size());
+    const auto sum = [&](const auto& values, auto start) {
+      for (const std::uint32_t source : hidden.sources) start += values[source];
+      return start;
+    };
+    ao[hidden.group] = sum(ao, 0.0f) / count;
+    if (!bent.empty()) bent[hidden.group] = sum(bent, V3f(0, 0, 0)).normalized();
+    for (std::vector<V3f>& of_light : light)
+      of_light[hidden.group] = sum(of_light, V3f(0, 0, 0)) / count;
+  }
+
+  [[nodiscard]] BakedMesh at_vertices(const VertexGroups& groups) const {
+    BakedMesh baked;
+    const auto spread = [&](const auto& values, auto& out) {
+      if (values.empty()) return;
+      for (const std::uint32_t group : groups.of_vertex) out.push_back(values[group]);
+    };
+    spread(ao, baked.ao);
+    spread(bent, baked.bent);
+    baked.light.resize(light.size());
+    for (std::size_t l = 0; l < light.size(); ++l) spread(light[l], baked.light[l]);
+    return baked;
+  }
+};
+
+/// Adds the squared errors of the values at all vertices to `sum`.
+void add_errors(const VertexGroups& groups, const ValueSums& sums, double& sum) {
+  const std::vector<float> squares = sums.squared_errors();
+  for (const std::uint32_t group : groups.of_vertex) sum += double{squares[group]};
 }
 
 }  // namespace
@@ -95,27 +122,52 @@ SmallParts small_parts(const Mesh& mesh, const VertexGroups& groups) {
   return parts;
 }
 
+RoundOptions round_options(const BakeOptions& options, std::uint32_t first, bool lights) {
+  RoundOptions rounds;
+  rounds.target_error = options.target_error;
+  rounds.first = first;
+  rounds.limit = static_cast<std::uint32_t>(options.rays / kRaysPerSample);
+  rounds.fixed = sample_counts(options.rays);
+  if (lights) rounds.rays = rounds.fixed.rays = options.light_rays;
+  return rounds;
+}
+
 std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& two_sided,
                                    std::uint32_t index, const Placements& placements,
-                                   const BakeOptions& options, SampleTracer& tracer,
-                                   BakeProgress& progress, BakeStatistics& statistics) {
+                                   const BakeOptions& options, BakeTracing& tracing) {
   const bool any_two_sided = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
   const VertexGroups groups = group_vertices(mesh, any_two_sided);
-  ValueSums sums(small_parts(mesh, groups), options.sides);
   const std::uint32_t hash = hash_of(options.seed, index);
   const SampledMesh sampled(mesh, groups, two_sided, options.at_vertices, hash);
-  SampleRounds rounds(sampled, hash, placements, tracer, sums, progress);
   // At a vertex alone, only a second sample tells the variance.
-  const SampleCounts fixed =
-      options.at_vertices ? SampleCounts{1, options.rays} : sample_counts(options.rays);
-  if (!rounds.run(options, options.at_vertices ? 2 : 1, fixed)) return {};
+  const std::uint32_t first = options.at_vertices ? 2 : 1;
+  ValueSums sums(small_parts(mesh, groups), options.sides);
+  SampleRounds rounds(sampled, hash, placements, tracing, sums, false);
+  RoundOptions how = round_options(options, first, false);
+  if (options.at_vertices) how.fixed = {1, options.rays};
+  if (!rounds.run(how)) return {};
   sums.choose_sides(true);
-  const std::vector<float> squares = sums.squared_errors();
-  for (const std::uint32_t group : groups.of_vertex)
-    statistics.squared_errors += double{squares[group]};
+  BakeStatistics& statistics = tracing.statistics;
+  add_errors(groups, sums, statistics.squared_errors);
+  const std::vector<PlaceValue> of_group = sums.values();
+  GroupValues values(of_group, options.bent);
+  if (tracing.light) {
+    ValueSums light(small_parts(mesh, groups), options.sides, tracing.lights);
+    SampleRounds light_rounds(sampled, ~hash, placements, tracing, light, true);
+    if (!light_rounds.run(round_options(options, first, true))) return {};
+    light.choose_sides(true);
+    add_errors(groups, light, statistics.squared_light_errors);
+    for (std::size_t l = 0; l < tracing.lights; ++l) values.light.push_back(light.light_values(l));
+  }
+  std::vector<bool> known;
+  for (const PlaceValue& value : of_group) known.push_back(value.known);
+  statistics.hidden_vertices +=
+      static_cast<std::size_t>(std::count(known.begin(), known.end(), false));
+  for (const HiddenGroup& hidden : hidden_groups(mesh, groups, std::move(known)))
+    values.fill(hidden);
   statistics.vertices += mesh.positions.size();
   statistics.triangles += mesh.primitive_count();
-  return vertex_values(mesh, groups, sums, options.bent, statistics.hidden_vertices);
+  return values.at_vertices(groups);
 }
 
 }  // namespace dapple

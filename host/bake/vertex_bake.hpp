@@ -1,11 +1,11 @@
 // Values at the vertices of one mesh, in rounds: a sample of each triangle, then more where the
-// values are uncertain. In: a mesh, its placements and a tracer. Out: AO and bent normals.
+// values are uncertain. In: a mesh, its placements and what traces. Out: AO, bent normals and
+// irradiance.
 #pragma once
 
 #include <optional>
 
-#include "bake/bake_progress.hpp"
-#include "bake/value_sums.hpp"
+#include "bake/sample_rounds.hpp"
 #include "dapple/bake.hpp"
 
 namespace dapple {
@@ -20,7 +20,9 @@ SmallParts small_parts(const Mesh& mesh, const VertexGroups& groups);
 /// `progress` says that the bake is to stop.
 std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& two_sided,
                                    std::uint32_t index, const Placements& placements,
-                                   const BakeOptions& options, SampleTracer& tracer,
-                                   BakeProgress& progress, BakeStatistics& statistics);
+                                   const BakeOptions& options, BakeTracing& tracing);
+
+/// `first` samples of each element, then as many as the options say; of lights if `lights`.
+RoundOptions round_options(const BakeOptions& options, std::uint32_t first, bool lights);
 
 }  // namespace dapple

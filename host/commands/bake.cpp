@@ -1,11 +1,10 @@
-// dapple bake: a glTF file with AO, and bent normals, at its vertices or instances.
+// dapple bake: a glTF file with AO, bent normals and light at its vertices, in a texture or at its
+// instances.
 #include "dapple/bake.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include "commands/baked_texture.hpp"
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
+#include "commands/option_text.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
 #include "commands/unique_meshes.hpp"
@@ -60,7 +60,12 @@ std::string beside(const std::string& output, const std::string& suffix,
   return (path.parent_path() / (path.stem().string() + suffix + extension)).string();
 }
 
-std::string bent_path(const std::string& output) { return beside(output, "_bent", ".exr"); }
+std::string exr_path(const std::string& output) { return beside(output, "_baked", ".exr"); }
+
+/// Whether there is more to write than a PNG holds.
+bool needs_exr(const BakeOptions& options) {
+  return options.texture && (options.bent || options.light);
+}
 
 /// The paths that the options name. Throws Error usage for two that are the same file, or that
 /// cannot be written.
@@ -68,7 +73,10 @@ std::vector<OutputPath> named_outputs(const BakeArguments& a, const BakeOptions&
   std::vector<OutputPath> outputs{{"--output", a.output}};
   if (!a.stats_json.empty()) outputs.push_back({"--stats-json", a.stats_json});
   if (!a.png.empty()) outputs.push_back({"--png", a.png});
-  if (options.texture && options.bent) outputs.push_back({"--passes bent", bent_path(a.output)});
+  if (needs_exr(options)) outputs.push_back({"--passes", exr_path(a.output)});
+  // A new checkpoint may replace the one that the bake resumes from.
+  if (!a.resume.empty()) check_outputs_spare(outputs, {a.resume});
+  if (!a.checkpoint.empty()) outputs.push_back({"--checkpoint", a.checkpoint});
   check_outputs(outputs);
   const std::string extension = fs::path(a.output).extension().string();
   if (extension != ".glb" && extension != ".gltf")
@@ -88,7 +96,7 @@ std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArg
   return sides;
 }
 
-/// Writes the file with the baked values, and the bent normals of a texture.
+/// Writes the file with the baked values, and the EXR of a texture.
 void write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArguments& a,
                  const BakeOptions& options, std::uint32_t uv_set, const BakeResult& result) {
   gltf::Editor editor(file, a.output);
@@ -97,13 +105,13 @@ void write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArg
         editor, file,
         baked_attributes(file, scene, result,
                          {parse_channel(a.channel), a.blend == "multiply", a.bent_channel}));
-  if (options.instances) gltf::add_node_values(editor, baked_nodes(scene, result.instance_ao));
+  if (options.instances) gltf::add_node_values(editor, baked_nodes(scene, result));
   if (options.texture)
     gltf::add_occlusion_texture(editor,
                                 textured_primitives(file, scene, result.texture.layout, uv_set),
-                                occlusion_png(result.texture));
+                                occlusion_png(result.texture, a.bits));
   editor.write();
-  if (options.texture && options.bent) write_bent_exr(result.texture, bent_path(a.output));
+  if (needs_exr(options)) write_baked_exr(result, exr_path(a.output));
 }
 
 void write_preview(const Scene& scene, const BakeResult& result, const std::string& path) {
@@ -112,23 +120,37 @@ void write_preview(const Scene& scene, const BakeResult& result, const std::stri
       path, encode_png(draw_preview(scene, result, camera, kPreviewSize, kPreviewSize), path));
 }
 
-/// The lights to bake; none: the scene's own. With --dome its mesh lights are ignored. Throws Error
-/// usage if there are none at all.
-std::vector<Light> baked_lights(const BakeArguments& a, const Scene& scene) {
-  std::vector<Light> lights;
-  if (!a.lights.empty()) lights = load_lights(a.lights);
-  if (a.dome.empty() && lights.empty() && scene.lights.empty())
+/// Chooses the lights to bake: those of --lights or else the scene's, and --dome beside them.
+/// Throws Error usage if there are none at all.
+void choose_lights(const BakeArguments& a, Scene& scene, BakeOptions& options) {
+  if (!a.lights.empty()) options.lights = load_lights(a.lights);
+  if (a.dome.empty() && options.lights.empty() && scene.lights.empty())
     throw Error(ErrorKind::usage,
                 "--passes light: the scene has no lights; --lights or --dome brings some");
-  if (a.dome.empty()) return lights;
-  if (a.lights.empty())
-    std::copy_if(scene.lights.begin(), scene.lights.end(), std::back_inserter(lights),
-                 [](const Light& light) { return light.kind != LightKind::mesh; });
-  lights.emplace_back();
-  lights.back().name = "dome";
-  lights.back().kind = LightKind::dome;
-  lights.back().environment = load_environment(a.dome);
-  return lights;
+  if (a.dome.empty()) return;
+  Light dome;
+  dome.name = "dome";
+  dome.kind = LightKind::dome;
+  dome.environment = load_environment(a.dome);
+  (a.lights.empty() ? scene.lights : options.lights).push_back(std::move(dome));
+}
+
+RenderControl to_control(const BakeArguments& a, ProgressBar& progress) {
+  RenderControl control;
+  control.progress = progress.callback();
+  // Without a checkpoint there is nothing to save: a signal ends the process at once.
+  if (!a.checkpoint.empty()) control.stop = save_when_interrupted();
+  control.checkpoint = a.checkpoint;
+  control.checkpoint_every = parse_seconds("--checkpoint-every", a.checkpoint_every);
+  control.resume = a.resume;
+  return control;
+}
+
+void report_interruption(const BakeResult& result, const BakeArguments& a) {
+  if (!result.checkpoint_failure.empty())
+    throw Error(ErrorKind::failed, result.checkpoint_failure + "; the bake was interrupted");
+  fmt::print(stderr, "note: interrupted, {} is not written; --resume {} goes on\n", a.output,
+             a.checkpoint);
 }
 
 /// Chooses the texture coordinates. Returns a line about them.
@@ -151,6 +173,7 @@ void run_bake(const BakeArguments& a) {
   const Stopwatch total;
   BakeSeconds seconds;
   ProgressBar progress(a.quiet, "baking");
+  const RenderControl control = to_control(a, progress);
   std::optional<SceneFile> input(std::in_place, a.scene, a.output);
   Scene scene = load_gltf(input->path(), a.scene_options);
   check_outputs_spare(outputs, scene.files);
@@ -161,17 +184,16 @@ void run_bake(const BakeArguments& a) {
   input.reset();  // all of it is in memory
   if (a.instances == "unique") make_meshes_unique(file, scene);
   check_outputs_spare(side_outputs(file, a, options), scene.files);
-  if (options.light) options.lights = baked_lights(a, scene);
+  if (options.light) choose_lights(a, scene, options);
   if (options.vertices) check_channel(file, scene, parse_channel(a.channel));
   std::uint32_t uv_set = 0;
   std::string layout_note;
   if (options.texture) layout_note = choose_layout(file, scene, a.uv, options, uv_set);
   seconds.load = total.seconds();
 
-  RenderControl control;
-  control.progress = progress.callback();
   BakeResult result = bake(scene, options, control, occluders);
   progress.clear();
+  if (result.interrupted) return report_interruption(result, a);
 
   const Stopwatch writing;
   write_baked(file, scene, a, options, uv_set, result);
@@ -184,6 +206,8 @@ void run_bake(const BakeArguments& a) {
   notes.insert(notes.end(), scene.warnings.begin(), scene.warnings.end());
   if (!a.stats_json.empty()) write_statistics(result.statistics, seconds, a.stats_json);
   if (!a.quiet) print_summary(result.statistics, seconds, a.output);
+  if (!result.checkpoint_failure.empty())
+    throw Error(ErrorKind::failed, result.checkpoint_failure + "; the baked file is written");
 }
 
 }  // namespace

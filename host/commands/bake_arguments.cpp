@@ -49,12 +49,12 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   app.add_option(
          "--passes", a.passes,
          "ao; with bent: also bent normals, the mean unoccluded direction; with light: also "
-         "the irradiance of each light as _LIGHT_NAME. For example ao,bent,light")
+         "the irradiance of each light. For example ao,bent,light")
       ->capture_default_str();
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--dome", a.dome, "Environment map (.exr, .hdr) as a light, beside the others");
   app.add_option("--light-rays", o.light_rays,
-                 "Rays per light, for each of four samples of a triangle and side")
+                 "Rays per light, for each sample and side; samples are as many as AO needs")
       ->capture_default_str();
   app.add_option(
          "--channel", a.channel,
@@ -65,6 +65,9 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
       ->capture_default_str();
   app.add_option("--size", o.texture_size, "Width and height of the texture")
       ->capture_default_str();
+  app.add_option("--bits", a.bits, "Bits per texel of the occlusion texture: 8 or 16")
+      ->check(CLI::IsMember({8, 16}))
+      ->capture_default_str();
   app.add_option("--margin", o.margin, "Texels by which values extend over the border of charts")
       ->capture_default_str();
   app.add_option("--uv", a.uv,
@@ -73,7 +76,8 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--blend", a.blend, "If the file already has vertex colours: multiply or replace")
       ->capture_default_str();
   app.add_option("--target-error", a.target_error,
-                 "Trace rays until the standard error of each value is this [0.04]");
+                 "Trace rays until the standard error of each value is this; of lights relative to "
+                 "their largest unoccluded irradiance [0.04]");
   app.add_option(
       "--rays", a.rays,
       "Rays per triangle (--to texture: texel) and side. With --target-error: the maximum");
@@ -117,6 +121,15 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--kernel-dir", o.kernel_dir,
                  "Read OpenCL kernels from this folder (for developers)");
   app.add_option("--cache", o.cache, "Keep built BVHs in this folder and reuse them");
+  CLI::Option& checkpoint = *app.add_option("--checkpoint", a.checkpoint,
+                                            "Write what was traced so far to this file, for "
+                                            "--resume. Saved periodically, on interruption "
+                                            "and at the end");
+  app.add_option("--checkpoint-every", a.checkpoint_every, "How often, as in 30, 30s, 5m or 1h")
+      ->capture_default_str()
+      ->needs(&checkpoint);
+  app.add_option("--resume", a.resume,
+                 "Continue from this checkpoint, with the same scene and options");
   app.add_option("--png", a.png, "Also draw the scene in its AO alone, as a PNG");
   app.add_option("--stats-json", a.stats_json, "Write the statistics as JSON");
   app.add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
@@ -155,7 +168,6 @@ BakeOptions to_options(const BakeArguments& a) {
   if (o.instances && o.bent)
     throw Error(ErrorKind::usage,
                 "--passes bent needs --to vertex or texture: an instance has one AO value");
-  if (o.light && !o.vertices) throw Error(ErrorKind::usage, "--passes light needs --to vertex");
   if ((!a.lights.empty() || !a.dome.empty()) && !o.light)
     throw Error(ErrorKind::usage, "--lights and --dome need --passes ao,light");
   if (o.texture && o.at_vertices) throw Error(ErrorKind::usage, "--at vertices needs --to vertex");

@@ -19,6 +19,7 @@ struct BakeChannel {
 
 struct BakeArguments {
   std::string scene, output, stats_json, png, lights, dome, uv = "auto";
+  std::string checkpoint, checkpoint_every = "60", resume;
   std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply",
               bent_channel = "_BENT_NORMAL";
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";
@@ -26,6 +27,7 @@ struct BakeArguments {
   SceneOptions scene_options;
   std::optional<int> rays;
   std::optional<float> target_error;
+  int bits = 8;  ///< of a texel of the occlusion texture
   BakeOptions options;
   bool quiet = false;
 };

@@ -10,10 +10,11 @@
 namespace dapple {
 namespace {
 
-/// Root mean square of the standard errors of the values at vertices or texels.
-double standard_error(const BakeStatistics& s) {
+/// Root mean square of the standard errors of the values at vertices or texels. `squares`: their
+/// sum.
+double standard_error(const BakeStatistics& s, double squares) {
   const std::size_t values = s.vertices + s.texels;
-  return values > 0 ? std::sqrt(s.squared_errors / static_cast<double>(values)) : 0.0;
+  return values > 0 ? std::sqrt(squares / static_cast<double>(values)) : 0.0;
 }
 
 }  // namespace
@@ -28,23 +29,25 @@ std::string texture_note(const BakedTexture& texture) {
 
 void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds,
                       const std::string& path) {
-  const nlohmann::ordered_json json = {{"seconds",
-                                        {{"load", seconds.load},
-                                         {"build", s.seconds.build},
-                                         {"upload", s.seconds.upload},
-                                         {"trace", s.seconds.trace},
-                                         {"write", seconds.write},
-                                         {"total", seconds.total}}},
-                                       {"triangles", s.triangles},
-                                       {"vertices", s.vertices},
-                                       {"texels", s.texels},
-                                       {"points", s.points},
-                                       {"rays", s.rays},
-                                       {"standard_error", standard_error(s)},
-                                       {"hidden_vertices", s.hidden_vertices},
-                                       {"hidden_texels", s.hidden_texels},
-                                       {"device", s.device},
-                                       {"notes", s.notes}};
+  const nlohmann::ordered_json json = {
+      {"seconds",
+       {{"load", seconds.load},
+        {"build", s.seconds.build},
+        {"upload", s.seconds.upload},
+        {"trace", s.seconds.trace},
+        {"write", seconds.write},
+        {"total", seconds.total}}},
+      {"triangles", s.triangles},
+      {"vertices", s.vertices},
+      {"texels", s.texels},
+      {"points", s.points},
+      {"rays", s.rays},
+      {"standard_error", standard_error(s, s.squared_errors)},
+      {"standard_error_light", standard_error(s, s.squared_light_errors)},
+      {"hidden_vertices", s.hidden_vertices},
+      {"hidden_texels", s.hidden_texels},
+      {"device", s.device},
+      {"notes", s.notes}};
   write_whole_file(path, json.dump(2) + "\n");
 }
 
@@ -59,7 +62,11 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
       s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
       seconds.load, s.seconds.build, s.seconds.trace, seconds.write, seconds.total);
   if (s.vertices + s.texels > 0)
-    fmt::print("standard error of an AO value {:.3f} (root mean square)\n", standard_error(s));
+    fmt::print("standard error of an AO value {:.3f}{} (root mean square)\n",
+               standard_error(s, s.squared_errors),
+               s.squared_light_errors > 0
+                   ? fmt::format(", of light {:.3f}", standard_error(s, s.squared_light_errors))
+                   : "");
   if (s.hidden_vertices > 0)
     fmt::print("{} vertices lie inside closed geometry and have their neighbours' values\n",
                s.hidden_vertices);

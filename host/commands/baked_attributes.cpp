@@ -99,6 +99,37 @@ NewAttribute ao_attribute(const SourceFile& file, std::pair<std::uint32_t, std::
   return attribute;
 }
 
+/// Values like `kind`, one or more components of value(instance, component) each.
+template <class Value>
+std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::NodeValues& kind,
+                                             Value value) {
+  std::map<int, gltf::NodeValues> sums;
+  std::map<int, std::vector<float>> counts;
+  std::map<std::pair<int, std::uint32_t>, std::size_t> placements;  // of a node and mesh so far
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    if (instance.node < 0 || scene.meshes[instance.mesh].has_strands()) continue;
+    gltf::NodeValues& sum = sums.try_emplace(instance.node, kind).first->second;
+    sum.node = static_cast<std::uint32_t>(instance.node);
+    std::vector<float>& count = counts[instance.node];
+    const std::size_t placement = placements[{instance.node, instance.mesh}]++;
+    if (count.size() <= placement) {
+      count.resize(placement + 1);
+      sum.values.resize(count.size() * kind.components);
+    }
+    ++count[placement];
+    for (std::size_t c = 0; c < kind.components; ++c)
+      sum.values[placement * kind.components + c] += value(i, c);
+  }
+  std::vector<gltf::NodeValues> nodes;
+  for (auto& [node, sum] : sums) {
+    for (std::size_t i = 0; i < sum.values.size(); ++i)
+      sum.values[i] /= std::max(1.0f, counts[node][i / kind.components]);
+    nodes.push_back(std::move(sum));
+  }
+  return nodes;
+}
+
 }  // namespace
 
 void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel& channel) {
@@ -158,28 +189,18 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
   return attributes;
 }
 
-std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const std::vector<float>& ao) {
-  struct Sum {
-    std::vector<float> ao, count;
-  };
-  std::map<int, Sum> sums;
-  std::map<std::pair<int, std::uint32_t>, std::size_t> placements;  // of a node and mesh so far
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    if (instance.node < 0 || scene.meshes[instance.mesh].has_strands()) continue;
-    Sum& sum = sums[instance.node];
-    const std::size_t placement = placements[{instance.node, instance.mesh}]++;
-    if (sum.ao.size() <= placement) {
-      sum.ao.resize(placement + 1);
-      sum.count.resize(placement + 1);
-    }
-    sum.ao[placement] += ao[i];
-    sum.count[placement] += 1;
-  }
-  std::vector<gltf::NodeValues> nodes;
-  for (auto& [node, sum] : sums) {
-    for (std::size_t i = 0; i < sum.ao.size(); ++i) sum.ao[i] /= std::max(1.0f, sum.count[i]);
-    nodes.push_back({static_cast<std::uint32_t>(node), std::move(sum.ao)});
+std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const BakeResult& result) {
+  std::vector<gltf::NodeValues> nodes = means_of_nodes(
+      scene, {{}, "ao", "_AO", 1, {}},
+      [&](std::size_t instance, std::size_t) { return result.instance_ao[instance]; });
+  for (std::size_t l = 0; l < result.instance_light.size(); ++l) {
+    const std::string& name = result.light_names[l];
+    for (gltf::NodeValues& values :
+         means_of_nodes(scene, {{}, "light_" + name, "_LIGHT_" + name, 3, {}},
+                        [&](std::size_t instance, std::size_t component) {
+                          return result.instance_light[l][instance][static_cast<int>(component)];
+                        }))
+      nodes.push_back(std::move(values));
   }
   return nodes;
 }

@@ -25,7 +25,8 @@ std::vector<gltf::NewAttribute> baked_attributes(const gltf::SourceFile& file, c
                                                  const BakeResult& result,
                                                  const BakeTargets& targets);
 
-/// The mean AO of the meshes that each placement of a node shows.
-std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const std::vector<float>& ao);
+/// Of each placement of a node the mean over the meshes that it shows: AO, and lights where they
+/// were baked, as the instance attributes _AO and _LIGHT_NAME or the extras ao and light_NAME.
+std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const BakeResult& result);
 
 }  // namespace dapple

@@ -96,26 +96,35 @@ std::vector<gltf::TexturedPrimitive> textured_primitives(const gltf::SourceFile&
   return primitives;
 }
 
-std::string occlusion_png(const BakedTexture& texture) {
+std::string occlusion_png(const BakedTexture& texture, int bits) {
   const auto side = static_cast<int>(texture.size);
-  ByteImage image{side, side, 1, {}};
-  image.bytes.reserve(texture.ao.size());
+  const float largest = bits == 16 ? 65535.0f : 255.0f;
+  std::vector<std::uint16_t> grey;
+  grey.reserve(texture.ao.size());
   for (const float ao : texture.ao)
-    image.bytes.push_back(
-        static_cast<std::uint8_t>(std::lround(std::clamp(ao, 0.0f, 1.0f) * 255.0f)));
-  return encode_png(image, "the texture");
+    grey.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(ao, 0.0f, 1.0f) * largest)));
+  if (bits == 16) return encode_grey16_png(side, side, grey, "the texture");
+  return encode_png({side, side, 1, {grey.begin(), grey.end()}}, "the texture");
 }
 
-void write_bent_exr(const BakedTexture& texture, const std::string& path) {
+void write_baked_exr(const BakeResult& result, const std::string& path) {
+  const BakedTexture& texture = result.texture;
   Film film;
   film.width = film.height = static_cast<int>(texture.size);
   film.data_window = {0, 0, film.width - 1, film.height - 1};
-  for (int axis = 0; axis < 3; ++axis) {
-    Plane plane{std::string("bent.") + "XYZ" [axis], {}};
-    plane.pixels.reserve(texture.bent.size());
-    for (const V3f& bent : texture.bent) plane.pixels.push_back(bent[axis]);
-    film.planes.push_back(std::move(plane));
-  }
+  film.planes.push_back({"ao", texture.ao});
+  const auto add = [&](const std::string& layer, const char* letters,
+                       const std::vector<V3f>& values) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Plane plane{layer + "." + letters[axis], {}};
+      plane.pixels.reserve(values.size());
+      for (const V3f& value : values) plane.pixels.push_back(value[axis]);
+      film.planes.push_back(std::move(plane));
+    }
+  };
+  if (!texture.bent.empty()) add("bent", "XYZ", texture.bent);
+  for (std::size_t l = 0; l < texture.light.size(); ++l)
+    add("light." + result.light_names[l], "RGB", texture.light[l]);
   write_exr(film, path);
 }
 

@@ -27,10 +27,11 @@ std::vector<gltf::TexturedPrimitive> textured_primitives(const gltf::SourceFile&
                                                          const TextureLayout& layout,
                                                          std::uint32_t set);
 
-/// AO as an 8-bit grey PNG. It is linear, as glTF says.
-std::string occlusion_png(const BakedTexture& texture);
+/// AO as a grey PNG of 8 or 16 bits. It is linear, as glTF says.
+std::string occlusion_png(const BakedTexture& texture, int bits);
 
-/// Bent normals as an EXR of the layer "bent": X, Y and Z in object space.
-void write_bent_exr(const BakedTexture& texture, const std::string& path);
+/// All that was baked, as an EXR with the layers ao, bent (X, Y and Z in object space) and, for
+/// each light, light.NAME (R, G and B).
+void write_baked_exr(const BakeResult& result, const std::string& path);
 
 }  // namespace dapple

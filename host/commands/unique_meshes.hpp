@@ -7,8 +7,8 @@
 
 namespace dapple {
 
-/// Copies meshes that several nodes show, in the file and in the scene. Throws Error usage for
-/// instances of EXT_mesh_gpu_instancing, which cannot have meshes of their own.
+/// Copies meshes that are shown several times, in the file and in the scene. Instances of
+/// EXT_mesh_gpu_instancing, which share one mesh, become nodes.
 void make_meshes_unique(gltf::SourceFile& file, Scene& scene);
 
 }  // namespace dapple

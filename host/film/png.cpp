@@ -11,7 +11,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
+#include <memory>
 
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
@@ -97,6 +99,31 @@ void append(void* bytes, void* data, int count) {
                                            static_cast<std::size_t>(count));
 }
 
+constexpr std::size_t kLargestImage = std::size_t{1} << 30;  // stb counts bytes in ints
+
+[[noreturn]] void refuse_size(const std::string& name, int width, int height) {
+  throw Error(ErrorKind::failed, "cannot write " + name + ": " + std::to_string(width) + " x " +
+                                     std::to_string(height) + " pixels are too many for a PNG");
+}
+
+std::string big_endian(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8)
+    bytes.push_back(static_cast<char>(value >> static_cast<unsigned>(shift)));
+  return bytes;
+}
+
+/// A chunk: length, type, data and a CRC-32 (PNG specification, sections 5.3 and 5.5).
+std::string png_chunk(const std::string& type, const std::string& data) {
+  const std::string covered = type + data;
+  std::uint32_t crc = ~0u;
+  for (const char byte : covered) {
+    crc ^= static_cast<std::uint8_t>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0u);
+  }
+  return big_endian(static_cast<std::uint32_t>(data.size())) + covered + big_endian(~crc);
+}
+
 }  // namespace
 
 Tone layer_tone(const Film& film, const std::string& layer) {
@@ -118,16 +145,37 @@ ByteImage layer_image(const Film& film, const std::string& layer, const Tone& to
 }
 
 std::string encode_png(const ByteImage& image, const std::string& name) {
-  constexpr std::size_t kLargestImage = std::size_t{1} << 30;  // stb counts bytes in ints
   std::string bytes;
   if (image.bytes.size() > kLargestImage ||
       stbi_write_png_to_func(append, &bytes, image.width, image.height, image.channels,
-                             image.bytes.data(), image.width * image.channels) == 0) {
-    throw Error(ErrorKind::failed, "cannot write " + name + ": " + std::to_string(image.width) +
-                                       " x " + std::to_string(image.height) +
-                                       " pixels are too many for a PNG");
-  }
+                             image.bytes.data(), image.width * image.channels) == 0)
+    refuse_size(name, image.width, image.height);
   return bytes;
+}
+
+// stb writes 8 bits only, but compresses anything.
+std::string encode_grey16_png(int width, int height, const std::vector<std::uint16_t>& grey,
+                              const std::string& name) {
+  if (2 * grey.size() + static_cast<std::size_t>(height) > kLargestImage)
+    refuse_size(name, width, height);
+  std::vector<unsigned char> rows;
+  rows.reserve(2 * grey.size() + static_cast<std::size_t>(height));
+  for (std::size_t i = 0; i < grey.size(); ++i) {
+    if (i % static_cast<std::size_t>(width) == 0) rows.push_back(0);  // no filter
+    rows.push_back(static_cast<unsigned char>(grey[i] >> 8));
+    rows.push_back(static_cast<unsigned char>(grey[i] & 0xff));
+  }
+  int size = 0;
+  const std::unique_ptr<unsigned char, decltype(&std::free)> packed(
+      stbi_zlib_compress(rows.data(), static_cast<int>(rows.size()), &size, 8), &std::free);
+  if (!packed) refuse_size(name, width, height);
+  const std::string header = big_endian(static_cast<std::uint32_t>(width)) +
+                             big_endian(static_cast<std::uint32_t>(height)) +
+                             std::string("\x10\0\0\0\0", 5);  // 16 bits, grey
+  return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", header) +
+         png_chunk("IDAT",
+                   {reinterpret_cast<const char*>(packed.get()), static_cast<std::size_t>(size)}) +
+         png_chunk("IEND", {});
 }
 
 void write_png(const Film& film, const std::string& path, const std::string& layer) {

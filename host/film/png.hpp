@@ -36,4 +36,8 @@ ByteImage layer_image(const Film& film, const std::string& layer, const Tone& to
 /// are too many pixels.
 std::string encode_png(const ByteImage& image, const std::string& name);
 
+/// The same for an image of one channel of 16 bits, linear: `grey`, row by row from the top.
+std::string encode_grey16_png(int width, int height, const std::vector<std::uint16_t>& grey,
+                              const std::string& name);
+
 }  // namespace dapple

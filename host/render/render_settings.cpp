@@ -112,7 +112,7 @@ void require_same(const std::string& path, const Settings& then, const Settings&
     const bool opaque = is_checksum(before) || is_checksum(value);
     throw Error(ErrorKind::usage,
                 opaque ? fmt::format("--resume {}: was made with another {}", path, name)
-                       : fmt::format("--resume {}: was made with {} {}, this render has {} {}",
+                       : fmt::format("--resume {}: was made with {} {}, this run has {} {}",
                                      path, name, before, name, value));
   }
 }

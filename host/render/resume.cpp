@@ -34,7 +34,7 @@ Checkpoint resume(const std::string& path, const View& view, RenderOptions& opti
   require_enough_samples(path, checkpoint.state, options);
   if (options.footprint_spp > 0 && options.footprint_spp != checkpoint.footprint_spp) {
     throw Error(ErrorKind::usage,
-                fmt::format("--resume {}: was made with footprint_spp {}, this render has {}", path,
+                fmt::format("--resume {}: was made with footprint_spp {}, this run has {}", path,
                             checkpoint.footprint_spp, options.footprint_spp));
   }
   options.footprint_spp = checkpoint.footprint_spp;

@@ -1,5 +1,6 @@
-// Baking: ambient occlusion and bent normals at the vertices of a scene's meshes or in a texture,
-// and the mean ambient occlusion of each instance. In: a scene and options. Out: values, no files.
+// Baking: ambient occlusion, bent normals and irradiance at the vertices of a scene's meshes or in
+// a texture, and the mean ambient occlusion and irradiance of each instance. In: a scene and
+// options. Out: values, no files.
 #pragma once
 
 #include <cstddef>
@@ -33,13 +34,14 @@ struct BakeOptions {
   bool instances = false;     ///< bake a value for each instance
   bool texture = false;       ///< bake a texture that all meshes share
   bool bent = false;          ///< bent normals too, at vertices and in the texture
-  bool light = false;         ///< irradiance of each light too, at vertices
+  bool light = false;         ///< irradiance of each light too
   std::vector<Light> lights;  ///< in place of the scene's; empty: those
-  int light_rays = 8;  ///< per light, for each of four samples of a triangle and side, [1, 4096]
-  /// Standard error of each AO value to aim at, [0,1]; 0: `rays` for every value.
+  int light_rays = 8;         ///< per light, for each sample and side, [1, 4096]
+  /// Standard error of each AO value to aim at, [0,1], and of the brightness of all lights
+  /// together, relative to the largest unoccluded one; 0: `rays` for every value.
   float target_error = 0.04f;
   /// Of each triangle (at_vertices: vertex; texture: texel) and side, [8, 65536]; with a target, at
-  /// most.
+  /// most. Eight are a sample, up to 512 of them; lights have as many samples of `light_rays`.
   int rays = 1024;
   Estimator estimator = Estimator::prefiltered;
   /// As RenderOptions::footprint, for the rays of one point.
@@ -89,6 +91,7 @@ struct BakedTexture {
   std::uint32_t size = 0;  ///< texels along each side
   std::vector<float> ao;   ///< [0,1]; 1 in texels beyond the margin
   std::vector<V3f> bent;   ///< unit vectors in object space, or zero; empty if not requested
+  std::vector<std::vector<V3f>> light;  ///< as BakedMesh::light, by light and texel
   TextureLayout layout;
   double coverage = 0;  ///< share of the texels that triangles cover, without the margin
 };
@@ -100,6 +103,7 @@ struct BakeStatistics {
   std::size_t triangles = 0, vertices = 0, texels = 0, points = 0;
   std::uint64_t rays = 0;
   double squared_errors = 0;        ///< of AO, estimated; the sum over vertices and texels
+  double squared_light_errors = 0;  ///< of all lights together, relative as target_error
   std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
   std::size_t hidden_texels = 0;    ///< the same in the texture
   std::string device;
@@ -111,16 +115,20 @@ struct BakeResult {
   std::vector<std::string> light_names;
   BakedTexture texture;            ///< size 0 if not requested
   std::vector<float> instance_ao;  ///< as Scene::instances, [0,1]; empty if not requested
+  std::vector<std::vector<V3f>> instance_light;  ///< by light and instance
   BakeStatistics statistics;
   bool interrupted = false;  ///< RenderControl::stop returned true; the values are incomplete
+  /// Why the last checkpoint could not be written, or empty. The checkpoint before it is kept.
+  std::string checkpoint_failure;
 };
 
 /// Bakes `scene`. Its instances and meshes must be as the reader returned them. `occluders` are
 /// scenes that occlude and are not baked. A vertex's value is the mean of the AO at points of the
 /// triangles around it, weighted by area and by the vertex's barycentric coordinate (the lumped
 /// form of Kavan, Bargteil and Sloan, "Least Squares Vertex Baking", 2011). Vertices at the same
-/// position with normals within 45 degrees share one value. Uses only progress and stop of
-/// `control`. Throws Error usage, input, device or failed. The same arguments give the same bits.
+/// position with normals within 45 degrees share one value. A bake that is
+/// resumed from a checkpoint of `control` must have the same arguments as the first one. Throws
+/// Error usage, input, device or failed. The same arguments give the same bits.
 BakeResult bake(const Scene& scene, const BakeOptions& options = {},
                 const RenderControl& control = {}, const std::vector<Scene>& occluders = {});
 

@@ -191,43 +191,6 @@ TEST(BakeClosedForm, AClosedBoxIsOpenOutsideAndDarkInside) {
   }
 }
 
-TEST(BakeClosedForm, ASunAboveLightsAPlaneButNotUnderALeafAndFromOneSideOnly) {
-  Light sun;
-  sun.name = "noon";
-  sun.kind = LightKind::sun;
-  sun.direction = V3f(0, -1, 0);
-  sun.angular_radius = 0.01f;
-  sun.radiance = V3f(10000, 5000, 0);
-  const double open = 10000 * kPi * std::pow(std::sin(0.01), 2);
-  Mesh leaf = plane(2, 1);
-  for (V3f& p : leaf.positions) p.y = 1;
-  Scene cover = scene_of(leaf);
-  cover.materials[0].alpha_mode = AlphaMode::blend;
-  cover.materials[0].alpha = 0.75f;
-  BakeOptions options;
-  options.light = true;
-  options.lights = {sun};
-  for (const bool double_sided : {false, true}) {
-    Scene floor = scene_of(plane(8, 16), double_sided);
-    for (std::size_t t = 0; t < floor.meshes[0].primitive_count() && double_sided; ++t)
-      std::swap(floor.meshes[0].indices[3 * t], floor.meshes[0].indices[3 * t + 1]);  // upside down
-    const BakeResult result = bake(floor, options, {}, {cover});
-    ASSERT_EQ(result.light_names, std::vector<std::string>{"noon"});
-    const std::vector<V3f>& light = result.meshes.at(0).light.at(0);
-    for (std::size_t v = 0; v < light.size(); ++v) {
-      const V3f& p = floor.meshes[0].positions[v];
-      const float away = std::max(std::fabs(p.x), std::fabs(p.z));
-      if (away < 0.4f) {
-        EXPECT_NEAR(double{light[v].x}, 0.25 * open, 0.02 * open);
-      }
-      if (away > 1.6f) {
-        EXPECT_NEAR(double{light[v].x}, open, 0.001 * open);
-      }
-      EXPECT_NEAR(double{light[v].y}, 0.5 * double{light[v].x}, 1e-4 * open);
-    }
-  }
-}
-
 TEST(BakeClosedForm, TexelsUnderADiskHaveTheFormFactorOnItsAxis) {
   const Scene disk = make_procedural("scene:disk?radius=2&height=1&opacity=0.85");
   const Scene floor = scene_of(plane(0.02f, 1));

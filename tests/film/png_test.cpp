@@ -3,11 +3,15 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
+#include "film/png.hpp"
+
 #include <gtest/gtest.h>
 #include <stb_image.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "support/film_files.hpp"
 
@@ -159,6 +163,21 @@ TEST_F(Png, SameFilmGivesTheSameBytes) {
   write_png(film, path("a.png"), "Z");
   write_png(film, path("b.png"), "Z");
   EXPECT_EQ(bytes_of(path("a.png")), bytes_of(path("b.png")));
+}
+
+TEST(Grey16Png, EveryValueIsRead) {
+  constexpr int kSide = 256;
+  std::vector<std::uint16_t> grey(kSide * kSide);
+  for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = static_cast<std::uint16_t>(i);
+  const std::string bytes = encode_grey16_png(kSide, kSide, grey, "g.png");
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<stbi_us, decltype(&stbi_image_free)> pixels(
+      stbi_load_16_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
+                               static_cast<int>(bytes.size()), &width, &height, &channels, 0),
+      &stbi_image_free);
+  ASSERT_NE(pixels, nullptr) << stbi_failure_reason();
+  EXPECT_EQ((std::array{width, height, channels}), (std::array{kSide, kSide, 1}));
+  EXPECT_EQ(std::vector<std::uint16_t>(pixels.get(), pixels.get() + grey.size()), grey);
 }
 
 }  // namespace

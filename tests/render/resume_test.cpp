@@ -293,18 +293,18 @@ TEST_F(Resume, OtherSettingsAreRefusedAndNamed) {
   control.resume = path("a.ckpt");
   using Change = std::function<void(RenderOptions&)>;
   const std::pair<const char*, Change> changes[] = {
-      {"was made with --seed 0, this render has --seed 2", [](auto& o) { o.seed = 2; }},
-      {"--width 40, this render has --width 41", [](auto& o) { o.width = 41; }},
+      {"was made with --seed 0, this run has --seed 2", [](auto& o) { o.seed = 2; }},
+      {"--width 40, this run has --width 41", [](auto& o) { o.width = 41; }},
       {"--height 36, this", [](auto& o) { o.height = 35; }},
-      {"--crop 0,0,39,35, this render has --crop 1,2,3,4",
+      {"--crop 0,0,39,35, this run has --crop 1,2,3,4",
        [](auto& o) {
          o.crop = PixelRect{1, 2, 3, 4};
        }},
       {"--estimator prefiltered, this", [](auto& o) { o.estimator = Estimator::exact; }},
-      {"--footprint 4, this render has --footprint 4.0000005",
+      {"--footprint 4, this run has --footprint 4.0000005",
        [](auto& o) { o.footprint = std::nextafter(4.0f, 5.0f); }},
-      {"--passes ao,light, this render has --passes ao", [](auto& o) { o.light = false; }},
-      {"--ao-rays 32, this render has --ao-rays 7", [](auto& o) { o.ao_rays = 7; }},
+      {"--passes ao,light, this run has --passes ao", [](auto& o) { o.light = false; }},
+      {"--ao-rays 32, this run has --ao-rays 7", [](auto& o) { o.ao_rays = 7; }},
       {"--light-rays 1, this", [](auto& o) { o.light_rays = 2; }},
       {"--ao-distance 0, this", [](auto& o) { o.ao_distance = 3; }},
       {"--target-error or --target-rmse", [](auto& o) { o.target_error = 0.1f; }},
@@ -318,7 +318,7 @@ TEST_F(Resume, OtherSettingsAreRefusedAndNamed) {
        }},
       {"another scene", [](auto& o) { o.ground = true; }},
       {"has 40 samples a pixel already, --spp 39", [](auto& o) { o.spp = 39; }},
-      {"footprint_spp 40, this render has 20", [](auto& o) { o.footprint_spp = 20; }},
+      {"footprint_spp 40, this run has 20", [](auto& o) { o.footprint_spp = 20; }},
   };
   for (const auto& [part, change] : changes) {
     RenderOptions options = small_picture();

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/sample_rounds.hpp"
 #include "bake/texture/dilation.hpp"
+#include "bake/texture/seams.hpp"
 #include "bake/texture/texel_cover.hpp"
 #include "bake/vertex_bake.hpp"
 
@@ -18,6 +18,8 @@ std::array<float, 3> barycentric(const V2f* uv, const V2f& p) {
   const float v = c.cross(b) / area, w = a.cross(c) / area;
   return {1 - v - w, v, w};
 }
+
+}  // namespace
 
 /// The covered texels of one mesh.
 class SampledTexels : public SampledSurface {
@@ -97,6 +99,8 @@ class SampledTexels : public SampledSurface {
   TexelCover cover_;
 };
 
+namespace {
+
 /// The small part of the mesh that a texel shows: that of its first triangle.
 SmallParts parts_of_texels(const Mesh& mesh, const SampledTexels& texels, bool any_two_sided) {
   const VertexGroups groups = group_vertices(mesh, any_two_sided);
@@ -123,8 +127,7 @@ TextureBake::TextureBake(const Scene& scene, const BakeOptions& options, Texture
   weight_.resize(texels);
 }
 
-bool TextureBake::add(std::uint32_t index, const Placements& placements, SampleTracer& tracer,
-                      BakeProgress& progress, BakeStatistics& statistics) {
+bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTracing& tracing) {
   const Mesh& mesh = scene_.meshes[index];
   const std::vector<bool> two_sided = two_sided_triangles(scene_, mesh, options_.sides);
   const std::uint32_t hash = hash_of(options_.seed, index);
@@ -134,11 +137,33 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, SampleT
       std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, V2f(0));
   const SampledTexels texels(mesh, corners, two_sided, options_.texture_size, hash);
   const bool any = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
-  ValueSums sums(parts_of_texels(mesh, texels, any), options_.sides);
-  SampleRounds rounds(texels, hash, placements, tracer, sums, progress);
+  const SmallParts parts = parts_of_texels(mesh, texels, any);
   // Neighbouring texels share no samples, so that a variance takes two of them.
-  if (!rounds.run(options_, 2, sample_counts(options_.rays))) return false;
+  constexpr std::uint32_t kFirst = 2;
+  ValueSums sums(parts, options_.sides);
+  SampleRounds rounds(texels, hash, placements, tracing, sums, false);
+  if (!rounds.run(round_options(options_, kFirst, false))) return false;
   sums.choose_sides(true);
+  std::vector<std::vector<V3f>> light;
+  if (tracing.light) {
+    ValueSums light_sums(parts, options_.sides, tracing.lights);
+    SampleRounds light_rounds(texels, ~hash, placements, tracing, light_sums, true);
+    if (!light_rounds.run(round_options(options_, kFirst, true))) return false;
+    light_sums.choose_sides(true);
+    for (const float square : light_sums.squared_errors())
+      tracing.statistics.squared_light_errors += double{square};
+    for (std::size_t l = 0; l < tracing.lights; ++l) light.push_back(light_sums.light_values(l));
+    texture_.light.resize(tracing.lights, std::vector<V3f>(texture_.ao.size(), V3f(0, 0, 0)));
+  }
+  add_values(texels, sums, light, tracing.statistics);
+  tracing.statistics.triangles += mesh.primitive_count();
+  tracing.statistics.texels += texels.size();
+  return true;
+}
+
+void TextureBake::add_values(const SampledTexels& texels, const ValueSums& sums,
+                             const std::vector<std::vector<V3f>>& light,
+                             BakeStatistics& statistics) {
   const std::vector<PlaceValue> values = sums.values();
   const std::vector<float> squares = sums.squared_errors();
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -153,12 +178,30 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, SampleT
     for (const std::uint32_t t : texels.triangles(i)) part += texels.polygon(i, t).area();
     texture_.ao[texel] += part * values[i].ao;
     if (options_.bent) texture_.bent[texel] += values[i].bent * part;
+    for (std::size_t l = 0; l < light.size(); ++l) texture_.light[l][texel] += light[l][i] * part;
     weight_[texel] += part;
     known_[texel] = true;
   }
-  statistics.triangles += mesh.primitive_count();
-  statistics.texels += values.size();
-  return true;
+}
+
+void TextureBake::join_all_seams() {
+  std::vector<SeamPoint> points;
+  for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+    if (texture_.layout.corners[m].empty()) continue;
+    const auto of_mesh = seam_points(scene_.meshes[m], texture_.layout.corners[m], texture_.size);
+    points.insert(points.end(), of_mesh.begin(), of_mesh.end());
+  }
+  if (points.empty()) return;
+  join_seams(points, texture_.ao);
+  for (float& ao : texture_.ao) ao = std::clamp(ao, 0.0f, 1.0f);
+  for (std::vector<V3f>& light : texture_.light) {
+    join_seams(points, light);
+    for (V3f& value : light)
+      for (int c = 0; c < 3; ++c) value[c] = std::max(0.0f, value[c]);
+  }
+  if (texture_.bent.empty()) return;
+  join_seams(points, texture_.bent);
+  for (V3f& bent : texture_.bent) bent.normalize();
 }
 
 BakedTexture TextureBake::finish() {
@@ -166,14 +209,18 @@ BakedTexture TextureBake::finish() {
     if (!known_[i]) continue;
     texture_.ao[i] /= weight_[i];
     if (options_.bent) texture_.bent[i].normalize();
+    for (std::vector<V3f>& light : texture_.light) light[i] /= weight_[i];
   }
   const std::vector<std::uint32_t> nearest = nearest_valid(known_, texture_.size, options_.margin);
   for (std::size_t i = 0; i < known_.size(); ++i) {
     if (known_[i]) continue;
     // Nothing is seen from texels in a closed part; all others are empty.
     texture_.ao[i] = nearest[i] != kNoTexel ? texture_.ao[nearest[i]] : covered_[i] ? 0.0f : 1.0f;
-    if (options_.bent && nearest[i] != kNoTexel) texture_.bent[i] = texture_.bent[nearest[i]];
+    if (nearest[i] == kNoTexel) continue;
+    if (options_.bent) texture_.bent[i] = texture_.bent[nearest[i]];
+    for (std::vector<V3f>& light : texture_.light) light[i] = light[nearest[i]];
   }
+  join_all_seams();
   const auto covered = std::count(covered_.begin(), covered_.end(), true);
   texture_.coverage = static_cast<double>(covered) / static_cast<double>(covered_.size());
   return std::move(texture_);

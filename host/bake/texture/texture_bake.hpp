@@ -1,11 +1,12 @@
 // Bakes the texels of a texture that all meshes of a scene share. In: a scene with its layout and a
-// tracer. Out: AO and bent normals of all texels.
+// what traces. Out: AO, bent normals and irradiance of all texels.
 #pragma once
 
-#include "bake/bake_progress.hpp"
-#include "bake/sample_tracer.hpp"
+#include "bake/sample_rounds.hpp"
 
 namespace dapple {
+
+class SampledTexels;
 
 class TextureBake {
  public:
@@ -14,13 +15,16 @@ class TextureBake {
   [[nodiscard]] const TextureLayout& layout() const { return texture_.layout; }
 
   /// The values of mesh number `index`. False: stopped.
-  bool add(std::uint32_t index, const Placements& placements, SampleTracer& tracer,
-           BakeProgress& progress, BakeStatistics& statistics);
+  bool add(std::uint32_t index, const Placements& placements, BakeTracing& tracing);
 
   /// The texture, with its margin.
   BakedTexture finish();
 
  private:
+  void join_all_seams();
+  void add_values(const SampledTexels& texels, const ValueSums& sums,
+                  const std::vector<std::vector<V3f>>& light, BakeStatistics& statistics);
+
   const Scene& scene_;
   const BakeOptions& options_;
   BakedTexture texture_;

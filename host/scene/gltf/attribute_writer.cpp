@@ -75,11 +75,14 @@ void add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
     if (many) {
       NewAttribute attribute;
       attribute.values = values.values;
+      attribute.components = values.components;
       const std::size_t accessor = add_accessor(editor, attribute, false);
       editor.json()["nodes"][values.node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]
-                   ["_AO"] = accessor;
+                   [values.attribute] = accessor;
     } else if (!node.contains("extras") || node["extras"].is_object()) {
-      node["extras"]["ao"] = values.values.at(0);
+      Json& extra = node["extras"][values.extra];
+      extra = values.values;
+      if (values.components == 1) extra = values.values.at(0);
     }
   }
 }

@@ -25,10 +25,12 @@ struct NewAttribute {
   std::vector<float> values;
 };
 
-/// Values of the instances of a node: of one as `extras.ao`, of those of EXT_mesh_gpu_instancing as
-/// the instance attribute _AO.
+/// Values of the instances of a node: of one as `extras`, of those of EXT_mesh_gpu_instancing as an
+/// instance attribute.
 struct NodeValues {
   std::uint32_t node = 0;
+  std::string extra, attribute;  ///< names, such as "ao" and "_AO"
+  std::uint32_t components = 1;  ///< 1 to 4
   std::vector<float> values;
 };
 

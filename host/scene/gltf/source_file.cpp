@@ -1,5 +1,8 @@
 #include "scene/gltf/source_file.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <map>
 #include <utility>
 
 #include "scene/gltf/accessor.hpp"
@@ -8,6 +11,27 @@
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
+namespace {
+
+constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Removes kInstancing from a list of extensions if no node has it.
+void remove_unused(Json& json, const char* list) {
+  const bool used = std::any_of(json["nodes"].begin(), json["nodes"].end(), [](const Json& node) {
+    return node.contains("extensions") && node["extensions"].contains(kInstancing);
+  });
+  if (used || !json.contains(list)) return;
+  for (std::size_t i = json[list].size(); i-- > 0;)
+    if (json[list][i] == kInstancing) json[list].erase(i);
+  if (json[list].empty()) json.erase(list);
+}
+
+}  // namespace
 
 SourceFile::SourceFile(const std::string& path, bool allow_outside)
     : content(new Content{read_file(path, path), {}, load_document(path, allow_outside), {}, 0}) {
@@ -43,7 +67,43 @@ std::uint32_t SourceFile::copy_mesh(std::uint32_t node, std::uint32_t mesh) {
 
 bool SourceFile::has_gpu_instances(std::uint32_t node) const {
   const Json& json = content->json["nodes"][node];
-  return json.contains("extensions") && json["extensions"].contains("EXT_mesh_gpu_instancing");
+  return json.contains("extensions") && json["extensions"].contains(kInstancing);
+}
+
+std::uint32_t SourceFile::split_gpu_instances(std::uint32_t node) {
+  Json& nodes = content->json["nodes"];
+  const Json attributes =
+      nodes[node]["extensions"][kInstancing].value("attributes", Json::object());
+  const auto first = static_cast<std::uint32_t>(nodes.size());
+  // All have one length; without any there is one instance.
+  std::size_t count = 1;
+  std::map<std::string, AccessorReader> readers;
+  for (const auto& [name, accessor] : attributes.items()) {
+    const AccessorReader& reader =
+        readers.try_emplace(name, content->document, accessor.get<int>()).first->second;
+    count = reader.count();
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    Json child = Json::object();
+    for (const char* key : {"mesh", "skin", "weights"})
+      if (nodes[node].contains(key)) child[key] = nodes[node][key];
+    for (const auto& [name, reader] : readers) {
+      const bool is_rotation = name == "ROTATION";
+      std::vector<float> values;
+      for (std::uint64_t c = 0; c < reader.components(); ++c)
+        values.push_back(is_rotation ? reader.normalized(i, c) : reader.number(i, c));
+      const bool is_place = is_rotation || name == "TRANSLATION" || name == "SCALE";
+      (is_place ? child[lower_case(name)] : child["extras"][name]) = values;
+    }
+    nodes[node]["children"].push_back(nodes.size());
+    nodes.push_back(std::move(child));
+  }
+  for (const char* key : {"mesh", "skin", "weights"}) nodes[node].erase(key);
+  nodes[node]["extensions"].erase(kInstancing);
+  if (nodes[node]["extensions"].empty()) nodes[node].erase("extensions");
+  for (const char* list : {"extensionsUsed", "extensionsRequired"})
+    remove_unused(content->json, list);
+  return first;
 }
 
 PrimitiveColors SourceFile::colors(std::uint32_t mesh, std::uint32_t primitive) const {

@@ -1,0 +1,126 @@
+// dapple bake of scenes with several instances of a mesh: values of each instance, and unique
+// meshes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "dapple/scene.hpp"
+#include "support/bake_command.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using namespace program_test;
+
+TEST_F(BakeCommand, UniqueInstancesHaveMeshesAndValuesOfTheirOwn) {
+  // Two placements of a triangle, one of them under a large one.
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.doc["nodes"].push_back({{"mesh", 0}, {"translation", {100, 0, 0}}});
+  builder.doc["nodes"].push_back(
+      {{"mesh", 1}, {"translation", {0, 0, 0.01}}, {"scale", {50, 50, 1}}});
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  builder.doc["scenes"][0]["nodes"] = {0, 1, 2};
+  write("in.glb", builder.glb());
+  ASSERT_EQ(dapple("bake in.glb -o out.glb --channel _AO --sides mean --instances unique "
+                   "--estimator exact --png out.png")
+                .code,
+            0);
+  const json after = document("out.glb");
+  ASSERT_EQ(after["meshes"].size(), 3u);
+  EXPECT_EQ(after["nodes"][0]["mesh"], 0);
+  EXPECT_EQ(after["nodes"][1]["mesh"], 2);
+  const auto attributes = [&](int mesh) {
+    return after["meshes"][mesh]["primitives"][0]["attributes"];
+  };
+  EXPECT_EQ(attributes(0)["POSITION"], attributes(2)["POSITION"]) << "positions are shared";
+  EXPECT_NE(attributes(0)["_AO"], attributes(2)["_AO"]);
+  EXPECT_TRUE(std::filesystem::exists(path("out.png")));
+  // Together they share the mean.
+  ASSERT_EQ(dapple("bake in.glb -o out.glb --channel _AO").code, 0);
+  EXPECT_EQ(document("out.glb")["meshes"].size(), 2u);
+}
+
+TEST_F(BakeCommand, UniqueInstancesOfAnExtensionBecomeNodes) {
+  // A triangle twice, once close under a large one.
+  GltfBuilder builder;
+  builder.add_triangle();
+  const int places =
+      builder.add_accessor(std::vector<float>{0, 0, 0, 100, 0, 0}, test::kFloat, "VEC3");
+  const int ids = builder.add_accessor(std::vector<float>{7, 8}, test::kFloat, "SCALAR");
+  builder.doc["nodes"][0]["name"] = "twice";
+  builder.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", places}, {"_ID", ids}};
+  builder.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  builder.add("nodes", {{"mesh", 1}, {"translation", {0, 0, 0.01}}, {"scale", {50, 50, 1}}});
+  write("in.glb", builder.glb());
+  const Outcome run =
+      dapple("bake in.glb -o out.glb --channel _AO --sides mean --instances unique");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json after = document("out.glb");
+  const json& node = after["nodes"][0];
+  EXPECT_FALSE(node.contains("mesh"));
+  EXPECT_FALSE(node.contains("extensions"));
+  EXPECT_FALSE(after.contains("extensionsUsed"));
+  ASSERT_EQ(node["children"].size(), 2u);
+  const json &near = after["nodes"][node["children"][0].get<std::size_t>()],
+             &far = after["nodes"][node["children"][1].get<std::size_t>()];
+  EXPECT_EQ(far["translation"], (json{100, 0, 0}));
+  EXPECT_EQ(far["extras"]["_ID"], json{8});
+  const auto least_ao = [&](const json& of) {
+    const json& mesh = after["meshes"][of["mesh"].get<std::size_t>()];
+    const auto view =
+        after["accessors"][mesh["primitives"][0]["attributes"]["_AO"].get<std::size_t>()]
+             ["bufferView"];
+    const json& at = after["bufferViews"][view.get<std::size_t>()];
+    const std::string bytes = bytes_of(path("out.glb"));
+    std::uint32_t text = 0;
+    std::memcpy(&text, bytes.data() + 12, 4);
+    float ao[3];
+    std::memcpy(ao, bytes.data() + 28 + text + at.value("byteOffset", 0), sizeof ao);
+    return std::min({ao[0], ao[1], ao[2]});
+  };
+  EXPECT_LT(least_ao(near), 0.8f);
+  EXPECT_FLOAT_EQ(least_ao(far), 1);
+  const Scene before = load_gltf(path("in.glb")), scene = load_gltf(path("out.glb"));
+  EXPECT_EQ(scene.instances.size(), before.instances.size());
+  EXPECT_EQ(scene_bounds(scene), scene_bounds(before));
+}
+
+TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.add("nodes", {{"mesh", 0}, {"translation", {0, 0, -3}}});
+  const int places =
+      builder.add_accessor(std::vector<float>{5, 0, 0, 7, 0, 0}, test::kFloat, "VEC3");
+  builder.add(
+      "nodes",
+      {{"mesh", 0},
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}});
+  builder.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --to instance");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json after = document("out.glb");
+  EXPECT_GT(after["nodes"][0]["extras"]["ao"].get<double>(), 0.5);
+  EXPECT_GT(after["nodes"][1]["extras"]["ao"].get<double>(), 0.5);
+  const json& attributes = after["nodes"][2]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  EXPECT_EQ(after["accessors"][attributes["_AO"].get<std::size_t>()]["count"], 2);
+  EXPECT_EQ(load_gltf(path("out.glb")).instances.size(), 4u);
+}
+
+TEST_F(BakeCommand, InstancesHaveLightsAsExtras) {
+  write("in.glb", rich_triangle().glb());
+  std::ofstream(path("sun.json")) << R"({"lights": [{"type": "sun", "name": "noon",
+      "direction": [0, 0, -1], "irradiance": [1, 0.5, 0.25]}]})";
+  const Outcome run =
+      dapple("bake in.glb -o out.glb --to instance --passes ao,light --lights sun.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json light = document("out.glb")["nodes"][0]["extras"]["light_noon"];
+  EXPECT_NEAR(light.at(1).get<double>(), 0.5, 1e-3);
+}
+
+}  // namespace
+}  // namespace dapple
