@@ -62,8 +62,18 @@ V2f half_extent(const View& view) {
 /// which rounding can move a surface.
 constexpr double kBoundsMargin = 1e-5;
 
+/// Radius on the image plane of half_extent() of the disk that a point at that depth becomes.
+double circle_of_confusion(const Camera& camera, double depth) {
+  if (camera.lens_radius == 0) return 0;
+  const double focus = camera.focus_distance;
+  return camera.lens_radius * std::fabs(camera.kind == Camera::Kind::orthographic
+                                            ? 1 - depth / focus
+                                            : 1 / depth - 1 / focus);
+}
+
 /// The rectangle of the picture that contains the projected corners of the scene's bounds, in
-/// pixels from the top left. Infinite when a corner is not in front of the camera.
+/// pixels from the top left, with their circles of confusion. Infinite when a corner is not in
+/// front of the camera.
 Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
   Imath::Box2d everywhere(Imath::V2d(-std::numeric_limits<double>::infinity()),
                           Imath::V2d(std::numeric_limits<double>::infinity()));
@@ -84,14 +94,17 @@ Imath::Box2d picture_bounds(const View& view, const Box3f& bounds) {
     for (int axis = 0; axis < 3; ++axis)
       at[axis] = corner >> axis & 1 ? high[axis] + margin : low[axis] - margin;
     at *= to_camera;
+    const double blur = circle_of_confusion(view.camera, -at.z);
     if (view.camera.kind == Camera::Kind::perspective) {
       if (!(-at.z > margin)) return everywhere;
       at /= -at.z;
     }
-    const Imath::V2d pixel((at.x / half.x + 1) / 2 * view.width,
-                           (1 - at.y / half.y) / 2 * view.height);
-    if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y)) return everywhere;
-    seen.extendBy(pixel);
+    for (const double offset : {-blur, blur}) {
+      const Imath::V2d pixel(((at.x + offset) / half.x + 1) / 2 * view.width,
+                             (1 - (at.y + offset) / half.y) / 2 * view.height);
+      if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y)) return everywhere;
+      seen.extendBy(pixel);
+    }
   }
   return seen;
 }
@@ -142,6 +155,31 @@ float medium_error(const RenderOptions& options) {
 
 }  // namespace
 
+namespace {
+
+/// The distance along the view direction of `at`, metres.
+float view_depth(const Camera& camera, const V3f& at) {
+  const V3f forward(-camera.to_world[2][0], -camera.to_world[2][1], -camera.to_world[2][2]);
+  return (at - camera.to_world.translation()).dot(forward);
+}
+
+/// Applies --aperture and --focus-distance. Without a focus distance the camera focuses on what it
+/// looks at, or on the middle of the scene.
+void set_lens(const Scene& scene, const RenderOptions& options, Camera& camera) {
+  if (options.aperture) camera.lens_radius = *options.aperture;
+  if (options.focus_distance) camera.focus_distance = *options.focus_distance;
+  if (options.focus_distance && camera.lens_radius == 0)
+    throw Error(ErrorKind::usage, "--focus-distance needs --aperture: the camera has no lens");
+  if (camera.lens_radius == 0 || camera.focus_distance > 0) return;
+  camera.focus_distance =
+      view_depth(camera, options.look ? options.look->at : scene_bounds(scene).center());
+  if (camera.focus_distance > 0) return;
+  throw Error(ErrorKind::usage,
+              "--aperture needs --focus-distance: the middle of the scene is behind the camera");
+}
+
+}  // namespace
+
 View choose_view(const Scene& scene, const RenderOptions& options,
                  std::vector<std::string>& notes) {
   View view{choose_camera(scene, options, notes), options.width, options.height,
@@ -149,6 +187,7 @@ View choose_view(const Scene& scene, const RenderOptions& options,
   if (options.fov_degrees > 0 && view.camera.kind == Camera::Kind::perspective) {
     view.camera.fov_y = radians(options.fov_degrees);
   }
+  set_lens(scene, options, view.camera);
   return view;
 }
 
@@ -184,6 +223,8 @@ CameraParams camera_params(const View& view, const RenderOptions& options, const
   params.half_width = half.x;
   params.half_height = half.y;
   params.orthographic = view.camera.kind == Camera::Kind::orthographic ? 1u : 0u;
+  params.lens_radius = view.camera.lens_radius;
+  params.inverse_focus = view.camera.lens_radius > 0 ? 1.0f / view.camera.focus_distance : 0.0f;
   params.width = static_cast<uint>(view.width);
   params.height = static_cast<uint>(view.height);
   params.crop_x = static_cast<uint>(view.crop.x0);

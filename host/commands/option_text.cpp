@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <vector>
 
 #include "dapple/error.hpp"
@@ -62,6 +63,15 @@ std::pair<std::string, float> parse_opacity(const std::string& text) {
   }
   return {text.substr(0, at),
           parse_number<float>("--opacity " + text.substr(0, at), text.substr(at + 1))};
+}
+
+std::pair<double, double> parse_shutter(const std::string& text) {
+  const auto times = parse_numbers<double>("--shutter", text, 2, "OPEN,CLOSE, as in -0.25,0.25");
+  for (const double time : times)
+    if (!(std::abs(time) <= 1e6))
+      throw Error(ErrorKind::usage,
+                  fmt::format("--shutter {}: both must be from -1e6 to 1e6 frames", text));
+  return {times[0], times[1]};
 }
 
 FrameRange parse_frames(const std::string& text) {

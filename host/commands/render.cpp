@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -81,6 +82,24 @@ void print_summary(const RenderStatistics& s, const Frame& frame) {
   std::fflush(stdout);
 }
 
+std::optional<double> first_seconds(const RenderArguments& a, const Frame& frame) {
+  if (!frame.seconds) return {};
+  return shutter_seconds(a, *frame.seconds, 0);
+}
+
+/// `first`: the scene when the shutter opens.
+RenderResult render_frame(const RenderArguments& a, const Frame& frame, Shot& shot, Scene first,
+                          Renderer& renderer, const RenderOptions& options,
+                          const RenderControl& control) {
+  if (a.shutter.empty()) return renderer.render(std::move(first), options, control);
+  const auto scene_at = [&](int k) { return shot.frame(shutter_seconds(a, *frame.seconds, k)); };
+  const int times = shutter_times(a);
+  RenderResult result = renderer.render_shutter(scene_at, times, options, control);
+  result.film.metadata.settings.emplace_back("shutter", a.shutter);
+  result.film.metadata.settings.emplace_back("motion_samples", fmt::format("{}", times));
+  return result;
+}
+
 void run_render(const RenderArguments& a) {
   RenderOptions options = to_options(a);
   const std::vector<Frame> frames = list_frames(a);
@@ -96,10 +115,11 @@ void run_render(const RenderArguments& a) {
   Renderer renderer;
   for (const Frame& frame : frames) {
     progress.begin(frame.title);
-    Scene scene = shot.frame(frame.seconds);
+    Scene scene = shot.frame(first_seconds(a, frame));
     if (&frame == &frames.front()) check_files_spare(frames, a, scene.files);
     const double load_seconds = since(start);
-    RenderResult result = renderer.render(std::move(scene), options, control);
+    RenderResult result =
+        render_frame(a, frame, shot, std::move(scene), renderer, options, control);
     progress.clear();
     RenderStatistics& statistics = result.statistics;
     // Interrupted before this frame began: the previous frame was the last.

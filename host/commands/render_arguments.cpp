@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "commands/option_text.hpp"
@@ -74,6 +75,12 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--up", a.up, "Up direction of this camera: X,Y,Z; default 0,1,0");
   app.add_option("--fov", o.fov_degrees,
                  "Vertical field of view, degrees; default: the camera's own, or 40");
+  app.add_option("--aperture", o.aperture,
+                 "Depth of field: radius of the camera's lens, metres; 0: everything is sharp; "
+                 "default: the camera's own");
+  app.add_option("--focus-distance", o.focus_distance,
+                 "Distance along the view direction that is sharp, metres; default: the camera's "
+                 "own, --look-at, or the middle of the scene");
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
   app.add_option(
       "--dome", a.dome,
@@ -112,21 +119,45 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& frame =
       *app.add_option("--frame", a.frame,
                       "Time in seconds at which moving objects are shown; default: the rest pose");
-  CLI::Option& frames =
-      *app.add_option("--frames", a.frames,
-                      "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; write # "
-                      "characters in output names for the frame number")
-           ->excludes(&frame);
-  app.add_option("--fps", a.fps, "Frames per second")->capture_default_str()->needs(&frames);
+  app.add_option("--frames", a.frames,
+                 "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; write # "
+                 "characters in output names for the frame number")
+      ->excludes(&frame);
+  app.add_option("--fps", a.fps, "Frames per second, for --frames and --shutter")
+      ->default_str("24");
+  CLI::Option& shutter =
+      *app.add_option("--shutter", a.shutter,
+                      "Motion blur: OPEN,CLOSE, when the shutter opens and closes, in frames from "
+                      "the frame's time, as in --shutter=-0.25,0.25");
+  app.add_option("--motion-samples", a.motion_samples,
+                 "Moments of the shutter, among which --spp is divided; default: 8, at most --spp")
+      ->needs(&shutter);
   app.add_option("--animation", a.scene_options.animation,
                  "The glTF animation that plays, by name; *: all at once; default: the first");
 }
 
-void check_motion(const RenderArguments& a) {
-  if (!(std::isfinite(a.fps) && a.fps > 0))
-    throw Error(ErrorKind::usage, "--fps must be a number above 0");
+void check_animation(const RenderArguments& a) {
   if (!a.scene_options.animation.empty() && !a.frame && a.frames.empty())
     throw Error(ErrorKind::usage, "--animation needs --frame or --frames: which time to show");
+}
+
+void check_motion(const RenderArguments& a) {
+  const double fps = frames_per_second(a);
+  if (!(std::isfinite(fps) && fps > 0))
+    throw Error(ErrorKind::usage, "--fps must be a number above 0");
+  if (a.fps && a.frames.empty() && a.shutter.empty())
+    throw Error(ErrorKind::usage, "--fps needs --frames or --shutter");
+  if (a.shutter.empty()) return check_animation(a);
+  if (!a.frame && a.frames.empty())
+    throw Error(ErrorKind::usage, "--shutter needs --frame or --frames: when it opens");
+  const auto [open, close] = parse_shutter(a.shutter);
+  if (!(close > open))
+    throw Error(ErrorKind::usage,
+                fmt::format("--shutter {}: it must close after it opens", a.shutter));
+  if (a.motion_samples < 0 || a.motion_samples > 1024)
+    throw Error(ErrorKind::usage,
+                fmt::format("--motion-samples is {}; it must be from 1 to 1024", a.motion_samples));
+  check_animation(a);
 }
 
 }  // namespace
@@ -151,6 +182,21 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   add_device_options(app, a.options.device, a.options.kernel_dir, a.options.cache);
   add_report_options(app, a.stats_json, a.quiet);
+}
+
+double frames_per_second(const RenderArguments& a) { return a.fps.value_or(24); }
+
+int shutter_times(const RenderArguments& a) {
+  constexpr int kDefault = 8;
+  if (a.shutter.empty()) return 1;
+  return a.motion_samples > 0 ? a.motion_samples
+                              : std::min(kDefault, a.spp.value_or(a.options.spp));
+}
+
+double shutter_seconds(const RenderArguments& a, double seconds, int k) {
+  if (a.shutter.empty()) return seconds;
+  const auto [open, close] = parse_shutter(a.shutter);
+  return seconds + (open + (close - open) * (k + 0.5) / shutter_times(a)) / frames_per_second(a);
 }
 
 RenderOptions to_options(const RenderArguments& a) {

@@ -21,7 +21,9 @@ struct RenderArguments {
   std::vector<std::string> opacity;
   std::optional<double> frame;
   std::string frames;
-  double fps = 24;
+  std::optional<double> fps;  ///< default 24
+  std::string shutter;
+  int motion_samples = 0;
   std::string checkpoint, checkpoint_every = "60s", resume;
   SceneOptions scene_options;
   RenderOptions options;
@@ -30,6 +32,14 @@ struct RenderArguments {
 };
 
 void add_render_options(CLI::App& app, RenderArguments& arguments);
+
+double frames_per_second(const RenderArguments& arguments);
+
+/// Moments of the open shutter: 1 without --shutter.
+int shutter_times(const RenderArguments& arguments);
+
+/// The k-th moment of a frame at `seconds`: the middle of the k-th part of the shutter interval.
+double shutter_seconds(const RenderArguments& arguments, double seconds, int k);
 
 /// Throws Error usage naming the option.
 RenderOptions to_options(const RenderArguments& arguments);

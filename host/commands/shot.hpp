@@ -16,7 +16,8 @@ void use_lights(Scene& scene, const std::vector<Light>& lights);
 
 class Shot {
  public:
-  /// Reads the files. In a sequence the ground is added here and `options.ground` is cleared.
+  /// Reads the files. In a sequence, and with a shutter, the ground is added here and
+  /// `options.ground` is cleared.
   /// Throws Error.
   Shot(const RenderArguments& arguments, RenderOptions& options);
 
@@ -36,7 +37,7 @@ class Shot {
 
   const RenderArguments& arguments_;
   RenderOptions options_;
-  std::optional<MovingScene> moving_;  ///< for sequences; other scenes are read by frame()
+  std::optional<MovingScene> moving_;  ///< for several times; other scenes are read by frame()
   std::optional<std::vector<Light>> lights_;
   std::optional<Light> dome_;
   std::optional<Set> set_;

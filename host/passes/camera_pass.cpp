@@ -2,8 +2,8 @@
 
 namespace dapple {
 
-KernelName camera_kernel(bool orthographic) {
-  return {"camera_hits", "camera/camera", {false, !orthographic}};
+KernelName camera_kernel(bool shared_origin) {
+  return {"camera_hits", "camera/camera", {false, shared_origin}};
 }
 
 void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -15,7 +15,8 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
   constexpr std::size_t kCameraRaysPerTicket =
       std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_ITEMS_PER_TICKET;
   context.launch_with_tickets(
-      camera_kernel(params.orthographic != 0), "camera", ceil_div(rays, kCameraRaysPerTicket),
+      camera_kernel(params.orthographic == 0 && params.lens_radius == 0), "camera",
+      ceil_div(rays, kCameraRaysPerTicket),
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
        scene.instances, queues.work, queues.points, queues.sample_hits, camera},
       kCameraGroup);

@@ -14,7 +14,7 @@ inline constexpr std::size_t kCameraGroup = 1;
 /// Work-items of the one work-group that compacts; DAPPLE_SCAN_ITEMS in kernels/film/compact.cl.
 inline constexpr std::size_t kScanItems = 256;
 
-KernelName camera_kernel(bool orthographic);
+KernelName camera_kernel(bool shared_origin);
 inline const KernelName kClosestHit{"closest_hit", "camera/closest_hit", {}};
 inline const KernelName kCompactHits{"compact_hits", "queue_kernels", {}};
 

@@ -14,8 +14,8 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
       {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},    {kResolveAo, kRayGroup},
       {kShadePoints, kRayGroup},        {kResolveSurface, kRayGroup}, {kResolveLight, kRayGroup},
   };
-  for (const bool orthographic : {false, true})
-    kernels.push_back({camera_kernel(orthographic), kCameraGroup});
+  for (const bool shared_origin : {true, false})
+    kernels.push_back({camera_kernel(shared_origin), kCameraGroup});
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     kernels.push_back({occlusion_kernel(estimator, Packets::none), kRayGroup});
     kernels.push_back({point_ao_kernel(estimator), kPointGroup});
@@ -28,8 +28,7 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
 std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
                                         const Camera& camera, const std::vector<Light>& lights,
                                         bool shaded) {
-  std::vector<KernelName> kernels{camera_kernel(camera.kind == Camera::Kind::orthographic),
-                                  kCompactHits, kResolveSurface};
+  std::vector<KernelName> kernels{camera_kernel(is_pinhole(camera)), kCompactHits, kResolveSurface};
   if (shaded) kernels.push_back(kShadePoints);
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(

@@ -144,6 +144,8 @@ void validate(const RenderOptions& options) {
     throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
   }
   if (options.fov_degrees != 0) check_range("--fov", options.fov_degrees, 0.01f, 179);
+  if (options.aperture) check_range("--aperture", *options.aperture, 0, 1e6);
+  if (options.focus_distance) check_range("--focus-distance", *options.focus_distance, 1e-6, 1e12);
   if (options.look) {
     check_point("--look-from", options.look->from);
     check_point("--look-at", options.look->at);

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -94,13 +96,17 @@ void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
 }
 
 void add_build_seconds(RenderStatistics& s, const BvhStatistics& bvh) {
-  s.seconds.build = bvh.build_seconds;
-  s.seconds.prefilter = bvh.prefilter_seconds;
+  s.seconds.build += bvh.build_seconds;
+  s.seconds.prefilter += bvh.prefilter_seconds;
 }
 
 void add_update_statistics(RenderStatistics& s, const BvhUpdate& update, const BvhStatistics& bvh) {
-  if (update.objects_rebuilt > 0) add_build_seconds(s, bvh);
-  s.seconds.refit = std::max(0.0, update.seconds - s.seconds.build - s.seconds.prefilter);
+  double built = 0;
+  if (update.objects_rebuilt > 0) {
+    add_build_seconds(s, bvh);
+    built = bvh.build_seconds + bvh.prefilter_seconds;
+  }
+  s.seconds.refit += std::max(0.0, update.seconds - built);
   s.refit = {true, update.objects_kept, update.objects_refitted, update.objects_rebuilt,
              update.cost_ratio};
 }
@@ -123,6 +129,53 @@ void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
   s.bytes.queues = picture.queue_bytes;
 }
 
+/// The moments of an open shutter, as render_shutter() takes them.
+struct Shutter {
+  const std::function<Scene(int)>& scene_at;
+  int times;
+};
+
+/// Bounds of the scene at all moments, if there are several.
+Box3f bounds_of(const Shutter& shutter) {
+  Box3f bounds;
+  for (int time = 0; shutter.times > 1 && time < shutter.times; ++time)
+    bounds.extendBy(scene_bounds(shutter.scene_at(time)));
+  return bounds;
+}
+
+void check_shutter(int times, const RenderOptions& options, const RenderControl& control) {
+  const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
+  if (times < 1 || times > options.spp)
+    refuse(
+        fmt::format("--motion-samples is {}; it must be from 1 to --spp ({})", times, options.spp));
+  if (times == 1) return;
+  if (options.ground) refuse("with motion blur the ground must be part of the scenes");
+  if (is_adaptive(options))
+    refuse("--target-error and --target-rmse do not go with --shutter: give --spp");
+  if (!control.checkpoint.empty() || !control.resume.empty())
+    refuse("--checkpoint and --resume do not go with --shutter");
+}
+
+/// The options with the samples of the first `time` + 1 moments.
+RenderOptions until(const RenderOptions& options, int time, int times) {
+  RenderOptions part = options;
+  part.footprint_spp = footprint_samples(options);
+  part.spp = static_cast<int>(std::int64_t{options.spp} * (time + 1) / times);
+  return by_sample(part);
+}
+
+/// The progress of the first `time` moments out of `times`.
+Progress part_of(const Progress& progress, int time, int times) {
+  if (!progress) return {};
+  return [=](double fraction) { progress(fraction * time / times); };
+}
+
+void check_same_lights(const std::vector<Light>& first, const std::vector<Light>& now) {
+  const bool same = std::equal(first.begin(), first.end(), now.begin(), now.end(),
+                               [](const Light& a, const Light& b) { return a.kind == b.kind; });
+  if (!same) throw Error(ErrorKind::input, "lights come or go while the shutter is open");
+}
+
 /// The options that a device is opened with.
 std::array<std::string, 3> device_key(const RenderOptions& options) {
   return {options.device, options.kernel_dir, name_of(options.packets)};
@@ -140,6 +193,9 @@ struct Renderer::Kept {
   void update_scene(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
   void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                RenderStatistics& statistics) const;
+  TracedPicture trace(const Shutter& shutter, const View& view, const RenderOptions& options,
+                      const FilmLayout& layout, const std::vector<Light>& lights,
+                      TraceControl tracing, TraceState state, RenderStatistics& statistics);
 };
 
 void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statistics) {
@@ -160,7 +216,7 @@ void Renderer::Kept::update_scene(const Scene& scene, const RenderOptions& optio
   if (bvh) {
     const BvhUpdate changes = update(*device, on_device, *bvh, scene, uploading_of(options));
     add_update_statistics(statistics, changes, bvh->bvh().statistics);
-    statistics.seconds.upload = updating.seconds() - changes.seconds;
+    statistics.seconds.upload += updating.seconds() - changes.seconds;
   } else {
     bvh.emplace(scene, UpdatableBvh::Motion::maybe, options.cache);
     const BvhStatistics& built = bvh->bvh().statistics;
@@ -182,14 +238,48 @@ void Renderer::Kept::compile(const std::vector<KernelName>& kernels, CompilerPro
   statistics.seconds.kernel_build = compiling.seconds();
 }
 
+/// Traces the first moment of the shutter, whose scene is on the device, and then the others: each
+/// continues from the sums of those before.
+TracedPicture Renderer::Kept::trace(const Shutter& shutter, const View& view,
+                                    const RenderOptions& options, const FilmLayout& layout,
+                                    const std::vector<Light>& lights, TraceControl tracing,
+                                    TraceState state, RenderStatistics& statistics) {
+  const Progress progress = tracing.progress;
+  if (shutter.times > 1) {
+    tracing.save = [&](const TraceState& saved) { state = saved; };
+    tracing.save_every = std::numeric_limits<double>::infinity();
+    tracing.progress = part_of(progress, 1, shutter.times);
+  }
+  TracedPicture picture = trace_picture(*device, on_device, view, until(options, 0, shutter.times),
+                                        layout, tracing, std::move(state));
+  for (int time = 1; time < shutter.times && !picture.interrupted; ++time) {
+    Scene moved = shutter.scene_at(time);
+    const View moved_view = prepare_scene(moved, options, statistics.notes);
+    if (options.light) check_same_lights(lights, moved.lights);
+    update_scene(moved, options, statistics);
+    tracing.progress = part_of(progress, time + 1, shutter.times);
+    picture = trace_picture(*device, on_device, moved_view, until(options, time, shutter.times),
+                            layout, tracing, std::move(state));
+  }
+  return picture;
+}
+
 Renderer::Renderer() : kept_(std::make_unique<Kept>()) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderControl& control) {
+  return render_shutter([&](int) { return std::move(scene); }, 1, std::move(options), control);
+}
+
+RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at, int times,
+                                      RenderOptions options, const RenderControl& control) {
   const Stopwatch total;
   validate(options);
+  check_shutter(times, options, control);
+  const Box3f moving_bounds = bounds_of({scene_at, times});
+  Scene scene = scene_at(0);
   RenderResult result;
   RenderStatistics& statistics = result.statistics;
   statistics.estimator = name_of(options.estimator);
@@ -211,23 +301,25 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
   kept.update_scene(scene, options, statistics);
   kept.compile(kernels, processes, statistics);
   const SceneBvh& bvh = kept.bvh->bvh();
-  const DeviceScene& on_device = kept.on_device;
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
-  const FilmLayout layout(view, sampled, bvh.bounds, lights,
-                          !on_device.buffers->corner_normals.empty());
+  Box3f bounds = bvh.bounds;
+  bounds.extendBy(moving_bounds);
+  const FilmLayout layout(view, sampled, bounds, lights,
+                          !kept.on_device.buffers->corner_normals.empty());
   TraceControl tracing{control.progress, control.stop, {}, 0, SampleOrder::pixels};
   if (resumed || !control.checkpoint.empty()) {
     Checkpoint about{option_settings(options, view),
-                     content_settings(options, view, bvh, *on_device.buffers),
+                     content_settings(options, view, bvh, *kept.on_device.buffers),
                      footprint_samples(options), statistics.device};
     if (resumed) check_resumed(control.resume, *resumed, about, layout, statistics.notes);
     write_checkpoints(tracing, control, std::move(about), result);
   }
 
   const Stopwatch trace_time;
-  const TracedPicture picture = trace_picture(device, on_device, view, sampled, layout, tracing,
-                                              resumed ? std::move(resumed->state) : TraceState{});
+  const TracedPicture picture =
+      kept.trace({scene_at, times}, view, options, layout, lights, std::move(tracing),
+                 resumed ? std::move(resumed->state) : TraceState{}, statistics);
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   add_trace_statistics(statistics, picture, layout);
 

@@ -24,6 +24,8 @@ std::string camera_checksum(const Camera& camera) {
     for (int column = 0; column < 4; ++column) stream.add_value(camera.to_world[row][column]);
   stream.add_value(camera.fov_y);
   stream.add_value(camera.half_height);
+  stream.add_value(camera.lens_radius);
+  stream.add_value(camera.focus_distance);
   return hex_text(stream.value());
 }
 

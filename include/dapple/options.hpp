@@ -88,7 +88,11 @@ struct RenderOptions {
   float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
   std::string camera;        ///< by name; empty: the first, or one that shows it all
   std::optional<LookAt> look;
-  float fov_degrees = 0.0f;  ///< vertical; 0: the camera's own, or 40 with `look`
+  float fov_degrees = 0.0f;       ///< vertical; 0: the camera's own, or 40 with `look`
+  std::optional<float> aperture;  ///< radius of the lens, metres, [0, 1e6]; none: the camera's own
+  /// Metres along the view direction, (0, 1e12]; none: the camera's own, the point that `look`
+  /// looks at, or the middle of the scene. Needs a lens.
+  std::optional<float> focus_distance;
   std::optional<PixelRect> crop;
   std::uint32_t seed = 0;
   std::string device;  ///< part of an OpenCL device's name; empty: the best one

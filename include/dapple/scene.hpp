@@ -124,7 +124,16 @@ struct Camera {
   M44f to_world;          ///< camera looks along its -Z, +Y up, +X right
   float fov_y = 0.7f;     ///< perspective: full vertical angle, radians
   float half_height = 1;  ///< orthographic: ymag, metres
+  /// Thin lens (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984): points at the focus
+  /// distance are sharp.
+  float lens_radius = 0;     ///< metres; 0: a pinhole, everything is sharp
+  float focus_distance = 0;  ///< metres along the view direction; 0: choose_view() chooses
 };
+
+/// Whether all rays of the camera start from one point.
+[[nodiscard]] inline bool is_pinhole(const Camera& camera) {
+  return camera.kind == Camera::Kind::perspective && camera.lens_radius == 0;
+}
 
 /// Motion that a scene's file contains.
 struct Animation {

@@ -68,6 +68,8 @@ class RenderOptions(TypedDict, total=False):
     camera: str
     look: Sequence[Sequence[float]]
     fov_degrees: float
+    aperture: float
+    focus_distance: float
     crop: Tuple[int, int, int, int]
     seed: int
     device: str

@@ -73,6 +73,8 @@ void bind_render_options(nb::module_& module) {
       .def_rw("target_rmse", &RenderOptions::target_rmse)
       .def_rw("max_spp", &RenderOptions::max_spp)
       .def_rw("camera_splitting", &RenderOptions::camera_splitting)
+      .def_rw("aperture", &RenderOptions::aperture)
+      .def_rw("focus_distance", &RenderOptions::focus_distance)
       .def_rw("ao_rays", &RenderOptions::ao_rays)
       .def_rw("light_rays", &RenderOptions::light_rays)
       .def_rw("footprint", &RenderOptions::footprint)

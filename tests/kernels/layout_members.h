@@ -72,7 +72,8 @@
   STRUCT(CameraParams)                                                                       \
   MEMBER(CameraParams, slice) MEMBER(CameraParams, scene) MEMBER(CameraParams, to_world)     \
   MEMBER(CameraParams, half_width) MEMBER(CameraParams, half_height)                         \
-  MEMBER(CameraParams, orthographic) MEMBER(CameraParams, width)                             \
+  MEMBER(CameraParams, orthographic) MEMBER(CameraParams, lens_radius)                       \
+  MEMBER(CameraParams, inverse_focus) MEMBER(CameraParams, width)                            \
   MEMBER(CameraParams, height) MEMBER(CameraParams, crop_x) MEMBER(CameraParams, crop_y)     \
   MEMBER(CameraParams, crop_width) MEMBER(CameraParams, seed)                                \
   MEMBER(CameraParams, inverse_spp) MEMBER(CameraParams, texel_share)                        \

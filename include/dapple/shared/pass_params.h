@@ -65,6 +65,8 @@ typedef struct CameraParams {
   float half_width;   /* of the image plane: at distance 1, or in metres if orthographic */
   float half_height;
   uint orthographic;
+  float lens_radius;           /* metres; 0: a pinhole */
+  float inverse_focus;         /* 1 / distance along the viewing axis at which points are sharp */
   uint width, height; /* the whole picture, pixels */
   uint crop_x, crop_y;
   uint crop_width;

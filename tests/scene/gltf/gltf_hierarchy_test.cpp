@@ -109,6 +109,27 @@ TEST(GltfCamera, OrthographicOnesKeepTheirHeight) {
   EXPECT_FLOAT_EQ(camera.half_height, 2.0f);
 }
 
+Camera camera_with_extras(const json& extras) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.add("cameras", {{"type", "perspective"},
+                          {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}},
+                          {"extras", extras}});
+  builder.add("nodes", {{"camera", 0}});
+  return builder.load().cameras.at(0);
+}
+
+TEST(GltfCamera, ExtrasBringALens) {
+  const Camera lens =
+      camera_with_extras({{"dapple_aperture", 0.25}, {"dapple_focus_distance", 3}, {"note", "x"}});
+  EXPECT_FLOAT_EQ(lens.lens_radius, 0.25f);
+  EXPECT_FLOAT_EQ(lens.focus_distance, 3.0f);
+  EXPECT_EQ(camera_with_extras({{"other", 1}}).lens_radius, 0);
+  EXPECT_EQ(camera_with_extras("text").lens_radius, 0);
+  for (const json& wrong : {json(-1), json("wide"), json(1e30), json::array({1})})
+    EXPECT_THROW(camera_with_extras({{"dapple_aperture", wrong}}), Error) << wrong;
+}
+
 Light load_light(const json& light, const SceneOptions& options = {}) {
   GltfBuilder builder;
   builder.add_triangle();
