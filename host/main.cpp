@@ -24,7 +24,10 @@ int run(int argc, char** argv) {
   CLI::App app{
       "Ambient occlusion and soft shadows through foliage, hair and forests.\n\n"
       "Example:\n  dapple render scene:demo -o demo.exr --png demo.png"};
-  app.set_version_flag("--version", "dapple " DAPPLE_VERSION);
+  bool version = false, verbose = false;
+  app.add_flag("--version", version, "Print the version");
+  app.add_flag("--verbose", verbose,
+               "With --version: how dapple was built, and the device libraries");
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 images differ,\n"
       "130, 143 interrupted by SIGINT, SIGTERM.\n"
@@ -38,6 +41,7 @@ int run(int argc, char** argv) {
   CLI::App& devices = *app.add_subcommand("devices", "List the OpenCL devices");
   CLI::App& compare = *app.add_subcommand("compare", "Print the differences of two OpenEXR files");
   CLI::App& compile = *app.add_subcommand("compile", "Compile kernels for another process");
+  CLI::App& document = *app.add_subcommand("document", "Write the manual page or completions");
   const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
       {&render, dapple::add_render_command(render)},
       {&bake, dapple::add_bake_command(bake)},
@@ -47,12 +51,17 @@ int run(int argc, char** argv) {
       {&devices, dapple::add_devices_command(devices)},
       {&compare, dapple::add_compare_command(compare)},
       {&compile, dapple::add_compile_command(compile)},
+      {&document, dapple::add_document_command(document)},
   };
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? 0 : kUsage;
+  }
+  if (version) {
+    dapple::print_version(verbose);
+    return 0;
   }
   // Not CLI11's own requirement: that hides the name of a command it does not know.
   if (app.get_subcommands().empty()) {

@@ -18,5 +18,9 @@ Run add_scene_command(CLI::App& app);
 Run add_devices_command(CLI::App& app);
 Run add_compare_command(CLI::App& app);
 Run add_compile_command(CLI::App& app);
+Run add_document_command(CLI::App& app);
+
+/// One line; `verbose`: also how dapple was built and which device libraries there are.
+void print_version(bool verbose);
 
 }  // namespace dapple

@@ -1,6 +1,7 @@
 // irradiance(): points and lights in, irradiance out, by the passes of the renderer.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>

@@ -34,6 +34,35 @@ TEST_F(CommandLine, HelpOfEveryCommandHasAnExample) {
   EXPECT_EQ(version.out.rfind("dapple ", 0), 0u) << version.out;
 }
 
+TEST_F(CommandLine, TheVerboseVersionSaysHowItWasBuiltAndWhichDevicesThereAre) {
+  const Outcome run = dapple("--version --verbose");
+  EXPECT_EQ(run.code, 0) << run.err;
+  for (const char* part :
+       {"dapple ", "\nbuild: ", "\ncompiler: ", "\ndevice: ", "\ndevice library: "})
+    EXPECT_TRUE(contains(run.out, part)) << part << run.out;
+  const Outcome bare = dapple("--version --verbose", "OCL_ICD_VENDORS=/nowhere");
+  EXPECT_EQ(bare.code, 0);
+  EXPECT_TRUE(contains(bare.out, "device: none")) << bare.out;
+  expect_failure(dapple("--verbose"), 2, "subcommand");
+}
+
+TEST_F(CommandLine, ManualPageAndCompletionsNameEveryOption) {
+  const std::string help = dapple("points --help").out;
+  for (const char* kind : {"man", "bash", "zsh"}) {
+    const Outcome run = dapple(std::string("document ") + kind);
+    EXPECT_EQ(run.code, 0) << run.err;
+    for (std::size_t at = help.find("--"); at != std::string::npos; at = help.find("--", at + 2)) {
+      std::string flag =
+          help.substr(at, help.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at) - at);
+      if (std::string(kind) == "man")
+        for (std::size_t i = 0; (i = flag.find('-', i)) != std::string::npos; i += 2)
+          flag.insert(i, "\\");
+      EXPECT_TRUE(contains(run.out, flag)) << kind << ": " << flag;
+    }
+  }
+  expect_failure(dapple("document fish"), 2, "man, bash or zsh");
+}
+
 TEST_F(CommandLine, TheTwoTargetsExcludeEachOther) {
   const Outcome run = render("--target-error 0.1 --target-rmse 0.1");
   expect_failure(run, 2, "--target-error");
