@@ -12,7 +12,7 @@
 #include "bake/texture/texture_layout.hpp"
 #include "bake/vertex_bake.hpp"
 #include "dapple/error.hpp"
-#include "film/layers.hpp"
+#include "film/light_layers.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -118,8 +118,10 @@ bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders
     auto light =
         bake_lights(scene.meshes[m], two_sided_triangles(scene, scene.meshes[m], options.sides), m,
                     placements, options, occluders.occluders(), progress);
-    if (light) result.meshes[m].light = std::move(*light);
-    result.light_names = light_names(occluders.occluders().lights);
+    const std::vector<LightLayer> layers = light_layers(occluders.occluders().lights);
+    if (light) result.meshes[m].light = sums_of_layers(layers, *light);
+    result.light_names.clear();
+    for (const LightLayer& layer : layers) result.light_names.push_back(layer.name);
     return light.has_value();
   });
 }
