@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dapple/film.hpp"
 #include "dapple/options.hpp"
 #include "dapple/scene.hpp"
 
@@ -16,6 +17,8 @@ struct RenderArguments {
   std::string scene, output, png, stats_json, lights, dome;
   double dome_rotation = 0;
   std::string estimator = "prefiltered", passes = "ao,light", packets = "auto";
+  std::string half, compression = "zip";
+  bool multipart = false;
   std::string look_from, look_at, up, crop;
   std::vector<std::string> opacity;
   std::optional<double> frame;
@@ -30,7 +33,8 @@ struct RenderArguments {
 
 void add_render_options(CLI::App& app, RenderArguments& arguments);
 
-/// Throws Error usage naming the option.
+/// Both throw Error usage naming the option.
 RenderOptions to_options(const RenderArguments& arguments);
+ExrFormat to_format(const RenderArguments& arguments);
 
 }  // namespace dapple
