@@ -74,6 +74,7 @@ LightSample sample_light(const Light& light, const V3f& origin, float x, float y
     case LightKind::sun:
     case LightKind::mesh:
     case LightKind::dome:
+    case LightKind::disk:
       break;
   }
   return sample_sun(light, x, y);

@@ -14,7 +14,7 @@
 #include "bake/texture/texture_layout.hpp"
 #include "bake/vertex_bake.hpp"
 #include "dapple/error.hpp"
-#include "film/layers.hpp"
+#include "film/light_layers.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -80,9 +80,16 @@ double expected_samples(const Scene& scene, const BakeOptions& options) {
   return options.light ? 2 * samples : samples;
 }
 
-/// Names of the lights that are baked.
-std::vector<std::string> baked_light_names(const Scene& scene, const BakeOptions& options) {
-  return light_names(options.lights.empty() ? scene.lights : options.lights);
+/// Adds up the lights of each group.
+void add_up_groups(const std::vector<Light>& lights, BakeResult& result) {
+  const std::vector<LightLayer> layers = light_layers(lights);
+  for (const LightLayer& layer : layers) result.light_names.push_back(layer.name);
+  for (BakedMesh& mesh : result.meshes)
+    if (!mesh.light.empty()) mesh.light = sums_of_layers(layers, mesh.light);
+  if (!result.texture.light.empty())
+    result.texture.light = sums_of_layers(layers, result.texture.light);
+  if (!result.instance_light.empty())
+    result.instance_light = sums_of_layers(layers, result.instance_light);
 }
 
 /// The part of a scene that is one mesh, as it is in object space.
@@ -201,7 +208,6 @@ BakeResult bake(const Scene& scene, const BakeOptions& options, const RenderCont
     s.device = together->device.info().name;
     s.notes = together->notes;
   }
-  if (options.light) result.light_names = baked_light_names(scene, options);
   BakeProgress progress(expected_samples(scene, options), control);
   Settings settings = bake_settings(scene, options, occluders);
   if (together) settings.emplace_back("device", s.device);
@@ -215,6 +221,8 @@ BakeResult bake(const Scene& scene, const BakeOptions& options, const RenderCont
     result.interrupted = !bake_texture(scene, options, mesh_occluders, records, result);
   if (options.instances && !result.interrupted)
     result.interrupted = !bake_all_instances(scene, options, *together, records, result);
+  if (options.light && !result.interrupted)
+    add_up_groups(options.lights.empty() ? scene.lights : options.lights, result);
   checkpoint.save(true);
   result.checkpoint_failure = checkpoint.failure();
   if (checkpoint.points_read() > 0)

@@ -34,6 +34,8 @@ const char* name_of(LightKind kind) {
       return "mesh";
     case LightKind::dome:
       return "dome";
+    case LightKind::disk:
+      return "disk";
   }
   return "";
 }

@@ -99,6 +99,26 @@ Estimator parse_estimator(const std::string& text) {
   throw Error(ErrorKind::usage, fmt::format("--estimator {}: it is exact or prefiltered", text));
 }
 
+ExrCompression parse_compression(const std::string& text) {
+  if (text == "none") return ExrCompression::none;
+  if (text == "zips") return ExrCompression::zips;
+  if (text == "zip") return ExrCompression::zip;
+  if (text == "piz") return ExrCompression::piz;
+  if (text == "dwaa") return ExrCompression::dwaa;
+  throw Error(ErrorKind::usage,
+              fmt::format("--compression {}: it is zip, zips, piz, dwaa or none", text));
+}
+
+std::vector<std::string> parse_names(const std::string& flag, const std::string& text) {
+  if (text.empty()) return {};
+  std::vector<std::string> names = split(text, ',');
+  for (const std::string& name : names)
+    if (name.empty())
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} {}: expected names with commas between", flag, text));
+  return names;
+}
+
 double parse_seconds(const std::string& flag, const std::string& text) {
   const std::string units = "smh";
   const std::size_t unit = text.empty() ? std::string::npos : units.find(text.back());

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "dapple/film.hpp"
 #include "dapple/options.hpp"
 
 namespace dapple {
@@ -21,6 +23,10 @@ Estimator parse_estimator(const std::string& text);
 Normals parse_normals(const std::string& text);
 /// "auto", "none", "pixel" or "point"
 Packets parse_packets(const std::string& text);
+/// "zip", "zips", "piz", "dwaa" or "none"
+ExrCompression parse_compression(const std::string& text);
+/// "ao,N"; empty: none
+std::vector<std::string> parse_names(const std::string& flag, const std::string& text);
 /// "ao", "light", "ao,light"
 void parse_passes(const std::string& text, RenderOptions& options);
 

@@ -21,6 +21,7 @@
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
 #include "film/exr_output.hpp"
+#include "film/exr_parts.hpp"
 
 namespace dapple {
 namespace {
@@ -40,9 +41,9 @@ void write_statistics(const RenderStatistics& statistics, const std::string& pat
   write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
 }
 
-void write_pictures(const RenderResult& result, const Frame& frame) {
+void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format) {
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
-  write_exr(result.film, frame.output, result.interrupted ? Durable::no : Durable::yes);
+  write_exr(result.film, frame.output, format, result.interrupted ? Durable::no : Durable::yes);
   if (!frame.png.empty()) write_png(result.film, frame.png);
   if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
 }
@@ -102,6 +103,7 @@ RenderResult render_frame(const RenderArguments& a, const Frame& frame, Shot& sh
 
 void run_render(const RenderArguments& a) {
   RenderOptions options = to_options(a);
+  const ExrFormat format = to_format(a);
   const std::vector<Frame> frames = list_frames(a);
   ProgressBar progress(a.quiet, "rendering");
   const RenderControl control = to_control(a, progress);
@@ -129,7 +131,9 @@ void run_render(const RenderArguments& a) {
     if (frame.seconds)
       result.film.metadata.settings.emplace_back("frame_seconds",
                                                  fmt::format("{}", *frame.seconds));
-    write_pictures(result, frame);
+    write_pictures(result, frame, format);
+    for (const std::string& name : half_layers_without_planes(result.film, format))
+      statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
     statistics.seconds.load = load_seconds;
     statistics.seconds.write = since(writing);
     statistics.seconds.total = since(start);

@@ -115,6 +115,19 @@ void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
       "the targets may demand more");
 }
 
+void add_file_options(CLI::App& app, RenderArguments& a) {
+  app.add_option("--png", a.png,
+                 "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
+                 "NAME_visits.png");
+  app.add_option("--half", a.half,
+                 "Layers to store as 16-bit floats, with commas between, or all; Z, P, samples and "
+                 "ids stay 32-bit");
+  app.add_flag("--multipart", a.multipart, "Write a part for each layer");
+  app.add_option("--compression", a.compression,
+                 "zip, zips, piz, none; dwaa (lossy, for colours only; with --multipart)")
+      ->capture_default_str();
+}
+
 void add_motion_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& frame =
       *app.add_option("--frame", a.frame,
@@ -168,9 +181,7 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
                  "\"scene:tree?leaves=50000\"")
       ->required();
   app.add_option("-o,--output", a.output, "OpenEXR file to write")->required();
-  app.add_option("--png", a.png,
-                 "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
-                 "NAME_visits.png");
+  add_file_options(app, a);
   add_picture_options(app, a);
   add_scene_options(app, a);
   add_motion_options(app, a);
@@ -197,6 +208,15 @@ double shutter_seconds(const RenderArguments& a, double seconds, int k) {
   if (a.shutter.empty()) return seconds;
   const auto [open, close] = parse_shutter(a.shutter);
   return seconds + (open + (close - open) * (k + 0.5) / shutter_times(a)) / frames_per_second(a);
+}
+
+ExrFormat to_format(const RenderArguments& a) {
+  ExrFormat format;
+  format.half = parse_names("--half", a.half);
+  format.multipart = a.multipart;
+  format.compression = parse_compression(a.compression);
+  validate(format);
+  return format;
 }
 
 RenderOptions to_options(const RenderArguments& a) {

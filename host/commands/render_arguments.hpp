@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dapple/film.hpp"
 #include "dapple/options.hpp"
 #include "dapple/scene.hpp"
 
@@ -17,6 +18,8 @@ struct RenderArguments {
   double dome_rotation = 0;
   std::string estimator = "prefiltered", passes = "ao,light", packets = "auto";
   std::string normals = "shading";
+  std::string half, compression = "zip";
+  bool multipart = false;
   std::string look_from, look_at, up, crop;
   std::vector<std::string> opacity;
   std::optional<double> frame;
@@ -41,7 +44,8 @@ int shutter_times(const RenderArguments& arguments);
 /// The k-th moment of a frame at `seconds`: the middle of the k-th part of the shutter interval.
 double shutter_seconds(const RenderArguments& arguments, double seconds, int k);
 
-/// Throws Error usage naming the option.
+/// Both throw Error usage naming the option.
 RenderOptions to_options(const RenderArguments& arguments);
+ExrFormat to_format(const RenderArguments& arguments);
 
 }  // namespace dapple

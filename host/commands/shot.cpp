@@ -54,19 +54,19 @@ Shot::Set Shot::settle(const Scene& first) const {
   Set set;
   const Camera camera = choose_view(first, options_, set.notes).camera;
   if (!options_.look && first.cameras.empty()) set.camera = camera;
-  if (options_.light && first.lights.empty()) set.light = key_light(first, camera);
+  if (options_.light && first.lights.empty()) set.lights = daylight(camera);
   if (options_.ground) set.ground_under = scene_bounds(first);
   return set;
 }
 
 void Shot::put_up(Scene& scene) const {
   if (set_->camera) scene.cameras.push_back(*set_->camera);
-  if (set_->light) scene.lights.push_back(*set_->light);
+  scene.lights.insert(scene.lights.end(), set_->lights.begin(), set_->lights.end());
   if (set_->ground_under) add_ground(scene, *set_->ground_under);
   scene.warnings.insert(scene.warnings.end(), set_->notes.begin(), set_->notes.end());
-  if (set_->light)
+  if (!set_->lights.empty())
     scene.warnings.emplace_back(
-        "no lights in the scene: added a rect light named key; --lights F brings others");
+        "no lights in the scene: added lights named sun and sky; --lights F brings others");
 }
 
 }  // namespace dapple

@@ -1,5 +1,5 @@
 // The scenes of a render's frames. Lights and the dome of the command line are the same in all
-// frames. In a sequence the first frame also chooses the camera, light and ground that the scene
+// frames. In a sequence the first frame also chooses the camera, lights and ground that the scene
 // lacks: they would jitter if each frame chose its own.
 #pragma once
 
@@ -24,10 +24,10 @@ class Shot {
   Scene frame(std::optional<double> seconds);
 
  private:
-  /// Chooses camera, light and ground from the first frame.
+  /// Chooses camera, lights and ground from the first frame.
   struct Set {
     std::optional<Camera> camera;
-    std::optional<Light> light;
+    std::vector<Light> lights;
     std::optional<Box3f> ground_under;
     std::vector<std::string> notes;
   };

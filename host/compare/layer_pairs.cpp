@@ -7,8 +7,6 @@
 namespace dapple {
 namespace {
 
-constexpr const char* kMainLayer = "RGBA";
-
 using Layers = std::map<std::string, std::vector<const Plane*>>;
 
 Layers layers_of(const Film& film) {
@@ -41,13 +39,6 @@ bool has_all(const LayerPair& layer, const std::string& prefix, const char* lett
 }
 
 }  // namespace
-
-std::string layer_of(const std::string& channel) {
-  const std::size_t dot = channel.rfind('.');
-  if (dot != std::string::npos && dot > 0) return channel.substr(0, dot);
-  const bool is_main = channel == "R" || channel == "G" || channel == "B" || channel == "A";
-  return is_main ? kMainLayer : channel;
-}
 
 LayerMatch match_layers(const Film& a, const Film& b) {
   const Layers layers_a = layers_of(a);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dapple/film.hpp"
+#include "film/exr_parts.hpp"
 
 namespace dapple {
 
@@ -22,10 +23,6 @@ struct LayerMatch {
   /// Layers that only one film has, and single channels that only one film has in a common layer.
   std::vector<std::string> only_a, only_b;
 };
-
-/// The layer of a channel: its name before the last dot, "light.key" for "light.key.R". R, G, B and
-/// A are the layer "RGBA"; any other channel without a dot is a layer of its own name.
-std::string layer_of(const std::string& channel);
 
 /// Matches the layers of two films, which must outlive the result.
 LayerMatch match_layers(const Film& a, const Film& b);

@@ -5,7 +5,9 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
 #include <ImfStdIO.h>
 #include <ImfTileDescriptionAttribute.h>
 #include <ImfVersion.h>
@@ -25,6 +27,7 @@ using Imath::Box2i;
 using Imath::V2i;
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
+constexpr std::size_t kMaxParts = 4096;
 constexpr int kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
 
 std::int64_t area(const Box2i& window) {
@@ -32,19 +35,20 @@ std::int64_t area(const Box2i& window) {
   return width * (std::int64_t{window.max.y} - window.min.y + 1);
 }
 
-void read_rows(Imf::InputFile& file, const std::vector<std::string>& channels, const Box2i& strip,
+void read_rows(Imf::InputPart& part, const std::vector<std::string>& channels, const Box2i& strip,
                ExrRows& rows) {
   Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     rows[i].resize(static_cast<std::size_t>(area(strip)));
     buffer.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, rows[i].data(), strip));
   }
-  file.setFrameBuffer(buffer);
-  file.readPixels(strip.min.y, strip.max.y);
+  part.setFrameBuffer(buffer);
+  part.readPixels(strip.min.y, strip.max.y);
 }
 
-// Reads only the header; OpenEXR does not yet allocate memory of the size that it claims.
-Imf::Header peek_header(const std::string& path) {
+// Reads only the headers, one for each part; OpenEXR does not yet allocate memory of the size that
+// they claim.
+std::vector<Imf::Header> peek_headers(const std::string& path) {
   Imf::StdIFStream stream(path.c_str());
   std::array<char, 8> opening{};
   stream.read(opening.data(), static_cast<int>(opening.size()));
@@ -53,9 +57,16 @@ Imf::Header peek_header(const std::string& path) {
   for (std::size_t i = 4; i < 8; ++i) {
     version |= static_cast<unsigned char>(opening[i]) << (8 * (i - 4));
   }
-  Imf::Header header;
-  header.readFrom(stream, version);
-  return header;
+  std::vector<Imf::Header> headers;
+  do {
+    headers.emplace_back();
+    headers.back().readFrom(stream, version);
+    if (headers.size() > kMaxParts) {
+      throw std::runtime_error("it has more than " + std::to_string(kMaxParts) + " parts");
+    }
+  } while (Imf::isMultiPart(version) && !headers.back().readsNothing());
+  if (headers.size() > 1) headers.pop_back();  // the empty one that ends the list
+  return headers;
 }
 
 void check_size(const Imf::Header& header) {
@@ -93,40 +104,70 @@ std::vector<std::string> channel_names(const Imf::Header& header) {
   return names;
 }
 
+void check_headers(const std::vector<Imf::Header>& headers) {
+  for (const Imf::Header& header : headers) {
+    check_size(header);
+    if (header.hasType() && Imf::isDeepData(header.type())) {
+      throw std::runtime_error("it has deep data, which is not read");
+    }
+    if (header.dataWindow() != headers[0].dataWindow()) {
+      throw std::runtime_error("its parts have different data windows");
+    }
+  }
+}
+
+// Channels of several parts may have one name; then all but the first get their part's in front.
+std::string free_name(const ExrImage& image, const std::string& part, const std::string& channel) {
+  if (!image.channels.contains(channel)) return channel;
+  std::string name = part + "." + channel;
+  if (image.channels.contains(name))
+    throw std::runtime_error("channel " + name + " is there twice");
+  return name;
+}
+
+void decode_part(Imf::InputPart& part, ExrImage& image) {
+  const std::vector<std::string> channels = channel_names(part.header());
+  std::vector<std::vector<float>*> planes;
+  for (const std::string& channel : channels) {
+    const std::string name = part.header().hasName() ? part.header().name() : "";
+    planes.push_back(&image.channels[free_name(image, name, channel)]);
+    // The system allocates reserved memory only when it is filled: a short file that claims a large
+    // picture fails before it uses much.
+    planes.back()->reserve(static_cast<std::size_t>(area(part.header().dataWindow())));
+  }
+  for_each_strip(part, channels, [&](std::size_t, const ExrRows& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      planes[i]->insert(planes[i]->end(), rows[i].begin(), rows[i].end());
+  });
+}
+
 ExrImage decode(const std::string& path, const SeeExrHeader& see_header) {
-  check_size(peek_header(path));
-  Imf::InputFile file(path.c_str(), 0);
-  const Box2i& window = file.header().dataWindow();
-  if (see_header) see_header(file.header());
-  const std::vector<std::string> channels = channel_names(file.header());
+  check_headers(peek_headers(path));
+  Imf::MultiPartInputFile file(path.c_str(), 0);
+  const Box2i& window = file.header(0).dataWindow();
+  if (see_header) see_header(file.header(0));
   ExrImage image;
   image.width = static_cast<std::uint32_t>(window.max.x - window.min.x + 1);
   image.height = static_cast<std::uint32_t>(window.max.y - window.min.y + 1);
-  // The system allocates reserved memory only when it is filled: a short file that claims a large
-  // picture fails before it uses much.
-  for (const std::string& channel : channels)
-    image.channels[channel].reserve(static_cast<std::size_t>(area(window)));
-  for_each_strip(file, channels, [&](std::size_t, const ExrRows& rows) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      std::vector<float>& pixels = image.channels[channels[i]];
-      pixels.insert(pixels.end(), rows[i].begin(), rows[i].end());
-    }
-  });
+  for (int i = 0; i < file.parts(); ++i) {
+    Imf::InputPart part(file, i);
+    decode_part(part, image);
+  }
   return image;
 }
 
 }  // namespace
 
 void for_each_strip(
-    Imf::InputFile& file, const std::vector<std::string>& channels,
+    Imf::InputPart& part, const std::vector<std::string>& channels,
     const std::function<void(std::size_t first_pixel, const ExrRows& rows)>& visit) {
-  const Box2i window = file.header().dataWindow();
+  const Box2i window = part.header().dataWindow();
   std::size_t first_pixel = 0;
   ExrRows rows(channels.size());  // reused, not allocated anew: experiment 803
   for (std::int64_t y = window.min.y; y <= window.max.y; y += kStripRows) {
     const int last = static_cast<int>(std::min<std::int64_t>(y + kStripRows - 1, window.max.y));
     const Box2i strip(V2i(window.min.x, static_cast<int>(y)), V2i(window.max.x, last));
-    read_rows(file, channels, strip, rows);
+    read_rows(part, channels, strip, rows);
     visit(first_pixel, rows);
     first_pixel += static_cast<std::size_t>(area(strip));
   }

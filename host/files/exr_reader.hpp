@@ -23,15 +23,16 @@ struct ExrImage {
 /// Called with the header, for what ExrImage does not contain.
 using SeeExrHeader = std::function<void(const Imf::Header&)>;
 
-/// Reads any single-part EXR, scanline or tiled, without subsampling and of at most 2^28 pixels;
-/// HALF and UINT become float. Throws Error input.
+/// Reads any EXR, scanline or tiled, without subsampling or deep data and of at most 2^28 pixels;
+/// HALF and UINT become float. Parts must have one data window; the header is that of the first.
+/// Throws Error input.
 ExrImage read_exr_image(const std::string& path, const SeeExrHeader& see_header = {});
 
 using ExrRows = std::vector<std::vector<float>>;  ///< one vector for each channel
 
 /// Reads `channels` a few rows at a time, from top to bottom, and calls `visit` with each strip and
 /// the index of its first pixel. Throws OpenEXR's exceptions.
-void for_each_strip(Imf::InputFile& file, const std::vector<std::string>& channels,
+void for_each_strip(Imf::InputPart& part, const std::vector<std::string>& channels,
                     const std::function<void(std::size_t first_pixel, const ExrRows& rows)>& visit);
 
 }  // namespace dapple

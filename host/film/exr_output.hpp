@@ -16,6 +16,6 @@ void use_exr_threads(int count);
 
 /// As write_exr() in film.hpp, which waits until the disk has the file (Durable::yes). An
 /// interrupted render uses Durable::no, in order not to wait for a slow disk.
-void write_exr(const Film& film, const std::string& path, Durable durable);
+void write_exr(const Film& film, const std::string& path, const ExrFormat& format, Durable durable);
 
 }  // namespace dapple

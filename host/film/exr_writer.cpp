@@ -1,13 +1,18 @@
 // Writes films as OpenEXR files, and reads them again. In: a Film, or any EXR file that
-// host/files/exr_reader.hpp reads. Out: a verified file, or a Film. OpenEXR's threads are a setting
-// of the whole process, which only a program may change: use_exr_threads().
+// host/files/exr_reader.hpp reads. Out: a verified file of one part or several, or a Film.
+// OpenEXR's threads are a setting of the whole process, which only a program may change:
+// use_exr_threads().
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
@@ -15,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
@@ -24,6 +30,7 @@
 #include "files/exr_reader.hpp"
 #include "files/output_file.hpp"
 #include "film/exr_output.hpp"
+#include "film/exr_parts.hpp"
 #include "film/film_defect.hpp"
 
 namespace dapple {
@@ -65,16 +72,55 @@ void insert_metadata(Imf::Header& header, const FilmMetadata& metadata) {
   header.insert(attribute_name("samples"), Imf::IntAttribute(metadata.samples));
 }
 
-Imf::Header header_of(const Film& film) {
+Imf::Compression imf_compression(ExrCompression compression) {
+  switch (compression) {
+    case ExrCompression::none:
+      return Imf::NO_COMPRESSION;
+    case ExrCompression::zips:
+      return Imf::ZIPS_COMPRESSION;
+    case ExrCompression::piz:
+      return Imf::PIZ_COMPRESSION;
+    case ExrCompression::dwaa:
+      return Imf::DWAA_COMPRESSION;
+    default:
+      return Imf::ZIP_COMPRESSION;
+  }
+}
+
+Imf::Header header_of(const Film& film, const ExrPart& part) {
   Imf::Header header(Box2i(V2i(0, 0), V2i(film.width - 1, film.height - 1)),
                      window_of(film.data_window), 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y,
-                     Imf::ZIP_COMPRESSION);
-  header.zipCompressionLevel() = 1;  // not 4: experiment 804
-  for (const Plane& plane : film.planes) {
-    header.channels().insert(plane.channel, Imf::Channel(Imf::FLOAT));
+                     imf_compression(part.compression));
+  if (part.compression == ExrCompression::zip || part.compression == ExrCompression::zips)
+    header.zipCompressionLevel() = 1;  // not 4: experiment 804
+  for (std::size_t i = 0; i < part.planes.size(); ++i) {
+    const Imf::PixelType type = part.half[i] ? Imf::HALF : Imf::FLOAT;
+    header.channels().insert(part.planes[i]->channel, Imf::Channel(type));
   }
-  insert_metadata(header, film.metadata);
+  // The Color Interop Forum's name of the linear space with BT.709 primaries, a standard attribute
+  // since OpenEXR 3.4; chromaticities say the same to older readers.
+  header.insert("colorInteropID", Imf::StringAttribute(part.color ? "lin_rec709_scene" : "data"));
+  Imf::addChromaticities(header, Imf::Chromaticities());
   return header;
+}
+
+std::vector<Imf::Header> headers_of(const Film& film, const std::vector<ExrPart>& parts,
+                                    bool multipart) {
+  std::vector<Imf::Header> headers;
+  for (const ExrPart& part : parts) {
+    headers.push_back(header_of(film, part));
+    if (!multipart) continue;
+    headers.back().setName(part.name);
+    headers.back().setType(Imf::SCANLINEIMAGE);
+  }
+  insert_metadata(headers[0], film.metadata);
+  return headers;
+}
+
+/// The nearest 16-bit float. Finite values beyond its range become the largest one.
+half half_of(float value) {
+  constexpr float kLargest = 65504;
+  return half(std::isfinite(value) ? std::clamp(value, -kLargest, kLargest) : value);
 }
 
 class PendingStream final : public Imf::OStream {
@@ -91,34 +137,75 @@ class PendingStream final : public Imf::OStream {
   PendingFile& file_;
 };
 
-void encode(const Film& film, PendingFile& file) {
-  PendingStream stream(file);
-  Imf::OutputFile out(stream, header_of(film), Imf::globalThreadCount());
+/// Writes one part. `Out` is OpenEXR's OutputFile or OutputPart.
+template <class Out>
+void write_part(Out& out, const ExrPart& part, const PixelRect& data_window) {
   Imf::FrameBuffer buffer;
-  const Box2i window = window_of(film.data_window);
-  for (const Plane& plane : film.planes) {
-    buffer.insert(plane.channel, Imf::Slice::Make(Imf::FLOAT, plane.pixels.data(), window));
+  const Box2i window = window_of(data_window);
+  std::vector<std::vector<half>> halves;
+  for (std::size_t i = 0; i < part.planes.size(); ++i) {
+    const Plane& plane = *part.planes[i];
+    const void* values = plane.pixels.data();
+    if (part.half[i]) {
+      halves.emplace_back(plane.pixels.size());
+      std::transform(plane.pixels.begin(), plane.pixels.end(), halves.back().begin(), half_of);
+      values = halves.back().data();
+    }
+    buffer.insert(plane.channel,
+                  Imf::Slice::Make(part.half[i] ? Imf::HALF : Imf::FLOAT, values, window));
   }
   out.setFrameBuffer(buffer);
-  out.writePixels(film.data_window.height());
+  out.writePixels(data_window.height());
 }
 
-// Compares bits, not values, so that equal NaNs are equal.
-void verify(const Film& film, PendingFile& file) {
-  Imf::InputFile in(file.temporary_path().c_str(), Imf::globalThreadCount());
-  if (in.header().dataWindow() != window_of(film.data_window)) {
-    file.fail("the data window that was read back differs from the film's");
+void encode(const Film& film, const std::vector<ExrPart>& parts, bool multipart,
+            PendingFile& file) {
+  PendingStream stream(file);
+  const std::vector<Imf::Header> headers = headers_of(film, parts, multipart);
+  if (!multipart) {
+    Imf::OutputFile out(stream, headers[0], Imf::globalThreadCount());
+    write_part(out, parts[0], film.data_window);
+    return;
   }
+  Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false,
+                               Imf::globalThreadCount());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Imf::OutputPart part(out, static_cast<int>(i));
+    write_part(part, parts[i], film.data_window);
+  }
+}
+
+/// Compares bits, not values, so that equal NaNs are equal. A lossy part must only be readable.
+void verify_part(const ExrPart& part, Imf::InputPart& in, PendingFile& file) {
   std::vector<std::string> channels;
-  for (const Plane& plane : film.planes) channels.push_back(plane.channel);
+  for (const Plane* plane : part.planes) channels.push_back(plane->channel);
   for_each_strip(in, channels, [&](std::size_t first_pixel, const ExrRows& rows) {
+    if (part.compression == ExrCompression::dwaa) return;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const float* meant = film.planes[i].pixels.data() + first_pixel;
-      if (std::memcmp(rows[i].data(), meant, rows[i].size() * sizeof(float)) != 0) {
-        file.fail("channel " + channels[i] + " differs after reading it back");
+      const float* meant = part.planes[i]->pixels.data() + first_pixel;
+      std::vector<float> rounded;
+      if (part.half[i]) {
+        rounded.assign(meant, meant + rows[i].size());
+        for (float& value : rounded) value = half_of(value);
+        meant = rounded.data();
       }
+      if (std::memcmp(rows[i].data(), meant, rows[i].size() * sizeof(float)) != 0)
+        file.fail("channel " + channels[i] + " differs after reading it back");
     }
   });
+}
+
+void verify(const Film& film, const std::vector<ExrPart>& parts, PendingFile& file) {
+  Imf::MultiPartInputFile in(file.temporary_path().c_str(), Imf::globalThreadCount());
+  if (in.parts() != static_cast<int>(parts.size()))
+    file.fail("it has other parts than were written");
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Imf::InputPart part(in, static_cast<int>(i));
+    if (part.header().dataWindow() != window_of(film.data_window)) {
+      file.fail("the data window that was read back differs from the film's");
+    }
+    verify_part(parts[i], part, file);
+  }
 }
 
 std::string take(std::vector<std::pair<std::string, std::string>>& texts, const std::string& name) {
@@ -167,16 +254,21 @@ Film film_without_pixels(const Imf::Header& header) {
 
 void use_exr_threads(int count) { Imf::setGlobalThreadCount(count); }
 
-void write_exr(const Film& film, const std::string& path) { write_exr(film, path, Durable::yes); }
+void write_exr(const Film& film, const std::string& path, const ExrFormat& format) {
+  write_exr(film, path, format, Durable::yes);
+}
 
-void write_exr(const Film& film, const std::string& path, Durable durable) {
+void write_exr(const Film& film, const std::string& path, const ExrFormat& format,
+               Durable durable) {
+  validate(format);
   PendingFile file(path);
   const std::string reason = film_defect(film);
   if (!reason.empty()) file.fail(reason);
+  const std::vector<ExrPart> parts = exr_parts(film, format);
   try {
-    encode(film, file);
+    encode(film, parts, format.multipart, file);
     file.close(durable);
-    verify(film, file);
+    verify(film, parts, file);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& problem) {

@@ -11,6 +11,7 @@
 
 #include "camera/camera_splitting.hpp"
 #include "film/film_sums.hpp"
+#include "film/light_layers.hpp"
 #include "film/traced_picture.hpp"
 
 namespace dapple {
@@ -70,6 +71,11 @@ class LightPlanes {
   }
   [[nodiscard]] V3d one(std::size_t light, std::uint32_t pixel) const {
     return of_planes(light, layout_.lights[light].first, pixel);
+  }
+  [[nodiscard]] V3d sum(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
+    V3d value(0.0);
+    for (const std::size_t l : lights) value += one(l, pixel);
+    return value;
   }
   [[nodiscard]] double largest_unoccluded() const {
     double largest = 0;
@@ -224,8 +230,9 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
     });
   }
   const std::vector<std::string> names = light_names(lights);
-  for (std::size_t l = 0; l < lights.size(); ++l) {
-    planes.add3("light." + names[l], "RGB", [&](std::uint32_t p) { return light.one(l, p); });
+  for (const LightLayer& layer : light_layers(lights)) {
+    planes.add3("light." + layer.name, "RGB",
+                [&](std::uint32_t p) { return light.sum(layer.lights, p); });
   }
   const auto mean3 = [&](std::uint32_t plane, double scale) {
     return [&, plane, scale](std::uint32_t p) {

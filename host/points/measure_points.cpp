@@ -9,7 +9,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/points.hpp"
-#include "film/layers.hpp"
+#include "film/light_layers.hpp"
 #include "points/periodic.hpp"
 #include "points/ring_rays.hpp"
 #include "render/point_occlusion.hpp"
@@ -198,21 +198,25 @@ class Measurement {
 
   void measure_lights() {
     const std::vector<Light>& lights = on_.scene.lights;
-    std::vector<SetSums> sums(3 * lights.size(), SetSums(points_.size()));
+    const std::vector<LightLayer> layers = light_layers(lights);
+    std::vector<SetSums> sums(3 * layers.size(), SetSums(points_.size()));
     for (int set = 0; set < kSets; ++set) {
       const OcclusionOptions of = occlusion_options(set);
       const auto found = irradiance(on_.device, on_.uploaded, lights, points_, normals_,
                                     {of.rays, of.estimator, of.footprint, of.seed});
-      for (std::size_t l = 0; l < lights.size(); ++l)
+      for (std::size_t l = 0; l < layers.size(); ++l)
         for (int c = 0; c < 3; ++c)
-          sums[3 * l + static_cast<std::size_t>(c)].add(
-              [&](std::size_t i) { return double{found[l].irradiance[i][c]}; });
+          sums[3 * l + static_cast<std::size_t>(c)].add([&](std::size_t i) {
+            double sum = 0;
+            for (const std::size_t light : layers[l].lights)
+              sum += double{found[light].irradiance[i][c]};
+            return sum;
+          });
       if (!step()) return;
     }
-    const std::vector<std::string> names = light_names(lights);
-    for (std::size_t l = 0; l < lights.size(); ++l)
+    for (std::size_t l = 0; l < layers.size(); ++l)
       for (std::size_t c = 0; c < 3; ++c)
-        sums[3 * l + c].store(names[l] + "_" + "rgb"[c], result_.columns);
+        sums[3 * l + c].store(layers[l].name + "_" + "rgb"[c], result_.columns);
   }
 
   void measure_suns() {

@@ -32,9 +32,9 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   View view = choose_view(scene, options, notes);
   if (options.light && scene.lights.empty()) {
-    scene.lights.push_back(key_light(scene, view.camera));
+    scene.lights = daylight(view.camera);
     notes.emplace_back(
-        "no lights in the scene: added a rect light named key; --lights F brings others");
+        "no lights in the scene: added lights named sun and sky; --lights F brings others");
   }
   check_film_memory(view, options.light ? scene.lights.size() : 0);
   if (options.ground) add_ground(scene);

@@ -1,5 +1,4 @@
-// Default cameras and lights for scenes without their own. In: a scene's bounds; out: a camera that
-// sees the whole scene, and one rect light (a photographer's "key light").
+// Cameras for scenes without their own. In: a scene's bounds, or two points; out: a camera.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -7,14 +6,12 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
-#include "scene/rect_axes.hpp"
 
 namespace dapple {
 namespace {
 
 constexpr float kFrameMargin = 1.06f;     // width of the frame over width of the scene
 constexpr float kFrameElevation = 0.21f;  // tangent of the camera's elevation, 12 degrees
-constexpr float kKeyDistance = 3;         // scene radii from the centre
 
 bool is_finite(V3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -86,29 +83,6 @@ Camera frame_scene(const Scene& scene, float aspect, float fov_y) {
   for (int k = 0; k < 3; ++k) camera.to_world[3][k] = from[k];
   camera.name = "frame";
   return camera;
-}
-
-Light key_light(const Scene& scene, const Camera& camera) {
-  const Box3f bounds = bounds_or_unit_box(scene);
-  const float radius = std::max(bounds.size().length() / 2, 1e-3f);
-  // The light's height uses the world's +Y, so that the light stays above the ground when the
-  // camera looks down or up.
-  V3f back = row(camera.to_world, 2);
-  back.y = 0;
-  const V3f toward_light =
-      (V3f(0, 0.8f, 0) - row(camera.to_world, 0) * 0.6f + back.normalized() * 0.6f).normalized();
-
-  Light light;
-  light.name = "key";
-  light.kind = LightKind::rect;
-  light.position = bounds.center() + toward_light * (kKeyDistance * radius);
-  light.direction = -toward_light;
-  const RectAxes axes = rect_axes(light.direction);
-  light.edge_u = axes.u * radius;
-  light.edge_v = axes.v * radius;
-  // Irradiance at the centre is radiance * area / distance^2 to first order, which is about 1.
-  light.radiance = V3f(kKeyDistance * kKeyDistance);
-  return light;
 }
 
 }  // namespace dapple

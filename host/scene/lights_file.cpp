@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string_view>
@@ -13,6 +12,7 @@
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
 #include "scene/json_structure.hpp"
+#include "scene/light_fields.hpp"
 #include "scene/numeric_range.hpp"
 #include "scene/rect_axes.hpp"
 #include "scene/side_file.hpp"
@@ -23,19 +23,11 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uintmax_t kMaxFileBytes = 16u << 20;
-constexpr std::size_t kMaxDepth = 16;     // the format needs 4
-constexpr double kSunDegrees = 0.533;     // angular diameter of the real sun
-constexpr std::size_t kMaxMessage = 300;  // bytes; messages quote keys and text of the file
-constexpr std::size_t kMaxName = 200;
+constexpr std::size_t kMaxDepth = 16;  // the format needs 4
 constexpr std::size_t kMaxLights = 4096;
-
-[[noreturn]] void fail(std::string_view where, std::string_view what) {
-  std::string message = fmt::format("{}: {}", where, what.substr(0, kMaxMessage));
-  // Names and keys come from the file and may hold line breaks; a message is one line.
-  std::replace_if(
-      message.begin(), message.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
-  throw Error(ErrorKind::input, message);
-}
+constexpr double kSunDegrees = 0.533;  // angular diameter of the real sun
+constexpr double kMaxStops = 100;
+constexpr double kOuterDegrees = 45;  // of a spot's cone, as in KHR_lights_punctual
 
 std::string read_text(const std::string& path) {
   const auto bytes = read_side_file(path, "lights file", kMaxFileBytes);
@@ -44,151 +36,38 @@ std::string read_text(const std::string& path) {
 
 Json parse_json(const std::string& path, const std::string& text) {
   const std::string defect = json_structure_defect(text, kMaxDepth);
-  if (!defect.empty()) fail(path, defect);
+  if (!defect.empty()) fail_lights(path, defect);
   try {
     return Json::parse(text);
   } catch (const Json::exception& error) {
     // Removes the beginning "[json.exception.parse_error.101] ", which says nothing to a user.
     std::string_view message = error.what();
     message.remove_prefix(std::min(message.size(), message.find("] ") + 2));
-    fail(path, message);
+    fail_lights(path, message);
   }
 }
 
-// The keys and values of one light. Error messages name the file and the light.
-class LightFields {
- public:
-  LightFields(const std::string& path, std::size_t number, const Json& fields)
-      : where_(fmt::format("{}: light {}", path, number)), fields_(fields) {
-    if (!fields_.is_object()) fail(where_, "is not an object");
-    if (const auto name = fields_.find("name"); name != fields_.end() && name->is_string()) {
-      where_ += fmt::format(" (\"{}\")", name->get<std::string>().substr(0, kMaxName));
-    }
-  }
-
-  [[nodiscard]] bool has(const char* key) const { return fields_.contains(key); }
-
-  [[noreturn]] void fail_at(std::string_view key, std::string_view what) const {
-    fail(where_, fmt::format("{} {}", key, what));
-  }
-
-  void allow_only(std::initializer_list<std::string_view> keys) const {
-    for (const auto& [key, value] : fields_.items()) {
-      if (key == "name" || key == "type") continue;
-      if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-      std::string known = "name, type";
-      for (const std::string_view other : keys) known.append(", ").append(other);
-      fail_at(fmt::format("\"{}\"", key), "is not known here; known: " + known);
-    }
-  }
-
-  [[nodiscard]] std::string text(const char* key) const {
-    const Json& value = get(key);
-    if (!value.is_string()) fail_at(key, "must be a string");
-    return value.get<std::string>();
-  }
-
-  [[nodiscard]] float number(const char* key) const { return to_number(get(key), key); }
-
-  /// A length in metres, from kSmallestLength to kLargestCoordinate.
-  [[nodiscard]] float length(const char* key) const { return require_length(number(key), key); }
-
-  [[nodiscard]] float in_range(const char* key, double low, double high) const {
-    const float value = number(key);
-    if (!(value >= low && value <= high)) {
-      fail_at(key, fmt::format("must be from {:g} to {:g}, and is {:g}", low, high, value));
-    }
-    return value;
-  }
-
-  [[nodiscard]] V3f numbers(const char* key) const {
-    const Json& value = array(key, 3);
-    V3f result;
-    for (int k = 0; k < 3; ++k) result[k] = to_number(value[k], element(key, k));
-    return result;
-  }
-
-  [[nodiscard]] V3f point(const char* key) const {
-    const V3f value = numbers(key);
-    for (int k = 0; k < 3; ++k) {
-      if (std::abs(value[k]) <= kLargestCoordinate) continue;
-      fail_at(element(key, k), fmt::format("must be within {:g} m", kLargestCoordinate));
-    }
-    return value;
-  }
-
-  [[nodiscard]] V3f direction(const char* key) const {
-    const Imath::V3d value(numbers(key));  // in double, a float's square is never 0 or infinite
-    if (value.length2() == 0) fail_at(key, "has no direction: it is 0, 0, 0");
-    return V3f(value.normalized());
-  }
-
-  [[nodiscard]] V2f size(const char* key) const {
-    const Json& value = array(key, 2);
-    V2f result;
-    for (int k = 0; k < 2; ++k) {
-      result[k] = require_length(to_number(value[k], element(key, k)), element(key, k));
-    }
-    return result;
-  }
-
-  // Three numbers, or one number for a grey. At least 0, in W/(sr m^2) or W/m^2.
-  [[nodiscard]] V3f colour(const char* key) const {
-    const V3f value = get(key).is_number() ? V3f(number(key)) : numbers(key);
-    for (int k = 0; k < 3; ++k) {
-      if (value[k] < 0) fail_at(key, fmt::format("must not be negative, and is {}", value[k]));
-      if (value[k] > kLargestRadiance) fail_at(key, fmt::format("is above {:g}", kLargestRadiance));
-    }
-    return value;
-  }
-
- private:
-  [[nodiscard]] const Json& get(const char* key) const {
-    const auto found = fields_.find(key);
-    if (found == fields_.end()) fail_at(key, "is missing");
-    return *found;
-  }
-
-  [[nodiscard]] const Json& array(const char* key, std::size_t count) const {
-    const Json& value = get(key);
-    if (!value.is_array() || value.size() != count) {
-      fail_at(key, fmt::format("must be an array of {} numbers", count));
-    }
-    return value;
-  }
-
-  static std::string element(const char* key, int index) {
-    return fmt::format("{}[{}]", key, index);
-  }
-
-  [[nodiscard]] float to_number(const Json& value, std::string_view key) const {
-    if (!value.is_number()) fail_at(key, "must be a number");
-    const auto number = static_cast<float>(value.get<double>());
-    if (!std::isfinite(number)) fail_at(key, "is too large");
-    return number;
-  }
-
-  [[nodiscard]] float require_length(float value, std::string_view key) const {
-    if (!(value > 0)) fail_at(key, fmt::format("must be positive, and is {}", value));
-    if (value >= kSmallestLength && value <= kLargestCoordinate) return value;
-    fail_at(key, fmt::format("must be from {:g} to {:g} m, and is {:g}", kSmallestLength,
-                             kLargestCoordinate, value));
-  }
-
-  std::string where_;
-  const Json& fields_;
-};
-
 Light read_rect(const LightFields& fields) {
-  fields.allow_only({"position", "normal", "size", "radiance"});
+  fields.allow_only({"position", "normal", "target", "size", "radiance"});
   Light light;
   light.kind = LightKind::rect;
   light.position = fields.point("position");
-  light.direction = fields.direction("normal");
-  const V2f size = fields.size("size");
+  light.direction = fields.direction_or_target("normal", light.position);
+  const V2f size = fields.lengths("size");
   const RectAxes axes = rect_axes(light.direction);
   light.edge_u = axes.u * size.x;
   light.edge_v = axes.v * size.y;
+  light.radiance = fields.colour("radiance");
+  return light;
+}
+
+Light read_disk(const LightFields& fields) {
+  fields.allow_only({"position", "normal", "target", "radius", "radiance"});
+  Light light;
+  light.kind = LightKind::disk;
+  light.position = fields.point("position");
+  light.direction = fields.direction_or_target("normal", light.position);
+  light.radius = fields.length("radius");
   light.radiance = fields.colour("radiance");
   return light;
 }
@@ -199,6 +78,28 @@ Light read_sphere(const LightFields& fields) {
   light.kind = LightKind::sphere;
   light.position = fields.point("position");
   light.radius = fields.length("radius");
+  light.radiance = fields.colour("radiance");
+  return light;
+}
+
+float cosine_of_degrees(double degrees) {
+  return static_cast<float>(std::max(0.0, std::cos(degrees * std::numbers::pi / 180)));
+}
+
+Light read_spot(const LightFields& fields) {
+  fields.allow_only(
+      {"position", "direction", "target", "radius", "inner_degrees", "outer_degrees", "radiance"});
+  Light light;
+  light.kind = LightKind::sphere;
+  light.position = fields.point("position");
+  light.direction = fields.direction_or_target("direction", light.position);
+  light.radius = fields.length("radius");
+  const double outer =
+      fields.has("outer_degrees") ? fields.in_range("outer_degrees", 1e-3, 90) : kOuterDegrees;
+  const double inner =
+      fields.has("inner_degrees") ? fields.in_range("inner_degrees", 0, outer) : 0.0;
+  light.cos_outer = cosine_of_degrees(outer);
+  light.cos_inner = cosine_of_degrees(inner);
   light.radiance = fields.colour("radiance");
   return light;
 }
@@ -244,22 +145,35 @@ Light read_dome(const LightFields& fields, const std::filesystem::path& folder) 
   return light;
 }
 
+Light read_kind(const LightFields& fields, const std::string& type,
+                const std::filesystem::path& folder) {
+  if (type == "rect") return read_rect(fields);
+  if (type == "disk") return read_disk(fields);
+  if (type == "sphere") return read_sphere(fields);
+  if (type == "spot") return read_spot(fields);
+  if (type == "sun") return read_sun(fields);
+  if (type == "dome") return read_dome(fields, folder);
+  fields.fail_at("type", fmt::format("\"{}\" is not rect, disk, sphere, spot, sun or dome", type));
+}
+
+/// Multiplies the radiance by 2^exposure.
+void expose(const LightFields& fields, Light& light) {
+  if (!fields.has("exposure")) return;
+  light.radiance *= std::exp2(fields.in_range("exposure", -kMaxStops, kMaxStops));
+  for (int k = 0; k < 3; ++k) {
+    if (light.radiance[k] <= kLargestRadiance) continue;
+    fields.fail_at("exposure", fmt::format("makes a radiance above {:g}", kLargestRadiance));
+  }
+}
+
 Light read_light(const LightFields& fields, std::size_t number,
                  const std::filesystem::path& folder) {
   const std::string type = fields.text("type");
-  Light light;
-  if (type == "rect") {
-    light = read_rect(fields);
-  } else if (type == "sphere") {
-    light = read_sphere(fields);
-  } else if (type == "sun") {
-    light = read_sun(fields);
-  } else if (type == "dome") {
-    light = read_dome(fields, folder);
-  } else {
-    fields.fail_at("type", fmt::format("\"{}\" is not rect, sphere, sun or dome", type));
-  }
+  Light light = read_kind(fields, type, folder);
+  expose(fields, light);
   light.name = fields.has("name") ? fields.text("name") : fmt::format("{}_{}", type, number);
+  if (fields.has("group")) light.group = fields.text("group");
+  if (fields.has("group") && light.group.empty()) fields.fail_at("group", "must not be empty");
   return light;
 }
 
@@ -268,19 +182,21 @@ Light read_light(const LightFields& fields, std::size_t number,
 std::vector<Light> load_lights(const std::string& path) {
   const Json file = parse_json(path, read_text(path));
   if (!file.is_object() || !file.contains("lights") || !file["lights"].is_array()) {
-    fail(path, "must be an object with an array \"lights\"");
+    fail_lights(path, "must be an object with an array \"lights\"");
   }
   for (const auto& [key, value] : file.items()) {
-    if (key != "lights") fail(path, fmt::format("\"{}\" is not known here; known: lights", key));
+    if (key == "lights") continue;
+    fail_lights(path, fmt::format("\"{}\" is not known here; known: lights", key));
   }
-  if (file["lights"].size() > kMaxLights) {
-    fail(path, fmt::format("has {} lights; there may be {}", file["lights"].size(), kMaxLights));
+  const Json& entries = file["lights"];
+  if (entries.size() > kMaxLights) {
+    fail_lights(path, fmt::format("has {} lights; there may be {}", entries.size(), kMaxLights));
   }
   std::vector<Light> lights;
-  for (const Json& fields : file["lights"]) {
-    const std::size_t number = lights.size() + 1;
-    lights.push_back(read_light(LightFields(path, number, fields), number,
-                                std::filesystem::path(path).parent_path()));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const LightFields fields(path, i + 1, entries[i]);
+    Light light = read_light(fields, i + 1, std::filesystem::path(path).parent_path());
+    if (!fields.has("enabled") || fields.flag("enabled")) lights.push_back(std::move(light));
   }
   return lights;
 }

@@ -37,7 +37,8 @@ void check_numeric_range(const Scene& scene) {
     check_point(scene, "its geometry", bounds.max);
   }
   for (const Light& light : scene.lights) {
-    if (light.kind == LightKind::rect || light.kind == LightKind::sphere) {
+    if (light.kind == LightKind::rect || light.kind == LightKind::disk ||
+        light.kind == LightKind::sphere) {
       check_point(scene, fmt::format("light \"{:.100}\"", light.name), light.position);
     }
   }

@@ -11,8 +11,8 @@ inline constexpr double kLargestCoordinate = 1e12;  // metres, absolute value
 inline constexpr double kSmallestLength = 1e-9;     // metres, of a light; also a strand's radius
 inline constexpr double kLargestRadiance = 1e30;    // W/(sr m^2)
 
-/// Throws Error input when a coordinate of the geometry, of a rect or sphere light's position or
-/// of a camera's position is beyond kLargestCoordinate; the message names the object. Vertices
+/// Throws Error input when a coordinate of the geometry, of a rect, disk or sphere light's position
+/// or of a camera's position is beyond kLargestCoordinate; the message names the object. Vertices
 /// that are not finite must have been removed before.
 void check_numeric_range(const Scene& scene);
 

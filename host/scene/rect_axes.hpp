@@ -1,5 +1,5 @@
-// The orientation of a rect light about its normal. In: the normal; out: the directions of the two
-// edges. All code that makes rect lights from a normal uses this function.
+// The orientation of a flat light about its normal. In: the normal; out: the directions of a rect's
+// two edges, or of two axes of a disk. All code that makes flat lights from a normal uses this.
 #pragma once
 
 #include "dapple/scene.hpp"

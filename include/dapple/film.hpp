@@ -2,6 +2,7 @@
 // out: EXR and PNG files. Also reads EXR files.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,13 +43,35 @@ struct Film {
 /// 200 characters.
 std::string layer_name(const std::string& text);
 
-/// Writes a scanline EXR, ZIP, all channels FLOAT. It writes a temporary file in the same folder,
-/// reopens and verifies it, and renames it to `path`. Throws Error failed; an existing file at
-/// `path` is then unchanged.
-void write_exr(const Film& film, const std::string& path);
+enum class ExrCompression : std::uint8_t {
+  none,
+  zips,  ///< lossless, line by line
+  zip,   ///< lossless, 16 lines at a time
+  piz,   ///< lossless wavelets
+  dwaa,  ///< lossy, 32 lines at a time; only for colours, and with `multipart`
+};
 
-/// Reads any single-part EXR, scanline or tiled, without subsampling and of at most 2^28 pixels.
-/// HALF and UINT become float. Planes and settings are in alphabetical order. Throws Error input.
+/// How a film is stored.
+struct ExrFormat {
+  ExrCompression compression = ExrCompression::zip;  ///< with dwaa, data such as normals have zip
+  bool multipart = false;                            ///< a part for each layer
+  /// Layers of 16-bit floats ("ao", "light" for all lights), or "all". Z, P, samples and
+  /// Cryptomattes always have 32 bits. Finite values beyond 65504 become 65504.
+  std::vector<std::string> half;
+};
+
+/// Throws Error usage, which names the command line's flag, for a layer that cannot be half and for
+/// dwaa without parts.
+void validate(const ExrFormat& format);
+
+/// Writes a scanline EXR. It writes a temporary file in the same folder, reopens and verifies it,
+/// and renames it to `path`. Throws Error usage as validate(), and failed; an existing file at
+/// `path` is then unchanged.
+void write_exr(const Film& film, const std::string& path, const ExrFormat& format = {});
+
+/// Reads any EXR, scanline or tiled, without subsampling or deep data and of at most 2^28 pixels;
+/// parts must have one data window. HALF and UINT become float. Planes and settings are in
+/// alphabetical order. Throws Error input.
 Film read_exr(const std::string& path);
 
 /// Writes an 8-bit sRGB preview of RGBA over black, or of `layer` if it is not empty ("ao", "N",

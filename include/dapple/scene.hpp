@@ -86,7 +86,7 @@ struct Instance {
   int node = -1;   ///< the glTF node that places it; -1: none
 };
 
-enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome };
+enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome, disk };
 
 /// Radiance from all directions: a latitude-longitude image as OpenEXR defines it (ImfEnvmap.h).
 /// The top row is the direction +Y, the middle column +Z, and the column a quarter from the left
@@ -102,19 +102,23 @@ struct Light {
   std::string name;
   LightKind kind = LightKind::rect;
   V3f radiance{1, 1, 1};  ///< W/(sr m^2), linear RGB
-  V3f position{0, 0, 0};  ///< rect and sphere: centre
-  V3f direction{0, -1,
-                0};  ///< unit; rect: towards the emitting side; sun, spot: in which light travels
+  V3f position{0, 0, 0};  ///< rect, disk and sphere: centre
+  /// Unit; rect, disk: towards the emitting side; sun, spot: in which light travels.
+  V3f direction{0, -1, 0};
   V3f edge_u{1, 0, 0};              ///< rect: full first edge
   V3f edge_v{0, 0, 1};              ///< rect: full second edge
-  float radius = 0.1f;              ///< sphere, metres
+  float radius = 0.1f;              ///< sphere and disk, metres
   float angular_radius = 0.00465f;  ///< sun, radians (the real sun: 0.2665 degrees)
-  float cos_inner = -1.0f;          ///< spot cone as in KHR_lights_punctual; -1, -1 for none
+  /// sphere: cosines of a spot's cone as in KHR_lights_punctual; -1, -1 for none.
+  float cos_inner = -1.0f;
   float cos_outer = -1.0f;
   bool double_sided = false;  ///< mesh: emits from both sides
   /// dome: multiplied by `radiance`; none: the same radiance from all directions.
   std::shared_ptr<const Environment> environment;
   float rotation = 0;  ///< dome: radians about +Y, from +Z towards +X
+  /// Lights of one group share the layer `light.GROUP`, the sum of their irradiances; empty: the
+  /// light has a layer of its own.
+  std::string group;
 };
 
 struct Camera {
@@ -177,7 +181,8 @@ Scene load_gltf(const std::string& path, const SceneOptions& options = {});
 /// SceneOptions. Throws Error: usage.
 Scene make_procedural(const std::string& name, std::optional<double> time = {});
 
-/// Reads a JSON file of lights (docs/formats.md). Throws Error: input.
+/// Reads a JSON file of lights (docs/formats.md), without those that are not enabled. Throws Error:
+/// input.
 std::vector<Light> load_lights(const std::string& path);
 
 /// Reads a latitude-longitude image for a dome light: OpenEXR (channels R, G, B or Y) or Radiance
@@ -208,7 +213,11 @@ Camera frame_scene(const Scene& scene, float aspect, float fov_y = 0.7f);
 /// A camera at `from` that looks at `at`. Throws Error usage if the three are degenerate.
 Camera look_at(V3f from, V3f at, V3f up, float fov_y);
 
-/// The rect light that a scene without lights gets: up, left and in front of `camera`.
+/// The lights that a scene without lights gets: `sun`, up, left and in front of `camera`, and
+/// `sky`, a blue dome, pale at the horizon and dim below it.
+std::vector<Light> daylight(const Camera& camera);
+
+/// A rect light, up, left and in front of `camera`, as large as the scene: a studio's key light.
 Light key_light(const Scene& scene, const Camera& camera);
 
 /// Merges all meshes that are placed once, and tiny meshes that are placed several times, into one

@@ -95,6 +95,13 @@ DAPPLE_INLINE LightSample sample_around(__global const LightRecord* light,
   return sample;
 }
 
+DAPPLE_INLINE LightSample sample_disk(__global const LightRecord* light, float3 from, float2 u) {
+  float x, y;
+  concentric_disk(u.x, u.y, &x, &y);
+  const float3 to = load3(light->position) + x * load3(light->edge_u) + y * load3(light->edge_v);
+  return towards(from, to, load3(light->direction), light->area, false);
+}
+
 /* Sample of a light that is neither a rectangle nor a dome. */
 DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
                                         __global const EmitterTriangle* emitters, float3 from,
@@ -102,6 +109,7 @@ DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
   switch (light->kind) {
     case DAPPLE_LIGHT_SPHERE: return sample_sphere(light, from, u);
     case DAPPLE_LIGHT_SUN: return sample_sun(light, u);
+    case DAPPLE_LIGHT_DISK: return sample_disk(light, from, u);
     default: return sample_mesh(light, emitters, from, u);
   }
 }

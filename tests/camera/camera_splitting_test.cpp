@@ -128,7 +128,7 @@ TEST(CameraSplitting, GivesTheSamePictureWithLessNoise) {
     options.camera_splitting = factor;
     options.spp = 16;
     const RenderResult result = render(tree(0.2f), options);
-    for (const char* name : {"A", "ao.R", "light.key.G", "N.Y", "bent.Y"}) {
+    for (const char* name : {"A", "ao.R", "light.sky.G", "N.Y", "bent.Y"}) {
       const auto &found = channel(result, name), &expected = channel(truth, name);
       const double error_of_mean =
           rmse(found, expected) / std::sqrt(static_cast<double>(found.size()));
@@ -148,7 +148,7 @@ TEST(CameraSplitting, CountsCameraSamplesAndTheirRays) {
   for (const float samples : channel(result, "samples")) EXPECT_EQ(samples, 3);
   const auto& rays = result.statistics.rays;
   EXPECT_EQ(rays.camera, 3u * 48 * 40);
-  EXPECT_EQ(rays.light, 2 * rays.ao) << "one AO ray and two light rays a depth";
+  EXPECT_EQ(rays.light, 4 * rays.ao) << "one AO ray and two rays to each light a depth";
   const double hits = mean(channel(result, "A")) * 48 * 40 * 3 * 4;
   EXPECT_NEAR(static_cast<double>(rays.ao), hits, 1e-4 * hits);
 }
@@ -180,7 +180,7 @@ TEST(CameraSplitting, ACropEqualsThatPartOfThePicture) {
   const RenderResult whole = render(tree(0.2f), options);
   options.crop = PixelRect{7, 5, 40, 30};
   const RenderResult part = render(tree(0.2f), options);
-  for (const char* name : {"A", "Z", "P.X", "ao.R", "light.key.R"})
+  for (const char* name : {"A", "Z", "P.X", "ao.R", "light.sun.R"})
     for (int y = 5; y <= 30; ++y)
       for (int x = 7; x <= 40; ++x)
         ASSERT_EQ(channel(whole, name)[static_cast<std::size_t>(y) * 48 + x],

@@ -98,7 +98,8 @@ TEST_F(FramesCommand, CameraLightAndGroundOfASequenceStandStill) {
   // The lowest row of both pictures shows the ground, at the same height.
   const std::size_t below = first.find("P.Y")->pixels.size() - 1;
   EXPECT_EQ(first.find("P.Y")->pixels[below], last.find("P.Y")->pixels[below]);
-  EXPECT_NE(last.find("light.key.R"), nullptr);
+  EXPECT_NE(last.find("light.sun.R"), nullptr);
+  EXPECT_NE(last.find("light.sky.R"), nullptr);
   std::size_t notes = 0;
   for (std::size_t at = 0; (at = run.err.find("no lights in the scene", at)) != std::string::npos;
        ++at)

@@ -163,7 +163,7 @@ TEST_F(CompilingProcessesCold, WhereNoneCanBeStartedThePictureIsTheSame) {
   EXPECT_EQ(machine_code().size(), kernels);
   // Compares pixels and not the whole files: they contain the CPU's name, which comes from /proc.
   const Film with = read_exr(path("with.exr")), without = read_exr(path("without.exr"));
-  for (const char* layer : {"ao.R", "light.key.R", "visits.nodes"}) {
+  for (const char* layer : {"ao.R", "light.sun.R", "light.sky.R", "visits.nodes"}) {
     ASSERT_NE(with.find(layer), nullptr) << layer;
     EXPECT_EQ(with.find(layer)->pixels, without.find(layer)->pixels) << layer;
   }

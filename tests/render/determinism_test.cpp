@@ -97,7 +97,7 @@ TEST(Crop, OfASinglePixelAndSampleEqualsThatOfTheWholePicture) {
     options.crop = PixelRect{x, 7, x, 7};
     const Film part = render(scene, options).film;
     hits += part.find("A")->pixels[0] > 0;
-    for (const char* channel : {"ao.R", "bent.X", "light.key.R", "Z"}) {
+    for (const char* channel : {"ao.R", "bent.X", "light.sun.R", "light.sky.B", "Z"}) {
       EXPECT_TRUE(same_bits(part.find(channel)->pixels,
                             cropped(whole, *whole.find(channel), *options.crop)))
           << channel << " at " << x;

@@ -216,7 +216,7 @@ TEST_F(Resume, PixelsWithoutSamplesEqualPixelsThatMiss) {
       ++without;
       EXPECT_EQ(part.film.find("A")->pixels[p], 0);
       EXPECT_EQ(part.film.find("ao.R")->pixels[p], 1);
-      EXPECT_EQ(part.film.find("light.key.R")->pixels[p], 0);
+      EXPECT_EQ(part.film.find("light.sun.R")->pixels[p], 0);
       EXPECT_EQ(part.film.find("visits.nodes")->pixels[p], 0);
       EXPECT_TRUE(std::isinf(part.film.find("Z")->pixels[p]));
     }
@@ -280,7 +280,7 @@ TEST_F(Resume, ATighterTargetAndALargerSppContinue) {
   options.spp = 20;
   const RenderResult finer = draw(options, control);
   EXPECT_LE(finer.statistics.rmse.at("ao"), 0.015);
-  EXPECT_LE(finer.statistics.rmse.at("light.key"), 0.015);
+  EXPECT_LE(finer.statistics.rmse.at("light.sun"), 0.015);
   const auto& samples = finer.film.find("samples")->pixels;
   EXPECT_GE(*std::min_element(samples.begin(), samples.end()), 20);
 }

@@ -25,7 +25,9 @@ RenderOptions small_picture() {
 }
 
 RenderResult draw(const RenderOptions& options) {
-  return render(make_procedural("scene:tree?leaves=2000"), options);
+  Scene scene = make_procedural("scene:tree?leaves=2000");
+  scene.lights = {key_light(scene, frame_scene(scene, 1.2f))};
+  return render(std::move(scene), options);
 }
 
 const std::vector<float>& channel(const RenderResult& result, const char* name) {

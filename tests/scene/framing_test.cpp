@@ -1,6 +1,5 @@
-// The default camera and key light of a scene that has none: the camera frames the scene's bounds,
-// and the light faces their centre with an irradiance of about 1. Also look_at(), and the views
-// that it refuses.
+// The default camera of a scene that has none frames the scene's bounds. Also look_at(), and the
+// views that it refuses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,50 +91,6 @@ TEST(LookAt, DegenerateViewsAreRefused) {
             "camera: up is zero or points along the view");
   EXPECT_EQ(refused({kInfinity, 0, 0}, {0, 0, 0}, up, 1), "camera: from, at and up must be finite");
   EXPECT_NE(refused({0, 0, 5}, {0, 0, 0}, up, 0).find("field of view"), std::string::npos);
-}
-
-TEST(KeyLight, HangsUpLeftInFrontAndFacesTheCentre) {
-  const Scene scene = make_procedural("scene:cube");
-  for (const V3f& from : {V3f(0, 1, 6), V3f(6, 1, 0), V3f(-3, 4, -3), V3f(0, -5, 5)}) {
-    const V3f centre(0, 0.5f, 0);
-    const Camera camera = look_at(from, centre, {0, 1, 0}, 0.7f);
-    const Light key = key_light(scene, camera);
-    EXPECT_EQ(key.name, "key");
-    EXPECT_EQ(key.kind, LightKind::rect);
-    const V3f from_centre = key.position - centre;
-    const M44f& axes = camera.to_world;
-    EXPECT_GT(from_centre.y, 0);
-    EXPECT_LT(from_centre.dot(V3f(axes[0][0], axes[0][1], axes[0][2])), 0);
-    EXPECT_GT(from_centre.dot(V3f(axes[2][0], 0, axes[2][2])), 0);  // at any tilt of the camera
-    EXPECT_TRUE((-from_centre).normalized().equalWithAbsError(key.direction, 1e-5f));
-    const float radius = std::sqrt(3.0f) / 2;
-    EXPECT_NEAR(from_centre.length(), 3 * radius, 1e-4);
-    EXPECT_NEAR(key.edge_u.length(), radius, 1e-5);
-    EXPECT_NEAR(key.edge_v.length(), radius, 1e-5);
-    EXPECT_NEAR(key.edge_u.dot(key.direction), 0, 1e-5);
-    EXPECT_NEAR(key.edge_u.y, 0, 1e-6);
-  }
-}
-
-TEST(KeyLight, GivesASurfaceAtTheCentreThatFacesItAnIrradianceOfAboutOne) {
-  const Scene scene = make_procedural("scene:cube");
-  const Light key = key_light(scene, frame_scene(scene, 1.5f));
-  const V3f centre(0, 0.5f, 0);
-  constexpr int kCells = 64;
-  double irradiance = 0;
-  for (int j = 0; j < kCells; ++j) {
-    for (int i = 0; i < kCells; ++i) {
-      const float u = (static_cast<float>(i) + 0.5f) / kCells - 0.5f;
-      const float v = (static_cast<float>(j) + 0.5f) / kCells - 0.5f;
-      const V3f to_light = key.position + key.edge_u * u + key.edge_v * v - centre;
-      const float cosine = -key.direction.dot(to_light.normalized());
-      irradiance += key.radiance.x * cosine * cosine / to_light.length2();
-    }
-  }
-  irradiance *= key.edge_u.length() * key.edge_v.length() / (kCells * kCells);
-  // To first order the irradiance is 1. The extent of the square light reduces it by
-  // 2 * (1/6)^2 * 2/3.
-  EXPECT_NEAR(irradiance, 1 - 0.037, 0.005);
 }
 
 }  // namespace

@@ -1,68 +1,16 @@
 // Lights files. Each kind of light has the position, the axes and the radiance that its keys say; a
 // wrong file is refused with a message that names the file, the light and the key.
-#include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <string>
 
-#include "dapple/error.hpp"
-#include "dapple/scene.hpp"
+#include "support/lights_text.hpp"
 
 namespace dapple {
 namespace {
 
-// A temporary file that the destructor removes.
-class LightsFile {
- public:
-  explicit LightsFile(const std::string& text)
-      : path_(std::filesystem::temp_directory_path() /
-              ("dapple_lights_" + std::to_string(getpid()) + "_" + std::to_string(next_++) +
-               ".json")) {
-    std::ofstream(path_) << text;
-  }
-  ~LightsFile() { std::filesystem::remove(path_); }
-  LightsFile(const LightsFile&) = delete;
-  LightsFile& operator=(const LightsFile&) = delete;
-  [[nodiscard]] std::string path() const { return path_.string(); }
-
- private:
-  static inline int next_ = 0;
-  std::filesystem::path path_;
-};
-
-std::vector<Light> load(const std::string& text) { return load_lights(LightsFile(text).path()); }
-
-std::vector<Light> load_one(const std::string& fields) {
-  return load("{\"lights\": [{" + fields + "}]}");
-}
-
-// The message of the Error, without the file's name. The message must begin with that name.
-std::string complaint_about_path(const std::string& path) {
-  try {
-    load_lights(path);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::input);
-    const std::string message = error.what();
-    EXPECT_EQ(message.find(path + ": "), 0u) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos);
-    return message.substr(path.size() + 2);
-  }
-  return "no error";
-}
-
-std::string complaint(const std::string& text) {
-  const LightsFile file(text);
-  return complaint_about_path(file.path());
-}
-
-std::string complaint_about(const std::string& fields) {
-  return complaint("{\"lights\": [{" + fields + "}]}");
-}
+using namespace lights_test;
 
 constexpr const char* kSphere = R"("type": "sphere", "position": [1, 2, 3], "radiance": 2)";
 
@@ -110,6 +58,76 @@ TEST(LightsFile, ASphereHasItsRadiusAndAGreyNumberForRadiance) {
   EXPECT_EQ(light.radiance, V3f(2, 2, 2));
 }
 
+TEST(LightsFile, ADiskHasItsRadiusAndFacesItsNormalOrTarget) {
+  const std::string disk = R"("type": "disk", "position": [1, 2, 3], "radius": 0.5,
+      "radiance": [1, 2, 3], )";
+  const Light facing = load_one(disk + R"("normal": [0, 0, -2])").at(0);
+  EXPECT_EQ(facing.kind, LightKind::disk);
+  EXPECT_EQ(facing.position, V3f(1, 2, 3));
+  EXPECT_EQ(facing.radius, 0.5f);
+  EXPECT_EQ(facing.direction, V3f(0, 0, -1));
+  EXPECT_EQ(facing.radiance, V3f(1, 2, 3));
+  EXPECT_EQ(load_one(disk + R"("target": [1, 2, -7])").at(0).direction, V3f(0, 0, -1));
+}
+
+TEST(LightsFile, ASpotIsASphereWithTheConeOfKhrLightsPunctual) {
+  const std::string spot = R"("type": "spot", "position": [0, 3, 0], "target": [4, 0, 0],
+      "radius": 0.1, "radiance": 5)";
+  const Light given = load_one(spot + R"(, "inner_degrees": 30, "outer_degrees": 60)").at(0);
+  EXPECT_EQ(given.kind, LightKind::sphere);
+  EXPECT_TRUE(given.direction.equalWithAbsError(V3f(0.8f, -0.6f, 0), 1e-6f));
+  EXPECT_NEAR(given.cos_inner, std::sqrt(0.75), 1e-6);
+  EXPECT_NEAR(given.cos_outer, 0.5, 1e-6);
+  const Light by_default = load_one(spot).at(0);
+  EXPECT_EQ(by_default.cos_inner, 1);
+  EXPECT_NEAR(by_default.cos_outer, std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(load_one(spot + R"(, "outer_degrees": 90)").at(0).cos_outer, 0, 1e-7);
+  EXPECT_EQ(complaint_about(spot + R"(, "inner_degrees": 50)"),
+            "light 1: inner_degrees must be from 0 to 45, and is 50");
+}
+
+TEST(LightsFile, ATargetTakesThePlaceOfANormal) {
+  const std::string rect = R"("type": "rect", "position": [1, 5, 1], "size": [1, 1],
+      "radiance": 1)";
+  EXPECT_EQ(load_one(rect + R"(, "target": [1, -3, 1])").at(0).direction, V3f(0, -1, 0));
+  EXPECT_EQ(complaint_about(rect), "light 1: normal or target must be given, and not both");
+  EXPECT_EQ(complaint_about(rect + R"(, "normal": [0, -1, 0], "target": [0, 0, 0])"),
+            "light 1: normal or target must be given, and not both");
+  EXPECT_EQ(complaint_about(rect + R"(, "target": [1, 5, 1])"),
+            "light 1: target is the light's position: no direction leads there");
+}
+
+TEST(LightsFile, ExposureIsInStops) {
+  const auto exposed = [](const std::string& stops) {
+    return load_one(std::string(kSphere) + ", \"radius\": 1, \"exposure\": " + stops)
+        .at(0)
+        .radiance;
+  };
+  EXPECT_EQ(exposed("3"), V3f(16, 16, 16));
+  EXPECT_EQ(exposed("-1"), V3f(1, 1, 1));
+  EXPECT_NEAR(exposed("0.5").x, 2 * std::sqrt(2.0), 1e-6);
+  EXPECT_EQ(complaint_about(R"("type": "dome", "exposure": 101)"),
+            "light 1: exposure must be from -100 to 100, and is 101");
+  EXPECT_EQ(complaint_about(R"("type": "dome", "exposure": 100)"),
+            "light 1: exposure makes a radiance above 1e+30");
+}
+
+TEST(LightsFile, ALightThatIsNotEnabledIsCheckedAndLeftOut) {
+  const std::string on = R"({"type": "dome"})", off = R"({"type": "dome", "enabled": false})";
+  const auto lights = load("{\"lights\": [" + off + "," + on + "]}");
+  ASSERT_EQ(lights.size(), 1u);
+  EXPECT_EQ(lights[0].name, "dome_2") << "numbers count all lights of the file";
+  EXPECT_EQ(load_one(R"("type": "dome", "enabled": true)").size(), 1u);
+  EXPECT_EQ(complaint_about(R"("type": "dome", "enabled": false, "radiance": -1)"),
+            "light 1: radiance must not be negative, and is -1");
+}
+
+TEST(LightsFile, LightsMayHaveAGroup) {
+  EXPECT_EQ(load_one(R"("type": "dome", "group": "fill")").at(0).group, "fill");
+  EXPECT_EQ(load_one(R"("type": "dome")").at(0).group, "");
+  EXPECT_EQ(complaint_about(R"("type": "dome", "group": "")"), "light 1: group must not be empty");
+}
+
 TEST(LightsFile, ASunsIrradianceIsThatOfItsDisk) {
   const Light light = load_one(R"("type": "sun", "direction": [0, -3, 0], "angle_degrees": 60,
       "irradiance": [1, 2, 0])")
@@ -143,8 +161,8 @@ TEST(LightsFile, AnEmptyListIsNoLights) { EXPECT_TRUE(load("{\"lights\": []}").e
 
 TEST(LightsFile, AnUnknownKeyIsRefusedWithTheKnownOnes) {
   EXPECT_EQ(complaint_about(std::string(kSphere) + ", \"name\": \"a\", \"raduis\": 1"),
-            "light 1 (\"a\"): \"raduis\" is not known here; known: name, type, position, radius, "
-            "radiance");
+            "light 1 (\"a\"): \"raduis\" is not known here; known: name, type, group, enabled, "
+            "exposure, position, radius, radiance");
   EXPECT_EQ(complaint("{\"lights\": [], \"light\": 1}"),
             "\"light\" is not known here; known: lights");
 }
@@ -152,8 +170,8 @@ TEST(LightsFile, AnUnknownKeyIsRefusedWithTheKnownOnes) {
 TEST(LightsFile, AMissingOrMistypedKeyIsNamed) {
   EXPECT_EQ(complaint_about(kSphere), "light 1: radius is missing");
   EXPECT_EQ(complaint_about("\"name\": \"a\""), "light 1 (\"a\"): type is missing");
-  EXPECT_EQ(complaint_about(R"("type": "spot")"),
-            "light 1: type \"spot\" is not rect, sphere, sun or dome");
+  EXPECT_EQ(complaint_about(R"("type": "moon")"),
+            "light 1: type \"moon\" is not rect, disk, sphere, spot, sun or dome");
   EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1], "radiance": 1)"),
             "light 1: direction must be an array of 3 numbers");
   EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1, "x"], "radiance": 1)"),

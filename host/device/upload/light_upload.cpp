@@ -1,6 +1,9 @@
 #include "device/upload/light_upload.hpp"
 
 #include <cmath>
+#include <numbers>
+
+#include "scene/rect_axes.hpp"
 
 namespace dapple {
 namespace {
@@ -45,6 +48,14 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
   return total;
 }
 
+/// The axes of a disk, as long as its radius, and its area.
+void store_disk(const Light& light, LightRecord& record) {
+  const RectAxes axes = rect_axes(light.direction);
+  store(axes.u * light.radius, record.edge_u);
+  store(axes.v * light.radius, record.edge_v);
+  record.area = std::numbers::pi_v<float> * light.radius * light.radius;
+}
+
 }  // namespace
 
 void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
@@ -64,6 +75,7 @@ void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
     record.cos_outer = light.cos_outer;
     record.two_sided = light.double_sided ? 1u : 0u;
     record.area = light.edge_u.cross(light.edge_v).length();
+    if (light.kind == LightKind::disk) store_disk(light, record);
     if (light.kind == LightKind::mesh) {
       record.id = static_cast<uint>(index + 1);
       record.first_triangle = static_cast<uint>(emitters.size());

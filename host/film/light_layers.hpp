@@ -1,0 +1,37 @@
+// Which lights share a layer. In: the lights of a scene. Out: names and members of layers.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// The layer `light.NAME`: one light, or all lights of a group, whose irradiances add up.
+struct LightLayer {
+  std::string name;                 ///< what comes after "light."; all are different
+  std::vector<std::size_t> lights;  ///< indices, ascending
+};
+
+/// The layers in the order of their first lights. A light that is in no group keeps its name of
+/// light_names(); a group whose name is taken by such a light gets a number, as lights do.
+std::vector<LightLayer> light_layers(const std::vector<Light>& lights);
+
+/// Sums over the lights of each layer: values[light] is anything with begin(), end() and +=.
+template <class Values>
+std::vector<Values> sums_of_layers(const std::vector<LightLayer>& layers,
+                                   const std::vector<Values>& values) {
+  std::vector<Values> sums;
+  for (const LightLayer& layer : layers) {
+    sums.push_back(values[layer.lights[0]]);
+    for (std::size_t l = 1; l < layer.lights.size(); ++l) {
+      auto to = sums.back().begin();
+      for (const auto& value : values[layer.lights[l]]) *to++ += value;
+    }
+  }
+  return sums;
+}
+
+}  // namespace dapple

@@ -1,0 +1,46 @@
+// The options of the EXR file: what a render writes with them, and that a checkpoint, another
+// render and `dapple compare` go with files written so.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/program_run.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+
+class FileFormatCommand : public program_test::ProgramRun {};
+
+TEST_F(FileFormatCommand, CompareFindsLosslessFilesEqualAndHalvesNear) {
+  ASSERT_EQ(render("-q").code, 0);
+  std::filesystem::rename(path("out.exr"), path("float.exr"));
+  for (const char* lossless :
+       {"--compression piz", "--multipart", "--compression none --multipart"}) {
+    ASSERT_EQ(render(std::string("-q ") + lossless).code, 0) << lossless;
+    const auto run = dapple("compare out.exr float.exr --max-rmse 0");
+    EXPECT_EQ(run.code, 0) << lossless << run.out << run.err;
+  }
+  ASSERT_EQ(render("-q --half ao,light --multipart").code, 0);
+  EXPECT_EQ(dapple("compare out.exr float.exr --max-rmse 0").code, 5);
+  // Values are below 4, so a half's step is at most 2^-9.
+  EXPECT_EQ(dapple("compare out.exr float.exr --max-rmse 0.001").code, 0);
+}
+
+TEST_F(FileFormatCommand, AResumedRenderWritesTheSameHalves) {
+  ASSERT_EQ(render("-q --half all --multipart --checkpoint a.ckpt").code, 0);
+  const std::string first = bytes_of(path("out.exr"));
+  ASSERT_EQ(render("-q --half all --multipart --resume a.ckpt").code, 0);
+  EXPECT_EQ(bytes_of(path("out.exr")), first);
+}
+
+TEST_F(FileFormatCommand, ANoteTellsOfHalfLayersThatTheImageDoesNotHave) {
+  const auto run = render("--half ao,light.moon --passes ao");
+  EXPECT_EQ(run.code, 0);
+  EXPECT_TRUE(contains(run.err, "note: --half light.moon: there is no such layer")) << run.err;
+  EXPECT_FALSE(contains(run.err, "--half ao")) << run.err;
+}
+
+}  // namespace
+}  // namespace dapple

@@ -1,0 +1,143 @@
+// Every key of every type of light in a lights file: with a good value, without the key, with a
+// value of another type, and with NaN or a number that no float holds.
+#include "support/lights_text.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace lights_test;
+
+struct Key {
+  std::string name, good, wrong_type;
+  bool required = true;
+};
+
+struct Type {
+  std::string name;
+  std::vector<Key> keys;
+};
+
+const std::string kText = "\"x\"", kNumber = "3";
+
+Key point(const std::string& name) { return {name, "[1, 2, 3]", "[1, true, 3]"}; }
+Key length(const std::string& name) { return {name, "0.5", kText}; }
+Key optional(Key key) {
+  key.required = false;
+  return key;
+}
+
+std::vector<Type> every_type() {
+  const Key radiance{"radiance", "[1, 2, 0.5]", kText};
+  std::vector<Type> types = {
+      {"rect", {point("position"), point("normal"), {"size", "[1, 2]", "[1, \"x\"]"}, radiance}},
+      {"disk", {point("position"), point("normal"), length("radius"), radiance}},
+      {"sphere", {point("position"), length("radius"), radiance}},
+      {"spot",
+       {point("position"), point("direction"), length("radius"), radiance,
+        optional(length("inner_degrees")), optional(length("outer_degrees"))}},
+      {"sun", {point("direction"), radiance, optional(length("angle_degrees"))}},
+      {"dome", {optional(radiance), optional(length("rotation_degrees"))}},
+  };
+  for (Type& type : types) {
+    for (const Key& common : {Key{"name", kText, kNumber}, Key{"group", "\"g\"", kNumber},
+                              Key{"enabled", "true", "\"yes\""}, Key{"exposure", "-2.5", kText}})
+      type.keys.push_back(optional(common));
+  }
+  // "target" in place of the direction, and "irradiance" in place of the sun's radiance.
+  std::vector<Type> variants;
+  for (const Type& type : types) {
+    Type variant = type;
+    bool differs = false;
+    for (Key& key : variant.keys) {
+      const std::string old = key.name;
+      if (key.name == "normal" || (key.name == "direction" && type.name == "spot"))
+        key = {"target", "[1, 2, -3]", kText};
+      if (key.name == "radiance" && type.name == "sun") key.name = "irradiance";
+      differs = differs || key.name != old;
+    }
+    if (differs) variants.push_back(variant);
+  }
+  types.insert(types.end(), variants.begin(), variants.end());
+  return types;
+}
+
+/// The light's keys, with `replaced` in place of the value of `key`; empty: without the key.
+std::string light_text(const Type& type, const std::string& key, const std::string& replaced) {
+  std::string text = "\"type\": \"" + type.name + "\"";
+  for (const Key& each : type.keys) {
+    const std::string& value = each.name == key ? replaced : each.good;
+    if (!value.empty()) text += ", \"" + each.name + "\": " + value;
+  }
+  return text;
+}
+
+TEST(LightKeys, GoodValuesOfAllKeysMakeALight) {
+  for (const Type& type : every_type())
+    EXPECT_EQ(load_one(light_text(type, "", "")).size(), 1u) << type.name;
+}
+
+TEST(LightKeys, WhatIsMissingIsNamedOrHasADefault) {
+  for (const Type& type : every_type()) {
+    for (const Key& key : type.keys) {
+      SCOPED_TRACE(type.name + " without " + key.name);
+      const std::string text = light_text(type, key.name, "");
+      if (!key.required) {
+        EXPECT_EQ(load_one(text).size(), 1u);
+        continue;
+      }
+      const std::string message = complaint_about(text);
+      EXPECT_EQ(message.find("light 1 (\"x\"): "), 0u) << message;
+      EXPECT_TRUE(message.find(key.name) != std::string::npos) << message;
+      EXPECT_TRUE(message.ends_with("is missing") || message.ends_with("and not both")) << message;
+    }
+  }
+}
+
+TEST(LightKeys, AValueOfAnotherTypeIsRefusedWithTheKeysName) {
+  for (const Type& type : every_type()) {
+    for (const Key& key : type.keys) {
+      for (const std::string& wrong : {key.wrong_type, std::string("null"), std::string("{}")}) {
+        SCOPED_TRACE(type.name + " with " + key.name + " = " + wrong);
+        const std::string message = complaint_about(light_text(type, key.name, wrong));
+        EXPECT_NE(message.find(": " + key.name), std::string::npos) << message;
+        EXPECT_NE(message.find(" must be "), std::string::npos) << message;
+      }
+    }
+  }
+}
+
+TEST(LightKeys, NaNAndNumbersThatNoFloatHoldsAreRefused) {
+  for (const Type& type : every_type()) {
+    for (const Key& key : type.keys) {
+      const bool three = key.good.starts_with("[1, 2, "), two = key.good == "[1, 2]";
+      if (key.good.starts_with("\"") || key.good == "true") continue;
+      for (const std::string& number :
+           {std::string("NaN"), std::string("1e39"), std::string("1e999")}) {
+        const std::string value = three ? "[0, " + number + ", 0]"
+                                  : two ? "[1, " + number + "]"
+                                        : number;
+        SCOPED_TRACE(type.name + " with " + key.name + " = " + value);
+        const std::string message = complaint_about(light_text(type, key.name, value));
+        const bool named = message.find(": " + key.name) != std::string::npos;
+        const bool parse_error = message.find("parse error") == 0 || message.find("number") == 0;
+        EXPECT_TRUE(number == "1e39" ? named : parse_error) << message;
+      }
+    }
+  }
+}
+
+TEST(LightKeys, AKeyOfAnotherTypeIsRefusedWithTheKnownOnes) {
+  for (const Type& type : every_type()) {
+    SCOPED_TRACE(type.name);
+    const std::string message =
+        complaint_about(light_text(type, "", "") + ", \"colour\": [1, 1, 1]");
+    EXPECT_NE(message.find("\"colour\" is not known here; known: name, type, group, enabled"),
+              std::string::npos)
+        << message;
+    for (const Key& key : type.keys)
+      EXPECT_NE(message.find(key.name, message.find("known: ")), std::string::npos) << key.name;
+  }
+}
+
+}  // namespace
+}  // namespace dapple
