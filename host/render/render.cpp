@@ -145,15 +145,15 @@ Box3f bounds_of(const Shutter& shutter) {
 
 void check_shutter(int times, const RenderOptions& options, const RenderControl& control) {
   const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
-  if (times < 1 || times > options.spp)
-    refuse(
-        fmt::format("--motion-samples is {}; it must be from 1 to --spp ({})", times, options.spp));
   if (times == 1) return;
   if (options.ground) refuse("with motion blur the ground must be part of the scenes");
   if (is_adaptive(options))
     refuse("--target-error and --target-rmse do not go with --shutter: give --spp");
   if (!control.checkpoint.empty() || !control.resume.empty())
     refuse("--checkpoint and --resume do not go with --shutter");
+  if (times < 1 || times > options.spp)
+    refuse(
+        fmt::format("--motion-samples is {}; it must be from 1 to --spp ({})", times, options.spp));
 }
 
 /// The options with the samples of the first `time` + 1 moments.

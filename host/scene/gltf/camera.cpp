@@ -32,11 +32,11 @@ void check_clip_planes(double near, double far, const std::string& who, const st
 }
 
 /// Reads a length in metres from the camera's extras; 0 if it is not there.
-float length_in_extras(const tinygltf::Value& extras, const char* key, const std::string& who,
+float length_in_extras(const nlohmann::json& extras, const char* key, const std::string& who,
                        const std::string& file) {
-  if (!extras.IsObject() || !extras.Has(key)) return 0;
-  const tinygltf::Value& value = extras.Get(key);
-  const double length = value.IsNumber() ? value.GetNumberAsDouble() : -1;
+  if (!extras.is_object() || !extras.contains(key)) return 0;
+  const nlohmann::json& value = extras[key];
+  const double length = value.is_number() ? value.get<double>() : -1;
   if (length >= 0 && length <= 1e12) return static_cast<float>(length);
   fail(file, "{} has extras.{} that is not a length in metres from 0 to 1e12", who, key);
 }
@@ -75,8 +75,9 @@ std::vector<Camera> read_lenses(const Document& document) {
                          ? perspective(given.perspective, who, document.file)
                          : orthographic(given.orthographic, who, document.file));
     Camera& lens = lenses.back();
-    lens.lens_radius = length_in_extras(given.extras, "dapple_aperture", who, document.file);
-    lens.focus_distance = length_in_extras(given.extras, "dapple_focus_distance", who, document.file);
+    const nlohmann::json& extras = document.camera_extras[i];
+    lens.lens_radius = length_in_extras(extras, "dapple_aperture", who, document.file);
+    lens.focus_distance = length_in_extras(extras, "dapple_focus_distance", who, document.file);
   }
   return lenses;
 }

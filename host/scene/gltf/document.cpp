@@ -170,6 +170,15 @@ void put_primitive_indices(tinygltf::Model& model, const std::vector<int>& indic
   }
 }
 
+/// `extras` of the cameras of a tree that is not checked yet.
+std::vector<Json> extras_of_cameras(const Json& root) {
+  std::vector<Json> extras;
+  if (!root.is_object() || !root.contains("cameras")) return extras;
+  for (const Json& camera : root["cameras"])
+    extras.push_back(camera.is_object() ? camera.value("extras", Json()) : Json());
+  return extras;
+}
+
 void parse_model(Document& document, Json& root) {
   for (const char* unused : {"animations", "skins", "extras"}) root.erase(unused);
   const std::vector<int> indices = take_primitive_indices(root);
@@ -200,6 +209,7 @@ Document load_document(const std::string& path, bool allow_outside) {
   document.bytes = document.storage.front().size();
   const Container container = split_container(document.storage.front(), path);
   Json root = parse_json(container.json, path);
+  document.camera_extras = extras_of_cameras(root);
   check_schema(root, path);
   check_version(root, path);
   check_extensions(root.value("extensionsRequired", std::vector<std::string>()), path);

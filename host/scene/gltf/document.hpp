@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,7 @@ struct Document {
   std::vector<std::span<const std::uint8_t>> buffers;  ///< byteLength bytes each
   std::vector<ImageSource> images;
   Motion motion;
+  std::vector<nlohmann::json> camera_extras;  ///< by camera; null: none
   std::vector<std::string> files;  ///< paths of the scene file, its buffers and its images
   std::uint64_t bytes = 0;         ///< of the scene file and of the buffers' files
 };
