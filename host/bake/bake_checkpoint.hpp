@@ -24,7 +24,7 @@ class BakeCheckpoint {
 
   /// `trace`, but with results of the file as long as there are some. The checkpoint must outlive
   /// the function, and functions must be called one after the other, as in the first bake. They
-  /// throw Error failed if what is asked for is not what comes next in the file.
+  /// throw Error failed if the requested value is not the next in the file.
   TraceSamples with(TraceSamples trace);
 
   /// Writes the file if it is time, or `now`. After a failure, which failure() returns, the last

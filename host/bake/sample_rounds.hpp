@@ -11,7 +11,7 @@
 
 namespace dapple {
 
-/// What a bake traces with, and whom it tells.
+/// The tracer of a bake, and its callbacks.
 struct BakeTracing {
   TraceSamples ao;
   TraceSamples light;      ///< empty: lights are not baked

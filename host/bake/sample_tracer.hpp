@@ -12,7 +12,7 @@
 
 namespace dapple {
 
-/// AO, and the sum of unoccluded directions if asked for, at points with unit normals.
+/// AO, and the sum of unoccluded directions if requested, at points with unit normals.
 using TracePoints =
     std::function<PointOcclusion(std::span<const V3f> positions, std::span<const V3f> normals,
                                  const OcclusionOptions& options, bool bent)>;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "commands/option_text.hpp"
+#include "commands/shared_options.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -32,9 +33,8 @@ void parse_bake_passes(const std::string& text, BakeOptions& options) {
                 "--passes is \"" + text + "\"; it can be ao, with bent and light, by commas");
 }
 
-}  // namespace
-
-void add_bake_options(CLI::App& app, BakeArguments& a) {
+/// What is baked, and where in the file it goes.
+void add_value_options(CLI::App& app, BakeArguments& a) {
   BakeOptions& o = a.options;
   app.add_option("SCENE", a.scene,
                  "glTF file (.gltf, .glb) or a procedural scene, \"scene:tree?leaves=50000\"")
@@ -75,6 +75,11 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
       ->capture_default_str();
   app.add_option("--blend", a.blend, "If the file already has vertex colours: multiply or replace")
       ->capture_default_str();
+}
+
+/// Which rays are traced, and which of their values count.
+void add_ray_options(CLI::App& app, BakeArguments& a) {
+  BakeOptions& o = a.options;
   app.add_option("--target-error", a.target_error,
                  "Trace rays until the standard error of each value is this; of lights relative to "
                  "their largest unoccluded irradiance [0.04]");
@@ -95,10 +100,7 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
          "Meshes with several instances. together: mean AO over all; alone: ignore the rest "
          "of the scene")
       ->capture_default_str();
-  app.add_option("--estimator", a.estimator,
-                 "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the "
-                 "ray's footprint covers")
-      ->capture_default_str();
+  add_estimator_option(app, a.estimator);
   app.add_option("--footprint", o.footprint,
                  "Footprint scale: larger is faster and less noisy, 0 is exact")
       ->capture_default_str();
@@ -109,18 +111,19 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
                  "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
                  "0: a cutoff")
       ->capture_default_str();
+  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
+}
+
+/// The scene's changes, the device, and files beside the output.
+void add_run_options(CLI::App& app, BakeArguments& a) {
+  BakeOptions& o = a.options;
   app.add_option("--opacity", a.opacity,
                  "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
   app.add_option("--occluders", a.occluders,
                  "glTF files that occlude and are not baked; may be repeated");
   app.add_flag("--ground", o.ground, "An opaque plane under the scene occludes");
-  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
-  app.add_flag("--allow-outside", a.scene_options.allow_outside,
-               "Let a glTF file name buffers and images outside of its folder");
-  app.add_option("--device", o.device, "OpenCL device, by part of its name (see dapple devices)");
-  app.add_option("--kernel-dir", o.kernel_dir,
-                 "Read OpenCL kernels from this folder (for developers)");
-  app.add_option("--cache", o.cache, "Keep built BVHs in this folder and reuse them");
+  add_outside_option(app, a.scene_options.allow_outside);
+  add_device_options(app, o.device, o.kernel_dir, o.cache);
   CLI::Option& checkpoint = *app.add_option("--checkpoint", a.checkpoint,
                                             "Write what was traced so far to this file, for "
                                             "--resume. Saved periodically, on interruption "
@@ -131,8 +134,15 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--resume", a.resume,
                  "Continue from this checkpoint, with the same scene and options");
   app.add_option("--png", a.png, "Also draw the scene in its AO alone, as a PNG");
-  app.add_option("--stats-json", a.stats_json, "Write the statistics as JSON");
-  app.add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
+  add_report_options(app, a.stats_json, a.quiet);
+}
+
+}  // namespace
+
+void add_bake_options(CLI::App& app, BakeArguments& a) {
+  add_value_options(app, a);
+  add_ray_options(app, a);
+  add_run_options(app, a);
   app.footer(
       "Example:\n  dapple bake tree.glb -o tree_ao.glb\n"
       "  dapple bake tree.glb -o tree_ao.glb --passes ao,bent --channel _AO --ground\n"

@@ -22,7 +22,7 @@ void require_enough_samples(const std::string& path, const TraceState& state,
       splitting_factor(options);
   if (most <= static_cast<std::uint32_t>(asked)) return;
   throw Error(ErrorKind::usage,
-              fmt::format("--resume {}: has {} samples a pixel already, {} {} asks for fewer", path,
+              fmt::format("--resume {}: has {} samples per pixel already, {} {} is fewer", path,
                           most, adaptive ? "--max-spp" : "--spp", asked));
 }
 

@@ -103,7 +103,7 @@ class Renderer {
   /// Motion blur: the mean of the pictures at `times` moments of an open shutter, each with an
   /// equal part of `options.spp`, at least one. `scene_at(k)`, k in [0, times), returns the scene
   /// at the k-th moment; it is called twice for each. All scenes have the same meshes, instances
-  /// and lights, in other poses. They bring their ground (`options.ground` is refused); the
+  /// and lights, in other poses. They include their ground (`options.ground` is refused); the
   /// metadata are those of the first. Throws as render(), and Error usage for targets and
   /// checkpoints.
   RenderResult render_shutter(const std::function<Scene(int)>& scene_at, int times,

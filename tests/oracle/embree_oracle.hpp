@@ -1,6 +1,6 @@
 // An independent reference for tests: Embree intersects all triangles and strands in world space,
-// and opacity is looked up here, in double, without any of the product's lookup code.
-// In: a scene and rays; out: transmittances and first hits.
+// and oracle_primitives.hpp computes their opacity. In: a scene and rays; out: transmittances and
+// first hits.
 #pragma once
 
 #include <cstdint>

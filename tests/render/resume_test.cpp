@@ -317,7 +317,7 @@ TEST_F(Resume, OtherSettingsAreRefusedAndNamed) {
          o.opacity = {{"leaf", 0.5f}};
        }},
       {"another scene", [](auto& o) { o.ground = true; }},
-      {"has 40 samples a pixel already, --spp 39", [](auto& o) { o.spp = 39; }},
+      {"has 40 samples per pixel already, --spp 39", [](auto& o) { o.spp = 39; }},
       {"footprint_spp 40, this run has 20", [](auto& o) { o.footprint_spp = 20; }},
   };
   for (const auto& [part, change] : changes) {
