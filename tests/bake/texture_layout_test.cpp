@@ -63,6 +63,51 @@ TEST(Charts, AStripThatWindsOverItselfIsDividedIntoItsTriangles) {
   EXPECT_EQ(make_charts(mesh).size(), mesh.primitive_count());
 }
 
+/// Half a ring of quads in the plane z = 0, of mean radius 1.
+Mesh half_ring(float width, std::uint32_t quads) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i <= quads; ++i) {
+    const double angle = kPi * i / quads;
+    for (const float r : {1 - width / 2, 1 + width / 2})
+      mesh.positions.emplace_back(r * static_cast<float>(std::cos(angle)),
+                                  r * static_cast<float>(std::sin(angle)), 0.0f);
+  }
+  for (std::uint32_t i = 0; i < 2 * quads; i += 2)
+    mesh.indices.insert(mesh.indices.end(), {i, i + 1, i + 2, i + 2, i + 1, i + 3});
+  mesh.materials.resize(mesh.indices.size() / 3);
+  return mesh;
+}
+
+TEST(Charts, ABentStripIsDividedAndAStraightOneOnlyIfItIsTooLong) {
+  const Mesh ring = half_ring(0.1f, 32);
+  std::vector<Chart> whole = make_charts(ring);
+  ASSERT_EQ(whole.size(), 1u);
+  const auto rect = [](const Chart& chart) { return chart.size.x * chart.size.y; };
+  const float before = rect(whole[0]);
+  const std::vector<Chart> parts = divide_chart(whole[0], {10, 0.01f});
+  ASSERT_GT(parts.size(), 2u);
+  float area = 0, rects = 0;
+  std::set<std::uint32_t> seen;
+  for (const Chart& part : parts) {
+    rects += rect(part);
+    ASSERT_EQ(part.corners.size(), 3 * part.triangles.size());
+    for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+      EXPECT_TRUE(seen.insert(part.triangles[t]).second);
+      area +=
+          std::fabs(area_of(part.corners[3 * t], part.corners[3 * t + 1], part.corners[3 * t + 2]));
+    }
+  }
+  EXPECT_EQ(seen.size(), ring.primitive_count());
+  EXPECT_NEAR(area, kPi * 0.1, 0.002) << "the triangles keep their sizes";
+  EXPECT_LT(rects, 0.5f * before);
+  Mesh strip;
+  append_grid(strip, {0, 0, 0}, {8, 0, 0}, {0, 0, 0.5f}, 8, 0);
+  whole = make_charts(strip);
+  ASSERT_EQ(whole.size(), 1u);
+  EXPECT_EQ(divide_chart(whole[0], {10, 0.01f}).size(), 1u);
+  for (const Chart& part : divide_chart(whole[0], {3, 10})) EXPECT_LE(part.size.x, 3.01f);
+}
+
 TEST(Packing, RectanglesStayApartAndInsideTheTexture) {
   std::vector<V2f> sizes;
   for (int i = 0; i < 200; ++i)

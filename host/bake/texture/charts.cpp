@@ -23,6 +23,9 @@ constexpr int kGrid = 64;
 /// The share of a chart's cells above which an overlap counts.
 constexpr double kMaxOverlap = 0.02;
 
+/// Rectangles of parts over that of the whole, from which on a division is not worth its seam.
+constexpr float kWorthDividing = 0.75f;
+
 struct Edge {
   std::uint64_t vertices;  ///< two vertex groups, the smaller one in the upper half
   std::uint32_t triangle;
@@ -182,6 +185,27 @@ std::vector<Chart> make_charts(const Mesh& mesh) {
     for (const std::uint32_t single : chart.triangles) charts.push_back(project(mesh, {single}));
   }
   return charts;
+}
+
+std::vector<Chart> divide_chart(Chart chart, const DivisionLimits& limits) {
+  const auto area = [](const Chart& c) { return c.size.x * c.size.y; };
+  const bool too_long = chart.size.x > limits.length;
+  std::array<Chart, 2> halves;
+  for (std::size_t t = 0; t < chart.triangles.size() && (too_long || area(chart) > limits.area);
+       ++t) {
+    const V2f* corner = &chart.corners[3 * t];
+    const bool left = corner[0].x + corner[1].x + corner[2].x < 1.5f * chart.size.x;
+    Chart& half = halves[left ? 0 : 1];
+    half.triangles.push_back(chart.triangles[t]);
+    half.corners.insert(half.corners.end(), corner, corner + 3);
+  }
+  if (halves[0].triangles.empty() || halves[1].triangles.empty()) return {std::move(chart)};
+  for (Chart& half : halves) fit_rectangle(half);
+  if (!too_long && area(halves[0]) + area(halves[1]) > kWorthDividing * area(chart))
+    return {std::move(chart)};
+  std::vector<Chart> parts = divide_chart(std::move(halves[0]), limits);
+  for (Chart& part : divide_chart(std::move(halves[1]), limits)) parts.push_back(std::move(part));
+  return parts;
 }
 
 }  // namespace dapple

@@ -27,6 +27,40 @@ float scale_of(const Scene& scene, std::uint32_t mesh) {
   return 1;
 }
 
+/// A chart of a mesh.
+struct PlacedChart {
+  Chart chart;
+  std::uint32_t mesh;
+  float scale;  ///< of the mesh
+};
+
+/// The charts of all textured meshes. Those longer than the side of a square as large as all of
+/// them together, such as trunks, would alone decide how small the others are: they are divided, as
+/// are large ones that fill little of their rectangles.
+std::vector<PlacedChart> charts_of_scene(const Scene& scene, const std::vector<bool>& textured) {
+  std::vector<PlacedChart> whole;
+  double area = 0;
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+    if (!textured[m]) continue;
+    const float scale = scale_of(scene, m);
+    for (Chart& chart : make_charts(scene.meshes[m])) {
+      area += double{chart.size.x * scale} * double{chart.size.y * scale};
+      whole.push_back({std::move(chart), m, scale});
+    }
+  }
+  if (whole.size() == 1) return whole;
+  const auto length = static_cast<float>(std::sqrt(area));
+  const auto mean = static_cast<float>(area / static_cast<double>(whole.size()));
+  std::vector<PlacedChart> charts;
+  for (PlacedChart& chart : whole) {
+    const float scale = chart.scale;
+    for (Chart& part :
+         divide_chart(std::move(chart.chart), {length / scale, mean / (scale * scale)}))
+      charts.push_back({std::move(part), chart.mesh, scale});
+  }
+  return charts;
+}
+
 /// Each texel of a size x size texture whose centre lies in a triangle, once for each triangle.
 template <class Visit>
 void visit_centres(const V2f* uv, std::uint32_t size, Visit visit) {
@@ -65,23 +99,11 @@ std::vector<bool> textured_meshes(const Scene& scene) {
 }
 
 TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
-  struct Owner {
-    std::uint32_t mesh;
-    float scale;
-  };
-  std::vector<Chart> charts;
-  std::vector<Owner> owners;
-  std::vector<V2f> sizes;
   const std::vector<bool> textured = textured_meshes(scene);
-  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-    if (!textured[m]) continue;
-    const float scale = scale_of(scene, m);
-    for (Chart& chart : make_charts(scene.meshes[m])) {
-      sizes.push_back(chart.size * scale);
-      owners.push_back({m, scale});
-      charts.push_back(std::move(chart));
-    }
-  }
+  const std::vector<PlacedChart> charts = charts_of_scene(scene, textured);
+  std::vector<V2f> sizes;
+  sizes.reserve(charts.size());
+  for (const PlacedChart& chart : charts) sizes.push_back(chart.chart.size * chart.scale);
   const std::uint32_t size = options.texture_size;
   const double width =
       size / std::sqrt(static_cast<double>(std::max<std::size_t>(1, sizes.size())));
@@ -103,16 +125,15 @@ TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
     layout.chart_of[m].resize(scene.meshes[m].primitive_count(), TextureLayout::kNoChart);
   }
   for (std::uint32_t c = 0; c < charts.size(); ++c) {
-    const auto [mesh, scale] = owners[c];
+    const auto& [chart, mesh, scale] = charts[c];
     const V2f first(static_cast<float>(packing.rects[c].x) + 0.5f,
                     static_cast<float>(packing.rects[c].y) + 0.5f);
-    for (std::size_t t = 0; t < charts[c].triangles.size(); ++t) {
-      const std::uint32_t triangle = charts[c].triangles[t];
+    for (std::size_t t = 0; t < chart.triangles.size(); ++t) {
+      const std::uint32_t triangle = chart.triangles[t];
       layout.chart_of[mesh][triangle] = c;
       for (std::size_t k = 0; k < 3; ++k)
         layout.corners[mesh][3 * triangle + k] =
-            (first + charts[c].corners[3 * t + k] * (scale * packing.scale)) /
-            static_cast<float>(size);
+            (first + chart.corners[3 * t + k] * (scale * packing.scale)) / static_cast<float>(size);
     }
   }
   return layout;
