@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "device/environment_while.hpp"
 #include "device/opencl.hpp"
 #include "device/page_pool.hpp"
 #include "device/platforms.hpp"
@@ -40,6 +41,15 @@ std::string first_lines(const std::string& text, int count) {
   std::size_t end = 0;
   for (int i = 0; i < count && end != std::string::npos; ++i) end = text.find('\n', end + 1);
   return text.substr(0, end);
+}
+
+/// A context whose compiler does not run several work-items in the lanes of a vector. The kernels
+/// are vectors already: Intel's compiler took seven times as long, for nothing (experiment 735). It
+/// reads the variable here; if the user has set it, that stays.
+cl::Context make_context(const cl::Device& device) {
+  const char* const kVectorizer = "CL_CONFIG_CPU_VECTORIZER_MODE";
+  const EnvironmentWhile off(kVectorizer, std::getenv(kVectorizer) ? "" : "1");
+  return cl::Context(device);
 }
 
 /// Returns the result of clBuildProgram(). When memory runs out, LLVM throws an exception through
@@ -157,7 +167,7 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Pa
   s.info = describe(s.device);
   in_opencl("opening " + s.info.name, [&] {
     s.shares_memory = s.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
-    s.context = cl::Context(s.device);
+    s.context = make_context(s.device);
     s.queue = cl::CommandQueue(s.context, s.device, CL_QUEUE_PROFILING_ENABLE);
   });
 }
