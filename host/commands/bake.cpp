@@ -38,11 +38,14 @@ class SceneFile {
     if (!spec.starts_with("scene:")) return;
     path_ = output + ".scene.glb";
     is_made_ = true;
+    remove_when_interrupted(path_);
     write_glb(make_procedural(spec), path_);
   }
   ~SceneFile() {
     std::error_code ignored;
-    if (is_made_) fs::remove(path_, ignored);
+    if (!is_made_) return;
+    fs::remove(path_, ignored);
+    remove_when_interrupted("");
   }
   SceneFile(const SceneFile&) = delete;
   SceneFile& operator=(const SceneFile&) = delete;

@@ -19,7 +19,7 @@ struct BakeChannel {
 
 struct BakeArguments {
   std::string scene, output, stats_json, png, lights, dome, uv = "auto";
-  std::string checkpoint, checkpoint_every = "60", resume;
+  std::string checkpoint, checkpoint_every = "60s", resume;
   std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply",
               bent_channel = "_BENT_NORMAL";
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";

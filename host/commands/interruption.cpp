@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstring>
 
 namespace dapple {
 namespace {
@@ -12,11 +13,16 @@ constexpr int kSignalled = 128;  ///< added to a signal's number, as shells do
 // The only variables that a signal handler may access.
 volatile std::sig_atomic_t received = 0;
 volatile std::sig_atomic_t saving = 0;
+volatile std::sig_atomic_t has_temporary = 0;
+char temporary[4096];  // written only while has_temporary is 0
 
 // An unfinished file of a process that ends here has a temporary name; the next run removes it. A
 // second SIGTERM does not end the process at once: process managers send it twice.
 extern "C" void on_interruption(int signal) {
-  if (!saving || (received && signal == SIGINT)) _exit(kSignalled + signal);
+  if (!saving || (received && signal == SIGINT)) {
+    if (has_temporary) unlink(temporary);
+    _exit(kSignalled + signal);
+  }
   if (!received) received = signal;
 }
 
@@ -38,6 +44,13 @@ Stop save_when_interrupted() {
     saving = 1;
     return received != 0;
   };
+}
+
+void remove_when_interrupted(const std::string& path) {
+  has_temporary = 0;
+  if (path.empty() || path.size() >= sizeof temporary) return;
+  std::strcpy(temporary, path.c_str());
+  has_temporary = 1;
 }
 
 int interruption_code() { return received ? kSignalled + received : 0; }

@@ -2,6 +2,8 @@
 // otherwise the process ends at once. Only this file sets signal handlers.
 #pragma once
 
+#include <string>
+
 #include "dapple/render.hpp"
 
 namespace dapple {
@@ -14,6 +16,10 @@ void catch_interruptions();
 /// Returns a function for RenderControl that tells whether a signal came. After its first call only
 /// a second SIGINT ends the process at once.
 Stop save_when_interrupted();
+
+/// The file is removed if a signal ends the process at once. Empty: none. Longer paths than 4,095
+/// bytes are not remembered.
+void remove_when_interrupted(const std::string& path);
 
 /// The exit code for the signal that came, or 0.
 int interruption_code();

@@ -144,6 +144,19 @@ TEST_F(BakeCommand, AProceduralSceneIsBakedAndItsStatisticsAreWritten) {
   EXPECT_EQ(files_in_folder(), 2u) << "nothing else is left";
 }
 
+TEST_F(BakeCommand, ABakeGoesOnFromItsCheckpoint) {
+  const std::string bake = "bake 'scene:tree?leaves=200' --rays 64 ";
+  ASSERT_EQ(dapple(bake + "-o a.glb --checkpoint c.ckpt --checkpoint-every 1s -q").code, 0);
+  const Outcome resumed = dapple(bake + "-o b.glb --resume c.ckpt");
+  ASSERT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_NE(resumed.err.find("went on from c.ckpt"), std::string::npos) << resumed.err;
+  EXPECT_EQ(bytes_of(path("a.glb")), bytes_of(path("b.glb")));
+  expect_failure(dapple(bake + "-o c.glb --seed 3 --resume c.ckpt"), 2, "--seed");
+  expect_failure(dapple(bake + "-o c.ckpt.glb --resume none.ckpt"), 1, "none.ckpt");
+  expect_failure(dapple(bake + "-o c.glb --checkpoint c.glb"), 2, "--checkpoint");
+  EXPECT_EQ(files_in_folder(), 3u);
+}
+
 TEST_F(BakeCommand, ErrorsSayWhatCanBeDoneAndLeaveNothingBehind) {
   write("in.glb", rich_triangle().glb());
   const std::pair<const char*, const char*> cases[] = {

@@ -34,31 +34,46 @@ struct PlacedChart {
   float scale;  ///< of the mesh
 };
 
-/// The charts of all textured meshes. Those longer than the side of a square as large as all of
-/// them together, such as trunks, would alone decide how small the others are: they are divided, as
-/// are large ones that fill little of their rectangles.
-std::vector<PlacedChart> charts_of_scene(const Scene& scene, const std::vector<bool>& textured) {
-  std::vector<PlacedChart> whole;
-  double area = 0;
+using PlacedCharts = std::vector<PlacedChart>;
+
+PlacedCharts charts_of_scene(const Scene& scene, const std::vector<bool>& textured) {
+  PlacedCharts charts;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     if (!textured[m]) continue;
     const float scale = scale_of(scene, m);
-    for (Chart& chart : make_charts(scene.meshes[m])) {
-      area += double{chart.size.x * scale} * double{chart.size.y * scale};
-      whole.push_back({std::move(chart), m, scale});
-    }
-  }
-  if (whole.size() == 1) return whole;
-  const auto length = static_cast<float>(std::sqrt(area));
-  const auto mean = static_cast<float>(area / static_cast<double>(whole.size()));
-  std::vector<PlacedChart> charts;
-  for (PlacedChart& chart : whole) {
-    const float scale = chart.scale;
-    for (Chart& part :
-         divide_chart(std::move(chart.chart), {length / scale, mean / (scale * scale)}))
-      charts.push_back({std::move(part), chart.mesh, scale});
+    for (Chart& chart : make_charts(scene.meshes[m]))
+      charts.push_back({std::move(chart), m, scale});
   }
   return charts;
+}
+
+/// Divides charts longer than the side of a square as large as all of them together, such as
+/// trunks, which alone would decide how small the others are, and large ones that fill little of
+/// their rectangles.
+PlacedCharts divided(const PlacedCharts& whole) {
+  double area = 0;
+  for (const PlacedChart& c : whole)
+    area += double{c.chart.size.x * c.scale} * double{c.chart.size.y * c.scale};
+  const auto length = static_cast<float>(std::sqrt(area));
+  const auto mean = static_cast<float>(area / static_cast<double>(whole.size()));
+  PlacedCharts charts;
+  for (const auto& [chart, mesh, scale] : whole)
+    for (Chart& part : divide_chart(chart, {length / scale, mean / (scale * scale)}))
+      charts.push_back({std::move(part), mesh, scale});
+  return charts;
+}
+
+/// Packs the charts into the texture.
+Packing pack_charts(const PlacedCharts& charts, const BakeOptions& options) {
+  std::vector<V2f> sizes;
+  sizes.reserve(charts.size());
+  for (const PlacedChart& chart : charts) sizes.push_back(chart.chart.size * chart.scale);
+  const double width =
+      options.texture_size / std::sqrt(static_cast<double>(std::max<std::size_t>(1, sizes.size())));
+  const std::uint32_t gap =
+      std::clamp(static_cast<std::uint32_t>(kGapShare * width), kMinGap,
+                 std::max(kMinGap, static_cast<std::uint32_t>(options.margin)));
+  return pack(sizes, options.texture_size, gap);
 }
 
 /// Each texel of a size x size texture whose centre lies in a triangle, once for each triangle.
@@ -100,21 +115,21 @@ std::vector<bool> textured_meshes(const Scene& scene) {
 
 TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
   const std::vector<bool> textured = textured_meshes(scene);
-  const std::vector<PlacedChart> charts = charts_of_scene(scene, textured);
-  std::vector<V2f> sizes;
-  sizes.reserve(charts.size());
-  for (const PlacedChart& chart : charts) sizes.push_back(chart.chart.size * chart.scale);
+  PlacedCharts charts = charts_of_scene(scene, textured);
+  Packing packing = pack_charts(charts, options);
   const std::uint32_t size = options.texture_size;
-  const double width =
-      size / std::sqrt(static_cast<double>(std::max<std::size_t>(1, sizes.size())));
-  const std::uint32_t gap =
-      std::clamp(static_cast<std::uint32_t>(kGapShare * width), kMinGap,
-                 std::max(kMinGap, static_cast<std::uint32_t>(options.margin)));
-  const Packing packing = pack(sizes, size, gap);
-  if (packing.rects.size() != sizes.size())
+  if (packing.rects.size() != charts.size())
     throw Error(ErrorKind::usage,
                 fmt::format("--size is {}; the {} charts of this scene need at least {}", size,
-                            sizes.size(), smallest_size(sizes.size(), kMinGap)));
+                            charts.size(), smallest_size(charts.size(), kMinGap)));
+  if (charts.size() > 1) {
+    PlacedCharts parts = divided(charts);
+    Packing packing_of_parts = pack_charts(parts, options);
+    if (packing_of_parts.scale > packing.scale) {
+      charts = std::move(parts);
+      packing = std::move(packing_of_parts);
+    }
+  }
   TextureLayout layout;
   layout.charts = charts.size();
   layout.corners.resize(scene.meshes.size());
