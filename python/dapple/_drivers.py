@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import atexit
+import ctypes
 import os
+import shutil
 import sys
+import tempfile
 from pathlib import Path
-
-#: Where pip's packages put the driver library, below sys.prefix.
-_LIBRARIES = ("lib/libintelocl.so",)
 
 
 def _system_has_driver() -> bool:
@@ -15,14 +16,23 @@ def _system_has_driver() -> bool:
     return vendors.is_dir() and any(vendors.glob("*.icd"))
 
 
+def _driver_of_pip() -> Path | None:
+    """Intel's runtime (intel-opencl-rt), which lies beside the packages, or none."""
+    library = Path(sys.prefix) / "lib" / "libintelocl.so"
+    return library if library.exists() else None
+
+
 def use_driver_of_pip() -> None:
-    """Points OpenCL's loader at a driver below sys.prefix, unless the system or the user has one."""
+    """Points OpenCL's loader at pip's driver, unless the system has one or the user names one."""
     if any(name in os.environ for name in ("OCL_ICD_VENDORS", "OCL_ICD_FILENAMES")):
         return
-    if _system_has_driver():
+    library = None if _system_has_driver() else _driver_of_pip()
+    if library is None:
         return
-    for name in _LIBRARIES:
-        library = Path(sys.prefix) / name
-        if library.exists():
-            os.environ["OCL_ICD_FILENAMES"] = str(library)
-            return
+    # Before the engine's own oneTBB, which may be too old for the driver.
+    ctypes.CDLL(str(library))
+    # Loaders of every make read such a folder.
+    vendors = tempfile.mkdtemp(prefix="dapple-")
+    atexit.register(shutil.rmtree, vendors, ignore_errors=True)
+    (Path(vendors) / "pip.icd").write_text(str(library), encoding="utf-8")
+    os.environ["OCL_ICD_VENDORS"] = vendors
