@@ -99,6 +99,20 @@ Estimator parse_estimator(const std::string& text) {
   throw Error(ErrorKind::usage, fmt::format("--estimator {}: it is exact or prefiltered", text));
 }
 
+Cryptomattes parse_cryptomattes(const std::string& text) {
+  Cryptomattes mattes;
+  for (const std::string& name : parse_names("--cryptomatte", text)) {
+    if (name == "object")
+      mattes.objects = true;
+    else if (name == "material")
+      mattes.materials = true;
+    else
+      throw Error(ErrorKind::usage,
+                  fmt::format("--cryptomatte {}: there are object and material", text));
+  }
+  return mattes;
+}
+
 ExrCompression parse_compression(const std::string& text) {
   if (text == "none") return ExrCompression::none;
   if (text == "zips") return ExrCompression::zips;

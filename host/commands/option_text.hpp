@@ -23,6 +23,8 @@ Estimator parse_estimator(const std::string& text);
 Normals parse_normals(const std::string& text);
 /// "auto", "none", "pixel" or "point"
 Packets parse_packets(const std::string& text);
+/// "object", "material" or both; empty: none
+Cryptomattes parse_cryptomattes(const std::string& text);
 /// "zip", "zips", "piz", "dwaa" or "none"
 ExrCompression parse_compression(const std::string& text);
 /// "ao,N"; empty: none

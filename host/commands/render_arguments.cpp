@@ -56,6 +56,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--normals", a.normals,
                  "shading: surfaces are lit as the normals of their mesh say; geometric: as facets")
       ->capture_default_str();
+  app.add_option("--cryptomatte", a.cryptomatte,
+                 "Also make Cryptomattes: object, material, or both with a comma between");
   app.add_option("--ao-distance", o.ao_distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
       ->capture_default_str();
@@ -227,6 +229,7 @@ RenderOptions to_options(const RenderArguments& a) {
   o.normals = parse_normals(a.normals);
   o.packets = parse_packets(a.packets);
   parse_passes(a.passes, o);
+  o.cryptomattes = parse_cryptomattes(a.cryptomatte);
   if (!a.crop.empty()) o.crop = parse_crop(a.crop);
   if (!a.look_from.empty() || !a.look_at.empty()) {
     if (a.look_from.empty() || a.look_at.empty()) {

@@ -114,6 +114,12 @@ std::vector<Imf::Header> headers_of(const Film& film, const std::vector<ExrPart>
     headers.back().setType(Imf::SCANLINEIMAGE);
   }
   insert_metadata(headers[0], film.metadata);
+  // Readers look for the attributes of Cryptomattes in the first part or in that of their layers.
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0 && !parts[i].name.starts_with("crypto_")) continue;
+    for (const auto& [name, value] : film.metadata.attributes)
+      headers[i].insert(name, Imf::StringAttribute(value));
+  }
   return headers;
 }
 
@@ -224,9 +230,10 @@ FilmMetadata read_metadata(const Imf::Header& header) {
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string name = it.name();
     const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
-    if (text != nullptr && name.starts_with(kPrefix)) {
+    if (text == nullptr) continue;
+    if (name.starts_with(kPrefix))
       metadata.settings.emplace_back(name.substr(kPrefix.size()), text->value());
-    }
+    if (name.starts_with("cryptomatte/")) metadata.attributes.emplace_back(name, text->value());
   }
   metadata.scene = take(metadata.settings, "scene");
   metadata.device = take(metadata.settings, "device");

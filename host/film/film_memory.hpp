@@ -11,6 +11,6 @@ namespace dapple {
 
 /// Throws Error usage when the sums and layers of a picture of this many lights take more than
 /// half of the machine's memory.
-void check_film_memory(const View& view, std::size_t light_count);
+void check_film_memory(const View& view, std::size_t light_count, const Cryptomattes& mattes = {});
 
 }  // namespace dapple

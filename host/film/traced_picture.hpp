@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "device/context.hpp"
+#include "film/matte_sums.hpp"
 
 namespace dapple {
 
@@ -18,6 +19,7 @@ struct TracedPicture {
   /// Standard errors by pass and pixel: AO, then the lights, relative to their largest unoccluded
   /// irradiance. Empty without a target, or if interrupted before they are known.
   std::vector<std::vector<float>> errors;
+  MatteSums mattes;                            ///< of no pixels unless asked for
   std::map<std::string, double> pass_seconds;  ///< device seconds by label, of all runs
   std::size_t queue_bytes = 0;
   bool interrupted = false;

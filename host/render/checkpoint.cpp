@@ -1,5 +1,6 @@
-// Sections of the file: a JSON description, then compressed sums, squares, samples, and the work of
-// each group of the round. Values have this machine's byte order, which the seal checks.
+// Sections of the file: a JSON description, then compressed sums, squares, samples, the work of
+// each group of the round, and for Cryptomattes what the samples hit. Values have this machine's
+// byte order, which the seal checks.
 #include "render/checkpoint.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "dapple/shared/ray.h"
 #include "files/compression.hpp"
 #include "files/sealed_file.hpp"
+#include "film/matte_sums.hpp"
 
 namespace dapple {
 namespace {
@@ -45,6 +47,7 @@ json header(const Checkpoint& checkpoint, const TraceState& state) {
           {"pass_seconds", state.pass_seconds},
           {"slice_samples", state.slice_samples},
           {"groups", groups},
+          {"mattes", !state.mattes.empty()},
           {"position", {state.round.group, state.round.entry, state.round.sample}}};
 }
 
@@ -86,6 +89,8 @@ Checkpoint checkpoint_of(const SealedFile& file) {
   state.squares = vector_of<float>(file, 2);
   state.samples = vector_of<std::uint32_t>(file, 3);
   state.round = round_of(file, about);
+  if (about.value("mattes", false))
+    state.mattes = vector_of<std::uint32_t>(file, kFirstGroup + state.round.groups.size());
   return checkpoint;
 }
 
@@ -116,6 +121,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
                                              compress(as_section(state.samples))};
   for (const WorkGroup& group : state.round.groups)
     packed.push_back(compress(as_section(group.work)));
+  if (!state.mattes.empty()) packed.push_back(compress(as_section(state.mattes)));
   std::vector<Section> sections{as_section(about)};
   for (const std::vector<std::byte>& bytes : packed) sections.emplace_back(bytes);
   // Not synced to disk (experiment 805): after a power failure the checksum shows the damage, and a
@@ -142,6 +148,11 @@ void check_state(const std::string& path, const TraceState& state, const StateSh
     refuse(path, fmt::format("has {} sums, {} squares and {} pixels; this picture has {}, {}, {}",
                              state.sums.size(), state.squares.size(), state.samples.size(),
                              shape.sums, shape.squares, shape.pixels));
+  }
+  if (shape.objects == 0
+          ? !state.mattes.empty()
+          : !MatteSums().unpack(state.mattes, shape.pixels, shape.objects, shape.materials)) {
+    refuse(path, "damaged: its objects and materials are not of this picture");
   }
   const bool too_many = std::any_of(state.samples.begin(), state.samples.end(),
                                     [](std::uint32_t samples) { return samples > kMaxSamples; });

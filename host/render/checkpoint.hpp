@@ -23,9 +23,10 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
 /// Whether the state fits a picture is checked by check_state().
 Checkpoint read_checkpoint(const std::string& path);
 
-/// The size that a state must have: pixels and planes of the picture.
+/// The size that a state must have: pixels and planes of the picture; for Cryptomattes the numbers
+/// of objects and materials, else 0.
 struct StateShape {
-  std::size_t pixels = 0, sums = 0, squares = 0;
+  std::size_t pixels = 0, sums = 0, squares = 0, objects = 0, materials = 0;
 };
 
 /// Throws Error failed unless every index and size in `state` is within `shape`.

@@ -88,6 +88,11 @@ std::string name_of(Normals normals) {
   return normals == Normals::shading ? "shading" : "geometric";
 }
 
+std::string name_of(const Cryptomattes& mattes) {
+  if (mattes.objects && mattes.materials) return "object,material";
+  return mattes.objects ? "object" : mattes.materials ? "material" : "none";
+}
+
 std::string name_of(Packets packets) {
   switch (packets) {
     case Packets::automatic:

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -43,7 +44,8 @@ std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& op
 class PictureTracer {
  public:
   PictureTracer(const Device& device, const DeviceScene& scene, const View& view,
-                const RenderOptions& options, const FilmLayout& layout, TraceState state)
+                const RenderOptions& options, const FilmLayout& layout, TraceState state,
+                const MatteLookup* mattes)
       : context_(device.context()),
         scene_(*scene.buffers),
         options_(options),
@@ -51,8 +53,11 @@ class PictureTracer {
         light_count_(layout.lights.size()),
         width_(view.crop.width()),
         camera_(camera_params(view, options, scene_.bounds)),
-        state_(std::move(state)) {
-    camera_.keep_hits = is_shaded();
+        state_(std::move(state)),
+        lookup_(mattes),
+        mattes_(mattes ? layout.pixels : 0) {
+    camera_.keep_hits = is_shaded() || mattes;
+    if (mattes) camera_.medium_error = 0;  // a medium's surfaces have no names
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
     if (state_.slice_samples == 0)
@@ -76,6 +81,7 @@ class PictureTracer {
     if (plan.is_adaptive() && all_have_variances(picture.samples))
       picture.errors = standard_errors(picture.samples);
     picture.sums = context_.view(film_.sums);
+    picture.mattes = std::move(mattes_);
     context_.finish();
     picture.pass_seconds = pass_seconds();
     picture.queue_bytes = queues_.bytes();
@@ -98,6 +104,7 @@ class PictureTracer {
   void place_sums() {
     earlier_seconds_ = state_.pass_seconds;
     for (const auto& [label, seconds] : context_.pass_seconds()) earlier_seconds_[label] -= seconds;
+    if (lookup_ && !state_.mattes.empty()) mattes_.unpack(state_.mattes, layout_.pixels);
     if (state_.sums.empty()) return;
     context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
     context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
@@ -107,6 +114,7 @@ class PictureTracer {
   void release_sums() {
     state_.sums = {};
     state_.squares = {};
+    state_.mattes = {};
   }
 
   void read_state(const SamplePlan& plan) {
@@ -115,6 +123,7 @@ class PictureTracer {
     context_.read(film_.sums, state_.sums.data(), layout_.sum_bytes());
     context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
     context_.finish();
+    if (lookup_) state_.mattes = mattes_.packed();
     state_.samples = plan.samples();
     state_.pass_seconds = pass_seconds();
   }
@@ -220,6 +229,7 @@ class PictureTracer {
     camera_.slice = slice;
     resolve_.slice = slice;
     camera_pass(context_, scene_, queues_, camera_);
+    if (lookup_) count_mattes(slice);
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);
@@ -231,6 +241,25 @@ class PictureTracer {
     if (hits == 0) return;
     if (options_.ao) trace_ao(hits);
     for (uint light = 0; light < light_count_; ++light) trace_light(light, hits);
+  }
+
+  /// Adds the samples of the slice, pixel by pixel, each in its order. The points still have what
+  /// the camera pass kept for the shading pass.
+  void count_mattes(const SliceParams& slice) {
+    const std::vector<PixelWork>& work = state_.round.groups[state_.round.group].work;
+    const HostView point_view = context_.view(queues_.points);
+    const HostView hit_view = context_.view(queues_.sample_hits);
+    const std::span<const SurfacePoint> points = point_view.values<SurfacePoint>();
+    const std::span<const SampleHits> hits = hit_view.values<SampleHits>();
+    tbb::parallel_for(0u, slice.pixel_count, [&](uint entry) {
+      const uint pixel = work[slice.first_work + entry].pixel;
+      const uint begin = entry * slice.sample_count;
+      for (uint i = begin; i < begin + slice.sample_count; ++i) {
+        if (!(hits[i / DAPPLE_HIT_BITS].hits >> i % DAPPLE_HIT_BITS & 1u)) continue;
+        const auto ids = lookup_->at(std::bit_cast<uint>(points[i].t), points[i].visits);
+        mattes_.add(pixel, ids.object, ids.material);
+      }
+    });
   }
 
   void trace_ao(std::uint32_t hits) {
@@ -302,7 +331,9 @@ class PictureTracer {
   Queues queues_;
   FilmBuffers film_;
   std::vector<std::vector<float>> variances_;  ///< of the finished film, if known
-  TraceState state_;     ///< without sums and squares while these are on the device
+  TraceState state_;  ///< without sums and squares while these are on the device
+  const MatteLookup* lookup_;
+  MatteSums mattes_;
   double traced_ = 0;    ///< number of samples of all pixels
   double progress_ = 0;  ///< [0,1], estimated; never decreases
   std::map<std::string, double> earlier_seconds_;
@@ -313,8 +344,10 @@ class PictureTracer {
 
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
                             const RenderOptions& options, const FilmLayout& layout,
-                            const TraceControl& control, TraceState state) {
-  return PictureTracer(device, scene, view, options, layout, std::move(state)).trace(control);
+                            const TraceControl& control, TraceState state,
+                            const MatteLookup* mattes) {
+  return PictureTracer(device, scene, view, options, layout, std::move(state), mattes)
+      .trace(control);
 }
 
 }  // namespace dapple

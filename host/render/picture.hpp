@@ -6,6 +6,7 @@
 #include "device/upload/scene_upload.hpp"
 #include "film/film_sums.hpp"
 #include "film/traced_picture.hpp"
+#include "render/matte_lookup.hpp"
 #include "render/trace_state.hpp"
 #include "sampling/sample_plan.hpp"
 
@@ -22,9 +23,10 @@ struct TraceControl {
 
 /// Runs every pass that `options` select over the view's crop. The result depends on
 /// neither the slices nor the device's threads. Continues from `state`, which must fit the picture,
-/// unless it is empty.
+/// unless it is empty. `mattes`: count what the samples hit; then there are no media.
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
                             const RenderOptions& options, const FilmLayout& layout,
-                            const TraceControl& control, TraceState state = {});
+                            const TraceControl& control, TraceState state = {},
+                            const MatteLookup* mattes = nullptr);
 
 }  // namespace dapple

@@ -16,6 +16,7 @@
 #include "device/context.hpp"
 #include "device/programs/compiler_processes.hpp"
 #include "device/upload/memory_need.hpp"
+#include "film/cryptomatte.hpp"
 #include "film/film_memory.hpp"
 #include "film/layers.hpp"
 #include "passes/kernel_list.hpp"
@@ -36,8 +37,9 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
     notes.emplace_back(
         "no lights in the scene: added lights named sun and sky; --lights F brings others");
   }
-  check_film_memory(view, options.light ? scene.lights.size() : 0);
+  check_film_memory(view, options.light ? scene.lights.size() : 0, options.cryptomattes);
   if (options.ground) add_ground(scene);
+  if (options.cryptomattes.any()) name_objects(scene);
   merge_single_instances(scene);
   finalize_domes(scene);
   return view;
@@ -129,6 +131,20 @@ void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
   s.bytes.queues = picture.queue_bytes;
 }
 
+/// The names that Cryptomattes have, if they are asked for.
+MatteNames matte_names(const Scene& scene, const RenderOptions& options) {
+  MatteNames names;
+  if (!options.cryptomattes.any()) return names;
+  names.objects = scene.objects;
+  for (const Material& material : scene.materials) names.materials.push_back(material.name);
+  return names;
+}
+
+void check_same_objects(const Scene& first, const Scene& now) {
+  if (first.objects != now.objects)
+    throw Error(ErrorKind::input, "objects come or go while the shutter is open");
+}
+
 /// The moments of an open shutter, as render_shutter() takes them.
 struct Shutter {
   const std::function<Scene(int)>& scene_at;
@@ -193,9 +209,11 @@ struct Renderer::Kept {
   void update_scene(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
   void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                RenderStatistics& statistics) const;
-  TracedPicture trace(const Shutter& shutter, const View& view, const RenderOptions& options,
-                      const FilmLayout& layout, const std::vector<Light>& lights,
-                      TraceControl tracing, TraceState state, RenderStatistics& statistics);
+  TracedPicture trace(const Shutter& shutter, const Scene& first, const View& view,
+                      const RenderOptions& options, const FilmLayout& layout,
+                      const std::vector<Light>& lights, TraceControl tracing, TraceState state,
+                      RenderStatistics& statistics);
+  std::optional<MatteLookup> matte_lookup(const Scene& scene, const RenderOptions& options) const;
 };
 
 void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statistics) {
@@ -238,28 +256,38 @@ void Renderer::Kept::compile(const std::vector<KernelName>& kernels, CompilerPro
   statistics.seconds.kernel_build = compiling.seconds();
 }
 
+std::optional<MatteLookup> Renderer::Kept::matte_lookup(const Scene& scene,
+                                                        const RenderOptions& options) const {
+  if (!options.cryptomattes.any()) return {};
+  return MatteLookup(scene, bvh->bvh());
+}
+
 /// Traces the first moment of the shutter, whose scene is on the device, and then the others: each
 /// continues from the sums of those before.
-TracedPicture Renderer::Kept::trace(const Shutter& shutter, const View& view,
+TracedPicture Renderer::Kept::trace(const Shutter& shutter, const Scene& first, const View& view,
                                     const RenderOptions& options, const FilmLayout& layout,
                                     const std::vector<Light>& lights, TraceControl tracing,
                                     TraceState state, RenderStatistics& statistics) {
+  std::optional<MatteLookup> mattes = matte_lookup(first, options);
   const Progress progress = tracing.progress;
   if (shutter.times > 1) {
     tracing.save = [&](const TraceState& saved) { state = saved; };
     tracing.save_every = std::numeric_limits<double>::infinity();
     tracing.progress = part_of(progress, 1, shutter.times);
   }
-  TracedPicture picture = trace_picture(*device, on_device, view, until(options, 0, shutter.times),
-                                        layout, tracing, std::move(state));
+  TracedPicture picture =
+      trace_picture(*device, on_device, view, until(options, 0, shutter.times), layout, tracing,
+                    std::move(state), mattes ? &*mattes : nullptr);
   for (int time = 1; time < shutter.times && !picture.interrupted; ++time) {
     Scene moved = shutter.scene_at(time);
     const View moved_view = prepare_scene(moved, options, statistics.notes);
     if (options.light) check_same_lights(lights, moved.lights);
+    check_same_objects(first, moved);
     update_scene(moved, options, statistics);
+    mattes = matte_lookup(moved, options);
     tracing.progress = part_of(progress, time + 1, shutter.times);
     picture = trace_picture(*device, on_device, moved_view, until(options, time, shutter.times),
-                            layout, tracing, std::move(state));
+                            layout, tracing, std::move(state), mattes ? &*mattes : nullptr);
   }
   return picture;
 }
@@ -305,6 +333,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
   Box3f bounds = bvh.bounds;
   bounds.extendBy(moving_bounds);
+  const MatteNames names = matte_names(scene, options);
   const FilmLayout layout(view, sampled, bounds, lights,
                           !kept.on_device.buffers->corner_normals.empty());
   TraceControl tracing{control.progress, control.stop, {}, 0, SampleOrder::pixels};
@@ -312,13 +341,14 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
     Checkpoint about{option_settings(options, view),
                      content_settings(options, view, bvh, *kept.on_device.buffers),
                      footprint_samples(options), statistics.device};
-    if (resumed) check_resumed(control.resume, *resumed, about, layout, statistics.notes);
+    about.content.emplace_back("names of objects", text_checksum(names.objects));
+    if (resumed) check_resumed(control.resume, *resumed, about, layout, names, statistics.notes);
     write_checkpoints(tracing, control, std::move(about), result);
   }
 
   const Stopwatch trace_time;
   const TracedPicture picture =
-      kept.trace({scene_at, times}, view, options, layout, lights, std::move(tracing),
+      kept.trace({scene_at, times}, scene, view, options, layout, lights, std::move(tracing),
                  resumed ? std::move(resumed->state) : TraceState{}, statistics);
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   add_trace_statistics(statistics, picture, layout);
@@ -326,6 +356,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   result.film = {view.width, view.height, view.crop,
                  develop(picture, layout, sampled, lights, statistics),
                  metadata(scene, view, options, device.info())};
+  add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   result.interrupted = picture.interrupted;
   if (result.interrupted) {

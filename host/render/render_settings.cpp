@@ -89,6 +89,7 @@ Settings option_settings(const RenderOptions& options, const View& view) {
       {"--light-rays", number(options.light_rays)},
       {"--ao-distance", number(options.ao_distance)},
       {"--ao-falloff", number(options.ao_falloff)},
+      {"--cryptomatte", name_of(options.cryptomattes)},
       {"--target-error or --target-rmse", is_adaptive(options) ? "a value" : "none"},
   };
 }
@@ -104,6 +105,15 @@ Settings content_settings(const RenderOptions& options, const View& view, const 
   };
 }
 
+std::string text_checksum(const std::vector<std::string>& texts) {
+  ChecksumStream stream;
+  for (const std::string& text : texts) {
+    stream.add_value(text.size());
+    stream.add_range(text);
+  }
+  return hex_text(stream.value());
+}
+
 void require_same(const std::string& path, const Settings& then, const Settings& now) {
   for (const auto& asked : now) {
     const std::string &name = asked.first, &value = asked.second;  // clang 14 captures no bindings
@@ -114,8 +124,8 @@ void require_same(const std::string& path, const Settings& then, const Settings&
     const bool opaque = is_checksum(before) || is_checksum(value);
     throw Error(ErrorKind::usage,
                 opaque ? fmt::format("--resume {}: was made with another {}", path, name)
-                       : fmt::format("--resume {}: was made with {} {}, this run has {} {}",
-                                     path, name, before, name, value));
+                       : fmt::format("--resume {}: was made with {} {}, this run has {} {}", path,
+                                     name, before, name, value));
   }
 }
 

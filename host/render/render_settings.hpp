@@ -23,6 +23,9 @@ Settings option_settings(const RenderOptions& options, const View& view);
 Settings content_settings(const RenderOptions& options, const View& view, const SceneBvh& bvh,
                           const DeviceBuffers& scene);
 
+/// A checksum of texts in their order.
+std::string text_checksum(const std::vector<std::string>& texts);
+
 /// Throws Error usage, "--resume PATH: ...", naming the first setting of `now` that `then`, the
 /// settings of the checkpoint `path`, lacks or has with another value.
 void require_same(const std::string& path, const Settings& then, const Settings& now);

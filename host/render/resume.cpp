@@ -42,11 +42,13 @@ Checkpoint resume(const std::string& path, const View& view, RenderOptions& opti
 }
 
 void check_resumed(const std::string& path, const Checkpoint& resumed, const Checkpoint& now,
-                   const FilmLayout& layout, std::vector<std::string>& notes) {
+                   const FilmLayout& layout, const MatteNames& names,
+                   std::vector<std::string>& notes) {
   require_same(path, resumed.content, now.content);
-  check_state(path, resumed.state,
-              {layout.pixels, layout.sum_bytes() / sizeof(std::int64_t),
-               layout.square_bytes() / sizeof(float)});
+  check_state(
+      path, resumed.state,
+      {layout.pixels, layout.sum_bytes() / sizeof(std::int64_t),
+       layout.square_bytes() / sizeof(float), names.objects.size(), names.materials.size()});
   notes.push_back("went on from " + path);
   if (resumed.device != now.device) {
     notes.push_back(

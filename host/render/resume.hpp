@@ -2,6 +2,7 @@
 // to continue from, checkpoints written on the way, notes for the user.
 #pragma once
 
+#include "film/cryptomatte.hpp"
 #include "render/checkpoint.hpp"
 #include "render/picture.hpp"
 
@@ -13,9 +14,10 @@ namespace dapple {
 Checkpoint resume(const std::string& path, const View& view, RenderOptions& options);
 
 /// Throws Error unless `resumed`, read from `path`, belongs to the picture that `now` describes.
-/// Adds a note about its origin to `notes`.
+/// `names`: of Cryptomattes, if there are any. Adds a note about its origin to `notes`.
 void check_resumed(const std::string& path, const Checkpoint& resumed, const Checkpoint& now,
-                   const FilmLayout& layout, std::vector<std::string>& notes);
+                   const FilmLayout& layout, const MatteNames& names,
+                   std::vector<std::string>& notes);
 
 /// Makes `tracing` write checkpoints as `control` asks, with the settings of `about`. A failure is
 /// stored in `result` until the end, so that a full disk does not lose the picture.

@@ -16,6 +16,7 @@ struct TraceState {
   std::vector<std::int64_t> sums;      ///< planes as FilmLayout says
   std::vector<float> squares;          ///< planes as FilmLayout says
   std::vector<std::uint32_t> samples;  ///< of each pixel, those of the whole round included
+  std::vector<std::uint32_t> mattes;   ///< MatteSums::packed(), if asked for
   Round round;
   std::map<std::string, double> pass_seconds;  ///< device seconds so far, by label
 };

@@ -16,7 +16,7 @@ constexpr float kKeyDistance = 3;  // scene radii from the centre
 /// Irradiance of a surface that faces the sun. A surface that faces up gets a fifth of that from
 /// the sky, as on a clear day.
 const V3f kSunIrradiance(3.1f, 2.9f, 2.55f);
-/// Wider than the real sun, as through thin haze: shadows soften with distance.
+/// Wider than the real sun, as through thin cloud: shadows soften with distance.
 constexpr float kSunDegrees = 1.5f;
 
 constexpr std::uint32_t kSkyRows = 128;  ///< from the zenith to the nadir
@@ -34,8 +34,8 @@ V3f above_left_in_front(const Camera& camera) {
 /// the pale horizon; below the horizon there is the light that a ground returns.
 V3f sky_radiance(float height) {
   if (height < 0) return kBelow;
-  const float haze = (1 - height) * (1 - height) * (1 - height);
-  return kZenith * (1 - haze) + kHorizon * haze;
+  const float near_horizon = (1 - height) * (1 - height) * (1 - height);
+  return kZenith * (1 - near_horizon) + kHorizon * near_horizon;
 }
 
 std::shared_ptr<const Environment> sky_image() {

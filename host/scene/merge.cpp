@@ -170,6 +170,11 @@ void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const T
   }
 }
 
+// Gives the primitives that have no object yet that of their instance, if it has one.
+void mark_object(Mesh& mesh, int object) {
+  if (object >= 0) mesh.objects.resize(mesh.primitive_count(), static_cast<std::uint32_t>(object));
+}
+
 // Empties each mesh after its last use, so that large scenes are not in memory twice.
 Mesh build_merged(Scene& scene, const std::vector<Instance>& instances,
                   const std::vector<Uses>& uses) {
@@ -188,9 +193,11 @@ Mesh build_merged(Scene& scene, const std::vector<Instance>& instances,
     if (last_use && instances.size() == 1) {
       merged = std::move(mesh);
       transform_vertices(merged, 0, instance.to_world);
+      mark_object(merged, instance.object);
       return merged;
     }
     append_placed(merged, mesh, instance.to_world, totals);
+    mark_object(merged, instance.object);
     if (last_use) mesh = Mesh{};
   }
   merged.name = totals.radii ? "merged strands" : "merged";

@@ -92,10 +92,12 @@ void keep_sound_primitives(Mesh& mesh) {
   for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
     if (fault_of(mesh, t) != Fault::none) continue;
     std::copy_n(&mesh.indices[corners * t], corners, &mesh.indices[corners * kept]);
+    if (!mesh.objects.empty()) mesh.objects[kept] = mesh.objects[t];
     mesh.materials[kept++] = mesh.materials[t];
   }
   mesh.indices.resize(corners * kept);
   mesh.materials.resize(kept);
+  if (!mesh.objects.empty()) mesh.objects.resize(kept);
 }
 
 template <typename Value>

@@ -26,6 +26,8 @@ struct FilmMetadata {
   std::uint32_t seed = 0;
   std::string scene, device, version;
   std::vector<std::pair<std::string, std::string>> settings;  ///< option name, value
+  /// Of Cryptomattes: "cryptomatte/KEY/name" and others, which EXR files have under these names.
+  std::vector<std::pair<std::string, std::string>> attributes;
 };
 
 struct Film {

@@ -46,6 +46,16 @@ struct PixelRect {
   bool operator==(const PixelRect&) const = default;
 };
 
+/// Which Cryptomatte layers to make.
+struct Cryptomattes {
+  bool objects = false;    ///< by name_objects()
+  bool materials = false;  ///< by Material::name
+  [[nodiscard]] bool any() const { return objects || materials; }
+};
+
+/// As --cryptomatte has it; "none" for none.
+std::string name_of(const Cryptomattes& mattes);
+
 struct LookAt {
   V3f from{0, 0, 0};
   V3f at{0, 0, -1};
@@ -81,9 +91,10 @@ struct RenderOptions {
   Estimator estimator = Estimator::prefiltered;
   float footprint = kDefaultFootprint;  ///< scale, >= 0; 0 is exact
   Normals normals = Normals::shading;
-  bool ao = true;            ///< make the AO pass
-  bool light = true;         ///< make the light passes
-  bool visits = false;       ///< make layers of node visits and triangle tests
+  bool ao = true;       ///< make the AO pass
+  bool light = true;    ///< make the light passes
+  bool visits = false;  ///< make layers of node visits and triangle tests
+  Cryptomattes cryptomattes;
   float ao_distance = 0.0f;  ///< metres; 0 is no limit
   float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
   std::string camera;        ///< by name; empty: the first, or one that shows it all

@@ -73,6 +73,8 @@ struct Mesh {
   std::vector<V2f> uvs;      ///< per vertex, for the alpha texture, transforms applied; or empty
   std::vector<float> vertex_alpha;    ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
   std::vector<VertexSource> sources;  ///< of a glTF file's mesh; empty once meshes are merged
+  /// Merged meshes: per primitive, index into Scene::objects; else empty.
+  std::vector<std::uint32_t> objects;
 
   [[nodiscard]] bool has_strands() const { return !radii.empty(); }
   [[nodiscard]] std::size_t primitive_count() const { return materials.size(); }
@@ -81,9 +83,10 @@ struct Mesh {
 /// One placement of a mesh. Imath's convention: p_world = p_object * to_world.
 struct Instance {
   std::uint32_t mesh = 0;
-  M44f to_world;   ///< affine and invertible
-  int light = -1;  ///< index of the mesh light that this placement emits, else -1
-  int node = -1;   ///< the glTF node that places it; -1: none
+  M44f to_world;    ///< affine and invertible
+  int light = -1;   ///< index of the mesh light that this placement emits, else -1
+  int node = -1;    ///< the glTF node that places it; -1: none
+  int object = -1;  ///< index into Scene::objects; -1 until name_objects()
 };
 
 enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome, disk };
@@ -153,9 +156,11 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
-  std::vector<Animation> animations;  ///< SceneOptions::animation chooses one
-  std::vector<std::string> warnings;  ///< one line for each thing that the reader skipped
-  std::vector<std::string> files;     ///< paths of the scene, its buffers and its images
+  std::vector<Animation> animations;    ///< SceneOptions::animation chooses one
+  std::vector<std::string> warnings;    ///< one line for each thing that the reader skipped
+  std::vector<std::string> files;       ///< paths of the scene, its buffers and its images
+  std::vector<std::string> node_names;  ///< of glTF nodes with meshes, by Instance::node
+  std::vector<std::string> objects;     ///< names of objects, all different; see name_objects()
 };
 
 struct SceneOptions {
@@ -219,6 +224,11 @@ std::vector<Light> daylight(const Camera& camera);
 
 /// A rect light, up, left and in front of `camera`, as large as the scene: a studio's key light.
 Light key_light(const Scene& scene, const Camera& camera);
+
+/// Makes objects of the instances, for Cryptomattes: what one glTF node places, or all instances of
+/// a mesh where no node places it. Nodes of one name are one object. Comes before
+/// merge_single_instances().
+void name_objects(Scene& scene);
 
 /// Merges all meshes that are placed once, and tiny meshes that are placed several times, into one
 /// mesh in world space, so that overlapping meshes share one BVH. Mesh lights are not merged. Drops

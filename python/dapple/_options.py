@@ -63,6 +63,8 @@ class RenderOptions(TypedDict, total=False):
     ao: bool
     light: bool
     visits: bool
+    crypto_object: bool
+    crypto_material: bool
     ao_distance: float
     ao_falloff: float
     camera: str

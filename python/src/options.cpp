@@ -81,6 +81,12 @@ void bind_render_options(nb::module_& module) {
       .def_rw("ao", &RenderOptions::ao)
       .def_rw("light", &RenderOptions::light)
       .def_rw("visits", &RenderOptions::visits)
+      .def_prop_rw(
+          "crypto_object", [](const RenderOptions& o) { return o.cryptomattes.objects; },
+          [](RenderOptions& o, bool on) { o.cryptomattes.objects = on; })
+      .def_prop_rw(
+          "crypto_material", [](const RenderOptions& o) { return o.cryptomattes.materials; },
+          [](RenderOptions& o, bool on) { o.cryptomattes.materials = on; })
       .def_rw("ao_distance", &RenderOptions::ao_distance)
       .def_rw("ao_falloff", &RenderOptions::ao_falloff)
       .def_rw("camera", &RenderOptions::camera)

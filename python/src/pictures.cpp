@@ -44,6 +44,7 @@ std::vector<std::string> channels(const RenderResult& picture) {
 std::vector<std::pair<std::string, std::string>> metadata(const RenderResult& picture) {
   const FilmMetadata& m = picture.film.metadata;
   std::vector<std::pair<std::string, std::string>> all = m.settings;
+  all.insert(all.end(), m.attributes.begin(), m.attributes.end());
   all.emplace_back("scene", m.scene);
   all.emplace_back("device", m.device);
   all.emplace_back("version", m.version);

@@ -191,7 +191,7 @@ TEST(ShadingNormal, ATiltedHemisphereIsHiddenBelowThePlane) {
 template <class Counts>
 void expect_same_bits(const Film& a, const Film& b, const Counts& counts) {
   for (const char* channel :
-       {"R", "A", "ao.R", "bent.X", "bent.Y", "light.key.R", "N.X", "N.Y", "N.Z", "P.X", "Z"}) {
+       {"R", "A", "ao.R", "bent.X", "bent.Y", "light.sun.R", "N.X", "N.Y", "N.Z", "P.X", "Z"}) {
     const auto &of_a = a.find(channel)->pixels, &of_b = b.find(channel)->pixels;
     std::size_t different = 0;
     for (std::size_t p = 0; p < of_a.size(); ++p) different += counts(p) && of_a[p] != of_b[p];

@@ -32,7 +32,7 @@
   STRUCT(InstanceRecord)                                                                     \
   MEMBER(InstanceRecord, to_object) MEMBER(InstanceRecord, to_world)                         \
   MEMBER(InstanceRecord, inverse_area_scale) MEMBER(InstanceRecord, root)                    \
-  MEMBER(InstanceRecord, light) MEMBER(InstanceRecord, spare)                                \
+  MEMBER(InstanceRecord, light) MEMBER(InstanceRecord, source)                                \
   STRUCT(Ray)                                                                                \
   MEMBER(Ray, origin) MEMBER(Ray, t_max) MEMBER(Ray, direction) MEMBER(Ray, solid_angle)     \
   MEMBER(Ray, first_area) MEMBER(Ray, light) MEMBER(Ray, weight) MEMBER(Ray, key)            \

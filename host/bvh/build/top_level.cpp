@@ -70,7 +70,8 @@ struct PlacedInstance {
   InstanceRecord record;
 };
 
-PlacedInstance place(const Instance& instance, const ObjectSummary& object, std::uint32_t root) {
+PlacedInstance place(const Instance& instance, const ObjectSummary& object, std::uint32_t root,
+                     std::size_t source) {
   PlacedInstance placed_instance;
   placed_instance.box = world_box(object.parts, instance.to_world);
   placed_instance.opacity = instance_opacity(object, instance.to_world, placed_instance.box);
@@ -80,7 +81,7 @@ PlacedInstance place(const Instance& instance, const ObjectSummary& object, std:
   record.inverse_area_scale = static_cast<float>(1.0 / matrix_scale(instance.to_world));
   record.root = root;
   record.light = static_cast<std::uint32_t>(instance.light + 1);
-  record.spare = 0;
+  record.source = static_cast<std::uint32_t>(source);
   return placed_instance;
 }
 
@@ -164,7 +165,8 @@ std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
   for (const Instance& instance : scene.instances) {
     const ObjectSummary& object = objects[instance.mesh];
     if (object.box.isEmpty()) continue;
-    placed.push_back(place(instance, object, offsets[instance.mesh].node));
+    const auto source = static_cast<std::size_t>(&instance - scene.instances.data());
+    placed.push_back(place(instance, object, offsets[instance.mesh].node, source));
     bvh.bounds.extendBy(placed.back().box);
     (object.has_strands ? statistics.instanced_segments : statistics.instanced_triangles) +=
         object.triangles;

@@ -59,7 +59,7 @@ typedef struct InstanceRecord {
   float inverse_area_scale; /* 1 / |det of object to world|; see kernels/opacity/footprint.clh */
   uint root;                /* the object's root node */
   uint light;               /* 1 + the mesh light it emits for; 0: none */
-  uint spare;
+  uint source;              /* index in Scene::instances */
 } InstanceRecord;
 
 #ifndef __OPENCL_VERSION__
