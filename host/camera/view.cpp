@@ -207,6 +207,23 @@ TexelFootprint texel_footprint(const RenderOptions& options, int spp) {
   return texels;
 }
 
+Projection::Projection(const View& view)
+    : to_camera_(Imath::M44d(view.camera.to_world).inverse()),
+      half_(half_extent(view)),
+      width_(view.width),
+      height_(view.height),
+      perspective_(view.camera.kind == Camera::Kind::perspective) {}
+
+std::optional<Imath::V2d> Projection::operator()(const V3d& at) const {
+  V3d on_plane = at * to_camera_;
+  if (perspective_) {
+    if (!(on_plane.z < 0)) return {};
+    on_plane /= -on_plane.z;
+  }
+  return Imath::V2d((on_plane.x / half_.x + 1) / 2 * width_,
+                    (1 - on_plane.y / half_.y) / 2 * height_);
+}
+
 float pixel_width(const View& view, const V3f& at) {
   const float width = 2 * half_extent(view).y / static_cast<float>(view.height);
   const V3f from = view.camera.to_world.translation();

@@ -2,6 +2,10 @@
 // parameters of the camera kernel, matrices for EXR.
 #pragma once
 
+#include <Imath/ImathMatrix.h>
+#include <Imath/ImathVec.h>
+
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +44,21 @@ struct TexelFootprint {
 /// make opacities between 0 and 1, which need several thresholds a ray, and with only one the edges
 /// of leaves would be noisier.
 TexelFootprint texel_footprint(const RenderOptions& options, int spp);
+
+/// Where points are in the image.
+class Projection {
+ public:
+  explicit Projection(const View& view);
+  /// Pixels from the top left at which the ray through the middle of the lens passes `at` (world
+  /// space); none: `at` is not in front of a perspective camera.
+  [[nodiscard]] std::optional<Imath::V2d> operator()(const V3d& at) const;
+
+ private:
+  Imath::M44d to_camera_;
+  Imath::V2d half_;  ///< half extent of the image plane
+  double width_, height_;
+  bool perspective_;
+};
 
 /// Width of a pixel at the distance of `at`, a point in world space; metres.
 float pixel_width(const View& view, const V3f& at);

@@ -160,7 +160,7 @@ Packets parse_packets(const std::string& text) {
 }
 
 void parse_passes(const std::string& text, RenderOptions& options) {
-  options.ao = options.light = options.visits = false;
+  options.ao = options.light = options.visits = options.motion = false;
   for (const std::string& pass : split(text, ',')) {
     if (pass == "ao") {
       options.ao = true;
@@ -168,9 +168,11 @@ void parse_passes(const std::string& text, RenderOptions& options) {
       options.light = true;
     } else if (pass == "visits") {
       options.visits = true;
+    } else if (pass == "motion") {
+      options.motion = true;
     } else {
       throw Error(ErrorKind::usage,
-                  fmt::format("--passes {}: there are ao, light and visits", text));
+                  fmt::format("--passes {}: there are ao, light, motion and visits", text));
     }
   }
 }

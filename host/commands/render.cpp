@@ -92,10 +92,17 @@ std::optional<double> first_seconds(const RenderArguments& a, const Frame& frame
 RenderResult render_frame(const RenderArguments& a, const Frame& frame, Shot& shot, Scene first,
                           Renderer& renderer, const RenderOptions& options,
                           const RenderControl& control) {
-  if (a.shutter.empty()) return renderer.render(std::move(first), options, control);
+  if (a.shutter.empty() && !options.motion)
+    return renderer.render(std::move(first), options, control);
+  if (!frame.seconds)
+    throw Error(ErrorKind::usage, "--passes motion needs --frame or --frames: which time to show");
   const auto scene_at = [&](int k) { return shot.frame(shutter_seconds(a, *frame.seconds, k)); };
+  const auto next_at = [&](int k) {
+    return shot.frame(shutter_seconds(a, *frame.seconds, k) + 1 / frames_per_second(a));
+  };
   const int times = shutter_times(a);
-  RenderResult result = renderer.render_shutter(scene_at, times, options, control);
+  RenderResult result = renderer.render_shutter(scene_at, times, options, control, next_at);
+  if (a.shutter.empty()) return result;
   result.film.metadata.settings.emplace_back("shutter", a.shutter);
   result.film.metadata.settings.emplace_back("motion_samples", fmt::format("{}", times));
   return result;

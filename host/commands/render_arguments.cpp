@@ -50,8 +50,10 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
          "--footprint", o.footprint,
          "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
       ->capture_default_str();
-  app.add_option("--passes", a.passes,
-                 "Passes to render, with commas between: ao, light; visits: the cost of their rays")
+  app.add_option(
+         "--passes", a.passes,
+         "Passes to render, with commas between: ao, light; motion: pixels to the next frame; "
+         "visits: the cost of rays")
       ->capture_default_str();
   app.add_option("--normals", a.normals,
                  "shading: surfaces are lit as the normals of their mesh say; geometric: as facets")
@@ -138,7 +140,7 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
                  "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; write # "
                  "characters in output names for the frame number")
       ->excludes(&frame);
-  app.add_option("--fps", a.fps, "Frames per second, for --frames and --shutter")
+  app.add_option("--fps", a.fps, "Frames per second, for --frames, --shutter and motion vectors")
       ->default_str("24");
   CLI::Option& shutter =
       *app.add_option("--shutter", a.shutter,
@@ -156,12 +158,18 @@ void check_animation(const RenderArguments& a) {
     throw Error(ErrorKind::usage, "--animation needs --frame or --frames: which time to show");
 }
 
+bool wants_motion(const RenderArguments& a) {
+  RenderOptions passes;
+  parse_passes(a.passes, passes);
+  return passes.motion;
+}
+
 void check_motion(const RenderArguments& a) {
   const double fps = frames_per_second(a);
   if (!(std::isfinite(fps) && fps > 0))
     throw Error(ErrorKind::usage, "--fps must be a number above 0");
-  if (a.fps && a.frames.empty() && a.shutter.empty())
-    throw Error(ErrorKind::usage, "--fps needs --frames or --shutter");
+  if (a.fps && a.frames.empty() && a.shutter.empty() && !wants_motion(a))
+    throw Error(ErrorKind::usage, "--fps needs --frames, --shutter or --passes motion");
   if (a.shutter.empty()) return check_animation(a);
   if (!a.frame && a.frames.empty())
     throw Error(ErrorKind::usage, "--shutter needs --frame or --frames: when it opens");

@@ -249,6 +249,11 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
     return hits(p) > 0 ? sums.at(7, p) / (double{layout.depth_scale} * hits(p))
                        : std::numeric_limits<double>::infinity();
   });
+  for (std::size_t axis = 0; axis < 2 && !picture.motion.empty(); ++axis) {
+    planes.add(axis == 0 ? "motion.X" : "motion.Y", [&](std::uint32_t p) {
+      return hits(p) > 0 ? picture.motion.mean(p, axis, hits(p)) : 0.0;
+    });
+  }
   planes.add("samples",
              [&](std::uint32_t p) { return picture.samples[p] / splitting_factor(options); });
   if (options.visits) add_visits(planes, sums, picture, layout, options);

@@ -10,6 +10,7 @@
 
 #include "device/context.hpp"
 #include "film/matte_sums.hpp"
+#include "film/motion_sums.hpp"
 
 namespace dapple {
 
@@ -20,6 +21,7 @@ struct TracedPicture {
   /// irradiance. Empty without a target, or if interrupted before they are known.
   std::vector<std::vector<float>> errors;
   MatteSums mattes;                            ///< of no pixels unless asked for
+  MotionSums motion;                           ///< of no pixels unless asked for
   std::map<std::string, double> pass_seconds;  ///< device seconds by label, of all runs
   std::size_t queue_bytes = 0;
   bool interrupted = false;

@@ -45,7 +45,7 @@ class PictureTracer {
  public:
   PictureTracer(const Device& device, const DeviceScene& scene, const View& view,
                 const RenderOptions& options, const FilmLayout& layout, TraceState state,
-                const MatteLookup* mattes)
+                const HitLookups& lookups)
       : context_(device.context()),
         scene_(*scene.buffers),
         options_(options),
@@ -54,10 +54,11 @@ class PictureTracer {
         width_(view.crop.width()),
         camera_(camera_params(view, options, scene_.bounds)),
         state_(std::move(state)),
-        lookup_(mattes),
-        mattes_(mattes ? layout.pixels : 0) {
-    camera_.keep_hits = is_shaded() || mattes;
-    if (mattes) camera_.medium_error = 0;  // a medium's surfaces have no names
+        lookups_(lookups),
+        mattes_(lookups.mattes ? layout.pixels : 0),
+        motion_(lookups.motion ? layout.pixels : 0) {
+    camera_.keep_hits = is_shaded() || lookups_.any();
+    if (lookups_.any()) camera_.medium_error = 0;  // a medium's surfaces belong to no primitive
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
     if (state_.slice_samples == 0)
@@ -82,6 +83,7 @@ class PictureTracer {
       picture.errors = standard_errors(picture.samples);
     picture.sums = context_.view(film_.sums);
     picture.mattes = std::move(mattes_);
+    picture.motion = std::move(motion_);
     context_.finish();
     picture.pass_seconds = pass_seconds();
     picture.queue_bytes = queues_.bytes();
@@ -104,7 +106,8 @@ class PictureTracer {
   void place_sums() {
     earlier_seconds_ = state_.pass_seconds;
     for (const auto& [label, seconds] : context_.pass_seconds()) earlier_seconds_[label] -= seconds;
-    if (lookup_ && !state_.mattes.empty()) mattes_.unpack(state_.mattes, layout_.pixels);
+    if (lookups_.mattes && !state_.mattes.empty()) mattes_.unpack(state_.mattes, layout_.pixels);
+    if (!state_.motion.empty()) motion_ = std::move(state_.motion);
     if (state_.sums.empty()) return;
     context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
     context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
@@ -115,6 +118,7 @@ class PictureTracer {
     state_.sums = {};
     state_.squares = {};
     state_.mattes = {};
+    state_.motion = MotionSums();
   }
 
   void read_state(const SamplePlan& plan) {
@@ -123,7 +127,8 @@ class PictureTracer {
     context_.read(film_.sums, state_.sums.data(), layout_.sum_bytes());
     context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
     context_.finish();
-    if (lookup_) state_.mattes = mattes_.packed();
+    if (lookups_.mattes) state_.mattes = mattes_.packed();
+    state_.motion = motion_;
     state_.samples = plan.samples();
     state_.pass_seconds = pass_seconds();
   }
@@ -229,7 +234,7 @@ class PictureTracer {
     camera_.slice = slice;
     resolve_.slice = slice;
     camera_pass(context_, scene_, queues_, camera_);
-    if (lookup_) count_mattes(slice);
+    if (lookups_.any()) look_up_hits(slice);
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);
@@ -245,7 +250,7 @@ class PictureTracer {
 
   /// Adds the samples of the slice, pixel by pixel, each in its order. The points still have what
   /// the camera pass kept for the shading pass.
-  void count_mattes(const SliceParams& slice) {
+  void look_up_hits(const SliceParams& slice) {
     const std::vector<PixelWork>& work = state_.round.groups[state_.round.group].work;
     const HostView point_view = context_.view(queues_.points);
     const HostView hit_view = context_.view(queues_.sample_hits);
@@ -256,8 +261,15 @@ class PictureTracer {
       const uint begin = entry * slice.sample_count;
       for (uint i = begin; i < begin + slice.sample_count; ++i) {
         if (!(hits[i / DAPPLE_HIT_BITS].hits >> i % DAPPLE_HIT_BITS & 1u)) continue;
-        const auto ids = lookup_->at(std::bit_cast<uint>(points[i].t), points[i].visits);
-        mattes_.add(pixel, ids.object, ids.material);
+        const uint instance = std::bit_cast<uint>(points[i].t), primitive = points[i].visits;
+        if (lookups_.mattes) {
+          const auto ids = lookups_.mattes->at(instance, primitive);
+          mattes_.add(pixel, ids.object, ids.material);
+        }
+        if (lookups_.motion) {
+          const float* at = points[i].position;
+          motion_.add(pixel, lookups_.motion->at(instance, primitive, {at[0], at[1], at[2]}));
+        }
       }
     });
   }
@@ -332,8 +344,9 @@ class PictureTracer {
   FilmBuffers film_;
   std::vector<std::vector<float>> variances_;  ///< of the finished film, if known
   TraceState state_;  ///< without sums and squares while these are on the device
-  const MatteLookup* lookup_;
+  const HitLookups& lookups_;
   MatteSums mattes_;
+  MotionSums motion_;
   double traced_ = 0;    ///< number of samples of all pixels
   double progress_ = 0;  ///< [0,1], estimated; never decreases
   std::map<std::string, double> earlier_seconds_;
@@ -345,8 +358,8 @@ class PictureTracer {
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
                             const RenderOptions& options, const FilmLayout& layout,
                             const TraceControl& control, TraceState state,
-                            const MatteLookup* mattes) {
-  return PictureTracer(device, scene, view, options, layout, std::move(state), mattes)
+                            const HitLookups& lookups) {
+  return PictureTracer(device, scene, view, options, layout, std::move(state), lookups)
       .trace(control);
 }
 

@@ -2,11 +2,14 @@
 // sampling chooses the pixels of each round.
 #pragma once
 
+#include <optional>
+
 #include "dapple/render.hpp"
 #include "device/upload/scene_upload.hpp"
 #include "film/film_sums.hpp"
 #include "film/traced_picture.hpp"
 #include "render/matte_lookup.hpp"
+#include "render/motion_lookup.hpp"
 #include "render/trace_state.hpp"
 #include "sampling/sample_plan.hpp"
 
@@ -21,12 +24,20 @@ struct TraceControl {
   SampleOrder order = SampleOrder::pixels;
 };
 
+/// What the hits of camera rays are looked up in on the host; with either of them there are no
+/// media.
+struct HitLookups {
+  std::optional<MatteLookup> mattes;   ///< count what the samples hit
+  std::optional<MotionLookup> motion;  ///< add up how they move until the next frame
+  [[nodiscard]] bool any() const { return mattes || motion; }
+};
+
 /// Runs every pass that `options` select over the view's crop. The result depends on
 /// neither the slices nor the device's threads. Continues from `state`, which must fit the picture,
-/// unless it is empty. `mattes`: count what the samples hit; then there are no media.
+/// unless it is empty.
 TracedPicture trace_picture(const Device& device, const DeviceScene& scene, const View& view,
                             const RenderOptions& options, const FilmLayout& layout,
                             const TraceControl& control, TraceState state = {},
-                            const MatteLookup* mattes = nullptr);
+                            const HitLookups& lookups = {});
 
 }  // namespace dapple

@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -22,6 +23,7 @@
 #include "passes/kernel_list.hpp"
 #include "render/picture.hpp"
 #include "render/resume.hpp"
+#include "render/shutter.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -140,58 +142,6 @@ MatteNames matte_names(const Scene& scene, const RenderOptions& options) {
   return names;
 }
 
-void check_same_objects(const Scene& first, const Scene& now) {
-  if (first.objects != now.objects)
-    throw Error(ErrorKind::input, "objects come or go while the shutter is open");
-}
-
-/// The moments of an open shutter, as render_shutter() takes them.
-struct Shutter {
-  const std::function<Scene(int)>& scene_at;
-  int times;
-};
-
-/// Bounds of the scene at all moments, if there are several.
-Box3f bounds_of(const Shutter& shutter) {
-  Box3f bounds;
-  for (int time = 0; shutter.times > 1 && time < shutter.times; ++time)
-    bounds.extendBy(scene_bounds(shutter.scene_at(time)));
-  return bounds;
-}
-
-void check_shutter(int times, const RenderOptions& options, const RenderControl& control) {
-  const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
-  if (times == 1) return;
-  if (options.ground) refuse("with motion blur the ground must be part of the scenes");
-  if (is_adaptive(options))
-    refuse("--target-error and --target-rmse do not go with --shutter: give --spp");
-  if (!control.checkpoint.empty() || !control.resume.empty())
-    refuse("--checkpoint and --resume do not go with --shutter");
-  if (times < 1 || times > options.spp)
-    refuse(
-        fmt::format("--motion-samples is {}; it must be from 1 to --spp ({})", times, options.spp));
-}
-
-/// The options with the samples of the first `time` + 1 moments.
-RenderOptions until(const RenderOptions& options, int time, int times) {
-  RenderOptions part = options;
-  part.footprint_spp = footprint_samples(options);
-  part.spp = static_cast<int>(std::int64_t{options.spp} * (time + 1) / times);
-  return by_sample(part);
-}
-
-/// The progress of the first `time` moments out of `times`.
-Progress part_of(const Progress& progress, int time, int times) {
-  if (!progress) return {};
-  return [=](double fraction) { progress(fraction * time / times); };
-}
-
-void check_same_lights(const std::vector<Light>& first, const std::vector<Light>& now) {
-  const bool same = std::equal(first.begin(), first.end(), now.begin(), now.end(),
-                               [](const Light& a, const Light& b) { return a.kind == b.kind; });
-  if (!same) throw Error(ErrorKind::input, "lights come or go while the shutter is open");
-}
-
 /// The options that a device is opened with.
 std::array<std::string, 3> device_key(const RenderOptions& options) {
   return {options.device, options.kernel_dir, name_of(options.packets)};
@@ -213,7 +163,8 @@ struct Renderer::Kept {
                       const RenderOptions& options, const FilmLayout& layout,
                       const std::vector<Light>& lights, TraceControl tracing, TraceState state,
                       RenderStatistics& statistics);
-  std::optional<MatteLookup> matte_lookup(const Scene& scene, const RenderOptions& options) const;
+  std::unique_ptr<HitLookups> hit_lookups(const Shutter& shutter, int time, const Scene& scene,
+                                          const View& view, const RenderOptions& options) const;
 };
 
 void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statistics) {
@@ -256,10 +207,20 @@ void Renderer::Kept::compile(const std::vector<KernelName>& kernels, CompilerPro
   statistics.seconds.kernel_build = compiling.seconds();
 }
 
-std::optional<MatteLookup> Renderer::Kept::matte_lookup(const Scene& scene,
+/// What the hits of camera rays are looked up in, if the options ask for it. `scene` must be on the
+/// device, and live as long as the result.
+std::unique_ptr<HitLookups> Renderer::Kept::hit_lookups(const Shutter& shutter, int time,
+                                                        const Scene& scene, const View& view,
                                                         const RenderOptions& options) const {
-  if (!options.cryptomattes.any()) return {};
-  return MatteLookup(scene, bvh->bvh());
+  auto lookups = std::make_unique<HitLookups>();
+  if (options.cryptomattes.any()) lookups->mattes.emplace(scene, bvh->bvh());
+  if (options.motion) {
+    std::vector<std::string> notes;  // those of this frame again
+    FrameScene next{shutter.next_at(time), {}};
+    next.view = prepare_scene(next.scene, options, notes);
+    lookups->motion.emplace(scene, view, bvh->bvh(), std::move(next));
+  }
+  return lookups;
 }
 
 /// Traces the first moment of the shutter, whose scene is on the device, and then the others: each
@@ -268,7 +229,6 @@ TracedPicture Renderer::Kept::trace(const Shutter& shutter, const Scene& first, 
                                     const RenderOptions& options, const FilmLayout& layout,
                                     const std::vector<Light>& lights, TraceControl tracing,
                                     TraceState state, RenderStatistics& statistics) {
-  std::optional<MatteLookup> mattes = matte_lookup(first, options);
   const Progress progress = tracing.progress;
   if (shutter.times > 1) {
     tracing.save = [&](const TraceState& saved) { state = saved; };
@@ -277,17 +237,17 @@ TracedPicture Renderer::Kept::trace(const Shutter& shutter, const Scene& first, 
   }
   TracedPicture picture =
       trace_picture(*device, on_device, view, until(options, 0, shutter.times), layout, tracing,
-                    std::move(state), mattes ? &*mattes : nullptr);
+                    std::move(state), *hit_lookups(shutter, 0, first, view, options));
   for (int time = 1; time < shutter.times && !picture.interrupted; ++time) {
     Scene moved = shutter.scene_at(time);
     const View moved_view = prepare_scene(moved, options, statistics.notes);
     if (options.light) check_same_lights(lights, moved.lights);
     check_same_objects(first, moved);
     update_scene(moved, options, statistics);
-    mattes = matte_lookup(moved, options);
     tracing.progress = part_of(progress, time + 1, shutter.times);
     picture = trace_picture(*device, on_device, moved_view, until(options, time, shutter.times),
-                            layout, tracing, std::move(state), mattes ? &*mattes : nullptr);
+                            layout, tracing, std::move(state),
+                            *hit_lookups(shutter, time, moved, moved_view, options));
   }
   return picture;
 }
@@ -302,11 +262,13 @@ RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderCo
 }
 
 RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at, int times,
-                                      RenderOptions options, const RenderControl& control) {
+                                      RenderOptions options, const RenderControl& control,
+                                      const std::function<Scene(int)>& next_at) {
   const Stopwatch total;
   validate(options);
-  check_shutter(times, options, control);
-  const Box3f moving_bounds = bounds_of({scene_at, times});
+  const Shutter shutter{scene_at, times, next_at};
+  check_shutter(shutter, options, control);
+  const Box3f moving_bounds = bounds_of(shutter);
   Scene scene = scene_at(0);
   RenderResult result;
   RenderStatistics& statistics = result.statistics;
@@ -348,7 +310,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
 
   const Stopwatch trace_time;
   const TracedPicture picture =
-      kept.trace({scene_at, times}, scene, view, options, layout, lights, std::move(tracing),
+      kept.trace(shutter, scene, view, options, layout, lights, std::move(tracing),
                  resumed ? std::move(resumed->state) : TraceState{}, statistics);
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   add_trace_statistics(statistics, picture, layout);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "film/motion_sums.hpp"
 #include "sampling/round.hpp"
 
 namespace dapple {
@@ -17,6 +18,7 @@ struct TraceState {
   std::vector<float> squares;          ///< planes as FilmLayout says
   std::vector<std::uint32_t> samples;  ///< of each pixel, those of the whole round included
   std::vector<std::uint32_t> mattes;   ///< MatteSums::packed(), if asked for
+  MotionSums motion;                   ///< of no pixels unless asked for; not in checkpoints
   Round round;
   std::map<std::string, double> pass_seconds;  ///< device seconds so far, by label
 };

@@ -111,10 +111,10 @@ struct BakeStatistics {
 };
 
 struct BakeResult {
-  std::vector<BakedMesh> meshes;  ///< as Scene::meshes
+  std::vector<BakedMesh> meshes;         ///< as Scene::meshes
   std::vector<std::string> light_names;  ///< lights of a group are added up under its name
-  BakedTexture texture;            ///< size 0 if not requested
-  std::vector<float> instance_ao;  ///< as Scene::instances, [0,1]; empty if not requested
+  BakedTexture texture;                  ///< size 0 if not requested
+  std::vector<float> instance_ao;        ///< as Scene::instances, [0,1]; empty if not requested
   std::vector<std::vector<V3f>> instance_light;  ///< by light and instance
   BakeStatistics statistics;
   bool interrupted = false;  ///< RenderControl::stop returned true; the values are incomplete

@@ -94,6 +94,8 @@ struct RenderOptions {
   bool ao = true;       ///< make the AO pass
   bool light = true;    ///< make the light passes
   bool visits = false;  ///< make layers of node visits and triangle tests
+  /// Make layers of motion vectors. Only Renderer::render_shutter() can: it takes the next frame.
+  bool motion = false;
   Cryptomattes cryptomattes;
   float ao_distance = 0.0f;  ///< metres; 0 is no limit
   float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit

@@ -104,10 +104,11 @@ class Renderer {
   /// equal part of `options.spp`, at least one. `scene_at(k)`, k in [0, times), returns the scene
   /// at the k-th moment; it is called twice for each. All scenes have the same meshes, instances
   /// and lights, in other poses. They include their ground (`options.ground` is refused); the
-  /// metadata are those of the first. Throws as render(), and Error usage for targets and
-  /// checkpoints.
+  /// metadata are those of the first. `next_at(k)`: the scene one frame after scene_at(k), for
+  /// motion vectors. Throws as render(), and Error usage for targets and checkpoints.
   RenderResult render_shutter(const std::function<Scene(int)>& scene_at, int times,
-                              RenderOptions options, const RenderControl& control = {});
+                              RenderOptions options, const RenderControl& control = {},
+                              const std::function<Scene(int)>& next_at = {});
 
  private:
   struct Kept;

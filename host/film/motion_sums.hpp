@@ -1,0 +1,40 @@
+// Sums of motion vectors over the samples of each pixel, in fixed point, so that they do not depend
+// on the order of slices. In: motions in pixels. Out: their means.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+class MotionSums {
+ public:
+  explicit MotionSums(std::size_t pixels = 0) : sums_(pixels) {}
+
+  /// Adds one sample, clamped to kMax pixels; one that is not a number counts as 0. Different
+  /// pixels may be added to in parallel.
+  void add(std::size_t pixel, const Imath::V2d& motion) {
+    for (int axis = 0; axis < 2; ++axis)
+      if (!std::isnan(motion[axis]))
+        sums_[pixel][static_cast<std::size_t>(axis)] +=
+            std::llround(std::clamp(motion[axis], -kMax, kMax) * kScale);
+  }
+  /// The mean of `count` samples, pixels; `axis` 0 or 1.
+  [[nodiscard]] double mean(std::size_t pixel, std::size_t axis, double count) const {
+    return static_cast<double>(sums_[pixel][axis]) / (kScale * count);
+  }
+  [[nodiscard]] bool empty() const { return sums_.empty(); }
+
+ private:
+  /// 2^24 samples of the largest motion fit 63 bits.
+  static constexpr double kMax = 1 << 20, kScale = 1 << 18;
+
+  std::vector<std::array<std::int64_t, 2>> sums_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,73 @@
+#include "render/shutter.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "camera/camera_splitting.hpp"
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorKind::usage, why); }
+
+void check_motion(const Shutter& shutter, const RenderOptions& options,
+                  const RenderControl& control) {
+  if (!options.motion) return;
+  if (!shutter.next_at)
+    refuse("motion vectors need the next frame: give --frame or --frames (render_shutter())");
+  if (options.ground) refuse("with motion vectors the ground must be part of the scenes");
+  if (!control.checkpoint.empty() || !control.resume.empty())
+    refuse("--checkpoint and --resume do not go with --passes motion");
+}
+
+}  // namespace
+
+void check_shutter(const Shutter& shutter, const RenderOptions& options,
+                   const RenderControl& control) {
+  check_motion(shutter, options, control);
+  if (shutter.times == 1) return;
+  if (options.ground) refuse("with motion blur the ground must be part of the scenes");
+  if (is_adaptive(options))
+    refuse("--target-error and --target-rmse do not go with --shutter: give --spp");
+  if (!control.checkpoint.empty() || !control.resume.empty())
+    refuse("--checkpoint and --resume do not go with --shutter");
+  if (shutter.times < 1 || shutter.times > options.spp)
+    refuse(fmt::format("--motion-samples is {}; it must be from 1 to --spp ({})", shutter.times,
+                       options.spp));
+}
+
+Box3f bounds_of(const Shutter& shutter) {
+  Box3f bounds;
+  for (int time = 0; shutter.times > 1 && time < shutter.times; ++time)
+    bounds.extendBy(scene_bounds(shutter.scene_at(time)));
+  return bounds;
+}
+
+RenderOptions until(const RenderOptions& options, int time, int times) {
+  RenderOptions part = options;
+  part.footprint_spp = footprint_samples(options);
+  part.spp = static_cast<int>(std::int64_t{options.spp} * (time + 1) / times);
+  return by_sample(part);
+}
+
+Progress part_of(const Progress& progress, int time, int times) {
+  if (!progress) return {};
+  return [=](double fraction) { progress(fraction * time / times); };
+}
+
+void check_same_lights(const std::vector<Light>& first, const std::vector<Light>& now) {
+  const bool same = std::equal(first.begin(), first.end(), now.begin(), now.end(),
+                               [](const Light& a, const Light& b) { return a.kind == b.kind; });
+  if (!same) throw Error(ErrorKind::input, "lights come or go while the shutter is open");
+}
+
+void check_same_objects(const Scene& first, const Scene& now) {
+  if (first.objects != now.objects)
+    throw Error(ErrorKind::input, "objects come or go while the shutter is open");
+}
+
+}  // namespace dapple

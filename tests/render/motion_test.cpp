@@ -1,0 +1,165 @@
+// Motion vectors of squares and cameras that move, compared with their projections worked out by
+// hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "dapple/error.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+constexpr int kWidth = 48, kHeight = 32;
+constexpr float kDepth = 4;    // of the square, metres
+constexpr float kHalf = 0.5f;  // half height of the picture at distance 1
+constexpr double kPixels = kHeight / 2.0 / kHalf / kDepth;  // of a metre at that depth
+
+struct Pose {
+  V3f square{0, 0, 0}, camera{0, 0, 0};
+  float size = 1;  ///< the vertices' scale about the middle of the square
+  float roll = 0;  ///< of the camera, radians
+};
+
+Scene scene_of(const Pose& pose) {
+  Scene scene;
+  scene.materials.push_back(material_of(1));
+  Mesh mesh;
+  const float s = pose.size;
+  append_grid(mesh, {-s, -s, 0}, {2 * s, 0, 0}, {0, 2 * s, 0}, 3, 0);
+  add_triangles_out_of_sight(mesh);
+  place(scene, std::move(mesh));
+  Instance behind = scene.instances[0];  // a second one, so that the mesh is not merged
+  scene.instances[0].to_world.setTranslation(V3f(0, 0, -kDepth) + pose.square);
+  behind.to_world.setTranslation(V3f(0, 0, 100));
+  scene.instances.push_back(behind);
+  Camera camera;
+  camera.fov_y = 2 * std::atan(kHalf);
+  camera.to_world.rotate(V3f(0, 0, pose.roll));
+  camera.to_world[3][0] = pose.camera.x;
+  camera.to_world[3][1] = pose.camera.y;
+  camera.to_world[3][2] = pose.camera.z;
+  scene.cameras.push_back(camera);
+  return scene;
+}
+
+RenderOptions with_motion() {
+  RenderOptions options;
+  options.width = kWidth;
+  options.height = kHeight;
+  options.spp = 32;
+  options.ao = options.light = false;
+  options.motion = true;
+  return options;
+}
+
+Film picture(const Pose& now, const Pose& next) {
+  return Renderer()
+      .render_shutter([&](int) { return scene_of(now); }, 1, with_motion(), {},
+                      [&](int) { return scene_of(next); })
+      .film;
+}
+
+using Expected = std::function<Imath::V2d(double x, double y)>;
+
+// `expected`: of a point of the square, metres from its middle, x right and y up.
+void expect_motion(const Film& film, const Expected& expected) {
+  const auto plane = [&](const char* name) { return film.find(name)->pixels; };
+  const auto x = plane("motion.X"), y = plane("motion.Y"), alpha = plane("A");
+  int covered = 0;
+  for (int p = 0; p < kWidth * kHeight; ++p) {
+    if (alpha[p] == 0) {
+      EXPECT_EQ(x[p], 0);
+      EXPECT_EQ(y[p], 0);
+    }
+    if (alpha[p] < 1) continue;
+    ++covered;
+    // Motions are linear over the pixel: the mean of its stratified samples is that of its middle
+    // to an eighth of the pixel's own variation.
+    const auto seen = expected((p % kWidth + 0.5 - kWidth / 2) / kPixels,
+                               (kHeight / 2 - p / kWidth - 0.5) / kPixels);
+    EXPECT_NEAR(x[p], seen.x, 0.01) << p;
+    EXPECT_NEAR(y[p], seen.y, 0.01) << p;
+  }
+  EXPECT_GT(covered, 100);
+}
+
+TEST(Motion, AMovingSquareMovesByItsProjectionEverywhere) {
+  expect_motion(picture({}, {.square = {0.3f, -0.2f, 0}}),
+                [](double, double) { return Imath::V2d(0.3, -0.2) * kPixels; });
+}
+
+TEST(Motion, AMovingCameraMovesStillSurfacesTheOtherWay) {
+  expect_motion(picture({}, {.camera = {0.3f, -0.2f, 0}}),
+                [](double, double) { return Imath::V2d(-0.3, 0.2) * kPixels; });
+}
+
+TEST(Motion, AnApproachingCameraMakesPointsMoveFromTheMiddle) {
+  // From depth 4 to depth 3.9: farther from the middle by a part of 4 / 3.9 - 1.
+  expect_motion(picture({}, {.camera = {0, 0, -0.1f}}),
+                [](double x, double y) { return Imath::V2d(x, y) * kPixels * (kDepth / 3.9 - 1); });
+}
+
+TEST(Motion, ARollingCameraTurnsTheImage) {
+  constexpr double kRoll = 0.05;
+  expect_motion(picture({}, {.roll = static_cast<float>(kRoll)}), [](double x, double y) {
+    const double c = std::cos(kRoll), s = std::sin(kRoll);
+    return Imath::V2d(x * c + y * s - x, y * c - x * s - y) * kPixels;
+  });
+}
+
+TEST(Motion, DeformedMeshesMoveByTheirVertices) {
+  expect_motion(picture({}, {.size = 1.1f}),
+                [](double x, double y) { return Imath::V2d(x, y) * kPixels * 0.1; });
+}
+
+TEST(Motion, WhatStandsStillHasNone) {
+  const Film film = picture({}, {});
+  for (const char* name : {"motion.X", "motion.Y"})
+    for (const float value : film.find(name)->pixels) EXPECT_EQ(value, 0);
+}
+
+TEST(Motion, PointsBehindTheNextCameraHaveNone) {
+  const Film film = picture({}, {.camera = {0, 0, -10}});
+  for (const float value : film.find("motion.X")->pixels) EXPECT_EQ(value, 0);
+}
+
+TEST(Motion, AShutterAddsUpTheMotionsOfItsMoments) {
+  const auto at = [](int k) { return scene_of({.square = {0.1f * static_cast<float>(k), 0, 0}}); };
+  const auto next = [](int k) {
+    return scene_of({.square = {0.1f * static_cast<float>(k) + 0.2f, 0, 0}});
+  };
+  const Film film = Renderer().render_shutter(at, 2, with_motion(), {}, next).film;
+  expect_motion(film, [](double, double) { return Imath::V2d(0.2, 0) * kPixels; });
+}
+
+void expect_refused(const std::function<RenderResult()>& render_it, ErrorKind kind) {
+  try {
+    render_it();
+    ADD_FAILURE() << "was not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+  }
+}
+
+TEST(Motion, WithoutANextFrameOrWithOtherMeshesItIsRefused) {
+  expect_refused([] { return render(scene_of({}), with_motion()); }, ErrorKind::usage);
+  const auto fewer = [](int) {
+    Scene scene = scene_of({});
+    scene.instances.pop_back();  // and the mesh is merged
+    return scene;
+  };
+  expect_refused(
+      [&] {
+        return Renderer().render_shutter([](int) { return scene_of({}); }, 1, with_motion(), {},
+                                         fewer);
+      },
+      ErrorKind::input);
+}
+
+}  // namespace
+}  // namespace dapple
