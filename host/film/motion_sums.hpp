@@ -14,7 +14,8 @@ namespace dapple {
 
 class MotionSums {
  public:
-  explicit MotionSums(std::size_t pixels = 0) : sums_(pixels) {}
+  MotionSums() = default;
+  explicit MotionSums(std::size_t pixels) : sums_(pixels) {}
 
   /// Adds one sample, clamped to kMax pixels; one that is not a number counts as 0. Different
   /// pixels may be added to in parallel.
