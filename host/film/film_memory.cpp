@@ -9,15 +9,20 @@
 namespace dapple {
 namespace {
 
-constexpr std::size_t kSurfaceChannels = 21;  // RGBA, ao, bent, N, Ng, P, Z, samples
+constexpr std::size_t kSurfaceChannels = 24;  // RGBA, albedo, ao, bent, N, Ng, P, Z, samples
 constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
 constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if all were domes
 
 /// All values count twice. Sums are on the device, which on a CPU uses the same memory, and in the
 /// host's copy; channels are in the film and in the file that is being written.
-std::size_t bytes_per_pixel(std::size_t lights) {
-  const std::size_t sums = kSurfacePlanes + kAoPlanes + kShadingPlanes + kLightPlanes * lights;
-  const std::size_t channels = kSurfaceChannels + kLightChannels * lights;
+std::size_t bytes_per_pixel(std::size_t lights, bool with_backs) {
+  std::size_t sums =
+      kSurfacePlanes + kAoPlanes + kNormalPlanes + kAlbedoPlanes + kLightPlanes * lights;
+  std::size_t channels = kSurfaceChannels + kLightChannels * lights;
+  if (with_backs) {
+    sums += kAoPlanes + kLightPlanes * lights;
+    channels += 3 * (1 + lights);
+  }
   return 2 * (sums * sizeof(std::int64_t) + channels * sizeof(float));
 }
 
@@ -27,10 +32,10 @@ double machine_bytes() {
 
 }  // namespace
 
-void check_film_memory(const View& view, std::size_t light_count) {
+void check_film_memory(const View& view, std::size_t light_count, bool with_backs) {
   constexpr double kGigabyte = 1e9;
   const double needs = static_cast<double>(view.crop.width()) * view.crop.height() *
-                       static_cast<double>(bytes_per_pixel(light_count));
+                       static_cast<double>(bytes_per_pixel(light_count, with_backs));
   const double has = machine_bytes();
   if (needs <= has / 2 || has <= 0) return;
   throw Error(

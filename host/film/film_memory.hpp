@@ -10,7 +10,7 @@
 namespace dapple {
 
 /// Throws Error usage when the sums and layers of a picture of this many lights take more than
-/// half of the machine's memory.
-void check_film_memory(const View& view, std::size_t light_count);
+/// half of the machine's memory. `with_backs`: RenderOptions::back.
+void check_film_memory(const View& view, std::size_t light_count, bool with_backs);
 
 }  // namespace dapple

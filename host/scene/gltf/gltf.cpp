@@ -35,8 +35,8 @@ MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, boo
   timeless_.files = document_.files;
   timeless_.animations = list_animations(document_);
   // The needed materials and images do not depend on the pose.
-  materials_ =
-      read_materials(document_, place_nodes(document_), options.line_radius > 0, timeless_);
+  materials_ = read_materials(document_, place_nodes(document_), options.line_radius > 0,
+                              options.colors, timeless_);
 }
 
 Scene MovingGltf::at(std::optional<double> seconds) const {
