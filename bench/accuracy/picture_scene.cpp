@@ -90,6 +90,7 @@ std::string PictureScene::device_name() {
 
 Picture PictureScene::render(const RenderOptions& asked) {
   RenderOptions chosen = asked;
+  chosen.albedo = false;  // the scene is uploaded without colours
   chosen.camera_splitting = choose_camera_splitting(asked, scene_, view_);
   const RenderOptions options = by_sample(chosen);
   open();

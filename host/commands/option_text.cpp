@@ -144,6 +144,29 @@ double parse_seconds(const std::string& flag, const std::string& text) {
               fmt::format("{} {}: expected a time above 0, as in 30, 30s, 5m or 1h", flag, text));
 }
 
+PngOptions parse_png_options(const std::string& exposure, const std::string& background) {
+  constexpr float kMaxStops = 100;
+  PngOptions options;
+  if (exposure != "auto") {
+    options.exposure = parse_number<float>("--exposure", exposure);
+    if (!(std::abs(*options.exposure) <= kMaxStops)) {
+      throw Error(ErrorKind::usage, fmt::format("--exposure {}: it is auto, or from -{:g} to {:g}",
+                                                exposure, kMaxStops, kMaxStops));
+    }
+  }
+  if (background == "sky") return options;
+  options.background = PngOptions::Background::none;
+  if (background == "none") return options;
+  options.background = PngOptions::Background::color;
+  options.color = parse_vector("--background", background);
+  for (int channel = 0; channel < 3; ++channel) {
+    if (options.color[channel] >= 0 && options.color[channel] <= 1) continue;
+    throw Error(ErrorKind::usage,
+                fmt::format("--background {}: it is sky, none or R,G,B from 0 to 1", background));
+  }
+  return options;
+}
+
 Normals parse_normals(const std::string& text) {
   if (text == "shading") return Normals::shading;
   if (text == "geometric") return Normals::geometric;
@@ -160,19 +183,25 @@ Packets parse_packets(const std::string& text) {
 }
 
 void parse_passes(const std::string& text, RenderOptions& options) {
-  options.ao = options.light = options.visits = options.motion = false;
+  options.ao = options.light = options.albedo = options.back = options.visits = false;
+  options.motion = false;
   for (const std::string& pass : split(text, ',')) {
     if (pass == "ao") {
       options.ao = true;
     } else if (pass == "light") {
       options.light = true;
+    } else if (pass == "albedo") {
+      options.albedo = true;
+    } else if (pass == "back") {
+      options.back = true;
     } else if (pass == "visits") {
       options.visits = true;
     } else if (pass == "motion") {
       options.motion = true;
     } else {
-      throw Error(ErrorKind::usage,
-                  fmt::format("--passes {}: there are ao, light, motion and visits", text));
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("--passes {}: there are ao, light, albedo, back, motion and visits", text));
     }
   }
 }

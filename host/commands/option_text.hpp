@@ -19,6 +19,8 @@ PixelRect parse_crop(const std::string& text);
 std::pair<std::string, float> parse_opacity(const std::string& text);
 /// "exact" or "prefiltered"
 Estimator parse_estimator(const std::string& text);
+/// "auto" or stops; "sky", "none" or "R,G,B"
+PngOptions parse_png_options(const std::string& exposure, const std::string& background);
 /// "shading" or "geometric"
 Normals parse_normals(const std::string& text);
 /// "auto", "none", "pixel" or "point"

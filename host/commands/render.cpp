@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -22,6 +23,7 @@
 #include "files/output_file.hpp"
 #include "film/exr_output.hpp"
 #include "film/exr_parts.hpp"
+#include "film/tone_map.hpp"
 
 namespace dapple {
 namespace {
@@ -41,10 +43,11 @@ void write_statistics(const RenderStatistics& statistics, const std::string& pat
   write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
 }
 
-void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format) {
+void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format,
+                    const PngOptions& png) {
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
   write_exr(result.film, frame.output, format, result.interrupted ? Durable::no : Durable::yes);
-  if (!frame.png.empty()) write_png(result.film, frame.png);
+  if (!frame.png.empty()) write_png(result.film, frame.png, "", png);
   if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
 }
 
@@ -122,6 +125,7 @@ void run_render(const RenderArguments& a) {
   Shot shot(a, options);
   NotePrinter notes;
   Renderer renderer;
+  PngOptions png = parse_png_options(a.exposure, a.background);
   for (const Frame& frame : frames) {
     progress.begin(frame.title);
     Scene scene = shot.frame(first_seconds(a, frame));
@@ -138,7 +142,11 @@ void run_render(const RenderArguments& a) {
     if (frame.seconds)
       result.film.metadata.settings.emplace_back("frame_seconds",
                                                  fmt::format("{}", *frame.seconds));
-    write_pictures(result, frame, format);
+    // The frames of a sequence have the exposure and the sky of the first.
+    if (!png.exposure && !frame.png.empty())
+      png.exposure = std::log2(automatic_exposure(result.film));
+    if (!options.ambient) options.ambient = static_cast<float>(statistics.ambient);
+    write_pictures(result, frame, format, png);
     for (const std::string& name : half_layers_without_planes(result.film, format))
       statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
     statistics.seconds.load = load_seconds;

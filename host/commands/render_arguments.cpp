@@ -50,11 +50,14 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
          "--footprint", o.footprint,
          "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
       ->capture_default_str();
-  app.add_option(
-         "--passes", a.passes,
-         "Passes to render, with commas between: ao, light; motion: pixels to the next frame; "
-         "visits: the cost of rays")
+  app.add_option("--passes", a.passes,
+                 "Passes to render, with commas between: ao, light; albedo: colours; back: AO "
+                 "and lights of the other side; motion: pixels to the next frame; visits: the "
+                 "cost of rays")
       ->capture_default_str();
+  app.add_option("--ambient", o.ambient,
+                 "Radiance of a uniform sky that AO shadows, in RGBA; default: 1 without lights, 0 "
+                 "with a dome, otherwise a tenth of the lights");
   app.add_option("--normals", a.normals,
                  "shading: surfaces are lit as the normals of their mesh say; geometric: as facets")
       ->capture_default_str();
@@ -123,6 +126,12 @@ void add_file_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--png", a.png,
                  "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
                  "NAME_visits.png");
+  app.add_option("--exposure", a.exposure,
+                 "Exposure of the PNG in stops: 1 is twice as bright; auto: by what is seen")
+      ->capture_default_str();
+  app.add_option("--background", a.background,
+                 "Of the PNG: sky, none (an alpha channel) or R,G,B, linear, 0 to 1")
+      ->capture_default_str();
   app.add_option("--half", a.half,
                  "Layers to store as 16-bit floats, with commas between, or all; Z, P, samples and "
                  "ids stay 32-bit");
@@ -246,6 +255,7 @@ RenderOptions to_options(const RenderArguments& a) {
     o.look = LookAt{parse_vector("--look-from", a.look_from), parse_vector("--look-at", a.look_at),
                     a.up.empty() ? V3f(0, 1, 0) : parse_vector("--up", a.up)};
   }
+  parse_png_options(a.exposure, a.background);
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
   check_motion(a);

@@ -16,8 +16,8 @@ namespace dapple {
 struct RenderArguments {
   std::string scene, output, png, stats_json, lights, dome;
   double dome_rotation = 0;
-  std::string estimator = "prefiltered", passes = "ao,light", packets = "auto";
-  std::string normals = "shading";
+  std::string estimator = "prefiltered", passes = "ao,light,albedo", packets = "auto";
+  std::string normals = "shading", exposure = "auto", background = "sky";
   std::string cryptomatte, half, compression = "zip";
   bool multipart = false;
   std::string look_from, look_at, up, crop;

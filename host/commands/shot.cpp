@@ -21,6 +21,13 @@ Light read_dome(const RenderArguments& a) {
   return dome;
 }
 
+/// Colours are read only where they are shown.
+SceneOptions scene_options_of(const RenderArguments& a, const RenderOptions& options) {
+  SceneOptions scene_options = a.scene_options;
+  scene_options.colors = options.albedo;
+  return scene_options;
+}
+
 }  // namespace
 
 void use_lights(Scene& scene, const std::vector<Light>& lights) {
@@ -34,12 +41,12 @@ Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), op
   if (!a.lights.empty()) lights_ = load_lights(a.lights);
   if (!a.dome.empty()) dome_ = read_dome(a);
   if (a.frames.empty() && a.shutter.empty() && !options.motion) return;
-  moving_.emplace(a.scene, a.scene_options);
+  moving_.emplace(a.scene, scene_options_of(a, options));
   options.ground = false;
 }
 
 Scene Shot::frame(std::optional<double> seconds) {
-  SceneOptions scene_options = arguments_.scene_options;
+  SceneOptions scene_options = scene_options_of(arguments_, options_);
   scene_options.time = seconds;
   Scene scene = moving_ ? moving_->at(seconds) : load_scene(arguments_.scene, scene_options);
   if (lights_) use_lights(scene, *lights_);

@@ -9,7 +9,7 @@
 namespace dapple {
 namespace {
 
-constexpr std::size_t kSurfaceChannels = 21;  // RGBA, ao, bent, N, Ng, P, Z, samples
+constexpr std::size_t kSurfaceChannels = 24;  // RGBA, albedo, ao, bent, N, Ng, P, Z, samples
 constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
 constexpr std::size_t kMatteChannels = 12;    // of crypto_object or crypto_material
 constexpr std::size_t kMatteSlotBytes = 80;   // MatteSums, two slots
@@ -17,9 +17,19 @@ constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if al
 
 /// All values count twice. Sums are on the device, which on a CPU uses the same memory, and in the
 /// host's copy; channels are in the film and in the file that is being written.
-std::size_t bytes_per_pixel(std::size_t lights, const Cryptomattes& mattes) {
-  const std::size_t sums = kSurfacePlanes + kAoPlanes + kShadingPlanes + kLightPlanes * lights;
-  const std::size_t channels = kSurfaceChannels + kLightChannels * lights;
+std::size_t bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
+  std::size_t sums =
+      kSurfacePlanes + kAoPlanes + kNormalPlanes + kAlbedoPlanes + kLightPlanes * lights;
+  std::size_t channels = kSurfaceChannels + kLightChannels * lights;
+  if (options.back) {
+    sums += kAoPlanes + kLightPlanes * lights;
+    channels += 3 * (1 + lights);
+  }
+  if (options.motion) {
+    sums += 2;
+    channels += 2;
+  }
+  const Cryptomattes& mattes = options.cryptomattes;
   const std::size_t types = (mattes.objects ? 1u : 0u) + (mattes.materials ? 1u : 0u);
   return 2 * (sums * sizeof(std::int64_t) + channels * sizeof(float)) +
          types * (2 * kMatteChannels * sizeof(float)) + (types ? kMatteSlotBytes : 0);
@@ -31,10 +41,10 @@ double machine_bytes() {
 
 }  // namespace
 
-void check_film_memory(const View& view, std::size_t light_count, const Cryptomattes& mattes) {
+void check_film_memory(const View& view, std::size_t light_count, const RenderOptions& options) {
   constexpr double kGigabyte = 1e9;
   const double needs = static_cast<double>(view.crop.width()) * view.crop.height() *
-                       static_cast<double>(bytes_per_pixel(light_count, mattes));
+                       static_cast<double>(bytes_per_pixel(light_count, options));
   const double has = machine_bytes();
   if (needs <= has / 2 || has <= 0) return;
   throw Error(

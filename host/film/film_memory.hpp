@@ -10,7 +10,8 @@
 namespace dapple {
 
 /// Throws Error usage when the sums and layers of a picture of this many lights take more than
-/// half of the machine's memory.
-void check_film_memory(const View& view, std::size_t light_count, const Cryptomattes& mattes = {});
+/// half of the machine's memory. `options`: its further layers.
+void check_film_memory(const View& view, std::size_t light_count,
+                       const RenderOptions& options = {});
 
 }  // namespace dapple

@@ -28,7 +28,7 @@ double largest_coordinate(const Box3f& box) {
 }  // namespace
 
 FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
-                       const std::vector<Light>& scene_lights, bool shaded)
+                       const std::vector<Light>& scene_lights, bool has_normals)
     : pixels(view.pixel_count()), plane_count(kSurfacePlanes) {
   if (options.ao) {
     ao = plane_count;
@@ -40,9 +40,25 @@ FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box
     plane_count += lights.back().count();
     squares += 2;
   }
-  if (shaded) {
-    shading = plane_count;
-    plane_count += kShadingPlanes;
+  if (options.back) {
+    if (options.ao) {
+      back_ao = plane_count;
+      plane_count += kAoPlanes;
+    }
+    for (const LightPlaneRange& light : lights) {
+      back_lights.push_back({plane_count, light.channels});
+      plane_count += light.count();
+    }
+    back_squares = squares;
+    squares += 2;
+  }
+  if (has_normals) {
+    normals = plane_count;
+    plane_count += kNormalPlanes;
+  }
+  if (options.albedo) {
+    albedo = plane_count;
+    plane_count += kAlbedoPlanes;
   }
   unit_scale = scale_for(1.0);
   light_scale = scale_for(1024.0 * std::numbers::pi);

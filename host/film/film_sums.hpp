@@ -13,7 +13,8 @@ namespace dapple {
 
 inline constexpr std::uint32_t kSurfacePlanes = 10;
 inline constexpr std::uint32_t kAoPlanes = 6;
-inline constexpr std::uint32_t kShadingPlanes = 3;
+inline constexpr std::uint32_t kNormalPlanes = 3;
+inline constexpr std::uint32_t kAlbedoPlanes = 3;
 
 /// The plane of node visits of camera rays. Triangle tests are in the plane after it, as for all
 /// other rays.
@@ -35,8 +36,13 @@ struct FilmLayout {
   std::uint32_t pixels = 0;
   std::uint32_t plane_count = 0;
   std::uint32_t ao = 0;       ///< first AO plane
-  std::uint32_t shading = 0;  ///< first plane of the shading pass; 0: there is no such pass
+  std::uint32_t normals = 0;  ///< first plane of shading normals; 0: there are none
+  std::uint32_t albedo = 0;   ///< first of three planes, or 0
   std::vector<LightPlaneRange> lights;
+  std::uint32_t back_ao = 0;                 ///< first AO plane of the backs, or 0
+  std::vector<LightPlaneRange> back_lights;  ///< of the backs
+  /// Planes of squares that the backs write, and that nobody reads.
+  std::uint32_t back_squares = 0;
   std::uint32_t squares = 0;  ///< number of planes of squares: two for AO, two for each light
   float unit_scale = 0;       ///< for values up to 1
   float light_scale = 0;      ///< for irradiance at radiance 1, up to 1024 pi
@@ -44,7 +50,9 @@ struct FilmLayout {
   float depth_scale = 0;
 
   FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
-             const std::vector<Light>& lights, bool shaded = false);
+             const std::vector<Light>& lights, bool has_normals = false);
+  /// The first plane of the shading pass; 0: there is no such pass.
+  [[nodiscard]] std::uint32_t shading() const { return normals ? normals : albedo; }
   [[nodiscard]] std::uint32_t ao_visits() const { return ao + 4; }
   /// The plane of a light's squared means of sample batches. The next plane is for pairs of
   /// batches. AO's planes are 0 and 1.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <span>
@@ -75,6 +76,12 @@ class LightPlanes {
   [[nodiscard]] V3d sum(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
     V3d value(0.0);
     for (const std::size_t l : lights) value += one(l, pixel);
+    return value;
+  }
+  /// The same of the other side of the surfaces.
+  [[nodiscard]] V3d back(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
+    V3d value(0.0);
+    for (const std::size_t l : lights) value += of_planes(l, layout_.back_lights[l].first, pixel);
     return value;
   }
   [[nodiscard]] double largest_unoccluded() const {
@@ -176,6 +183,19 @@ void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
   planes.add("visits.triangles", [&](std::uint32_t p) { return total(p, 1); });
 }
 
+/// The radiance of the sky that AO lets through: the option's; else 1 without lights, 0 beside a
+/// dome, which is a sky itself, and beside other lights a tenth of what they reflect from a white
+/// surface.
+double ambient_of(const RenderOptions& options, const std::vector<Light>& lights,
+                  const LightPlanes& light) {
+  constexpr double kShare = 0.1;
+  if (options.ambient) return *options.ambient;
+  if (lights.empty()) return 1;
+  const bool dome = std::any_of(lights.begin(), lights.end(),
+                                [](const Light& l) { return l.kind == LightKind::dome; });
+  return dome ? 0 : kShare * light.largest_unoccluded() / std::numbers::pi;
+}
+
 }  // namespace
 
 std::vector<std::string> light_names(const std::vector<Light>& lights) {
@@ -205,25 +225,36 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
   const Sums sums(picture.sums.values<std::int64_t>(), layout.pixels);
   const auto spp = [&](std::uint32_t p) { return sample_count(picture, p); };
   const auto hits = [&](std::uint32_t p) { return sums.at(0, p); };
-  const auto ao = [&](std::uint32_t p) {
-    if (!options.ao) return 1.0;
-    return sums.at(layout.ao, p) / (double{layout.unit_scale} * options.ao_rays * spp(p)) + 1.0 -
+  const auto ao_of = [&](std::uint32_t plane, std::uint32_t p) {
+    return sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * spp(p)) + 1.0 -
            hits(p) / spp(p);
   };
+  const auto ao = [&](std::uint32_t p) { return options.ao ? ao_of(layout.ao, p) : 1.0; };
   const LightPlanes light(sums, picture, layout, options, lights);
-  const double largest = lights.empty() ? 0.0 : light.largest_unoccluded();
+  statistics.ambient = ambient_of(options, lights, light);
+  const V3d ambient(statistics.ambient);
 
   Planes planes(layout.pixels);
+  const auto mean3 = [&](std::uint32_t plane, double scale) {
+    return [&, plane, scale](std::uint32_t p) {
+      if (hits(p) == 0) return V3d(0.0);
+      return V3d(sums.at(plane, p), sums.at(plane + 1, p), sums.at(plane + 2, p)) /
+             (scale * hits(p));
+    };
+  };
+  const auto albedo = [&](std::uint32_t p) {
+    return layout.albedo ? mean3(layout.albedo, layout.unit_scale)(p) : V3d(1.0);
+  };
   // RGB is premultiplied by A: camera rays that miss the scene count as 0.
   planes.add3("", "RGB", [&](std::uint32_t p) {
     const double covered = ao(p) - (1.0 - hits(p) / spp(p));
-    if (lights.empty()) return V3d(covered);
-    const double over_hits = hits(p) > 0 ? covered * spp(p) / hits(p) : 0.0;
-    return largest > 0 ? light.shadowed(p) * (over_hits / largest) : V3d(0.0);
+    return albedo(p) * (ambient * covered + light.shadowed(p) / std::numbers::pi);
   });
   planes.add("A", [&](std::uint32_t p) { return hits(p) / spp(p); });
   if (options.ao) {
     planes.add3("ao", "RGB", [&](std::uint32_t p) { return V3d(ao(p)); });
+    if (options.back)
+      planes.add3("ao.back", "RGB", [&](std::uint32_t p) { return V3d(ao_of(layout.back_ao, p)); });
     planes.add3("bent", "XYZ", [&](std::uint32_t p) {
       V3d bent(sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p), sums.at(layout.ao + 3, p));
       return bent.length2() > 0 ? bent.normalized() : V3d(0.0);
@@ -233,17 +264,15 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
   for (const LightLayer& layer : light_layers(lights)) {
     planes.add3("light." + layer.name, "RGB",
                 [&](std::uint32_t p) { return light.sum(layer.lights, p); });
+    if (options.back) {
+      planes.add3("light." + layer.name + ".back", "RGB",
+                  [&](std::uint32_t p) { return light.back(layer.lights, p); });
+    }
   }
-  const auto mean3 = [&](std::uint32_t plane, double scale) {
-    return [&, plane, scale](std::uint32_t p) {
-      if (hits(p) == 0) return V3d(0.0);
-      return V3d(sums.at(plane, p), sums.at(plane + 1, p), sums.at(plane + 2, p)) /
-             (scale * hits(p));
-    };
-  };
+  if (layout.albedo) planes.add3("albedo", "RGB", albedo);
   // Geometric normals are a layer of their own where the shading pass made others.
-  planes.add3("N", "XYZ", mean3(layout.shading ? layout.shading : 1, layout.unit_scale));
-  if (layout.shading) planes.add3("Ng", "XYZ", mean3(1, layout.unit_scale));
+  planes.add3("N", "XYZ", mean3(layout.normals ? layout.normals : 1, layout.unit_scale));
+  if (layout.normals) planes.add3("Ng", "XYZ", mean3(1, layout.unit_scale));
   planes.add3("P", "XYZ", mean3(4, layout.position_scale));
   planes.add("Z", [&](std::uint32_t p) {
     return hits(p) > 0 ? sums.at(7, p) / (double{layout.depth_scale} * hits(p))

@@ -1,5 +1,6 @@
 // 8-bit previews: one layer of a film as a PNG of the data window's size. Colours get the
-// sRGB curve; normals and distances are data and stay linear. In: a Film. Out: a file.
+// sRGB curve; normals and distances are data and stay linear. RGBA is exposed and tone mapped. In:
+// a Film. Out: a file.
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #define STBI_WRITE_NO_STDIO
@@ -20,6 +21,7 @@
 #include "files/output_file.hpp"
 #include "film/film_defect.hpp"
 #include "film/heat_color.hpp"
+#include "film/tone_map.hpp"
 
 namespace dapple {
 namespace {
@@ -71,7 +73,8 @@ Range finite_range(const Planes& planes) {
   return range;
 }
 
-Tone tone_of(const std::string& layer, const Planes& planes) {
+Tone tone_of(const Film& film, const std::string& layer, const Planes& planes) {
+  if (layer.empty()) return {0.0f, automatic_exposure(film), true};
   if (layer == "N" || layer == "Ng") return {-1.0f, 0.5f, false};
   const Range range = finite_range(planes);
   if (layer == "Z" || layer == "P") {
@@ -92,6 +95,41 @@ std::uint8_t shown(float value, const Tone& tone) {
   const float clamped = toned > 0 ? std::min(toned, 1.0f) : 0.0f;  // NaN becomes 0
   const float encoded = tone.srgb ? encode_srgb(clamped) : clamped;
   return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
+}
+
+std::uint8_t byte_of(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+}
+
+/// RGBA, exposed, tone mapped and put over the background. Edges are mixed on the display's side: a
+/// bright leaf that covers half of a pixel is half of it.
+ByteImage main_picture(const Film& film, const PngOptions& options) {
+  const Planes colors = planes_of(film, "");
+  const Plane* alphas = film.find("A");
+  const float scale = options.exposure ? std::exp2(*options.exposure) : automatic_exposure(film);
+  const bool with_alpha = options.background == PngOptions::Background::none;
+  const PixelRect& window = film.data_window;
+  const std::size_t width = static_cast<std::size_t>(window.width());
+  const std::size_t pixels = colors.front()->pixels.size(), channels = with_alpha ? 4 : 3;
+  ByteImage image{window.width(), window.height(), static_cast<int>(channels),
+                  std::vector<std::uint8_t>(pixels * channels)};
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const float alpha = alphas == nullptr ? 1.0f : std::clamp(alphas->pixels[p], 0.0f, 1.0f);
+    const V3f linear(colors[0]->pixels[p], colors[1]->pixels[p], colors[2]->pixels[p]);
+    V3f shown = alpha > 0 ? tone_mapped(linear * (scale / alpha)) : V3f(0, 0, 0);
+    if (!with_alpha) {
+      const auto row = static_cast<float>(static_cast<std::size_t>(window.y0) + p / width);
+      const V3f behind = options.background == PngOptions::Background::color
+                             ? options.color
+                             : sky_color(1 - (row + 0.5f) / static_cast<float>(film.height));
+      shown = shown * alpha + behind * (1 - alpha);
+    }
+    for (int c = 0; c < 3; ++c)
+      image.bytes[p * channels + static_cast<std::size_t>(c)] =
+          byte_of(encode_srgb(std::clamp(shown[c], 0.0f, 1.0f)));
+    if (with_alpha) image.bytes[p * channels + 3] = byte_of(alpha);
+  }
+  return image;
 }
 
 void append(void* bytes, void* data, int count) {
@@ -127,7 +165,7 @@ std::string png_chunk(const std::string& type, const std::string& data) {
 }  // namespace
 
 Tone layer_tone(const Film& film, const std::string& layer) {
-  return tone_of(layer, planes_of(film, layer));
+  return tone_of(film, layer, planes_of(film, layer));
 }
 
 ByteImage layer_image(const Film& film, const std::string& layer, const Tone& tone) {
@@ -178,10 +216,12 @@ std::string encode_grey16_png(int width, int height, const std::vector<std::uint
          png_chunk("IEND", {});
 }
 
-void write_png(const Film& film, const std::string& path, const std::string& layer) {
+void write_png(const Film& film, const std::string& path, const std::string& layer,
+               const PngOptions& options) {
   const std::string defect = film_defect(film);
   if (!defect.empty()) throw Error(ErrorKind::failed, "cannot write " + path + ": " + defect);
-  const ByteImage image = layer_image(film, layer, layer_tone(film, layer));
+  const ByteImage image = layer.empty() ? main_picture(film, options)
+                                        : layer_image(film, layer, layer_tone(film, layer));
   write_whole_file(path, encode_png(image, path));
 }
 

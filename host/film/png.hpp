@@ -17,7 +17,7 @@ struct Tone {
   bool srgb = true;
 };
 
-/// Top row first, `channels` bytes a pixel (1 grey, 3 RGB).
+/// Top row first, `channels` bytes a pixel (1 grey, 3 RGB, 4 RGB and alpha that is not multiplied).
 struct ByteImage {
   int width = 0;
   int height = 0;

@@ -10,9 +10,10 @@ namespace dapple {
 
 std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   std::vector<KernelShape> kernels{
-      {kClosestHit, kRayGroup},         {kCompactHits, kScanItems},   {kAoRays, kRayGeneratorGroup},
-      {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},    {kResolveAo, kRayGroup},
-      {kShadePoints, kRayGroup},        {kResolveSurface, kRayGroup}, {kResolveLight, kRayGroup},
+      {kClosestHit, kRayGroup},         {kCompactHits, kScanItems}, {kAoRays, kRayGeneratorGroup},
+      {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
+      {kShadePoints, kRayGroup},        {kTurnPoints, kRayGroup},   {kResolveSurface, kRayGroup},
+      {kResolveLight, kRayGroup},
   };
   for (const bool shared_origin : {true, false})
     kernels.push_back({camera_kernel(shared_origin), kCameraGroup});
@@ -30,6 +31,7 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
                                         bool shaded) {
   std::vector<KernelName> kernels{camera_kernel(is_pinhole(camera)), kCompactHits, kResolveSurface};
   if (shaded) kernels.push_back(kShadePoints);
+  if (options.back) kernels.push_back(kTurnPoints);
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(
         occlusion_kernel(options.estimator, packets_in_picture(context, options.estimator, rays)));

@@ -2,12 +2,37 @@
 
 namespace dapple {
 
+namespace {
+
+/// `film`: null for points whose shading is not added to it.
+void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+           const Buffer& points, const FilmBuffers* film, const ResolveParams& params) {
+  ShadingParams shading{};
+  shading.resolve = params;
+  shading.normals = scene.corner_normals.empty() ? 0u : 1u;
+  shading.albedo = scene.uploaded.colors && film ? 1u : 0u;
+  shading.resolves = film ? 1u : 0u;
+  shading.segment_words = static_cast<uint>(8 * scene.block_values.size());
+  context.launch(kShadePoints, "shading", params.slice.pixel_count,
+                 {scene.nodes, scene.blocks, scene.textured, scene.instances, scene.normals,
+                  scene.color_words, scene.color_materials, scene.color_texels, queues.work, points,
+                  queues.sample_hits, film ? film->sums : Buffer{}, shading},
+                 kRayGroup);
+}
+
+}  // namespace
+
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                   const FilmBuffers& film, const ResolveParams& params) {
-  context.launch(kShadePoints, "shading", params.slice.pixel_count,
-                 {scene.blocks, scene.instances, scene.normals, queues.work, queues.points,
-                  queues.sample_hits, film.sums, params},
+  shade(context, scene, queues, queues.points, &film, params);
+}
+
+void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                      const ResolveParams& params, bool shades) {
+  const uint samples = params.slice.pixel_count * params.slice.sample_count;
+  context.launch(kTurnPoints, "shading", samples, {queues.points, queues.backs, samples},
                  kRayGroup);
+  if (shades) shade(context, scene, queues, queues.backs, nullptr, params);
 }
 
 }  // namespace dapple

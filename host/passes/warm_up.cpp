@@ -21,7 +21,8 @@ struct EmptyStage {
       : context(device.context()), scene(device), queues(make_queues(context, 0, 0)) {
     for (Buffer* buffer :
          {&scene.nodes, &scene.blocks, &scene.segments, &scene.textured, &scene.materials,
-          &scene.texels, &scene.instances, &scene.normals, &scene.lights, &scene.emitters,
+          &scene.texels, &scene.instances, &scene.normals, &scene.color_words,
+          &scene.color_materials, &scene.color_texels, &scene.lights, &scene.emitters,
           &scene.environments, &queues.work, &film.sums, &film.squares})
       *buffer = context.allocate(0);
   }
@@ -75,6 +76,10 @@ const std::map<std::string, Pass>& passes() {
       {"resolve_surface",
        [](EmptyStage& s, const Variant&) {
          resolve_surface_pass(s.context, s.queues, s.film, {});
+       }},
+      {"turn_points",
+       [](EmptyStage& s, const Variant&) {
+         turn_points_pass(s.context, s.scene, s.queues, {}, false);
        }},
       {"shade_points",
        [](EmptyStage& s, const Variant&) {

@@ -145,6 +145,7 @@ void validate(const RenderOptions& options) {
   check_range("--footprint", options.footprint, 0, 1e6);
   check_range("--ao-distance", options.ao_distance, 0, 1e30f);
   check_range("--ao-falloff", options.ao_falloff, 0, 100);
+  if (options.ambient) check_range("--ambient", *options.ambient, 0, 1e30f);
   if (options.ao_falloff > 0 && options.ao_distance <= 0) {
     throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
   }

@@ -57,13 +57,15 @@ class PictureTracer {
         lookups_(lookups),
         mattes_(lookups.mattes ? layout.pixels : 0),
         motion_(lookups.motion ? layout.pixels : 0) {
-    camera_.keep_hits = is_shaded() || lookups_.any();
+    camera_.keep_hits = layout.shading() || lookups_.any();
     if (lookups_.any()) camera_.medium_error = 0;  // a medium's surfaces belong to no primitive
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
     if (state_.slice_samples == 0)
       state_.slice_samples = samples_of_slice(device.info(), options, light_count_, rays);
     queues_ = make_queues(context_, state_.slice_samples, rays);
+    if (options.back)
+      queues_.backs = context_.allocate(state_.slice_samples * sizeof(SurfacePoint));
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
     film_.sums = context_.allocate_zeros(layout.sum_bytes());
     film_.squares = context_.allocate_zeros(layout.square_bytes());
@@ -238,14 +240,19 @@ class PictureTracer {
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);
-    if (is_shaded()) {
-      resolve_.plane = layout_.shading;
+    if (options_.back) turn_points_pass(context_, scene_, queues_, resolve_, layout_.normals != 0);
+    if (layout_.shading()) {
+      resolve_.plane = layout_.shading();
       shading_pass(context_, scene_, queues_, film_, resolve_);
     }
     const std::uint32_t hits = compact_pass(context_, queues_, samples);
     if (hits == 0) return;
-    if (options_.ao) trace_ao(hits);
-    for (uint light = 0; light < light_count_; ++light) trace_light(light, hits);
+    const Side front{queues_, layout_.ao, layout_.lights};
+    trace_side(front, hits);
+    if (!options_.back) return;
+    Side back{queues_, layout_.back_ao, layout_.back_lights, true};
+    back.queues.points = queues_.backs;
+    trace_side(back, hits);
   }
 
   /// Adds the samples of the slice, pixel by pixel, each in its order. The points still have what
@@ -274,7 +281,20 @@ class PictureTracer {
     });
   }
 
-  void trace_ao(std::uint32_t hits) {
+  /// The points of one side of the surfaces, and the planes of what reaches them.
+  struct Side {
+    Queues queues;
+    std::uint32_t ao = 0;
+    const std::vector<LightPlaneRange>& lights;
+    bool is_back = false;
+  };
+
+  void trace_side(const Side& side, std::uint32_t hits) {
+    if (options_.ao) trace_ao(side, hits);
+    for (uint light = 0; light < light_count_; ++light) trace_light(side, light, hits);
+  }
+
+  void trace_ao(const Side& side, std::uint32_t hits) {
     AoParams ao{};
     ao.point_count = hits;
     ao.rays = static_cast<uint>(options_.ao_rays);
@@ -283,23 +303,23 @@ class PictureTracer {
     ao.t_max =
         options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
     ao.seed = options_.seed;
-    ao.shaded = is_shaded();
-    ao_ray_pass(context_, queues_, ao);
+    ao.shaded = has_normals();
+    ao_ray_pass(context_, side.queues, ao);
     OcclusionParams params = occlusion_params(hits, ao.rays);
     if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
       params.inverse_distance = 1.0f / options_.ao_distance;
       params.falloff = options_.ao_falloff;
     }
-    occlusion_pass(context_, queues_, scene_, "ao occlusion", options_.estimator, params,
+    occlusion_pass(context_, side.queues, scene_, "ao occlusion", options_.estimator, params,
                    RayOrder::by_pixel);
-    resolve_.plane = layout_.ao;
-    resolve_.squares = 0;
+    resolve_.plane = side.ao;
+    resolve_.squares = side.is_back ? layout_.back_squares : 0;
     resolve_.rays = ao.rays;
     resolve_.scale = layout_.unit_scale;
-    resolve_ao_pass(context_, queues_, film_, resolve_);
+    resolve_ao_pass(context_, side.queues, film_, resolve_);
   }
 
-  void trace_light(uint light, std::uint32_t hits) {
+  void trace_light(const Side& side, uint light, std::uint32_t hits) {
     LightParams params{};
     params.point_count = hits;
     params.rays = static_cast<uint>(options_.light_rays);
@@ -307,18 +327,18 @@ class PictureTracer {
                                    static_cast<float>(options_.light_rays));
     params.light = light;
     params.seed = options_.seed;
-    params.shaded = is_shaded();
-    light_ray_pass(context_, scene_, queues_, params);
-    occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator,
+    params.shaded = has_normals();
+    light_ray_pass(context_, scene_, side.queues, params);
+    occlusion_pass(context_, side.queues, scene_, "light occlusion", options_.estimator,
                    occlusion_params(hits, params.rays), RayOrder::by_pixel);
-    resolve_.plane = layout_.lights[light].first;
-    resolve_.squares = layout_.light_squares(light);
+    resolve_.plane = side.lights[light].first;
+    resolve_.squares = side.is_back ? layout_.back_squares : layout_.light_squares(light);
     resolve_.rays = params.rays;
     resolve_.scale = layout_.light_scale;
     if (layout_.lights[light].channels == 3)
-      resolve_dome_pass(context_, scene_, queues_, film_, resolve_, light);
+      resolve_dome_pass(context_, scene_, side.queues, film_, resolve_, light);
     else
-      resolve_light_pass(context_, queues_, film_, resolve_);
+      resolve_light_pass(context_, side.queues, film_, resolve_);
   }
 
   [[nodiscard]] OcclusionParams occlusion_params(uint points, uint rays_per_point) const {
@@ -330,7 +350,7 @@ class PictureTracer {
     return params;
   }
 
-  [[nodiscard]] uint is_shaded() const { return layout_.shading ? 1u : 0u; }
+  [[nodiscard]] uint has_normals() const { return layout_.normals ? 1u : 0u; }
 
   DeviceContext& context_;
   const DeviceBuffers& scene_;

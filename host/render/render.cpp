@@ -39,7 +39,7 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
     notes.emplace_back(
         "no lights in the scene: added lights named sun and sky; --lights F brings others");
   }
-  check_film_memory(view, options.light ? scene.lights.size() : 0, options.cryptomattes);
+  check_film_memory(view, options.light ? scene.lights.size() : 0, options);
   if (options.ground) add_ground(scene);
   if (options.cryptomattes.any()) name_objects(scene);
   merge_single_instances(scene);
@@ -48,7 +48,7 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
 }
 
 FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions& options,
-                      const DeviceInfo& device) {
+                      const DeviceInfo& device, double ambient) {
   FilmMetadata m;
   m.world_to_camera = world_to_exr_camera(view.camera);
   m.world_to_ndc = world_to_ndc(view);
@@ -69,6 +69,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   if (is_adaptive(options)) set("max_spp", options.max_spp);
   if (footprint_samples(options) != options.spp) set("footprint_spp", footprint_samples(options));
   set("camera_splitting", options.camera_splitting);
+  set("ambient", ambient);
   set("ao_rays", options.ao_rays);
   set("light_rays", options.light_rays);
   set("ao_distance", options.ao_distance);
@@ -81,13 +82,14 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
 
 /// Whether a shading pass may be needed; whether all normals are flat is not known yet.
 bool may_be_shaded(const Scene& scene, const RenderOptions& options) {
+  if (options.albedo) return true;
   return options.normals == Normals::shading &&
          std::any_of(scene.meshes.begin(), scene.meshes.end(),
                      [](const Mesh& mesh) { return !mesh.normals.empty(); });
 }
 
 UploadOptions uploading_of(const RenderOptions& options) {
-  return {options.normals == Normals::shading};
+  return {options.normals == Normals::shading, options.albedo};
 }
 
 void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
@@ -120,9 +122,11 @@ void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBu
   s.segments = bvh.statistics.segments;
   s.nodes = bvh.nodes.size();
   s.bytes.nodes = buffers.nodes.bytes();
-  s.bytes.triangles = buffers.blocks.bytes() + buffers.textured.bytes() + buffers.normals.bytes();
+  s.bytes.triangles = buffers.blocks.bytes() + buffers.textured.bytes() + buffers.normals.bytes() +
+                      buffers.color_words.bytes();
   s.bytes.segments = buffers.segments.bytes();
-  s.bytes.textures = buffers.texels.bytes() + buffers.materials.bytes();
+  s.bytes.textures = buffers.texels.bytes() + buffers.materials.bytes() +
+                     buffers.color_texels.bytes() + buffers.color_materials.bytes();
   s.bytes.instances = buffers.instances.bytes();
 }
 
@@ -317,7 +321,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
 
   result.film = {view.width, view.height, view.crop,
                  develop(picture, layout, sampled, lights, statistics),
-                 metadata(scene, view, options, device.info())};
+                 metadata(scene, view, options, device.info(), statistics.ambient)};
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   result.interrupted = picture.interrupted;

@@ -13,8 +13,12 @@ namespace {
 
 std::string passes_text(const RenderOptions& options) {
   // Visits are counted with and without the pass, so it is not a setting.
-  return fmt::format("{}{}{}", options.ao ? "ao" : "", options.ao && options.light ? "," : "",
-                     options.light ? "light" : "");
+  std::vector<std::string> names;
+  if (options.ao) names.emplace_back("ao");
+  if (options.light) names.emplace_back("light");
+  if (options.albedo) names.emplace_back("albedo");
+  if (options.back) names.emplace_back("back");
+  return fmt::format("{}", fmt::join(names, ","));
 }
 
 std::string camera_checksum(const Camera& camera) {
@@ -40,6 +44,9 @@ std::string scene_checksum(const SceneBvh& bvh, const DeviceBuffers& scene) {
   stream.add_range(scene.material_records);
   stream.add_range(scene.texel_data);
   stream.add_range(scene.corner_normals);
+  stream.add_range(scene.colors.words);
+  stream.add_range(scene.colors.materials);
+  stream.add_range(scene.colors.texels);
   stream.add_value(bvh.root);
   for (int axis = 0; axis < 3; ++axis) {
     stream.add_value(bvh.bounds.min[axis]);

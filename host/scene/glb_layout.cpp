@@ -35,10 +35,12 @@ Json matrix_json(const M44f& m) {
 }
 
 Json material_json(const Material& material) {
-  Json json = {{"name", material.name},
-               {"doubleSided", material.double_sided},
-               {"pbrMetallicRoughness",
-                {{"baseColorFactor", {1, 1, 1, material.alpha}}, {"metallicFactor", 0}}}};
+  Json json = {
+      {"name", material.name},
+      {"doubleSided", material.double_sided},
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {material.color.x, material.color.y, material.color.z, material.alpha}},
+        {"metallicFactor", 0}}}};
   if (material.alpha_mode == AlphaMode::blend) json["alphaMode"] = "BLEND";
   if (material.alpha_mode == AlphaMode::mask) {
     json["alphaMode"] = "MASK";

@@ -30,6 +30,7 @@ constexpr std::uint32_t kAllArrays = 31;
 struct Header {
   std::uint32_t strands, points, arrays, segments;
   float thickness, transparency;
+  float color[3];
 };
 
 template <typename T>
@@ -46,7 +47,7 @@ Header read_header(std::span<const std::uint8_t> bytes, const std::string& path)
   if (bytes.size() < kHeaderBytes)
     fail(path, "ends in its header (it has {} bytes of {})", bytes.size(), kHeaderBytes);
   Header header{};
-  static_assert(sizeof header == 24);
+  static_assert(sizeof header == 36);
   std::memcpy(&header, bytes.data() + 4, sizeof header);
   if ((header.arrays & ~kAllArrays) != 0)
     fail(path, "has arrays that the format does not know (its bits are {:#x})", header.arrays);
@@ -62,6 +63,7 @@ struct Arrays {
   const std::uint8_t* points = nullptr;        ///< three floats per point
   const std::uint8_t* thickness = nullptr;     ///< one float per point
   const std::uint8_t* transparency = nullptr;  ///< one float per point
+  const std::uint8_t* colors = nullptr;        ///< three floats per point
 };
 
 Arrays find_arrays(const Header& header, std::span<const std::uint8_t> bytes,
@@ -79,7 +81,7 @@ Arrays find_arrays(const Header& header, std::span<const std::uint8_t> bytes,
   arrays.points = next(kPoints, header.points, 12);
   arrays.thickness = next(kThickness, header.points, 4);
   arrays.transparency = next(kTransparency, header.points, 4);
-  next(kColors, header.points, 12);
+  arrays.colors = next(kColors, header.points, 12);
   if (end <= bytes.size()) return arrays;
   fail(path, "ends early: {} strands and {} points need {} bytes, it has {}",
        grouped(header.strands), grouped(header.points), grouped(end), grouped(bytes.size()));
@@ -145,6 +147,13 @@ float opacity_of(float transparency, std::uint64_t point, const std::string& pat
   return 1 - std::clamp(transparency, 0.0f, 1.0f);
 }
 
+/// Colours are linear, in [0,1]; those that are not numbers become black.
+V3f color_of(V3f color) {
+  for (int channel = 0; channel < 3; ++channel)
+    color[channel] = color[channel] > 0 ? std::min(color[channel], 1.0f) : 0.0f;
+  return color;
+}
+
 bool is_finite(V3f p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Whether two points differ only by the rounding of their coordinates.
@@ -167,6 +176,7 @@ class StrandWriter {
     mesh_.positions.reserve(header.points);
     mesh_.radii.reserve(header.points);
     if (arrays.transparency != nullptr) mesh_.vertex_alpha.reserve(header.points);
+    if (arrays.colors != nullptr) mesh_.colors.reserve(header.points);
     mesh_.indices.reserve(std::size_t{2} * header.points);
     mesh_.materials.reserve(header.points);
   }
@@ -246,6 +256,10 @@ class StrandWriter {
   void add_vertex(std::uint64_t i) {
     mesh_.positions.push_back(point(i));
     mesh_.radii.push_back(radius(i));
+    if (arrays_.colors != nullptr) {
+      const std::uint8_t* at = arrays_.colors + 12 * i;
+      mesh_.colors.push_back(color_of({load<float>(at), load<float>(at + 4), load<float>(at + 8)}));
+    }
     if (arrays_.transparency == nullptr) return;
     mesh_.vertex_alpha.push_back(opacity_of(load<float>(arrays_.transparency + 4 * i), i, path_));
   }
@@ -280,6 +294,8 @@ Scene scene_of(const Header& header, const Arrays& arrays, const std::string& pa
   hair.alpha_mode = AlphaMode::blend;
   hair.double_sided = true;
   if (arrays.transparency == nullptr) hair.alpha = opacity_of(header.transparency, kNoPoint, path);
+  if (arrays.colors == nullptr)
+    hair.color = color_of({header.color[0], header.color[1], header.color[2]});
   scene.materials.push_back(std::move(hair));
   scene.meshes.push_back(writer.take());
   scene.instances.emplace_back();

@@ -105,7 +105,7 @@ std::vector<Instance> take_merged_instances(Scene& scene, const std::vector<bool
 
 struct Totals {
   std::size_t vertices = 0, triangles = 0;
-  bool normals = false, uvs = false, vertex_alpha = false, radii = false;
+  bool normals = false, uvs = false, vertex_alpha = false, colors = false, radii = false;
 };
 
 Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
@@ -117,6 +117,7 @@ Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
     totals.normals |= !mesh.normals.empty();
     totals.uvs |= !mesh.uvs.empty();
     totals.vertex_alpha |= !mesh.vertex_alpha.empty();
+    totals.colors |= !mesh.colors.empty();
     totals.radii |= mesh.has_strands();
   }
   if (totals.vertices > kMaxVertices || totals.triangles > kMaxVertices / 3) {
@@ -167,6 +168,10 @@ void append_placed(Mesh& merged, const Mesh& mesh, const M44f& to_world, const T
     merged.vertex_alpha.insert(merged.vertex_alpha.end(), mesh.vertex_alpha.begin(),
                                mesh.vertex_alpha.end());
     merged.vertex_alpha.resize(merged.positions.size(), 1.0f);
+  }
+  if (totals.colors) {
+    merged.colors.insert(merged.colors.end(), mesh.colors.begin(), mesh.colors.end());
+    merged.colors.resize(merged.positions.size(), V3f(1, 1, 1));
   }
 }
 

@@ -62,6 +62,7 @@ void add_ground(Scene& scene, const Box3f& bounds) {
 
   Material material;
   material.name = "ground";
+  material.color = V3f(0.5f);
   scene.materials.push_back(material);
   scene.meshes.push_back(std::move(ground));
   scene.instances.push_back(instance);

@@ -124,6 +124,7 @@ void keep_used_vertices(Mesh& mesh) {
   keep_at(mesh.normals, new_numbers, kept);
   keep_at(mesh.uvs, new_numbers, kept);
   keep_at(mesh.vertex_alpha, new_numbers, kept);
+  keep_at(mesh.colors, new_numbers, kept);
   mesh.sources.clear();
 }
 

@@ -58,6 +58,7 @@ struct DeviceScene {
 /// What is uploaded besides what rays intersect.
 struct UploadOptions {
   bool normals = false;  ///< Mesh::normals, 8 bytes per triangle of scenes that have any
+  bool colors = false;   ///< for the albedo: colours of materials, textures and vertices
   bool operator==(const UploadOptions&) const = default;
 };
 

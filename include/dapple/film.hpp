@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -76,11 +77,25 @@ void write_exr(const Film& film, const std::string& path, const ExrFormat& forma
 /// alphabetical order. Throws Error input.
 Film read_exr(const std::string& path);
 
-/// Writes an 8-bit sRGB preview of RGBA over black, or of `layer` if it is not empty ("ao", "N",
-/// "light.key", ...), of the data window's size. Values are clamped to [0,1]. N (from [-1,1]) and
-/// Z, P (from their finite range) are mapped linearly; lights are divided by their largest value.
-/// Throws Error usage if there is no such layer, otherwise failed.
-void write_png(const Film& film, const std::string& path, const std::string& layer = "");
+/// How write_png() shows RGBA.
+struct PngOptions {
+  enum class Background : std::uint8_t {
+    sky,    ///< a gradient
+    none,   ///< the file has an alpha channel
+    color,  ///< `color`
+  };
+  std::optional<float> exposure;  ///< in stops: values times 2^exposure; none: automatic
+  Background background = Background::sky;
+  V3f color{0, 0, 0};  ///< linear, [0,1]; on the display, without exposure
+};
+
+/// Writes an 8-bit sRGB picture of the data window's size: of RGBA, exposed, tone mapped, over a
+/// background; or of `layer` if it is not empty ("ao", "N", "light.key", ...). Values of layers are
+/// clamped to [0,1]. N (from [-1,1]) and Z, P (from their finite range) are mapped linearly; lights
+/// are divided by their largest value. Throws Error usage if there is no such layer, otherwise
+/// failed.
+void write_png(const Film& film, const std::string& path, const std::string& layer = "",
+               const PngOptions& options = {});
 
 /// Writes an 8-bit heat map of one channel: black at 0, pale yellow at its largest value. Throws
 /// Error usage if there is no such channel, otherwise failed.

@@ -93,13 +93,18 @@ struct RenderOptions {
   Normals normals = Normals::shading;
   bool ao = true;       ///< make the AO pass
   bool light = true;    ///< make the light passes
+  bool albedo = true;   ///< make the layer of colours; SceneOptions::colors reads them
+  bool back = false;    ///< make layers of what reaches the other side of surfaces
   bool visits = false;  ///< make layers of node visits and triangle tests
   /// Make layers of motion vectors. Only Renderer::render_shutter() can: it takes the next frame.
   bool motion = false;
   Cryptomattes cryptomattes;
   float ao_distance = 0.0f;  ///< metres; 0 is no limit
   float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
-  std::string camera;        ///< by name; empty: the first, or one that shows it all
+  /// Radiance of a uniform sky whose light AO weighs in RGBA, [0, 1e30]; none: 1 without lights, 0
+  /// with a dome, otherwise a tenth of what the lights make of a white surface at most.
+  std::optional<float> ambient;
+  std::string camera;  ///< by name; empty: the first, or one that shows it all
   std::optional<LookAt> look;
   float fov_degrees = 0.0f;       ///< vertical; 0: the camera's own, or 40 with `look`
   std::optional<float> aperture;  ///< radius of the lens, metres, [0, 1e6]; none: the camera's own

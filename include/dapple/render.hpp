@@ -49,7 +49,8 @@ struct RenderStatistics {
   struct {
     std::size_t nodes = 0, triangles = 0, segments = 0, textures = 0, instances = 0, film = 0,
                 queues = 0;
-  } bytes;  ///< device memory by part
+  } bytes;             ///< device memory by part
+  double ambient = 0;  ///< RenderOptions::ambient as it was used
   std::string device;
   std::string estimator;
   std::vector<std::string> notes;  ///< for the user, such as "no camera in the scene: added one"

@@ -43,6 +43,18 @@ struct Texture {
   bool nearest = false;  ///< glTF magFilter NEAREST
 };
 
+/// An 8-bit colour image, encoded as sRGB, in the layout of Texture.
+struct ColorTexture {
+  std::string name;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> rgb;    ///< 3 * width * height
+  std::vector<std::uint8_t> alpha;  ///< weights of texels in means; empty: all the same
+  Wrap wrap_s = Wrap::repeat;
+  Wrap wrap_t = Wrap::repeat;
+  bool nearest = false;
+};
+
 struct Material {
   std::string name;
   AlphaMode alpha_mode = AlphaMode::opaque;
@@ -50,6 +62,8 @@ struct Material {
   float alpha_cutoff = 0.5f;  ///< mask only
   int alpha_texture = -1;     ///< index into Scene::textures, -1 for none
   bool uses_vertex_alpha = true;
+  V3f color{1, 1, 1};         ///< base colour: the albedo's factor, linear RGB, [0,1]
+  int color_texture = -1;     ///< index into Scene::color_textures, -1 for none
   V3f emission{0, 0, 0};      ///< emitted radiance, W/(sr m^2), linear RGB
   bool double_sided = false;  ///< only for emission: every surface occludes from both sides
 };
@@ -70,7 +84,8 @@ struct Mesh {
   std::vector<std::uint32_t> materials;  ///< one per primitive, index into Scene::materials
   std::vector<float> radii;              ///< strands: per vertex, metres, > 0; empty: triangles
   std::vector<V3f> normals;  ///< per vertex, unit, or zero for that of the face; or empty
-  std::vector<V2f> uvs;      ///< per vertex, for the alpha texture, transforms applied; or empty
+  std::vector<V2f> uvs;      ///< per vertex, for the textures, transforms applied; or empty
+  std::vector<V3f> colors;   ///< per vertex, factor of the albedo, linear RGB; or empty (= 1)
   std::vector<float> vertex_alpha;    ///< per vertex, COLOR_0.a in [0,1]; or empty (= 1)
   std::vector<VertexSource> sources;  ///< of a glTF file's mesh; empty once meshes are merged
   /// Merged meshes: per primitive, index into Scene::objects; else empty.
@@ -151,6 +166,7 @@ struct Animation {
 struct Scene {
   std::string source;  ///< file or scene: name, for messages and metadata
   std::vector<Texture> textures;
+  std::vector<ColorTexture> color_textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
@@ -166,6 +182,7 @@ struct Scene {
 struct SceneOptions {
   float light_radius = 0.1f;   ///< metres: KHR point and spot lights become spheres of this radius
   float line_radius = 0;       ///< metres: glTF's lines become strands of this radius; 0: skipped
+  bool colors = false;         ///< read colour textures and colours of vertices, for the albedo
   bool allow_outside = false;  ///< buffers and images may be outside of the scene file's folder
   std::optional<double> time;  ///< seconds: the time of the pose; none: at rest
   std::string animation;       ///< the glTF animation that plays, "*" for all; empty: the first

@@ -2,19 +2,106 @@
    that to the film. In: points that the camera pass stored with their triangles, after resolve_surface. Out:
    points as rays start from them, film sums. One work-item for each pixel. */
 #include "camera/shading_normal.clh"
+#include "camera/surface_color.clh"
 #include "film/film.clh"
 
-/* Planes: shading normal (3). */
-__kernel void shade_points(__global const TriangleBlock* blocks,
+/* What the pass reads besides the scene that rays intersect. */
+typedef struct Shading {
+  __global const CornerNormals* normals;
+  ColorBuffers colors;
+  bool has_normals, has_colors;
+} Shading;
+
+/* What a group of points hit, and lanes of it. */
+typedef struct HitGroup {
+  Hits16 hits;
+  CornerWords16 words;
+  ColorEntries16 entries;
+  uint in_media; /* hit a medium; its triangle stands for it */
+  uint smooth;   /* have normals */
+  uint located;  /* need barycentrics */
+} HitGroup;
+
+/* Takes the hits from the points in `lanes`, whose `t` and `visits` become 0. */
+inline void take_hits(Scene scene, const Shading* shading, uint lanes,
+                      __global SurfacePoint* points, HitGroup* group) {
+  group->in_media = group->smooth = group->located = 0u;
+  group->words.first.v = group->words.last.v = (uint16)(0u);
+  for (uint left = lanes; left; left &= left - 1u) {
+    const uint lane = lowest_bit(left), bit = 1u << lane;
+    uint instance = as_uint(points[lane].t), primitive = points[lane].visits;
+    points[lane].t = 0.0f;
+    points[lane].visits = 0u;
+    if (is_medium_hit(instance)) {
+      group->in_media |= bit;
+      instance ^= DAPPLE_IN_MEDIUM;
+      primitive = triangle_in_medium(scene, primitive,
+                                     hash_pair(points[lane].pixel, points[lane].sample));
+    }
+    group->hits.instance[lane] = instance;
+    group->hits.primitive[lane] = primitive;
+    const bool is_triangle = !(primitive & DAPPLE_SEGMENTS);
+    if (shading->has_normals && is_triangle && !(group->in_media & bit)) {
+      const CornerNormals packed = shading->normals[primitive];
+      group->words.first.u[lane] = packed.words[0];
+      group->words.last.u[lane] = packed.words[1];
+      group->smooth |= packed.words[0] ? bit : 0u;
+    }
+    if (!shading->has_colors) continue;
+    group->entries.entry[lane] = color_entry(shading->colors, primitive);
+    const bool varies = (group->entries.entry[lane][0] & ~DAPPLE_COLOR_MATERIAL) != 0u;
+    group->located |= is_triangle && varies ? bit : 0u;
+  }
+  group->located |= group->smooth;
+}
+
+/* A random point of a triangle that stands for a medium. */
+inline void place_in_media(uint in_media, __global const SurfacePoint* points, HitTriangles16* of) {
+  for (uint left = in_media; left; left &= left - 1u) {
+    const uint lane = lowest_bit(left);
+    const uint bits = hash_pair(points[lane].sample, points[lane].pixel);
+    const float a = unit_float(bits), b = unit_float(hash_uint(bits));
+    of->u.f[lane] = a + b > 1.0f ? 1.0f - a : a;
+    of->v.f[lane] = a + b > 1.0f ? 1.0f - b : b;
+  }
+}
+
+/* Shades the points in `lanes`, at least one, and sets their albedos. */
+inline void shade_group(Scene scene, const Shading* shading, uint lanes,
+                        __global SurfacePoint* points, Floats16* albedo) {
+  HitGroup group;
+  HitTriangles16 triangles;
+  take_hits(scene, shading, lanes, points, &group);
+  triangles.u.v = triangles.v.v = (float16)(0.0f);
+  if (group.located) {
+    load_hit_triangles(scene, &group.hits, points, group.located, &triangles);
+    place_in_media(group.in_media & group.located, points, &triangles);
+  }
+  if (shading->has_colors) {
+    surface_colors(scene, shading->colors, &group.hits, &group.entries, points, lanes,
+                   &triangles.u, &triangles.v, albedo);
+  }
+  if (group.smooth)
+    shade_points16(scene, &group.hits, &triangles, &group.words, group.smooth, points);
+}
+
+/* Planes: shading normal (3), if there are any; albedo (3), if it is asked for. */
+__kernel void shade_points(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                           __global const TexturedTriangle* textured,
                            __global const InstanceRecord* instances,
-                           __global const CornerNormals* normals, __global const PixelWork* work,
+                           __global const CornerNormals* normals, __global const uint* color_words,
+                           __global const ColorMaterial* color_materials,
+                           __global const uint* color_texels, __global const PixelWork* work,
                            __global SurfacePoint* points, __global const SampleHits* sample_hits,
-                           __global long* film, ResolveParams params) {
+                           __global long* film, ShadingParams params) {
   const uint local_pixel = get_global_id(0);
-  if (local_pixel >= params.slice.pixel_count) return;
-  const Scene scene = {0, blocks, 0, 0, 0, 0, instances};
-  const uint begin = local_pixel * params.slice.sample_count;
-  const uint end = begin + params.slice.sample_count;
+  const SliceParams slice = params.resolve.slice;
+  if (local_pixel >= slice.pixel_count) return;
+  const Scene scene = {nodes, blocks, 0, textured, 0, 0, instances};
+  const Shading shading = {normals,
+                           {color_words, color_materials, color_texels, params.segment_words},
+                           params.normals != 0u, params.albedo != 0u};
+  const uint begin = local_pixel * slice.sample_count, end = begin + slice.sample_count;
   long8 sums = (long8)(0);
   bool any = false;
   for (uint r = begin / DAPPLE_HIT_BITS; r * DAPPLE_HIT_BITS < end; ++r) {
@@ -22,11 +109,38 @@ __kernel void shade_points(__global const TriangleBlock* blocks,
     if (!lanes) continue;
     any = true;
     __global SurfacePoint* of_record = points + r * DAPPLE_HIT_BITS;
-    shade_points16(scene, normals, lanes, of_record);
+    Floats16 albedo[3];
+    albedo[0].v = albedo[1].v = albedo[2].v = (float16)(0.0f);
+    shade_group(scene, &shading, lanes, of_record, albedo);
+    if (!params.resolves) continue;
     for (uint left = lanes; left; left &= left - 1u) {
-      const float3 n = load3(of_record[lowest_bit(left)].normal) * params.scale;
-      sums += fixed_points((float8)(n.x, n.y, n.z, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f));
+      const uint lane = lowest_bit(left);
+      const float3 n = load3(of_record[lane].normal);
+      sums += fixed_points((float8)(n.x, n.y, n.z, albedo[0].f[lane], albedo[1].f[lane],
+                                    albedo[2].f[lane], 0.0f, 0.0f) *
+                           params.resolve.scale);
     }
   }
-  if (any) add_to_planes(film, params, 3u, pixel_of(work, params, local_pixel), sums);
+  if (!any || !params.resolves) return;
+  const uint pixel = pixel_of(work, params.resolve, local_pixel);
+  uint plane = 0u;
+  if (shading.has_normals) {
+    add_to_planes(film, params.resolve, 3u, pixel, sums);
+    plane = 3u;
+  }
+  if (!shading.has_colors) return;
+  add_to_plane(film, params.resolve, plane, pixel, sums.s3);
+  add_to_plane(film, params.resolve, plane + 1u, pixel, sums.s4);
+  add_to_plane(film, params.resolve, plane + 2u, pixel, sums.s5);
+}
+
+/* Copies the points of a slice, turned to the side of their surfaces that is not seen. Of samples that missed
+   it copies what there is. */
+__kernel void turn_points(__global const SurfacePoint* points, __global SurfacePoint* turned,
+                          uint count) {
+  const uint sample = get_global_id(0);
+  if (sample >= count) return;
+  SurfacePoint point = points[sample];
+  for (uint axis = 0; axis < 3u; ++axis) point.normal[axis] = -point.normal[axis];
+  turned[sample] = point;
 }

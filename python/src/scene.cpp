@@ -33,6 +33,7 @@ SceneOnDevice load(const std::string& path, std::optional<double> time,
   options.time = time;
   options.animation = animation;
   options.allow_outside = allow_outside;
+  options.colors = true;
   const nb::gil_scoped_release released;
   return SceneOnDevice(load_scene(path, options));
 }

@@ -117,9 +117,9 @@ TEST(ShadingNormal, ASphereOf504TrianglesIsUnoccludedEverywhere) {
     const Film film = render(scene, options).film;
     const auto& ao = film.find("ao.R")->pixels;
     const double mean = std::accumulate(ao.begin(), ao.end(), 0.0) / static_cast<double>(ao.size());
-    EXPECT_NEAR(mean, 1, estimator == Estimator::exact ? 1e-5 : 1e-3);
+    EXPECT_NEAR(mean, 1, estimator == Estimator::exact ? 1e-5 : 4e-3);
     EXPECT_GE(*std::min_element(ao.begin(), ao.end()),
-              estimator == Estimator::exact ? 0.999f : 0.95f);
+              estimator == Estimator::exact ? 0.999f : 0.92f);
   }
 }
 

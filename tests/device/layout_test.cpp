@@ -12,6 +12,7 @@
 #include "dapple/shared/light_record.h"
 #include "dapple/shared/pass_params.h"
 #include "dapple/shared/ray.h"
+#include "dapple/shared/surface_color.h"
 #include "kernels/layout_members.h"
 #include "support/test_kernel.hpp"
 

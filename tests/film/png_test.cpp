@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 
+#include "film/tone_map.hpp"
 #include "support/film_files.hpp"
 
 namespace dapple {
@@ -31,8 +32,8 @@ struct Image {
 class Png : public FilmFile {
  protected:
   // Writes `layer` as a PNG and decodes it.
-  Image shown(const Film& film, const std::string& layer = "") {
-    write_png(film, path("a.png"), layer);
+  Image shown(const Film& film, const std::string& layer = "", const PngOptions& options = {}) {
+    write_png(film, path("a.png"), layer, options);
     Image image;
     stbi_uc* pixels =
         stbi_load(path("a.png").c_str(), &image.width, &image.height, &image.channels, 0);
@@ -59,13 +60,76 @@ using Values = std::vector<int>;
 
 TEST_F(Png, ColoursFollowTheSrgbCurve) {
   // 0.5 becomes 187.5160 of 255; 0.0031308, where the line and the power meet, becomes 10.3147.
-  const Film film = row_film(
-      {{"A", {0, 1, 1}}, {"B", {0.0031308f, 0, 1}}, {"G", {0.5f, 0, 1}}, {"R", {0.001f, 0, 1}}});
-  const Image image = shown(film);
+  const Film film =
+      row_film({{"ao.B", {0.0031308f, 0, 1}}, {"ao.G", {0.5f, 0, 1}}, {"ao.R", {0.001f, 0, 1}}});
+  const Image image = shown(film, "ao");
   EXPECT_EQ(image.width, 3);
   EXPECT_EQ(image.height, 1);
   EXPECT_EQ(image.channels, 3);
   EXPECT_EQ(image.values, (Values{3, 188, 10, 0, 0, 0, 255, 255, 255}));
+}
+
+using Background = PngOptions::Background;
+
+PngOptions shown_as(float stops, Background background, const V3f& color = V3f(0, 0, 0)) {
+  return {stops, background, color};
+}
+
+/// Three pixels: empty, half covered by a grey of 0.25, and fully by it.
+Film grey_film() {
+  return row_film({{"A", {0, 0.5f, 1}},
+                   {"B", {0, 0.125f, 0.25f}},
+                   {"G", {0, 0.125f, 0.25f}},
+                   {"R", {0, 0.125f, 0.25f}}});
+}
+
+TEST_F(Png, ThePictureIsExposedInStops) {
+  // 0.25 is 137 on the sRGB curve, 0.5 is 188; highlights begin above 0.76.
+  const auto middle = [&](float stops) {
+    return shown(grey_film(), "", shown_as(stops, Background::color)).values.at(6);
+  };
+  EXPECT_EQ(middle(0), 137);
+  EXPECT_EQ(middle(1), 188);
+  EXPECT_LT(middle(2), 255) << "1 is below the highlights' limit";
+  EXPECT_EQ(middle(12), 255);
+}
+
+TEST_F(Png, ABackgroundIsSeenWhereThePictureIsNot) {
+  const Values over_red =
+      shown(grey_film(), "", shown_as(1, Background::color, V3f(1, 0, 0))).values;
+  EXPECT_EQ(over_red, (Values{255, 0, 0, 225, 137, 137, 188, 188, 188}));
+  const Image alpha = shown(grey_film(), "", shown_as(1, Background::none));
+  EXPECT_EQ(alpha.channels, 4);
+  EXPECT_EQ(alpha.values, (Values{0, 0, 0, 0, 188, 188, 188, 128, 188, 188, 188, 255}));
+  const Values sky = shown(grey_film(), "", shown_as(1, Background::sky)).values;
+  EXPECT_GT(sky[2], sky[0]) << "blue";
+  EXPECT_EQ(sky[6], 188);
+}
+
+TEST_F(Png, AutomaticExposureIsTheSameForEveryScaleOfLight) {
+  Film film = grey_film();
+  const Values once = shown(film).values;
+  for (Plane& plane : film.planes)
+    if (plane.channel != "A")
+      for (float& value : plane.pixels) value *= 1000;
+  EXPECT_EQ(shown(film).values, once);
+  for (Plane& plane : film.planes) std::fill(plane.pixels.begin(), plane.pixels.end(), 0.0f);
+  EXPECT_EQ(shown(film, "", {{}, Background::color, V3f(0, 0, 0)}).values, Values(9, 0));
+}
+
+TEST_F(Png, HighlightsBecomeWhiteInOrderAndDarkerColoursStay) {
+  EXPECT_EQ(tone_mapped(V3f(0.7f, 0.2f, 0)), V3f(0.7f, 0.2f, 0));
+  V3f before(0, 0, 0);
+  for (float value = 0.01f; value < 1e6f; value *= 1.1f) {
+    const V3f mapped = tone_mapped(V3f(value, 0.5f * value, 0.1f * value));
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_GE(mapped[channel], before[channel]);
+      EXPECT_LE(mapped[channel], 1.0f);
+    }
+    before = mapped;
+  }
+  EXPECT_GT(before.z, 0.99f);
+  EXPECT_EQ(tone_mapped(V3f(kNan, -1, 0.5f)), V3f(0, 0, 0.5f));
 }
 
 TEST_F(Png, SrgbDecodesBackToWithinHalfAStep) {

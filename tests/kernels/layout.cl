@@ -7,6 +7,7 @@
 #include "dapple/shared/light_record.h"
 #include "dapple/shared/pass_params.h"
 #include "dapple/shared/ray.h"
+#include "dapple/shared/surface_color.h"
 
 #define DAPPLE_REPORT_STRUCT(Type) \
   report[next++] = (uint)sizeof(Type);

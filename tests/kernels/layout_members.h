@@ -96,6 +96,14 @@
   MEMBER(ResolveParams, splitting_bits)                                                          \
   MEMBER(ResolveParams, scale)                                                               \
   MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
-  MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)
+  MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)                           \
+  STRUCT(ShadingParams)                                                                      \
+  MEMBER(ShadingParams, resolve) MEMBER(ShadingParams, normals)                              \
+  MEMBER(ShadingParams, albedo) MEMBER(ShadingParams, resolves)                              \
+  MEMBER(ShadingParams, segment_words)                                                       \
+  STRUCT(ColorMaterial)                                                                      \
+  MEMBER(ColorMaterial, color) MEMBER(ColorMaterial, mips) MEMBER(ColorMaterial, width)      \
+  MEMBER(ColorMaterial, height) MEMBER(ColorMaterial, flags) MEMBER(ColorMaterial, spare)    \
+  MEMBER(ColorMaterial, offset) MEMBER(ColorMaterial, spares)
 
 #endif

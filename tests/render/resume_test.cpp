@@ -150,7 +150,8 @@ void expect_passes_to_add_up(const Scene& scene) {
     return sums;
   };
   EXPECT_EQ(without_visits(a), without_visits(b));
-  EXPECT_EQ(sums_of(a).size(), 20 * pixels);
+  // The last three planes are the albedo's.
+  EXPECT_EQ(sums_of(a).size(), 23 * pixels);
   const auto sums = a.sums.values<std::int64_t>();
   EXPECT_GT(std::count_if(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(pixels),
                           [](std::int64_t hits) { return hits > 0; }),
@@ -305,7 +306,10 @@ TEST_F(Resume, OtherSettingsAreRefusedAndNamed) {
       {"--estimator prefiltered, this", [](auto& o) { o.estimator = Estimator::exact; }},
       {"--footprint 4, this run has --footprint 4.0000005",
        [](auto& o) { o.footprint = std::nextafter(4.0f, 5.0f); }},
-      {"--passes ao,light, this run has --passes ao", [](auto& o) { o.light = false; }},
+      {"--passes ao,light,albedo, this run has --passes ao,albedo",
+       [](auto& o) { o.light = false; }},
+      {"--normals shading, this run has --normals geometric",
+       [](auto& o) { o.normals = Normals::geometric; }},
       {"--ao-rays 32, this run has --ao-rays 7", [](auto& o) { o.ao_rays = 7; }},
       {"--light-rays 1, this", [](auto& o) { o.light_rays = 2; }},
       {"--ao-distance 0, this", [](auto& o) { o.ao_distance = 3; }},

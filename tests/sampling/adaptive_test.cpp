@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <numbers>
 #include <numeric>
 
 #include "dapple/error.hpp"
@@ -84,12 +85,9 @@ TEST(AdaptiveSampling, TheErrorOfThePictureIsThatOfTheErrorLayers) {
   EXPECT_NEAR(mean(a), mean(b), 0.003);
 }
 
-// The largest unoccluded irradiance. R, G, B are divided by it, and errors are relative to it.
+// The largest unoccluded irradiance, to which errors are relative. RGBA has a tenth of it as sky.
 double irradiance_scale(const RenderOptions& of_picture) {
-  RenderOptions options = of_picture;
-  options.ao = false;
-  const RenderResult result = draw(options);
-  return mean(channel(result, "light.key.R")) / mean(channel(result, "R"));
+  return draw(of_picture).statistics.ambient * 10 * std::numbers::pi;
 }
 
 TEST(AdaptiveSampling, ByRmseTheErrorOfThePictureIsTheTarget) {

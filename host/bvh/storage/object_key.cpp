@@ -11,6 +11,13 @@ std::vector<bool> used_materials(const Scene& scene, const Mesh& mesh) {
   return used;
 }
 
+/// Texture coordinates that only colours need are no part of an object.
+bool has_alpha_texture(const Scene& scene, const std::vector<bool>& used) {
+  for (std::size_t m = 0; m < used.size(); ++m)
+    if (used[m] && scene.materials[m].alpha_texture >= 0) return true;
+  return false;
+}
+
 void add_texture(ChecksumStream& key, const Texture& texture) {
   key.add_value(texture.width);
   key.add_value(texture.height);
@@ -35,9 +42,9 @@ void add_form(ChecksumStream& key, const Scene& scene, const Mesh& mesh) {
   key.add_range(mesh.indices);
   key.add_range(mesh.materials);
   key.add_range(mesh.radii);
-  key.add_range(mesh.uvs);
   key.add_range(mesh.vertex_alpha);
   const std::vector<bool> used = used_materials(scene, mesh);
+  if (has_alpha_texture(scene, used)) key.add_range(mesh.uvs);
   for (std::size_t m = 0; m < used.size(); ++m) {
     if (!used[m]) continue;
     key.add_value(static_cast<std::uint64_t>(m));

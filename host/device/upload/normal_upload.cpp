@@ -55,8 +55,8 @@ CornerNormals pack_corner_normals(const std::array<V3f, 3>& normals) {
   return {{a | b << 21, b >> 11 | c << 10}};
 }
 
-std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh) {
-  std::vector<CornerNormals> all;
+std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh, bool keep_flat) {
+  std::vector<CornerNormals> all(keep_flat ? 8 * bvh.blocks.size() : 0);
   std::atomic<bool> any = false;
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
@@ -77,7 +77,7 @@ std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh)
       if (found) any = true;
     });
   }
-  if (!any) all.clear();
+  if (!any && !keep_flat) all.clear();
   return all;
 }
 

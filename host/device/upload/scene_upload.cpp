@@ -26,7 +26,8 @@ std::size_t bytes_of(const Array& data) {
 std::size_t bytes_of_all(const DeviceBuffers& b) {
   return b.nodes.bytes() + b.blocks.bytes() + b.segments.bytes() + b.textured.bytes() +
          b.instances.bytes() + b.materials.bytes() + b.texels.bytes() + b.lights.bytes() +
-         b.emitters.bytes() + b.environments.bytes() + b.normals.bytes();
+         b.emitters.bytes() + b.environments.bytes() + b.normals.bytes() + b.color_words.bytes() +
+         b.color_materials.bytes() + b.color_texels.bytes();
 }
 
 /// Replaces `values` by `now`, and shares them as `buffer`, unless both are the same already.
@@ -78,13 +79,18 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   pack_domes(scene, buffers->light_records, buffers->environment_data);
   buffers->uploaded = options;
   if (options.normals) buffers->corner_normals = pack_normals(scene, bvh);
+  if (options.colors) {
+    buffers->colors = pack_colors(scene, bvh);
+    buffers->color_key = color_key(scene);
+  }
   DeviceContext& context = device.context();
   DeviceScene result;
   result.bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(bvh.segments) +
                  bytes_of(bvh.textured) + bytes_of(bvh.instances) +
                  bytes_of(buffers->material_records) + bytes_of(buffers->texel_data) +
                  bytes_of(buffers->light_records) + bytes_of(buffers->emitter_triangles) +
-                 bytes_of(buffers->environment_data) + bytes_of(buffers->corner_normals);
+                 bytes_of(buffers->environment_data) + bytes_of(buffers->corner_normals) +
+                 buffers->colors.bytes();
   check_memory(
       device.info(),
       {result.bytes, std::max({bytes_of(bvh.nodes), bytes_of(bvh.blocks), bytes_of(bvh.segments)})},
@@ -105,6 +111,9 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   buffers->emitters = share(context, buffers->emitter_triangles);
   buffers->environments = share(context, buffers->environment_data);
   buffers->normals = share(context, buffers->corner_normals);
+  buffers->color_words = share(context, buffers->colors.words);
+  buffers->color_materials = share(context, buffers->colors.materials);
+  buffers->color_texels = share(context, buffers->colors.texels);
   context.finish();
   result.buffers = std::move(buffers);
   return result;
@@ -121,9 +130,16 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
     changes = bvh.update(moved);
   }
   const SceneBvh& now = bvh.bvh();
-  if (changes.is_new || options != buffers.uploaded) {
+  const bool new_colors = options.colors && color_key(moved) != buffers.color_key;
+  // What was smooth stays a buffer of normals, also in moments when it is flat.
+  const bool had_normals = !buffers.corner_normals.empty();
+  if (changes.is_new || new_colors || options != buffers.uploaded) {
     on_device = {};
     on_device = upload(device, moved, now, options);
+    DeviceBuffers& uploaded = *on_device.buffers;
+    if (had_normals && options.normals && uploaded.corner_normals.empty())
+      share_if_new(context, pack_normals(moved, now, true), uploaded.corner_normals,
+                   uploaded.normals);
     return changes;
   }
   if (!context.shares_memory()) {
@@ -134,7 +150,8 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
   if (changes.placement) share_placement(context, now, buffers);
   share_lights(context, moved, buffers);
   if (options.normals) {
-    share_if_new(context, pack_normals(moved, now), buffers.corner_normals, buffers.normals);
+    share_if_new(context, pack_normals(moved, now, had_normals), buffers.corner_normals,
+                 buffers.normals);
   }
   context.finish();
   on_device.bytes = bytes_of_all(buffers);

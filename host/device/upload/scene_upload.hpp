@@ -6,6 +6,7 @@
 #include "dapple/shared/light_record.h"
 #include "dapple/shared/pass_params.h"
 #include "device/context.hpp"
+#include "device/upload/color_upload.hpp"
 
 namespace dapple {
 
@@ -18,6 +19,7 @@ struct DeviceBuffers {
   Device device;
   Buffer nodes, blocks, segments, textured, materials, texels, instances;
   Buffer normals;  ///< of a scene that is uploaded for shading; empty: all triangles are flat
+  Buffer color_words, color_materials, color_texels;  ///< of a scene uploaded with colours
   Buffer lights, emitters, environments;
   UploadOptions uploaded;
   SceneParams params{};
@@ -31,6 +33,8 @@ struct DeviceBuffers {
   std::vector<MaterialRecord> material_records;
   std::vector<uchar> texel_data;
   std::vector<CornerNormals> corner_normals;
+  SurfaceColors colors;
+  Checksum color_key{};
   std::vector<LightRecord> light_records;
   std::vector<EmitterTriangle> emitter_triangles;
   std::vector<float> environment_data;

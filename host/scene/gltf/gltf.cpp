@@ -37,8 +37,8 @@ MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, boo
   for (const auto& node : document_.model.nodes)
     timeless_.node_names.push_back(node.mesh >= 0 ? one_line(node.name) : "");
   // The needed materials and images do not depend on the pose.
-  materials_ =
-      read_materials(document_, place_nodes(document_), options.line_radius > 0, timeless_);
+  materials_ = read_materials(document_, place_nodes(document_), options.line_radius > 0,
+                              options.colors, timeless_);
 }
 
 Scene MovingGltf::at(std::optional<double> seconds) const {

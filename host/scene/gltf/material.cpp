@@ -22,7 +22,7 @@ struct TextureUse {
 };
 
 struct BaseColor {
-  double alpha = 1.0;
+  std::vector<double> factor{1, 1, 1, 1};
   TextureUse texture;
 };
 
@@ -62,12 +62,13 @@ BaseColor base_color(const tinygltf::Material& material) {
   const Value* gloss = find(material.extensions, "KHR_materials_pbrSpecularGlossiness");
   if (gloss == nullptr) {
     const auto& pbr = material.pbrMetallicRoughness;
-    base.alpha = pbr.baseColorFactor[3];
+    base.factor = pbr.baseColorFactor;
     base.texture = metallic_roughness_texture(pbr.baseColorTexture);
     return base;
   }
   if (const Value* factor = find(gloss, "diffuseFactor"); factor != nullptr) {
-    base.alpha = factor->Get(3).GetNumberAsDouble();
+    for (std::size_t i = 0; i < 4; ++i)
+      base.factor[i] = factor->Get(static_cast<int>(i)).GetNumberAsDouble();
   }
   base.texture = diffuse_texture(find(gloss, "diffuseTexture"));
   return base;
@@ -122,6 +123,17 @@ void apply_emissive_texture(TextureReader& textures, int texture, const std::str
   }
 }
 
+/// When the image cannot be read, the surface keeps the factor's colour, with a warning.
+void apply_color_texture(TextureReader& textures, int texture, const std::string& who,
+                         Material& material, Scene& scene) {
+  if (texture < 0) return;
+  try {
+    material.color_texture = textures.color_texture(texture, who);
+  } catch (const Error& error) {
+    scene.warnings.push_back(std::string(error.what()) + "; its colour goes untextured");
+  }
+}
+
 /// The materials that placed primitives use.
 struct ShownMaterials {
   std::vector<bool> by_triangles;  ///< per glTF material: whether triangles use it
@@ -155,10 +167,10 @@ bool emits(const Material& material) {
 }
 
 MaterialSet read_materials(const Document& document, const std::vector<PlacedNode>& placed,
-                           bool with_lines, Scene& scene) {
+                           bool with_lines, bool with_colors, Scene& scene) {
   const auto& given = document.model.materials;
   const ShownMaterials shown = shown_materials(document, placed, with_lines);
-  TextureReader textures(document, scene);
+  TextureReader textures(document, with_colors, scene);
   MaterialSet set;
   for (std::size_t i = 0; i < given.size(); ++i) {
     const std::string who = element("material", i, given[i].name);
@@ -166,7 +178,11 @@ MaterialSet read_materials(const Document& document, const std::vector<PlacedNod
     Material material;
     material.name = given[i].name.empty() ? fmt::format("material_{}", i) : one_line(given[i].name);
     material.alpha_mode = alpha_mode(given[i]);
-    material.alpha = static_cast<float>(std::clamp(base.alpha, 0.0, 1.0));
+    material.alpha = static_cast<float>(std::clamp(base.factor[3], 0.0, 1.0));
+    for (int channel = 0; channel < 3; ++channel) {
+      material.color[channel] =
+          static_cast<float>(std::clamp(base.factor[static_cast<std::size_t>(channel)], 0.0, 1.0));
+    }
     material.alpha_cutoff = static_cast<float>(given[i].alphaCutoff);
     material.double_sided = given[i].doubleSided;
     material.emission = emission_factor(given[i]);
@@ -175,6 +191,7 @@ MaterialSet read_materials(const Document& document, const std::vector<PlacedNod
       if (material.alpha_mode != AlphaMode::opaque && base.texture.texture >= 0) {
         material.alpha_texture = textures.alpha_texture(base.texture.texture, who);
       }
+      if (with_colors) apply_color_texture(textures, base.texture.texture, who, material, scene);
     }
     scene.materials.push_back(std::move(material));
     set.lookups.push_back(alpha_lookup(base.texture));

@@ -34,10 +34,11 @@ struct MaterialSet {
 };
 
 /// Appends to Scene::materials and Scene::textures. Reads images only for materials that a triangle
-/// primitive of `placed` uses; `with_lines` says whether lines are shown too. Throws Error input
+/// primitive of `placed` uses; `with_lines` says whether lines are shown too, `with_colors` whether
+/// images are also read for their colours. Throws Error input
 /// when an image whose alpha is used cannot be read.
 MaterialSet read_materials(const Document& document, const std::vector<PlacedNode>& placed,
-                           bool with_lines, Scene& scene);
+                           bool with_lines, bool with_colors, Scene& scene);
 
 bool emits(const Material& material);
 

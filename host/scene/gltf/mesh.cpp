@@ -40,10 +40,11 @@ void refuse_compressed(const Document& document, const tinygltf::Primitive& prim
 
 /// Returns the attributes of a primitive that its material needs. Only triangles use textures.
 AttributeNeeds needs_of(const Material& material, const AlphaLookup& lookup, bool lines,
-                        MeshTotals& totals) {
+                        bool colors, MeshTotals& totals) {
   if (lines && lookup.has_texture && material.alpha_mode != AlphaMode::opaque)
     ++totals.textured_lines;
-  return {!lines, !lines && material.alpha_texture >= 0, material.alpha_mode != AlphaMode::opaque};
+  const bool textured = material.alpha_texture >= 0 || material.color_texture >= 0;
+  return {!lines, !lines && textured, material.alpha_mode != AlphaMode::opaque, colors};
 }
 
 void append_elements(Mesh& mesh, const std::vector<std::uint32_t>& corners, std::size_t base,
@@ -63,6 +64,7 @@ struct PrimitiveSource {
   const Material& material;
   const AlphaLookup& lookup;
   float line_radius;
+  bool colors;
   const Deformation& deformation;
   const std::string& who;  ///< for messages
 };
@@ -70,11 +72,11 @@ struct PrimitiveSource {
 void append_primitive(const Document& document, const PrimitiveSource& source, Mesh& mesh,
                       MeshTotals& totals) {
   const auto& [primitive, file_mesh, file_primitive, material_index, material, lookup, line_radius,
-               deformation, who] = source;
+               colors, deformation, who] = source;
   const bool lines = is_of_lines(primitive);
-  const AttributeNeeds needs = needs_of(material, lookup, lines, totals);
+  const AttributeNeeds needs = needs_of(material, lookup, lines, colors, totals);
   const Attributes attributes = read_attributes(document, primitive, needs, lookup, who);
-  if (needs.uvs && !attributes.uvs) ++totals.without_texcoord;
+  if (material.alpha_texture >= 0 && needs.uvs && !attributes.uvs) ++totals.without_texcoord;
   std::vector<std::uint32_t> corners = element_corners(document, primitive, who);
   if (corners.empty()) return;
   const auto used = compact(corners, attributes.positions.count());
@@ -203,7 +205,7 @@ std::vector<MeshPart> read_mesh(const Document& document, const MeshUse& use,
     append_primitive(
         document,
         {primitive, static_cast<std::uint32_t>(use.mesh), static_cast<std::uint32_t>(p), at,
-         material, materials.lookups[at], use.line_radius, deformation, who},
+         material, materials.lookups[at], use.line_radius, use.colors, deformation, who},
         mesh, totals);
   }
   const std::string name =

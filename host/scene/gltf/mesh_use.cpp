@@ -49,6 +49,7 @@ MeshUse use_of(const Document& document, const PlacedNode& placed, const Pose& p
   const NodePose* moved = found == pose.end() ? nullptr : &found->second;
   MeshUse use;
   use.mesh = node.mesh;
+  use.colors = options.colors;
   use.weights = morph_weights(node, mesh, moved);
   if (moved != nullptr && moved->weights) use.node = placed.node;
   if (node.skin >= 0 && is_bound_to_joints(mesh)) use.skin = node.skin;

@@ -17,6 +17,7 @@ struct MeshUse {
   float line_radius = 0;        ///< of its lines, in the mesh's units; 0: lines are left out
   int skin = -1;                ///< the skin of its vertices, -1 for none
   std::vector<double> weights;  ///< of its morph targets; empty when all are 0
+  bool colors = false;          ///< SceneOptions::colors
   int node = -1;  ///< the node that uses it, if it changes with time; -1: can be shared
 
   auto operator<=>(const MeshUse&) const = default;

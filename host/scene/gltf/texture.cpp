@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kOtherFormats[] = {"KHR_texture_basisu", "EXT_texture_webp",
                                          "EXT_texture_avif", "MSFT_texture_dds"};
 
-/// The limit of all alpha textures together, one byte per texel. An image's file can be a thousand
+/// The limit of the texels of all textures, alpha and colour. An image's file can be a thousand
 /// times smaller than its texels.
 constexpr std::uint64_t kMaxTexels = std::uint64_t{1} << 31;
 
@@ -66,6 +66,8 @@ Wrap wrap_mode(int code) {
   return code == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
 }
 
+AlphaImage alpha_of(const ColorImage& image) { return {image.width, image.height, image.alpha}; }
+
 /// Returns a texture without pixels that has the sampler's modes.
 Texture sampled(const Document& document, int texture) {
   Texture result;
@@ -86,12 +88,9 @@ int TextureReader::alpha_texture(int texture, const std::string& user) {
   const Key key{image, result.wrap_s, result.wrap_t, result.nearest};
   if (const auto known = loaded_.find(key); known != loaded_.end()) return known->second;
   const std::string what = describe(document_, image, user);
-  AlphaImage decoded = decode_alpha(read_image(document_, image, what).bytes, what);
-  texels_ += decoded.alpha.size();
-  if (texels_ > kMaxTexels) {
-    fail(what, "brings the alpha textures to {} texels (at most {})", grouped(texels_),
-         grouped(kMaxTexels));
-  }
+  AlphaImage decoded = with_colors_ ? alpha_of(this->decoded(image, what))
+                                    : decode_alpha(read_image(document_, image, what).bytes, what);
+  count_texels(decoded.alpha.size(), what);
   result.name = one_line(image_name(document_, image));
   result.width = decoded.width;
   result.height = decoded.height;
@@ -99,6 +98,38 @@ int TextureReader::alpha_texture(int texture, const std::string& user) {
   const int index = static_cast<int>(scene_.textures.size());
   scene_.textures.push_back(std::move(result));
   loaded_.emplace(key, index);
+  return index;
+}
+
+void TextureReader::count_texels(std::uint64_t texels, const std::string& what) {
+  texels_ += texels;
+  if (texels_ <= kMaxTexels) return;
+  fail(what, "brings the textures to {} texels (at most {})", grouped(texels_),
+       grouped(kMaxTexels));
+}
+
+const ColorImage& TextureReader::decoded(int image, const std::string& what) {
+  if (image != last_image_) {
+    last_ = decode_color(read_image(document_, image, what).bytes, what);
+    last_image_ = image;
+  }
+  return last_;
+}
+
+int TextureReader::color_texture(int texture, const std::string& user) {
+  const int image = image_of(document_, texture, user);
+  const Texture modes = sampled(document_, texture);
+  const Key key{image, modes.wrap_s, modes.wrap_t, modes.nearest};
+  if (const auto known = loaded_colors_.find(key); known != loaded_colors_.end())
+    return known->second;
+  const std::string what = describe(document_, image, user);
+  const ColorImage& decoded = this->decoded(image, what);
+  count_texels(decoded.alpha.size(), what);
+  const int index = static_cast<int>(scene_.color_textures.size());
+  scene_.color_textures.push_back({one_line(image_name(document_, image)), decoded.width,
+                                   decoded.height, decoded.rgb, decoded.alpha, modes.wrap_s,
+                                   modes.wrap_t, modes.nearest});
+  loaded_colors_.emplace(key, index);
   return index;
 }
 

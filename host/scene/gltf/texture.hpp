@@ -1,5 +1,6 @@
 // Reads the images that materials need. In: the index of a glTF texture; out: an alpha texture in
-// Scene::textures, which equal uses share, or the mean colour of an emissive texture.
+// Scene::textures or a colour texture, which equal uses share, or the mean colour of an emissive
+// texture.
 #pragma once
 
 #include <map>
@@ -8,16 +9,22 @@
 
 #include "dapple/scene.hpp"
 #include "scene/gltf/document.hpp"
+#include "scene/images/image.hpp"
 
 namespace dapple::gltf {
 
 class TextureReader {
  public:
-  TextureReader(const Document& document, Scene& scene) : document_(document), scene_(scene) {}
+  /// `with_colors`: images of alphas will be asked for their colours, too.
+  TextureReader(const Document& document, bool with_colors, Scene& scene)
+      : document_(document), scene_(scene), with_colors_(with_colors) {}
 
   /// Returns the index in Scene::textures of a glTF texture's alpha. Throws Error input, naming
   /// `user`, when the image is missing, corrupt or in a format that dapple cannot read.
   int alpha_texture(int texture, const std::string& user);
+
+  /// Returns the index in Scene::color_textures of a glTF texture. Throws like alpha_texture().
+  int color_texture(int texture, const std::string& user);
 
   /// Returns the mean linear colour of a glTF texture. Throws like alpha_texture().
   [[nodiscard]] V3f mean_color(int texture, const std::string& user) const;
@@ -25,10 +32,17 @@ class TextureReader {
  private:
   using Key = std::tuple<int, Wrap, Wrap, bool>;  // image, wrap_s, wrap_t, nearest
 
+  /// Decodes an image, or returns it if it was the last one: a material needs alpha and colour.
+  [[nodiscard]] const ColorImage& decoded(int image, const std::string& what);
+  void count_texels(std::uint64_t texels, const std::string& what);
+
   const Document& document_;
   Scene& scene_;
-  std::map<Key, int> loaded_;
+  bool with_colors_;
+  std::map<Key, int> loaded_, loaded_colors_;
   std::uint64_t texels_ = 0;  ///< of all textures in the scene
+  int last_image_ = -1;       ///< whose content is `last_`
+  ColorImage last_;
 };
 
 }  // namespace dapple::gltf

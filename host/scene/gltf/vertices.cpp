@@ -39,16 +39,16 @@ std::optional<AccessorReader> read_uvs(const Document& document,
   return AccessorReader(document, accessor);
 }
 
-/// Returns COLOR_0 if it has an alpha.
+/// Returns COLOR_0 if it has `components` or more.
 std::optional<AccessorReader> read_colors(const Document& document,
                                           const tinygltf::Primitive& primitive,
-                                          const std::string& who) {
+                                          const std::string& who, std::uint64_t components) {
   const int accessor = attribute(primitive, "COLOR_0");
   if (accessor < 0) return {};
   require_type(document, accessor, who + " COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4},
                {Component::float32, Component::uint8, Component::uint16});
   AccessorReader colors(document, accessor);
-  if (colors.components() < 4) return {};
+  if (colors.components() < components) return {};
   return colors;
 }
 
@@ -73,10 +73,11 @@ int attribute(const tinygltf::Primitive& primitive, const std::string& name) {
 Attributes read_attributes(const Document& document, const tinygltf::Primitive& primitive,
                            const AttributeNeeds& needs, const AlphaLookup& lookup,
                            const std::string& who) {
-  Attributes attributes{read_positions(document, primitive, who), {}, {}, {}};
+  Attributes attributes{read_positions(document, primitive, who), {}, {}, {}, {}};
   if (needs.normals) attributes.normals = read_normals(document, primitive, who);
   if (needs.uvs) attributes.uvs = read_uvs(document, primitive, lookup, who);
-  if (needs.colors) attributes.colors = read_colors(document, primitive, who);
+  if (needs.alphas) attributes.alphas = read_colors(document, primitive, who, 4);
+  if (needs.colors) attributes.colors = read_colors(document, primitive, who, 3);
   return attributes;
 }
 
@@ -116,10 +117,19 @@ void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDefor
       mesh.uvs[base + i] = finite_or_zero(lookup.apply(attributes.uvs->vec2(source(i))));
     }
   }
-  if (attributes.colors || !mesh.vertex_alpha.empty()) mesh.vertex_alpha.resize(base + count, 1.0f);
+  if (attributes.alphas || !mesh.vertex_alpha.empty()) mesh.vertex_alpha.resize(base + count, 1.0f);
+  if (attributes.alphas) {
+    for (std::size_t i = 0; i < count; ++i) {
+      mesh.vertex_alpha[base + i] = clamp_alpha(attributes.alphas->normalized(source(i), 3));
+    }
+  }
+  if (attributes.colors || !mesh.colors.empty()) mesh.colors.resize(base + count, V3f(1, 1, 1));
   if (attributes.colors) {
     for (std::size_t i = 0; i < count; ++i) {
-      mesh.vertex_alpha[base + i] = clamp_alpha(attributes.colors->normalized(source(i), 3));
+      for (int channel = 0; channel < 3; ++channel) {
+        mesh.colors[base + i][channel] = clamp_alpha(
+            attributes.colors->normalized(source(i), static_cast<std::uint64_t>(channel)));
+      }
     }
   }
 }

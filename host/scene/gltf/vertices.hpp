@@ -20,13 +20,15 @@ struct Attributes {
   AccessorReader positions;
   std::optional<AccessorReader> normals;
   std::optional<AccessorReader> uvs;
-  std::optional<AccessorReader> colors;  ///< only colours with an alpha
+  std::optional<AccessorReader> alphas;  ///< COLOR_0, if it has an alpha
+  std::optional<AccessorReader> colors;  ///< COLOR_0
 };
 
 /// Which optional attributes the material needs.
 struct AttributeNeeds {
   bool normals = false;
   bool uvs = false;
+  bool alphas = false;
   bool colors = false;
 };
 
@@ -47,8 +49,8 @@ std::optional<std::vector<std::uint32_t>> compact(std::vector<std::uint32_t>& co
                                                   std::uint64_t vertices);
 
 /// Appends the vertices `used`, or all, to `mesh`, at the positions and with the normals that
-/// `deformer` returns. When only some primitives have normals, texture coordinates or alphas, the
-/// others get the defaults: normal (0, 0, 0), uv (0, 0) and alpha 1.
+/// `deformer` returns. When only some primitives have normals, texture coordinates, alphas or
+/// colours, the others get the defaults: normal (0, 0, 0), uv (0, 0), alpha 1 and white.
 void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDeformer& deformer,
                      const AlphaLookup& lookup,
                      const std::optional<std::vector<std::uint32_t>>& used);

@@ -1,6 +1,7 @@
 // Decodes PNG and JPEG images with stb_image: see image.hpp.
 #include "scene/images/image.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -72,7 +73,7 @@ void check_header(std::span<const std::uint8_t> bytes, const std::string& what) 
   check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), what);
 }
 
-/// Decodes to `channels` bytes per pixel: 2 is grey and alpha, 3 is RGB.
+/// Decodes to `channels` bytes per pixel: 2 is grey and alpha, 3 is RGB, 4 is RGB and alpha.
 Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::string& what) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     refuse(what, "has more than 2^31 bytes");
@@ -108,6 +109,20 @@ AlphaImage decode_alpha(std::span<const std::uint8_t> bytes, const std::string& 
   image.alpha.resize(pixels.width * pixels.height);
   for (std::size_t i = 0; i < image.alpha.size(); ++i) {
     image.alpha[i] = pixels.bytes.get()[2 * i + 1];
+  }
+  return image;
+}
+
+ColorImage decode_color(std::span<const std::uint8_t> bytes, const std::string& what) {
+  const Pixels pixels = decode(bytes, 4, what);
+  const std::size_t count = pixels.width * pixels.height;
+  ColorImage image{static_cast<std::uint32_t>(pixels.width),
+                   static_cast<std::uint32_t>(pixels.height), std::vector<std::uint8_t>(3 * count),
+                   std::vector<std::uint8_t>(count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const stbi_uc* pixel = pixels.bytes.get() + 4 * i;
+    std::copy_n(pixel, 3, &image.rgb[3 * i]);
+    image.alpha[i] = pixel[3];
   }
   return image;
 }

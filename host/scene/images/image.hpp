@@ -1,5 +1,6 @@
 // Decodes PNG and JPEG images from memory. In: the bytes of a file; out: the alpha channel, for
-// opacity, or the mean colour, for emission. Only image.cpp and radiance_hdr.cpp use stb_image.
+// opacity, all channels, for albedo, or the mean colour, for emission. Only image.cpp and
+// radiance_hdr.cpp use stb_image.
 #pragma once
 
 #include <Imath/ImathVec.h>
@@ -19,6 +20,16 @@ struct AlphaImage {
   std::uint32_t height = 0;
   std::vector<std::uint8_t> alpha;  ///< width * height, top row first
 };
+
+struct ColorImage {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint8_t> rgb;    ///< 3 * width * height
+  std::vector<std::uint8_t> alpha;  ///< width * height
+};
+
+/// Returns all channels, as decode_alpha() does.
+ColorImage decode_color(std::span<const std::uint8_t> bytes, const std::string& what);
 
 /// Returns the alpha channel: 255 everywhere for an image without one, the high byte of a 16-bit
 /// one. Throws Error input; the message begins with `what`.

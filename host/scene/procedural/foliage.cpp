@@ -73,11 +73,22 @@ M44f forest_placement(Pcg32& rng, std::uint32_t tree, std::uint32_t row_length, 
   return {turn.x, 0, -turn.y, 0, 0, scale, 0, 0, turn.y, 0, turn.x, 0, x, 0, z, 1};
 }
 
+/// Base colours, linear, of what grows and what it stands on. Other materials are white.
+V3f color_named(const std::string& name) {
+  if (name == "leaf") return {0.11f, 0.22f, 0.04f};
+  if (name == "bark") return {0.14f, 0.10f, 0.07f};
+  if (name == "ground") return {0.32f, 0.29f, 0.24f};
+  if (name == "hair") return {0.16f, 0.08f, 0.035f};
+  if (name == "skin") return {0.58f, 0.36f, 0.26f};
+  return {1, 1, 1};
+}
+
 }  // namespace
 
 Material blend_material(const std::string& name, float opacity) {
   Material material;
   material.name = name;
+  material.color = color_named(name);
   material.alpha_mode = AlphaMode::blend;
   material.alpha = opacity;
   material.double_sided = true;
@@ -87,6 +98,7 @@ Material blend_material(const std::string& name, float opacity) {
 Material opaque_material(const std::string& name) {
   Material material;
   material.name = name;
+  material.color = color_named(name);
   return material;
 }
 

@@ -119,6 +119,15 @@ typedef struct ResolveParams {
   float eye[3];
 } ResolveParams;
 
+/* The shading pass. Its planes: shading normal (3) if there are normals, then albedo (3). */
+typedef struct ShadingParams {
+  ResolveParams resolve;
+  uint normals;       /* 1: there are normals of corners */
+  uint albedo;        /* 1: there are colours */
+  uint resolves;      /* 0: nothing is added to the film */
+  uint segment_words; /* where the words of segments begin, surface_color.h */
+} ShadingParams;
+
 #ifndef __OPENCL_VERSION__
 static_assert(DAPPLE_SAMPLE_BATCH % DAPPLE_MAX_CAMERA_SPLITTING == 0,
               "batches are whole camera rays");

@@ -1,0 +1,323 @@
+#include "device/upload/color_upload.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bvh/storage/textured_triangle.hpp"
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+/// Lanes of one task of a parallel loop.
+constexpr std::size_t kGrain = 1u << 14;
+
+/// The sRGB transfer function of IEC 61966-2-1.
+float linear_of(std::size_t code) {
+  const double value = static_cast<double>(code) / 255;
+  return static_cast<float>(value <= 0.04045 ? value / 12.92
+                                             : std::pow((value + 0.055) / 1.055, 2.4));
+}
+
+/// What the codes of 8 bits stand for.
+const std::array<float, 256>& table() {
+  static const std::array<float, 256> kTable = [] {
+    std::array<float, 256> values{};
+    for (std::size_t code = 0; code < values.size(); ++code) values[code] = linear_of(code);
+    return values;
+  }();
+  return kTable;
+}
+
+uint code(float value, int largest) {
+  const float inside = value > 0 ? std::min(value, 1.0f) : 0.0f;  // 0 for NaN
+  return static_cast<uint>(std::sqrt(inside) * static_cast<float>(largest) + 0.5f);
+}
+
+uint packed(const V3f& linear) {
+  return code(linear.x, DAPPLE_RED_CODES) | code(linear.y, DAPPLE_GREEN_CODES) << 11 |
+         code(linear.z, DAPPLE_BLUE_CODES) << 22;
+}
+
+/// A mip level: sums of colours times weights, and sums of weights.
+struct WeightedLevel {
+  std::uint32_t width = 0, height = 0;
+  std::vector<V3f> color;
+  std::vector<float> weight;
+};
+
+/// A colour and its weight.
+struct WeightedTexel {
+  V3f color;
+  float weight;
+};
+
+/// The texel of a texture, weighed by its alpha. A little weight stays where that is 0, for texels
+/// among which there is no other.
+WeightedTexel texel_of(const ColorTexture& texture, std::size_t i) {
+  constexpr float kUnseen = 1e-4f;
+  const std::uint8_t* texel = &texture.rgb[3 * i];
+  const float weight =
+      texture.alpha.empty() ? 1.0f : std::max(kUnseen, static_cast<float>(texture.alpha[i]) / 255);
+  return {V3f(table()[texel[0]], table()[texel[1]], table()[texel[2]]) * weight, weight};
+}
+
+/// Sums of two by two texels of a finer level; of an odd size the last texel has three.
+template <class Texel>
+WeightedLevel coarser(std::uint32_t width, std::uint32_t height, const Texel& texel) {
+  WeightedLevel coarse{std::max(1u, width / 2), std::max(1u, height / 2), {}, {}};
+  coarse.color.resize(std::size_t{coarse.width} * coarse.height);
+  coarse.weight.resize(coarse.color.size());
+  const auto end = [](std::uint32_t at, std::uint32_t fine, std::uint32_t coarse_size) {
+    return at + 1 == coarse_size ? fine : 2 * at + 2;
+  };
+  tbb::parallel_for(0u, coarse.height, [&](std::uint32_t y) {
+    for (std::uint32_t x = 0; x < coarse.width; ++x) {
+      WeightedTexel sum{V3f(0, 0, 0), 0};
+      for (std::uint32_t j = 2 * y; j < end(y, height, coarse.height); ++j) {
+        for (std::uint32_t i = 2 * x; i < end(x, width, coarse.width); ++i) {
+          const WeightedTexel one = texel(std::size_t{j} * width + i);
+          sum.color += one.color;
+          sum.weight += one.weight;
+        }
+      }
+      const std::size_t to = std::size_t{y} * coarse.width + x;
+      coarse.color[to] = sum.color;
+      coarse.weight[to] = sum.weight;
+    }
+  });
+  return coarse;
+}
+
+[[noreturn]] void refuse_size(const Scene& scene, const char* what) {
+  throw Error(ErrorKind::failed,
+              fmt::format("{}: too many {} for the albedo's indices; leave it out of --passes",
+                          scene.source, what));
+}
+
+/// Appends the texture and its mip levels. Returns where each begins.
+std::vector<uint> pack_levels(const Scene& scene, const ColorTexture& texture,
+                              std::vector<uint>& texels) {
+  std::vector<uint> offsets;
+  const auto begin = [&] {
+    if (texels.size() >= std::numeric_limits<uint>::max()) refuse_size(scene, "texels");
+    offsets.push_back(static_cast<uint>(texels.size()));
+  };
+  const auto append = [&](std::size_t count, const auto& code_of) {
+    begin();
+    const std::size_t first = texels.size();
+    texels.resize(first + count);
+    tbb::parallel_for(std::size_t{0}, count,
+                      [&](std::size_t i) { texels[first + i] = code_of(i); });
+  };
+  std::array<uint, 256> red{}, green{}, blue{};
+  for (std::size_t c = 0; c < 256; ++c) {
+    red[c] = code(table()[c], DAPPLE_RED_CODES);
+    green[c] = code(table()[c], DAPPLE_GREEN_CODES) << 11;
+    blue[c] = code(table()[c], DAPPLE_BLUE_CODES) << 22;
+  }
+  append(texture.rgb.size() / 3, [&](std::size_t i) {
+    const std::uint8_t* texel = &texture.rgb[3 * i];
+    return red[texel[0]] | green[texel[1]] | blue[texel[2]];
+  });
+  for (const ColorLevel& level : color_mip_levels(texture)) {
+    if (offsets.size() > DAPPLE_MAX_MIPS) break;
+    append(level.color.size(), [&](std::size_t i) { return packed(level.color[i]); });
+  }
+  return offsets;
+}
+
+void pack_materials(const Scene& scene, SurfaceColors& colors) {
+  std::vector<std::vector<uint>> levels;
+  for (const ColorTexture& texture : scene.color_textures)
+    levels.push_back(pack_levels(scene, texture, colors.texels));
+  for (const Material& material : scene.materials) {
+    ColorMaterial record{};
+    for (int channel = 0; channel < 3; ++channel) record.color[channel] = material.color[channel];
+    if (material.color_texture >= 0) {
+      const ColorTexture& texture = scene.color_textures[material.color_texture];
+      const std::vector<uint>& offsets = levels[material.color_texture];
+      record.mips = static_cast<uint>(offsets.size()) - 1;
+      record.width = texture.width;
+      record.height = texture.height;
+      record.flags = static_cast<uint>(texture.wrap_s) | static_cast<uint>(texture.wrap_t) << 2 |
+                     (texture.nearest ? 16u : 0u);
+      std::copy(offsets.begin(), offsets.end(), record.offset);
+    }
+    colors.materials.push_back(record);
+  }
+}
+
+/// The entries of a mesh's surfaces.
+class MeshEntries {
+ public:
+  MeshEntries(const Scene& scene, const SceneBvh& bvh, const Mesh& mesh, std::size_t first_lane,
+              std::size_t first_block)
+      : scene_(scene),
+        bvh_(bvh),
+        mesh_(mesh),
+        primitives_(bvh.primitives.data() + first_lane),
+        first_block_(first_block) {}
+
+  /// The flags of a lane's entry. Lanes without a primitive of the mesh have those of material 0.
+  [[nodiscard]] uint flags(std::size_t lane) const {
+    const std::uint32_t primitive = primitives_[lane];
+    if (primitive >= mesh_.primitive_count()) return 0;
+    const Material& material = scene_.materials[mesh_.materials[primitive]];
+    uint flags = mesh_.materials[primitive];
+    if (!mesh_.colors.empty()) flags |= DAPPLE_COLOR_CORNERS;
+    if (material.color_texture < 0 || mesh_.uvs.empty() || mesh_.has_strands()) return flags;
+    const TriangleBlock& block = bvh_.blocks[first_block_ + lane / 8];
+    const bool of_opacity = material.alpha_texture >= 0 && block.opacity[lane % 8] < 0;
+    return flags | (of_opacity ? DAPPLE_COLOR_OPACITY_UVS : DAPPLE_COLOR_UVS);
+  }
+
+  [[nodiscard]] std::size_t size(uint flags) const {
+    if ((flags & (DAPPLE_COLOR_UVS | DAPPLE_COLOR_CORNERS)) == 0) return 0;  // a shared entry
+    return 1 + (flags & DAPPLE_COLOR_UVS ? 6 : 0) + (flags & DAPPLE_COLOR_CORNERS ? corners() : 0);
+  }
+
+  void write(std::size_t lane, uint flags, uint* entry) const {
+    const std::uint32_t* at = &mesh_.indices[corners() * primitives_[lane]];
+    *entry++ = flags;
+    if (flags & DAPPLE_COLOR_UVS) {
+      const TexturedTriangle triangle = coordinates(at, primitives_[lane]);
+      for (const auto& corner : triangle.corner) entry = std::copy_n(corner, 2, entry);
+    }
+    if (flags & DAPPLE_COLOR_CORNERS) {
+      for (std::size_t k = 0; k < corners(); ++k) *entry++ = packed(mesh_.colors[at[k]]);
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t corners() const { return mesh_.has_strands() ? 2 : 3; }
+
+  [[nodiscard]] TexturedTriangle coordinates(const std::uint32_t* at, std::size_t triangle) const {
+    const ColorTexture& texture =
+        scene_.color_textures[scene_.materials[mesh_.materials[triangle]].color_texture];
+    const V2f size(static_cast<float>(texture.width), static_cast<float>(texture.height));
+    TexturedCorners corners;
+    for (int k = 0; k < 3; ++k) corners.uv[k] = mesh_.uvs[at[k]];
+    corners.has_texture = true;
+    const V3f edge1 = mesh_.positions[at[1]] - mesh_.positions[at[0]];
+    const V3f edge2 = mesh_.positions[at[2]] - mesh_.positions[at[0]];
+    const float texels = std::fabs(
+        ((corners.uv[1] - corners.uv[0]) * size).cross((corners.uv[2] - corners.uv[0]) * size));
+    if (texels > 0) corners.texel_size = std::sqrt(edge1.cross(edge2).length() / texels);
+    return pack_textured(corners, texture.wrap_s, texture.wrap_t);
+  }
+
+  const Scene& scene_;
+  const SceneBvh& bvh_;
+  const Mesh& mesh_;
+  const std::uint32_t* primitives_;
+  std::size_t first_block_;
+};
+
+/// Where the shared entry of a material begins: there is one without and one with coordinates.
+std::size_t shared_entry(std::size_t lanes, uint flags) {
+  return lanes + 2 * std::size_t{flags & DAPPLE_COLOR_MATERIAL} +
+         (flags & DAPPLE_COLOR_OPACITY_UVS ? 1 : 0);
+}
+
+/// Writes the words of `count` lanes, whose place is at `lane_words`, and their entries at the end.
+void pack_mesh(const Scene& scene, const MeshEntries& entries, std::size_t first_word,
+               std::size_t count, std::size_t lanes, std::vector<uint>& words) {
+  const std::size_t tasks = (count + kGrain - 1) / kGrain;
+  std::vector<std::size_t> next(tasks + 1, 0);
+  const auto for_lanes = [&](std::size_t task, const auto& body) {
+    for (std::size_t lane = task * kGrain; lane < std::min(count, (task + 1) * kGrain); ++lane)
+      body(lane, entries.flags(lane));
+  };
+  tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+    std::size_t size = 0;
+    for_lanes(task, [&](std::size_t, uint flags) { size += entries.size(flags); });
+    next[task + 1] = size;
+  });
+  next[0] = words.size();
+  for (std::size_t task = 0; task < tasks; ++task) next[task + 1] += next[task];
+  if (next[tasks] > std::numeric_limits<uint>::max()) refuse_size(scene, "triangles");
+  words.resize(next[tasks]);
+  tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+    std::size_t at = next[task];
+    for_lanes(task, [&](std::size_t lane, uint flags) {
+      const std::size_t size = entries.size(flags);
+      words[first_word + lane] = static_cast<uint>(size > 0 ? at : shared_entry(lanes, flags));
+      if (size > 0) entries.write(lane, flags, &words[at]);
+      at += size;
+    });
+  });
+}
+
+}  // namespace
+
+std::vector<ColorLevel> color_mip_levels(const ColorTexture& texture) {
+  std::vector<ColorLevel> levels;
+  WeightedLevel level{texture.width, texture.height, {}, {}};
+  while (level.width > 1 || level.height > 1) {
+    level = levels.empty() ? coarser(level.width, level.height,
+                                     [&](std::size_t i) { return texel_of(texture, i); })
+                           : coarser(level.width, level.height, [&](std::size_t i) {
+                               return WeightedTexel{level.color[i], level.weight[i]};
+                             });
+    ColorLevel mean{level.width, level.height, std::vector<V3f>(level.color.size())};
+    tbb::parallel_for(std::size_t{0}, mean.color.size(),
+                      [&](std::size_t i) { mean.color[i] = level.color[i] / level.weight[i]; });
+    levels.push_back(std::move(mean));
+  }
+  return levels;
+}
+
+Checksum color_key(const Scene& scene) {
+  ChecksumStream key;
+  for (const ColorTexture& texture : scene.color_textures) {
+    key.add_value(texture.width);
+    key.add_value(texture.height);
+    key.add_value(texture.wrap_s);
+    key.add_value(texture.wrap_t);
+    key.add_value(static_cast<std::uint8_t>(texture.nearest));
+    key.add_range(texture.rgb);
+    key.add_range(texture.alpha);
+  }
+  for (const Material& material : scene.materials) {
+    for (int channel = 0; channel < 3; ++channel) key.add_value(material.color[channel]);
+    key.add_value(material.color_texture);
+  }
+  for (const Mesh& mesh : scene.meshes) {
+    key.add_range(mesh.materials);
+    key.add_range(mesh.uvs);
+    key.add_range(mesh.colors);
+  }
+  return key.value();
+}
+
+SurfaceColors pack_colors(const Scene& scene, const SceneBvh& bvh) {
+  SurfaceColors colors;
+  pack_materials(scene, colors);
+  const std::size_t lanes = bvh.primitives.size();
+  const std::size_t shared = 2 * scene.materials.size();
+  if (lanes + shared > std::numeric_limits<uint>::max()) refuse_size(scene, "triangles");
+  std::vector<uint>& words = colors.words;
+  words.resize(lanes + shared);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    words[lanes + 2 * m] = static_cast<uint>(m);
+    words[lanes + 2 * m + 1] = static_cast<uint>(m) | DAPPLE_COLOR_OPACITY_UVS;
+  }
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const ObjectOffsets &first = bvh.objects[m], &end = bvh.objects[m + 1];
+    const bool strands = scene.meshes[m].has_strands();
+    // Lanes of triangles come first, then those of segments.
+    const std::size_t first_word =
+        strands ? 8 * (bvh.blocks.size() + first.segments) : 8 * std::size_t{first.block};
+    pack_mesh(scene, {scene, bvh, scene.meshes[m], first.lane(), first.block}, first_word,
+              end.lane() - first.lane(), lanes, words);
+  }
+  return colors;
+}
+
+}  // namespace dapple

@@ -1,0 +1,21 @@
+// A picture for the eye from linear light: exposure, tone mapping, background. In: a film. Out:
+// linear values of a display, [0,1].
+#pragma once
+
+#include "dapple/film.hpp"
+
+namespace dapple {
+
+/// The factor that brings RGBA to a middle brightness: the mean luminance of what is seen becomes
+/// 0.35, but at most a hundredth of it is brighter than white. 1 where nothing is seen.
+float automatic_exposure(const Film& film);
+
+/// Compresses what is brighter than 0.76, and takes its saturation away, so that highlights become
+/// white at last; darker colours stay as they are. After Khronos's PBR Neutral tone mapper (2024),
+/// without its allowance for reflections.
+V3f tone_mapped(V3f color);
+
+/// The colour of a sky, linear: `height` is 0 at the picture's lower edge, 1 at the upper.
+V3f sky_color(float height);
+
+}  // namespace dapple

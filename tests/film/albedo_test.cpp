@@ -1,0 +1,286 @@
+// The layer albedo against direct look-ups in textures and colours of corners, and RGBA recombined
+// from its layers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "dapple/render.hpp"
+#include "device/upload/color_upload.hpp"
+#include "support/smooth_shapes.hpp"
+
+namespace dapple {
+namespace {
+
+using test::scene_of;
+
+double linear_of(int code) {
+  const double value = code / 255.0;
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+/// A square from (-1, -1) to (1, 1) that faces +Z; texture coordinates from (0, 1) to (1, 0).
+Scene square() {
+  Mesh mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  Scene scene = scene_of(std::move(mesh));
+  Camera camera;
+  camera.kind = Camera::Kind::orthographic;
+  camera.half_height = 1;
+  camera.to_world.setTranslation(V3f(0, 0, 5));
+  scene.cameras = {camera};
+  return scene;
+}
+
+ColorTexture random_texture(std::uint32_t side) {
+  std::mt19937 bits(1);
+  ColorTexture texture;
+  texture.width = texture.height = side;
+  for (std::uint32_t i = 0; i < 3 * side * side; ++i)
+    texture.rgb.push_back(static_cast<std::uint8_t>(bits() >> 24));
+  return texture;
+}
+
+RenderOptions picture(int side, int spp) {
+  RenderOptions options;
+  options.width = options.height = side;
+  options.spp = spp;
+  options.camera_splitting = 1;
+  options.light = false;
+  return options;
+}
+
+float at(const Film& film, const std::string& channel, std::size_t pixel) {
+  return film.find(channel)->pixels[pixel];
+}
+
+constexpr std::array<const char*, 3> kAlbedo{"albedo.R", "albedo.G", "albedo.B"};
+
+/// Bilinear in linear light, texture coordinates clamped or repeated.
+double looked_up(const ColorTexture& texture, double u, double v, int channel) {
+  const int side = static_cast<int>(texture.width);
+  const double x = u * side - 0.5, y = v * side - 0.5;
+  const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
+  const auto texel = [&](int i, int j) {
+    const auto wrapped = [&](int k) { return (k % side + side) % side; };
+    return linear_of(
+        texture.rgb[static_cast<std::size_t>(3 * (wrapped(j) * side + wrapped(i)) + channel)]);
+  };
+  const double a = x - column, b = y - row;
+  return (texel(column, row) * (1 - a) + texel(column + 1, row) * a) * (1 - b) +
+         (texel(column, row + 1) * (1 - a) + texel(column + 1, row + 1) * a) * b;
+}
+
+TEST(Albedo, AConstantColourIsItself) {
+  Scene scene = square();
+  scene.materials[0].color = V3f(0.2f, 0.5f, 0.8f);
+  const Film film = render(scene, picture(16, 4)).film;
+  for (std::size_t p = 0; p < 256; ++p) {
+    EXPECT_NEAR(at(film, "albedo.R", p), 0.2f, 1e-6);
+    EXPECT_NEAR(at(film, "albedo.G", p), 0.5f, 1e-6);
+    EXPECT_NEAR(at(film, "albedo.B", p), 0.8f, 1e-6);
+  }
+}
+
+// With one sample per pixel the layer P says where the texture was looked up. Texels are stored in
+// 10 bits or more of their square roots: to 1e-3 at white, a quarter of half a step of 8-bit sRGB.
+TEST(Albedo, AMagnifiedTextureIsADirectLookUp) {
+  for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::blend}) {
+    Scene scene = square();
+    scene.color_textures = {random_texture(8)};
+    scene.materials[0].color_texture = 0;
+    scene.materials[0].color = V3f(1, 0.5f, 1);
+    // A blended texture of alphas of 1: the triangle then has texture coordinates of its own.
+    scene.materials[0].alpha_mode = mode;
+    if (mode == AlphaMode::blend) {
+      scene.textures.resize(1);
+      scene.textures[0].width = scene.textures[0].height = 8;
+      scene.textures[0].alpha.assign(64, 255);
+      scene.materials[0].alpha_texture = 0;
+    }
+    const Film film = render(scene, picture(64, 1)).film;
+    for (std::size_t p = 0; p < 64 * 64; ++p) {
+      ASSERT_EQ(at(film, "A", p), 1.0f);
+      const double u = 0.5 + 0.5 * at(film, "P.X", p), v = 0.5 - 0.5 * at(film, "P.Y", p);
+      for (int channel = 0; channel < 3; ++channel) {
+        const double expected =
+            looked_up(scene.color_textures[0], u, v, channel) * (channel == 1 ? 0.5 : 1);
+        EXPECT_NEAR(at(film, kAlbedo[static_cast<std::size_t>(channel)], p), expected, 1e-3)
+            << "pixel " << p;
+      }
+    }
+  }
+}
+
+TEST(Albedo, APixelOfManyTexelsIsTheirMean) {
+  Scene scene = square();
+  ColorTexture texture = random_texture(512);
+  double mean = 0;
+  for (std::size_t i = 0; i < texture.rgb.size(); i += 3) mean += linear_of(texture.rgb[i]);
+  mean /= 512.0 * 512;
+  scene.color_textures = {texture};
+  scene.materials[0].color_texture = 0;
+  const Film film = render(scene, picture(16, 16)).film;
+  double sum = 0, squares = 0;
+  for (std::size_t p = 0; p < 256; ++p) {
+    sum += at(film, "albedo.R", p);
+    squares += std::pow(at(film, "albedo.R", p) - mean, 2);
+  }
+  EXPECT_NEAR(sum / 256, mean, 0.003);
+  // 1,024 texels of a deviation of 0.3 would have 0.01; sixteen single texels 0.08.
+  EXPECT_LE(std::sqrt(squares / 256), 0.03);
+}
+
+TEST(Albedo, UnseenTexelsOfACutOutDoNotColourMeans) {
+  ColorTexture texture;
+  texture.width = texture.height = 2;
+  texture.rgb = {255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  texture.alpha = {255, 0, 0, 0};
+  const std::vector<ColorLevel> levels = color_mip_levels(texture);
+  ASSERT_EQ(levels.size(), 1u);
+  EXPECT_NEAR(levels[0].color[0].x, 1, 1e-3);
+  texture.alpha = {};
+  EXPECT_NEAR(color_mip_levels(texture)[0].color[0].x, 0.25, 1e-6);
+}
+
+TEST(Albedo, ColoursOfCornersAreInterpolated) {
+  Scene scene = square();
+  scene.meshes[0].colors = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  scene.materials[0].color = V3f(1, 1, 0.5f);
+  const Film film = render(scene, picture(32, 1)).film;
+  for (std::size_t p = 0; p < 32 * 32; ++p) {
+    EXPECT_NEAR(at(film, "albedo.R", p), 0.5f + 0.5f * at(film, "P.X", p), 1e-3);
+    EXPECT_NEAR(at(film, "albedo.G", p), 0.5f + 0.5f * at(film, "P.Y", p), 1e-3);
+    EXPECT_NEAR(at(film, "albedo.B", p), 0.5f, 1e-6);
+  }
+}
+
+TEST(Albedo, StrandsHaveTheColoursOfTheirEnds) {
+  Mesh strand;
+  strand.positions = {{-1, 0, 0}, {1, 0, 0}};
+  strand.radii = {0.5f, 0.5f};
+  strand.colors = {{0.25f, 0, 1}, {0.25f, 1, 1}};
+  strand.indices = {0, 1};
+  strand.materials = {0};
+  Scene scene = square();
+  scene.meshes = {strand};
+  const Film film = render(scene, picture(32, 4)).film;
+  const std::size_t middle = 16 * 32 + 16;
+  ASSERT_EQ(at(film, "A", middle), 1.0f);
+  EXPECT_NEAR(at(film, "albedo.R", middle), 0.25f, 1e-3);
+  EXPECT_NEAR(at(film, "albedo.G", middle), 0.5f, 1e-3);
+  EXPECT_NEAR(at(film, "albedo.B", middle), 1, 1e-6);
+}
+
+TEST(Albedo, InstancesHaveTheColoursOfTheirMesh) {
+  Scene scene = square();
+  scene.color_textures = {random_texture(64)};
+  scene.materials[0].color_texture = 0;
+  Scene placed = scene;
+  placed.instances.resize(400);  // too many copies of a tiny mesh are not merged
+  placed.instances[0].to_world.setScale(0.5f);
+  for (std::size_t i = 1; i < placed.instances.size(); ++i)
+    placed.instances[i].to_world.setTranslation(V3f(100.0f + static_cast<float>(i), 0, 0));
+  for (V3f& p : scene.meshes[0].positions) p *= 0.5f;
+  const Film a = render(scene, picture(32, 16)).film, b = render(placed, picture(32, 16)).film;
+  for (std::size_t p = 0; p < 32 * 32; ++p)
+    EXPECT_NEAR(at(a, "albedo.R", p), at(b, "albedo.R", p), 1e-4) << "pixel " << p;
+}
+
+TEST(Albedo, SparseNodesThatAreMediaHaveColoursOfTheirTriangles) {
+  RenderOptions options = picture(64, 8);
+  options.target_rmse = 0.02f;
+  const Film film = render(load_scene("scene:cloud?leaves=20000&opacity=0.3"), options).film;
+  int seen = 0;
+  for (std::size_t p = 0; p < 64 * 64; ++p) {
+    if (at(film, "A", p) == 0) continue;
+    ++seen;
+    EXPECT_NEAR(at(film, "albedo.R", p), 0.11f, 1e-5);
+    EXPECT_NEAR(at(film, "albedo.G", p), 0.22f, 1e-5);
+  }
+  EXPECT_GT(seen, 500);
+}
+
+TEST(Albedo, ANewColourOfAKeptSceneIsSeen) {
+  Scene scene = square();
+  Renderer renderer;
+  renderer.render(scene, picture(8, 4));
+  scene.materials[0].color = V3f(0.125f);
+  EXPECT_NEAR(at(renderer.render(scene, picture(8, 4)).film, "albedo.G", 20), 0.125f, 1e-6);
+}
+
+double ambient_of(const Film& film) {
+  for (const auto& [name, value] : film.metadata.settings)
+    if (name == "ambient") return std::stod(value);
+  return -1;
+}
+
+/// The largest relative difference of RGB and its layers.
+double worst_recombination(const Film& film, const std::vector<std::string>& lights) {
+  const double ambient = ambient_of(film);
+  double worst = 0, largest = 0;
+  for (const char* letter : {"R", "G", "B"}) {
+    for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
+      double light = ambient * (at(film, std::string("ao.") + letter, p) - 1.0 + at(film, "A", p));
+      for (const std::string& name : lights)
+        light += at(film, "light." + name + "." + letter, p) / std::numbers::pi;
+      const double beauty = light * at(film, std::string("albedo.") + letter, p);
+      largest = std::max<double>(largest, at(film, letter, p));
+      worst = std::max(worst, std::fabs(beauty - at(film, letter, p)));
+    }
+  }
+  EXPECT_GT(largest, 0);
+  return worst / largest;
+}
+
+TEST(Beauty, IsAlbedoTimesSkyAndLights) {
+  RenderOptions options;
+  options.width = options.height = 48;
+  Scene scene = load_scene("scene:tree?leaves=2000");
+  const Film alone = render(scene, options).film;
+  EXPECT_GT(ambient_of(alone), 0);
+  EXPECT_LE(worst_recombination(alone, {"key"}), 1e-5);
+  Light dome;
+  dome.name = "sky";
+  dome.kind = LightKind::dome;
+  dome.radiance = V3f(0.2f, 0.3f, 0.5f);
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::sun;
+  sun.direction = V3f(0.3f, -1, -0.4f).normalized();
+  sun.radiance = V3f(10000, 9000, 8000);
+  scene.lights = {dome, sun};
+  const Film outdoors = render(scene, options).film;
+  EXPECT_EQ(ambient_of(outdoors), 0) << "a dome is a sky";
+  EXPECT_LE(worst_recombination(outdoors, {"sky", "sun"}), 1e-5);
+  options.ambient = 0.25f;
+  const Film with_ambient = render(scene, options).film;
+  EXPECT_EQ(ambient_of(with_ambient), 0.25);
+  EXPECT_LE(worst_recombination(with_ambient, {"sky", "sun"}), 1e-5);
+  options.light = false;
+  options.ambient = {};
+  EXPECT_EQ(ambient_of(render(scene, options).film), 1);
+}
+
+TEST(Albedo, LeavesAllOtherLayersAsTheyAreAndIsGoneWhenOff) {
+  RenderOptions options;
+  options.width = options.height = 32;
+  const Scene scene = load_scene("scene:tree?leaves=500");
+  const Film with = render(scene, options).film;
+  options.albedo = false;
+  const Film without = render(scene, options).film;
+  EXPECT_EQ(without.find("albedo.R"), nullptr);
+  for (const Plane& plane : without.planes) {
+    if (plane.channel.size() == 1 && plane.channel != "A" && plane.channel != "Z") continue;
+    EXPECT_EQ(plane.pixels, with.find(plane.channel)->pixels) << plane.channel;
+  }
+}
+
+}  // namespace
+}  // namespace dapple

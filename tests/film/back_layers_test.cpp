@@ -1,0 +1,121 @@
+// What reaches the other side of the surfaces that are seen: closed forms of cards and closed
+// bodies.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "dapple/render.hpp"
+#include "support/smooth_shapes.hpp"
+
+namespace dapple {
+namespace {
+
+using test::scene_of;
+
+Light sun_from(const std::string& name, const V3f& towards) {
+  Light sun;
+  sun.name = name;
+  sun.kind = LightKind::sun;
+  sun.direction = -towards.normalized();
+  sun.angular_radius = 0.02f;
+  sun.radiance = V3f(1 / (std::numbers::pi_v<float> * 4e-4f));
+  return sun;
+}
+
+RenderOptions picture() {
+  RenderOptions options;
+  options.width = options.height = 24;
+  options.spp = 64;
+  options.estimator = Estimator::exact;
+  options.back = true;
+  options.look = LookAt{V3f(0, 0, 4), V3f(0, 0, 0), V3f(0, 1, 0)};
+  options.fov_degrees = 10;
+  return options;
+}
+
+double mean(const Film& film, const std::string& channel) {
+  const auto& pixels = film.find(channel)->pixels;
+  return std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
+}
+
+/// A square of side 2 that faces +Z, whose normals lean by `theta` towards +Y.
+Scene card(double theta) {
+  Mesh mesh;
+  mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  mesh.normals.assign(
+      4, V3f(0, static_cast<float>(std::sin(theta)), static_cast<float>(std::cos(theta))));
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  return scene_of(std::move(mesh));
+}
+
+TEST(Back, LightFromBehindReachesTheBackOfACard) {
+  Scene scene = card(0);
+  scene.lights = {sun_from("behind", {0, 1, -1}), sun_from("before", {0, 0, 1})};
+  const Film film = render(scene, picture()).film;
+  EXPECT_EQ(mean(film, "light.behind.R"), 0);
+  EXPECT_NEAR(mean(film, "light.behind.back.R"), std::sqrt(0.5), 1e-3);
+  EXPECT_NEAR(mean(film, "light.before.R"), 1, 1e-3);
+  EXPECT_EQ(mean(film, "light.before.back.R"), 0);
+  EXPECT_NEAR(mean(film, "ao.R"), 1, 1e-6);
+  EXPECT_NEAR(mean(film, "ao.back.R"), 1, 1e-6);
+}
+
+TEST(Back, ALeaningNormalLeansTheOtherWayBehind) {
+  const double theta = std::numbers::pi / 3;
+  Scene scene = card(theta);
+  scene.lights = {sun_from("behind", {0, 0, -1})};
+  const Film film = render(scene, picture()).film;
+  EXPECT_NEAR(mean(film, "ao.back.R"), (1 + std::cos(theta)) / 2, 0.003);
+  EXPECT_NEAR(mean(film, "light.behind.back.R"), std::cos(theta), 2e-3);
+}
+
+TEST(Back, AnOpaqueSheetBehindShadowsTheBackAlone) {
+  Scene scene = card(0);
+  Mesh wall = scene.meshes[0];
+  for (V3f& p : wall.positions) p = V3f(p.x * 1000, p.y * 1000, -1e-2f);
+  scene.meshes.push_back(wall);
+  scene.instances.resize(2);
+  scene.instances[1].mesh = 1;
+  const Film film = render(scene, picture()).film;
+  EXPECT_NEAR(mean(film, "ao.R"), 1, 1e-6);
+  EXPECT_LE(mean(film, "ao.back.R"), 1e-3);
+}
+
+TEST(Back, ClosedBodiesAreDarkInside) {
+  Scene scene = scene_of(test::smooth_sphere());
+  scene.lights = {sun_from("sun", {0, 1, 1})};
+  const Film film = render(scene, picture()).film;
+  EXPECT_GT(mean(film, "ao.R"), 0.99);
+  EXPECT_LE(mean(film, "ao.back.R"), 0.001);
+  EXPECT_LE(mean(film, "light.sun.back.R"), 0.001);
+}
+
+TEST(Back, ChangesNoOtherLayerAndIsThereOnlyIfAsked) {
+  Scene scene = card(0.5);
+  RenderOptions options = picture();
+  const Film with = render(scene, options).film;
+  options.back = false;
+  const Film without = render(scene, options).film;
+  EXPECT_EQ(without.find("ao.back.R"), nullptr);
+  for (const Plane& plane : without.planes) {
+    if (plane.channel.starts_with("visits")) continue;
+    EXPECT_EQ(plane.pixels, with.find(plane.channel)->pixels) << plane.channel;
+  }
+}
+
+// Rays that miss count as in the layers of the front: 1 of AO, 0 of lights.
+TEST(Back, MissesCountAsInTheLayersOfTheFront) {
+  Scene scene = card(0);
+  scene.lights = {sun_from("behind", {0, 0, -1})};
+  RenderOptions options = picture();
+  options.look = LookAt{V3f(0, 5, 4), V3f(0, 5, 0), V3f(0, 1, 0)};
+  const Film film = render(scene, options).film;
+  EXPECT_EQ(mean(film, "A"), 0);
+  EXPECT_EQ(mean(film, "ao.back.R"), 1);
+  EXPECT_EQ(mean(film, "light.behind.back.R"), 0);
+}
+
+}  // namespace
+}  // namespace dapple

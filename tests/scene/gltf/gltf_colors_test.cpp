@@ -1,0 +1,77 @@
+// Colours of glTF files: factors, textures and COLOR_0, read only if they are asked for.
+#include <gtest/gtest.h>
+
+#include "support/gltf_builder.hpp"
+
+namespace dapple::test {
+namespace {
+
+SceneOptions with_colors() {
+  SceneOptions options;
+  options.colors = true;
+  return options;
+}
+
+/// One triangle of a material with this base colour, and an image of one texel if it is not empty.
+GltfBuilder colored(const json& factor, const Bytes& image = {}) {
+  GltfBuilder b = one_triangle();
+  auto& primitive = b.doc["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive["attributes"]["TEXCOORD_0"] = b.add_accessor<float>({0, 0, 1, 0, 0, 1}, 5126, "VEC2");
+  json material = {{"pbrMetallicRoughness", {{"baseColorFactor", factor}}}};
+  if (!image.empty()) {
+    b.add("images", {{"bufferView", b.add_view(image)}, {"mimeType", "image/png"}});
+    b.add("textures", {{"source", 0}});
+    material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+  }
+  b.add("materials", material);
+  return b;
+}
+
+Bytes one_texel() { return png::encode(1, 1, 8, 6, {10, 20, 30, 40}); }
+
+TEST(GltfColors, FactorsAreAlwaysReadAndTexturesOnDemand) {
+  const GltfBuilder b = colored({0.25, 0.5, 0.75, 1}, one_texel());
+  const Scene without = b.load();
+  EXPECT_EQ(without.materials.at(0).color, V3f(0.25f, 0.5f, 0.75f));
+  EXPECT_EQ(without.materials[0].color_texture, -1);
+  EXPECT_TRUE(without.color_textures.empty());
+  EXPECT_TRUE(without.meshes.at(0).uvs.empty());
+  const Scene with = b.load(with_colors());
+  ASSERT_EQ(with.materials.at(0).color_texture, 0);
+  const ColorTexture& texture = with.color_textures.at(0);
+  EXPECT_EQ(texture.rgb, (std::vector<std::uint8_t>{10, 20, 30}));
+  EXPECT_EQ(texture.alpha, (std::vector<std::uint8_t>{40}));
+  EXPECT_EQ(with.meshes.at(0).uvs.size(), 3u);
+  EXPECT_EQ(with.materials[0].alpha_texture, -1) << "an opaque material has no alpha texture";
+}
+
+TEST(GltfColors, AnImageServesAlphaAndColour) {
+  GltfBuilder b = colored({1, 1, 1, 1}, one_texel());
+  b.doc["materials"][0]["alphaMode"] = "BLEND";
+  const Scene scene = b.load(with_colors());
+  EXPECT_EQ(scene.textures.at(0).alpha, (std::vector<std::uint8_t>{40}));
+  EXPECT_EQ(scene.color_textures.at(0).rgb, (std::vector<std::uint8_t>{10, 20, 30}));
+}
+
+TEST(GltfColors, AnImageThatCannotBeReadLeavesTheFactorWithANote) {
+  const GltfBuilder b = colored({0.5, 0.5, 0.5, 1}, {1, 2, 3, 4});
+  const Scene scene = b.load(with_colors());
+  EXPECT_EQ(scene.materials.at(0).color_texture, -1);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  expect_says(scene.warnings[0], "its colour goes untextured");
+}
+
+TEST(GltfColors, ColoursOfVerticesAreLinearWithAndWithoutAlpha) {
+  GltfBuilder b = colored({1, 1, 1, 1});
+  auto& attributes = b.doc["meshes"][0]["primitives"][0]["attributes"];
+  attributes["COLOR_0"] =
+      b.add_accessor<std::uint8_t>({255, 0, 51, 0, 0, 255, 0, 0, 0, 102, 0, 0}, 5121, "VEC4", true);
+  const Scene scene = b.load(with_colors());
+  EXPECT_EQ(scene.meshes.at(0).colors, (std::vector<V3f>{{1, 0, 0.2f}, {0, 1, 0}, {0, 0.4f, 0}}));
+  EXPECT_TRUE(scene.meshes[0].vertex_alpha.empty()) << "an opaque material needs none";
+  EXPECT_TRUE(b.load().meshes.at(0).colors.empty());
+}
+
+}  // namespace
+}  // namespace dapple::test
