@@ -6,7 +6,7 @@
 
 namespace dapple {
 
-/// The factor that brings RGBA to a middle brightness: the mean luminance of what is seen becomes
+/// The factor that scales RGBA to a medium brightness: the mean luminance of what is seen becomes
 /// 0.35, but at most a hundredth of it is brighter than white. 1 where nothing is seen.
 float automatic_exposure(const Film& film);
 

@@ -20,8 +20,8 @@ struct TracedPicture {
   /// Standard errors by pass and pixel: AO, then the lights, relative to their largest unoccluded
   /// irradiance. Empty without a target, or if interrupted before they are known.
   std::vector<std::vector<float>> errors;
-  MatteSums mattes;                            ///< of no pixels unless asked for
-  MotionSums motion;                           ///< of no pixels unless asked for
+  MatteSums mattes;                            ///< of no pixels unless requested
+  MotionSums motion;                           ///< of no pixels unless requested
   std::map<std::string, double> pass_seconds;  ///< device seconds by label, of all runs
   std::size_t queue_bytes = 0;
   bool interrupted = false;

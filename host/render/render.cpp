@@ -137,7 +137,7 @@ void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
   s.bytes.queues = picture.queue_bytes;
 }
 
-/// The names that Cryptomattes have, if they are asked for.
+/// The names that Cryptomattes have, if they are requested.
 MatteNames matte_names(const Scene& scene, const RenderOptions& options) {
   MatteNames names;
   if (!options.cryptomattes.any()) return names;

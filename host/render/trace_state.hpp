@@ -17,8 +17,8 @@ struct TraceState {
   std::vector<std::int64_t> sums;      ///< planes as FilmLayout says
   std::vector<float> squares;          ///< planes as FilmLayout says
   std::vector<std::uint32_t> samples;  ///< of each pixel, those of the whole round included
-  std::vector<std::uint32_t> mattes;   ///< MatteSums::packed(), if asked for
-  MotionSums motion;                   ///< of no pixels unless asked for; not in checkpoints
+  std::vector<std::uint32_t> mattes;   ///< MatteSums::packed(), if requested
+  MotionSums motion;                   ///< of no pixels unless requested; not in checkpoints
   Round round;
   std::map<std::string, double> pass_seconds;  ///< device seconds so far, by label
 };

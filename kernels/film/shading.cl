@@ -85,7 +85,7 @@ inline void shade_group(Scene scene, const Shading* shading, uint lanes,
     shade_points16(scene, &group.hits, &triangles, &group.words, group.smooth, points);
 }
 
-/* Planes: shading normal (3), if there are any; albedo (3), if it is asked for. */
+/* Planes: shading normal (3), if there are any; albedo (3), if it is requested. */
 __kernel void shade_points(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
                            __global const TexturedTriangle* textured,
                            __global const InstanceRecord* instances,

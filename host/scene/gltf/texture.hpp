@@ -15,7 +15,7 @@ namespace dapple::gltf {
 
 class TextureReader {
  public:
-  /// `with_colors`: images of alphas will be asked for their colours, too.
+  /// `with_colors`: images of alphas are also read for their colours.
   TextureReader(const Document& document, bool with_colors, Scene& scene)
       : document_(document), scene_(scene), with_colors_(with_colors) {}
 

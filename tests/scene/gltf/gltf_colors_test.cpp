@@ -1,4 +1,4 @@
-// Colours of glTF files: factors, textures and COLOR_0, read only if they are asked for.
+// Colours of glTF files: factors, textures and COLOR_0, read only if they are requested.
 #include <gtest/gtest.h>
 
 #include "support/gltf_builder.hpp"
