@@ -1,5 +1,5 @@
 // Cryptomattes of pictures: what each object covers is the alpha of that object alone, for leaves
-// that camera rays slip through, instances and strands; crops, resumed renders and threads change
+// that camera rays pass, instances and strands; crops, resumed renders and threads change
 // nothing.
 #include <bit>
 #include <cmath>

@@ -57,7 +57,7 @@ struct WeightedTexel {
   float weight;
 };
 
-/// The texel of a texture, weighed by its alpha. A little weight stays where that is 0, for texels
+/// The texel of a texture, weighted by its alpha. A little weight stays where that is 0, for texels
 /// among which there is no other.
 WeightedTexel texel_of(const ColorTexture& texture, std::size_t i) {
   constexpr float kUnseen = 1e-4f;
