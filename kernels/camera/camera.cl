@@ -18,7 +18,7 @@ typedef struct ItemHits {
 inline void start_group(CameraParams params, const CameraSamples* chosen, uint first, uint count,
                        ClosestHits16* closest, StochasticHits* stops) {
   for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i)
-    closest->t.f[i] = chosen->index[first + i] < count ? INFINITY : 0.0f;
+    closest->t.f[i] = first + i < count ? INFINITY : 0.0f;
   stops->count = 1u << params.splitting_bits;
   float16 min_threshold = (float16)(1.0f);
   for (uint d = 0; d < stops->count; ++d) {
@@ -67,7 +67,7 @@ inline void store_group(Scene scene, const CameraSamples* chosen, uint first, co
     area.v = shares->first_area.v + shares->solid_angle.v * t * t;
     for (uint left = hits; left; left &= left - 1u) {
       const uint ray = lowest_bit(left);
-      const uint slot = chosen->index[first + ray] * stops->count + d;
+      const uint slot = (first + ray) * stops->count + d;
       const SurfaceHit hit_of_ray = {stops->t[d].f[ray], (uint)stops->primitive[d].i[ray],
                                      (uint)stops->instance[d].i[ray]};
       store_stochastic_hit(chosen, first + ray, d, ray, hit_of_ray, keep_hits, area.f[ray], &at,
@@ -143,10 +143,9 @@ DAPPLE_INLINE void trace_item(Scene scene, CameraParams params, uint item, uint 
   found.visits = entries.visits;
   found.tests = 0u;
   if (entries.count) {
-    CameraSamples chosen, sorted;
+    CameraSamples chosen;
     choose_samples(work, params, begin, count, &chosen);
-    sort_samples(&chosen, 1u << params.splitting_bits, &sorted);
-    trace_rays(scene, params, &sorted, &entries, count, points + first_sample, &found);
+    trace_rays(scene, params, &chosen, &entries, count, points + first_sample, &found);
   }
   for (uint record = 0; record < records; ++record) {
     const SampleHits of_samples = {found.hits[record], 0u, found.visits, found.tests};

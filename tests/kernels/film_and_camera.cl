@@ -1,23 +1,6 @@
 /* Functions of the camera pass and of resolving, called by kernels for the tests. */
 #include "camera/surface_points16.clh"
-#include "camera/camera_samples.clh"
 #include "film/film.clh"
-
-/* In: positions of one item's samples in the picture; out: the order in which it takes them. */
-__kernel void camera_order(__global const float* x, __global const float* y,
-                           __global uint* order) {
-  if (get_global_id(0) > 0) return;
-  CameraSamples samples, sorted;
-  for (uint i = 0; i < DAPPLE_ITEM_RAYS; ++i) {
-    samples.x[i] = x[i];
-    samples.y[i] = y[i];
-    samples.index[i] = i;
-    samples.pixel[i] = samples.sample[i] = 0u;
-    samples.threshold[0][i] = 0.0f;
-  }
-  sort_samples(&samples, 1u, &sorted);
-  for (uint i = 0; i < DAPPLE_ITEM_RAYS; ++i) order[i] = sorted.index[i];
-}
 
 /* Rounds to fixed point: eight values an item, already scaled. */
 __kernel void to_fixed_points(__global const float* values, __global long* sums, uint count) {

@@ -1,6 +1,5 @@
-// Parts of the camera pass: the order of one item's samples, in which each sixteen consecutive ones
-// are close together; hit points of sixteen rays at once and of single rays; and the rounding of
-// sums to fixed point, which must agree with OpenCL's saturating conversion.
+// Parts of the camera pass: hit points of sixteen rays at once against those of single rays; and
+// the rounding of sums to fixed point, which must agree with OpenCL's saturating conversion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <random>
-#include <set>
 #include <vector>
 
 #include "dapple/shared/geometry.h"
@@ -19,66 +17,6 @@ namespace dapple {
 namespace {
 
 using namespace kernel_test;
-
-constexpr std::size_t kItem = 64, kBeam = 16;
-
-struct Positions {
-  std::vector<float> x, y;
-};
-
-std::vector<uint> order_of(const Positions& positions) {
-  const Buffer x = upload(positions.x), y = upload(positions.y);
-  const Buffer order = device().allocate(kItem * sizeof(uint));
-  run("film_and_camera", "camera_order", 1, {x, y, order});
-  return download<uint>(order, kItem);
-}
-
-/// Samples at the middles of the cells of a grid, row by row; its first corner is (left, top).
-Positions grid(int columns, float left, float top, float cell) {
-  Positions positions;
-  for (std::size_t i = 0; i < kItem; ++i) {
-    positions.x.push_back(left + (static_cast<float>(i % columns) + 0.5f) * cell);
-    positions.y.push_back(top + (static_cast<float>(i / columns) + 0.5f) * cell);
-  }
-  return positions;
-}
-
-/// The largest width and the largest height of the boxes around the groups of sixteen samples.
-std::pair<float, float> widest(const Positions& positions, const std::vector<uint>& order) {
-  std::pair<float, float> widest{0, 0};
-  for (std::size_t beam = 0; beam < kItem; beam += kBeam) {
-    const auto side = [&](const std::vector<float>& at) {
-      float low = at[order[beam]], high = low;
-      for (std::size_t i = beam; i < beam + kBeam; ++i) {
-        low = std::min(low, at[order[i]]);
-        high = std::max(high, at[order[i]]);
-      }
-      return high - low;
-    };
-    widest = {std::max(widest.first, side(positions.x)),
-              std::max(widest.second, side(positions.y))};
-  }
-  return widest;
-}
-
-TEST(CameraRayOrder, EachSampleIsTakenOnce) {
-  for (const Positions& positions :
-       {grid(8, 16, 8, 1), grid(64, 3, 5, 1.0f / 64), grid(4, 250, 300, 0.7f),
-        Positions{std::vector<float>(kItem, 7.5f), std::vector<float>(kItem, 1.0f)}}) {
-    const std::vector<uint> order = order_of(positions);
-    EXPECT_EQ(std::set<uint>(order.begin(), order.end()).size(), kItem);
-    EXPECT_LT(*std::max_element(order.begin(), order.end()), kItem);
-  }
-}
-
-TEST(CameraRayOrder, GroupsOfSixteenFillASquareOfATileOrAQuarterOfAPixel) {
-  for (const float cell : {1.0f, 1.0f / 8}) {
-    const Positions positions = grid(8, 24, 16, cell);
-    const auto [width, height] = widest(positions, order_of(positions));
-    EXPECT_FLOAT_EQ(width, 3 * cell);
-    EXPECT_FLOAT_EQ(height, 3 * cell);
-  }
-}
 
 /// Sixteen rays, each through a point of one triangle of two blocks. Some of the triangles belong
 /// to an instance.
