@@ -47,9 +47,12 @@ SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, const Vi
   rays.ao = rays.camera;
   rays.ao.rays = context.allocate(rays.ao_count * sizeof(Ray));
   rays.ao.occlusions = context.allocate(rays.ao_count * sizeof(Occlusion));
-  ao_ray_pass(
-      context, rays.ao,
-      {hits, kRaysPerPoint, 1.0f / kRaysPerPoint, std::numeric_limits<float>::infinity(), 0u, 0u});
+  AoParams params{};
+  params.point_count = hits;
+  params.rays = kRaysPerPoint;
+  params.inverse_count = 1.0f / kRaysPerPoint;
+  params.t_max = std::numeric_limits<float>::infinity();
+  ao_ray_pass(context, rays.ao, params);
   context.finish();
   return rays;
 }
