@@ -44,7 +44,7 @@ std::string first_lines(const std::string& text, int count) {
 }
 
 /// A context whose compiler does not run several work-items in the lanes of a vector. The kernels
-/// are vectors already: Intel's compiler took seven times as long, for nothing (experiment 735). It
+/// are vectors already: Intel's compiler took five to eight times as long (experiment 732). It
 /// reads the variable here; if the user has set it, that stays.
 cl::Context make_context(const cl::Device& device) {
   const char* const kVectorizer = "CL_CONFIG_CPU_VECTORIZER_MODE";

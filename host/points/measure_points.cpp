@@ -1,5 +1,6 @@
 // measure_points(): a scene and points in, columns out. Each quantity is measured in independent
 // sets of rays, whose differences give its standard error.
+#include <Imath/ImathVec.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "film/light_layers.hpp"
 #include "points/periodic.hpp"
 #include "points/ring_rays.hpp"
+#include "points/set_sums.hpp"
 #include "render/point_occlusion.hpp"
 #include "render/stopwatch.hpp"
 
@@ -24,39 +26,20 @@ constexpr int kSets = 8;
 /// Rays of suns or rings that are traced at once.
 constexpr std::size_t kRaysAtOnce = 1u << 20;
 
+/// Values of points, each from one set, that are also found exactly to learn the bias.
+constexpr std::size_t kBiasSamples = 1024;
+
 constexpr float kSunSolidAngle = 6.8e-5f;
 
-/// Sums over sets: the mean of the sets and its standard error.
-class SetSums {
- public:
-  explicit SetSums(std::size_t count) : sums_(count), squares_(count) {}
+using Imath::V3d;
 
-  template <class Value>
-  void add(const Value& value) {
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const double x = value(i);
-      sums_[i] += x;
-      squares_[i] += x * x;
-    }
-    ++sets_;
-  }
-
-  void store(const std::string& name, std::vector<PointColumn>& columns) const {
-    PointColumn mean{name, {}}, error{name + "_error", {}};
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const double m = sums_[i] / sets_;
-      const double variance = std::max(0.0, squares_[i] / sets_ - m * m) / (sets_ - 1);
-      mean.values.push_back(static_cast<float>(m));
-      error.values.push_back(static_cast<float>(std::sqrt(variance)));
-    }
-    columns.push_back(std::move(mean));
-    columns.push_back(std::move(error));
-  }
-
- private:
-  std::vector<double> sums_, squares_;
-  int sets_ = 0;
-};
+/// Of the lights of a layer, at point i.
+V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& layer,
+           std::vector<V3f> PointIrradiance::*which, std::size_t i) {
+  V3d sum(0, 0, 0);
+  for (const std::size_t light : layer.lights) sum += V3d((found[light].*which)[i]);
+  return sum;
+}
 
 /// The scene on the device, as its points see it.
 struct SceneOfPoints {
@@ -92,6 +75,7 @@ class Measurement {
     if (options.rings > 0) steps_ += kSets;
     if (has_lights()) steps_ += kSets;
     if (!options.suns.empty()) steps_ += 1;
+    if (options.estimator == Estimator::prefiltered && options.footprint > 0) choose_sample();
   }
 
   void run() {
@@ -122,6 +106,70 @@ class Measurement {
     return options;
   }
 
+  void choose_sample() {
+    if (points_.empty()) return;
+    const std::size_t step = (points_.size() + kBiasSamples - 1) / kBiasSamples;
+    for (std::size_t i = 0; i < points_.size(); i += step) {
+      sample_points_.push_back(points_[i]);
+      sample_normals_.push_back(normals_[i]);
+    }
+    const std::size_t sets = (kBiasSamples + sample_points_.size() - 1) / sample_points_.size();
+    sample_sets_ = static_cast<int>(std::min<std::size_t>(kSets, sets));
+  }
+
+  /// The bias of quantities in [0,1]. `values` finds them at the sample: a list for each.
+  template <class Values>
+  std::vector<BiasCorrection> bias_of(const std::vector<std::string>& names, Values values) {
+    using Lists = std::vector<std::vector<double>>;
+    Lists exact(names.size()), prefiltered(names.size());
+    for (int set = 0; set < sample_sets_; ++set) {
+      for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+        OcclusionOptions options = occlusion_options(set);
+        options.estimator = estimator;
+        const Lists found = values(options);
+        Lists& all = estimator == Estimator::exact ? exact : prefiltered;
+        for (std::size_t k = 0; k < names.size(); ++k)
+          all[k].insert(all[k].end(), found[k].begin(), found[k].end());
+      }
+    }
+    std::vector<BiasCorrection> corrections;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      corrections.emplace_back(exact[k], prefiltered[k]);
+      const std::string note = corrections.back().note(names[k]);
+      if (!note.empty()) result_.notes.push_back(note);
+    }
+    return corrections;
+  }
+
+  BiasCorrection occlusion_bias(const std::string& name, std::span<const V3f> normals,
+                                float distance) {
+    return bias_of({name}, [&](OcclusionOptions options) {
+      options.distance = distance;
+      const auto found = occlusion(on_.device, on_.uploaded, sample_points_, normals, options);
+      return std::vector<std::vector<double>>{{found.begin(), found.end()}};
+    })[0];
+  }
+
+  std::vector<BiasCorrection> light_bias(const std::vector<LightLayer>& layers) {
+    std::vector<std::string> names;
+    for (const LightLayer& layer : layers) names.push_back(layer.name);
+    return bias_of(names, [&](const OcclusionOptions& of) {
+      std::vector<std::vector<double>> parts(layers.size());
+      const auto found =
+          irradiance(on_.device, on_.uploaded, on_.scene.lights, sample_points_, sample_normals_,
+                     {of.rays, of.estimator, of.footprint, of.seed});
+      const V3d one(1, 1, 1);
+      for (std::size_t l = 0; l < layers.size(); ++l)
+        for (std::size_t i = 0; i < sample_points_.size(); ++i) {
+          const double all = sum_of(found, layers[l], &PointIrradiance::unoccluded, i).dot(one);
+          if (all > 0)
+            parts[l].push_back(sum_of(found, layers[l], &PointIrradiance::irradiance, i).dot(one) /
+                               all);
+        }
+      return parts;
+    });
+  }
+
   void measure_ao() {
     SetSums sums(points_.size());
     std::vector<V3f> bent(points_.size(), V3f(0, 0, 0));
@@ -134,7 +182,8 @@ class Measurement {
       for (std::size_t i = 0; i < found.bent.size(); ++i) bent[i] += found.bent[i];
       if (!step()) return;
     }
-    if (options_.ao) sums.store("ao", result_.columns);
+    if (options_.ao)
+      sums.store("ao", occlusion_bias("ao", sample_normals_, options_.distance), result_.columns);
     for (int axis = 0; axis < 3 && options_.bent; ++axis) {
       PointColumn column{std::string("bent_") + "xyz" [axis], {}};
       for (const V3f& b : bent) column.values.push_back(b.normalized()[axis]);
@@ -151,7 +200,8 @@ class Measurement {
       sums.add([&](std::size_t i) { return double{found[i]}; });
       if (!step()) return;
     }
-    sums.store("sky_view_factor", result_.columns);
+    const std::vector<V3f> sample_up(sample_points_.size(), V3f(0, 1, 0));
+    sums.store("sky_view_factor", occlusion_bias("sky_view_factor", sample_up, 0), result_.columns);
   }
 
   /// Calls add(point, ray of the point, transmittance) for rays that make(point, rays) appends.
@@ -193,30 +243,34 @@ class Measurement {
         sums[k].add([&](std::size_t i) { return means[i * rings.size() + k]; });
     }
     for (std::size_t k = 0; k < rings.size(); ++k)
-      sums[k].store(fmt::format("gap_{}", k + 1), result_.columns);
+      sums[k].store(fmt::format("gap_{}", k + 1), BiasCorrection(), result_.columns);
   }
 
   void measure_lights() {
     const std::vector<Light>& lights = on_.scene.lights;
     const std::vector<LightLayer> layers = light_layers(lights);
-    std::vector<SetSums> sums(3 * layers.size(), SetSums(points_.size()));
+    std::vector<SetSums> sums(3 * layers.size(), SetSums(points_.size())), all = sums;
     for (int set = 0; set < kSets; ++set) {
       const OcclusionOptions of = occlusion_options(set);
       const auto found = irradiance(on_.device, on_.uploaded, lights, points_, normals_,
                                     {of.rays, of.estimator, of.footprint, of.seed});
-      for (std::size_t l = 0; l < layers.size(); ++l)
-        for (int c = 0; c < 3; ++c)
-          sums[3 * l + static_cast<std::size_t>(c)].add([&](std::size_t i) {
-            double sum = 0;
-            for (const std::size_t light : layers[l].lights)
-              sum += double{found[light].irradiance[i][c]};
-            return sum;
-          });
+      for (std::size_t k = 0; k < sums.size(); ++k) {
+        const LightLayer& layer = layers[k / 3];
+        const auto c = static_cast<unsigned>(k % 3);
+        sums[k].add([&](std::size_t i) {
+          return sum_of(found, layer, &PointIrradiance::irradiance, i)[c];
+        });
+        all[k].add([&](std::size_t i) {
+          return sum_of(found, layer, &PointIrradiance::unoccluded, i)[c];
+        });
+      }
       if (!step()) return;
     }
-    for (std::size_t l = 0; l < layers.size(); ++l)
-      for (std::size_t c = 0; c < 3; ++c)
-        sums[3 * l + c].store(layers[l].name + "_" + "rgb"[c], result_.columns);
+    const std::vector<BiasCorrection> bias = light_bias(layers);
+    for (std::size_t k = 0; k < sums.size(); ++k)
+      sums[k].store(
+          layers[k / 3].name + "_" + "rgb"[k % 3], bias[k / 3],
+          [&](std::size_t i) { return all[k].mean(i); }, result_.columns);
   }
 
   void measure_suns() {
@@ -252,6 +306,9 @@ class Measurement {
   const RenderControl& control_;
   PointResult& result_;
   double steps_ = 0, done_ = 0;
+  /// Where exact values are found, too; none where they are exact already.
+  std::vector<V3f> sample_points_, sample_normals_;
+  int sample_sets_ = 0;
 };
 
 void check_points(std::span<const V3f> points, std::span<const V3f> normals) {

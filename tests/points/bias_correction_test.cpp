@@ -1,0 +1,63 @@
+// BiasCorrection: what it takes out, what it leaves alone, and how sure it is.
+#include "points/bias_correction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace dapple {
+namespace {
+
+TEST(BiasCorrection, DepthsThatAreWrongByOneFactorBecomeRight) {
+  std::vector<double> exact, prefiltered;
+  for (int i = 0; i <= 100; ++i) {
+    const double depth = 0.04 * i;
+    exact.push_back(std::exp(-depth));
+    prefiltered.push_back(std::exp(-0.96 * depth));
+  }
+  const BiasCorrection bias(exact, prefiltered);
+  for (std::size_t i = 0; i < exact.size(); ++i)  // to the first order in the 4 %
+    EXPECT_NEAR(bias.corrected(prefiltered[i]), exact[i], 0.001) << i;
+  EXPECT_NE(bias.note("ao").find("too light"), std::string::npos);
+}
+
+TEST(BiasCorrection, WhereNothingOrEverythingOccludesNothingChanges) {
+  const BiasCorrection bias(std::vector{0.4, 0.5}, std::vector{0.5, 0.6});
+  EXPECT_EQ(bias.corrected(1), 1);
+  EXPECT_EQ(bias.corrected(0), 0);
+  EXPECT_EQ(bias.standard_error(1), 0);
+  EXPECT_LT(bias.corrected(0.5), 0.45);
+  const BiasCorrection none;
+  EXPECT_EQ(none.corrected(0.3), 0.3);
+  EXPECT_EQ(none.note("ao"), "");
+  EXPECT_EQ(BiasCorrection(std::vector{1.0, 1.0}, std::vector{1.0, 1.0}).corrected(0.3), 0.3);
+}
+
+// Noise of 0.05 in 400 differences: the correction's own error must be what repetitions show.
+TEST(BiasCorrection, ItsStandardErrorIsThatOfRepetitions) {
+  std::mt19937 bits(1);
+  std::normal_distribution<double> noise(0, 0.05);
+  std::uniform_real_distribution<double> uniform(0.1, 0.9);
+  double sum = 0, squares = 0, told = 0;
+  constexpr int kRepetitions = 400;
+  for (int r = 0; r < kRepetitions; ++r) {
+    std::vector<double> exact, prefiltered;
+    for (int i = 0; i < 400; ++i) {
+      prefiltered.push_back(uniform(bits));
+      exact.push_back(prefiltered.back() - 0.01 + noise(bits));
+    }
+    const BiasCorrection bias(exact, prefiltered);
+    const double x = bias.corrected(0.4);
+    sum += x;
+    squares += x * x;
+    told += bias.standard_error(0.4) / kRepetitions;
+  }
+  const double mean = sum / kRepetitions;
+  const double deviation = std::sqrt(squares / kRepetitions - mean * mean);
+  EXPECT_NEAR(told / deviation, 1, 0.15);  // 400 repetitions: 4 % at one sigma
+}
+
+}  // namespace
+}  // namespace dapple
