@@ -1,17 +1,23 @@
 #include "passes/shading_pass.hpp"
 
+#include <algorithm>
+
 namespace dapple {
 
 namespace {
 
+/// A colour averages the shares of so many samples, at most the pixel: as opacities do with taps.
+constexpr int kColorSamples = 6;
+
 /// `film`: null for points whose shading is not added to it.
 void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-           const Buffer& points, const FilmBuffers* film, const ResolveParams& params) {
+           const Buffer& points, const FilmBuffers* film, const ResolveParams& params, int spp) {
   ShadingParams shading{};
   shading.resolve = params;
   shading.normals = scene.corner_normals.empty() ? 0u : 1u;
   shading.albedo = scene.uploaded.colors && film ? 1u : 0u;
   shading.resolves = film ? 1u : 0u;
+  shading.color_share = static_cast<float>(std::min(kColorSamples, std::max(spp, 1)));
   shading.segment_words = static_cast<uint>(8 * scene.block_values.size());
   context.launch(kShadePoints, "shading", params.slice.pixel_count,
                  {scene.nodes, scene.blocks, scene.textured, scene.instances, scene.normals,
@@ -23,8 +29,8 @@ void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& que
 }  // namespace
 
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                  const FilmBuffers& film, const ResolveParams& params) {
-  shade(context, scene, queues, queues.points, &film, params);
+                  const FilmBuffers& film, const ResolveParams& params, int spp) {
+  shade(context, scene, queues, queues.points, &film, params, spp);
 }
 
 void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -32,7 +38,7 @@ void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const 
   const uint samples = params.slice.pixel_count * params.slice.sample_count;
   context.launch(kTurnPoints, "shading", samples, {queues.points, queues.backs, samples},
                  kRayGroup);
-  if (shades) shade(context, scene, queues, queues.backs, nullptr, params);
+  if (shades) shade(context, scene, queues, queues.backs, nullptr, params, 1);
 }
 
 }  // namespace dapple

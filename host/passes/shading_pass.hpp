@@ -10,9 +10,10 @@ namespace dapple {
 inline const KernelName kShadePoints{"shade_points", "film/shading", {}};
 inline const KernelName kTurnPoints{"turn_points", "film/shading", {}};
 
-/// Comes after resolve_surface_pass(), because it moves points to where their rays start.
+/// Comes after resolve_surface_pass(), because it moves points to where their rays start. `spp`:
+/// samples a pixel that footprints are computed for.
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                  const FilmBuffers& film, const ResolveParams& params);
+                  const FilmBuffers& film, const ResolveParams& params, int spp);
 
 /// Writes the points of a slice, turned to the side that is not seen, to queues.backs, and shades
 /// them if `shades`. Comes before shading_pass().

@@ -83,7 +83,7 @@ const std::map<std::string, Pass>& passes() {
        }},
       {"shade_points",
        [](EmptyStage& s, const Variant&) {
-         shading_pass(s.context, s.scene, s.queues, s.film, {});
+         shading_pass(s.context, s.scene, s.queues, s.film, {}, 1);
        }},
       {"resolve_ao",
        [](EmptyStage& s, const Variant&) { resolve_ao_pass(s.context, s.queues, s.film, {}); }},

@@ -243,7 +243,7 @@ class PictureTracer {
     if (options_.back) turn_points_pass(context_, scene_, queues_, resolve_, layout_.normals != 0);
     if (layout_.shading()) {
       resolve_.plane = layout_.shading();
-      shading_pass(context_, scene_, queues_, film_, resolve_);
+      shading_pass(context_, scene_, queues_, film_, resolve_, footprint_samples(options_));
     }
     const std::uint32_t hits = compact_pass(context_, queues_, samples);
     if (hits == 0) return;

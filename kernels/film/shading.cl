@@ -99,7 +99,8 @@ __kernel void shade_points(__global const BvhNode* nodes, __global const Triangl
   if (local_pixel >= slice.pixel_count) return;
   const Scene scene = {nodes, blocks, 0, textured, 0, 0, instances};
   const Shading shading = {normals,
-                           {color_words, color_materials, color_texels, params.segment_words},
+                           {color_words, color_materials, color_texels, params.segment_words,
+                            params.color_share},
                            params.normals != 0u, params.albedo != 0u};
   const uint begin = local_pixel * slice.sample_count, end = begin + slice.sample_count;
   long8 sums = (long8)(0);

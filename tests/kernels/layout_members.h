@@ -100,7 +100,7 @@
   STRUCT(ShadingParams)                                                                      \
   MEMBER(ShadingParams, resolve) MEMBER(ShadingParams, normals)                              \
   MEMBER(ShadingParams, albedo) MEMBER(ShadingParams, resolves)                              \
-  MEMBER(ShadingParams, segment_words)                                                       \
+  MEMBER(ShadingParams, segment_words) MEMBER(ShadingParams, color_share)                    \
   STRUCT(ColorMaterial)                                                                      \
   MEMBER(ColorMaterial, color) MEMBER(ColorMaterial, mips) MEMBER(ColorMaterial, width)      \
   MEMBER(ColorMaterial, height) MEMBER(ColorMaterial, flags) MEMBER(ColorMaterial, spare)    \

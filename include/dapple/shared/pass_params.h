@@ -126,6 +126,7 @@ typedef struct ShadingParams {
   uint albedo;        /* 1: there are colours */
   uint resolves;      /* 0: nothing is added to the film */
   uint segment_words; /* where the words of segments begin, surface_color.h */
+  float color_share;  /* part of a pixel that a colour averages, in shares of a sample */
 } ShadingParams;
 
 #ifndef __OPENCL_VERSION__
