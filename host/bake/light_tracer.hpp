@@ -8,7 +8,7 @@
 namespace dapple {
 
 /// The irradiance of each of the scene's lights, linear RGB, and of all together the brightness
-/// (mean of R, G and B). `options` and `occluders` must outlive the function.
-TraceSamples light_tracer(const BakeOptions& options, const OccluderScene& occluders);
+/// (mean of R, G and B). `bake` and `occluders` must outlive the function.
+TraceSamples light_tracer(const BakeOptions& bake, const OccluderScene& occluders);
 
 }  // namespace dapple

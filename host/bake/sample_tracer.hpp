@@ -53,7 +53,7 @@ struct WorldPoints {
   std::vector<V3f> positions, normals;
 };
 
-/// AO and, with options.bent, bent normals. `options` must outlive the function.
-TraceSamples ao_tracer(TracePoints trace, const BakeOptions& options);
+/// AO and, with bake.bent, bent normals. `bake` must outlive the function.
+TraceSamples ao_tracer(TracePoints trace, const BakeOptions& bake);
 
 }  // namespace dapple

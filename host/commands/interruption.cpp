@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstring>
 
 namespace dapple {
 namespace {
@@ -49,7 +48,7 @@ Stop save_when_interrupted() {
 void remove_when_interrupted(const std::string& path) {
   has_temporary = 0;
   if (path.empty() || path.size() >= sizeof temporary) return;
-  std::strcpy(temporary, path.c_str());
+  temporary[path.copy(temporary, path.size())] = '\0';
   has_temporary = 1;
 }
 

@@ -151,14 +151,17 @@ bool overlaps_itself(const Chart& chart) {
     const V2f* corner = &chart.corners[3 * t];
     const V2f a = corner[0] * cells, b = corner[1] * cells, c = corner[2] * cells;
     if ((b - a).cross(c - a) < 0) return true;
-    const auto low = [](float x) { return std::max(0, static_cast<int>(x - 0.5f)); };
-    const auto high = [](float x) { return std::min(kGrid - 1, static_cast<int>(x + 0.5f)); };
+    const auto low = [](float x) { return std::max(0, static_cast<int>(std::floor(x - 0.5f))); };
+    const auto high = [](float x) {
+      return std::min(kGrid - 1, static_cast<int>(std::floor(x + 0.5f)));
+    };
     for (int y = low(std::min({a.y, b.y, c.y})); y <= high(std::max({a.y, b.y, c.y})); ++y) {
       for (int x = low(std::min({a.x, b.x, c.x})); x <= high(std::max({a.x, b.x, c.x})); ++x) {
         const V2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
         if ((b - a).cross(p - a) <= 0 || (c - b).cross(p - b) <= 0 || (a - c).cross(p - c) <= 0)
           continue;
-        std::uint8_t& of_cell = count[static_cast<std::size_t>(y * kGrid + x)];
+        std::uint8_t& of_cell =
+            count[static_cast<std::size_t>(y) * kGrid + static_cast<std::size_t>(x)];
         of_cell = static_cast<std::uint8_t>(std::min(2, of_cell + 1));
       }
     }
