@@ -177,8 +177,7 @@ Scene make_demo_scene(const ProceduralParameters&) {
   place(scene, make_tree(shape, {kLeafMaterial, kBarkMaterial}));
   scene.cameras.push_back(look_at({1.5f, 2.6f, 14}, {0.6f, 3.85f, 0}, {0, 1, 0}, 0.62f));
   scene.cameras.back().name = "demo";
-  // The light is placed before the ground is added, because its position depends on the bounds.
-  scene.lights.push_back(key_light(scene, scene.cameras.back()));
+  scene.lights = daylight(scene.cameras.back());
   add_ground_square(scene, 120);
   return scene;
 }

@@ -270,11 +270,11 @@ TEST(Procedural, EveryTriangleOfEverySceneIsFiniteAndHasAnArea) {
   }
 }
 
-TEST(Procedural, TheDemoHasALightAndACameraThatSeesTheTree) {
+TEST(Procedural, TheDemoHasASunASkyAndACameraThatSeesTheTree) {
   const Scene scene = make_procedural("scene:demo");
-  ASSERT_EQ(scene.lights.size(), 1u);
-  EXPECT_EQ(scene.lights[0].name, "key");
-  EXPECT_EQ(scene.lights[0].kind, LightKind::rect);
+  ASSERT_EQ(scene.lights.size(), 2u);
+  EXPECT_EQ(scene.lights[0].kind, LightKind::sun);
+  EXPECT_EQ(scene.lights[1].kind, LightKind::dome);
   ASSERT_EQ(scene.cameras.size(), 1u);
   const M44f to_camera = scene.cameras[0].to_world.inverse();
   const float tan_y = std::tan(scene.cameras[0].fov_y / 2);
