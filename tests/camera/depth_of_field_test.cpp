@@ -19,7 +19,7 @@ using namespace scene_test;
 
 constexpr int kSide = 96;         // pixels
 constexpr float kDepth = 4;       // of the square, metres
-constexpr float kSquare = 0.02f;  // its side, metres
+constexpr float kSquare = 0.08f;  // its side, metres
 
 Camera lens_at_origin(Camera::Kind kind, float radius, float focus) {
   Camera camera;
@@ -45,7 +45,7 @@ Scene scene_with(const Camera& camera) {
 Film picture_of_square(const Camera& camera) {
   RenderOptions options;
   options.width = options.height = kSide;
-  options.spp = 256;
+  options.spp = 1024;
   options.ao = options.light = false;
   return render(scene_with(camera), options).film;
 }
@@ -77,12 +77,13 @@ Spread spread_of(const Film& film) {
 }
 
 // A uniform disk of radius r has the variance r^2/4 along an axis; the square and the pixel, of
-// sides a and 1, add a^2/12 and 1/12.
+// sides a and 1, add a^2/12 and 1/12. Some 15,000 samples hit: their number, mean and variance have
+// standard errors below 0.01, 0.05 and 0.015 (relative, pixels, relative).
 void expect_circle(const Spread& seen, double radius, double side) {
   EXPECT_NEAR(seen.mass, side * side, 0.03 * side * side);
-  EXPECT_NEAR(seen.mean, 0, 0.1);
+  EXPECT_NEAR(seen.mean, 0, 0.15);
   const double expected = radius * radius / 4 + side * side / 12 + 1.0 / 12;
-  EXPECT_NEAR(seen.variance, expected, 0.02 * expected + 0.02);
+  EXPECT_NEAR(seen.variance, expected, 0.045 * expected);
   EXPECT_LE(seen.largest_radius, radius + side / std::sqrt(2.0) + 1);
 }
 
