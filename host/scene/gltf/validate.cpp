@@ -119,7 +119,7 @@ class Validator {
                        accessor.componentType, count * element_bytes);
   }
 
-  void check_sparse_range(const std::string& who, int view, int offset, int component_type,
+  void check_sparse_range(const std::string& who, int view, std::int64_t offset, int component_type,
                           std::uint64_t bytes) const {
     check_.index(who, "bufferView", view, model_.bufferViews.size());
     check_alignment(who, static_cast<std::uint64_t>(offset), view, component_type);
