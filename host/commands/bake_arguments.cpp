@@ -54,7 +54,7 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--dome", a.dome, "Environment map (.exr, .hdr) as a light, beside the others");
   app.add_option("--light-rays", o.light_rays,
-                 "Rays per light, for each sample and side; samples are as many as AO needs")
+                 "Rays per light, for each sample and side; the number of samples is set by AO")
       ->capture_default_str();
   app.add_option(
          "--channel", a.channel,
@@ -68,7 +68,7 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--bits", a.bits, "Bits per texel of the occlusion texture: 8 or 16")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str();
-  app.add_option("--margin", o.margin, "Texels by which values extend over the border of charts")
+  app.add_option("--margin", o.margin, "Texels by which charts are extended beyond their border")
       ->capture_default_str();
   app.add_option("--uv", a.uv,
                  "Texture coordinates: auto (the file's, if they don't overlap) or own (a new set)")
@@ -82,7 +82,7 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
   BakeOptions& o = a.options;
   app.add_option("--target-error", a.target_error,
                  "Trace rays until the standard error of each value is this; of lights relative to "
-                 "their largest unoccluded irradiance [0.04]");
+                 "their largest unoccluded irradiance. Default: 0.04");
   app.add_option(
       "--rays", a.rays,
       "Rays per triangle (--to texture: texel) and side. With --target-error: the maximum");
@@ -95,10 +95,9 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
                  "Side of a surface: front, max (the brighter one) or mean; auto: max for "
                  "double-sided materials, front for others")
       ->capture_default_str();
-  app.add_option(
-         "--instances", a.instances,
-         "Meshes with several instances. together: mean AO over all; alone: ignore the rest "
-         "of the scene")
+  app.add_option("--instances", a.instances,
+                 "Meshes with several instances. together: mean AO over all; unique: a copy of the "
+                 "mesh for each; alone: ignore the rest of the scene")
       ->capture_default_str();
   add_estimator_option(app, a.estimator);
   app.add_option("--footprint", o.footprint,
@@ -133,7 +132,7 @@ void add_run_options(CLI::App& app, BakeArguments& a) {
       ->needs(&checkpoint);
   app.add_option("--resume", a.resume,
                  "Continue from this checkpoint, with the same scene and options");
-  app.add_option("--png", a.png, "Also draw the scene in its AO alone, as a PNG");
+  app.add_option("--png", a.png, "Also write a PNG of the scene, shaded by AO alone");
   add_report_options(app, a.stats_json, a.quiet);
 }
 

@@ -105,7 +105,7 @@ Run add_compare_command(CLI::App& app) {
       "--max-rmse", a->max_rmse,
       "Exit with 5 if a layer's RMSE is larger; Z, P and samples count only with --layer");
   app.add_option("--scale", a->scale,
-                 "Heat maps: differences of 1/scale of the range shown get the last colour")
+                 "The last colour of heat maps is the largest value of the layer divided by this")
       ->capture_default_str();
   app.add_flag("--json", a->json, "Print JSON");
   app.footer(

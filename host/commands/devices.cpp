@@ -52,8 +52,8 @@ Run add_devices_command(CLI::App& app) {
   app.add_option("--kernel-dir", *kernel_dir,
                  "Read OpenCL kernels from this folder (for developers)");
   app.footer(
-      "Example:\n  dapple devices\n\ndapple uses the first device, unless --device gives part of "
-      "another name. render --packets selects other ray packets.");
+      "Example:\n  dapple devices\n\ndapple uses the first device; --device NAME chooses another. "
+      "render --packets changes how its rays are grouped.");
   return [kernel_dir] { run_devices(*kernel_dir); };
 }
 

@@ -45,9 +45,11 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.add_flag("--per-triangle", a.per_triangle,
                "The centre of each triangle of the scene, first its front, then its back");
   PointOptions& o = a.options;
-  app.add_option("--rays", o.rays, "Rays per point and quantity, in eight independent sets")
+  app.add_option("--rays", o.rays,
+                 "Rays for each value of a point; they are eight independent sets, which tell the "
+                 "standard error")
       ->capture_default_str();
-  app.add_flag("--bent", o.bent, "Mean unoccluded direction");
+  app.add_flag("--bent", o.bent, "Also write the mean unoccluded direction");
   app.add_option("--rings", o.rings,
                  "Gap fractions in this many zenith rings; 5: the rings of the LAI-2200");
   app.add_option("--suns", a.suns,
@@ -57,7 +59,7 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.add_option("--sky", a.sky,
                  "uniform, overcast (CIE) or an image (.exr, .hdr): irradiance of the sky");
   app.add_option("--sky-irradiance", a.sky_irradiance,
-                 "Of a uniform or overcast sky on an open horizontal plane, W/m^2")
+                 "Irradiance of that sky on an open horizontal plane, W/m^2")
       ->capture_default_str();
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--periodic", a.periodic,
@@ -68,7 +70,7 @@ void add_point_options(CLI::App& app, Arguments& a) {
                  "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
   app.add_flag("--ground", o.ground, "An opaque plane under the scene occludes");
   app.add_option("--ao-distance", o.distance,
-                 "Surfaces farther than this, in metres, don't occlude for AO; 0: no limit")
+                 "Surfaces farther than this, in metres, do not count for AO; 0: no limit")
       ->capture_default_str();
   add_estimator_option(app, a.estimator);
   app.add_option("--footprint", o.footprint, "Footprint scale: larger is faster, 0 is exact")

@@ -22,28 +22,25 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
   app.add_option("--spp", a.spp, "Camera rays per pixel; with a target the minimum")
       ->default_str(fmt::format("{}; 8 with --target-rmse", o.spp));
-  app.add_option(
-         "--target-error", o.target_error,
-         "Sample each pixel until its estimated standard error is below this; 0: no target. Light "
-         "errors are divided by the largest irradiance without occlusion")
+  app.add_option("--target-error", o.target_error,
+                 "Sample each pixel until its estimated standard error is below this; 0: no "
+                 "target. Errors of a light are relative to its largest unoccluded irradiance")
       ->capture_default_str();
-  app.add_option(
-         "--target-rmse", o.target_rmse,
-         "Sample until the root mean square of the pixels' estimated errors is below this in every "
-         "pass; 0: no target. Reaches the same mean error sooner, with larger differences of error "
-         "between "
-         "pixels.")
+  app.add_option("--target-rmse", o.target_rmse,
+                 "Sample until the estimated RMSE over all pixels is below this in each pass; 0: "
+                 "no target. Cheaper than --target-error; errors of single pixels differ more")
       ->capture_default_str();
   app.add_option("--max-spp", o.max_spp, "With a target: the maximum of camera rays per pixel")
       ->capture_default_str();
   app.add_option("--camera-splitting", o.camera_splitting,
-                 "Samples per camera ray (1, 2, 4), each shaded at a different surface on it. "
-                 "Larger values suit thin leaves and hair. 0: automatic, from the opacities.")
+                 "Surfaces shaded per camera ray: 1, 2 or 4; 0: chosen from the opacities. More "
+                 "suits thin leaves and hair")
       ->capture_default_str();
-  app.add_option("--ao-rays", o.ao_rays,
-                 "AO rays per camera ray, divided among its samples; at least one per sample")
+  app.add_option(
+         "--ao-rays", o.ao_rays,
+         "AO rays per camera ray, divided among the surfaces that it shades; at least one for each")
       ->capture_default_str();
-  app.add_option("--light-rays", o.light_rays, "Rays per light per camera sample")
+  app.add_option("--light-rays", o.light_rays, "Rays per light and shaded surface")
       ->capture_default_str();
   add_estimator_option(app, a.estimator);
   app.add_option(
@@ -51,15 +48,15 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
          "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
       ->capture_default_str();
   app.add_option("--passes", a.passes,
-                 "Passes to render, with commas between: ao, light; albedo: colours; back: AO "
-                 "and lights of the other side; motion: pixels to the next frame; visits: the "
-                 "cost of rays")
+                 "With commas between: ao, light, albedo (colours), back (AO and light of the far "
+                 "side), motion (pixels to the next frame), visits (cost of rays)")
       ->capture_default_str();
-  app.add_option("--ambient", o.ambient,
-                 "Radiance of a uniform sky that AO shadows, in RGBA; default: 1 without lights, 0 "
-                 "with a dome, otherwise a tenth of the lights");
+  app.add_option(
+      "--ambient", o.ambient,
+      "Radiance of a uniform sky, which RGBA multiplies by AO; default: 1 without lights, 0 with a "
+      "dome, otherwise a tenth of what the lights make of a white surface at most");
   app.add_option("--normals", a.normals,
-                 "shading: surfaces are lit as the normals of their mesh say; geometric: as facets")
+                 "shading: the normals of the meshes; geometric: flat facets")
       ->capture_default_str();
   app.add_option("--cryptomatte", a.cryptomatte,
                  "Also make Cryptomattes: object, material, or both with a comma between");
@@ -85,9 +82,10 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--aperture", o.aperture,
                  "Depth of field: radius of the camera's lens, metres; 0: everything is sharp; "
                  "default: the camera's own");
-  app.add_option("--focus-distance", o.focus_distance,
-                 "Distance along the view direction that is sharp, metres; default: the camera's "
-                 "own, --look-at, or the middle of the scene");
+  app.add_option(
+      "--focus-distance", o.focus_distance,
+      "Distance along the view direction that is sharp, metres; default: the camera's own, "
+      "--look-at, or the middle of the scene. Needs --aperture or a camera with a lens");
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
   app.add_option(
       "--dome", a.dome,
@@ -100,7 +98,7 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
                  "Radius that glTF point lights get, metres")
       ->capture_default_str();
   app.add_option("--line-radius", a.scene_options.line_radius,
-                 "Make strands of this radius, metres, of a glTF file's lines; 0: ignore them")
+                 "Turn a glTF file's lines into strands of this radius, metres; 0: ignore them")
       ->capture_default_str();
   add_outside_option(app, a.scene_options.allow_outside);
   app.add_option("--opacity", a.opacity,
@@ -130,14 +128,15 @@ void add_file_options(CLI::App& app, RenderArguments& a) {
                  "Exposure of the PNG in stops: 1 is twice as bright; auto: by what is seen")
       ->capture_default_str();
   app.add_option("--background", a.background,
-                 "Of the PNG: sky, none (an alpha channel) or R,G,B, linear, 0 to 1")
+                 "Background of the PNG: sky, none (an alpha channel) or R,G,B, linear, 0 to 1")
       ->capture_default_str();
   app.add_option("--half", a.half,
                  "Layers to store as 16-bit floats, with commas between, or all; Z, P, samples and "
                  "ids stay 32-bit");
   app.add_flag("--multipart", a.multipart, "Write a part for each layer");
   app.add_option("--compression", a.compression,
-                 "zip, zips, piz, none; dwaa (lossy, for colours only; with --multipart)")
+                 "Compression of the EXR: zip, zips, piz, none; dwaa (lossy, for colours only; "
+                 "with --multipart)")
       ->capture_default_str();
 }
 
@@ -151,15 +150,17 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
       ->excludes(&frame);
   app.add_option("--fps", a.fps, "Frames per second, for --frames, --shutter and motion vectors")
       ->default_str("24");
-  CLI::Option& shutter =
-      *app.add_option("--shutter", a.shutter,
-                      "Motion blur: OPEN,CLOSE, when the shutter opens and closes, in frames from "
-                      "the frame's time, as in --shutter=-0.25,0.25");
+  CLI::Option& shutter = *app.add_option(
+      "--shutter", a.shutter,
+      "Motion blur: OPEN,CLOSE, when the shutter opens and closes, in frames relative to the "
+      "frame's time, as in --shutter=-0.25,0.25. Needs --frame or --frames");
   app.add_option("--motion-samples", a.motion_samples,
-                 "Moments of the shutter, among which --spp is divided; default: 8, at most --spp")
+                 "Times at which the shutter is sampled; --spp is divided among them. Default: 8, "
+                 "at most --spp")
       ->needs(&shutter);
   app.add_option("--animation", a.scene_options.animation,
-                 "The glTF animation that plays, by name; *: all at once; default: the first");
+                 "The glTF animation that plays, by name; *: all at once; default: the first. "
+                 "Needs --frame or --frames");
 }
 
 void check_animation(const RenderArguments& a) {
