@@ -9,20 +9,21 @@ namespace {
 /// A colour averages the shares of so many samples, at most the pixel: as opacities do with taps.
 constexpr int kColorSamples = 6;
 
-/// `film`: null for points whose shading is not added to it.
+/// `resolves`: add colours and normals of the points to the film.
 void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-           const Buffer& points, const FilmBuffers* film, const ResolveParams& params, int spp) {
+           const Buffer& points, const FilmBuffers& film, bool resolves,
+           const ResolveParams& params, int spp) {
   ShadingParams shading{};
   shading.resolve = params;
   shading.normals = scene.corner_normals.empty() ? 0u : 1u;
-  shading.albedo = scene.uploaded.colors && film ? 1u : 0u;
-  shading.resolves = film ? 1u : 0u;
+  shading.albedo = scene.uploaded.colors && resolves ? 1u : 0u;
+  shading.resolves = resolves ? 1u : 0u;
   shading.color_share = static_cast<float>(std::min(kColorSamples, std::max(spp, 1)));
   shading.segment_words = static_cast<uint>(8 * scene.block_values.size());
   context.launch(kShadePoints, "shading", params.slice.pixel_count,
                  {scene.nodes, scene.blocks, scene.textured, scene.instances, scene.normals,
                   scene.color_words, scene.color_materials, scene.color_texels, queues.work, points,
-                  queues.sample_hits, film ? film->sums : Buffer{}, shading},
+                  queues.sample_hits, film.sums, shading},
                  kRayGroup);
 }
 
@@ -30,15 +31,15 @@ void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& que
 
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                   const FilmBuffers& film, const ResolveParams& params, int spp) {
-  shade(context, scene, queues, queues.points, &film, params, spp);
+  shade(context, scene, queues, queues.points, film, true, params, spp);
 }
 
 void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                      const ResolveParams& params, bool shades) {
+                      const FilmBuffers& film, const ResolveParams& params, bool shades) {
   const uint samples = params.slice.pixel_count * params.slice.sample_count;
   context.launch(kTurnPoints, "shading", samples, {queues.points, queues.backs, samples},
                  kRayGroup);
-  if (shades) shade(context, scene, queues, queues.backs, nullptr, params, 1);
+  if (shades) shade(context, scene, queues, queues.backs, film, false, params, 1);
 }
 
 }  // namespace dapple

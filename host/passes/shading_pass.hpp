@@ -16,8 +16,8 @@ void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queu
                   const FilmBuffers& film, const ResolveParams& params, int spp);
 
 /// Writes the points of a slice, turned to the side that is not seen, to queues.backs, and shades
-/// them if `shades`. Comes before shading_pass().
+/// them if `shades`, without adding anything to the film. Comes before shading_pass().
 void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                      const ResolveParams& params, bool shades);
+                      const FilmBuffers& film, const ResolveParams& params, bool shades);
 
 }  // namespace dapple

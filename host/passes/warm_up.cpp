@@ -79,7 +79,7 @@ const std::map<std::string, Pass>& passes() {
        }},
       {"turn_points",
        [](EmptyStage& s, const Variant&) {
-         turn_points_pass(s.context, s.scene, s.queues, {}, false);
+         turn_points_pass(s.context, s.scene, s.queues, s.film, {}, false);
        }},
       {"shade_points",
        [](EmptyStage& s, const Variant&) {

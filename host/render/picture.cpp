@@ -240,7 +240,8 @@ class PictureTracer {
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);
-    if (options_.back) turn_points_pass(context_, scene_, queues_, resolve_, layout_.normals != 0);
+    if (options_.back)
+      turn_points_pass(context_, scene_, queues_, film_, resolve_, layout_.normals != 0);
     if (layout_.shading()) {
       resolve_.plane = layout_.shading();
       shading_pass(context_, scene_, queues_, film_, resolve_, footprint_samples(options_));
