@@ -52,26 +52,26 @@ Scene Shot::frame(std::optional<double> seconds) {
   if (lights_) use_lights(scene, *lights_);
   if (dome_) scene.lights.push_back(*dome_);
   if (!moving_) return scene;
-  if (!set_) set_ = settle(scene);
-  put_up(scene);
+  if (!defaults_) defaults_ = choose_defaults(scene);
+  add_defaults(scene);
   return scene;
 }
 
-Shot::Set Shot::settle(const Scene& first) const {
-  Set set;
-  const Camera camera = choose_view(first, options_, set.notes).camera;
-  if (!options_.look && first.cameras.empty()) set.camera = camera;
-  if (options_.light && first.lights.empty()) set.lights = daylight(camera);
-  if (options_.ground) set.ground_under = scene_bounds(first);
-  return set;
+Shot::Defaults Shot::choose_defaults(const Scene& first) const {
+  Defaults chosen;
+  const Camera camera = choose_view(first, options_, chosen.notes).camera;
+  if (!options_.look && first.cameras.empty()) chosen.camera = camera;
+  if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);
+  if (options_.ground) chosen.ground_under = scene_bounds(first);
+  return chosen;
 }
 
-void Shot::put_up(Scene& scene) const {
-  if (set_->camera) scene.cameras.push_back(*set_->camera);
-  scene.lights.insert(scene.lights.end(), set_->lights.begin(), set_->lights.end());
-  if (set_->ground_under) add_ground(scene, *set_->ground_under);
-  scene.warnings.insert(scene.warnings.end(), set_->notes.begin(), set_->notes.end());
-  if (!set_->lights.empty())
+void Shot::add_defaults(Scene& scene) const {
+  if (defaults_->camera) scene.cameras.push_back(*defaults_->camera);
+  scene.lights.insert(scene.lights.end(), defaults_->lights.begin(), defaults_->lights.end());
+  if (defaults_->ground_under) add_ground(scene, *defaults_->ground_under);
+  scene.warnings.insert(scene.warnings.end(), defaults_->notes.begin(), defaults_->notes.end());
+  if (!defaults_->lights.empty())
     scene.warnings.emplace_back(
         "no lights in the scene: added lights named sun and sky; --lights F brings others");
 }

@@ -25,22 +25,22 @@ class Shot {
 
  private:
   /// Chooses camera, lights and ground from the first frame.
-  struct Set {
+  struct Defaults {
     std::optional<Camera> camera;
     std::vector<Light> lights;
     std::optional<Box3f> ground_under;
     std::vector<std::string> notes;
   };
 
-  [[nodiscard]] Set settle(const Scene& first) const;
-  void put_up(Scene& scene) const;
+  [[nodiscard]] Defaults choose_defaults(const Scene& first) const;
+  void add_defaults(Scene& scene) const;
 
   const RenderArguments& arguments_;
   RenderOptions options_;
   std::optional<MovingScene> moving_;  ///< for several times; other scenes are read by frame()
   std::optional<std::vector<Light>> lights_;
   std::optional<Light> dome_;
-  std::optional<Set> set_;
+  std::optional<Defaults> defaults_;
 };
 
 }  // namespace dapple
