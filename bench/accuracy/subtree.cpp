@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "bvh/build/object_bvh.hpp"
 #include "bvh/storage/segment_block.hpp"
 #include "bvh/storage/textured_triangle.hpp"
 
@@ -110,10 +111,8 @@ std::vector<LeafTriangle> leaf_triangles(const SceneBvh& bvh, const BvhNode& nod
   for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < bvh_leaf_end(node.leaf_end, slot);
        ++i) {
     const TriangleBlock& block = bvh.blocks[node.prim_base + i / 8];
-    const auto at = [lane = i % 8](const float(&v)[3][8]) {
-      return V3f(v[0][lane], v[1][lane], v[2][lane]);
-    };
-    triangles.push_back({at(block.vertex), at(block.edge1), at(block.edge2), block.opacity[i % 8]});
+    triangles.push_back({corner_of(block, 0, i % 8), edge_of(block, 1, i % 8),
+                         edge_of(block, 2, i % 8), block.opacity[i % 8]});
   }
   return triangles;
 }

@@ -56,9 +56,9 @@ class PlacedRays {
         edge2(random(), 1.0f, random());
     TriangleBlock& block = blocks_[i / 8];
     for (int axis = 0; axis < 3; ++axis) {
-      block.vertex[axis][i % 8] = vertex[axis];
-      block.edge1[axis][i % 8] = edge1[axis];
-      block.edge2[axis][i % 8] = edge2[axis];
+      block.vertex[0][axis][i % 8] = vertex[axis];
+      block.vertex[1][axis][i % 8] = vertex[axis] + edge1[axis];
+      block.vertex[2][axis][i % 8] = vertex[axis] + edge2[axis];
     }
     V3f hit = vertex + 0.3f * edge1 + 0.4f * edge2;
     const float* m = instances_[0].to_world;
@@ -79,11 +79,7 @@ class PlacedRays {
   void add_edge_on() {
     TriangleBlock& block = blocks_[1];
     const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, ray[6] = {0.25f, -1, 0, 0, 1, 0};
-    for (int axis = 0; axis < 3; ++axis) {
-      block.vertex[axis][7] = corners[axis];
-      block.edge1[axis][7] = corners[3 + axis];
-      block.edge2[axis][7] = corners[6 + axis];
-    }
+    for (int i = 0; i < 9; ++i) block.vertex[i / 3][i % 3][7] = corners[i];
     std::copy_n(ray, 6, rays_.end() - 7);
     placements_.back() = ~0u;
   }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "bvh/build/object_bvh.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/options.hpp"
 #include "dapple/shared/opacity.h"
@@ -136,11 +137,10 @@ class ReferenceTraversal {
 
   /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
   static bool hits(const TriangleBlock& block, unsigned lane, const Space& space, float t_max) {
-    const auto at = [&](const float(&a)[3][8]) { return V3f(a[0][lane], a[1][lane], a[2][lane]); };
-    const V3f edge1 = at(block.edge1), edge2 = at(block.edge2);
+    const V3f edge1 = edge_of(block, 1, lane), edge2 = edge_of(block, 2, lane);
     const V3f p = space.direction.cross(edge2);
     const float inverse = 1.0f / edge1.dot(p);
-    const V3f s = space.origin - at(block.vertex);
+    const V3f s = space.origin - corner_of(block, 0, lane);
     const float u = s.dot(p) * inverse;
     const V3f q = s.cross(edge1);
     const float v = space.direction.dot(q) * inverse;
@@ -164,6 +164,7 @@ class ReferenceTraversal {
       open[slot] = crossing.hit;
       if (!crossing.hit || !prefiltered_) continue;
       const V3f facing = facing_areas(crossing.size, space.direction);
+      if (bvh_is_wall(node.depth, slot)) continue;
       if (!is_covered(crossing, facing, space, t_max)) continue;
       open[slot] = false;
       walk.result.transmittance *= std::exp(-depth(node, slot, crossing, facing, space.direction));

@@ -12,6 +12,7 @@
 
 #include "bvh/build/coincident_triangles.hpp"
 #include "bvh/build/quantize.hpp"
+#include "bvh/opacity/wall.hpp"
 #include "bvh/storage/packed_strands.hpp"
 
 namespace dapple {
@@ -99,7 +100,8 @@ void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> box
 /// Packs the triangles of each node's leaves, in the order of the slots. Each node begins a new
 /// block.
 void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
-                    const std::vector<float>& opacities, const std::vector<bool>& closed) {
+                    const std::vector<float>& opacities, const std::vector<bool>& closed,
+                    const std::vector<bool>& interior) {
   ObjectBvh& object = built.object;
   const WideTree& wide = built.tree;
   std::uint32_t blocks = 0;
@@ -108,6 +110,7 @@ void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, con
     blocks += blocks_of(wide.nodes[n]);
   }
   if (!closed.empty()) built.closed.assign(blocks, 0);
+  if (!interior.empty()) built.interior.assign(blocks, 0);
   object.primitives.assign(8 * std::size_t{blocks}, kNoPrimitive);
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
@@ -119,9 +122,9 @@ void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, con
               const std::uint32_t block = object.nodes[n].prim_base + next / 8;
               set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
               object.primitives[8 * std::size_t{block} + next % 8] = triangle;
-              if (!closed.empty() && closed[triangle]) {
-                built.closed[block] |= static_cast<std::uint8_t>(1u << next % 8);
-              }
+              const auto bit = static_cast<std::uint8_t>(1u << next % 8);
+              if (!closed.empty() && closed[triangle]) built.closed[block] |= bit;
+              if (!interior.empty() && interior[triangle]) built.interior[block] |= bit;
             }
           }
         }
@@ -153,12 +156,9 @@ Box3f triangle_box(const Mesh& mesh, std::size_t triangle) {
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
               float opacity) {
   const std::uint32_t* index = &mesh.indices[3 * std::size_t{triangle}];
-  const V3f vertex = mesh.positions[index[0]];
-  const V3f edge1 = mesh.positions[index[1]] - vertex, edge2 = mesh.positions[index[2]] - vertex;
-  for (int axis = 0; axis < 3; ++axis) {
-    block.vertex[axis][lane] = vertex[axis];
-    block.edge1[axis][lane] = edge1[axis];
-    block.edge2[axis][lane] = edge2[axis];
+  for (int corner = 0; corner < 3; ++corner) {
+    const V3f& position = mesh.positions[index[corner]];
+    for (int axis = 0; axis < 3; ++axis) block.vertex[corner][axis][lane] = position[axis];
   }
   block.opacity[lane] = opacity;
 }
@@ -215,12 +215,13 @@ void summarize(BuiltObject& built) {
 void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
                      std::span<PrimitiveBox> boxes, BuiltObject& built) {
   fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
-  std::vector<bool> closed;
+  std::vector<bool> closed, interior;
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
-                       [&] { closed = closed_triangles(mesh, opacities); });
+                       [&] { closed = closed_triangles(mesh, opacities); },
+                       [&] { interior = interior_triangles(mesh, opacities); });
   tbb::parallel_invoke([&] { built.object.blocks.resize(count_blocks(built.tree)); },
                        [&] { summarize(built); });
-  pack_triangles(built, boxes, mesh, opacities, closed);
+  pack_triangles(built, boxes, mesh, opacities, closed, interior);
 }
 
 void build_strands(const Mesh& mesh, const std::vector<float>& opacities,

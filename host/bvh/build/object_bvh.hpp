@@ -40,8 +40,9 @@ struct ObjectBvh : ObjectSummary {
 /// A built object, and the data that prefiltering needs.
 struct BuiltObject {
   ObjectBvh object;
-  WideTree tree;                     ///< the tree from which the object was packed
-  std::vector<std::uint8_t> closed;  ///< by block: bit l for lane l, closed_triangles(); or empty
+  WideTree tree;                       ///< the tree from which the object was packed
+  std::vector<std::uint8_t> closed;    ///< by block: bit l for lane l, closed_triangles(); or empty
+  std::vector<std::uint8_t> interior;  ///< the same of interior_triangles()
 };
 
 /// Builds and packs the triangles or segments of `mesh` that are not fully transparent. If there
@@ -73,6 +74,17 @@ unsigned variance_of_child(const BvhNode& node, unsigned slot);
 /// triangle.
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,
               float opacity);
+
+/// Returns a corner of the triangle in a lane.
+inline V3f corner_of(const TriangleBlock& block, unsigned corner, unsigned lane) {
+  const auto& v = block.vertex[corner];
+  return {v[0][lane], v[1][lane], v[2][lane]};
+}
+
+/// Returns the edge from corner 0 to `corner`, 1 or 2.
+inline V3f edge_of(const TriangleBlock& block, unsigned corner, unsigned lane) {
+  return corner_of(block, corner, lane) - corner_of(block, 0, lane);
+}
 
 Box3f triangle_box(const Mesh& mesh, std::size_t triangle);
 

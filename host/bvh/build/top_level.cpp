@@ -49,6 +49,7 @@ NodeOpacity instance_opacity(const ObjectSummary& object, const M44f& to_world,
   opacity.normals = object.opacity.normals.placed(to_world);
   opacity.clumping = object.opacity.clumping;
   opacity.mass_concentration = object.opacity.mass_concentration;
+  opacity.wall = object.opacity.wall;
   for (int axis = 0; axis < 3; ++axis) {
     V3f world_axis(0.0f), direction;
     world_axis[axis] = 1.0f;

@@ -32,6 +32,7 @@ struct NodeOpacity {
   float clumping = 0;            ///< CoverageMap::clumping()
   float mass_concentration = 0;  ///< mass_concentration_of(), [0,1]
   std::size_t triangles = 0;     ///< in the whole subtree; 0: many
+  bool wall = false;             ///< is_wall() of bvh/opacity/wall.hpp: traversal opens it
 };
 
 /// Returns the mass concentration for centre_weight() of dapple/shared/opacity.h, [0,1].

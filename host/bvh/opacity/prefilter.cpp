@@ -20,8 +20,10 @@ constexpr std::uint32_t kTaskPrimitives = 2048;
 /// From this opacity to 1, nodes count gradually as parts of a solid.
 constexpr float kNearlySolid = 0.9f;
 
+/// Below the code of walls.
 uchar encode_depth(float depth) {
-  return static_cast<uchar>(std::lround(std::sqrt(depth / DAPPLE_MAX_DEPTH) * 255.0f));
+  const auto code = std::lround(std::sqrt(depth / DAPPLE_MAX_DEPTH) * 255.0f);
+  return static_cast<uchar>(std::min<long>(code, DAPPLE_WALL_DEPTH - 1));
 }
 
 /// Maximum number of primitives of a leaf.
@@ -39,6 +41,7 @@ struct Leaf {
   bool single_layer = false;
   NormalMoments normals;
   SurfaceAreas areas;
+  WallAreas walls;
   [[nodiscard]] std::span<const CoveringTriangle> along(int axis) const {
     return {storage.data() + (facing ? static_cast<std::size_t>(axis) * drawn : 0), drawn};
   }
@@ -97,9 +100,11 @@ class Prefilter {
     const auto children = tree_.children_of(wide);
     NodeCoverage coverage(wide.box);
     NormalMoments normals;
+    WallAreas walls;
     const auto add_inner = [&](unsigned slot, const Summary& below) {
       coverage.add(below.map, children[slot].box, below.areas);
       normals.add(below.normals);
+      walls.add(below.walls);
       set_inner_opacity(own, slot, children[slot], below, wide.primitives);
     };
     const bool parallel = wide.primitives > kTaskPrimitives;
@@ -112,12 +117,14 @@ class Prefilter {
     // In the order of the slots, so that the bits do not depend on the order of the tasks.
     for (unsigned slot = 0; slot < wide.child_count; ++slot) {
       if (children[slot].count) {
-        normals.add(add_leaf(own, slot, children[slot].box, coverage));
+        const Leaf leaf = add_leaf(own, slot, children[slot].box, coverage);
+        normals.add(leaf.normals);
+        walls.add(leaf.walls);
       } else {
         add_inner(slot, parallel ? below[slot] : node(children[slot].first));
       }
     }
-    return {coverage.map(), normals, coverage.areas()};
+    return {coverage.map(), normals, coverage.areas(), walls};
   }
 
  private:
@@ -137,7 +144,7 @@ class Prefilter {
     }
     NodeOpacity opacity = measured ? *measured : map_opacity(below.map, below.normals, child.box);
     opacity.triangles = wide.primitives;
-    set_opacity(own, slot, opacity, child.box, below.areas);
+    set_opacity(own, slot, opacity, child.box, below.areas, below.walls);
     if (task_.record && !measured && wide.primitives <= kRigidPrimitives &&
         (primitives > kRigidPrimitives || own == 0)) {
       task_.record->subtrees[task_.record->subtree_at(child.first)].keep(below.map, below.areas,
@@ -145,22 +152,25 @@ class Prefilter {
     }
   }
 
-  void set_opacity(std::uint32_t own, unsigned slot, const NodeOpacity& opacity, const Box3f& box,
-                   const SurfaceAreas& areas) const {
+  /// Moving triangles remain connected, so a node that is refitted stays a wall or not.
+  void set_opacity(std::uint32_t own, unsigned slot, NodeOpacity& opacity, const Box3f& box,
+                   const SurfaceAreas& areas, const WallAreas& walls) const {
+    opacity.wall = task_.node_of.empty() ? is_wall(walls, opacity.normals)
+                                         : bvh_is_wall(object_.nodes[own].depth, slot);
     const float factor = set_child_opacity(object_.nodes[own], slot, opacity, box);
     if (task_.record) task_.record->nodes[own].keep(slot, opacity.axes, areas, box, factor);
   }
 
-  /// Sets the leaf's opacity and puts it into its node's coverage; returns its normals.
-  NormalMoments add_leaf(std::uint32_t own, unsigned slot, const Box3f& box,
-                         NodeCoverage& coverage) const {
+  /// Sets the leaf's opacity, puts it into its node's coverage and returns it.
+  Leaf add_leaf(std::uint32_t own, unsigned slot, const Box3f& box, NodeCoverage& coverage) const {
     const BvhNode& node = object_.nodes[own];
     const Leaf leaf =
         node.prim_base & DAPPLE_SEGMENTS ? load_strands(node, slot) : load_triangles(node, slot);
     if (leaf.single_layer) {
       coverage.add_layer(leaf.covering(), box, leaf.areas);
-      set_opacity(own, slot, layer_opacity(leaf, box), box, leaf.areas);
-      return leaf.normals;
+      NodeOpacity opacity = layer_opacity(leaf, box);
+      set_opacity(own, slot, opacity, box, leaf.areas, leaf.walls);
+      return leaf;
     }
     CoverageMap map;
     cover(map, box, leaf.covering(), [&](const CoveringTriangle& t, float u, float v, float share) {
@@ -169,8 +179,8 @@ class Prefilter {
     coverage.add(map, box, leaf.areas);
     NodeOpacity opacity = map_opacity(map, leaf.normals, box);
     opacity.triangles = leaf.count;
-    set_opacity(own, slot, opacity, box, leaf.areas);
-    return leaf.normals;
+    set_opacity(own, slot, opacity, box, leaf.areas, leaf.walls);
+    return leaf;
   }
 
   Leaf load_strands(const BvhNode& node, unsigned slot) const {
@@ -201,11 +211,9 @@ class Prefilter {
          i < bvh_leaf_end(node.leaf_end, slot); ++i) {
       const TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
       const unsigned lane = i % 8;
-      const auto at = [lane](const float(&v)[3][8]) {
-        return V3f(v[0][lane], v[1][lane], v[2][lane]);
-      };
-      const CoveringTriangle triangle{at(block.vertex), at(block.edge1), at(block.edge2),
-                                      block.opacity[lane], is_closed(node.prim_base + i / 8, lane)};
+      const CoveringTriangle triangle{corner_of(block, 0, lane), edge_of(block, 1, lane),
+                                      edge_of(block, 2, lane), block.opacity[lane],
+                                      has_bit(object_.closed, node.prim_base + i / 8, lane)};
       leaf.textured |= triangle.opacity < 0.0f;
       const float opacity = triangle.opacity >= 0.0f
                                 ? triangle.opacity
@@ -213,6 +221,7 @@ class Prefilter {
       const V3f area = 0.5f * triangle.edge1.cross(triangle.edge2);
       leaf.normals.add(area, opacity);
       leaf.areas.add(area, opacity, triangle.closed);
+      leaf.walls.add(area, opacity, has_bit(object_.interior, node.prim_base + i / 8, lane));
       leaf.storage[leaf.count++] = triangle;
     }
     leaf.drawn = leaf.count;
@@ -220,9 +229,9 @@ class Prefilter {
     return leaf;
   }
 
-  bool is_closed(std::uint32_t block, unsigned lane) const {
-    const std::size_t own = block - object_.first_block;
-    return !object_.closed.empty() && (object_.closed[own] >> lane & 1u) != 0;
+  /// The bit of a lane in bytes by block of the object; `bytes` may be empty.
+  bool has_bit(std::span<const std::uint8_t> bytes, std::uint32_t block, unsigned lane) const {
+    return !bytes.empty() && (bytes[block - object_.first_block] >> lane & 1u) != 0;
   }
 
   float mean_opacity(const CoveringTriangle& triangle, float u, float v, float share) const {
@@ -276,13 +285,14 @@ schar encode_correlation(float correlation, unsigned bit) {
 }
 
 void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
-                  const V3f& correlation, unsigned opacity_variance) {
+                  const V3f& correlation, unsigned opacity_variance, bool wall) {
   for (int axis = 0; axis < 3; ++axis) {
     node.depth[axis][slot] =
         encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_MAX_DEPTH));
     node.correlation[axis][slot] =
         encode_correlation(correlation[axis], opacity_variance >> axis & 1u);
   }
+  if (wall) node.depth[0][slot] = DAPPLE_WALL_DEPTH;
 }
 
 }  // namespace
@@ -294,7 +304,7 @@ float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity
   grown.axes = grown_opacity(opacity.axes, exact, box);
   const float factor = clumping_factor(grown, box.max - box.min);
   store_depths(node, slot, grown.axes, factor, opacity.normals.correlation(),
-               variance_class(opacity));
+               variance_class(opacity), opacity.wall);
   const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.mass_concentration));
   node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
   return factor;
@@ -314,7 +324,8 @@ void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
     axes[axis] = std::min(1.0f, axes[axis] * kept.share(axis, slot));
   store_depths(node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
                normals.correlation(),
-               std::max(variance_of_child(node, slot), variance_class({axes, {}})));
+               std::max(variance_of_child(node, slot), variance_class({axes, {}})),
+               bvh_is_wall(node.depth, slot));
 }
 
 namespace {
@@ -338,11 +349,12 @@ Summary prefilter(const PrefilterTask& task, const TextureIntegrals& integrals) 
 void prefilter(BuiltObject& built, const TextureIntegrals& integrals, RefitRecord* record) {
   ObjectBvh& object = built.object;
   if (record) start_record(built, integrals, *record);
-  const ObjectArrays arrays{object.nodes,   object.blocks, object.textured, built.closed, 0, 0, 0,
-                            object.segments};
+  const ObjectArrays arrays{object.nodes,    object.blocks, object.textured, built.closed, 0, 0, 0,
+                            object.segments, built.interior};
   const Summary all = prefilter({arrays, built.tree, {}, record, nullptr}, integrals);
   object.opacity = map_opacity(all.map, all.normals, object.box);
   object.opacity.triangles = object.triangles;
+  object.opacity.wall = is_wall(all.walls, all.normals);
 }
 
 }  // namespace dapple

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "bvh/build/object_bvh.hpp"
+#include "bvh/opacity/wall.hpp"
 #include "bvh/refit/refit_record.hpp"
 
 namespace dapple {
@@ -16,6 +17,7 @@ struct Summary {
   CoverageMap map;
   NormalMoments normals;
   SurfaceAreas areas;
+  WallAreas walls = {};  ///< not set when an object is refitted
 };
 
 /// The nodes of an object, and the arrays that the indices in these nodes refer to.
@@ -28,6 +30,7 @@ struct ObjectArrays {
   /// these are the arrays of the object alone.
   std::uint32_t first_node = 0, first_block = 0, first_textured = 0;
   std::span<const SegmentBlock> segments = {};  ///< of strands, which are never refitted
+  std::span<const std::uint8_t> interior = {};  ///< BuiltObject::interior; empty when refitting
 };
 
 /// Provides the results of subtrees that are prefiltered elsewhere. In the tree these are nodes

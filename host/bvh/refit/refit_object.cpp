@@ -58,7 +58,9 @@ class ObjectRefit : public Stumps {
         scene_, needs_textures ? object_.textured : std::span<const TexturedTriangle>{});
     measure_strays(integrals);
     const Summary all = prefilter({object_, upper, record_.upper_nodes, &record_, this}, integrals);
+    const bool wall = summary.opacity.wall;
     summary.opacity = map_opacity(all.map, all.normals, summary.box);
+    summary.opacity.wall = wall;
     summary.opacity.triangles = summary.triangles;
   }
 

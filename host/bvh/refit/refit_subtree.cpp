@@ -70,10 +70,7 @@ MovedPart SubtreeRefit::leaf(const BvhNode& node, unsigned slot) const {
           record_
               .textured_opacity[static_cast<std::size_t>(-opacity - 1.0f) - object_.first_textured];
     }
-    const auto at = [&](const float(&v)[3][8]) {
-      return V3f(v[0][i % 8], v[1][i % 8], v[2][i % 8]);
-    };
-    const V3f area = 0.5f * at(block.edge1).cross(at(block.edge2));
+    const V3f area = 0.5f * edge_of(block, 1, i % 8).cross(edge_of(block, 2, i % 8));
     const bool closed = !record_.closed.empty() && (record_.closed[lane / 8] >> lane % 8 & 1u) != 0;
     moved.areas.add(area, opacity, closed);
     moved.normals.add(area, opacity);

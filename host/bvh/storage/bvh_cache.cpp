@@ -38,7 +38,7 @@ struct ObjectRecord {
   std::array<float, 3> axes;
   std::array<float, 6> normals;
   float clumping, mass_concentration;
-  std::uint32_t part_count, stack, spare;
+  std::uint32_t part_count, stack, wall;
 };
 static_assert(sizeof(ObjectRecord) == 2 * 8 + 7 * 8 + (6 + 8 * 6 + 3 + 6 + 2) * 4 + 3 * 4);
 
@@ -67,6 +67,7 @@ ObjectRecord record_of(const CachedObject& cached, const Checksum& key) {
   record.mass_concentration = object.opacity.mass_concentration;
   record.part_count = static_cast<std::uint32_t>(object.parts.size());
   record.stack = object.stack;
+  record.wall = object.opacity.wall ? 1 : 0;
   return record;
 }
 
@@ -86,6 +87,7 @@ ObjectSummary summary_of(const ObjectRecord& record) {
   summary.opacity.clumping = record.clumping;
   summary.opacity.mass_concentration = record.mass_concentration;
   summary.stack = record.stack;
+  summary.opacity.wall = record.wall != 0;
   return summary;
 }
 

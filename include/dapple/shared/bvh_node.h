@@ -54,6 +54,14 @@ DAPPLE_FUNCTION uint bvh_leaf_begin(DAPPLE_GLOBAL const uchar* leaf_end, uint sl
   return slot == 0u ? 0u : bvh_leaf_end(leaf_end, slot - 1u);
 }
 
+/* A child whose depth code along x has this value is a wall (host/bvh/opacity/wall.hpp): it is
+   never covered, and its opacity is not used. */
+#define DAPPLE_WALL_DEPTH 255
+
+DAPPLE_FUNCTION bool bvh_is_wall(DAPPLE_GLOBAL const uchar (*depth)[8], uint slot) {
+  return depth[0][slot] == DAPPLE_WALL_DEPTH;
+}
+
 /* Mass concentration of child `slot` around the centre of its box, [0,1]; for centre_weight(). */
 DAPPLE_FUNCTION float bvh_mass_concentration(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
   return (float)(leaf_end[slot] >> 6) * (1.0f / 3.0f);

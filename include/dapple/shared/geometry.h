@@ -11,13 +11,11 @@
 namespace dapple {
 #endif
 
-/* Eight triangles, one in each vector lane: a vertex and the two edges that start at it. `opacity`
-   is in [0,1], or it is -(1 + index) of a TexturedTriangle. Unused lanes have zero edges and
-   opacity 0; rays never hit them. */
+/* Eight triangles, one in each vector lane: vertex[corner][axis][lane], bit for bit those of the
+   mesh, so that triangles which share an edge in the mesh share it here. `opacity` is in [0,1], or
+   it is -(1 + index) of a TexturedTriangle. Unused lanes are all zeros; rays never hit them. */
 typedef struct DAPPLE_CACHE_ALIGNED TriangleBlock {
-  float vertex[3][8];
-  float edge1[3][8];
-  float edge2[3][8];
+  float vertex[3][3][8];
   float opacity[8];
 } TriangleBlock;
 

@@ -96,17 +96,15 @@ class Walk {
   }
 
   Lane lane_of(std::uint32_t t) const {
-    const V3f a = corner(t, 0), e1 = corner(t, 1) - a, e2 = corner(t, 2) - a;
-    return {a.x, a.y, a.z, e1.x, e1.y, e1.z, e2.x, e2.y, e2.z};
+    const V3f a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
+    return {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z};
   }
 
   static Lane lane_of(const TriangleBlock& block, unsigned lane) {
     Lane values;
-    for (int a = 0; a < 3; ++a) {
-      values[a] = block.vertex[a][lane];
-      values[3 + a] = block.edge1[a][lane];
-      values[6 + a] = block.edge2[a][lane];
-    }
+    for (int corner = 0; corner < 3; ++corner)
+      for (int axis = 0; axis < 3; ++axis)
+        values[3 * corner + axis] = block.vertex[corner][axis][lane];
     return values;
   }
 

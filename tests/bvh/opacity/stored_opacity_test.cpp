@@ -35,12 +35,12 @@ TEST(OpacityCode, DecodingIsWithinHalfACodeAndKeepsSmallOpacities) {
     const float half = 0.5f / 255.0f * std::sqrt(DAPPLE_MAX_DEPTH);
     const float root = std::sqrt(depth_of(opacity));
     const float bound = (2 * root * half + half * half) * std::exp(-root * root + 2 * root * half);
-    // Opacities that differ from 1 only by rounding are stored as the maximum depth.
-    ASSERT_NEAR(stored_opacity(node, 0), opacity, bound + 1e-6f + (opacity > 0.9998f ? 1e-4f : 0));
+    // The largest opacities are stored as the last code but one: the last one means a wall.
+    ASSERT_NEAR(stored_opacity(node, 0), opacity, bound + 1e-6f + (opacity > 0.9998f ? 2e-4f : 0));
     ASSERT_TRUE(node.depth[0][0] > 0 || opacity < 2 * half * half) << opacity;
   }
   EXPECT_EQ(stored_opacity(node, 1), 0.0f);
-  EXPECT_NEAR(stored_opacity(node, 2), 1 - DAPPLE_MIN_TRANSMITTANCE, 1e-6f);
+  EXPECT_NEAR(stored_opacity(node, 2), 1 - DAPPLE_MIN_TRANSMITTANCE, 1e-5f);
 }
 
 TEST(OpacityCode, TheStoredOpacityIsThatOfTheEnlargedBox) {

@@ -37,12 +37,7 @@ Box3f leaf_box(const SceneBvh& bvh, const BvhNode& node, std::uint32_t begin, st
   Box3f box;
   for (std::uint32_t i = begin; i < end; ++i) {
     const TriangleBlock& block = bvh.blocks[node.prim_base + i / 8];
-    const auto at = [&](const float(&v)[3][8]) {
-      return V3f(v[0][i % 8], v[1][i % 8], v[2][i % 8]);
-    };
-    const V3f vertex = at(block.vertex);
-    for (const V3f& corner : {vertex, vertex + at(block.edge1), vertex + at(block.edge2)})
-      box.extendBy(corner);
+    for (unsigned corner = 0; corner < 3; ++corner) box.extendBy(corner_of(block, corner, i % 8));
   }
   return box;
 }

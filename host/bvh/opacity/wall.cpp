@@ -1,0 +1,118 @@
+#include "bvh/opacity/wall.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace dapple {
+namespace {
+
+/// Minimum share of interior triangles in the surfaces of a wall.
+constexpr float kInteriorShare = 0.5f;
+/// Minimum length of the sum of area vectors, relative to the area. Half a sphere has 1/2, a third
+/// of a tube 0.83, the walls of a room but one 0.2.
+constexpr float kOneSided = 0.5f;
+/// Minimum sum of the squared eigenvalues of the normals' second moments, whose trace is 1. A flat
+/// surface has 1, a tube 1/2, a sphere 1/3.
+constexpr float kFlat = 0.7f;
+
+/// Positions are equal if they are on the same point of a grid of this many steps over the mesh.
+constexpr float kGridSteps = 4194304.0f;
+
+/// Returns for each vertex a hash of its position; 0 only by chance.
+std::vector<std::uint32_t> position_hashes(const Mesh& mesh) {
+  Box3f box;
+  for (const V3f& position : mesh.positions) box.extendBy(position);
+  const V3f size = box.size();
+  const float scale = kGridSteps / std::max({size.x, size.y, size.z, 1e-30f});
+  const auto hash_of = [&](const V3f& position) {
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float steps = std::nearbyint((position[axis] - box.min[axis]) * scale);
+      hash = (hash ^ std::bit_cast<std::uint32_t>(steps + 0.0f)) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 29;
+    }
+    return static_cast<std::uint32_t>(hash >> 32);
+  };
+  std::vector<std::uint32_t> hashes(mesh.positions.size());
+  std::transform(mesh.positions.begin(), mesh.positions.end(), hashes.begin(), hash_of);
+  return hashes;
+}
+
+/// For each corner, the exclusive or of the hashes of the corners that its triangles join it with.
+/// In a closed ring of triangles each of them occurs twice, so the result is 0. Corners are keys of
+/// an open-addressing hash table.
+class Rings {
+ public:
+  explicit Rings(std::size_t corners)
+      : mask_(std::bit_ceil(2 * corners + 1) - 1), entries_(mask_ + 1) {}
+  void add(std::uint32_t corner, std::uint32_t next, std::uint32_t last) {
+    entries_[find(corner)].ring ^= next ^ last;
+  }
+  [[nodiscard]] bool is_closed(std::uint32_t corner) { return entries_[find(corner)].ring == 0; }
+
+ private:
+  struct Entry {
+    std::uint32_t corner = 0, ring = 0;
+  };
+  /// The corner's entry, taken when it is new.
+  std::size_t find(std::uint32_t corner) {
+    std::size_t at = corner & mask_;
+    while (entries_[at].corner != corner && entries_[at].corner != 0) at = (at + 1) & mask_;
+    entries_[at].corner = corner;
+    return at;
+  }
+  std::size_t mask_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace
+
+std::vector<bool> interior_triangles(const Mesh& mesh, std::span<const float> opacities) {
+  const auto opaque = [&](std::size_t t) { return opacities[t] == 1.0f; };
+  if (std::none_of(opacities.begin(), opacities.end(), [](float o) { return o == 1.0f; })) {
+    return {};
+  }
+  const std::vector<std::uint32_t> hashes = position_hashes(mesh);
+  const auto corner = [&](std::size_t t, int k) { return hashes[mesh.indices[3 * t + k % 3]]; };
+  Rings rings(hashes.size());
+  for (std::size_t t = 0; t < opacities.size(); ++t) {
+    if (!opaque(t)) continue;
+    for (int k = 0; k < 3; ++k) rings.add(corner(t, k), corner(t, k + 1), corner(t, k + 2));
+  }
+  std::vector<bool> interior(opacities.size());
+  bool any = false;
+  for (std::size_t t = 0; t < opacities.size(); ++t) {
+    interior[t] = opaque(t) && rings.is_closed(corner(t, 0)) && rings.is_closed(corner(t, 1)) &&
+                  rings.is_closed(corner(t, 2));
+    any |= interior[t];
+  }
+  return any ? interior : std::vector<bool>{};
+}
+
+void WallAreas::add(const V3f& area, float opacity, bool is_interior) {
+  const float size = area.length();
+  all += opacity * size;
+  if (!is_interior) return;
+  vector += area;
+  interior += size;
+}
+
+void WallAreas::add(const WallAreas& areas) {
+  vector += areas.vector;
+  interior += areas.interior;
+  all += areas.all;
+}
+
+bool is_wall(const WallAreas& areas, const NormalMoments& normals) {
+  if (!(areas.interior > kInteriorShare * areas.all)) return false;
+  if (areas.vector.length() > kOneSided * areas.interior) return true;
+  const auto& m = normals.sum;
+  const float trace = m[0] + m[1] + m[2];
+  const float squares =
+      m[0] * m[0] + m[1] * m[1] + m[2] * m[2] + 2.0f * (m[3] * m[3] + m[4] * m[4] + m[5] * m[5]);
+  return squares > kFlat * trace * trace;
+}
+
+}  // namespace dapple

@@ -1,0 +1,118 @@
+// Walls: which triangles lie inside an opaque surface, which nodes count as walls, and that
+// refitting keeps them.
+#include "bvh/opacity/wall.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "dapple/bvh.hpp"
+#include "support/scene_on_device.hpp"
+#include "support/smooth_shapes.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+std::ptrdiff_t count_interior(const Mesh& mesh, float opacity = 1.0f) {
+  const std::vector<float> opacities(mesh.primitive_count(), opacity);
+  const std::vector<bool> interior = interior_triangles(mesh, opacities);
+  return std::count(interior.begin(), interior.end(), true);
+}
+
+/// A mesh in which each triangle has three vertices of its own, as exporters of hard edges write.
+Mesh with_split_vertices(const Mesh& mesh) {
+  Mesh split;
+  for (const std::uint32_t index : mesh.indices) {
+    split.indices.push_back(static_cast<std::uint32_t>(split.positions.size()));
+    split.positions.push_back(mesh.positions[index]);
+  }
+  return split;
+}
+
+TEST(InteriorTriangles, AreAllOfAClosedSurface) {
+  const Mesh sphere = test::smooth_sphere();
+  EXPECT_EQ(count_interior(sphere), static_cast<std::ptrdiff_t>(sphere.primitive_count()));
+}
+
+TEST(InteriorTriangles, AreFoundByPositionsNotIndices) {
+  const Mesh sphere = with_split_vertices(test::smooth_sphere());
+  EXPECT_EQ(count_interior(sphere), static_cast<std::ptrdiff_t>(sphere.primitive_count()));
+}
+
+TEST(InteriorTriangles, DoNotTouchTheBorder) {
+  Mesh grid;
+  append_grid(grid, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 8, 0);
+  EXPECT_EQ(count_interior(grid), 2 * 6 * 6);
+}
+
+TEST(InteriorTriangles, AreNoneOfLeavesAndOfTranslucentSurfaces) {
+  Mesh leaves;
+  for (int i = 0; i < 8; ++i) {
+    append_grid(leaves, V3f(static_cast<float>(i), 0, 0), {1, 0, 1}, {0, 1, 1}, 2, 0);
+  }
+  EXPECT_EQ(count_interior(leaves), 0);
+  EXPECT_EQ(count_interior(test::smooth_sphere(), 0.99f), 0);
+}
+
+/// Sums over triangles of given area vectors.
+struct Sums {
+  WallAreas areas;
+  NormalMoments normals;
+  void add(const V3f& area, bool interior = true) {
+    areas.add(area, 1.0f, interior);
+    normals.add(area, 1.0f);
+  }
+  [[nodiscard]] bool wall() const { return is_wall(areas, normals); }
+};
+
+TEST(Wall, IsOneSideOfASurfaceOrFlat) {
+  Sums one, corner, slab, tube, sphere_half;
+  one.add({0, 0, 1});
+  for (const V3f& n : {V3f(1, 0, 0), V3f(0, 1, 0), V3f(0, 0, 1)}) corner.add(n);
+  for (const float z : {1.0f, -1.0f}) slab.add({0, 0, z});
+  for (int i = 0; i < 12; ++i) {
+    const auto angle = static_cast<float>(i * kPi / 6);
+    tube.add({std::cos(angle), std::sin(angle), 0});
+  }
+  EXPECT_TRUE(one.wall());
+  EXPECT_TRUE(corner.wall());
+  EXPECT_TRUE(slab.wall());
+  EXPECT_FALSE(tube.wall());
+  EXPECT_FALSE(Sums().wall());
+}
+
+TEST(Wall, HasMostlyInteriorTriangles) {
+  Sums mixed;
+  mixed.add({0, 0, 1});
+  EXPECT_TRUE(mixed.wall());
+  mixed.add({0, 0, 1.1f}, false);
+  EXPECT_FALSE(mixed.wall());
+}
+
+/// Number of children that are walls.
+int walls_of(const SceneBvh& bvh) {
+  int walls = 0;
+  for (const BvhNode& node : bvh.nodes)
+    for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot)
+      walls += bvh_is_wall(node.depth, slot) ? 1 : 0;
+  return walls;
+}
+
+TEST(Wall, NodesOfASphereAreWallsAndThoseOfLeavesAreNot) {
+  EXPECT_GT(walls_of(build_bvh(test::scene_of(test::smooth_sphere(60, 30)))), 100);
+  EXPECT_EQ(walls_of(build_bvh(make_procedural("scene:cloud?leaves=2000&opacity=1"))), 0);
+}
+
+TEST(Wall, RefittingKeepsWalls) {
+  Scene scene = test::scene_of(test::smooth_sphere(60, 30));
+  UpdatableBvh bvh(scene);
+  const int before = walls_of(bvh.bvh());
+  for (V3f& p : scene.meshes[0].positions) p = V3f(1.3f * p.x, p.y, p.z + 0.1f * p.x);
+  bvh.update(scene);
+  EXPECT_EQ(walls_of(bvh.bvh()), before);
+}
+
+}  // namespace
+}  // namespace dapple
