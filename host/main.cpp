@@ -30,10 +30,11 @@ int run(int argc, char** argv) {
                "With --version: how dapple was built, and the device libraries");
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 images differ,\n"
-      "130, 143 interrupted by SIGINT, SIGTERM.\n"
+      "130 interrupted by SIGINT, 143 by SIGTERM.\n"
       "dapple COMMAND --help lists the options of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
-  CLI::App& points = *app.add_subcommand("points", "Measure sky and light at points");
+  CLI::App& points =
+      *app.add_subcommand("points", "Compute AO, visible sky and irradiance at points");
   CLI::App& bake = *app.add_subcommand(
       "bake", "Bake AO into the vertices, a texture or the instances of a glTF file");
   CLI::App& info = *app.add_subcommand("info", "Print what a scene holds and what its BVH costs");

@@ -40,21 +40,24 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
                  "glTF file (.gltf, .glb) or a procedural scene, \"scene:tree?leaves=50000\"")
       ->required();
   app.add_option("-o,--output", a.output,
-                 "glTF file to write, .glb or .gltf: SCENE with what was baked")
+                 "glTF file to write (.glb or .gltf): a copy of SCENE with the baked values")
       ->required();
   app.add_option("--to", a.to,
                  "vertex: values at vertices; texture: an occlusion texture; instance: a value for "
                  "each instance")
       ->capture_default_str();
-  app.add_option(
-         "--passes", a.passes,
-         "ao; with bent: also bent normals, the mean unoccluded direction; with light: also "
-         "the irradiance of each light. For example ao,bent,light")
+  app.add_option("--passes", a.passes,
+                 "ao, optionally with bent (bent normals: the mean unoccluded direction) and light "
+                 "(irradiance "
+                 "of each light), for example ao,bent,light")
       ->capture_default_str();
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
-  app.add_option("--dome", a.dome, "Environment map (.exr, .hdr) as a light, beside the others");
-  app.add_option("--light-rays", o.light_rays,
-                 "Rays per light, for each sample and side; the number of samples is set by AO")
+  app.add_option("--dome", a.dome,
+                 "Environment map (.exr, .hdr) as a light, in addition to the others");
+  app.add_option(
+         "--light-rays", o.light_rays,
+         "Rays per light from each sample point and side. AO decides how many sample points "
+         "there are")
       ->capture_default_str();
   app.add_option(
          "--channel", a.channel,
@@ -68,12 +71,18 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--bits", a.bits, "Bits per texel of the occlusion texture: 8 or 16")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str();
-  app.add_option("--margin", o.margin, "Texels by which charts are extended beyond their border")
+  app.add_option("--margin", o.margin,
+                 "Texels by which values are extended beyond the border of each chart (UV island)")
       ->capture_default_str();
-  app.add_option("--uv", a.uv,
-                 "Texture coordinates: auto (the file's, if they don't overlap) or own (a new set)")
+  app.add_option(
+         "--uv", a.uv,
+         "Texture coordinates. auto: the file's if they do not overlap, else new ones; own: always "
+         "new ones")
       ->capture_default_str();
-  app.add_option("--blend", a.blend, "If the file already has vertex colours: multiply or replace")
+  app.add_option("--blend", a.blend,
+                 "What to do with vertex colours that the file already has: multiply them by AO, "
+                 "or replace "
+                 "them")
       ->capture_default_str();
 }
 
@@ -81,27 +90,34 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
 void add_ray_options(CLI::App& app, BakeArguments& a) {
   BakeOptions& o = a.options;
   app.add_option("--target-error", a.target_error,
-                 "Trace rays until the standard error of each value is this; of lights relative to "
-                 "their largest unoccluded irradiance. Default: 0.04");
+                 "Trace rays until the standard error of each value is at most this. Lights: the "
+                 "error of all together, divided by their largest irradiance without occlusion. "
+                 "Default: 0.04");
   app.add_option(
       "--rays", a.rays,
-      "Rays per triangle (--to texture: texel) and side. With --target-error: the maximum");
+      "Number of rays per triangle (--at vertices: vertex; --to texture: texel) and side, in place "
+      "of the default --target-error. If both are given: the maximum");
   app.add_option(
          "--at", a.at,
-         "Ray origins. triangles: over the triangles around a vertex; vertices: only at the "
-         "vertex")
+         "Where rays start, for --to vertex. triangles: at points all over the triangles around a "
+         "vertex; vertices: at the vertex itself")
       ->capture_default_str();
-  app.add_option("--sides", a.sides,
-                 "Side of a surface: front, max (the brighter one) or mean; auto: max for "
-                 "double-sided materials, front for others")
+  app.add_option(
+         "--sides", a.sides,
+         "Side of a surface whose AO is stored. front; max: the brighter side; mean: the mean "
+         "of both; auto: max for double-sided materials, front for others")
       ->capture_default_str();
-  app.add_option("--instances", a.instances,
-                 "Meshes with several instances. together: mean AO over all; unique: a copy of the "
-                 "mesh for each; alone: ignore the rest of the scene")
+  app.add_option(
+         "--instances", a.instances,
+         "How meshes with several instances are baked. together: one value, the mean over the "
+         "instances; unique: each instance gets its own copy of the mesh; alone: as if the "
+         "rest of the scene did not exist")
       ->capture_default_str();
   add_estimator_option(app, a.estimator);
-  app.add_option("--footprint", o.footprint,
-                 "Footprint scale: larger is faster and less noisy, 0 is exact")
+  app.add_option(
+         "--footprint", o.footprint,
+         "Scale of ray footprints: larger is faster and less noisy, smaller is closer to exact, "
+         "0 is exact")
       ->capture_default_str();
   app.add_option("--ao-distance", o.distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
@@ -110,24 +126,26 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
                  "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
                  "0: a cutoff")
       ->capture_default_str();
-  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
+  app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
+      ->capture_default_str();
 }
 
 /// The scene's changes, the device, and files beside the output.
 void add_run_options(CLI::App& app, BakeArguments& a) {
   BakeOptions& o = a.options;
   app.add_option("--opacity", a.opacity,
-                 "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
+                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
   app.add_option("--occluders", a.occluders,
                  "glTF files that occlude and are not baked; may be repeated");
-  app.add_flag("--ground", o.ground, "An opaque plane under the scene occludes");
+  app.add_flag("--ground", o.ground, "Put an opaque plane under the scene, which occludes it");
   add_outside_option(app, a.scene_options.allow_outside);
   add_device_options(app, o.device, o.kernel_dir, o.cache);
   CLI::Option& checkpoint = *app.add_option("--checkpoint", a.checkpoint,
                                             "Write what was traced so far to this file, for "
-                                            "--resume. Saved periodically, on interruption "
-                                            "and at the end");
-  app.add_option("--checkpoint-every", a.checkpoint_every, "How often, as in 30, 30s, 5m or 1h")
+                                            "--resume: periodically, on interruption and at "
+                                            "the end");
+  app.add_option("--checkpoint-every", a.checkpoint_every,
+                 "Time between two saves: 30 or 30s (seconds), 5m, 1h")
       ->capture_default_str()
       ->needs(&checkpoint);
   app.add_option("--resume", a.resume,
@@ -143,7 +161,7 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
   add_ray_options(app, a);
   add_run_options(app, a);
   app.footer(
-      "Example:\n  dapple bake tree.glb -o tree_ao.glb\n"
+      "Examples:\n  dapple bake tree.glb -o tree_ao.glb\n"
       "  dapple bake tree.glb -o tree_ao.glb --passes ao,bent --channel _AO --ground\n"
       "  dapple bake pine.glb -o pine_ao.glb --to texture --size 2048\n"
       "  dapple bake forest.glb -o forest_ao.glb --to instance");

@@ -35,31 +35,43 @@ struct Arguments {
 };
 
 void add_point_options(CLI::App& app, Arguments& a) {
-  app.add_option("SCENE", a.scene, "glTF file, HAIR file or procedural scene")->required();
+  app.add_option("SCENE", a.scene,
+                 "glTF file (.gltf, .glb), hair (.hair) or a procedural scene, "
+                 "\"scene:tree?leaves=50000\"")
+      ->required();
   app.add_option("-o,--output", a.output, "File to write: .csv, .npy or .ply")->required();
-  app.add_option("--at", a.at, "Points: .csv, .npy or .ply with x, y, z and, if any, nx, ny, nz");
+  app.add_option(
+      "--at", a.at,
+      "Points: .csv, .npy or .ply with columns x, y, z and optionally the normal nx, ny, nz. Give "
+      "one of --at, --grid and --per-triangle");
   app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
       ->delimiter(',')
       ->expected(5);
   app.add_option("--height", a.height, "Height of the grid, metres")->capture_default_str();
   app.add_flag("--per-triangle", a.per_triangle,
-               "The centre of each triangle of the scene, first its front, then its back");
+               "Two points at the centre of each triangle of the scene: its front, then its back");
   PointOptions& o = a.options;
-  app.add_option("--rays", o.rays,
-                 "Rays for each value of a point; they are eight independent sets, which tell the "
-                 "standard error")
+  app.add_option(
+         "--rays", o.rays,
+         "Rays for each value of a point. They are divided into eight independent sets, from "
+         "which the standard error is estimated")
       ->capture_default_str();
   app.add_flag("--bent", o.bent, "Also write the mean unoccluded direction");
-  app.add_option("--rings", o.rings,
-                 "Gap fractions in this many zenith rings; 5: the rings of the LAI-2200");
+  app.add_option(
+      "--rings", o.rings,
+      "Also write gap fractions, the visible shares of the sky, in this many zenith rings; 5 gives "
+      "the rings of the LAI-2200 plant canopy analyser");
   app.add_option("--suns", a.suns,
                  "CSV of suns: azimuth,elevation,irradiance (degrees from -Z to +X, W/m^2), or "
-                 "x,y,z,irradiance");
-  app.add_flag("--per-sun", o.per_sun, "A column for each sun, not their sum");
-  app.add_option("--sky", a.sky,
-                 "uniform, overcast (CIE) or an image (.exr, .hdr): irradiance of the sky");
+                 "x,y,z,irradiance with the direction towards the sun");
+  app.add_flag("--per-sun", o.per_sun, "Write a column for each sun instead of their sum");
+  app.add_option(
+      "--sky", a.sky,
+      "Also write the irradiance of a sky: uniform, overcast (CIE) or an image (.exr, .hdr)");
   app.add_option("--sky-irradiance", a.sky_irradiance,
-                 "Irradiance of that sky on an open horizontal plane, W/m^2")
+                 "Irradiance of a uniform or overcast sky on an open horizontal plane, W/m^2; an "
+                 "image keeps "
+                 "its own")
       ->capture_default_str();
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--periodic", a.periodic,
@@ -67,20 +79,27 @@ void add_point_options(CLI::App& app, Arguments& a) {
       ->delimiter(',')
       ->expected(2);
   app.add_option("--opacity", a.opacity,
-                 "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
-  app.add_flag("--ground", o.ground, "An opaque plane under the scene occludes");
+                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
+  app.add_flag("--ground", o.ground, "Put an opaque plane under the scene, which occludes it");
   app.add_option("--ao-distance", o.distance,
                  "Surfaces farther than this, in metres, do not count for AO; 0: no limit")
       ->capture_default_str();
   add_estimator_option(app, a.estimator);
-  app.add_option("--footprint", o.footprint, "Footprint scale: larger is faster, 0 is exact")
+  app.add_option(
+         "--footprint", o.footprint,
+         "Scale of ray footprints: larger is faster and less noisy, smaller is closer to exact, "
+         "0 is exact")
       ->capture_default_str();
-  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
+  app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
+      ->capture_default_str();
   add_outside_option(app, a.scene_options.allow_outside);
   add_device_options(app, o.device, o.kernel_dir, o.cache);
   add_report_options(app, a.stats_json, a.quiet);
   app.footer(
-      "Example:\n  dapple points canopy.glb --grid 0,0,10,10,0.5 -o ground.csv --rings 5\n"
+      "Columns: ao, sky_view_factor, the irradiance of each light, and what options add; each with "
+      "its\n"
+      "standard error NAME_error, except bent normals and suns.\n\n"
+      "Examples:\n  dapple points canopy.glb --grid 0,0,10,10,0.5 -o ground.csv --rings 5\n"
       "  dapple points canopy.glb --at sensors.csv -o light.csv --suns day.csv --sky overcast\n"
       "  dapple points plot.glb --per-triangle --periodic 10,10 -o leaves.npy");
 }

@@ -170,7 +170,7 @@ Run add_render_command(CLI::App& app) {
   auto a = std::make_shared<RenderArguments>();
   add_render_options(app, *a);
   app.footer(
-      "Example:\n  dapple render tree.glb --opacity leaf=0.85 --spp 64 -o tree.exr --png "
+      "Examples:\n  dapple render tree.glb --opacity leaf=0.85 --spp 64 -o tree.exr --png "
       "tree.png\n"
       "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt  # Ctrl-C saves\n"
       "  dapple render tree.glb --spp 1024 -o tree.exr --checkpoint tree.ckpt --resume tree.ckpt\n"

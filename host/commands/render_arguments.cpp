@@ -24,37 +24,45 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       ->default_str(fmt::format("{}; 8 with --target-rmse", o.spp));
   app.add_option("--target-error", o.target_error,
                  "Sample each pixel until its estimated standard error is below this; 0: no "
-                 "target. Errors of a light are relative to its largest unoccluded irradiance")
+                 "target. A light's error is divided by the largest irradiance that it gives "
+                 "anywhere without occlusion. Not with --target-rmse")
       ->capture_default_str();
   app.add_option("--target-rmse", o.target_rmse,
                  "Sample until the estimated RMSE over all pixels is below this in each pass; 0: "
-                 "no target. Cheaper than --target-error; errors of single pixels differ more")
+                 "no target. Faster than --target-error, but the error varies more from pixel to "
+                 "pixel. Not with --target-error")
       ->capture_default_str();
-  app.add_option("--max-spp", o.max_spp, "With a target: the maximum of camera rays per pixel")
+  app.add_option("--max-spp", o.max_spp,
+                 "With a target: the largest number of camera rays per pixel")
       ->capture_default_str();
-  app.add_option("--camera-splitting", o.camera_splitting,
-                 "Surfaces shaded per camera ray: 1, 2 or 4; 0: chosen from the opacities. More "
-                 "suits thin leaves and hair")
+  app.add_option(
+         "--camera-splitting", o.camera_splitting,
+         "Number of surfaces that each camera ray shades: 1, 2 or 4; 0: dapple chooses from "
+         "the opacities of the scene. Larger values suit thin leaves and hair")
       ->capture_default_str();
   app.add_option(
          "--ao-rays", o.ao_rays,
-         "AO rays per camera ray, divided among the surfaces that it shades; at least one for each")
+         "AO rays per camera ray. The surfaces that the camera ray shades share them; each gets at "
+         "least one")
       ->capture_default_str();
   app.add_option("--light-rays", o.light_rays, "Rays per light and shaded surface")
       ->capture_default_str();
   add_estimator_option(app, a.estimator);
   app.add_option(
          "--footprint", o.footprint,
-         "Footprint scale: larger is faster and less noisy, smaller is closer to exact, 0 is exact")
+         "Scale of ray footprints, the areas that rays represent: larger is faster and less noisy, "
+         "smaller is closer to exact, 0 is exact")
       ->capture_default_str();
   app.add_option("--passes", a.passes,
-                 "With commas between: ao, light, albedo (colours), back (AO and light of the far "
-                 "side), motion (pixels to the next frame), visits (cost of rays)")
+                 "With commas between: ao, light, albedo (colours), back (AO and light of the side "
+                 "that faces away from the camera), motion (image motion until the next frame, in "
+                 "pixels), visits (BVH nodes and triangles that rays tested)")
       ->capture_default_str();
   app.add_option(
       "--ambient", o.ambient,
-      "Radiance of a uniform sky, which RGBA multiplies by AO; default: 1 without lights, 0 with a "
-      "dome, otherwise a tenth of what the lights make of a white surface at most");
+      "Radiance of a uniform sky that lights the RGBA picture through AO. Default: 1 without "
+      "lights, 0 with a dome, otherwise a tenth of the largest radiance that the lights give a "
+      "white surface without occlusion");
   app.add_option("--normals", a.normals,
                  "shading: the normals of the meshes; geometric: flat facets")
       ->capture_default_str();
@@ -67,7 +75,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
                  "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
                  "0: cutoff at D")
       ->capture_default_str();
-  app.add_option("--seed", o.seed, "Another seed gives other noise")->capture_default_str();
+  app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
+      ->capture_default_str();
 }
 
 void add_scene_options(CLI::App& app, RenderArguments& a) {
@@ -90,7 +99,7 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
       "--dome", a.dome,
       "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
-      "around, beside other lights");
+      "around, in addition to the other lights");
   app.add_option("--dome-rotation", a.dome_rotation,
                  "Rotation of the dome about +Y, degrees, from +Z towards +X")
       ->capture_default_str();
@@ -102,37 +111,43 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   add_outside_option(app, a.scene_options.allow_outside);
   app.add_option("--opacity", a.opacity,
-                 "MATERIAL=VALUE: that opacity, 0 to 1, for a material; may be repeated");
+                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
 }
 
 void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& checkpoint = *app.add_option("--checkpoint", a.checkpoint,
                                             "Write the state of the render to this file, for "
-                                            "--resume. Saved periodically, on interruption and at "
-                                            "the end");
-  app.add_option("--checkpoint-every", a.checkpoint_every, "How often, as in 30, 30s, 5m or 1h")
+                                            "--resume: periodically, on interruption and at the "
+                                            "end");
+  app.add_option("--checkpoint-every", a.checkpoint_every,
+                 "Time between two saves: 30 or 30s (seconds), 5m, 1h")
       ->capture_default_str()
       ->needs(&checkpoint);
   app.add_option(
       "--resume", a.resume,
-      "Continue from this checkpoint, with the same scene and options; --spp, --max-spp and "
-      "the targets may demand more");
+      "Continue from this checkpoint, with the same scene and options; you may raise --spp and "
+      "--max-spp, and lower the targets");
 }
 
 void add_file_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--png", a.png,
                  "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
                  "NAME_visits.png");
-  app.add_option("--exposure", a.exposure,
-                 "Exposure of the PNG in stops: 1 is twice as bright; auto: by what is seen")
+  app.add_option(
+         "--exposure", a.exposure,
+         "Exposure of the PNG in stops: 1 is twice as bright; auto: dapple chooses it from the "
+         "brightness of the picture")
       ->capture_default_str();
-  app.add_option("--background", a.background,
-                 "Background of the PNG: sky, none (an alpha channel) or R,G,B, linear, 0 to 1")
+  app.add_option(
+         "--background", a.background,
+         "Background of the PNG: sky (a gradient), none (keeps alpha), or a linear colour R,G,B "
+         "from 0 to 1")
       ->capture_default_str();
-  app.add_option("--half", a.half,
-                 "Layers to store as 16-bit floats, with commas between, or all; Z, P, samples and "
-                 "ids stay 32-bit");
+  app.add_option(
+      "--half", a.half,
+      "Layers to store as 16-bit floats: names separated by commas, or all. Z, P, samples "
+      "and Cryptomattes stay 32-bit");
   app.add_flag("--multipart", a.multipart, "Write a part for each layer");
   app.add_option("--compression", a.compression,
                  "Compression of the EXR: zip, zips, piz, none; dwaa (lossy, for colours only; "
@@ -143,7 +158,7 @@ void add_file_options(CLI::App& app, RenderArguments& a) {
 void add_motion_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& frame =
       *app.add_option("--frame", a.frame,
-                      "Time in seconds at which moving objects are shown; default: the rest pose");
+                      "Time to render, in seconds (not a frame number); default: the rest pose");
   app.add_option("--frames", a.frames,
                  "Render a sequence: A-B or A-B:STEP, frame n at n / fps seconds; write # "
                  "characters in output names for the frame number")
@@ -155,8 +170,8 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
       "Motion blur: OPEN,CLOSE, when the shutter opens and closes, in frames relative to the "
       "frame's time, as in --shutter=-0.25,0.25. Needs --frame or --frames");
   app.add_option("--motion-samples", a.motion_samples,
-                 "Times at which the shutter is sampled; --spp is divided among them. Default: 8, "
-                 "at most --spp")
+                 "Number of times at which the shutter is sampled; --spp is divided among them. "
+                 "Default: 8, at most --spp")
       ->needs(&shutter);
   app.add_option("--animation", a.scene_options.animation,
                  "The glTF animation that plays, by name; *: all at once; default: the first. "
@@ -206,10 +221,10 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
   add_scene_options(app, a);
   add_motion_options(app, a);
   add_checkpoint_options(app, a);
-  app.add_option(
-         "--packets", a.packets,
-         "Grouping of occlusion rays: none; pixel (neighbouring pixels); point (one point); "
-         "auto (by device)")
+  app.add_option("--packets", a.packets,
+                 "How occlusion rays are traced: none (one by one), pixel (packets of rays from "
+                 "neighbouring "
+                 "pixels), point (packets of rays from one point), auto (the device decides)")
       ->capture_default_str();
   add_device_options(app, a.options.device, a.options.kernel_dir, a.options.cache);
   add_report_options(app, a.stats_json, a.quiet);

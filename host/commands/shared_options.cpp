@@ -11,7 +11,7 @@ void add_estimator_option(CLI::App& app, std::string& estimator) {
 
 void add_outside_option(CLI::App& app, bool& allow_outside) {
   app.add_flag("--allow-outside", allow_outside,
-               "Let a glTF file name buffers and images outside of its folder");
+               "Let a glTF file refer to buffers and images outside its folder");
 }
 
 void add_device_options(CLI::App& app, std::string& device, std::string& kernel_dir,
@@ -20,8 +20,8 @@ void add_device_options(CLI::App& app, std::string& device, std::string& kernel_
   app.add_option("--kernel-dir", kernel_dir,
                  "Read OpenCL kernels from this folder (for developers)");
   app.add_option("--cache", cache,
-                 "Keep built BVHs in this folder, made if there is none, and reuse them; it may be "
-                 "deleted at any time");
+                 "Keep built BVHs in this folder and reuse them. dapple makes the folder if it is "
+                 "missing; you may delete it at any time");
 }
 
 void add_report_options(CLI::App& app, std::string& stats_json, bool& quiet) {

@@ -24,7 +24,7 @@ TEST_F(CommandLine, HelpOfEveryCommandHasAnExample) {
                                 "scene --help", "devices --help"}) {
     const Outcome run = dapple(arguments);
     EXPECT_EQ(run.code, 0) << arguments;
-    EXPECT_TRUE(contains(run.out, "Example:")) << arguments;
+    EXPECT_TRUE(contains(run.out, "Example")) << arguments;
     EXPECT_TRUE(contains(run.out, "\n  dapple ")) << arguments;
     EXPECT_EQ(run.err, "") << arguments;
   }
