@@ -64,5 +64,6 @@ NB_MODULE(_native, module) {
         for (const dapple::DeviceInfo& info : dapple::list_devices()) names.push_back(info.name);
         return names;
       },
-      "Names of the OpenCL devices, best first.");
+      "Names of the OpenCL devices, best first.\n\n"
+      ">>> len(dapple.devices()) > 0\nTrue");
 }
