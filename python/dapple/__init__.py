@@ -7,6 +7,8 @@
 >>> print(ao.round(2))
 [0.72 1.  ]
 
+Examples of the docstrings begin with `import dapple` and `import numpy as np`.
+
 World space is right-handed, +Y up, in metres, as in glTF. Directions are unit vectors. Everything
 is of first order: light that scatters off a surface is not followed.
 """
@@ -18,7 +20,8 @@ _use_driver_of_pip()
 from ._errors import DeviceError, Error, InputError, UsageError  # noqa: E402
 from ._native import devices, version as _version  # noqa: E402
 from ._picture import Picture  # noqa: E402
-from ._scene import Bake, Irradiance, Mesh, Scene, load  # noqa: E402
+from ._results import Bake, Irradiance, Mesh  # noqa: E402
+from ._scene import Scene, load  # noqa: E402
 
 __version__ = _version()
 

@@ -62,6 +62,8 @@ class RenderOptions(TypedDict, total=False):
     footprint: float
     ao: bool
     light: bool
+    albedo: bool
+    back: bool
     visits: bool
     crypto_object: bool
     crypto_material: bool
@@ -74,8 +76,9 @@ class RenderOptions(TypedDict, total=False):
     focus_distance: float
     crop: Tuple[int, int, int, int]
     seed: int
+    normals: Literal["shading", "geometric"]
     device: str
-    packets: str
+    packets: Literal["auto", "none", "pixel", "point"]
     cache: str
     ground: bool
     opacity: Mapping[str, float]
@@ -96,8 +99,8 @@ class BakeOptions(TypedDict, total=False):
     distance: float
     falloff: float
     at_vertices: bool
-    sides: str
-    placement: str
+    sides: Literal["auto", "front", "max", "mean"]
+    placement: Literal["together", "alone"]
     seed: int
     ground: bool
     opacity: Mapping[str, float]

@@ -25,6 +25,12 @@ class Picture(Mapping[str, FloatArray]):
     `picture["ao"]` all channels of a layer, (height, width, channels), in their order in
     `picture.channels`. Channels without a layer (R, G, B, A) are also `picture["RGBA"]`.
     Layers and their units are those of the EXR files (docs/layers.md).
+
+    >>> picture = dapple.load("scene:demo").render(width=32, height=18, spp=4)
+    >>> picture["ao.R"].shape, picture["RGBA"].shape
+    ((18, 32), (18, 32, 4))
+    >>> "Z" in picture, picture.metadata["scene"]
+    (True, 'scene:demo')
     """
 
     def __init__(self, native: _native.Picture) -> None:
@@ -63,7 +69,12 @@ class Picture(Mapping[str, FloatArray]):
         return f"<dapple.Picture {width}x{height}: {', '.join(self)}>"
 
     def save(self, path: str | PathLike[str], layer: str = "") -> None:
-        """Writes .exr with all layers, or .png with a preview of `layer` (empty: the picture)."""
+        """Writes .exr with all layers, or .png with a preview of `layer` (empty: the picture).
+
+        >>> picture = dapple.load("scene:demo").render(width=32, height=18, spp=4)
+        >>> picture.save("demo.exr")
+        >>> picture.save("demo.png", layer="ao")
+        """
         text = fspath(path)
         if text.lower().endswith(".png"):
             self._native.write_png(text, layer)
@@ -71,7 +82,12 @@ class Picture(Mapping[str, FloatArray]):
             self._native.write_exr(text)
 
     def to_xarray(self) -> xarray.Dataset:
-        """All layers as an xarray.Dataset with the dimensions y, x and channel. Needs xarray."""
+        """All layers as an xarray.Dataset with the dimensions y, x and channel. Needs xarray.
+
+        >>> picture = dapple.load("scene:demo").render(width=32, height=18, spp=4)
+        >>> picture.to_xarray()["ao"].dims
+        ('y', 'x', 'channel_ao')
+        """
         import xarray
 
         variables: dict[str, Any] = {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Callable, Iterable, Optional, Sequence
 
@@ -13,6 +12,7 @@ from . import _arrays, _native, _options
 from ._arrays import FloatArray, IndexArray
 from ._errors import UsageError
 from ._picture import Picture
+from ._results import Bake, Irradiance, Mesh
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -20,44 +20,15 @@ if TYPE_CHECKING:
 Progress = Optional[Callable[[float], object]]
 
 
-@dataclass(frozen=True)
-class Mesh:
-    """A mesh of a scene. The arrays are read-only views of the scene's memory."""
-
-    name: str
-    #: (n, 3) float32, metres, in the mesh's own space.
-    positions: FloatArray
-    #: (m, 3) uint32; (m, 2) for the segments of strands.
-    triangles: IndexArray
-    #: (k, 4, 4) float32: matrices that place the mesh, world = matrix @ (x, y, z, 1).
-    instances: FloatArray
-
-
-@dataclass(frozen=True)
-class Irradiance:
-    """Irradiance of one light at points, W/m^2, linear RGB, (n, 3) float32 each."""
-
-    #: With occlusion.
-    irradiance: FloatArray
-    #: Without; zero where the light is below a point's horizon.
-    unoccluded: FloatArray
-
-
-@dataclass(frozen=True)
-class Bake:
-    """Values at vertices and of instances."""
-
-    #: For each mesh "ao" (n,), "bent" (n, 3) and "light.NAME" (n, 3), if baked.
-    meshes: list[dict[str, FloatArray]] = field(default_factory=list)
-    #: Mean ambient occlusion of each instance in the file's order, (k,); empty if not baked.
-    instance_ao: FloatArray = field(default_factory=lambda: np.zeros(0, np.float32))
-
-
 class Scene:
     """Geometry, materials, lights and cameras. Made by load() or Scene.from_arrays().
 
     The first query builds a BVH and keeps it until the scene is changed. A scene may be used by
     several threads; dapple does one call at a time, each on all cores.
+
+    >>> scene = dapple.load("scene:tree?leaves=100")
+    >>> scene
+    <dapple.Scene scene:tree?leaves=100: 1 meshes, 0 lights>
     """
 
     def __init__(self, native: _native.Scene) -> None:
@@ -74,6 +45,11 @@ class Scene:
 
         vertices: (n, 3), metres. triangles: (m, 3) indices of vertices. opacity: of all triangles
         or (m,), in [0, 1]. Raises UsageError for other shapes, indices or values.
+
+        >>> corners = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]
+        >>> square = dapple.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], opacity=[0.2, 0.8])
+        >>> square.occlusion([[0, 0, 0]], [0, 1, 0], rays=4096).round(2)
+        array([0.72], dtype=float32)
         """
         positions = _arrays.vectors("vertices", vertices)
         corners = _arrays.indices("triangles", triangles, len(positions))
@@ -87,7 +63,12 @@ class Scene:
 
     @property
     def meshes(self) -> list[Mesh]:
-        """The meshes, before instancing."""
+        """The meshes, before instancing.
+
+        >>> mesh = dapple.load("scene:forest?trees=3&leaves=100").meshes[1]
+        >>> mesh.positions.shape[1], mesh.triangles.shape[1], mesh.instances.shape[1:]
+        (3, 3, (4, 4))
+        """
         native = self._native
         return [
             Mesh(name, native.positions(i), native.indices(i), native.instances(i))
@@ -96,38 +77,81 @@ class Scene:
 
     @property
     def materials(self) -> list[str]:
-        """Names of the materials."""
+        """Names of the materials.
+
+        >>> dapple.load("scene:tree?leaves=100").materials
+        ['leaf', 'bark']
+        """
         return list(self._native.material_names)
 
     @property
     def lights(self) -> list[str]:
-        """Names of the lights, as the results have them."""
+        """Names of the lights, as the results have them.
+
+        >>> dapple.load("scene:demo").lights
+        ['sun', 'sky']
+        """
         return list(self._native.light_names)
 
     @property
     def warnings(self) -> list[str]:
-        """What the reader skipped, a line each."""
+        """What the reader skipped, a line each.
+
+        >>> dapple.load("scene:tree?leaves=100").warnings
+        []
+        """
         return list(self._native.warnings)
 
     @property
     def bounds(self) -> FloatArray:
-        """(2, 3): least and largest coordinates in world space, metres."""
+        """(2, 3): least and largest coordinates in world space, metres.
+
+        >>> dapple.Scene.from_arrays([[0, 0, 0], [3, 0, 0], [0, 2, 0]], [[0, 1, 2]]).bounds
+        array([[0., 0., 0.],
+               [3., 2., 0.]], dtype=float32)
+        """
         return np.array(self._native.bounds, np.float32)
 
     def set_opacity(self, material: str, value: float) -> None:
-        """Gives a material the opacity `value`, in [0, 1], in place of textures and factors."""
+        """Gives a material the opacity `value`, in [0, 1], in place of textures and factors.
+
+        >>> tree = dapple.load("scene:tree?leaves=100")
+        >>> tree.set_opacity("leaf", 0.5)
+        """
         self._native.override_opacity(material, value)
 
     def add_ground(self) -> None:
-        """Adds an opaque square under the lowest point, 20 times as wide as the scene."""
+        """Adds an opaque square under the lowest point, 20 times as wide as the scene.
+
+        >>> tree = dapple.load("scene:tree?leaves=100")
+        >>> tree.add_ground()
+        >>> len(tree.meshes)
+        2
+        """
         self._native.add_ground()
 
     def clear_lights(self) -> None:
-        """Removes all lights."""
+        """Removes all lights.
+
+        >>> demo = dapple.load("scene:demo")
+        >>> demo.clear_lights()
+        >>> demo.lights
+        []
+        """
         self._native.clear_lights()
 
     def add_lights(self, path: str | PathLike[str]) -> None:
-        """Adds the lights of a JSON file (docs/formats.md)."""
+        """Adds the lights of a JSON file (docs/formats.md).
+
+        >>> from pathlib import Path
+        >>> text = '{"lights": [{"name": "noon", "type": "sun", "direction": [0, -1, 0], '
+        >>> text += '"irradiance": [900, 900, 900]}]}'
+        >>> _ = Path("noon.json").write_text(text)
+        >>> tree = dapple.load("scene:tree?leaves=100")
+        >>> tree.add_lights("noon.json")
+        >>> tree.lights
+        ['noon']
+        """
         self._native.add_lights(fspath(path))
 
     def add_sun(
@@ -141,6 +165,11 @@ class Scene:
 
         direction: towards it, of any length. irradiance: on a plane across it, W/m^2.
         angular_diameter: degrees.
+
+        >>> tree = dapple.load("scene:tree?leaves=100")
+        >>> tree.add_sun([0, 1, 0], irradiance=1000)
+        >>> tree.irradiance([[50, 0, 0]], [0, 1, 0])["sun"].irradiance.round()
+        array([[1000., 1000., 1000.]], dtype=float32)
         """
         x, y, z = (float(v) for v in direction)
         self._native.add_sun((x, y, z), irradiance, angular_diameter, name)
@@ -151,11 +180,22 @@ class Scene:
         kind: "uniform", "overcast" (CIE standard overcast: Moon and Spencer, 1942) or a
         latitude-longitude image (.exr, .hdr). irradiance: on an open horizontal plane, W/m^2; for
         an image a factor.
+
+        >>> tree = dapple.load("scene:tree?leaves=100")
+        >>> tree.add_sky("overcast", irradiance=120)
+        >>> sky = tree.irradiance([[50, 0, 0]], [0, 1, 0], rays=1024)["sky"]
+        >>> bool(abs(sky.unoccluded[0, 0] - 120) < 2)
+        True
         """
         self._native.add_sky(fspath(kind), irradiance)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes meshes, instances, materials without textures, and cameras as one GLB file."""
+        """Writes meshes, instances, materials without textures, and cameras as one GLB file.
+
+        >>> dapple.load("scene:tree?leaves=100").save("tree.glb")
+        >>> dapple.load("tree.glb").materials
+        ['leaf', 'bark']
+        """
         self._native.write_glb(fspath(path))
 
     def occlusion(
@@ -173,6 +213,11 @@ class Scene:
         point; estimator "prefiltered" or "exact"; footprint (4): larger is faster, 0 is exact;
         distance (0: no limit), metres; falloff (0); seed (0). The same arguments give the same
         bits. progress is called with fractions in [0, 1]; an exception of it ends the call.
+
+        >>> tree = dapple.load("scene:tree?leaves=1000")
+        >>> ao = tree.occlusion([[0, 0.01, 0.5], [50, 0.01, 0]], [0, 1, 0], rays=256)
+        >>> bool(ao[0] < 0.9), bool(ao[1] > 0.98)
+        (True, True)
         """
         at, facing = _points(points, normals)
         if len(at) == 0:
@@ -189,9 +234,17 @@ class Scene:
         progress: Progress = None,
         **options: Unpack[_options.QueryOptions],
     ) -> dict[str, Irradiance]:
-        """Irradiance of each light at points, by the lights' names.
+        """Irradiance of each light at points, W/m^2, (n, 3) linear RGB, by the lights' names.
 
-        Arguments as for occlusion(); rays (16) are for each point and light.
+        Arguments as for occlusion(), without distance and falloff; rays (16) are for each point
+        and light.
+
+        >>> corners = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]
+        >>> square = dapple.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], opacity=0.25)
+        >>> square.add_sun([0, 1, 0], irradiance=1000)
+        >>> sun = square.irradiance([[0, 0, 0]], [0, 1, 0])["sun"]
+        >>> sun.irradiance.round(), sun.unoccluded.round()
+        (array([[750., 750., 750.]], dtype=float32), array([[1000., 1000., 1000.]], dtype=float32))
         """
         at, facing = _points(points, normals)
         chosen = _options.apply("irradiance", _native.IrradianceOptions(), options)
@@ -217,6 +270,13 @@ class Scene:
         with these periods along X and Z, metres. Options: ao, sky_view_factor, bent, rings, lights,
         per_sun, rays (256), estimator, footprint, distance, opacity by material, ground, seed,
         device, cache.
+
+        >>> tree = dapple.load("scene:tree?leaves=1000")
+        >>> columns = tree.measure([[0, 0.01, 0.5]], rings=2)
+        >>> list(columns)[:4]
+        ['ao', 'ao_error', 'sky_view_factor', 'sky_view_factor_error']
+        >>> columns["gap_1"].shape
+        (1,)
         """
         at, facing = _points(points, normals)
         towards = _arrays.vectors("suns", suns)
@@ -232,11 +292,16 @@ class Scene:
         return dict(columns)
 
     def render(self, *, progress: Progress = None, **options: Unpack[_options.RenderOptions]) -> Picture:
-        """Renders a picture. Options are those of `dapple render`.
+        """Renders a picture, float32 arrays (height, width). Options are those of `dapple render`.
 
         width (960), height (540), spp (16), target_rmse, target_error, ao, light, ao_distance,
         estimator, footprint, camera by name, look=(from, at, up) with fov_degrees,
-        crop=(x0, y0, x1, y1) inclusive, opacity={"leaf": 0.85}, ground, seed and others.
+        crop=(x0, y0, x1, y1) inclusive, opacity={"leaf": 0.85}, ground, seed and others. Lengths
+        are in metres, width, height and crop in pixels.
+
+        >>> picture = dapple.load("scene:demo").render(width=32, height=18, spp=4)
+        >>> picture["ao"].shape, picture["Z"].shape
+        ((18, 32, 3), (18, 32))
         """
         chosen = _options.apply("render", _native.RenderOptions(), options)
         return Picture(_native.render(self._native, chosen, progress))
@@ -250,8 +315,14 @@ class Scene:
     ) -> Bake:
         """Bakes values at the vertices of the meshes. Options are those of `dapple bake`.
 
-        bent, light and instances add values beside AO. occluders occlude but are not baked. The
-        command can also write glTF files and textures.
+        Each mesh has "ao" (n,) in [0, 1]. bent, light and instances add values beside AO: unit
+        vectors (n, 3), W/m^2 (n, 3), and AO (k,) of the instances. occluders occlude but are not
+        baked. The command can also write glTF files and textures.
+
+        >>> tree = dapple.load("scene:tree?leaves=100")
+        >>> baked = tree.bake(rays=64)
+        >>> baked.meshes[0]["ao"].shape == tree.meshes[0].positions.shape[:1]
+        True
         """
         chosen = _options.apply("bake", _native.BakeOptions(), options)
         others = [scene._native for scene in occluders]
@@ -275,5 +346,11 @@ def load(
 
     time: seconds, of the pose; None: at rest. animation: by name, "*" for all, empty: the first.
     allow_outside: buffers and images may be outside of the file's folder. Raises InputError.
+
+    >>> dapple.load("scene:tree?leaves=100").materials
+    ['leaf', 'bark']
+    >>> dapple.load("missing.glb")
+    Traceback (most recent call last):
+    dapple.InputError: missing.glb: no such file
     """
     return Scene(_native.load(fspath(path), time, animation, allow_outside))

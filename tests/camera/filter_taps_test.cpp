@@ -3,6 +3,7 @@
 // and camera, with less noise; and a ray's result must not depend on the other rays of its packet.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>

@@ -1,4 +1,5 @@
 // The same card in all the ways in which glTF can store triangles.
+#include <algorithm>
 #include <limits>
 
 #include "corpus/stage.hpp"

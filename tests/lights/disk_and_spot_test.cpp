@@ -2,6 +2,9 @@
 // a spot's cone by the formula of KHR_lights_punctual, at angles from inside to outside.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "support/point_on_ground.hpp"
 
 namespace dapple {

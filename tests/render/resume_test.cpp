@@ -3,6 +3,7 @@
 // with the name of the option.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>

@@ -3,6 +3,7 @@
 // not emit light.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "dapple/error.hpp"

@@ -39,8 +39,7 @@ constexpr const char* kTwoTriangles = "number of leaves, of two triangles each";
 
 std::vector<Recipe> plant_recipes() {
   return {
-      {{"demo", "a tree on a ground, a rect light named \"key\" and a camera", {}},
-       make_demo_scene},
+      {{"demo", "a tree on a ground in daylight, and a camera", {}}, make_demo_scene},
       {{"tree",
         "a broad-leaved tree: materials \"leaf\" and \"bark\"",
         {leaves_of(50000, kTwoTriangles),

@@ -1,0 +1,58 @@
+"""What scenes have and what queries return: named arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ._arrays import FloatArray, IndexArray
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A mesh of a scene. The arrays are read-only views of the scene's memory.
+
+    >>> mesh = dapple.load("scene:tree?leaves=100").meshes[0]
+    >>> mesh.positions.dtype, mesh.triangles.dtype, mesh.instances.shape
+    (dtype('float32'), dtype('uint32'), (1, 4, 4))
+    """
+
+    name: str
+    #: (n, 3) float32, metres, in the mesh's own space.
+    positions: FloatArray
+    #: (m, 3) uint32; (m, 2) for the segments of strands.
+    triangles: IndexArray
+    #: (k, 4, 4) float32: matrices that place the mesh, world = matrix @ (x, y, z, 1).
+    instances: FloatArray
+
+
+@dataclass(frozen=True)
+class Irradiance:
+    """Irradiance of one light at points, W/m^2, linear RGB, (n, 3) float32 each.
+
+    >>> demo = dapple.load("scene:demo")
+    >>> sky = demo.irradiance([[0, 0.01, 0.5]], [0, 1, 0])["sky"]
+    >>> bool((sky.irradiance < sky.unoccluded).all())
+    True
+    """
+
+    #: With occlusion.
+    irradiance: FloatArray
+    #: Without; zero where the light is below a point's horizon.
+    unoccluded: FloatArray
+
+
+@dataclass(frozen=True)
+class Bake:
+    """Values at vertices and of instances.
+
+    >>> baked = dapple.load("scene:forest?trees=3&leaves=100").bake(rays=16, instances=True)
+    >>> list(baked.meshes[0]), baked.instance_ao.shape
+    (['ao'], (4,))
+    """
+
+    #: For each mesh "ao" (n,), "bent" (n, 3) and "light.NAME" (n, 3), W/m^2, if baked.
+    meshes: list[dict[str, FloatArray]] = field(default_factory=list)
+    #: Mean ambient occlusion of each instance in the file's order, (k,); empty if not baked.
+    instance_ao: FloatArray = field(default_factory=lambda: np.zeros(0, np.float32))
