@@ -130,6 +130,8 @@ void add_file_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--background", a.background,
                  "Background of the PNG: sky, none (an alpha channel) or R,G,B, linear, 0 to 1")
       ->capture_default_str();
+  app.add_option("--deep", a.deep,
+                 "Also write a deep OpenEXR file: the opacity (A) at depths (Z) of each pixel");
   app.add_option("--half", a.half,
                  "Layers to store as 16-bit floats, with commas between, or all; Z, P, samples and "
                  "ids stay 32-bit");
@@ -248,6 +250,7 @@ RenderOptions to_options(const RenderArguments& a) {
   o.packets = parse_packets(a.packets);
   parse_passes(a.passes, o);
   o.cryptomattes = parse_cryptomattes(a.cryptomatte);
+  o.deep = !a.deep.empty();
   if (!a.crop.empty()) o.crop = parse_crop(a.crop);
   if (!a.look_from.empty() || !a.look_at.empty()) {
     if (a.look_from.empty() || a.look_at.empty()) {

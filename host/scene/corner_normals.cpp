@@ -33,4 +33,13 @@ std::optional<std::array<V3f, 3>> corner_normals(const Mesh& mesh, std::size_t t
   return turned;
 }
 
+bool is_smooth(const Scene& scene) {
+  for (const Mesh& mesh : scene.meshes) {
+    if (mesh.normals.empty() || mesh.has_strands()) continue;
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
+      if (corner_normals(mesh, t)) return true;
+  }
+  return false;
+}
+
 }  // namespace dapple

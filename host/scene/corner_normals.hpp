@@ -15,4 +15,7 @@ namespace dapple {
 /// mesh has no normals, or all are those of the face, to 0.1 degrees.
 std::optional<std::array<V3f, 3>> corner_normals(const Mesh& mesh, std::size_t triangle);
 
+/// Whether any triangle of the scene has corner_normals().
+bool is_smooth(const Scene& scene);
+
 }  // namespace dapple
