@@ -98,10 +98,10 @@ std::vector<double> bake_parts(const std::vector<BakedPart>& parts, const TraceP
 }
 
 TracePoints by_embree(const RivalScene& scene, const EmbreeMethod& method, float black) {
-  return [&scene, method, black](std::span<const V3f> positions, std::span<const V3f> normals,
-                                 const OcclusionOptions& options, bool) {
-    std::vector<Surface> points(positions.size());
-    for (std::size_t i = 0; i < points.size(); ++i) points[i] = {positions[i], normals[i]};
+  return [&scene, method, black](const QueryPoints& query, const OcclusionOptions& options, bool) {
+    std::vector<Surface> points(query.positions.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i] = {query.positions[i], query.normals[i]};
     const std::vector<double> ao = embree_occlusion(
         scene.embree, method, points, static_cast<std::size_t>(options.rays), options.seed, black);
     return PointOcclusion{{ao.begin(), ao.end()}, {}};
@@ -109,9 +109,8 @@ TracePoints by_embree(const RivalScene& scene, const EmbreeMethod& method, float
 }
 
 TracePoints by_dapple(const RivalScene& scene) {
-  return [&scene](std::span<const V3f> positions, std::span<const V3f> normals,
-                  const OcclusionOptions& options, bool bent) {
-    return point_occlusion(scene.device, scene.on_device, positions, normals, options, bent);
+  return [&scene](const QueryPoints& points, const OcclusionOptions& options, bool bent) {
+    return point_occlusion(scene.device, scene.on_device, points, options, bent);
   };
 }
 

@@ -27,9 +27,8 @@ constexpr double kExpectedSamples = 4;
 constexpr double kExpectedCoverage = 0.5;
 
 TracePoints trace_against(const OccluderScene& occluders) {
-  return [&occluders](std::span<const V3f> positions, std::span<const V3f> normals,
-                      const OcclusionOptions& options, bool bent) {
-    return point_occlusion(occluders.device, occluders.uploaded, positions, normals, options, bent);
+  return [&occluders](const QueryPoints& points, const OcclusionOptions& options, bool bent) {
+    return point_occlusion(occluders.device, occluders.uploaded, points, options, bent);
   };
 }
 

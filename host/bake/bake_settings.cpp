@@ -42,6 +42,7 @@ void add_scene(ChecksumStream& stream, const Scene& scene) {
     stream.add_range(mesh.radii);
     stream.add_range(mesh.uvs);
     stream.add_range(mesh.vertex_alpha);
+    stream.add_range(mesh.normals);
   }
   for (const Instance& instance : scene.instances) {
     stream.add_value(instance.mesh);
@@ -91,6 +92,7 @@ Settings bake_settings(const Scene& scene, const BakeOptions& o,
       {"--instances", number(static_cast<int>(o.placement))},
       {"--size", number(o.texture_size)},
       {"--margin", number(o.margin)},
+      {"--normals", name_of(o.normals)},
       {"--seed", number(o.seed)},
       {"--ground", o.ground ? "a plane" : "none"},
       {"--opacity", opacities},

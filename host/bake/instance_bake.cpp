@@ -23,11 +23,12 @@ std::vector<SurfaceSample> samples_by_area(const Scene& scene, const Mesh& mesh,
   }
   std::vector<SurfaceSample> samples;
   const VertexGroups none{std::vector<std::uint32_t>(mesh.positions.size()), 0};
+  const SampledTriangles triangles{mesh, none, two_sided, options.normals};
   for (int i = 0; i < kInstanceSamples && area > 0; ++i) {
     const double at = (i + 0.5) / kInstanceSamples * area;
     const auto t =
         static_cast<std::size_t>(std::lower_bound(sums.begin(), sums.end(), at) - sums.begin());
-    if (has_area(mesh, t)) samples.push_back(sample_triangle(mesh, t, none, two_sided[t], 0));
+    if (has_area(mesh, t)) samples.push_back(sample_triangle(triangles, t, 0));
   }
   return samples;
 }

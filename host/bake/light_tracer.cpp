@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "dapple/render.hpp"
+#include "render/point_irradiance.hpp"
 
 namespace dapple {
 namespace {
@@ -52,8 +52,8 @@ TraceSamples light_tracer(const BakeOptions& bake, const OccluderScene& occluder
       options.seed = hash_of(bake.seed, back ? hash_of(hash, 1) : hash);
       const WorldPoints points(samples, placement, placements, back);
       store(points,
-            irradiance(occluders.device, occluders.uploaded, occluders.lights, points.positions,
-                       points.normals, options),
+            point_irradiance(occluders.device, occluders.uploaded, occluders.lights, points.query(),
+                             options),
             {total, by_light, traced.largest});
       traced.points += points.sample.size();
       traced.rays += points.sample.size() * lights * static_cast<std::uint64_t>(rays);

@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 namespace dapple {
 namespace {
 
@@ -17,7 +19,7 @@ std::vector<SideValue> trace_side(const TracePoints& trace, const BakeOptions& b
                                   const OcclusionOptions& options) {
   std::vector<SideValue> values(placement.size());
   if (points.sample.empty()) return values;
-  const PointOcclusion traced = trace(points.positions, points.normals, options, bake.bent);
+  const PointOcclusion traced = trace(points.query(), options, bake.bent);
   for (std::size_t k = 0; k < points.sample.size(); ++k) {
     const std::uint32_t i = points.sample[k];
     values[i].scalar = traced.ao[k];
@@ -38,14 +40,24 @@ WorldPoints::WorldPoints(std::span<const SurfaceSample> samples,
                          bool back) {
   for (std::uint32_t i = 0; i < samples.size(); ++i)
     if (back ? samples[i].back : samples[i].front) sample.push_back(i);
-  positions.resize(sample.size());
-  normals.resize(sample.size());
+  positions_.resize(sample.size());
+  normals_.resize(sample.size());
+  const bool is_smooth = std::any_of(samples.begin(), samples.end(), [](const SurfaceSample& at) {
+    return at.geometric.length2() > 0;
+  });
+  geometric_.resize(is_smooth ? sample.size() : 0, V3f(0, 0, 0));
+  shifts_ = geometric_;
   tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {
     const SurfaceSample& at = samples[sample[k]];
     const std::size_t place = placement[sample[k]];
-    positions[k] = at.position * placements.to_world[place];
-    const V3f normal = unit_normal(at.normal, placements.to_object[place]);
-    normals[k] = back ? -normal : normal;
+    const M44f &to_world = placements.to_world[place], &to_object = placements.to_object[place];
+    positions_[k] = at.position * to_world;
+    const V3f normal = unit_normal(at.normal, to_object);
+    normals_[k] = back ? -normal : normal;
+    if (!(at.geometric.length2() > 0)) return;
+    const V3f geometric = unit_normal(at.geometric, to_object);
+    geometric_[k] = back ? -geometric : geometric;
+    to_world.multDirMatrix(at.shift, shifts_[k]);
   });
 }
 

@@ -13,9 +13,8 @@
 namespace dapple {
 
 /// AO, and the sum of unoccluded directions if requested, at points with unit normals.
-using TracePoints =
-    std::function<PointOcclusion(std::span<const V3f> positions, std::span<const V3f> normals,
-                                 const OcclusionOptions& options, bool bent)>;
+using TracePoints = std::function<PointOcclusion(const QueryPoints& points,
+                                                 const OcclusionOptions& options, bool bent)>;
 
 /// What is seen from one side of a sample.
 struct SideValue {
@@ -45,12 +44,17 @@ using TraceSamples = std::function<TracedSamples(
     const Placements& placements, int rays, std::uint32_t hash)>;
 
 /// The samples of which one side is traced, as points of the world.
-struct WorldPoints {
+class WorldPoints {
+ public:
   /// `back`: which side.
   WorldPoints(std::span<const SurfaceSample> samples, std::span<const std::uint32_t> placement,
               const Placements& placements, bool back);
   std::vector<std::uint32_t> sample;
-  std::vector<V3f> positions, normals;
+  [[nodiscard]] QueryPoints query() const { return {positions_, normals_, geometric_, shifts_}; }
+
+ private:
+  std::vector<V3f> positions_, normals_;
+  std::vector<V3f> geometric_, shifts_;  ///< empty: all samples are flat
 };
 
 /// AO and, with bake.bent, bent normals. `bake` must outlive the function.

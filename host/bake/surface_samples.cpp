@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "scene/corner_normals.hpp"
 
 namespace dapple {
 namespace {
@@ -53,43 +56,71 @@ bool has_area(const Mesh& mesh, std::size_t triangle) {
   return twice_area > 0 && std::isfinite(twice_area);
 }
 
-SurfaceSample sample_triangle(const Mesh& mesh, std::size_t triangle, const VertexGroups& groups,
-                              bool two_sided, std::uint32_t index) {
+SurfaceSample sample_triangle(const SampledTriangles& of, std::size_t triangle,
+                              std::uint32_t index) {
+  const Mesh& mesh = of.mesh;
   const V3f cross = area_vector(mesh, triangle);
   const float twice_area = cross.length();
   const std::uint32_t* corner = &mesh.indices[3 * triangle];
   const std::array<float, 3> barycentric = triangle_point(index);
   SurfaceSample sample;
   sample.normal = cross / twice_area;
-  sample.back = two_sided;
+  sample.back = of.two_sided[triangle];
   for (std::size_t k = 0; k < 3; ++k) {
     sample.position += mesh.positions[corner[k]] * barycentric[k];
-    sample.place[k] = groups.of_vertex[corner[k]];
+    sample.place[k] = of.groups.of_vertex[corner[k]];
     sample.weight[k] = twice_area * barycentric[k];
   }
+  if (of.normals == Normals::shading) add_shading(mesh, triangle, barycentric, sample);
   return sample;
 }
 
-std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, const VertexGroups& groups,
-                                           const std::vector<bool>& two_sided_triangles) {
-  std::vector<SurfaceSample> of_group(groups.count);
-  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
-    const V3f area = area_vector(mesh, t);
-    for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
-      const std::uint32_t vertex = mesh.indices[corner];
-      SurfaceSample& sample = of_group[groups.of_vertex[vertex]];
+void add_shading(const Mesh& mesh, std::size_t triangle, const std::array<float, 3>& barycentric,
+                 SurfaceSample& sample) {
+  const auto normals = corner_normals(mesh, triangle);
+  if (!normals) return;
+  V3f normal(0, 0, 0), shift(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V3f away = sample.position - mesh.positions[mesh.indices[3 * triangle + k]];
+    normal += (*normals)[k] * barycentric[k];
+    shift -= (*normals)[k] * (barycentric[k] * away.dot((*normals)[k]));
+  }
+  if (!(normal.length2() > 0)) return;
+  sample.geometric = sample.normal;
+  sample.normal = normal.normalized();
+  sample.shift = shift;
+}
+
+std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
+  std::vector<SurfaceSample> of_group(of.groups.count);
+  std::vector<V3f> shading(of.groups.count, V3f(0, 0, 0));
+  std::vector<bool> is_smooth(of.groups.count);
+  for (std::size_t t = 0; t < of.mesh.primitive_count(); ++t) {
+    const V3f area = area_vector(of.mesh, t);
+    const auto normals = of.normals == Normals::shading ? corner_normals(of.mesh, t) : std::nullopt;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = of.mesh.indices[3 * t + k];
+      const std::uint32_t group = of.groups.of_vertex[vertex];
+      SurfaceSample& sample = of_group[group];
       // The two sides of a folded sheet would cancel.
-      sample.normal += sample.normal.dot(area) < 0 ? -area : area;
-      sample.position = mesh.positions[vertex];
-      sample.back = sample.back || two_sided_triangles[t];
-      sample.place[0] = groups.of_vertex[vertex];
+      const float side = sample.normal.dot(area) < 0 ? -1.0f : 1.0f;
+      sample.normal += area * side;
+      shading[group] += (normals ? (*normals)[k] * area.length() : area) * side;
+      is_smooth[group] = is_smooth[group] || normals;
+      sample.position = of.mesh.positions[vertex];
+      sample.back = sample.back || of.two_sided[t];
+      sample.place[0] = group;
     }
   }
-  for (SurfaceSample& sample : of_group) {
+  for (std::size_t group = 0; group < of_group.size(); ++group) {
+    SurfaceSample& sample = of_group[group];
     const float length = sample.normal.length();
     if (!(length > 0) || !std::isfinite(length)) continue;
     sample.normal /= length;
     sample.weight[0] = 1;
+    if (!is_smooth[group] || !(shading[group].length2() > 0)) continue;
+    sample.geometric = sample.normal;
+    sample.normal = shading[group].normalized();
   }
   return of_group;
 }

@@ -18,7 +18,9 @@ inline constexpr int kRaysPerSample = 8;
 /// A point of the surface in object space.
 struct SurfaceSample {
   V3f position{0, 0, 0};
-  V3f normal{0, 0, 0};                   ///< unit length, on the front side
+  V3f normal{0, 0, 0};                   ///< unit length, on the front side; shading or geometric
+  V3f geometric{0, 0, 0};                ///< of smooth surfaces, as QueryPoints has it; or zero
+  V3f shift{0, 0, 0};                    ///< the same
   bool front = true, back = false;       ///< sides that are traced
   std::array<std::uint32_t, 3> place{};  ///< vertex groups, or texels, whose value it is part of
   std::array<float, 3> weight{};         ///< in these values; 0: none
@@ -44,14 +46,26 @@ std::array<float, 3> triangle_point(std::uint32_t index);
 /// Whether the triangle has a positive, finite area. Others have no samples.
 bool has_area(const Mesh& mesh, std::size_t triangle);
 
-/// Sample `index` of a triangle that has an area.
-SurfaceSample sample_triangle(const Mesh& mesh, std::size_t triangle, const VertexGroups& groups,
-                              bool two_sided, std::uint32_t index);
+/// A mesh as its samples need it.
+struct SampledTriangles {
+  const Mesh& mesh;
+  const VertexGroups& groups;
+  const std::vector<bool>& two_sided;  ///< by triangle
+  Normals normals = Normals::shading;
+};
 
-/// One sample for each vertex group, with the mean normal of the triangles around it. Groups
-/// without such triangles have weight 0.
-std::vector<SurfaceSample> sample_vertices(const Mesh& mesh, const VertexGroups& groups,
-                                           const std::vector<bool>& two_sided_triangles);
+/// Sample `index` of a triangle that has an area.
+SurfaceSample sample_triangle(const SampledTriangles& of, std::size_t triangle,
+                              std::uint32_t index);
+
+/// One sample for each vertex group, with the mean normal of the triangles, or of their corners,
+/// around it. Groups without such triangles have weight 0.
+std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of);
+
+/// Gives a sample, whose position and geometric normal are set, the shading normal of its place in
+/// the triangle; to the camera's points shading_normal.clh does the same.
+void add_shading(const Mesh& mesh, std::size_t triangle, const std::array<float, 3>& barycentric,
+                 SurfaceSample& sample);
 
 /// Random bits from two numbers.
 std::uint32_t hash_of(std::uint32_t a, std::uint32_t b);

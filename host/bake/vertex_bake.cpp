@@ -13,10 +13,9 @@ constexpr std::uint32_t kMaxShift = 0xffff;
 /// Triangles, or vertex groups, of a mesh, each with a sequence of samples.
 class SampledMesh : public SampledSurface {
  public:
-  SampledMesh(const Mesh& mesh, const VertexGroups& groups, const std::vector<bool>& two_sided,
-              bool at_vertices, std::uint32_t hash)
-      : mesh_(mesh), groups_(groups), two_sided_(two_sided), hash_(hash) {
-    if (at_vertices) at_vertices_ = sample_vertices(mesh, groups, two_sided);
+  SampledMesh(const SampledTriangles& triangles, bool at_vertices, std::uint32_t hash)
+      : triangles_(triangles), mesh_(triangles.mesh), hash_(hash) {
+    if (at_vertices) at_vertices_ = sample_vertices(triangles);
     is_at_vertices_ = at_vertices;
   }
 
@@ -33,7 +32,7 @@ class SampledMesh : public SampledSurface {
     // A digital shift, which keeps the parts of the sequence: without it the first sample of all
     // triangles would be their centre, where cards often cross.
     const std::uint32_t shift = hash_of(hash_, static_cast<std::uint32_t>(i)) & kMaxShift;
-    return sample_triangle(mesh_, i, groups_, two_sided_[i], index ^ shift);
+    return sample_triangle(triangles_, i, index ^ shift);
   }
 
   [[nodiscard]] std::array<std::uint32_t, 3> places(std::size_t i) const override {
@@ -42,14 +41,13 @@ class SampledMesh : public SampledSurface {
       return {group, group, group};
     }
     const std::uint32_t* corner = &mesh_.indices[3 * i];
-    return {groups_.of_vertex[corner[0]], groups_.of_vertex[corner[1]],
-            groups_.of_vertex[corner[2]]};
+    const std::vector<std::uint32_t>& group = triangles_.groups.of_vertex;
+    return {group[corner[0]], group[corner[1]], group[corner[2]]};
   }
 
  private:
+  SampledTriangles triangles_;
   const Mesh& mesh_;
-  const VertexGroups& groups_;
-  const std::vector<bool>& two_sided_;
   std::uint32_t hash_;
   std::vector<SurfaceSample> at_vertices_;
   bool is_at_vertices_ = false;
@@ -138,7 +136,7 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
   const bool any_two_sided = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
   const VertexGroups groups = group_vertices(mesh, any_two_sided);
   const std::uint32_t hash = hash_of(options.seed, index);
-  const SampledMesh sampled(mesh, groups, two_sided, options.at_vertices, hash);
+  const SampledMesh sampled({mesh, groups, two_sided, options.normals}, options.at_vertices, hash);
   // At a vertex alone, only a second sample tells the variance.
   const std::uint32_t first = options.at_vertices ? 2 : 1;
   ValueSums sums(small_parts(mesh, groups), options.sides);

@@ -113,6 +113,11 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
          "instances; unique: each instance gets its own copy of the mesh; alone: as if the "
          "rest of the scene did not exist")
       ->capture_default_str();
+  app.add_option(
+         "--normals", a.normals,
+         "Around which rays are spread. shading: the normals of the meshes; geometric: those "
+         "of the triangles")
+      ->capture_default_str();
   add_estimator_option(app, a.estimator);
   app.add_option(
          "--footprint", o.footprint,
@@ -191,6 +196,7 @@ BakeOptions to_options(const BakeArguments& a) {
   if (a.rays) o.target_error = 0;
   if (a.target_error) o.target_error = *a.target_error;
   o.estimator = parse_estimator(a.estimator);
+  o.normals = parse_normals(a.normals);
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   if (o.instances && o.bent)
     throw Error(ErrorKind::usage,

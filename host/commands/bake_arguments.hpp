@@ -22,7 +22,8 @@ struct BakeArguments {
   std::string checkpoint, checkpoint_every = "60s", resume;
   std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply",
               bent_channel = "_BENT_NORMAL";
-  std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";
+  std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered",
+              normals = "shading";
   std::vector<std::string> opacity, occluders;
   SceneOptions scene_options;
   std::optional<int> rays;

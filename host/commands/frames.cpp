@@ -27,13 +27,15 @@ Frame typed_files(const RenderArguments& a) {
   frame.output = a.output;
   frame.png = a.png;
   if (!a.png.empty() && passes.visits) frame.visits_png = visits_path(a.png);
+  frame.deep = a.deep;
   frame.stats_json = a.stats_json;
   return frame;
 }
 
 void check_sequence(const RenderArguments& a) {
-  for (const auto& [flag, path] : {OutputPath{"--output", a.output}, OutputPath{"--png", a.png},
-                                   OutputPath{"--stats-json", a.stats_json}}) {
+  for (const auto& [flag, path] :
+       {OutputPath{"--output", a.output}, OutputPath{"--png", a.png}, OutputPath{"--deep", a.deep},
+        OutputPath{"--stats-json", a.stats_json}}) {
     if (path.empty() || has_frame_digits(path)) continue;
     throw Error(ErrorKind::usage, fmt::format("{} {}: with --frames its name needs a place for the "
                                               "frame's number, as in out.####.exr",
@@ -47,7 +49,8 @@ void check_sequence(const RenderArguments& a) {
 
 Frame numbered(const Frame& typed, std::int64_t number) {
   Frame frame = typed;
-  for (std::string* path : {&frame.output, &frame.png, &frame.visits_png, &frame.stats_json}) {
+  for (std::string* path :
+       {&frame.output, &frame.png, &frame.visits_png, &frame.deep, &frame.stats_json}) {
     if (!path->empty()) *path = frame_path(*path, number);
   }
   return frame;
@@ -57,6 +60,7 @@ std::vector<OutputPath> outputs_of(const Frame& frame, const RenderArguments& a)
   std::vector<OutputPath> outputs{{"--output", frame.output}};
   if (!frame.png.empty()) outputs.push_back({"--png", frame.png});
   if (!frame.visits_png.empty()) outputs.push_back({"--png (its heat map)", frame.visits_png});
+  if (!frame.deep.empty()) outputs.push_back({"--deep", frame.deep});
   if (!frame.stats_json.empty()) outputs.push_back({"--stats-json", frame.stats_json});
   if (!a.checkpoint.empty()) outputs.push_back({"--checkpoint", a.checkpoint});
   return outputs;

@@ -12,7 +12,7 @@ namespace dapple {
 struct Frame {
   std::optional<double> seconds;  ///< none: at rest
   std::string title;              ///< "frame 3 of 24"; empty outside of a sequence
-  std::string output, png, visits_png, stats_json;  ///< empty: not written
+  std::string output, png, visits_png, deep, stats_json;  ///< empty: not written
 };
 
 /// Throws Error usage if a sequence's file names have no run of # for the number, and for

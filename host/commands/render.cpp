@@ -47,6 +47,7 @@ void write_pictures(const RenderResult& result, const Frame& frame, const ExrFor
                     const PngOptions& png) {
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
   write_exr(result.film, frame.output, format, result.interrupted ? Durable::no : Durable::yes);
+  if (!frame.deep.empty()) write_deep_exr(result.film, frame.deep);
   if (!frame.png.empty()) write_png(result.film, frame.png, "", png);
   if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
 }

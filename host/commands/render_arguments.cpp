@@ -148,6 +148,8 @@ void add_file_options(CLI::App& app, RenderArguments& a) {
       "--half", a.half,
       "Layers to store as 16-bit floats: names separated by commas, or all. Z, P, samples "
       "and Cryptomattes stay 32-bit");
+  app.add_option("--deep", a.deep,
+                 "Also write a deep OpenEXR file: the opacity (A) at depths (Z) of each pixel");
   app.add_flag("--multipart", a.multipart, "Write a part for each layer");
   app.add_option("--compression", a.compression,
                  "Compression of the EXR: zip, zips, piz, none; dwaa (lossy, for colours only; "
@@ -263,6 +265,7 @@ RenderOptions to_options(const RenderArguments& a) {
   o.packets = parse_packets(a.packets);
   parse_passes(a.passes, o);
   o.cryptomattes = parse_cryptomattes(a.cryptomatte);
+  o.deep = !a.deep.empty();
   if (!a.crop.empty()) o.crop = parse_crop(a.crop);
   if (!a.look_from.empty() || !a.look_at.empty()) {
     if (a.look_from.empty() || a.look_at.empty()) {

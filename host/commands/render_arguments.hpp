@@ -18,7 +18,7 @@ struct RenderArguments {
   double dome_rotation = 0;
   std::string estimator = "prefiltered", passes = "ao,light,albedo", packets = "auto";
   std::string normals = "shading", exposure = "auto", background = "sky";
-  std::string cryptomatte, half, compression = "zip";
+  std::string cryptomatte, deep, half, compression = "zip";
   bool multipart = false;
   std::string look_from, look_at, up, crop;
   std::vector<std::string> opacity;

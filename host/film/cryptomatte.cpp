@@ -10,8 +10,7 @@
 namespace dapple {
 namespace {
 
-constexpr std::size_t kRanks = 6;  // ids of a pixel, as the specification suggests
-constexpr std::size_t kLayers = kRanks / 2;
+constexpr std::size_t kMaxLayers = 3;  // of two ids each: six, as the specification suggests
 
 std::uint32_t mixed(std::uint32_t block) {
   return std::rotl(block * 0xcc9e2d51u, 15) * 0x1b873593u;
@@ -43,17 +42,19 @@ std::vector<Rank> ranked(const std::vector<MatteSlot>& slots, const IdOf& id_of)
 }
 
 /// The first ranks of each pixel as channels R (id), G (coverage), B (id), A (coverage) of layers.
+/// No pixel has more ids than there are names, so that all frames have the same layers.
 template <class IdOf>
 void add_layers(Film& film, const std::string& type, const MatteSums& sums,
-                const std::vector<std::uint32_t>& samples, const IdOf& id_of) {
+                const std::vector<std::uint32_t>& samples, std::size_t names, const IdOf& id_of) {
   const std::size_t first = film.planes.size();
-  for (std::size_t layer = 0; layer < kLayers; ++layer)
+  const std::size_t layers = std::clamp<std::size_t>((names + 1) / 2, 1, kMaxLayers);
+  for (std::size_t layer = 0; layer < layers; ++layer)
     for (const char channel : {'R', 'G', 'B', 'A'})
       film.planes.push_back({fmt::format("{}{:02}.{}", type, layer, channel),
                              std::vector<float>(sums.pixel_count())});
   tbb::parallel_for(std::size_t{0}, sums.pixel_count(), [&](std::size_t p) {
     const std::vector<Rank> ranks = ranked(sums.of_pixel(p), id_of);
-    for (std::size_t r = 0; r < std::min(kRanks, ranks.size()); ++r) {
+    for (std::size_t r = 0; r < std::min(2 * layers, ranks.size()); ++r) {
       film.planes[first + 2 * r].pixels[p] = std::bit_cast<float>(ranks[r].id);
       film.planes[first + 2 * r + 1].pixels[p] =
           static_cast<float>(double{1} * ranks[r].count / samples[p]);
@@ -114,7 +115,8 @@ void add_cryptomattes(Film& film, const MatteSums& sums, const std::vector<std::
   const auto add = [&](const std::string& type, const std::vector<std::string>& of_type,
                        std::uint32_t MatteSlot::*number) {
     const std::vector<std::uint32_t> ids = ids_of(of_type);
-    add_layers(film, type, sums, samples, [&](const MatteSlot& slot) { return ids[slot.*number]; });
+    add_layers(film, type, sums, samples, ids.size(),
+               [&](const MatteSlot& slot) { return ids[slot.*number]; });
     add_attributes(film.metadata, type, of_type);
   };
   if (wanted.objects) add("crypto_object", names.objects, &MatteSlot::object);

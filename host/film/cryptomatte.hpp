@@ -26,8 +26,8 @@ struct MatteNames {
   std::vector<std::string> objects, materials;
 };
 
-/// Adds the layers crypto_object00 to 02 and crypto_material00 to 02 as far as they are requested,
-/// and their attributes. `samples`: of each pixel.
+/// Adds the layers crypto_object00 and crypto_material00 as far as they are requested, up to 02 as
+/// the number of names needs them, and their attributes. `samples`: of each pixel.
 void add_cryptomattes(Film& film, const MatteSums& sums, const std::vector<std::uint32_t>& samples,
                       const MatteNames& names, const Cryptomattes& wanted);
 

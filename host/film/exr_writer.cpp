@@ -5,7 +5,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
@@ -18,7 +17,6 @@
 #include <ImfThreading.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -31,46 +29,13 @@
 #include "files/output_file.hpp"
 #include "film/exr_output.hpp"
 #include "film/exr_parts.hpp"
+#include "film/exr_writer_header.hpp"
 #include "film/film_defect.hpp"
 
 namespace dapple {
 namespace {
 
 using Imath::Box2i;
-using Imath::V2i;
-
-constexpr std::size_t kMaxAttributeNameLength = 255;
-constexpr std::string_view kPrefix = "dapple:";
-
-Box2i window_of(const PixelRect& rect) { return {V2i(rect.x0, rect.y0), V2i(rect.x1, rect.y1)}; }
-
-std::string attribute_name(const std::string& name) {
-  return (std::string(kPrefix) + name).substr(0, kMaxAttributeNameLength);
-}
-
-void insert_text(Imf::Header& header, const std::string& name, const std::string& value) {
-  header.insert(attribute_name(name), Imf::StringAttribute(value));
-}
-
-// Settings of these names are not written: the metadata has the values that were used.
-bool is_reserved(const std::string& setting) {
-  constexpr std::array<std::string_view, 5> kReserved = {"scene", "device", "version", "seed",
-                                                         "samples"};
-  return std::find(kReserved.begin(), kReserved.end(), setting) != kReserved.end();
-}
-
-void insert_metadata(Imf::Header& header, const FilmMetadata& metadata) {
-  Imf::addWorldToCamera(header, metadata.world_to_camera);
-  Imf::addWorldToNDC(header, metadata.world_to_ndc);
-  for (const auto& [name, value] : metadata.settings) {
-    if (!is_reserved(name)) insert_text(header, name, value);
-  }
-  insert_text(header, "scene", metadata.scene);
-  insert_text(header, "device", metadata.device);
-  insert_text(header, "version", metadata.version);
-  insert_text(header, "seed", std::to_string(metadata.seed));  // EXR's integers are signed
-  header.insert(attribute_name("samples"), Imf::IntAttribute(metadata.samples));
-}
 
 Imf::Compression imf_compression(ExrCompression compression) {
   switch (compression) {
@@ -88,9 +53,7 @@ Imf::Compression imf_compression(ExrCompression compression) {
 }
 
 Imf::Header header_of(const Film& film, const ExrPart& part) {
-  Imf::Header header(Box2i(V2i(0, 0), V2i(film.width - 1, film.height - 1)),
-                     window_of(film.data_window), 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y,
-                     imf_compression(part.compression));
+  Imf::Header header = exr_header(film, imf_compression(part.compression));
   if (part.compression == ExrCompression::zip || part.compression == ExrCompression::zips)
     header.zipCompressionLevel() = 1;  // not 4: experiment 804
   for (std::size_t i = 0; i < part.planes.size(); ++i) {
@@ -129,25 +92,11 @@ half half_of(float value) {
   return half(std::isfinite(value) ? std::clamp(value, -kLargest, kLargest) : value);
 }
 
-class PendingStream final : public Imf::OStream {
- public:
-  explicit PendingStream(PendingFile& file)
-      : Imf::OStream(file.temporary_path().c_str()), file_(file) {}
-  void write(const char bytes[], int count) override {
-    file_.write(bytes, static_cast<std::size_t>(count));
-  }
-  uint64_t tellp() override { return file_.position(); }
-  void seekp(uint64_t position) override { file_.seek(position); }
-
- private:
-  PendingFile& file_;
-};
-
 /// Writes one part. `Out` is OpenEXR's OutputFile or OutputPart.
 template <class Out>
 void write_part(Out& out, const ExrPart& part, const PixelRect& data_window) {
   Imf::FrameBuffer buffer;
-  const Box2i window = window_of(data_window);
+  const Box2i window = exr_window(data_window);
   std::vector<std::vector<half>> halves;
   for (std::size_t i = 0; i < part.planes.size(); ++i) {
     const Plane& plane = *part.planes[i];
@@ -207,7 +156,7 @@ void verify(const Film& film, const std::vector<ExrPart>& parts, PendingFile& fi
     file.fail("it has other parts than were written");
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Imf::InputPart part(in, static_cast<int>(i));
-    if (part.header().dataWindow() != window_of(film.data_window)) {
+    if (part.header().dataWindow() != exr_window(film.data_window)) {
       file.fail("the data window that was read back differs from the film's");
     }
     verify_part(parts[i], part, file);
@@ -231,8 +180,8 @@ FilmMetadata read_metadata(const Imf::Header& header) {
     const std::string name = it.name();
     const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
     if (text == nullptr) continue;
-    if (name.starts_with(kPrefix))
-      metadata.settings.emplace_back(name.substr(kPrefix.size()), text->value());
+    if (name.starts_with(kExrPrefix))
+      metadata.settings.emplace_back(name.substr(kExrPrefix.size()), text->value());
     if (name.starts_with("cryptomatte/")) metadata.attributes.emplace_back(name, text->value());
   }
   metadata.scene = take(metadata.settings, "scene");
@@ -240,7 +189,7 @@ FilmMetadata read_metadata(const Imf::Header& header) {
   metadata.version = take(metadata.settings, "version");
   const std::string seed = take(metadata.settings, "seed");
   std::from_chars(seed.data(), seed.data() + seed.size(), metadata.seed);
-  const auto* samples = header.findTypedAttribute<Imf::IntAttribute>(attribute_name("samples"));
+  const auto* samples = header.findTypedAttribute<Imf::IntAttribute>(exr_attribute("samples"));
   if (samples != nullptr) metadata.samples = samples->value();
   return metadata;
 }

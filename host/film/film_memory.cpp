@@ -13,6 +13,7 @@ constexpr std::size_t kSurfaceChannels = 24;  // RGBA, albedo, ao, bent, N, Ng, 
 constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
 constexpr std::size_t kMatteChannels = 12;    // of crypto_object or crypto_material
 constexpr std::size_t kMatteSlotBytes = 80;   // MatteSums, two slots
+constexpr std::size_t kDeepBytes = 200;       // DeepSums and DeepAlpha, eight depths
 constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if all were domes
 
 /// All values count twice. Sums are on the device, which on a CPU uses the same memory, and in the
@@ -29,10 +30,11 @@ std::size_t bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
     sums += 2;
     channels += 2;
   }
+  const std::size_t deep = options.deep ? kDeepBytes : 0;
   const Cryptomattes& mattes = options.cryptomattes;
   const std::size_t types = (mattes.objects ? 1u : 0u) + (mattes.materials ? 1u : 0u);
   return 2 * (sums * sizeof(std::int64_t) + channels * sizeof(float)) +
-         types * (2 * kMatteChannels * sizeof(float)) + (types ? kMatteSlotBytes : 0);
+         types * (2 * kMatteChannels * sizeof(float)) + (types ? kMatteSlotBytes : 0) + deep;
 }
 
 double machine_bytes() {

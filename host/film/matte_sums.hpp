@@ -28,9 +28,8 @@ class MatteSums {
   void add(std::size_t pixel, std::uint32_t object, std::uint32_t material);
 
   [[nodiscard]] std::size_t pixel_count() const { return slots_.size(); }
-  [[nodiscard]] const std::vector<MatteSlot>& of_pixel(std::size_t pixel) const {
-    return slots_[pixel];
-  }
+  /// The slots of a pixel, in the order in which they were first hit.
+  [[nodiscard]] std::vector<MatteSlot> of_pixel(std::size_t pixel) const;
 
   /// For each pixel the number of its slots, and the slots.
   [[nodiscard]] std::vector<std::uint32_t> packed() const;
@@ -42,7 +41,13 @@ class MatteSums {
               std::size_t materials = std::size_t{1} << 32);
 
  private:
-  std::vector<std::vector<MatteSlot>> slots_;
+  /// Most pixels have one slot, and need no memory besides it.
+  struct Pixel {
+    MatteSlot first;
+    std::vector<MatteSlot> others;
+  };
+
+  std::vector<Pixel> slots_;
 };
 
 }  // namespace dapple

@@ -177,7 +177,7 @@ class Measurement {
       OcclusionOptions options = occlusion_options(set);
       options.distance = options_.distance;
       const PointOcclusion found =
-          point_occlusion(on_.device, on_.uploaded, points_, normals_, options, options_.bent);
+          point_occlusion(on_.device, on_.uploaded, {points_, normals_}, options, options_.bent);
       sums.add([&](std::size_t i) { return double{found.ao[i]}; });
       for (std::size_t i = 0; i < found.bent.size(); ++i) bent[i] += found.bent[i];
       if (!step()) return;

@@ -56,7 +56,8 @@ class PictureTracer {
         state_(std::move(state)),
         lookups_(lookups),
         mattes_(lookups.mattes ? layout.pixels : 0),
-        motion_(lookups.motion ? layout.pixels : 0) {
+        motion_(lookups.motion ? layout.pixels : 0),
+        deep_(lookups.deep ? layout.pixels : 0) {
     camera_.keep_hits = layout.shading() || lookups_.any();
     if (lookups_.any()) camera_.medium_error = 0;  // a medium's surfaces belong to no primitive
     const std::size_t rays = static_cast<std::size_t>(
@@ -86,6 +87,7 @@ class PictureTracer {
     picture.sums = context_.view(film_.sums);
     picture.mattes = std::move(mattes_);
     picture.motion = std::move(motion_);
+    picture.deep = std::move(deep_);
     context_.finish();
     picture.pass_seconds = pass_seconds();
     picture.queue_bytes = queues_.bytes();
@@ -110,6 +112,7 @@ class PictureTracer {
     for (const auto& [label, seconds] : context_.pass_seconds()) earlier_seconds_[label] -= seconds;
     if (lookups_.mattes && !state_.mattes.empty()) mattes_.unpack(state_.mattes, layout_.pixels);
     if (!state_.motion.empty()) motion_ = std::move(state_.motion);
+    if (!state_.deep.empty()) deep_ = std::move(state_.deep);
     if (state_.sums.empty()) return;
     context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
     context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
@@ -121,6 +124,7 @@ class PictureTracer {
     state_.squares = {};
     state_.mattes = {};
     state_.motion = MotionSums();
+    state_.deep = DeepSums();
   }
 
   void read_state(const SamplePlan& plan) {
@@ -131,6 +135,7 @@ class PictureTracer {
     context_.finish();
     if (lookups_.mattes) state_.mattes = mattes_.packed();
     state_.motion = motion_;
+    state_.deep = deep_;
     state_.samples = plan.samples();
     state_.pass_seconds = pass_seconds();
   }
@@ -267,19 +272,25 @@ class PictureTracer {
     tbb::parallel_for(0u, slice.pixel_count, [&](uint entry) {
       const uint pixel = work[slice.first_work + entry].pixel;
       const uint begin = entry * slice.sample_count;
-      for (uint i = begin; i < begin + slice.sample_count; ++i) {
-        if (!(hits[i / DAPPLE_HIT_BITS].hits >> i % DAPPLE_HIT_BITS & 1u)) continue;
-        const uint instance = std::bit_cast<uint>(points[i].t), primitive = points[i].visits;
-        if (lookups_.mattes) {
-          const auto ids = lookups_.mattes->at(instance, primitive);
-          mattes_.add(pixel, ids.object, ids.material);
-        }
-        if (lookups_.motion) {
-          const float* at = points[i].position;
-          motion_.add(pixel, lookups_.motion->at(instance, primitive, {at[0], at[1], at[2]}));
-        }
-      }
+      for (uint i = begin; i < begin + slice.sample_count; ++i)
+        if (hits[i / DAPPLE_HIT_BITS].hits >> i % DAPPLE_HIT_BITS & 1u) add_hit(pixel, points[i]);
     });
+  }
+
+  void add_hit(uint pixel, const SurfacePoint& point) {
+    const uint instance = std::bit_cast<uint>(point.t), primitive = point.visits;
+    const float* at = point.position;
+    if (lookups_.mattes) {
+      const auto ids = lookups_.mattes->at(instance, primitive);
+      mattes_.add(pixel, ids.object, ids.material);
+    }
+    if (lookups_.motion)
+      motion_.add(pixel, lookups_.motion->at(instance, primitive, {at[0], at[1], at[2]}));
+    if (!lookups_.deep) return;
+    float depth = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      depth += (at[axis] - resolve_.eye[axis]) * resolve_.axis[axis];
+    deep_.add(pixel, depth);
   }
 
   /// The points of one side of the surfaces, and the planes of what reaches them.
@@ -368,6 +379,7 @@ class PictureTracer {
   const HitLookups& lookups_;
   MatteSums mattes_;
   MotionSums motion_;
+  DeepSums deep_;
   double traced_ = 0;    ///< number of samples of all pixels
   double progress_ = 0;  ///< [0,1], estimated; never decreases
   std::map<std::string, double> earlier_seconds_;

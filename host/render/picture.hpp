@@ -24,12 +24,12 @@ struct TraceControl {
   SampleOrder order = SampleOrder::pixels;
 };
 
-/// What the hits of camera rays are looked up in on the host; with either of them there are no
-/// media.
+/// What the host does with the hits of camera rays; with any of it there are no media.
 struct HitLookups {
   std::optional<MatteLookup> mattes;   ///< count what the samples hit
   std::optional<MotionLookup> motion;  ///< add up how they move until the next frame
-  [[nodiscard]] bool any() const { return mattes || motion; }
+  bool deep = false;                   ///< sort them by depth
+  [[nodiscard]] bool any() const { return mattes || motion || deep; }
 };
 
 /// Runs every pass that `options` select over the view's crop. The result depends on

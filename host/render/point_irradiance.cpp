@@ -1,4 +1,6 @@
 // irradiance(): points and lights in, irradiance out, by the passes of the renderer.
+#include "render/point_irradiance.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,13 +9,11 @@
 #include <numeric>
 
 #include "dapple/error.hpp"
-#include "dapple/render.hpp"
 #include "dapple/shared/light_record.h"
 #include "device/upload/scene_upload.hpp"
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
-#include "render/shared_points.hpp"
 #include "scene/images/dome_image.hpp"
 
 namespace dapple {
@@ -54,8 +54,8 @@ class DomeColor {
 class LightTracer {
  public:
   LightTracer(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
-              const IrradianceOptions& options)
-      : context_(context), queues_(queues), scene_(scene), options_(options) {}
+              const IrradianceOptions& options, bool shaded)
+      : context_(context), queues_(queues), scene_(scene), options_(options), shaded_(shaded) {}
 
   /// Adds to the values of the points `chosen`, which are in the queue in this order.
   void trace(uint light, const Light& given, std::span<const std::uint32_t> chosen,
@@ -92,6 +92,7 @@ class LightTracer {
     params.inverse_count = 1.0f / static_cast<float>(options_.rays);
     params.light = light;
     params.seed = options_.seed;
+    params.shaded = shaded_ ? 1u : 0u;
     light_ray_pass(context_, scene_, queues_, params);
     OcclusionParams occlusion{};
     occlusion.scene = scene_.params;
@@ -105,6 +106,7 @@ class LightTracer {
   const Queues& queues_;
   const DeviceBuffers& scene_;
   const IrradianceOptions& options_;
+  bool shaded_;  ///< some points lie on smooth surfaces
 };
 
 void check(std::size_t points, std::size_t normals, std::size_t lights, std::size_t records,
@@ -122,35 +124,44 @@ void check(std::size_t points, std::size_t normals, std::size_t lights, std::siz
 
 }  // namespace
 
-std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene& scene,
-                                        std::span<const Light> lights, std::span<const V3f> points,
-                                        std::span<const V3f> normals,
-                                        const IrradianceOptions& options,
-                                        const RenderControl& control) {
-  check(points.size(), normals.size(), lights.size(), scene.buffers->light_records.size(),
+std::vector<PointIrradiance> point_irradiance(const Device& device, const DeviceScene& scene,
+                                              std::span<const Light> lights,
+                                              const QueryPoints& points,
+                                              const IrradianceOptions& options,
+                                              const RenderControl& control) {
+  const std::size_t count = points.positions.size();
+  check(count, points.normals.size(), lights.size(), scene.buffers->light_records.size(),
         options.rays);
-  const std::vector<V3f> zeros(points.size(), V3f(0, 0, 0));
+  const std::vector<V3f> zeros(count, V3f(0, 0, 0));
   std::vector<PointIrradiance> result(lights.size(), PointIrradiance{zeros, zeros});
-  if (points.empty() || lights.empty()) return result;
+  if (count == 0 || lights.empty()) return result;
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
-  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), points.size());
+  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), count);
   Queues queues = make_queues(context, slice, rays);
   std::vector<uint> active(slice);
   std::iota(active.begin(), active.end(), 0u);
   context.write(queues.active, active.data(), active.size() * sizeof(uint));
-  const std::vector<std::uint32_t> order = order_along_curve(points);
-  for (std::size_t begin = 0; begin < points.size(); begin += slice) {
-    report_slice(control, "irradiance", begin, points.size());
-    const auto chosen = std::span(order).subspan(begin, std::min(slice, points.size() - begin));
-    const SharedPoints batch(context, points, normals, chosen);
+  const std::vector<std::uint32_t> order = order_along_curve(points.positions);
+  for (std::size_t begin = 0; begin < count; begin += slice) {
+    report_slice(control, "irradiance", begin, count);
+    const auto chosen = std::span(order).subspan(begin, std::min(slice, count - begin));
+    const SharedPoints batch(context, points, chosen);
     queues.points = batch.buffer();
-    LightTracer tracer(context, queues, *scene.buffers, options);
+    LightTracer tracer(context, queues, *scene.buffers, options, !points.geometric.empty());
     for (uint l = 0; l < lights.size(); ++l) tracer.trace(l, lights[l], chosen, result[l]);
     queues.points = {};  // `batch` is destroyed here, and the buffer refers to its memory
   }
   context.finish();
   return result;
+}
+
+std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene& scene,
+                                        std::span<const Light> lights, std::span<const V3f> points,
+                                        std::span<const V3f> normals,
+                                        const IrradianceOptions& options,
+                                        const RenderControl& control) {
+  return point_irradiance(device, scene, lights, {points, normals}, options, control);
 }
 
 }  // namespace dapple

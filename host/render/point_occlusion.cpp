@@ -20,7 +20,7 @@
 namespace dapple {
 namespace {
 
-AoParams ao_params(const OcclusionOptions& options, std::size_t points) {
+AoParams ao_params(const OcclusionOptions& options, std::size_t points, bool shaded) {
   AoParams params{};
   params.point_count = static_cast<uint>(points);
   params.rays = static_cast<uint>(options.rays);
@@ -28,6 +28,7 @@ AoParams ao_params(const OcclusionOptions& options, std::size_t points) {
   params.t_max = options.distance > 0 ? options.distance : std::numeric_limits<float>::infinity();
   params.seed = options.seed;
   params.whole_sets = 1;
+  params.shaded = shaded ? 1u : 0u;
   return params;
 }
 
@@ -49,14 +50,17 @@ OcclusionParams occlusion_params(const OcclusionOptions& options, const DeviceBu
 struct Results {
   std::span<float> ao;
   std::span<V3f> bent;  ///< empty: not computed
+  bool shaded;          ///< some points lie on smooth surfaces
 };
 
 /// AO of the points in the queue by point_ao_pass(); rays stay on the device.
 void occlusion_at_once(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
-                       const OcclusionOptions& options, std::span<float> ao) {
-  point_ao_pass(context, queues, scene, options.estimator, ao_params(options, ao.size()),
-                occlusion_params(options, scene, ao.size()));
-  context.read(queues.occlusions, ao.data(), ao.size_bytes());
+                       const OcclusionOptions& options, const Results& results) {
+  const std::size_t points = results.ao.size();
+  point_ao_pass(context, queues, scene, options.estimator,
+                ao_params(options, points, results.shaded),
+                occlusion_params(options, scene, points));
+  context.read(queues.occlusions, results.ao.data(), results.ao.size_bytes());
 }
 
 /// AO and bent normals of the points by rays in queues.
@@ -66,20 +70,23 @@ void occlusion_in_passes(DeviceContext& context, const Queues& queues, const Dev
   std::vector<uint> active(ao.size());
   std::iota(active.begin(), active.end(), 0u);
   context.write(queues.active, active.data(), active.size() * sizeof(uint));
-  ao_ray_pass(context, queues, ao_params(options, ao.size()));
+  ao_ray_pass(context, queues, ao_params(options, ao.size(), results.shaded));
   occlusion_pass(context, queues, scene, "occlusion", options.estimator,
                  occlusion_params(options, scene, ao.size()));
   const auto rays = static_cast<std::size_t>(options.rays);
   std::vector<Occlusion> found(ao.size() * rays);
   context.read(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
+  HostView view;
+  if (!results.bent.empty() || results.shaded) view = context.view(queues.rays);
+  const std::span<const Ray> traced = view.values<Ray>();
+  for (std::size_t i = 0; i < found.size() && results.shaded; ++i)
+    found[i].transmittance *= traced[i].weight;
   for (std::size_t i = 0; i < ao.size(); ++i) {
     double sum = 0;
     for (std::size_t r = 0; r < rays; ++r) sum += found[i * rays + r].transmittance;
     ao[i] = static_cast<float>(sum / static_cast<double>(rays));
   }
   if (results.bent.empty()) return;
-  const HostView view = context.view(queues.rays);
-  const std::span<const Ray> traced = view.values<Ray>();
   for (std::size_t i = 0; i < ao.size(); ++i) {
     V3d sum(0, 0, 0);
     for (std::size_t r = i * rays; r < (i + 1) * rays; ++r) {
@@ -93,12 +100,12 @@ void occlusion_in_passes(DeviceContext& context, const Queues& queues, const Dev
 }  // namespace
 
 PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
-                               std::span<const V3f> points, std::span<const V3f> normals,
-                               const OcclusionOptions& options, bool bent,
-                               const RenderControl& control) {
-  if (points.size() != normals.size()) {
+                               const QueryPoints& points, const OcclusionOptions& options,
+                               bool bent, const RenderControl& control) {
+  const std::size_t count = points.positions.size();
+  if (count != points.normals.size()) {
     throw Error(ErrorKind::usage,
-                fmt::format("occlusion: {} points but {} normals", points.size(), normals.size()));
+                fmt::format("occlusion: {} points but {} normals", count, points.normals.size()));
   }
   if (options.rays < 1 || options.rays > 1 << 20) {
     throw Error(ErrorKind::usage, fmt::format("occlusion: rays is {}; it must be from 1 to {}",
@@ -106,25 +113,25 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
   }
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
-  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), points.size());
+  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), count);
   const bool together = !bent && has_point_ao_pass(context, options.estimator, rays);
   Queues queues =
       together ? make_point_queues(context, slice, rays) : make_queues(context, slice, rays);
-  const std::vector<std::uint32_t> order = order_along_curve(points);
-  PointOcclusion result{std::vector<float>(points.size()),
-                        std::vector<V3f>(bent ? points.size() : 0)};
+  const std::vector<std::uint32_t> order = order_along_curve(points.positions);
+  PointOcclusion result{std::vector<float>(count), std::vector<V3f>(bent ? count : 0)};
   PointOcclusion found;
-  for (std::size_t begin = 0; begin < points.size(); begin += slice) {
-    report_slice(control, "occlusion", begin, points.size());
-    const auto chosen = std::span(order).subspan(begin, std::min(slice, points.size() - begin));
-    const SharedPoints batch(context, points, normals, chosen);
+  for (std::size_t begin = 0; begin < count; begin += slice) {
+    report_slice(control, "occlusion", begin, count);
+    const auto chosen = std::span(order).subspan(begin, std::min(slice, count - begin));
+    const SharedPoints batch(context, points, chosen);
     queues.points = batch.buffer();
     found.ao.resize(chosen.size());
     found.bent.resize(bent ? chosen.size() : 0);
+    const Results results{found.ao, found.bent, !points.geometric.empty()};
     if (together)
-      occlusion_at_once(context, queues, *scene.buffers, options, found.ao);
+      occlusion_at_once(context, queues, *scene.buffers, options, results);
     else
-      occlusion_in_passes(context, queues, *scene.buffers, options, {found.ao, found.bent});
+      occlusion_in_passes(context, queues, *scene.buffers, options, results);
     for (std::size_t i = 0; i < chosen.size(); ++i) result.ao[chosen[i]] = found.ao[i];
     for (std::size_t i = 0; i < found.bent.size(); ++i) result.bent[chosen[i]] = found.bent[i];
     queues.points = {};  // `batch` is destroyed here, and the buffer refers to its memory
@@ -136,7 +143,7 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
 std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
                              std::span<const V3f> points, std::span<const V3f> normals,
                              const OcclusionOptions& options, const RenderControl& control) {
-  return point_occlusion(device, scene, points, normals, options, false, control).ao;
+  return point_occlusion(device, scene, {points, normals}, options, false, control).ao;
 }
 
 }  // namespace dapple

@@ -88,8 +88,10 @@ bool may_be_shaded(const Scene& scene, const RenderOptions& options) {
                      [](const Mesh& mesh) { return !mesh.normals.empty(); });
 }
 
-UploadOptions uploading_of(const RenderOptions& options) {
-  return {options.normals == Normals::shading, options.albedo};
+/// `smooth`: triangles may have normals at other moments of the picture.
+UploadOptions uploading_of(const RenderOptions& options, bool smooth) {
+  const bool normals = options.normals == Normals::shading;
+  return {normals, options.albedo, normals && smooth};
 }
 
 void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
@@ -160,7 +162,8 @@ struct Renderer::Kept {
   DeviceScene on_device;
 
   void open(const RenderOptions& options, RenderStatistics& statistics);
-  void update_scene(const Scene& scene, const RenderOptions& options, RenderStatistics& statistics);
+  void update_scene(const Scene& scene, const UploadOptions& uploading, const std::string& cache,
+                    RenderStatistics& statistics);
   void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                RenderStatistics& statistics) const;
   TracedPicture trace(const Shutter& shutter, const Scene& first, const View& view,
@@ -183,21 +186,21 @@ void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statis
 }
 
 /// Builds or refits the BVH and uploads the scene.
-void Renderer::Kept::update_scene(const Scene& scene, const RenderOptions& options,
-                                  RenderStatistics& statistics) {
+void Renderer::Kept::update_scene(const Scene& scene, const UploadOptions& uploading,
+                                  const std::string& cache, RenderStatistics& statistics) {
   const Stopwatch updating;
   if (bvh) {
-    const BvhUpdate changes = update(*device, on_device, *bvh, scene, uploading_of(options));
+    const BvhUpdate changes = update(*device, on_device, *bvh, scene, uploading);
     add_update_statistics(statistics, changes, bvh->bvh().statistics);
     statistics.seconds.upload += updating.seconds() - changes.seconds;
   } else {
-    bvh.emplace(scene, UpdatableBvh::Motion::maybe, options.cache);
+    bvh.emplace(scene, UpdatableBvh::Motion::maybe, cache);
     const BvhStatistics& built = bvh->bvh().statistics;
     add_build_seconds(statistics, built);
-    if (!options.cache.empty()) add_cache_statistics(statistics, built);
-    const Stopwatch uploading;
-    on_device = upload(*device, scene, bvh->bvh(), uploading_of(options));
-    statistics.seconds.upload = uploading.seconds();
+    if (!cache.empty()) add_cache_statistics(statistics, built);
+    const Stopwatch upload_time;
+    on_device = upload(*device, scene, bvh->bvh(), uploading);
+    statistics.seconds.upload = upload_time.seconds();
   }
   add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
 }
@@ -218,6 +221,7 @@ std::unique_ptr<HitLookups> Renderer::Kept::hit_lookups(const Shutter& shutter, 
                                                         const RenderOptions& options) const {
   auto lookups = std::make_unique<HitLookups>();
   if (options.cryptomattes.any()) lookups->mattes.emplace(scene, bvh->bvh());
+  lookups->deep = options.deep;
   if (options.motion) {
     std::vector<std::string> notes;  // those of this frame again
     FrameScene next{shutter.next_at(time), {}};
@@ -247,7 +251,8 @@ TracedPicture Renderer::Kept::trace(const Shutter& shutter, const Scene& first, 
     const View moved_view = prepare_scene(moved, options, statistics.notes);
     if (options.light) check_same_lights(lights, moved.lights);
     check_same_objects(first, moved);
-    update_scene(moved, options, statistics);
+    const UploadOptions uploading = on_device.buffers->uploaded;
+    update_scene(moved, uploading, options.cache, statistics);
     tracing.progress = part_of(progress, time + 1, shutter.times);
     picture = trace_picture(*device, on_device, moved_view, until(options, time, shutter.times),
                             layout, tracing, std::move(state),
@@ -272,7 +277,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   validate(options);
   const Shutter shutter{scene_at, times, next_at};
   check_shutter(shutter, options, control);
-  const Box3f moving_bounds = bounds_of(shutter);
+  const ShutterScenes moments = look_at_moments(shutter);
   Scene scene = scene_at(0);
   RenderResult result;
   RenderStatistics& statistics = result.statistics;
@@ -292,13 +297,14 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
                                        may_be_shaded(scene, sampled));
   CompilerProcesses processes;
   processes.start(device.context(), kernels, CompileTo::machine_code);
-  kept.update_scene(scene, options, statistics);
+  const UploadOptions uploading = uploading_of(options, moments.smooth);
+  kept.update_scene(scene, uploading, options.cache, statistics);
   kept.compile(kernels, processes, statistics);
   const SceneBvh& bvh = kept.bvh->bvh();
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
   Box3f bounds = bvh.bounds;
-  bounds.extendBy(moving_bounds);
+  bounds.extendBy(moments.bounds);
   const MatteNames names = matte_names(scene, options);
   const FilmLayout layout(view, sampled, bounds, lights,
                           !kept.on_device.buffers->corner_normals.empty());
@@ -319,9 +325,12 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   add_trace_statistics(statistics, picture, layout);
 
-  result.film = {view.width, view.height, view.crop,
+  result.film = {view.width,
+                 view.height,
+                 view.crop,
                  develop(picture, layout, sampled, lights, statistics),
-                 metadata(scene, view, options, device.info(), statistics.ambient)};
+                 metadata(scene, view, options, device.info(), statistics.ambient),
+                 options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   result.interrupted = picture.interrupted;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "dapple/error.hpp"
+#include "dapple/shared/corner_normals.h"
 
 namespace dapple {
 namespace {
@@ -24,13 +26,27 @@ SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t i
   return point;
 }
 
+/// Moves the point of a smooth surface to where its rays start: shade_point() of
+/// shading_normal.clh.
+void smooth(const V3f& geometric, const V3f& shift, SurfacePoint& point) {
+  const bool outward = geometric.dot(shift) > point.offset;  // by more than rounding errors
+  for (int axis = 0; axis < 3; ++axis)
+    point.position[axis] += point.offset * geometric[axis] + (outward ? shift[axis] : 0.0f);
+  point.offset = 0;
+  if (!outward) point.t = std::bit_cast<float>(direction_code(&geometric.x));
+}
+
 }  // namespace
 
-SharedPoints::SharedPoints(DeviceContext& context, std::span<const V3f> points,
-                           std::span<const V3f> normals, std::span<const std::uint32_t> chosen)
+SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,
+                           std::span<const std::uint32_t> chosen)
     : context_(context) {
   points_.reserve(chosen.size());
-  for (const std::uint32_t i : chosen) points_.push_back(surface_point(points[i], normals[i], i));
+  for (const std::uint32_t i : chosen) {
+    points_.push_back(surface_point(points.positions[i], points.normals[i], i));
+    if (!points.geometric.empty() && points.geometric[i].length2() > 0)
+      smooth(points.geometric[i], points.shifts[i], points_.back());
+  }
 }
 
 void report_slice(const RenderControl& control, const char* name, std::size_t done,

@@ -12,11 +12,21 @@
 
 namespace dapple {
 
+/// Points from which rays start, in world space.
+struct QueryPoints {
+  std::span<const V3f> positions;
+  std::span<const V3f> normals;  ///< unit vectors, around which directions are distributed
+  /// Of smooth surfaces: the unit normals of the triangles, zero for flat ones; or empty.
+  /// Directions below the triangle are hidden, unless the point moves by `shifts` to the smooth
+  /// surface above.
+  std::span<const V3f> geometric = {}, shifts = {};
+};
+
 /// Points in host memory that the device reads in place. The destructor waits for the device.
 class SharedPoints {
  public:
   /// The points with the indices `chosen`, which also seed their random numbers.
-  SharedPoints(DeviceContext& context, std::span<const V3f> points, std::span<const V3f> normals,
+  SharedPoints(DeviceContext& context, const QueryPoints& points,
                std::span<const std::uint32_t> chosen);
   ~SharedPoints() { context_.wait(); }
   SharedPoints(const SharedPoints&) = delete;

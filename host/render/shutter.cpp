@@ -8,6 +8,7 @@
 
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
+#include "scene/corner_normals.hpp"
 
 namespace dapple {
 namespace {
@@ -29,6 +30,8 @@ void check_motion(const Shutter& shutter, const RenderOptions& options,
 void check_shutter(const Shutter& shutter, const RenderOptions& options,
                    const RenderControl& control) {
   check_motion(shutter, options, control);
+  if (options.deep && !(control.checkpoint.empty() && control.resume.empty()))
+    refuse("--checkpoint and --resume do not go with --deep");
   if (shutter.times == 1) return;
   if (options.ground) refuse("with motion blur the ground must be part of the scenes");
   if (is_adaptive(options))
@@ -40,11 +43,14 @@ void check_shutter(const Shutter& shutter, const RenderOptions& options,
                        options.spp));
 }
 
-Box3f bounds_of(const Shutter& shutter) {
-  Box3f bounds;
-  for (int time = 0; shutter.times > 1 && time < shutter.times; ++time)
-    bounds.extendBy(scene_bounds(shutter.scene_at(time)));
-  return bounds;
+ShutterScenes look_at_moments(const Shutter& shutter) {
+  ShutterScenes scenes;
+  for (int time = 0; shutter.times > 1 && time < shutter.times; ++time) {
+    const Scene scene = shutter.scene_at(time);
+    scenes.bounds.extendBy(scene_bounds(scene));
+    scenes.smooth = scenes.smooth || is_smooth(scene);
+  }
+  return scenes;
 }
 
 RenderOptions until(const RenderOptions& options, int time, int times) {

@@ -20,8 +20,13 @@ struct Shutter {
 void check_shutter(const Shutter& shutter, const RenderOptions& options,
                    const RenderControl& control);
 
-/// Bounds of the scene at all moments, if there are several.
-Box3f bounds_of(const Shutter& shutter);
+/// What holds for the scenes at all moments together. Empty for a single moment.
+struct ShutterScenes {
+  Box3f bounds;
+  bool smooth = false;  ///< at some moment
+};
+
+ShutterScenes look_at_moments(const Shutter& shutter);
 
 /// The options with the samples of the first `time` + 1 moments, as by_sample() returns them.
 RenderOptions until(const RenderOptions& options, int time, int times);

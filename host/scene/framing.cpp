@@ -12,6 +12,7 @@ namespace {
 
 constexpr float kFrameMargin = 1.06f;     // width of the frame over width of the scene
 constexpr float kFrameElevation = 0.21f;  // tangent of the camera's elevation, 12 degrees
+constexpr float kElongation = 2;          // depth over width of a scene that is seen from its side
 
 bool is_finite(V3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -76,7 +77,9 @@ Camera frame_scene(const Scene& scene, float aspect, float fov_y) {
   require_field_of_view(fov_y);
   assert(aspect > 0);
   const Box3f bounds = bounds_or_unit_box(scene);
-  Camera camera = look_at({0, kFrameElevation, 1}, {0, 0, 0}, {0, 1, 0}, fov_y);
+  const V3f size = bounds.size();
+  const V3f front = size.z > kElongation * size.x ? V3f(1, 0, 0) : V3f(0, 0, 1);
+  Camera camera = look_at(front + V3f(0, kFrameElevation, 0), {0, 0, 0}, {0, 1, 0}, fov_y);
   const float tan_y = std::tan(fov_y / 2);
   const float distance = framing_distance(bounds, camera.to_world, tan_y * aspect, tan_y);
   const V3f from = bounds.center() + row(camera.to_world, 2) * distance;

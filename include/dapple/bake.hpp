@@ -46,8 +46,9 @@ struct BakeOptions {
   Estimator estimator = Estimator::prefiltered;
   /// As RenderOptions::footprint, for the rays of one point.
   float footprint = 1.5f;
-  float distance = 0;        ///< metres; surfaces farther away do not occlude; 0: no limit
-  float falloff = 0;         ///< as RenderOptions::ao_falloff
+  float distance = 0;  ///< metres; surfaces farther away do not occlude; 0: no limit
+  float falloff = 0;   ///< as RenderOptions::ao_falloff
+  Normals normals = Normals::shading;
   bool at_vertices = false;  ///< rays start at the vertices, not from points of the triangles
   BakeSides sides = BakeSides::automatic;
   BakeInstances placement = BakeInstances::together;
@@ -126,7 +127,7 @@ struct BakeResult {
 /// scenes that occlude and are not baked. A vertex's value is the mean of the AO at points of the
 /// triangles around it, weighted by area and by the vertex's barycentric coordinate (the lumped
 /// form of Kavan, Bargteil and Sloan, "Least Squares Vertex Baking", 2011). Vertices at the same
-/// position with normals within 45 degrees share one value. A bake that is
+/// position with normals of triangles within 45 degrees share one value. A bake that is
 /// resumed from a checkpoint of `control` must have the same arguments as the first one. Throws
 /// Error usage, input, device or failed. The same arguments give the same bits.
 BakeResult bake(const Scene& scene, const BakeOptions& options = {},

@@ -59,6 +59,8 @@ struct DeviceScene {
 struct UploadOptions {
   bool normals = false;  ///< Mesh::normals, 8 bytes per triangle of scenes that have any
   bool colors = false;   ///< for the albedo: colours of materials, textures and vertices
+  /// Upload normals also where all triangles are flat: at other moments of the picture they aren't.
+  bool flat_normals = false;
   bool operator==(const UploadOptions&) const = default;
 };
 

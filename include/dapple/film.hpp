@@ -31,12 +31,23 @@ struct FilmMetadata {
   std::vector<std::pair<std::string, std::string>> attributes;
 };
 
+/// Opacities at depths of each pixel, front to back. Composited over each other they give A.
+struct DeepAlpha {
+  struct Sample {
+    float z = 0;      ///< as the layer Z, metres
+    float alpha = 0;  ///< of this sample alone, (0,1]
+  };
+  std::vector<std::size_t> first;  ///< of each pixel, into `samples`; one more at the end
+  std::vector<Sample> samples;
+};
+
 struct Film {
   int width = 0;  ///< of the display window
   int height = 0;
   PixelRect data_window;
   std::vector<Plane> planes;
   FilmMetadata metadata;
+  DeepAlpha deep;  ///< empty unless requested
 
   /// The plane of that channel, or nullptr.
   [[nodiscard]] const Plane* find(const std::string& channel) const;
@@ -71,6 +82,10 @@ void validate(const ExrFormat& format);
 /// and renames it to `path`. Throws Error usage as validate(), and failed; an existing file at
 /// `path` is then unchanged.
 void write_exr(const Film& film, const std::string& path, const ExrFormat& format = {});
+
+/// Writes film.deep as a deep scanline EXR with the channels A and Z, in the same way. Throws Error
+/// failed.
+void write_deep_exr(const Film& film, const std::string& path);
 
 /// Reads any EXR, scanline or tiled, without subsampling or deep data and of at most 2^28 pixels;
 /// parts must have one data window. HALF and UINT become float. Planes and settings are in

@@ -99,6 +99,7 @@ struct RenderOptions {
   /// Make layers of motion vectors. Only Renderer::render_shutter() can: it takes the next frame.
   bool motion = false;
   Cryptomattes cryptomattes;
+  bool deep = false;         ///< make Film::deep
   float ao_distance = 0.0f;  ///< metres; 0 is no limit
   float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
   /// Radiance of a uniform sky that is multiplied by AO in RGBA, [0, 1e30]; none: 1 without lights,

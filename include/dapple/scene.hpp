@@ -228,7 +228,7 @@ void override_opacity(Scene& scene, const std::string& name, float value);
 /// Adds an opaque square under the scene's lowest point, 20 times as wide as the scene.
 void add_ground(Scene& scene);
 
-/// A perspective camera that frames the scene's bounds from the front, a little above.
+/// A perspective camera that frames the bounds from +Z, or +X if they are twice as deep as wide.
 /// `aspect` is width / height; `fov_y` in radians.
 Camera frame_scene(const Scene& scene, float aspect, float fov_y = 0.7f);
 

@@ -159,6 +159,7 @@ void bind_bake_options(nb::module_& module) {
       .def_rw("device", &BakeOptions::device)
       .def_rw("cache", &BakeOptions::cache);
   add_choice(bound, "estimator", &BakeOptions::estimator, kEstimators);
+  add_choice(bound, "normals", &BakeOptions::normals, kNormals);
   add_choice(bound, "sides", &BakeOptions::sides, kSides);
   add_choice(bound, "placement", &BakeOptions::placement, kPlacements);
 }

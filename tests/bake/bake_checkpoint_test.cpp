@@ -97,6 +97,10 @@ TEST_F(BakeCheckpoints, OtherOptionsAndScenesAreRefused) {
     return "nothing was refused";
   };
   EXPECT_NE(refused(tree, other).find("--seed 0, this run has --seed 1"), std::string::npos);
+  other = {};
+  other.normals = Normals::geometric;
+  EXPECT_NE(refused(tree, other).find("--normals shading, this run has --normals geometric"),
+            std::string::npos);
   Scene moved = tree;
   moved.meshes.at(0).positions.at(0).x += 1;
   EXPECT_NE(refused(moved, {}).find("another scene"), std::string::npos);

@@ -158,6 +158,42 @@ TEST(BakeLight, ASmallerTargetErrorTakesMoreRaysAndASmallerErrorIsLeft) {
   }
 }
 
+// At vertices, in textures and of instances: the layers of a group and of a light outside of it.
+TEST(BakeLight, AGroupIsTheSumOfItsLights) {
+  Scene floor = scene_of(plane(8, 4));
+  std::vector<Light> lights = {noon(), noon(), noon()};
+  lights[0].group = lights[2].group = "day";
+  lights[1].name = "alone";
+  lights[1].direction = V3f(0.3f, -1, 0).normalized();
+  lights[2].direction = V3f(0, -1, 0.5f).normalized();
+  BakeOptions options = lit_by(lights);
+  options.target_error = 0;
+  options.rays = 64;
+  options.texture = options.instances = true;
+  options.texture_size = 16;
+  const BakeResult together = bake(floor, options, {}, {leaf_above()});
+  ASSERT_EQ(together.light_names, (std::vector<std::string>{"day", "alone"}));
+  for (Light& light : options.lights) light.group.clear();
+  const BakeResult apart = bake(floor, options, {}, {leaf_above()});
+  ASSERT_EQ(apart.light_names.size(), 3u);
+  const auto expect_sums = [](const std::vector<std::vector<V3f>>& sums,
+                              const std::vector<std::vector<V3f>>& parts) {
+    ASSERT_EQ(sums.size(), 2u);
+    ASSERT_EQ(parts.size(), 3u);
+    EXPECT_EQ(sums[1], parts[1]);
+    float largest = 0;
+    for (std::size_t i = 0; i < parts[0].size(); ++i) {
+      const V3f sum = parts[0][i] + parts[2][i];
+      EXPECT_LE((sums[0][i] - sum).length(), 1e-6f * sum.length()) << i;
+      largest = std::max(largest, sum.x);
+    }
+    EXPECT_GT(double{largest}, 1.5 * kOpen);
+  };
+  expect_sums(together.meshes.at(0).light, apart.meshes.at(0).light);
+  expect_sums(together.texture.light, apart.texture.light);
+  expect_sums(together.instance_light, apart.instance_light);
+}
+
 TEST(BakeLight, AMeshAloneIsNotLit) {
   BakeOptions options = lit_by({noon()});
   options.placement = BakeInstances::alone;

@@ -94,7 +94,9 @@ TEST(SurfaceSamples, TheFirstPowersOfFourLieInDifferentPartsOfATriangle) {
 
 TEST(SurfaceSamples, WeightsOfASampleAddUpToTwiceTheArea) {
   const Mesh mesh = triangles({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}});
-  const SurfaceSample sample = sample_triangle(mesh, 0, group_vertices(mesh, false), true, 5);
+  const VertexGroups groups = group_vertices(mesh, false);
+  const std::vector<bool> two_sided{true};
+  const SurfaceSample sample = sample_triangle({mesh, groups, two_sided}, 0, 5);
   EXPECT_NEAR(sample.weight[0] + sample.weight[1] + sample.weight[2], 6.0f, 1e-5f);
   EXPECT_TRUE(sample.front && sample.back);
 }

@@ -163,6 +163,7 @@ TEST_F(BakeCommand, ErrorsSayWhatCanBeDoneAndLeaveNothingBehind) {
       {"in.glb -o out.glb --channel NORMAL", "COLOR_0.rgb"},
       {"in.glb -o out.glb --rays 3", "--rays"},
       {"in.glb -o out.glb --sides top", "--sides"},
+      {"in.glb -o out.glb --normals smooth", "--normals"},
       {"in.glb -o out.glb --to light", "--to"},
       {"in.glb -o out.glb --to texture --size 0", "--size"},
       {"in.glb -o out.glb --to texture --at vertices", "--at"},

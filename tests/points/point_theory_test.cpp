@@ -225,6 +225,41 @@ TEST(PointTheory, SkiesGiveTheirIrradianceOnAnOpenPlaneAndLessOnAWall) {
   }
 }
 
+TEST(Points, AGroupIsTheSumOfItsLights) {
+  Scene scene = canopy(0.5, 1);
+  scene.lights.assign(3, uniform_sky());
+  scene.lights[1].kind = LightKind::sun;
+  scene.lights[1].direction = V3f(0.2f, -1, 0).normalized();
+  scene.lights[1].radiance = V3f(2000, 1000, 500);
+  scene.lights[1].angular_radius = 0.01f;
+  scene.lights[2].name = "alone";
+  scene.lights[0].group = scene.lights[1].group = "both";
+  PointOptions options;
+  options.ao = options.sky_view_factor = false;
+  options.estimator = Estimator::exact;
+  const std::vector<V3f> points(5, V3f(0, 0, 0)), normals(5, V3f(0, 1, 0));
+  const PointResult together = measure_points(scene, points, normals, options);
+  for (Light& light : scene.lights) light.group.clear();
+  scene.lights[0].name = "a";
+  scene.lights[1].name = "b";
+  const PointResult apart = measure_points(scene, points, normals, options);
+  const auto column = [](const PointResult& result, const std::string& name) {
+    for (const PointColumn& each : result.columns)
+      if (each.name == name) return each.values;
+    ADD_FAILURE() << "no column " << name;
+    return std::vector<float>(5);
+  };
+  for (const std::string channel : {"_r", "_g", "_b"}) {
+    const auto sum = column(together, "both" + channel), a = column(apart, "a" + channel),
+               b = column(apart, "b" + channel);
+    EXPECT_EQ(column(together, "alone" + channel), column(apart, "alone" + channel));
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      EXPECT_NEAR(sum[i], a[i] + b[i], 1e-6 * sum[i]);
+      EXPECT_GT(a[i], 0.1);
+    }
+  }
+}
+
 TEST(Points, WrongInputIsAnErrorAndNoPointsAreNoValues) {
   const Scene scene = canopy(0.01, 1);
   EXPECT_THROW(measure_points(scene, std::vector{V3f(0, 0, 0)}, {}), Error);

@@ -18,6 +18,7 @@ using namespace scene_test;
 std::vector<float> coverage(const Film& film, const std::string& type, const std::string& name) {
   std::vector<float> sum(film.find("A")->pixels.size());
   for (const char* layer : {"00", "01", "02"}) {
+    if (!film.find(type + layer + ".R")) break;  // fewer names than ranks
     for (const auto& [id, share] : {std::pair(".R", ".G"), {".B", ".A"}}) {
       const auto& ids = film.find(type + layer + id)->pixels;
       const auto& shares = film.find(type + layer + share)->pixels;
@@ -139,7 +140,7 @@ TEST(CryptomatteRender, OtherLayersAreTheSameBitsWithAndWithout) {
   const Film with = render(garden(), options).film;
   options.cryptomattes = {};
   const Film without = render(garden(), options).film;
-  EXPECT_EQ(with.planes.size(), without.planes.size() + 24);
+  EXPECT_EQ(with.planes.size(), without.planes.size() + 12 + 8);
   for (const Plane& plane : without.planes)
     EXPECT_EQ(film_test::bits_of(with.find(plane.channel)->pixels),
               film_test::bits_of(plane.pixels))
@@ -224,18 +225,17 @@ TEST_F(CryptomatteProgram, TheNumberOfThreadsChangesNothing) {
   EXPECT_EQ(film_test::bytes_of(path("one.exr")), film_test::bytes_of(path("two.exr")));
 }
 
-// Decodes with OpenEXR's own Python package and a hash of its own.
+// Decodes with a reader of EXR files and a hash of its own.
 TEST_F(CryptomatteProgram, AnotherProgramDecodesTheMattes) {
-  if (std::system("python3 -c 'import OpenEXR, numpy' 2>/dev/null") != 0)
-    GTEST_SKIP() << "needs Python's OpenEXR and numpy";
+  if (std::system("python3 -c 'import json, zlib' 2>/dev/null") != 0)
+    GTEST_SKIP() << "needs python3";
   ASSERT_EQ(dapple(std::string(kForest) + "all.exr").code, 0);
-  ASSERT_EQ(
-      dapple(std::string(kForest) + "parts.exr --multipart --half all --compression dwaa").code, 0);
+  ASSERT_EQ(dapple(std::string(kForest) + "parts.exr --multipart --half all").code, 0);
   for (const char* file : {"all.exr", "parts.exr"}) {
-    const std::string command = "python3 '" DAPPLE_SOURCE_FOLDER
-                                "/tests/film/decode_cryptomatte.py' '" +
-                                path(file) + "' crypto_material";
-    EXPECT_EQ(std::system((command + " >/dev/null").c_str()), 0) << file;
+    const std::string command =
+        "python3 '" DAPPLE_SOURCE_FOLDER "/tests/film/decode_cryptomatte.py' '" + path(file) + "' ";
+    for (const char* type : {"crypto_object", "crypto_material"})
+      EXPECT_EQ(std::system((command + type + " >/dev/null").c_str()), 0) << file << type;
   }
 }
 

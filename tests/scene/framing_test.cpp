@@ -58,6 +58,16 @@ TEST(FrameScene, EveryCornerOfTheBoundsIsInTheFrameAndOneIsNearItsEdge) {
   }
 }
 
+TEST(FrameScene, ALongSceneIsSeenFromItsSide) {
+  const auto back = [](const V3f& size) {
+    const Camera camera = frame_scene(triangle_at({0, 0, 0}, size), 1.5f);
+    return V3f(camera.to_world[2][0], 0, camera.to_world[2][2]).normalized();
+  };
+  EXPECT_TRUE(back({1, 5, 4}).equalWithAbsError(V3f(1, 0, 0), 1e-6f));
+  EXPECT_TRUE(back({1, 5, 1.9f}).equalWithAbsError(V3f(0, 0, 1), 1e-6f));
+  EXPECT_TRUE(back({9, 5, 1}).equalWithAbsError(V3f(0, 0, 1), 1e-6f));
+}
+
 TEST(FrameScene, ASceneWithoutExtentStillGetsACamera) {
   const Camera camera = frame_scene(Scene{}, 1.5f);
   EXPECT_TRUE(std::isfinite(camera.to_world[3][2]));

@@ -25,13 +25,14 @@ std::array<float, 3> barycentric(const V2f* uv, const V2f& p) {
 class SampledTexels : public SampledSurface {
  public:
   SampledTexels(const Mesh& mesh, std::span<const V2f> corners, const std::vector<bool>& two_sided,
-                std::uint32_t size, std::uint32_t hash)
+                const BakeOptions& options, std::uint32_t hash)
       : mesh_(mesh),
         corners_(corners),
         two_sided_(two_sided),
-        size_(size),
+        normals_(options.normals),
+        size_(options.texture_size),
         hash_(hash),
-        cover_(cover_texels(corners, size)) {}
+        cover_(cover_texels(corners, options.texture_size)) {}
 
   [[nodiscard]] std::size_t size() const override { return cover_.texel.size(); }
   [[nodiscard]] bool can_be_sampled(std::size_t) const override { return true; }
@@ -89,12 +90,14 @@ class SampledTexels : public SampledSurface {
     sample.weight[0] = 1;
     for (std::size_t k = 0; k < 3; ++k)
       sample.position += mesh_.positions[mesh_.indices[3 * t + k]] * weights[k];
+    if (normals_ == Normals::shading) add_shading(mesh_, t, weights, sample);
     return sample;
   }
 
   const Mesh& mesh_;
   std::span<const V2f> corners_;
   const std::vector<bool>& two_sided_;
+  Normals normals_;
   std::uint32_t size_, hash_;
   TexelCover cover_;
 };
@@ -135,7 +138,7 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTra
   for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
     if (!has_area(mesh, t))
       std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, V2f(0));
-  const SampledTexels texels(mesh, corners, two_sided, options_.texture_size, hash);
+  const SampledTexels texels(mesh, corners, two_sided, options_, hash);
   const bool any = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
   const SmallParts parts = parts_of_texels(mesh, texels, any);
   // Neighbouring texels share no samples, so that a variance takes two of them.

@@ -7,11 +7,10 @@
 #include <atomic>
 #include <cmath>
 
+#include "scene/corner_normals.hpp"
+
 namespace dapple {
 namespace {
-
-/// Cosine of the angle up to which a normal counts as the face's: 0.1 degrees.
-constexpr double kFlat = 1 - 1.5e-6;
 
 std::uint32_t code_of(const V3f& normal) {
   float x = 0, y = 0;
@@ -26,26 +25,8 @@ std::uint32_t code_of(const V3f& normal) {
 
 /// The normals of a triangle as they are packed; zeros if it is flat.
 CornerNormals normals_of(const Mesh& mesh, std::size_t triangle) {
-  const std::uint32_t* corner = &mesh.indices[3 * triangle];
-  const V3d a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]),
-      c(mesh.positions[corner[2]]);
-  const V3d face = (b - a).cross(c - a).normalized();
-  std::array<V3d, 3> normals;
-  V3d sum(0.0);
-  bool is_flat = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const V3d given(mesh.normals[corner[k]]);
-    normals[k] = given.length2() > 0 ? given.normalized() : face;
-    sum += normals[k];
-  }
-  if (!(sum.length2() > 0)) return {};  // or not a number
-  const double side = sum.dot(face) < 0 ? -1 : 1;
-  std::array<V3f, 3> turned;
-  for (std::size_t k = 0; k < 3; ++k) {
-    is_flat &= side * normals[k].dot(face) >= kFlat;
-    turned[k] = V3f(normals[k] * side);
-  }
-  return is_flat ? CornerNormals{} : pack_corner_normals(turned);
+  const auto normals = corner_normals(mesh, triangle);
+  return normals ? pack_corner_normals(*normals) : CornerNormals{};
 }
 
 }  // namespace

@@ -15,9 +15,7 @@ namespace dapple {
 /// at most 0.17 degrees.
 CornerNormals pack_corner_normals(const std::array<V3f, 3>& normals);
 
-/// Returns nothing if all triangles are flat, unless `keep_flat`: if no mesh has normals, or if all
-/// are those of the faces, to 0.1 degrees. A triangle's normals are turned to the side of its
-/// face's normal, as triangles' corners are ordered; corners without a normal get that of the face.
+/// The corner_normals() of all triangles. Returns nothing if all are flat, unless `keep_flat`.
 std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh,
                                         bool keep_flat = false);
 

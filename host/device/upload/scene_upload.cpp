@@ -78,7 +78,7 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   pack_lights(scene, buffers->light_records, buffers->emitter_triangles);
   pack_domes(scene, buffers->light_records, buffers->environment_data);
   buffers->uploaded = options;
-  if (options.normals) buffers->corner_normals = pack_normals(scene, bvh);
+  if (options.normals) buffers->corner_normals = pack_normals(scene, bvh, options.flat_normals);
   if (options.colors) {
     buffers->colors = pack_colors(scene, bvh);
     buffers->color_key = color_key(scene);
@@ -131,15 +131,9 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
   }
   const SceneBvh& now = bvh.bvh();
   const bool new_colors = options.colors && color_key(moved) != buffers.color_key;
-  // What was smooth stays a buffer of normals, also in moments when it is flat.
-  const bool had_normals = !buffers.corner_normals.empty();
   if (changes.is_new || new_colors || options != buffers.uploaded) {
     on_device = {};
     on_device = upload(device, moved, now, options);
-    DeviceBuffers& uploaded = *on_device.buffers;
-    if (had_normals && options.normals && uploaded.corner_normals.empty())
-      share_if_new(context, pack_normals(moved, now, true), uploaded.corner_normals,
-                   uploaded.normals);
     return changes;
   }
   if (!context.shares_memory()) {
@@ -150,7 +144,7 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
   if (changes.placement) share_placement(context, now, buffers);
   share_lights(context, moved, buffers);
   if (options.normals) {
-    share_if_new(context, pack_normals(moved, now, had_normals), buffers.corner_normals,
+    share_if_new(context, pack_normals(moved, now, options.flat_normals), buffers.corner_normals,
                  buffers.normals);
   }
   context.finish();

@@ -218,6 +218,8 @@ Mesh make_head() {
       if (ring > 0) mesh.indices.insert(mesh.indices.end(), {a, c, d});
     }
   }
+  for (const V3f& position : mesh.positions)
+    mesh.normals.push_back(((position - kHeadCentre) / (kHeadRadii * kHeadRadii)).normalized());
   mesh.materials.resize(mesh.indices.size() / 3, kSkinMaterial);
   return mesh;
 }

@@ -1,0 +1,88 @@
+// Every option of every command that takes a value: without one, with a word or NaN in place of a
+// number, and with a word that is none of an option's choices. The options are those of the help.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/program_run.hpp"
+
+namespace dapple {
+namespace {
+
+using film_test::contains;
+
+class OptionValues : public program_test::ProgramRun {};
+
+struct Option {
+  std::string flag, type;  ///< "--spp", "INT"
+};
+
+/// Options with values, from lines such as "  -o,--output TEXT REQUIRED   OpenEXR file to write".
+std::vector<Option> options_in(const std::string& help) {
+  std::vector<Option> options;
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t dashes = line.find("--");
+    if (line.rfind("  -", 0) != 0 || dashes > 5) continue;
+    std::istringstream words(line.substr(dashes));
+    Option option;
+    words >> option.flag >> option.type;
+    option.type = option.type.substr(0, option.type.find('='));
+    if (option.type == "TEXT" || option.type == "FLOAT" || option.type == "INT" ||
+        option.type == "UINT")
+      options.push_back(option);
+  }
+  return options;
+}
+
+/// Commands with what they need beside an option.
+const std::vector<std::pair<std::string, std::string>> kCommands = {
+    {"render", "scene:cube -o o.exr"},
+    {"bake", "scene:cube -o o.glb"},
+    {"points", "scene:cube --per-triangle -o o.csv"},
+    {"compare", "a.exr b.exr"},
+    {"info", "scene:cube"},
+    {"scene", "cube -o o.glb"},
+};
+
+/// Options that take any text, most of them paths.
+const std::set<std::string> kFreeText = {
+    "--output",     "--png",   "--camera", "--lights",     "--dome",      "--device",
+    "--kernel-dir", "--cache", "--resume", "--stats-json", "--occluders", "--html",
+    "--at",         "--suns",  "--layer",  "--checkpoint", "--animation", "--sky",
+};
+
+TEST_F(OptionValues, NeedAValue) {
+  std::size_t count = 0;
+  for (const auto& [command, rest] : kCommands) {
+    for (const Option& option : options_in(dapple(command + " --help").out)) {
+      SCOPED_TRACE(command + " " + option.flag);
+      expect_failure(dapple(command + " " + rest + " " + option.flag), 2, option.flag);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 100u);
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(OptionValues, AreNumbersWhereNumbersAreExpectedAndNeverNaN) {
+  for (const auto& [command, rest] : kCommands) {
+    for (const Option& option : options_in(dapple(command + " --help").out)) {
+      if (option.type == "TEXT" && kFreeText.contains(option.flag)) continue;
+      for (const char* value : {"nan", "abc", "''"}) {
+        // An empty list of occluders or opacities, say, is no mistake.
+        if (option.type == "TEXT" && std::string(value) == "''") continue;
+        SCOPED_TRACE(command + " " + option.flag + " " + value);
+        expect_failure(dapple(command + " " + rest + " " + option.flag + " " + value), 2,
+                       option.flag);
+      }
+    }
+  }
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+}  // namespace
+}  // namespace dapple
