@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
       "130, 143 interrupted by SIGINT, SIGTERM.\n"
       "dapple COMMAND --help lists the options of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
+  CLI::App& merge = *app.add_subcommand("merge", "Add up parts of an image that several runs made");
   CLI::App& points = *app.add_subcommand("points", "Measure sky and light at points");
   CLI::App& bake = *app.add_subcommand(
       "bake", "Bake AO into the vertices, a texture or the instances of a glTF file");
@@ -44,6 +45,7 @@ int run(int argc, char** argv) {
   CLI::App& document = *app.add_subcommand("document", "Write the manual page or completions");
   const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
       {&render, dapple::add_render_command(render)},
+      {&merge, dapple::add_merge_command(merge)},
       {&bake, dapple::add_bake_command(bake)},
       {&points, dapple::add_points_command(points)},
       {&info, dapple::add_info_command(info)},
@@ -67,7 +69,8 @@ int run(int argc, char** argv) {
   if (app.get_subcommands().empty()) {
     fmt::print(
         stderr,
-        "dapple: a subcommand is needed: render, bake, points, info, scene, devices or compare\n");
+        "dapple: a subcommand is needed: render, merge, bake, points, info, scene, devices or "
+        "compare\n");
     return kUsage;
   }
   for (const auto& [command, work] : commands) {

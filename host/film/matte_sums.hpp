@@ -1,6 +1,6 @@
 // Which objects and materials the samples of each pixel hit, and how many samples: whole numbers,
-// so that sums do not depend on the order of slices. In: hits. Out: slots of pixels, and all of
-// them as one array, for checkpoints.
+// so that sums do not depend on the order of slices and shards. In: hits. Out: slots of pixels, and
+// all of them as one array, for checkpoints.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,31 @@ namespace dapple {
 struct MatteSlot {
   std::uint32_t object = 0, material = 0;  ///< numbers of Scene::objects and Scene::materials
   std::uint32_t count = 0;                 ///< samples
+  std::uint32_t first = 0;                 ///< the number of the first of them
   bool operator==(const MatteSlot&) const = default;
 };
 
-/// Slots of a pixel at most. Samples that would need one more count for nothing: which ones these
-/// are depends only on the order of the pixel's own samples.
+/// Slots of a pixel of a picture at most: those whose first samples come first. Samples that would
+/// need one more count for nothing.
 inline constexpr std::size_t kMaxMatteSlots = 32;
+
+/// For shards that begin later: earlier samples decide which slots the picture has.
+inline constexpr std::size_t kAnyMatteSlots = ~std::size_t{0};
 
 class MatteSums {
  public:
-  explicit MatteSums(std::size_t pixels = 0) : slots_(pixels) {}
+  explicit MatteSums(std::size_t pixels = 0, std::size_t max_slots = kMaxMatteSlots)
+      : slots_(pixels), max_slots_(max_slots) {}
 
-  /// Adds one sample. Different pixels may be added to in parallel.
-  void add(std::size_t pixel, std::uint32_t object, std::uint32_t material);
+  /// Adds one sample; those of a pixel come in ascending order. Different pixels may be added to in
+  /// parallel.
+  void add(std::size_t pixel, std::uint32_t object, std::uint32_t material, std::uint32_t sample);
+
+  /// Adds another shard's slots of a pixel, in any order of shards.
+  void add(std::size_t pixel, const std::vector<MatteSlot>& slots);
+
+  /// Keeps the first kMaxMatteSlots of each pixel, in the order of their first samples.
+  void keep_first();
 
   [[nodiscard]] std::size_t pixel_count() const { return slots_.size(); }
   [[nodiscard]] const std::vector<MatteSlot>& of_pixel(std::size_t pixel) const {
@@ -36,13 +48,14 @@ class MatteSums {
   [[nodiscard]] std::vector<std::uint32_t> packed() const;
 
   /// What packed() returned, for so many pixels; numbers of objects and materials must be below
-  /// those given. False if it is not that.
+  /// those given, and counts not 0. False if it is not that.
   bool unpack(std::span<const std::uint32_t> packed, std::size_t pixels,
               std::size_t objects = std::size_t{1} << 32,
               std::size_t materials = std::size_t{1} << 32);
 
  private:
   std::vector<std::vector<MatteSlot>> slots_;
+  std::size_t max_slots_;
 };
 
 }  // namespace dapple

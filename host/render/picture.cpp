@@ -55,7 +55,8 @@ class PictureTracer {
         camera_(camera_params(view, options, scene_.bounds)),
         state_(std::move(state)),
         lookups_(lookups),
-        mattes_(lookups.mattes ? layout.pixels : 0),
+        mattes_(lookups.mattes ? layout.pixels : 0,
+                state_.first_sample > 0 ? kAnyMatteSlots : kMaxMatteSlots),
         motion_(lookups.motion ? layout.pixels : 0) {
     camera_.keep_hits = layout.shading() || lookups_.any();
     if (lookups_.any()) camera_.medium_error = 0;  // a medium's surfaces belong to no primitive
@@ -74,12 +75,13 @@ class PictureTracer {
   }
 
   TracedPicture trace(const TraceControl& control) {
-    SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples);
+    SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples,
+                    state_.first_sample);
     traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
     TracedPicture picture;
     while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control)))
       picture.interrupted = !trace_round(plan, control);
-    if (control.save) save(plan, control);
+    keep_state(plan, control, !picture.interrupted);
     picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
     if (plan.is_adaptive() && all_have_variances(picture.samples))
       picture.errors = standard_errors(picture.samples);
@@ -112,7 +114,8 @@ class PictureTracer {
     if (!state_.motion.empty()) motion_ = std::move(state_.motion);
     if (state_.sums.empty()) return;
     context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
-    context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
+    if (!state_.squares.empty())
+      context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
     release_sums();
   }
 
@@ -125,9 +128,11 @@ class PictureTracer {
 
   void read_state(const SamplePlan& plan) {
     state_.sums.resize(layout_.sum_bytes() / sizeof(std::int64_t));
-    state_.squares.resize(layout_.square_bytes() / sizeof(float));
+    // Without a target nobody reads them, and they depend on the order of samples.
+    if (plan.is_adaptive()) state_.squares.resize(layout_.square_bytes() / sizeof(float));
     context_.read(film_.sums, state_.sums.data(), layout_.sum_bytes());
-    context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
+    if (plan.is_adaptive())
+      context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
     context_.finish();
     if (lookups_.mattes) state_.mattes = mattes_.packed();
     state_.motion = motion_;
@@ -177,7 +182,7 @@ class PictureTracer {
     // With a target the rounds so far are only a part of the work.
     const double given = sum_of(plan.samples());
     const double total = plan.is_adaptive() ? given / plan.fraction_done()
-                                            : static_cast<double>(layout_.pixels) * options_.spp;
+                                            : static_cast<double>(layout_.pixels) * plan.minimum();
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
       if (control.stop && control.stop()) return false;
       if (control.save &&
@@ -201,6 +206,15 @@ class PictureTracer {
     control.save(state_);
     release_sums();
     saved_ = Clock::now();
+  }
+
+  /// At the end: `finished` unless interrupted.
+  void keep_state(const SamplePlan& plan, const TraceControl& control, bool finished) {
+    if (!control.save && !control.finish) return;
+    read_state(plan);
+    if (control.save) control.save(state_);
+    if (control.finish && finished) control.finish(state_);
+    release_sums();
   }
 
   std::vector<std::vector<float>> standard_errors(const std::vector<std::uint32_t>& samples) {
@@ -272,7 +286,8 @@ class PictureTracer {
         const uint instance = std::bit_cast<uint>(points[i].t), primitive = points[i].visits;
         if (lookups_.mattes) {
           const auto ids = lookups_.mattes->at(instance, primitive);
-          mattes_.add(pixel, ids.object, ids.material);
+          mattes_.add(pixel, ids.object, ids.material,
+                      work[slice.first_work + entry].first_sample + slice.first_sample + i - begin);
         }
         if (lookups_.motion) {
           const float* at = points[i].position;

@@ -23,7 +23,8 @@ void check_shutter(const Shutter& shutter, const RenderOptions& options,
 /// Bounds of the scene at all moments, if there are several.
 Box3f bounds_of(const Shutter& shutter);
 
-/// The options with the samples of the first `time` + 1 moments, as by_sample() returns them.
+/// The options as by_sample() returns them, with the end of the shard for `spp`, or that of the
+/// first `time` + 1 moments if it is less.
 RenderOptions until(const RenderOptions& options, int time, int times);
 
 /// The progress of the first `time` moments out of `times`.
