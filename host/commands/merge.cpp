@@ -14,6 +14,7 @@
 #include "commands/render_arguments.hpp"
 #include "commands/shared_options.hpp"
 #include "commands/statistics_text.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "film/exr_output.hpp"
 #include "film/exr_parts.hpp"
@@ -36,8 +37,7 @@ void check(const MergeArguments& a) {
 }
 
 void print(const Merge& merge, const MergeArguments& a) {
-  for (const std::string& note : merge.result.statistics.notes)
-    fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : merge.result.statistics.notes) tell("note: {}\n", note);
   fmt::print("merged {} part{}, {} of {} samples per pixel; wrote {}{}\n", a.parts.size(),
              a.parts.size() == 1 ? "" : "s", merge.missing.empty() ? "all" : "not all", merge.spp,
              a.files.output, a.files.png.empty() ? "" : " and " + a.files.png);

@@ -20,6 +20,7 @@
 #include "commands/render_arguments.hpp"
 #include "commands/shot.hpp"
 #include "commands/statistics_text.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "film/exr_output.hpp"
 #include "film/exr_parts.hpp"
@@ -57,12 +58,12 @@ class NotePrinter {
     for (const std::string& note : notes) {
       if (!told_.insert(note).second) continue;
       if (printed++ < kMax) {
-        fmt::print(stderr, "note: {}\n", note);
+        tell("note: {}\n", note);
       } else {
         ++left;
       }
     }
-    if (left > 0) fmt::print(stderr, "note: and {} more\n", left);
+    if (left > 0) tell("note: and {} more\n", left);
   }
 
  private:

@@ -78,6 +78,7 @@ class PictureTracer {
     SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples,
                     state_.first_sample);
     traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
+    saved_samples_ = traced_;
     TracedPicture picture;
     while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control)))
       picture.interrupted = !trace_round(plan, control);
@@ -185,7 +186,7 @@ class PictureTracer {
                                             : static_cast<double>(layout_.pixels) * plan.minimum();
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
       if (control.stop && control.stop()) return false;
-      if (control.save &&
+      if (control.save && traced_ > saved_samples_ &&
           Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
         save(plan, control);
       const WorkGroup& group = round.groups[round.group];
@@ -206,6 +207,7 @@ class PictureTracer {
     control.save(state_);
     release_sums();
     saved_ = Clock::now();
+    saved_samples_ = traced_;
   }
 
   /// At the end: `finished` unless interrupted.
@@ -383,8 +385,9 @@ class PictureTracer {
   const HitLookups& lookups_;
   MatteSums mattes_;
   MotionSums motion_;
-  double traced_ = 0;    ///< number of samples of all pixels
-  double progress_ = 0;  ///< [0,1], estimated; never decreases
+  double traced_ = 0;         ///< number of samples of all pixels
+  double saved_samples_ = 0;  ///< of them in the last checkpoint
+  double progress_ = 0;       ///< [0,1], estimated; never decreases
   std::map<std::string, double> earlier_seconds_;
   Clock::time_point saved_ = Clock::now();
 };
