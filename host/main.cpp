@@ -1,4 +1,5 @@
 // Chooses a command, and turns what goes wrong into one line and an exit code.
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "commands/argument_errors.hpp"
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
 #include "dapple/error.hpp"
@@ -20,6 +22,22 @@ namespace {
 constexpr int kUsage = static_cast<int>(dapple::ErrorKind::usage);
 constexpr int kFailed = static_cast<int>(dapple::ErrorKind::failed);
 
+/// Not by fmt: that throws where nothing can be written. `reason`: an errno, or 0 for none.
+int say(const char* what, int reason = 0) {
+  std::fprintf(stderr, "dapple: %s%s%s\n", what, reason ? ": " : "",
+               reason ? std::strerror(reason) : "");
+  return kFailed;
+}
+
+/// Files that are opened later must not become the standard input, output or error.
+void occupy_closed_descriptors() {
+  for (const int descriptor : {0, 1, 2}) {
+    if (fcntl(descriptor, F_GETFD) >= 0) continue;
+    // Writing to the standard output must fail, to the standard error it need not.
+    (void)!open("/dev/null", descriptor == 2 ? O_WRONLY : O_RDONLY);
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
       "Ambient occlusion and soft shadows through foliage, hair and forests.\n\n"
@@ -30,9 +48,12 @@ int run(int argc, char** argv) {
                "With --version: how dapple was built, and the device libraries");
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 images differ,\n"
-      "130 interrupted by SIGINT, 143 by SIGTERM.\n"
+      "130 interrupted by SIGINT, 143 by SIGTERM, 152 by SIGXCPU.\n"
       "dapple COMMAND --help lists the options of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
+  CLI::App& merge = *app.add_subcommand("merge", "Add up parts of an image that several runs made");
+  CLI::App& plan =
+      *app.add_subcommand("plan", "Say what a render would take: memory, time, bytes of files");
   CLI::App& points =
       *app.add_subcommand("points", "Compute AO, visible sky and irradiance at points");
   CLI::App& bake = *app.add_subcommand(
@@ -45,6 +66,8 @@ int run(int argc, char** argv) {
   CLI::App& document = *app.add_subcommand("document", "Write the manual page or completions");
   const std::vector<std::pair<CLI::App*, dapple::Run>> commands{
       {&render, dapple::add_render_command(render)},
+      {&merge, dapple::add_merge_command(merge)},
+      {&plan, dapple::add_plan_command(plan)},
       {&bake, dapple::add_bake_command(bake)},
       {&points, dapple::add_points_command(points)},
       {&info, dapple::add_info_command(info)},
@@ -57,8 +80,13 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : kUsage;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    const auto commands = app.get_subcommands();
+    const std::string command = commands.empty() ? "" : " " + commands.front()->get_name();
+    say(fmt::format("{}; dapple{} --help lists the options",
+                    dapple::argument_error_text(app, error), command)
+            .c_str());
+    return kUsage;
   }
   if (version) {
     dapple::print_version(verbose);
@@ -66,9 +94,8 @@ int run(int argc, char** argv) {
   }
   // Not CLI11's own requirement: that hides the name of a command it does not know.
   if (app.get_subcommands().empty()) {
-    fmt::print(
-        stderr,
-        "dapple: a subcommand is needed: render, bake, points, info, scene, devices or compare\n");
+    say("a subcommand is needed: render, merge, plan, bake, points, info, scene, devices "
+        "or compare");
     return kUsage;
   }
   for (const auto& [command, work] : commands) {
@@ -77,16 +104,10 @@ int run(int argc, char** argv) {
   return dapple::interruption_code();
 }
 
-/// Not by fmt: that throws where nothing can be written. `reason`: an errno, or 0 for none.
-int say(const char* what, int reason = 0) {
-  std::fprintf(stderr, "dapple: %s%s%s\n", what, reason ? ": " : "",
-               reason ? std::strerror(reason) : "");
-  return kFailed;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupy_closed_descriptors();
   std::signal(SIGCHLD, SIG_DFL);  // whatever we were started with: we wait for processes of ours
   std::signal(SIGXFSZ, SIG_IGN);  // a write past ulimit -f fails, and says why
   dapple::report_driver_crashes();

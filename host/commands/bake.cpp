@@ -17,6 +17,7 @@
 #include "commands/option_text.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
+#include "commands/tell.hpp"
 #include "commands/unique_meshes.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
@@ -152,8 +153,7 @@ RenderControl to_control(const BakeArguments& a, ProgressBar& progress) {
 void report_interruption(const BakeResult& result, const BakeArguments& a) {
   if (!result.checkpoint_failure.empty())
     throw Error(ErrorKind::failed, result.checkpoint_failure + "; the bake was interrupted");
-  fmt::print(stderr, "note: interrupted, {} is not written; --resume {} goes on\n", a.output,
-             a.checkpoint);
+  tell("note: interrupted, {} is not written; --resume {} goes on\n", a.output, a.checkpoint);
 }
 
 /// Chooses the texture coordinates. Returns a line about them.

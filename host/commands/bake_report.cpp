@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "commands/tell.hpp"
 #include "files/output_file.hpp"
 
 namespace dapple {
@@ -52,7 +53,7 @@ void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds,
 }
 
 void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& output) {
-  for (const std::string& note : s.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : s.notes) tell("note: {}\n", note);
   fmt::print(
       "{} triangles, {}, {} rays from {} points ({:.1f} million rays per second)\n"
       "load {:.2f}, build {:.2f}, trace {:.2f}, write {:.2f}, total {:.2f} s\n",

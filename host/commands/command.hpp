@@ -11,6 +11,8 @@ namespace dapple {
 using Run = std::function<void()>;
 
 Run add_render_command(CLI::App& app);
+Run add_merge_command(CLI::App& app);
+Run add_plan_command(CLI::App& app);
 Run add_bake_command(CLI::App& app);
 Run add_points_command(CLI::App& app);
 Run add_info_command(CLI::App& app);

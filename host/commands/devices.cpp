@@ -1,8 +1,12 @@
-// dapple devices: lists the OpenCL devices, best first, and whether each can run dapple.
+// dapple devices: lists the OpenCL devices, best first; with --check also whether each can run
+// dapple.
 #include <fmt/format.h>
+
+#include <cstdio>
 
 #include "commands/command.hpp"
 #include "commands/statistics_text.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "dapple/render.hpp"
 
@@ -20,26 +24,38 @@ const char* describe(Packets packets) {
   }
 }
 
-/// Whether the device can run every kernel.
-bool print_device(const DeviceInfo& info, const DeviceCheck& check) {
+void print_device(const DeviceInfo& info) {
   fmt::print("{}\n  {} ({}), driver {}, {} compute units, {}\n", info.name, info.kind,
              info.platform, info.driver, info.compute_units,
              bytes_text(static_cast<double>(info.memory_bytes)));
+  std::fflush(stdout);
+}
+
+/// Whether the device can run every kernel.
+bool print_check(const DeviceCheck& check) {
   for (const std::string& refusal : check.refusals) fmt::print("  cannot be used: {}\n", refusal);
   if (check.refusals.empty()) fmt::print("  runs every kernel; {}\n", describe(check.packets));
   return check.refusals.empty();
 }
 
-void run_devices(const std::string& kernel_dir) {
-  bool one_will_do = false;
+struct DevicesArguments {
+  std::string kernel_dir;
+  bool check = false;
+};
+
+void run_devices(const DevicesArguments& a) {
+  bool one_will_do = !a.check;
   for (const DeviceInfo& info : list_devices()) {
+    print_device(info);
+    if (!a.check) continue;
     DeviceCheck check;
+    tell("compiling every kernel for {}\n", info.name);
     try {
-      check = check_device(Device(info.name, kernel_dir));
+      check = check_device(Device(info.name, a.kernel_dir));
     } catch (const Error& error) {
       check.refusals.emplace_back(error.what());
     }
-    one_will_do = print_device(info, check) || one_will_do;
+    one_will_do = print_check(check) || one_will_do;
   }
   if (!one_will_do)
     throw Error(ErrorKind::device, "no OpenCL device can run every kernel; the reasons are above");
@@ -48,13 +64,17 @@ void run_devices(const std::string& kernel_dir) {
 }  // namespace
 
 Run add_devices_command(CLI::App& app) {
-  auto kernel_dir = std::make_shared<std::string>();
-  app.add_option("--kernel-dir", *kernel_dir,
-                 "Read OpenCL kernels from this folder (for developers)");
+  auto a = std::make_shared<DevicesArguments>();
+  CLI::Option& check = *app.add_flag(
+      "--check", a->check,
+      "Compile every kernel, and say whether each device can run them; may take minutes");
+  app.add_option("--kernel-dir", a->kernel_dir,
+                 "Read OpenCL kernels from this folder (for developers)")
+      ->needs(&check);
   app.footer(
       "Example:\n  dapple devices\n\ndapple uses the first device; --device NAME chooses another. "
       "render --packets changes how its rays are grouped.");
-  return [kernel_dir] { run_devices(*kernel_dir); };
+  return [a] { run_devices(*a); };
 }
 
 }  // namespace dapple

@@ -1,17 +1,21 @@
 #include "commands/interruption.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <thread>
 
 namespace dapple {
 namespace {
 
-constexpr int kSignalled = 128;  ///< added to a signal's number, as shells do
+constexpr int kSignalled = 128;           ///< added to a signal's number, as shells do
+constexpr unsigned kSecondsOfSlice = 20;  ///< after a signal; more than any on a busy machine
 
 // The only variables that a signal handler may access.
 volatile std::sig_atomic_t received = 0;
 volatile std::sig_atomic_t saving = 0;
+volatile std::sig_atomic_t noticed = 0;
 volatile std::sig_atomic_t has_temporary = 0;
 char temporary[4096];  // written only while has_temporary is 0
 
@@ -23,12 +27,32 @@ extern "C" void on_interruption(int signal) {
     _exit(kSignalled + signal);
   }
   if (!received) received = signal;
+  if (!noticed) alarm(kSecondsOfSlice);
+}
+
+/// A slice takes a fraction of a second. If it does not end, the driver hangs, or compiles.
+extern "C" void on_alarm(int) {
+  if (!noticed) _exit(kSignalled + received);
+}
+
+/// The kernel sends SIGXCPU at the soft limit of processor time, and SIGKILL at the hard one;
+/// `ulimit -t` sets both to the same. Leaves time for saving between them.
+void leave_time_to_save() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_max == RLIM_INFINITY) return;
+  const rlim_t saving_seconds = kSecondsOfSlice + std::thread::hardware_concurrency();
+  if (limit.rlim_max <= 2 * saving_seconds || limit.rlim_cur + saving_seconds <= limit.rlim_max)
+    return;
+  limit.rlim_cur = limit.rlim_max - saving_seconds;
+  setrlimit(RLIMIT_CPU, &limit);
 }
 
 }  // namespace
 
 void catch_interruptions() {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  leave_time_to_save();
+  std::signal(SIGALRM, on_alarm);
+  for (const int signal : {SIGINT, SIGTERM, SIGXCPU}) {
     struct sigaction action {};
     if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) continue;
     action = {};
@@ -39,8 +63,10 @@ void catch_interruptions() {
 }
 
 Stop save_when_interrupted() {
-  return [] {
-    saving = 1;
+  // Until the first slice is traced there is nothing to save, and its kernels may compile for long.
+  return [slices = 0]() mutable {
+    if (slices++ > 0) saving = 1;
+    noticed = received;
     return received != 0;
   };
 }

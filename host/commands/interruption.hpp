@@ -1,5 +1,5 @@
-// Handles SIGINT and SIGTERM: a render that has results finishes its slice and saves them;
-// otherwise the process ends at once. Only this file sets signal handlers.
+// Handles SIGINT, SIGTERM and SIGXCPU (ulimit -t): a render that has results finishes its slice and
+// saves them; otherwise the process ends at once. Only this file sets signal handlers.
 #pragma once
 
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace dapple {
 
-/// Installs the handlers. Both signals end the process with exit code 128 + signal (130, 143): at
-/// once until the function of save_when_interrupted() is first called. Ignored signals stay
-/// ignored.
+/// Installs the handlers. The signals end the process with exit code 128 + signal (130, 143, 152):
+/// at once until the function of save_when_interrupted() is called for the second time. Ignored
+/// signals stay ignored.
 void catch_interruptions();
 
-/// Returns a function for RenderControl that tells whether a signal came. After its first call only
-/// a second SIGINT ends the process at once.
+/// Returns a function for RenderControl that tells whether a signal came. After its second call
+/// only a second SIGINT ends the process at once, and a signal that it does not notice within
+/// twenty seconds: a driver hangs.
 Stop save_when_interrupted();
 
 /// The file is removed if a signal ends the process at once. Empty: none. Longer paths than 4,095

@@ -93,6 +93,13 @@ FrameRange parse_frames(const std::string& text) {
   return range;
 }
 
+Shard parse_shard(const std::string& text) {
+  const auto parts = split(text, '/');
+  if (parts.size() != 2)
+    throw Error(ErrorKind::usage, fmt::format("--shard {}: expected I/N, as in 2/8", text));
+  return {parse_number<int>("--shard", parts[0]), parse_number<int>("--shard", parts[1])};
+}
+
 Estimator parse_estimator(const std::string& text) {
   if (text == "exact") return Estimator::exact;
   if (text == "prefiltered") return Estimator::prefiltered;

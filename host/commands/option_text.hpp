@@ -44,6 +44,9 @@ struct FrameRange {
 /// "1-24", "1-100:10", "7": not negative, at most 100,000 of them
 FrameRange parse_frames(const std::string& text);
 
+/// "2/8"
+Shard parse_shard(const std::string& text);
+
 /// "-0.25,0.25": two finite numbers
 std::pair<double, double> parse_shutter(const std::string& text);
 

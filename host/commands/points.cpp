@@ -14,6 +14,7 @@
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
 #include "commands/shared_options.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
 #include "points/point_file.hpp"
@@ -180,7 +181,7 @@ void run_points(const Arguments& a) {
     write_whole_file(a.stats_json, json.dump(2) + "\n");
   }
   if (a.quiet) return;
-  for (const std::string& note : result.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : result.notes) tell("note: {}\n", note);
   fmt::print("{} points; load {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\nwrote {}\n",
              list.points.size(), load_seconds, result.build_seconds, result.trace_seconds, seconds,
              a.output);

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "commands/tell.hpp"
+
 namespace dapple {
 namespace {
 
@@ -48,13 +50,12 @@ void ProgressBar::show(double done) {
   const std::string left =
       done > begun_ ? duration_text(elapsed * (1 - done) / (done - begun_)) + " left" : "starting";
   if (!terminal_) {
-    fmt::print(stderr, "{}{}{}: {:.0f} %, {}\n", verb_, what_.empty() ? "" : " ", what_, 100 * done,
-               left);
+    tell("{}{}{}: {:.0f} %, {}\n", verb_, what_.empty() ? "" : " ", what_, 100 * done, left);
     return;
   }
   const int full = static_cast<int>(done * kWidth);
-  fmt::print(stderr, "\r\033[K{}{}[{}{}] {:3.0f} %  {}", what_, what_.empty() ? "" : " ",
-             std::string(full, '#'), std::string(kWidth - full, '.'), 100 * done, left);
+  tell("\r\033[K{}{}[{}{}] {:3.0f} %  {}", what_, what_.empty() ? "" : " ", std::string(full, '#'),
+       std::string(kWidth - full, '.'), 100 * done, left);
   std::fflush(stderr);
   drawn_ = true;
 }
@@ -66,7 +67,7 @@ void ProgressBar::begin(const std::string& what) {
 
 void ProgressBar::clear() {
   if (!drawn_) return;
-  fmt::print(stderr, "\r\033[K");
+  tell("\r\033[K");
   std::fflush(stderr);
   drawn_ = false;
 }

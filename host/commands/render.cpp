@@ -2,6 +2,7 @@
 #include "dapple/render.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <cmath>
@@ -19,8 +20,8 @@
 #include "commands/render_arguments.hpp"
 #include "commands/shot.hpp"
 #include "commands/statistics_text.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
-#include "files/output_file.hpp"
 #include "film/exr_output.hpp"
 #include "film/exr_parts.hpp"
 #include "film/tone_map.hpp"
@@ -39,14 +40,11 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
           parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
 }
 
-void write_statistics(const RenderStatistics& statistics, const std::string& path) {
-  write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
-}
-
 void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format,
                     const PngOptions& png) {
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
-  write_exr(result.film, frame.output, format, result.interrupted ? Durable::no : Durable::yes);
+  if (!is_part_path(frame.output))
+    write_exr(result.film, frame.output, format, result.interrupted ? Durable::no : Durable::yes);
   if (!frame.deep.empty()) write_deep_exr(result.film, frame.deep);
   if (!frame.png.empty()) write_png(result.film, frame.png, "", png);
   if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
@@ -61,20 +59,28 @@ class NotePrinter {
     for (const std::string& note : notes) {
       if (!told_.insert(note).second) continue;
       if (printed++ < kMax) {
-        fmt::print(stderr, "note: {}\n", note);
+        tell("note: {}\n", note);
       } else {
         ++left;
       }
     }
-    if (left > 0) fmt::print(stderr, "note: and {} more\n", left);
+    if (left > 0) tell("note: and {} more\n", left);
   }
 
  private:
   std::set<std::string> told_;
 };
 
-void print_summary(const RenderStatistics& s, const Frame& frame) {
-  const std::string files = frame.output + (frame.png.empty() ? "" : " and " + frame.png);
+/// The files that were written; of an interrupted part there is none.
+std::string files_text(const Frame& frame, bool interrupted) {
+  std::vector<std::string> files;
+  if (!interrupted || !is_part_path(frame.output)) files.push_back(frame.output);
+  if (!frame.png.empty()) files.push_back(frame.png);
+  return files.empty() ? "nothing" : fmt::format("{}", fmt::join(files, " and "));
+}
+
+void print_summary(const RenderStatistics& s, const Frame& frame, bool interrupted) {
+  const std::string files = files_text(frame, interrupted);
   if (frame.title.empty()) {
     fmt::print("{}wrote {}\n", statistics_text(s), files);
     return;
@@ -117,7 +123,7 @@ void run_render(const RenderArguments& a) {
   const ExrFormat format = to_format(a);
   const std::vector<Frame> frames = list_frames(a);
   ProgressBar progress(a.quiet, "rendering");
-  const RenderControl control = to_control(a, progress);
+  RenderControl control = to_control(a, progress);
   check_files(frames, a);
   if (!options.cache.empty()) prepare_bvh_cache(options.cache);
   catch_interruptions();
@@ -132,6 +138,10 @@ void run_render(const RenderArguments& a) {
     Scene scene = shot.frame(first_seconds(a, frame));
     if (&frame == &frames.front()) check_files_spare(frames, a, scene.files);
     const double load_seconds = since(start);
+    control.part = is_part_path(frame.output) ? frame.output : "";
+    control.settings.clear();
+    if (frame.seconds)
+      control.settings.emplace_back("frame_seconds", fmt::format("{}", *frame.seconds));
     RenderResult result =
         render_frame(a, frame, shot, std::move(scene), renderer, options, control);
     progress.clear();
@@ -140,9 +150,6 @@ void run_render(const RenderArguments& a) {
     if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
 
     const auto writing = Clock::now();
-    if (frame.seconds)
-      result.film.metadata.settings.emplace_back("frame_seconds",
-                                                 fmt::format("{}", *frame.seconds));
     // The frames of a sequence have the exposure and the sky of the first.
     if (!png.exposure && !frame.png.empty())
       png.exposure = std::log2(automatic_exposure(result.film));
@@ -158,7 +165,7 @@ void run_render(const RenderArguments& a) {
       throw Error(ErrorKind::failed, result.checkpoint_failure + "; the image is written");
     if (!a.quiet) {
       notes.print(statistics.notes);
-      print_summary(statistics, frame);
+      print_summary(statistics, frame, result.interrupted);
     }
     if (result.interrupted || interruption_code() != 0) break;
     start = Clock::now();

@@ -128,6 +128,9 @@ void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
       "--resume", a.resume,
       "Continue from this checkpoint, with the same scene and options; you may raise --spp and "
       "--max-spp, and lower the targets");
+  app.add_option("--shard", a.shard,
+                 "Trace only a part of the samples, for dapple merge: I/N, the I-th of N parts, as "
+                 "in 2/8; --spp is that of the whole image");
 }
 
 void add_file_options(CLI::App& app, RenderArguments& a) {
@@ -210,14 +213,59 @@ void check_motion(const RenderArguments& a) {
   check_animation(a);
 }
 
+/// A part is for dapple merge, which makes the image.
+void check_part(const RenderArguments& a, const RenderOptions& options) {
+  const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
+  if (!is_part_path(a.output)) {
+    if (options.shard.count > 1)
+      refuse("--shard " + a.shard + " makes a part of an image, for dapple merge: -o FILE.dapple");
+    return;
+  }
+  if (is_adaptive(options)) {
+    refuse(fmt::format("-o {}: a part has a fixed number of samples: give --spp in place of {}",
+                       a.output, options.target_rmse > 0 ? "--target-rmse" : "--target-error"));
+  }
+  if (!a.half.empty() || a.multipart || a.compression != RenderArguments().compression)
+    refuse("-o " + a.output +
+           ": --half, --multipart and --compression are for the image: give them to dapple merge");
+  if (options.shard.count > 1 && !a.frames.empty() && options.light && !options.ambient)
+    refuse(
+        "--shard with --frames needs --ambient: without it the sky of all frames is chosen from "
+        "the samples of the first, and shards would choose differently");
+}
+
 }  // namespace
+
+bool is_part_path(const std::string& path) { return path.ends_with(".dapple"); }
+
+void add_file_options(CLI::App& app, RenderArguments& a) {
+  app.add_option("--png", a.png,
+                 "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
+                 "NAME_visits.png");
+  app.add_option("--exposure", a.exposure,
+                 "Exposure of the PNG in stops: 1 is twice as bright; auto: by what is seen")
+      ->capture_default_str();
+  app.add_option("--background", a.background,
+                 "Background of the PNG: sky, none (an alpha channel) or R,G,B, linear, 0 to 1")
+      ->capture_default_str();
+  app.add_option("--half", a.half,
+                 "Layers to store as 16-bit floats, with commas between, or all; Z, P, samples and "
+                 "ids stay 32-bit");
+  app.add_flag("--multipart", a.multipart, "Write a part for each layer");
+  app.add_option("--compression", a.compression,
+                 "Compression of the EXR: zip, zips, piz, none; dwaa (lossy, for colours only; "
+                 "with --multipart)")
+      ->capture_default_str();
+}
 
 void add_render_options(CLI::App& app, RenderArguments& a) {
   app.add_option("SCENE", a.scene,
                  "glTF file (.gltf, .glb), hair (.hair) or a procedural scene, "
                  "\"scene:tree?leaves=50000\"")
       ->required();
-  app.add_option("-o,--output", a.output, "OpenEXR file to write")->required();
+  app.add_option("-o,--output", a.output,
+                 "OpenEXR file to write; FILE.dapple: a part for dapple merge")
+      ->required();
   add_file_options(app, a);
   add_picture_options(app, a);
   add_scene_options(app, a);
@@ -274,9 +322,11 @@ RenderOptions to_options(const RenderArguments& a) {
     o.look = LookAt{parse_vector("--look-from", a.look_from), parse_vector("--look-at", a.look_at),
                     a.up.empty() ? V3f(0, 1, 0) : parse_vector("--up", a.up)};
   }
+  if (!a.shard.empty()) o.shard = parse_shard(a.shard);
   parse_png_options(a.exposure, a.background);
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
+  check_part(a, o);
   check_motion(a);
   return o;
 }

@@ -27,7 +27,7 @@ struct RenderArguments {
   std::optional<double> fps;  ///< default 24
   std::string shutter;
   int motion_samples = 0;
-  std::string checkpoint, checkpoint_every = "60s", resume;
+  std::string checkpoint, checkpoint_every = "60s", resume, shard;
   SceneOptions scene_options;
   RenderOptions options;
   std::optional<int> spp;
@@ -35,6 +35,12 @@ struct RenderArguments {
 };
 
 void add_render_options(CLI::App& app, RenderArguments& arguments);
+
+/// Those of the files that are written beside the image, and of its format.
+void add_file_options(CLI::App& app, RenderArguments& arguments);
+
+/// Whether the file is a part, FILE.dapple, and not an image.
+bool is_part_path(const std::string& path);
 
 double frames_per_second(const RenderArguments& arguments);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "files/output_file.hpp"
+
 namespace dapple {
 namespace {
 
@@ -109,6 +111,10 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
   json["estimator"] = s.estimator;
   json["notes"] = s.notes;
   return json;
+}
+
+void write_statistics(const RenderStatistics& statistics, const std::string& path) {
+  write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
 }
 
 std::string statistics_text(const RenderStatistics& s) {

@@ -11,6 +11,9 @@ namespace dapple {
 nlohmann::ordered_json statistics_json(const RenderStatistics& statistics);
 std::string statistics_text(const RenderStatistics& statistics);
 
+/// Writes them as JSON.
+void write_statistics(const RenderStatistics& statistics, const std::string& path);
+
 /// "1.7 GB", "512 kB", "12 bytes".
 std::string bytes_text(double bytes);
 

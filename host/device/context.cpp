@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "device/driver_needs.hpp"
 #include "device/environment_while.hpp"
 #include "device/opencl.hpp"
 #include "device/page_pool.hpp"
@@ -284,6 +285,8 @@ void DeviceContext::read(const Buffer& buffer, void* data, std::size_t bytes, st
 }
 
 void DeviceContext::prepare(const KernelName& kernel) {
+  if (state_->info.platform == kPoclPlatform && !is_compiled(kernel, CompileTo::machine_code))
+    require_linker();
   in_opencl("compiling kernel " + kernel.name, [&] { state_->kernel(kernel); });
 }
 

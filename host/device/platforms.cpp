@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "device/cpus.hpp"
+#include "device/driver_needs.hpp"
 #include "device/environment_while.hpp"
 #include "device/programs/kernel_cache.hpp"
 
@@ -140,6 +141,7 @@ DeviceInfo describe(const cl::Device& device) {
 }
 
 std::vector<cl::Device> usable_devices() {
+  check_process_limits();
   const DriverAtWork at_work("looking for devices");
   const KernelCache& cache = KernelCache::of_process();
   // PoCL reads these variables when its devices are first listed.

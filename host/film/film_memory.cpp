@@ -16,9 +16,15 @@ constexpr std::size_t kMatteSlotBytes = 80;   // MatteSums, two slots
 constexpr std::size_t kDeepBytes = 200;       // DeepSums and DeepAlpha, eight depths
 constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if all were domes
 
+double machine_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
 /// All values count twice. Sums are on the device, which on a CPU uses the same memory, and in the
 /// host's copy; channels are in the film and in the file that is being written.
-std::size_t bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
+std::size_t film_bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
   std::size_t sums =
       kSurfacePlanes + kAoPlanes + kNormalPlanes + kAlbedoPlanes + kLightPlanes * lights;
   std::size_t channels = kSurfaceChannels + kLightChannels * lights;
@@ -37,16 +43,10 @@ std::size_t bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
          types * (2 * kMatteChannels * sizeof(float)) + (types ? kMatteSlotBytes : 0) + deep;
 }
 
-double machine_bytes() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
-}  // namespace
-
 void check_film_memory(const View& view, std::size_t light_count, const RenderOptions& options) {
   constexpr double kGigabyte = 1e9;
   const double needs = static_cast<double>(view.crop.width()) * view.crop.height() *
-                       static_cast<double>(bytes_per_pixel(light_count, options));
+                       static_cast<double>(film_bytes_per_pixel(light_count, options));
   const double has = machine_bytes();
   if (needs <= has / 2 || has <= 0) return;
   throw Error(

@@ -14,4 +14,7 @@ namespace dapple {
 void check_film_memory(const View& view, std::size_t light_count,
                        const RenderOptions& options = {});
 
+/// Bytes that each pixel of such a picture takes while it is rendered.
+std::size_t film_bytes_per_pixel(std::size_t light_count, const RenderOptions& options);
+
 }  // namespace dapple

@@ -25,11 +25,22 @@ double largest_coordinate(const Box3f& box) {
   return largest;
 }
 
+FilmScales scales_of(const View& view, const Box3f& bounds) {
+  const V3f eye(view.camera.to_world[3][0], view.camera.to_world[3][1], view.camera.to_world[3][2]);
+  Box3f with_eye = bounds;
+  with_eye.extendBy(eye);
+  return {scale_for(largest_coordinate(bounds)), scale_for((with_eye.max - with_eye.min).length())};
+}
+
 }  // namespace
 
 FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
                        const std::vector<Light>& scene_lights, bool has_normals)
-    : pixels(view.pixel_count()), plane_count(kSurfacePlanes) {
+    : FilmLayout(view.pixel_count(), options, scales_of(view, bounds), scene_lights, has_normals) {}
+
+FilmLayout::FilmLayout(std::uint32_t pixel_count, const RenderOptions& options, FilmScales scales,
+                       const std::vector<Light>& scene_lights, bool has_normals)
+    : pixels(pixel_count), plane_count(kSurfacePlanes) {
   if (options.ao) {
     ao = plane_count;
     plane_count += kAoPlanes;
@@ -62,11 +73,8 @@ FilmLayout::FilmLayout(const View& view, const RenderOptions& options, const Box
   }
   unit_scale = scale_for(1.0);
   light_scale = scale_for(1024.0 * std::numbers::pi);
-  position_scale = scale_for(largest_coordinate(bounds));
-  const V3f eye(view.camera.to_world[3][0], view.camera.to_world[3][1], view.camera.to_world[3][2]);
-  Box3f with_eye = bounds;
-  with_eye.extendBy(eye);
-  depth_scale = scale_for((with_eye.max - with_eye.min).length());
+  position_scale = scales.position;
+  depth_scale = scales.depth;
 }
 
 }  // namespace dapple

@@ -30,6 +30,11 @@ struct LightPlaneRange {
   [[nodiscard]] constexpr std::uint32_t count() const { return 2 * channels + 2; }
 };
 
+/// Powers of two that positions and depths are multiplied by.
+struct FilmScales {
+  float position = 0, depth = 0;
+};
+
 /// The first plane of each pass, and the powers of two that values are multiplied by. The sum of
 /// 2^24 samples of the largest value fits 63 bits.
 struct FilmLayout {
@@ -51,6 +56,9 @@ struct FilmLayout {
 
   FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
              const std::vector<Light>& lights, bool has_normals = false);
+  /// For scales that another layout of the scene had.
+  FilmLayout(std::uint32_t pixels, const RenderOptions& options, FilmScales scales,
+             const std::vector<Light>& lights, bool has_normals);
   /// The first plane of the shading pass; 0: there is no such pass.
   [[nodiscard]] std::uint32_t shading() const { return normals ? normals : albedo; }
   [[nodiscard]] std::uint32_t ao_visits() const { return ao + 4; }

@@ -3,58 +3,92 @@
 #include <algorithm>
 
 namespace dapple {
+namespace {
 
-void MatteSums::add(std::size_t pixel, std::uint32_t object, std::uint32_t material) {
-  Pixel& slots = slots_[pixel];
+constexpr std::size_t kSlotNumbers = 4;
+
+}  // namespace
+
+MatteSlot* MatteSums::Pixel::find(std::uint32_t object, std::uint32_t material) {
   const auto is_it = [&](const MatteSlot& slot) {
     return slot.object == object && slot.material == material;
   };
-  if (slots.first.count == 0) slots.first = {object, material, 0};
-  if (is_it(slots.first)) {
-    ++slots.first.count;
-    return;
-  }
-  const auto found = std::find_if(slots.others.begin(), slots.others.end(), is_it);
-  if (found != slots.others.end())
-    ++found->count;
-  else if (1 + slots.others.size() < kMaxMatteSlots)
-    slots.others.push_back({object, material, 1});
+  if (first.count && is_it(first)) return &first;
+  const auto found = std::find_if(others.begin(), others.end(), is_it);
+  return found == others.end() ? nullptr : &*found;
 }
 
-std::vector<MatteSlot> MatteSums::of_pixel(std::size_t pixel) const {
-  std::vector<MatteSlot> slots;
-  if (slots_[pixel].first.count == 0) return slots;
-  slots.push_back(slots_[pixel].first);
-  slots.insert(slots.end(), slots_[pixel].others.begin(), slots_[pixel].others.end());
-  return slots;
+void MatteSums::Pixel::append(const MatteSlot& slot) {
+  if (first.count == 0)
+    first = slot;
+  else
+    others.push_back(slot);
+}
+
+std::vector<MatteSlot> MatteSums::Pixel::slots() const {
+  std::vector<MatteSlot> all;
+  if (first.count == 0) return all;
+  all.push_back(first);
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
+}
+
+void MatteSums::add(std::size_t pixel, std::uint32_t object, std::uint32_t material,
+                    std::uint32_t sample) {
+  Pixel& slots = pixels_[pixel];
+  if (MatteSlot* slot = slots.find(object, material))
+    ++slot->count;
+  else if (slots.size() < max_slots_)
+    slots.append({object, material, 1, sample});
+}
+
+void MatteSums::add(std::size_t pixel, const std::vector<MatteSlot>& more) {
+  Pixel& slots = pixels_[pixel];
+  for (const MatteSlot& one : more) {
+    MatteSlot* slot = slots.find(one.object, one.material);
+    if (!slot) {
+      slots.append(one);
+      continue;
+    }
+    slot->count += one.count;
+    slot->first = std::min(slot->first, one.first);
+  }
+}
+
+void MatteSums::keep_first() {
+  for (Pixel& pixel : pixels_) {
+    if (pixel.size() < 2) continue;
+    std::vector<MatteSlot> slots = pixel.slots();
+    std::sort(slots.begin(), slots.end(),
+              [](const MatteSlot& a, const MatteSlot& b) { return a.first < b.first; });
+    if (slots.size() > kMaxMatteSlots) slots.resize(kMaxMatteSlots);
+    pixel.first = slots[0];
+    pixel.others.assign(slots.begin() + 1, slots.end());
+  }
 }
 
 std::vector<std::uint32_t> MatteSums::packed() const {
   std::vector<std::uint32_t> values;
-  for (std::size_t p = 0; p < slots_.size(); ++p) {
-    const std::vector<MatteSlot> slots = of_pixel(p);
-    values.push_back(static_cast<std::uint32_t>(slots.size()));
-    for (const MatteSlot& slot : slots)
-      values.insert(values.end(), {slot.object, slot.material, slot.count});
+  for (const Pixel& pixel : pixels_) {
+    values.push_back(static_cast<std::uint32_t>(pixel.size()));
+    for (const MatteSlot& slot : pixel.slots())
+      values.insert(values.end(), {slot.object, slot.material, slot.count, slot.first});
   }
   return values;
 }
 
 bool MatteSums::unpack(std::span<const std::uint32_t> packed, std::size_t pixels,
                        std::size_t objects, std::size_t materials) {
-  slots_.assign(pixels, {});
+  pixels_.assign(pixels, {});
   std::size_t at = 0;
-  for (Pixel& slots : slots_) {
-    if (at == packed.size() || packed[at] > kMaxMatteSlots) return false;
+  for (Pixel& pixel : pixels_) {
+    if (at == packed.size()) return false;
     const std::size_t count = packed[at++];
-    if (3 * count > packed.size() - at) return false;
-    for (std::size_t i = 0; i < count; ++i, at += 3) {
-      const MatteSlot slot{packed[at], packed[at + 1], packed[at + 2]};
+    if (kSlotNumbers * count > packed.size() - at) return false;
+    for (std::size_t i = 0; i < count; ++i, at += kSlotNumbers) {
+      const MatteSlot slot{packed[at], packed[at + 1], packed[at + 2], packed[at + 3]};
       if (slot.object >= objects || slot.material >= materials || slot.count == 0) return false;
-      if (i == 0)
-        slots.first = slot;
-      else
-        slots.others.push_back(slot);
+      pixel.append(slot);
     }
   }
   return at == packed.size();

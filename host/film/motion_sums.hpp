@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dapple/scene.hpp"
+#include "film/wrapped_sum.hpp"
 
 namespace dapple {
 
@@ -31,11 +33,20 @@ class MotionSums {
   }
   [[nodiscard]] bool empty() const { return sums_.empty(); }
 
+  /// The sums of a pixel, in fixed point, for checkpoints and for adding up shards.
+  using Sum = std::array<std::int64_t, 2>;
+  explicit MotionSums(std::vector<Sum> sums) : sums_(std::move(sums)) {}
+  [[nodiscard]] std::span<const Sum> values() const { return sums_; }
+  void add(std::size_t pixel, const Sum& sum) {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      sums_[pixel][axis] = wrapped_sum(sums_[pixel][axis], sum[axis]);
+  }
+
  private:
   /// 2^24 samples of the largest motion fit 63 bits.
   static constexpr double kMax = 1 << 20, kScale = 1 << 18;
 
-  std::vector<std::array<std::int64_t, 2>> sums_;
+  std::vector<Sum> sums_;
 };
 
 }  // namespace dapple

@@ -72,6 +72,26 @@ void check_targets(const RenderOptions& options) {
   }
 }
 
+void check_shard(const RenderOptions& options) {
+  const Shard& shard = options.shard;
+  if (shard.count < 1 || shard.index < 1 || shard.index > shard.count) {
+    throw Error(ErrorKind::usage,
+                fmt::format("--shard {}/{}: expected I/N with I from 1 to N, as in 2/8",
+                            shard.index, shard.count));
+  }
+  if (shard.count == 1) return;
+  if (is_adaptive(options)) {
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--shard does not go with {}: how many samples a pixel needs is decided "
+                    "from the samples of all shards; give --spp",
+                    options.target_rmse > 0 ? "--target-rmse" : "--target-error"));
+  }
+  if (shard.count <= options.spp) return;
+  throw Error(ErrorKind::usage, fmt::format("--shard {}/{}: --spp {} makes at most {} shards",
+                                            shard.index, shard.count, options.spp, options.spp));
+}
+
 }  // namespace
 
 std::string name_of(Estimator estimator) {
@@ -139,6 +159,7 @@ void validate(const RenderOptions& options) {
   check_range("footprint_spp", options.footprint_spp, 0, 1 << 20);
   check_range("footprint_ao_rays", options.footprint_ao_rays, 0, 4096);
   check_targets(options);
+  check_shard(options);
   check_camera_splitting(options.camera_splitting);
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);

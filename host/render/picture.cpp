@@ -55,7 +55,8 @@ class PictureTracer {
         camera_(camera_params(view, options, scene_.bounds)),
         state_(std::move(state)),
         lookups_(lookups),
-        mattes_(lookups.mattes ? layout.pixels : 0),
+        mattes_(lookups.mattes ? layout.pixels : 0,
+                state_.first_sample > 0 ? kAnyMatteSlots : kMaxMatteSlots),
         motion_(lookups.motion ? layout.pixels : 0),
         deep_(lookups.deep ? layout.pixels : 0) {
     camera_.keep_hits = layout.shading() || lookups_.any();
@@ -75,12 +76,14 @@ class PictureTracer {
   }
 
   TracedPicture trace(const TraceControl& control) {
-    SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples);
+    SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples,
+                    state_.first_sample);
     traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
+    saved_samples_ = traced_;
     TracedPicture picture;
     while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control)))
       picture.interrupted = !trace_round(plan, control);
-    if (control.save) save(plan, control);
+    keep_state(plan, control, !picture.interrupted);
     picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
     if (plan.is_adaptive() && all_have_variances(picture.samples))
       picture.errors = standard_errors(picture.samples);
@@ -115,7 +118,8 @@ class PictureTracer {
     if (!state_.deep.empty()) deep_ = std::move(state_.deep);
     if (state_.sums.empty()) return;
     context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
-    context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
+    if (!state_.squares.empty())
+      context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());
     release_sums();
   }
 
@@ -129,9 +133,11 @@ class PictureTracer {
 
   void read_state(const SamplePlan& plan) {
     state_.sums.resize(layout_.sum_bytes() / sizeof(std::int64_t));
-    state_.squares.resize(layout_.square_bytes() / sizeof(float));
+    // Without a target nobody reads them, and they depend on the order of samples.
+    if (plan.is_adaptive()) state_.squares.resize(layout_.square_bytes() / sizeof(float));
     context_.read(film_.sums, state_.sums.data(), layout_.sum_bytes());
-    context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
+    if (plan.is_adaptive())
+      context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
     context_.finish();
     if (lookups_.mattes) state_.mattes = mattes_.packed();
     state_.motion = motion_;
@@ -182,10 +188,10 @@ class PictureTracer {
     // With a target the rounds so far are only a part of the work.
     const double given = sum_of(plan.samples());
     const double total = plan.is_adaptive() ? given / plan.fraction_done()
-                                            : static_cast<double>(layout_.pixels) * options_.spp;
+                                            : static_cast<double>(layout_.pixels) * plan.minimum();
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
       if (control.stop && control.stop()) return false;
-      if (control.save &&
+      if (control.save && traced_ > saved_samples_ &&
           Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
         save(plan, control);
       const WorkGroup& group = round.groups[round.group];
@@ -206,6 +212,16 @@ class PictureTracer {
     control.save(state_);
     release_sums();
     saved_ = Clock::now();
+    saved_samples_ = traced_;
+  }
+
+  /// At the end: `finished` unless interrupted.
+  void keep_state(const SamplePlan& plan, const TraceControl& control, bool finished) {
+    if (!control.save && !control.finish) return;
+    read_state(plan);
+    if (control.save) control.save(state_);
+    if (control.finish && finished) control.finish(state_);
+    release_sums();
   }
 
   std::vector<std::vector<float>> standard_errors(const std::vector<std::uint32_t>& samples) {
@@ -272,17 +288,20 @@ class PictureTracer {
     tbb::parallel_for(0u, slice.pixel_count, [&](uint entry) {
       const uint pixel = work[slice.first_work + entry].pixel;
       const uint begin = entry * slice.sample_count;
-      for (uint i = begin; i < begin + slice.sample_count; ++i)
-        if (hits[i / DAPPLE_HIT_BITS].hits >> i % DAPPLE_HIT_BITS & 1u) add_hit(pixel, points[i]);
+      for (uint i = begin; i < begin + slice.sample_count; ++i) {
+        if (!(hits[i / DAPPLE_HIT_BITS].hits >> i % DAPPLE_HIT_BITS & 1u)) continue;
+        add_hit(pixel, work[slice.first_work + entry].first_sample + slice.first_sample + i - begin,
+                points[i]);
+      }
     });
   }
 
-  void add_hit(uint pixel, const SurfacePoint& point) {
+  void add_hit(uint pixel, uint sample, const SurfacePoint& point) {
     const uint instance = std::bit_cast<uint>(point.t), primitive = point.visits;
     const float* at = point.position;
     if (lookups_.mattes) {
       const auto ids = lookups_.mattes->at(instance, primitive);
-      mattes_.add(pixel, ids.object, ids.material);
+      mattes_.add(pixel, ids.object, ids.material, sample);
     }
     if (lookups_.motion)
       motion_.add(pixel, lookups_.motion->at(instance, primitive, {at[0], at[1], at[2]}));
@@ -380,8 +399,9 @@ class PictureTracer {
   MatteSums mattes_;
   MotionSums motion_;
   DeepSums deep_;
-  double traced_ = 0;    ///< number of samples of all pixels
-  double progress_ = 0;  ///< [0,1], estimated; never decreases
+  double traced_ = 0;         ///< number of samples of all pixels
+  double saved_samples_ = 0;  ///< of them in the last checkpoint
+  double progress_ = 0;       ///< [0,1], estimated; never decreases
   std::map<std::string, double> earlier_seconds_;
   Clock::time_point saved_ = Clock::now();
 };

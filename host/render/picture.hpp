@@ -18,9 +18,10 @@ namespace dapple {
 /// Progress, interruption and checkpoints of tracing; each function may be empty.
 struct TraceControl {
   Progress progress;
-  Stop stop;                                    ///< asked before each slice
-  std::function<void(const TraceState&)> save;  ///< called every `save_every` and at the end
-  double save_every = 0;                        ///< seconds
+  Stop stop;                                      ///< asked before each slice
+  std::function<void(const TraceState&)> save;    ///< called every `save_every` and at the end
+  double save_every = 0;                          ///< seconds
+  std::function<void(const TraceState&)> finish;  ///< called once all samples are traced
   SampleOrder order = SampleOrder::pixels;
 };
 

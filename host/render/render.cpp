@@ -25,6 +25,7 @@
 #include "render/resume.hpp"
 #include "render/shutter.hpp"
 #include "render/stopwatch.hpp"
+#include "sampling/shard.hpp"
 
 namespace dapple {
 namespace {
@@ -48,7 +49,7 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
 }
 
 FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions& options,
-                      const DeviceInfo& device, double ambient) {
+                      const DeviceInfo& device, const RenderControl& control) {
   FilmMetadata m;
   m.world_to_camera = world_to_exr_camera(view.camera);
   m.world_to_ndc = world_to_ndc(view);
@@ -69,7 +70,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   if (is_adaptive(options)) set("max_spp", options.max_spp);
   if (footprint_samples(options) != options.spp) set("footprint_spp", footprint_samples(options));
   set("camera_splitting", options.camera_splitting);
-  set("ambient", ambient);
+  set(kAmbient, 0.0);  // set_ambient() knows it once there are sums
   set("ao_rays", options.ao_rays);
   set("light_rays", options.light_rays);
   set("ao_distance", options.ao_distance);
@@ -77,6 +78,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   for (const auto& [material, value] : options.opacity) {
     m.settings.emplace_back("opacity_" + layer_name(material), fmt::format("{}", value));
   }
+  m.settings.insert(m.settings.end(), control.settings.begin(), control.settings.end());
   return m;
 }
 
@@ -308,20 +310,28 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const MatteNames names = matte_names(scene, options);
   const FilmLayout layout(view, sampled, bounds, lights,
                           !kept.on_device.buffers->corner_normals.empty());
-  TraceControl tracing{control.progress, control.stop, {}, 0, SampleOrder::pixels};
-  if (resumed || !control.checkpoint.empty()) {
+  const FilmMetadata about_picture = metadata(scene, view, options, device.info(), control);
+  TraceControl tracing{control.progress, control.stop, {}, 0, {}, SampleOrder::pixels};
+  TraceState state;
+  state.first_sample = rays_of(options.shard, options.spp).first * splitting_factor(options);
+  if (resumed || !control.checkpoint.empty() || !control.part.empty()) {
     Checkpoint about{option_settings(options, view),
                      content_settings(options, view, bvh, *kept.on_device.buffers),
-                     footprint_samples(options), statistics.device};
+                     footprint_samples(options), statistics.device,
+                     record_of(view, sampled, layout, lights, names, about_picture)};
     about.content.emplace_back("names of objects", text_checksum(names.objects));
-    if (resumed) check_resumed(control.resume, *resumed, about, layout, names, statistics.notes);
+    if (options.motion)
+      about.content.emplace_back("next frame (--frame, --fps)", pose_checksum(next_at(0)));
+    if (resumed) {
+      check_resumed(control.resume, *resumed, about, layout, sampled, statistics.notes);
+      state = std::move(resumed->state);
+    }
     write_checkpoints(tracing, control, std::move(about), result);
   }
 
   const Stopwatch trace_time;
-  const TracedPicture picture =
-      kept.trace(shutter, scene, view, options, layout, lights, std::move(tracing),
-                 resumed ? std::move(resumed->state) : TraceState{}, statistics);
+  const TracedPicture picture = kept.trace(shutter, scene, view, options, layout, lights,
+                                           std::move(tracing), std::move(state), statistics);
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   add_trace_statistics(statistics, picture, layout);
 
@@ -329,8 +339,9 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
                  view.height,
                  view.crop,
                  develop(picture, layout, sampled, lights, statistics),
-                 metadata(scene, view, options, device.info(), statistics.ambient),
+                 about_picture,
                  options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
+  set_ambient(result.film.metadata, statistics.ambient);
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   result.interrupted = picture.interrupted;

@@ -18,14 +18,19 @@ std::string passes_text(const RenderOptions& options) {
   if (options.light) names.emplace_back("light");
   if (options.albedo) names.emplace_back("albedo");
   if (options.back) names.emplace_back("back");
+  if (options.motion) names.emplace_back("motion");
   return fmt::format("{}", fmt::join(names, ","));
+}
+
+void add_matrix(ChecksumStream& stream, const M44f& matrix) {
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) stream.add_value(matrix[row][column]);
 }
 
 std::string camera_checksum(const Camera& camera) {
   ChecksumStream stream;
   stream.add_value(camera.kind);
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) stream.add_value(camera.to_world[row][column]);
+  add_matrix(stream, camera.to_world);
   stream.add_value(camera.fov_y);
   stream.add_value(camera.half_height);
   stream.add_value(camera.lens_radius);
@@ -76,6 +81,13 @@ bool is_checksum(const std::string& value) {
   return value.size() == 32 && value.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
+/// "2/8 of --spp 64": with other sample counts it would be other samples.
+std::string shard_text(const RenderOptions& options) {
+  const Shard& shard = options.shard;
+  if (shard.count == 1) return "1/1";
+  return fmt::format("{}/{} of --spp {}", shard.index, shard.count, options.spp);
+}
+
 }  // namespace
 
 Settings option_settings(const RenderOptions& options, const View& view) {
@@ -85,6 +97,7 @@ Settings option_settings(const RenderOptions& options, const View& view) {
       {"--width", number(options.width)},
       {"--height", number(options.height)},
       {"--crop", fmt::format("{},{},{},{}", crop.x0, crop.y0, crop.x1, crop.y1)},
+      {"--shard", shard_text(options)},
       {"--seed", number(options.seed)},
       {"--estimator", name_of(options.estimator)},
       {"--packets", name_of(options.packets)},
@@ -121,19 +134,35 @@ std::string text_checksum(const std::vector<std::string>& texts) {
   return hex_text(stream.value());
 }
 
-void require_same(const std::string& path, const Settings& then, const Settings& now) {
+std::string pose_checksum(const Scene& scene) {
+  ChecksumStream stream;
+  for (const Mesh& mesh : scene.meshes) stream.add_range(mesh.positions);
+  for (const Instance& instance : scene.instances) add_matrix(stream, instance.to_world);
+  for (const Camera& camera : scene.cameras) add_matrix(stream, camera.to_world);
+  return hex_text(stream.value());
+}
+
+bool Difference::is_opaque() const { return is_checksum(before) || is_checksum(now); }
+
+std::optional<Difference> first_difference(const Settings& then, const Settings& now) {
   for (const auto& asked : now) {
     const std::string &name = asked.first, &value = asked.second;  // clang 14 captures no bindings
     const auto found = std::find_if(then.begin(), then.end(),
                                     [&](const auto& setting) { return setting.first == name; });
     const std::string before = found == then.end() ? "none" : found->second;
-    if (before == value) continue;
-    const bool opaque = is_checksum(before) || is_checksum(value);
-    throw Error(ErrorKind::usage,
-                opaque ? fmt::format("--resume {}: was made with another {}", path, name)
-                       : fmt::format("--resume {}: was made with {} {}, this run has {} {}", path,
-                                     name, before, name, value));
+    if (before != value) return Difference{name, before, value};
   }
+  return {};
+}
+
+void require_same(const std::string& path, const Settings& then, const Settings& now) {
+  const auto other = first_difference(then, now);
+  if (!other) return;
+  throw Error(ErrorKind::usage,
+              other->is_opaque()
+                  ? fmt::format("--resume {}: was made with another {}", path, other->name)
+                  : fmt::format("--resume {}: was made with {} {}, this run has {} {}", path,
+                                other->name, other->before, other->name, other->now));
 }
 
 }  // namespace dapple

@@ -3,6 +3,7 @@
 // they may grow.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,20 @@ Settings content_settings(const RenderOptions& options, const View& view, const 
 
 /// A checksum of texts in their order.
 std::string text_checksum(const std::vector<std::string>& texts);
+
+/// A checksum of the poses of a scene: what motion vectors depend on beside the scene that they
+/// begin at.
+std::string pose_checksum(const Scene& scene);
+
+/// A setting that two files or runs have with different values; "none" where one has none.
+struct Difference {
+  std::string name, before, now;
+  /// Values are checksums, which say nothing to users.
+  [[nodiscard]] bool is_opaque() const;
+};
+
+/// The first setting of `now` that `then` lacks or has with another value.
+std::optional<Difference> first_difference(const Settings& then, const Settings& now);
 
 /// Throws Error usage, "--resume PATH: ...", naming the first setting of `now` that `then`, the
 /// settings of the checkpoint `path`, lacks or has with another value.

@@ -8,6 +8,7 @@
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "render/stopwatch.hpp"
+#include "sampling/shard.hpp"
 
 namespace dapple {
 namespace {
@@ -26,11 +27,28 @@ void require_enough_samples(const std::string& path, const TraceState& state,
                           most, adaptive ? "--max-spp" : "--spp", asked));
 }
 
+/// A render goes on from its first sample up to some other, in all pixels.
+void require_one_piece(const std::string& path, const Checkpoint& checkpoint,
+                       const RenderOptions& options) {
+  const std::uint32_t first = rays_of(options.shard, options.spp).first;
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::usage, fmt::format("--resume {}: {}", path, why));
+  };
+  if (checkpoint.pieces.size() > 1) {
+    refuse(fmt::format("is not whole, it lacks {}; dapple merge adds the missing parts",
+                       missing_text(checkpoint.pieces, checkpoint.picture.metadata.samples)));
+  }
+  if (checkpoint.state.first_sample != first * splitting_factor(options))
+    refuse("begins with another sample; dapple merge adds the parts before it");
+}
+
 }  // namespace
 
 Checkpoint resume(const std::string& path, const View& view, RenderOptions& options) {
   Checkpoint checkpoint = read_checkpoint(path);
+  if (checkpoint.pieces.size() > 1) require_one_piece(path, checkpoint, options);
   require_same(path, checkpoint.options, option_settings(options, view));
+  require_one_piece(path, checkpoint, options);
   require_enough_samples(path, checkpoint.state, options);
   if (options.footprint_spp > 0 && options.footprint_spp != checkpoint.footprint_spp) {
     throw Error(ErrorKind::usage,
@@ -42,13 +60,10 @@ Checkpoint resume(const std::string& path, const View& view, RenderOptions& opti
 }
 
 void check_resumed(const std::string& path, const Checkpoint& resumed, const Checkpoint& now,
-                   const FilmLayout& layout, const MatteNames& names,
+                   const FilmLayout& layout, const RenderOptions& options,
                    std::vector<std::string>& notes) {
   require_same(path, resumed.content, now.content);
-  check_state(
-      path, resumed.state,
-      {layout.pixels, layout.sum_bytes() / sizeof(std::int64_t),
-       layout.square_bytes() / sizeof(float), names.objects.size(), names.materials.size()});
+  check_state("--resume " + path, resumed.state, shape_of(layout, options, now.picture.names));
   notes.push_back("went on from " + path);
   if (resumed.device != now.device) {
     notes.push_back(
@@ -59,6 +74,11 @@ void check_resumed(const std::string& path, const Checkpoint& resumed, const Che
 
 void write_checkpoints(TraceControl& tracing, const RenderControl& control, Checkpoint about,
                        RenderResult& result) {
+  if (!control.part.empty()) {
+    tracing.finish = [&control, about](const TraceState& state) {
+      write_checkpoint(control.part, about, state, Durable::yes);
+    };
+  }
   if (control.checkpoint.empty()) return;
   tracing.order = SampleOrder::passes;
   tracing.save_every = control.checkpoint_every;
@@ -78,10 +98,13 @@ std::string interruption_note(const TracedPicture& picture, const RenderOptions&
                               const RenderControl& control) {
   const double samples = std::accumulate(picture.samples.begin(), picture.samples.end(), 0.0) /
                          static_cast<double>(picture.samples.size() * splitting_factor(options));
+  const std::string part =
+      control.part.empty() ? "" : control.part + " is not written, it would lack samples; ";
   const std::string next = control.checkpoint.empty()
                                ? "with --checkpoint F it could go on"
                                : "--resume " + control.checkpoint + " goes on";
-  return fmt::format("interrupted after {:.3g} samples a pixel on average; {}", samples, next);
+  return fmt::format("interrupted after {:.3g} samples a pixel on average; {}{}", samples, part,
+                     next);
 }
 
 }  // namespace dapple

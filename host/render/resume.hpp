@@ -14,13 +14,14 @@ namespace dapple {
 Checkpoint resume(const std::string& path, const View& view, RenderOptions& options);
 
 /// Throws Error unless `resumed`, read from `path`, belongs to the picture that `now` describes.
-/// `names`: of Cryptomattes, if there are any. Adds a note about its origin to `notes`.
+/// Adds a note about its origin to `notes`.
 void check_resumed(const std::string& path, const Checkpoint& resumed, const Checkpoint& now,
-                   const FilmLayout& layout, const MatteNames& names,
+                   const FilmLayout& layout, const RenderOptions& options,
                    std::vector<std::string>& notes);
 
-/// Makes `tracing` write checkpoints as `control` asks, with the settings of `about`. A failure is
-/// stored in `result` until the end, so that a full disk does not lose the picture.
+/// Makes `tracing` write checkpoints and the part as `control` asks, with the settings of `about`.
+/// A failure of a checkpoint is stored in `result` until the end, so that a full disk does not lose
+/// the picture.
 void write_checkpoints(TraceControl& tracing, const RenderControl& control, Checkpoint about,
                        RenderResult& result);
 

@@ -9,27 +9,25 @@
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "scene/corner_normals.hpp"
+#include "sampling/shard.hpp"
 
 namespace dapple {
 namespace {
 
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorKind::usage, why); }
 
-void check_motion(const Shutter& shutter, const RenderOptions& options,
-                  const RenderControl& control) {
+void check_motion(const Shutter& shutter, const RenderOptions& options) {
   if (!options.motion) return;
   if (!shutter.next_at)
     refuse("motion vectors need the next frame: give --frame or --frames (render_shutter())");
   if (options.ground) refuse("with motion vectors the ground must be part of the scenes");
-  if (!control.checkpoint.empty() || !control.resume.empty())
-    refuse("--checkpoint and --resume do not go with --passes motion");
 }
 
 }  // namespace
 
 void check_shutter(const Shutter& shutter, const RenderOptions& options,
                    const RenderControl& control) {
-  check_motion(shutter, options, control);
+  check_motion(shutter, options);
   if (options.deep && !(control.checkpoint.empty() && control.resume.empty()))
     refuse("--checkpoint and --resume do not go with --deep");
   if (shutter.times == 1) return;
@@ -38,6 +36,10 @@ void check_shutter(const Shutter& shutter, const RenderOptions& options,
     refuse("--target-error and --target-rmse do not go with --shutter: give --spp");
   if (!control.checkpoint.empty() || !control.resume.empty())
     refuse("--checkpoint and --resume do not go with --shutter");
+  if (!control.part.empty())
+    refuse(
+        "--shutter does not go with --shard and -o FILE.dapple: the moments of a shutter are of "
+        "different scenes; let shards be frames");
   if (shutter.times < 1 || shutter.times > options.spp)
     refuse(fmt::format("--motion-samples is {}; it must be from 1 to --spp ({})", shutter.times,
                        options.spp));
@@ -56,7 +58,8 @@ ShutterScenes look_at_moments(const Shutter& shutter) {
 RenderOptions until(const RenderOptions& options, int time, int times) {
   RenderOptions part = options;
   part.footprint_spp = footprint_samples(options);
-  part.spp = static_cast<int>(std::int64_t{options.spp} * (time + 1) / times);
+  const auto end = static_cast<int>(rays_of(options.shard, options.spp).end);
+  part.spp = std::min(end, static_cast<int>(std::int64_t{options.spp} * (time + 1) / times));
   return by_sample(part);
 }
 

@@ -28,7 +28,8 @@ struct ShutterScenes {
 
 ShutterScenes look_at_moments(const Shutter& shutter);
 
-/// The options with the samples of the first `time` + 1 moments, as by_sample() returns them.
+/// The options as by_sample() returns them, with the end of the shard for `spp`, or that of the
+/// first `time` + 1 moments if it is less.
 RenderOptions until(const RenderOptions& options, int time, int times);
 
 /// The progress of the first `time` moments out of `times`.

@@ -15,12 +15,13 @@ namespace dapple {
 
 struct TraceState {
   std::uint32_t slice_samples = 0;     ///< samples of a slice; chosen by the first device
+  std::uint32_t first_sample = 0;      ///< the number of each pixel's first sample
   std::vector<std::int64_t> sums;      ///< planes as FilmLayout says
-  std::vector<float> squares;          ///< planes as FilmLayout says
+  std::vector<float> squares;          ///< planes as FilmLayout says; empty without a target
   std::vector<std::uint32_t> samples;  ///< of each pixel, those of the whole round included
   std::vector<std::uint32_t> mattes;   ///< MatteSums::packed(), if requested
-  MotionSums motion;                   ///< of no pixels unless requested; not in checkpoints
-  DeepSums deep;                       ///< the same
+  MotionSums motion;                   ///< of no pixels unless requested
+  DeepSums deep;                       ///< the same; not in checkpoints
   Round round;
   std::map<std::string, double> pass_seconds;  ///< device seconds so far, by label
 };

@@ -80,10 +80,11 @@ bool all_equal(const std::vector<std::uint32_t>& values) {
 /// Groups of pixels by the number of samples that they get.
 using Groups = std::map<std::uint32_t, WorkGroup>;
 
-void add_to_group(Groups& groups, std::uint32_t pixel, std::uint32_t more, std::uint32_t& has) {
+void add_to_group(Groups& groups, std::uint32_t pixel, std::uint32_t more, std::uint32_t& has,
+                  std::uint32_t first = 0) {
   WorkGroup& group = groups[more];
   group.samples = more;
-  group.work.push_back({pixel, has});
+  group.work.push_back({pixel, first + has});
   has += more;
 }
 
@@ -96,11 +97,13 @@ std::vector<WorkGroup> in_order(Groups&& groups) {
 }  // namespace
 
 SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
-                       std::vector<std::uint32_t> samples)
+                       std::vector<std::uint32_t> samples, std::uint32_t first)
     : width_(width),
       order_(tile_order(width, height)),
       samples_(std::move(samples)),
-      min_(static_cast<std::uint32_t>(options.spp)),
+      first_(first),
+      min_(static_cast<std::uint32_t>(options.spp) -
+           std::min(first, static_cast<std::uint32_t>(options.spp))),
       max_(min_),
       target_{options.target_error, options.target_rmse} {
   samples_.resize(order_.size(), 0);
@@ -143,7 +146,7 @@ std::vector<WorkGroup> SamplePlan::least(SampleOrder order) {
   for (const std::uint32_t pixel : order_) {
     std::uint32_t& has = samples_[pixel];
     const std::uint32_t more = lacks(has, order);
-    if (more > 0) add_to_group(groups, pixel, more, has);
+    if (more > 0) add_to_group(groups, pixel, more, has, first_);
   }
   return in_order(std::move(groups));
 }
@@ -161,7 +164,7 @@ std::vector<WorkGroup> SamplePlan::least_of_all(SampleOrder order) {
   all.samples = more;
   all.work.resize(order_.size());
   tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t i) {
-    all.work[i] = {order_[i], has};
+    all.work[i] = {order_[i], first_ + has};
   });
   std::fill(samples_.begin(), samples_.end(), has + more);
   return groups;

@@ -24,15 +24,18 @@ enum class SampleOrder {
 /// Decisions depend on the pixels' values, not on threads.
 class SamplePlan {
  public:
-  /// `samples`: what an earlier plan gave each pixel; empty: none.
+  /// `samples`: what an earlier plan gave each pixel; empty: none. `first`: the number of each
+  /// pixel's first sample, above 0 only without a target; `options.spp` counts from sample 0 on.
   SamplePlan(int width, int height, const RenderOptions& options,
-             std::vector<std::uint32_t> samples = {});
+             std::vector<std::uint32_t> samples = {}, std::uint32_t first = 0);
 
   [[nodiscard]] bool is_adaptive() const { return target_.error > 0 || target_.rmse > 0; }
 
   /// The minimum for pilot_pixels(). Empty without a target RMSE, for small pictures, and once
   /// pixels have samples.
   std::vector<WorkGroup> pilot();
+  /// The minimum of samples that each pixel gets; without a target it gets no more.
+  [[nodiscard]] std::uint32_t minimum() const { return min_; }
   [[nodiscard]] bool only_pilot_has_samples() const;
   /// Raises the minimum, up to four times, to the number of samples with which all pilot pixels
   /// together have the target RMSE, rounded up to a power of two. Returns least().
@@ -63,6 +66,7 @@ class SamplePlan {
   int width_;
   std::vector<std::uint32_t> order_;  ///< pixels in the order of tracing
   std::vector<std::uint32_t> samples_;
+  std::uint32_t first_;
   std::uint32_t min_, max_;
   ErrorTarget target_;
   double fraction_done_ = 0;

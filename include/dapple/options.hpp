@@ -56,6 +56,12 @@ struct Cryptomattes {
 /// As --cryptomatte has it; "none" for none.
 std::string name_of(const Cryptomattes& mattes);
 
+/// A part of a picture's samples, for one of several machines: of `count` parts that are equal up
+/// to one camera ray a pixel, the one with the number `index`, counted from 1.
+struct Shard {
+  int index = 1, count = 1;
+};
+
 struct LookAt {
   V3f from{0, 0, 0};
   V3f at{0, 0, -1};
@@ -79,7 +85,10 @@ struct RenderOptions {
   /// picture.
   int footprint_spp = 0;
   int footprint_ao_rays = 0;  ///< AO rays a primary sample, in the same way, [1, 4096]; 0: ao_rays
-  int max_spp = 4096;         ///< with a target, the maximum of samples a pixel, [spp, 2^20]
+  /// The samples that are traced. `spp` is that of all shards together, for which footprints are
+  /// computed. Not together with a target.
+  Shard shard;
+  int max_spp = 4096;  ///< with a target, the maximum of samples a pixel, [spp, 2^20]
   /// Samples that share a camera ray, 1, 2 or 4. Each sample chooses its own surface among those
   /// that the ray intersects. Larger values suit thin leaves and hair; 0: chosen from the scene's
   /// opacities. `spp` and `max_spp` count camera rays.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dapple/device.hpp"
@@ -84,6 +85,11 @@ struct RenderControl {
   /// Checkpoint to continue from. Scene and options must be those of the first run, but there may
   /// be more samples or other targets. Empty: start from the beginning.
   std::string resume;
+  /// File for the samples that were traced, as the checkpoint has them, written once all are; not
+  /// if the render is interrupted. `dapple merge` adds such files up. Empty: no file.
+  std::string part = {};
+  /// Further settings for the film's metadata.
+  std::vector<std::pair<std::string, std::string>> settings = {};
 };
 
 /// Renders pictures one after the other, for example of a scene that moves. Keeps the device, its

@@ -66,7 +66,7 @@ GltfBuilder chain(int length) {
 
 void add_amplifiers(MalformedCases& cases) {
   add(cases, "bomb_doubling_nodes", doubling(40), "is a child of both");
-  add(cases, "bomb_long_chain", chain(100000), "is nested deeper than 1,024");
+  add(cases, "bomb_long_chain", chain(100000), "is nested deeper than 65,536");
   add(cases, "bomb_a_billion_instances", instanced_zeros(1000000000, 1), "accessor 1");
   add(cases, "bomb_of_zero_instances", instanced_zeros(4000000, 1), "at one position");
   add(cases, "bomb_of_shared_instances", instanced_zeros(4000000, 20), "brings the instances");

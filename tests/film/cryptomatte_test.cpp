@@ -54,7 +54,7 @@ Film film_with(const MatteSums& sums, std::uint32_t samples, const Cryptomattes&
 
 void add(MatteSums& sums, std::size_t pixel, std::uint32_t object, std::uint32_t material,
          int count) {
-  for (int i = 0; i < count; ++i) sums.add(pixel, object, material);
+  for (int i = 0; i < count; ++i) sums.add(pixel, object, material, 5);
 }
 
 float at(const Film& film, const std::string& channel, std::size_t pixel) {
@@ -135,7 +135,7 @@ TEST(MatteSums, CountAtMostThirtyTwoSlotsOfAPixel) {
   for (std::uint32_t object = 0; object < 40; ++object) add(sums, 0, object, 0, 2);
   add(sums, 0, 31, 0, 1);
   ASSERT_EQ(sums.of_pixel(0).size(), kMaxMatteSlots);
-  EXPECT_EQ(sums.of_pixel(0)[31], (MatteSlot{31, 0, 3}));
+  EXPECT_EQ(sums.of_pixel(0)[31], (MatteSlot{31, 0, 3, 5}));
 }
 
 TEST(MatteSums, PackAndUnpackAndRefuseWhatIsNotTheirs) {

@@ -50,7 +50,7 @@ void read() {
   try {
     const Checkpoint checkpoint = read_checkpoint(path());
     const TraceState& state = checkpoint.state;
-    check_state(path(), state, {kPixels, state.sums.size(), state.squares.size()});
+    check_state("--resume " + path(), state, {kPixels, state.sums.size(), state.squares.size()});
     for (const std::uint32_t samples :
          traced_samples(state.round, state.slice_samples, state.samples))
       require(samples <= DAPPLE_MAX_CAMERA_SPLITTING << 20);
@@ -68,7 +68,7 @@ void write_raw(FuzzedDataProvider& data) {
 void seal(const std::string& about, const std::vector<std::vector<std::byte>>& packed) {
   std::vector<Section> sections{as_section(about)};
   for (const auto& bytes : packed) sections.emplace_back(bytes);
-  write_sealed_file(path(), {"checkpoint", 2}, sections, Durable::no);
+  write_sealed_file(path(), {"checkpoint", 3}, sections, Durable::no);
 }
 
 std::vector<std::byte> any_bytes(FuzzedDataProvider& data) {
@@ -108,6 +108,11 @@ void write_likely(FuzzedDataProvider& data) {
       {"footprint_spp", number(16)},
       {"device", "fuzz"},
       {"pass_seconds", nlohmann::json::object()},
+      {"picture", to_json(PictureRecord{})},
+      {"pieces", nlohmann::json::array()},
+      {"first_sample", number(64)},
+      {"mattes", data.ConsumeBool()},
+      {"motion", data.ConsumeBool()},
       {"slice_samples", number(32)},
       {"groups", groups},
       {"position", {number(2), number(kPixels), number(32)}},

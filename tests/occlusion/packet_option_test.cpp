@@ -40,11 +40,11 @@ TEST_F(PacketsOption, RenderAcceptsEveryValueAndRefusesOthers) {
 }
 
 TEST_F(PacketsOption, DevicesCommandReportsWhetherEveryKernelRuns) {
-  const auto run = dapple("devices");
+  const auto run = dapple("devices --check");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(film_test::contains(run.out, "runs every kernel; ")) << run.out;
   film_test::write_bytes(path("kernels/occlusion/packet.cl"), "this is no OpenCL C\n");
-  const auto broken = dapple("devices --kernel-dir kernels");
+  const auto broken = dapple("devices --check --kernel-dir kernels");
   EXPECT_EQ(broken.code, 4) << broken.err;
   EXPECT_TRUE(film_test::contains(broken.out, "cannot be used: occlusion/packet.cl: "))
       << broken.out;

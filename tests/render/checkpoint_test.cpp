@@ -92,7 +92,7 @@ TEST_F(CheckpointFile, StatesThatDoNotFitThePictureAreRefused) {
   for (const Change& change : changes) {
     TraceState state = good;
     change(state);
-    const Error error = error_of([&] { check_state("a.ckpt", state, {2, 4, 2}); });
+    const Error error = error_of([&] { check_state("--resume a.ckpt", state, {2, 4, 2}); });
     EXPECT_TRUE(contains(error.what(), "--resume a.ckpt: ")) << error.what();
   }
 }

@@ -15,6 +15,7 @@
 
 #include "dapple/error.hpp"
 #include "device/cpus.hpp"
+#include "device/driver_needs.hpp"
 #include "device/programs/kernel_source.hpp"
 
 namespace dapple {
@@ -132,6 +133,7 @@ void CompilerProcesses::start(const DeviceContext& context, const std::vector<Ke
   add_option("--device", context.chosen_by());
   add_option("--kernel-dir", context.kernel_dir());
   const auto programs = by_program(context, {kernels.begin(), kernels.end()}, to);
+  if (!programs.empty()) require_linker();
   for (const Batch& batch : distribute(programs, std::min(cpus, kMaxProcesses))) {
     Arguments arguments = common;
     for (const KernelName& kernel : batch.kernels) arguments.push_back(text_of(kernel));

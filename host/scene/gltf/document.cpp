@@ -208,6 +208,8 @@ Document load_document(const std::string& path, bool allow_outside) {
   document.storage.push_back(read_file(path, path));
   document.bytes = document.storage.front().size();
   const Container container = split_container(document.storage.front(), path);
+  if (container.json.starts_with("\xef\xbb\xbf"))
+    document.notes.push_back("its JSON begins with a byte order mark, which glTF forbids");
   Json root = parse_json(container.json, path);
   document.camera_extras = extras_of_cameras(root);
   check_schema(root, path);

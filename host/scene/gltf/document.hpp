@@ -34,6 +34,7 @@ struct Document {
   std::vector<nlohmann::json> camera_extras;  ///< by camera; null: none
   std::vector<std::string> files;  ///< paths of the scene file, its buffers and its images
   std::uint64_t bytes = 0;         ///< of the scene file and of the buffers' files
+  std::vector<std::string> notes;  ///< what the file may not have, and is read nevertheless
 };
 
 /// Reads, parses and validates a file. With `allow_outside`, URIs may lead out of its folder.

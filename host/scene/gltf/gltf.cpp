@@ -33,6 +33,8 @@ MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, boo
   if (plays) player_.emplace(document_, options.animation);
   timeless_.source = path;
   timeless_.files = document_.files;
+  for (const std::string& note : document_.notes)
+    timeless_.warnings.push_back(one_line(path + ": " + note));
   timeless_.animations = list_animations(document_);
   for (const auto& node : document_.model.nodes)
     timeless_.node_names.push_back(node.mesh >= 0 ? one_line(node.name) : "");

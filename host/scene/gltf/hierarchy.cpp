@@ -16,7 +16,8 @@ using Imath::M44d;
 using Imath::V3d;
 using Imath::V4d;
 
-constexpr int kMaxDepth = 1024;
+/// Deeper trees are of no exporter, and their matrices are the products of as many.
+constexpr int kMaxDepth = 65'536;
 
 /// The allowed difference between a matrix's last column and 0, 0, 0, 1: exporters round.
 constexpr double kAffineTolerance = 1e-4;

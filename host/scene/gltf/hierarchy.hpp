@@ -18,7 +18,7 @@ struct PlacedNode {
 
 /// Returns the nodes of the default scene, or of the first scene, or all nodes when the document
 /// has no scene, depth first in the file's order. Throws Error input for cycles, nodes with two
-/// parents, trees deeper than 1,024, and matrices that are not affine or not finite.
+/// parents, trees deeper than 65,536, and matrices that are not affine or not finite.
 std::vector<PlacedNode> place_nodes(const Document& document, const Pose& pose = {});
 
 /// Returns the world matrix of every node, also of nodes outside of the shown scene. Throws like

@@ -139,6 +139,14 @@ void warn(const std::string& file, std::uint64_t count, const char* what, Scene&
       one_line(fmt::format("{}: {} ({} of them)", file, what, grouped(count))));
 }
 
+/// The same with the first element that has it.
+void warn(const std::string& file, const Found& found, const char* what, Scene& scene) {
+  if (found.count == 0) return;
+  const std::string more =
+      found.count > 1 ? fmt::format(" ({} of them)", grouped(found.count)) : "";
+  scene.warnings.push_back(one_line(fmt::format("{}: {} {}{}", file, found.first, what, more)));
+}
+
 void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint64_t unbound,
                     Scene& scene) {
   warn(file, totals.thin_lines,
@@ -151,6 +159,13 @@ void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint
   warn(file, totals.without_position, "primitives without POSITION are ignored", scene);
   warn(file, totals.without_texcoord,
        "primitives lack the TEXCOORD of their alpha texture and use its corner", scene);
+  warn(file, totals.without_primitives, "has no primitives, which glTF demands", scene);
+  warn(file, totals.without_elements, "has too few vertices for a triangle or segment", scene);
+  warn(file, totals.without_view, "has a POSITION without a bufferView: all vertices are at 0,0,0",
+       scene);
+  warn(file, totals.odd_texcoords, "has texture coordinates that are not finite: they count as 0,0",
+       scene);
+  warn(file, totals.odd_alphas, "has vertex alphas that are NaN: they count as 0", scene);
   warn(file, unbound, "skinned nodes have meshes without JOINTS_0 and WEIGHTS_0, which stay rigid",
        scene);
 }

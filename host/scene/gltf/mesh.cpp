@@ -78,15 +78,21 @@ void append_primitive(const Document& document, const PrimitiveSource& source, M
   const Attributes attributes = read_attributes(document, primitive, needs, lookup, who);
   if (material.alpha_texture >= 0 && needs.uvs && !attributes.uvs) ++totals.without_texcoord;
   std::vector<std::uint32_t> corners = element_corners(document, primitive, who);
+  totals.without_elements.add(corners.empty() ? 1 : 0, who);
   if (corners.empty()) return;
+  const auto& position =
+      document.model.accessors[static_cast<std::size_t>(attribute(primitive, "POSITION"))];
+  totals.without_view.add(position.bufferView < 0 && !position.sparse.isSparse ? 1 : 0, who);
   const auto used = compact(corners, attributes.positions.count());
   const std::size_t base = mesh.positions.size();
   const std::size_t added = used ? used->size() : attributes.positions.count();
   if (base + added > std::numeric_limits<std::uint32_t>::max()) {
     fail(document.file, "{}: its mesh has more than 2^32 vertices", who);
   }
-  append_vertices(mesh, attributes, VertexDeformer(document, primitive, deformation, who), lookup,
-                  used);
+  const OddValues odd = append_vertices(
+      mesh, attributes, VertexDeformer(document, primitive, deformation, who), lookup, used);
+  totals.odd_texcoords.add(odd.texcoords, who);
+  totals.odd_alphas.add(odd.alphas, who);
   mesh.sources.push_back({file_mesh, file_primitive, static_cast<std::uint32_t>(base),
                           static_cast<std::uint32_t>(added),
                           used ? *used : std::vector<std::uint32_t>{}});
@@ -193,6 +199,7 @@ std::vector<MeshPart> read_mesh(const Document& document, const MeshUse& use,
   const auto& given = document.model.meshes[static_cast<std::size_t>(use.mesh)];
   const std::string label = element("mesh", static_cast<std::size_t>(use.mesh), given.name);
   const Deformation deformation{use.weights, joints};
+  totals.without_primitives.add(given.primitives.empty() ? 1 : 0, label);
   std::vector<Draft> drafts;
   for (const std::size_t p :
        shown_primitives(document, given, label, use.line_radius, deformation, totals)) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "dapple/scene.hpp"
@@ -19,6 +20,17 @@ struct MeshPart {
   int emitter = -1;        ///< index into Scene::materials when the part emits, else -1
 };
 
+/// How often something was found, and where first.
+struct Found {
+  std::uint64_t count = 0;
+  std::string first;  ///< the element, for messages
+
+  void add(std::uint64_t more, const std::string& who) {
+    if (more > 0 && count == 0) first = who;
+    count += more;
+  }
+};
+
 /// Totals over all meshes, for limits and for one warning per feature.
 struct MeshTotals {
   std::uint64_t elements = 0;  ///< triangles and segments
@@ -30,6 +42,10 @@ struct MeshTotals {
   std::uint64_t shining_lines = 0;     ///< primitives of lines that emit
   std::uint64_t without_position = 0;  ///< primitives
   std::uint64_t without_texcoord = 0;  ///< primitives whose alpha texture lacks its TEXCOORD
+  Found without_primitives;            ///< meshes
+  Found without_elements;              ///< primitives with fewer vertices than one triangle has
+  Found without_view;                  ///< primitives whose POSITION has neither values nor view
+  Found odd_texcoords, odd_alphas;     ///< vertices whose number is NaN, or infinite
 };
 
 /// Appends the parts of a glTF mesh to Scene::meshes, skinned by `joints` unless it is null. Parts

@@ -94,9 +94,10 @@ std::optional<std::vector<std::uint32_t>> compact(std::vector<std::uint32_t>& co
   return used;
 }
 
-void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDeformer& deformer,
-                     const AlphaLookup& lookup,
-                     const std::optional<std::vector<std::uint32_t>>& used) {
+OddValues append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDeformer& deformer,
+                          const AlphaLookup& lookup,
+                          const std::optional<std::vector<std::uint32_t>>& used) {
+  OddValues odd;
   const std::size_t base = mesh.positions.size();
   const std::size_t count = used ? used->size() : attributes.positions.count();
   const auto source = [&](std::size_t i) -> std::uint64_t { return used ? (*used)[i] : i; };
@@ -114,13 +115,17 @@ void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDefor
   if (attributes.uvs || !mesh.uvs.empty()) mesh.uvs.resize(base + count, V2f(0, 0));
   if (attributes.uvs) {
     for (std::size_t i = 0; i < count; ++i) {
-      mesh.uvs[base + i] = finite_or_zero(lookup.apply(attributes.uvs->vec2(source(i))));
+      const V2f uv = lookup.apply(attributes.uvs->vec2(source(i)));
+      mesh.uvs[base + i] = finite_or_zero(uv);
+      if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) ++odd.texcoords;
     }
   }
   if (attributes.alphas || !mesh.vertex_alpha.empty()) mesh.vertex_alpha.resize(base + count, 1.0f);
   if (attributes.alphas) {
     for (std::size_t i = 0; i < count; ++i) {
-      mesh.vertex_alpha[base + i] = clamp_alpha(attributes.alphas->normalized(source(i), 3));
+      const float alpha = attributes.alphas->normalized(source(i), 3);
+      mesh.vertex_alpha[base + i] = clamp_alpha(alpha);
+      if (std::isnan(alpha)) ++odd.alphas;
     }
   }
   if (attributes.colors || !mesh.colors.empty()) mesh.colors.resize(base + count, V3f(1, 1, 1));
@@ -132,6 +137,7 @@ void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDefor
       }
     }
   }
+  return odd;
 }
 
 }  // namespace dapple::gltf

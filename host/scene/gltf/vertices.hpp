@@ -48,11 +48,16 @@ Attributes read_attributes(const Document& document, const tinygltf::Primitive& 
 std::optional<std::vector<std::uint32_t>> compact(std::vector<std::uint32_t>& corners,
                                                   std::uint64_t vertices);
 
+/// Vertices whose numbers are not finite.
+struct OddValues {
+  std::uint64_t texcoords = 0, alphas = 0;
+};
+
 /// Appends the vertices `used`, or all, to `mesh`, at the positions and with the normals that
 /// `deformer` returns. When only some primitives have normals, texture coordinates, alphas or
 /// colours, the others get the defaults: normal (0, 0, 0), uv (0, 0), alpha 1 and white.
-void append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDeformer& deformer,
-                     const AlphaLookup& lookup,
-                     const std::optional<std::vector<std::uint32_t>>& used);
+OddValues append_vertices(Mesh& mesh, const Attributes& attributes, const VertexDeformer& deformer,
+                          const AlphaLookup& lookup,
+                          const std::optional<std::vector<std::uint32_t>>& used);
 
 }  // namespace dapple::gltf

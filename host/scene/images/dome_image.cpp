@@ -44,7 +44,10 @@ Environment environment_of(const ExrImage& image, const std::string& path) {
   return environment;
 }
 
-/// Sets negative values to 0. Throws Error input for values that are not finite.
+/// The largest radiance of a light, as in lights files: sums over lights and pixels stay finite.
+constexpr double kMaxRadiance = 1e30;
+
+/// Sets negative values to 0. Throws Error input for values that no light may have.
 void check_radiance(Environment& environment, const std::string& path) {
   for (std::size_t i = 0; i < environment.radiance.size(); ++i) {
     V3f& radiance = environment.radiance[i];
@@ -52,6 +55,10 @@ void check_radiance(Environment& environment, const std::string& path) {
       if (!std::isfinite(radiance[channel])) {
         refuse(path, fmt::format("pixel {}, {} is not finite", i % environment.width,
                                  i / environment.width));
+      }
+      if (radiance[channel] > kMaxRadiance) {
+        refuse(path, fmt::format("pixel {}, {} is {:.3g}, above {:g}", i % environment.width,
+                                 i / environment.width, radiance[channel], kMaxRadiance));
       }
       radiance[channel] = std::max(radiance[channel], 0.0f);
     }
@@ -95,6 +102,12 @@ void finalize_dome(Light& light) {
   const std::uint32_t down = (environment.height + kMaxHeight - 1) / kMaxHeight;
   if (across > 1 || down > 1) environment = averaged(environment, across, down);
   const double mean = mean_luminance(environment);
+  const V3f& given = light.radiance;
+  if (mean * std::max({given.x, given.y, given.z}) > kMaxRadiance) {
+    refuse(environment.file.empty() ? light.name : environment.file,
+           fmt::format("the dome's mean radiance is {:.3g} times {:.3g}, above {:g}", mean,
+                       std::max({given.x, given.y, given.z}), kMaxRadiance));
+  }
   light.radiance *= static_cast<float>(mean);
   if (!(mean > 0)) {
     light.environment = nullptr;

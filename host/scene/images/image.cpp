@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string_view>
+#include <vector>
 
 #include "dapple/error.hpp"
 #include "scene/images/image_structure.hpp"
@@ -19,6 +21,9 @@
 
 namespace dapple {
 namespace {
+
+/// Where a PNG has its colour type, after the depth.
+constexpr std::size_t kColorTypeAt = 25;
 
 struct StbiFree {
   void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
@@ -73,12 +78,63 @@ void check_header(std::span<const std::uint8_t> bytes, const std::string& what) 
   check_size(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), what);
 }
 
+/// The chunks of a PNG with a palette but those of its colours, as a grey image whose values are
+/// the indices. Its checksums are wrong, which the decoder does not check.
+std::vector<std::uint8_t> indices_as_grey(std::span<const std::uint8_t> png) {
+  constexpr std::size_t kSignature = 8, kOverhead = 12;
+  std::vector<std::uint8_t> grey(png.begin(), png.begin() + kSignature);
+  for (std::size_t at = kSignature; at + kOverhead <= png.size();) {
+    const std::size_t length = kOverhead + big_endian(png.subspan(at, 4));
+    const auto chunk = png.subspan(at, std::min(length, png.size() - at));
+    const std::string_view type(reinterpret_cast<const char*>(chunk.data()) + 4, 4);
+    if (type != "PLTE" && type != "tRNS") grey.insert(grey.end(), chunk.begin(), chunk.end());
+    at += length;
+  }
+  grey[kColorTypeAt] = 0;
+  return grey;
+}
+
+std::size_t palette_size(std::span<const std::uint8_t> png) {
+  constexpr std::size_t kSignature = 8, kOverhead = 12;
+  for (std::size_t at = kSignature; at + kOverhead <= png.size();) {
+    const std::size_t length = big_endian(png.subspan(at, 4));
+    const std::string_view type(reinterpret_cast<const char*>(png.data()) + at + 4, 4);
+    if (type == "PLTE") return length / 3;
+    at += kOverhead + length;
+  }
+  return 0;
+}
+
+/// The decoder reads colours that are not there for an index beyond the palette. `png` is checked.
+void check_palette(std::span<const std::uint8_t> png, const std::string& what) {
+  constexpr std::uint8_t kPalette = 3;
+  if (png[kColorTypeAt] != kPalette) return;
+  const std::size_t colors = palette_size(png), depth = png[kColorTypeAt - 1];
+  if (colors >= std::size_t{1} << depth) return;
+  const std::vector<std::uint8_t> grey = indices_as_grey(png);
+  int width = 0, height = 0, in_file = 0;
+  const std::unique_ptr<stbi_uc, StbiFree> values(stbi_load_from_memory(
+      grey.data(), static_cast<int>(grey.size()), &width, &height, &in_file, 1));
+  if (!values) return;                        // decoding the image itself says why
+  const int step = 255 / ((1 << depth) - 1);  // the decoder stretches values to eight bits
+  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto index = static_cast<std::size_t>(values.get()[i] / step);
+    if (index < colors) continue;
+    const auto row = static_cast<std::size_t>(width);
+    refuse(what, "is corrupt (pixel " + std::to_string(i % row) + ", " + std::to_string(i / row) +
+                     " has the colour " + std::to_string(index) + " of a palette of " +
+                     std::to_string(colors) + ")");
+  }
+}
+
 /// Decodes to `channels` bytes per pixel: 2 is grey and alpha, 3 is RGB, 4 is RGB and alpha.
 Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::string& what) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     refuse(what, "has more than 2^31 bytes");
   }
   check_header(bytes, what);
+  if (image_format(bytes) == ImageFormat::png) check_palette(bytes, what);
   const int size = static_cast<int>(bytes.size());
   int width = 0;
   int height = 0;

@@ -117,7 +117,7 @@ TEST(GltfError, ChainsOfNodesEndAtSomeDepth) {
     return builder;
   };
   EXPECT_EQ(world_triangles(chain(1024).load()).size(), 1u);
-  expect_says(error_of(chain(1025)), "is nested deeper than 1,024 nodes");
+  expect_says(error_of(chain(65537)), "is nested deeper than 65,536 nodes");
 }
 
 TEST(GltfError, InstanceAttributesOfDifferentLengthAreRefused) {

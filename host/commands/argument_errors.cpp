@@ -1,0 +1,76 @@
+#include "commands/argument_errors.hpp"
+
+#include <fmt/format.h>
+
+#include <regex>
+
+namespace dapple {
+namespace {
+
+/// The command that was parsed, or the program.
+const CLI::App& parsed_command(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : *commands.front();
+}
+
+/// Values that an option of this type takes, by CLI11's name of the type.
+std::string expected_values(const CLI::App& app, const std::string& flag) {
+  const CLI::Option* option = parsed_command(app).get_option_no_throw(flag);
+  const std::string type = option ? option->get_type_name() : "";
+  if (type == "UINT") return "a whole number from 0 to 4294967295";
+  if (type == "INT") return "a whole number from -2147483648 to 2147483647";
+  if (type == "FLOAT") return "a number";
+  return "another value";
+}
+
+/// "--output" of "-o,--output".
+std::string long_name(const std::string& names) {
+  const std::size_t comma = names.rfind(',');
+  return comma == std::string::npos ? names : names.substr(comma + 1);
+}
+
+std::string mismatch_text(const std::string& what) {
+  std::smatch match;
+  if (std::regex_match(what, match, std::regex("([^:]*): At Most (\\d+) required.*")))
+    return fmt::format("{} is given more than once", long_name(match[1]));
+  if (std::regex_match(what, match, std::regex("([^:]*): .*required.*missing")))
+    return fmt::format("{} needs a value", long_name(match[1]));
+  return what;
+}
+
+/// CLI11 lists them from the last to the first.
+std::string extras_text(const CLI::App& app) {
+  std::vector<std::string> extras = parsed_command(app).remaining();
+  if (extras.empty()) extras = app.remaining(true);
+  if (extras.empty()) return "there is an argument too many";
+  const std::string& first = extras.front();
+  if (app.get_subcommands().empty() && !first.starts_with("-"))
+    return fmt::format("there is no command {}", first);
+  if (first.starts_with("-")) return fmt::format("there is no option {}", first);
+  return fmt::format("'{}' is an argument too many", first);
+}
+
+}  // namespace
+
+std::string argument_error_text(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string what = error.what(), name = error.get_name();
+  std::smatch match;
+  if (name == "ConversionError" &&
+      std::regex_match(what, match, std::regex("Could not convert: (\\S+) = (.*)"))) {
+    const std::string flag = long_name(match[1]);
+    return fmt::format("{} {}: expected {}", flag, match[2].str(), expected_values(app, flag));
+  }
+  if (name == "ArgumentMismatch") return mismatch_text(what);
+  if (name == "ExtrasError") return extras_text(app);
+  if (name == "RequiredError" && std::regex_match(what, match, std::regex("(\\S+) is required")))
+    return long_name(match[1]) + " is missing";
+  if (name == "RequiresError" &&
+      std::regex_match(what, match, std::regex("(\\S+) requires (\\S+)")))
+    return fmt::format("{} needs {}", long_name(match[1]), long_name(match[2]));
+  if (name == "ExcludesError" &&
+      std::regex_match(what, match, std::regex("(\\S+) excludes (\\S+)")))
+    return fmt::format("{} does not go with {}", long_name(match[1]), long_name(match[2]));
+  return what;
+}
+
+}  // namespace dapple

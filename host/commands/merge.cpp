@@ -1,0 +1,83 @@
+// dapple merge: adds up parts of an image that dapple render --shard or --crop made, and writes the
+// image, or their sum as a part.
+#include "render/merge.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <thread>
+
+#include "commands/command.hpp"
+#include "commands/interruption.hpp"
+#include "commands/option_text.hpp"
+#include "commands/output_paths.hpp"
+#include "commands/render_arguments.hpp"
+#include "commands/shared_options.hpp"
+#include "commands/statistics_text.hpp"
+#include "commands/tell.hpp"
+#include "dapple/error.hpp"
+#include "film/exr_output.hpp"
+#include "film/exr_parts.hpp"
+
+namespace dapple {
+namespace {
+
+struct MergeArguments {
+  std::vector<std::string> parts;
+  RenderArguments files;  ///< only those about the files that are written
+};
+
+void check(const MergeArguments& a) {
+  const RenderArguments& files = a.files;
+  std::vector<OutputPath> outputs{{"--output", files.output}};
+  if (!files.png.empty()) outputs.push_back({"--png", files.png});
+  if (!files.stats_json.empty()) outputs.push_back({"--stats-json", files.stats_json});
+  check_outputs(outputs);
+  check_outputs_spare(outputs, a.parts);
+}
+
+void print(const Merge& merge, const MergeArguments& a) {
+  for (const std::string& note : merge.result.statistics.notes) tell("note: {}\n", note);
+  fmt::print("merged {} part{}, {} of {} samples per pixel; wrote {}{}\n", a.parts.size(),
+             a.parts.size() == 1 ? "" : "s", merge.missing.empty() ? "all" : "not all", merge.spp,
+             a.files.output, a.files.png.empty() ? "" : " and " + a.files.png);
+}
+
+void run_merge(const MergeArguments& a) {
+  const RenderArguments& files = a.files;
+  ExrFormat format = to_format(files);
+  const PngOptions png = parse_png_options(files.exposure, files.background);
+  check(a);
+  catch_interruptions();
+  Merge merge = merge_parts(a.parts, is_part_path(files.output) ? files.output : "");
+  RenderResult& result = merge.result;
+  for (const std::string& name : half_layers_without_planes(result.film, format))
+    result.statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
+  use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
+  if (!is_part_path(files.output)) write_exr(result.film, files.output, format);
+  if (!files.png.empty()) write_png(result.film, files.png, "", png);
+  if (!files.stats_json.empty()) write_statistics(result.statistics, files.stats_json);
+  if (!files.quiet) print(merge, a);
+}
+
+}  // namespace
+
+Run add_merge_command(CLI::App& app) {
+  auto a = std::make_shared<MergeArguments>();
+  app.add_option("PARTS", a->parts, "Files that dapple render -o FILE.dapple wrote, in any order")
+      ->required();
+  app.add_option("-o,--output", a->files.output,
+                 "OpenEXR file to write; FILE.dapple: their sum, to merge or resume again")
+      ->required();
+  add_file_options(app, a->files);
+  add_report_options(app, a->files.stats_json, a->files.quiet);
+  app.footer(
+      "Example:\n  for i in 1 2 3 4; do\n    dapple render tree.glb --spp 64 --shard $i/4 -o "
+      "part_$i.dapple\n  done\n  dapple merge part_*.dapple -o tree.exr\n\n"
+      "Bit for bit what one render makes. Parts of an image may be shards of its samples "
+      "(--shard), "
+      "of\nits pixels (--crop), or both.");
+  return [a] { run_merge(*a); };
+}
+
+}  // namespace dapple

@@ -1,0 +1,69 @@
+#include "device/driver_needs.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+/// With fewer files the ICD loader finds no driver, or PoCL no compiler.
+constexpr rlim_t kFiles = 32;
+
+/// PoCL compiles on threads, whose stacks are as large as the limit of the first.
+constexpr rlim_t kStackBytes = rlim_t{1} << 20;
+
+rlim_t limit_of(int resource) {
+  rlimit limit{};
+  return getrlimit(static_cast<__rlimit_resource>(resource), &limit) == 0 ? limit.rlim_cur
+                                                                          : RLIM_INFINITY;
+}
+
+bool is_in(std::string_view folders, const char* program) {
+  while (!folders.empty()) {
+    const std::size_t colon = folders.find(':');
+    const std::string folder(folders.substr(0, colon));
+    if (!folder.empty() && access((folder + "/" + program).c_str(), X_OK) == 0) return true;
+    if (colon == std::string_view::npos) break;
+    folders.remove_prefix(colon + 1);
+  }
+  return false;
+}
+
+}  // namespace
+
+void check_process_limits() {
+  if (const rlim_t files = limit_of(RLIMIT_NOFILE); files < kFiles) {
+    throw Error(
+        ErrorKind::failed,
+        fmt::format("only {} files may be open here (ulimit -n), and OpenCL drivers need {} "
+                    "to start",
+                    files, kFiles));
+  }
+  if (const rlim_t stack = limit_of(RLIMIT_STACK); stack < kStackBytes) {
+    throw Error(
+        ErrorKind::failed,
+        fmt::format("stacks may only have {} kB here (ulimit -s), and OpenCL drivers need {} "
+                    "kB to compile kernels",
+                    stack / 1024, kStackBytes / 1024));
+  }
+}
+
+void require_linker() {
+  const char* path = std::getenv("PATH");
+  if (path && is_in(path, "ld")) return;
+  throw Error(ErrorKind::device,
+              fmt::format("PoCL links kernels with the program ld, which is not in PATH ({}); add "
+                          "its folder, for example /usr/bin; Debian has it in binutils",
+                          !path   ? "not set"
+                          : *path ? path
+                                  : "empty"));
+}
+
+}  // namespace dapple

@@ -1,0 +1,200 @@
+#include "render/merge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "camera/camera_splitting.hpp"
+#include "dapple/error.hpp"
+#include "film/film_memory.hpp"
+#include "film/layers.hpp"
+#include "render/checkpoint.hpp"
+#include "render/merged_sums.hpp"
+#include "render/stopwatch.hpp"
+
+namespace dapple {
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) { throw Error(ErrorKind::usage, why); }
+
+/// A file, without its state.
+struct Part {
+  std::string path;
+  Checkpoint about;
+};
+
+Part describe(const std::string& path) {
+  Part part{path, read_part(path, Read::description)};
+  for (const auto& [name, value] : part.about.options)
+    if (name == "--target-error or --target-rmse" && value != "none")
+      refuse(path +
+             ": was made with a target error, which decides about samples from those of the "
+             "whole picture; parts are made with --spp");
+  if (part.about.pieces.empty())
+    refuse(path + ": is not finished; dapple render --resume " + path + " goes on");
+  return part;
+}
+
+/// Whatever parts of one picture must agree in: all but their pixels, samples and devices.
+Settings common_settings(const Checkpoint& about) {
+  Settings settings;
+  for (const auto& setting : about.options)
+    if (setting.first != "--crop" && setting.first != "--shard") settings.push_back(setting);
+  settings.insert(settings.end(), about.content.begin(), about.content.end());
+  settings.emplace_back("--spp (footprints)", fmt::format("{}", about.footprint_spp));
+  const PictureRecord& picture = about.picture;
+  const auto& ambient = picture.options.ambient;
+  settings.emplace_back("--ambient", ambient ? fmt::format("{}", *ambient) : "none");
+  for (const auto& [name, value] : picture.metadata.settings)
+    if (name != kAmbient && name != "footprint_spp") settings.emplace_back(name, value);
+  nlohmann::json rest = to_json(picture);
+  for (const char* own : {"crop", "metadata"}) rest.erase(own);
+  rest["options"].erase("visits");
+  using Json = nlohmann::json;
+  const std::string text = rest.dump(-1, ' ', false, Json::error_handler_t::replace);
+  settings.emplace_back("set of lights, objects or materials", text_checksum({text}));
+  return settings;
+}
+
+void require_one_picture(const std::vector<Part>& parts) {
+  const Settings of_first = common_settings(parts.front().about);
+  for (const Part& part : parts) {
+    const Settings of_part = common_settings(part.about);
+    auto other = first_difference(of_first, of_part);
+    if (!other) {
+      other = first_difference(of_part, of_first);  // settings that only the first has
+      if (other) std::swap(other->before, other->now);
+    }
+    if (!other) continue;
+    refuse(other->is_opaque()
+               ? fmt::format("{}: was made with another {} than {}", part.path, other->name,
+                             parts.front().path)
+               : fmt::format("{}: was made with {} {}, {} with {} {}", part.path, other->name,
+                             other->now, parts.front().path, other->name, other->before));
+  }
+}
+
+struct PieceOfFile {
+  Piece piece;
+  const Part* part;
+};
+
+std::vector<PieceOfFile> pieces_of(const std::vector<Part>& parts) {
+  std::vector<PieceOfFile> pieces;
+  for (const Part& part : parts)
+    for (const Piece& piece : part.about.pieces) pieces.push_back({piece, &part});
+  std::sort(pieces.begin(), pieces.end(), [](const PieceOfFile& a, const PieceOfFile& b) {
+    return a.piece.rays.first < b.piece.rays.first;
+  });
+  return pieces;
+}
+
+/// Pieces are in the order of their first samples, so that few pairs are compared.
+void require_no_overlap(const std::vector<PieceOfFile>& pieces) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& a = pieces[i].piece;
+    for (std::size_t k = i + 1; k < pieces.size() && pieces[k].piece.rays.first < a.rays.end; ++k) {
+      const Piece& b = pieces[k].piece;
+      if (!overlap(a, b)) continue;
+      const RayRange both{b.rays.first, std::min(a.rays.end, b.rays.end)};
+      const std::string names =
+          pieces[i].part->path == pieces[k].part->path
+              ? pieces[i].part->path + " is named twice: its "
+              : fmt::format("{} and {} overlap: ", pieces[i].part->path, pieces[k].part->path);
+      refuse(fmt::format("{}{} of the pixels {} would count twice", names, rays_text(both),
+                         rect_text(a.rect)));
+    }
+  }
+}
+
+/// Sorted by what they hold, so that the sum does not depend on the order of the paths.
+std::vector<Part> describe_all(const std::vector<std::string>& paths) {
+  std::vector<Part> parts;
+  for (const std::string& path : paths) parts.push_back(describe(path));
+  if (parts.empty()) refuse("dapple merge needs the files of parts");
+  require_one_picture(parts);
+  require_no_overlap(pieces_of(parts));
+  const auto key = [](const Part& part) {
+    const Piece& first = part.about.pieces.front();
+    return std::tuple(first.rays.first, first.rect.y0, first.rect.x0);
+  };
+  std::sort(parts.begin(), parts.end(),
+            [&](const Part& a, const Part& b) { return key(a) < key(b); });
+  return parts;
+}
+
+/// The description of the sum. Options are those of a render without --shard, if it is whole.
+Checkpoint describe_sum(const std::vector<Part>& parts) {
+  Checkpoint sum = parts.front().about;
+  sum.pieces.clear();
+  for (const Part& part : parts) {
+    const PictureRecord& picture = part.about.picture;
+    sum.pieces.insert(sum.pieces.end(), part.about.pieces.begin(), part.about.pieces.end());
+    sum.picture.options.visits = sum.picture.options.visits || picture.options.visits;
+    sum.picture.metadata.samples = std::max(sum.picture.metadata.samples, picture.metadata.samples);
+    if (sum.device.find(part.about.device) == std::string::npos)
+      sum.device += " and " + part.about.device;
+  }
+  sum.pieces = joined(std::move(sum.pieces));
+  const PixelRect& crop = sum.picture.crop = box_of(sum.pieces);
+  for (auto& [name, value] : sum.options) {
+    if (name == "--crop") value = fmt::format("{},{},{},{}", crop.x0, crop.y0, crop.x1, crop.y1);
+    if (name == "--shard") value = "1/1";
+  }
+  return sum;
+}
+
+void add_notes(const Checkpoint& sum, const Merge& merge, RenderStatistics& statistics) {
+  const std::string& first = sum.picture.metadata.device;
+  if (sum.device != first) {
+    statistics.notes.push_back(fmt::format(
+        "parts were traced on {}: the picture's bits are not those of one device", sum.device));
+  }
+  if (!merge.missing.empty()) statistics.notes.push_back("parts are missing: " + merge.missing);
+}
+
+RenderResult film_of(const PictureRecord& picture, MergedSums&& sums) {
+  RenderResult result;
+  const FilmLayout layout = picture.layout();
+  RenderStatistics& statistics = result.statistics;
+  TracedPicture traced = std::move(sums).picture();
+  statistics.pass_seconds = traced.pass_seconds;
+  statistics.bytes.film = layout.sum_bytes();
+  result.film = {picture.width, picture.height, picture.crop,
+                 develop(traced, layout, picture.options, picture.lights, statistics),
+                 picture.metadata};
+  set_ambient(result.film.metadata, statistics.ambient);
+  traced.mattes.keep_first();
+  add_cryptomattes(result.film, traced.mattes, traced.samples, picture.names,
+                   picture.options.cryptomattes);
+  return result;
+}
+
+}  // namespace
+
+Merge merge_parts(const std::vector<std::string>& paths, const std::string& output) {
+  const Stopwatch total;
+  const std::vector<Part> parts = describe_all(paths);
+  Checkpoint sum = describe_sum(parts);
+  const PictureRecord& picture = sum.picture;
+  check_film_memory({{}, picture.width, picture.height, picture.crop}, picture.lights.size(),
+                    picture.options);
+  MergedSums sums(picture);
+  for (const Part& part : parts) sums.add(part.path, read_part(part.path, Read::all));
+  Merge merge;
+  merge.spp = static_cast<std::uint32_t>(picture.metadata.samples);
+  merge.missing = missing_text(sum.pieces, merge.spp);
+  if (!output.empty()) sums.write(output, sum);
+  merge.result = film_of(picture, std::move(sums));
+  if (!merge.missing.empty())
+    merge.result.film.metadata.settings.emplace_back("missing", merge.missing);
+  add_notes(sum, merge, merge.result.statistics);
+  merge.result.statistics.device = sum.device;
+  merge.result.statistics.seconds.total = total.seconds();
+  return merge;
+}
+
+}  // namespace dapple

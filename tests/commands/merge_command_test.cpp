@@ -1,0 +1,95 @@
+// dapple merge and dapple plan as users call them: parts from renders of several processes, with
+// other numbers of threads, are the file of one render byte for byte; what they refuse, and say.
+#include <gtest/gtest.h>
+
+#include "support/program_run.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using namespace program_test;
+
+const std::string kTree =
+    "render 'scene:tree?leaves=1000' --width 40 --height 36 --spp 7 --passes ao,light,albedo,back "
+    "--cryptomatte object -q ";
+
+class MergeCommand : public ProgramRun {
+ protected:
+  [[nodiscard]] std::string bytes(const char* name) const { return bytes_of(path(name)); }
+};
+
+TEST_F(MergeCommand, ShardsOfOtherProcessesAreTheFileOfOneRender) {
+  ASSERT_EQ(dapple(kTree + "-o whole.exr").code, 0);
+  ASSERT_EQ(dapple(kTree + "--shard 1/3 -o a.dapple", "taskset -c 0").code, 0);
+  ASSERT_EQ(dapple(kTree + "--shard 2/3 -o b.dapple").code, 0);
+  ASSERT_EQ(dapple(kTree + "--shard 3/3 -o c.dapple").code, 0);
+  const Outcome merge = dapple("merge c.dapple a.dapple b.dapple -o merged.exr --png merged.png");
+  EXPECT_EQ(merge.code, 0) << merge.err;
+  EXPECT_EQ(merge.out,
+            "merged 3 parts, all of 7 samples per pixel; wrote merged.exr and merged.png\n");
+  EXPECT_TRUE(bytes("merged.exr") == bytes("whole.exr"));
+  const Outcome two = dapple("merge c.dapple a.dapple -o two.exr");
+  EXPECT_EQ(two.code, 0);
+  EXPECT_TRUE(contains(two.err, "note: parts are missing: samples 3 to 4 of 7")) << two.err;
+  expect_failure(dapple("merge a.dapple b.dapple a.dapple -o no.exr"), 2,
+                 "a.dapple is named twice: its samples 1 to 2");
+  expect_failure(dapple("merge a.dapple -o a.dapple"), 2,
+                 "would overwrite a.dapple, which is read");
+  EXPECT_FALSE(std::filesystem::exists(path("no.exr")));
+}
+
+TEST_F(MergeCommand, PartsAreRefusedWhereTheyCannotBe) {
+  expect_failure(dapple(kTree + "--shard 1/2 -o a.exr"), 2, "makes a part of an image");
+  expect_failure(dapple(kTree + "--shard 2/1 -o a.dapple"), 2, "expected I/N with I from 1 to N");
+  expect_failure(dapple(kTree + "--shard 2 -o a.dapple"), 2, "--shard 2: expected I/N, as in 2/8");
+  expect_failure(dapple(kTree + "--shard 1/8 -o a.dapple"), 2, "--spp 7 makes at most 7 shards");
+  expect_failure(dapple(kTree + "--shard 1/2 --target-rmse 0.1 -o a.dapple"), 2,
+                 "--shard does not go with --target-rmse");
+  expect_failure(dapple(kTree + "--target-error 0.1 -o a.dapple"), 2,
+                 "give --spp in place of --target-error");
+  expect_failure(dapple(kTree + "--half ao -o a.dapple"), 2, "give them to dapple merge");
+  expect_failure(dapple(kTree + "--frames 1-2 --shard 1/2 -o a.#.dapple"), 2, "needs --ambient");
+  expect_failure(dapple(kTree + "--frame 1 --shutter=0,0.5 -o a.dapple"), 2,
+                 "--shutter does not go with --shard");
+  expect_failure(dapple("merge no.dapple -o a.exr"), 1, "no.dapple: ");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(MergeCommand, FramesAreShardsOfTheirOwn) {
+  const std::string frames = kTree + "--frames 1-2 --ambient 0.2 ";
+  ASSERT_EQ(dapple(frames + "-o whole.#.exr").code, 0);
+  ASSERT_EQ(dapple(frames + "--shard 1/2 -o a.#.dapple").code, 0);
+  ASSERT_EQ(dapple(frames + "--shard 2/2 -o b.#.dapple").code, 0);
+  for (const std::string frame : {"1", "2"}) {
+    ASSERT_EQ(dapple("merge a." + frame + ".dapple b." + frame + ".dapple -o m.exr -q").code, 0);
+    EXPECT_TRUE(bytes("m.exr") == bytes_of(path("whole." + frame + ".exr"))) << frame;
+  }
+}
+
+double number_after(const std::string& json, const std::string& key) {
+  const std::size_t at = json.find("\"" + key + "\": ");
+  return at == std::string::npos ? -1 : std::stod(json.substr(at + key.size() + 4));
+}
+
+TEST_F(MergeCommand, APlanIsOfTheRightSizeAndWritesNothing) {
+  const std::string options =
+      "'scene:tree?leaves=1000' --width 300 --height 200 --spp 8 --shard 1/2 -q ";
+  const Outcome plan = dapple("plan " + options + "--stats-json plan.json");
+  ASSERT_EQ(plan.code, 0) << plan.err;
+  EXPECT_TRUE(contains(plan.out, "a shard: about ")) << plan.out;
+  EXPECT_EQ(files_in_folder(), 1u);
+  ASSERT_EQ(dapple("render " + options + "-o part.dapple").code, 0);
+  const std::string json = bytes("plan.json");
+  EXPECT_EQ(number_after(json, "camera_rays"), 300 * 200 * 8);
+  const double said = number_after(json, "part_bytes"),
+               is = static_cast<double>(bytes("part.dapple").size());
+  EXPECT_GT(said, is / 2) << json;
+  EXPECT_LT(said, is * 2) << json;
+  EXPECT_GT(number_after(json, "memory_bytes"), 3e7);
+  EXPECT_GT(number_after(json, "seconds_of_rays"), 0);
+  expect_failure(dapple("plan scene:cube --target-rmse 0.1"), 2, "dapple plan needs --spp");
+}
+
+}  // namespace
+}  // namespace dapple

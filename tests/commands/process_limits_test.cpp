@@ -1,0 +1,77 @@
+// The program where the process may do little: few files, small stacks, no PATH, no time, no
+// standard error. It says which limit, or is right all the same.
+#include <gtest/gtest.h>
+
+#include "support/program_run.hpp"
+#include "support/running_program.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+using namespace program_test;
+
+class ProcessLimits : public ProgramRun {};
+
+TEST_F(ProcessLimits, OfFilesAndStacksAreNamed) {
+  expect_failure(render("", "ulimit -n 5;"), 1, "only 5 files may be open here (ulimit -n)");
+  expect_failure(render("", "ulimit -s 64;"), 1, "stacks may only have 64 kB here (ulimit -s)");
+  EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(ProcessLimits, WithoutALinkerInPathItSaysSoBeforeItCompiles) {
+  const std::string empty_cache = "export XDG_CACHE_HOME=" + path("cache") + "; mkdir -p cache; ";
+  for (const char* before : {"PATH=; export PATH; ", "unset PATH; "}) {
+    const auto start = std::chrono::steady_clock::now();
+    expect_failure(render("", empty_cache + before), 4,
+                   "PoCL links kernels with the program ld, which is not in PATH");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+  }
+}
+
+TEST_F(ProcessLimits, AClosedStandardErrorDoesNotSpoilThePicture) {
+  EXPECT_EQ(
+      dapple("render 'scene:cube?divisions=1' -o out.exr --width 8 --height 8 --spp 1 3>&2 2>&-")
+          .code,
+      0);
+  EXPECT_EQ(read_exr(path("out.exr")).width, 8);
+  EXPECT_EQ(files_in_folder(), 1u);
+}
+
+TEST_F(ProcessLimits, OfProcessorTimeSaveACheckpoint) {
+  const Outcome run = dapple(
+      "render 'scene:tree?leaves=2000' --width 96 --height 80 --spp 1048576 -o out.exr "
+      "--checkpoint "
+      "a.ckpt --checkpoint-every 1h",
+      "ulimit -S -t 4; exec env");
+  EXPECT_EQ(run.code, -1) << "128 + SIGXCPU";
+  EXPECT_TRUE(contains(run.err, "--resume a.ckpt goes on")) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(path("a.ckpt")));
+}
+
+TEST_F(ProcessLimits, TheCommandLineSaysWhatItExpects) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"render x.glb -o o.exr --seed -1",
+       "--seed -1: expected a whole number from 0 to 4294967295; dapple render --help"},
+      {"render x.glb -o o.exr --spp 1 --spp 2", "--spp is given more than once"},
+      {"render x.glb -o o.exr --spp", "--spp needs a value"},
+      {"render x.glb -o o.exr --spp many", "--spp many: expected a whole number from -2147483648"},
+      {"render x.glb -o o.exr --footprint x", "--footprint x: expected a number"},
+      {"render x.glb", "--output is missing"},
+      {"render -o o.exr", "SCENE is missing"},
+      {"render x.glb -o o.exr --sp 3", "there is no option --sp"},
+      {"render x.glb y.glb -o o.exr", "'y.glb' is an argument too many"},
+      {"render x.glb -o o.exr --checkpoint-every 5s", "--checkpoint-every needs --checkpoint"},
+      {"render x.glb -o o.#.exr --frame 1 --frames 1-2", " does not go with "},
+      {"rendr x.glb", "there is no command rendr; dapple --help"},
+      {"", "a subcommand is needed"},
+  };
+  for (const auto& [arguments, text] : cases) {
+    const Outcome run = dapple(arguments);
+    expect_failure(run, 2, text);
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+}
+
+}  // namespace
+}  // namespace dapple

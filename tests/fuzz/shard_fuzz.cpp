@@ -1,0 +1,121 @@
+// Merges parts that dapple did not write: sealed files with a right checksum around any contents,
+// and files near to parts. They are refused by name, or make a picture of the size that they say.
+#include <fuzzer/FuzzedDataProvider.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "dapple/error.hpp"
+#include "dapple/shared/ray.h"
+#include "files/compression.hpp"
+#include "files/sealed_file.hpp"
+#include "render/checkpoint.hpp"
+#include "render/merge.hpp"
+
+namespace {
+
+using namespace dapple;
+
+std::string path(int number) {
+  return std::filesystem::temp_directory_path() /
+         ("dapple_part_" + std::to_string(getpid()) + "_" + std::to_string(number));
+}
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+/// Any text as the header, and any sections.
+void write_any(FuzzedDataProvider& data, const std::string& file) {
+  const std::string about = data.ConsumeRandomLengthString();
+  std::vector<std::vector<std::byte>> packed;
+  for (int i = data.ConsumeIntegralInRange(0, 5); i > 0; --i)
+    packed.push_back(compress(data.ConsumeBytes<std::byte>(40)));
+  std::vector<Section> sections{as_section(about)};
+  for (const auto& bytes : packed) sections.emplace_back(bytes);
+  write_sealed_file(file, {"checkpoint", 3}, sections, Durable::no);
+}
+
+PictureRecord any_picture(FuzzedDataProvider& data) {
+  PictureRecord picture;
+  picture.width = data.ConsumeIntegralInRange(1, 6);
+  picture.height = data.ConsumeIntegralInRange(1, 6);
+  const auto corner = [&] { return data.ConsumeIntegralInRange(-1, 6); };
+  picture.crop = {corner(), corner(), corner(), corner()};
+  RenderOptions& options = picture.options;
+  options.camera_splitting = data.ConsumeIntegralInRange(1, 4);
+  options.ao = data.ConsumeBool();
+  options.albedo = data.ConsumeBool();
+  options.back = data.ConsumeBool();
+  options.motion = data.ConsumeBool();
+  options.cryptomattes = {data.ConsumeBool(), data.ConsumeBool()};
+  picture.has_normals = data.ConsumeBool();
+  for (int i = data.ConsumeIntegralInRange(0, 2); i > 0; --i) {
+    Light light;
+    light.name = data.ConsumeRandomLengthString(4);
+    light.group = data.ConsumeRandomLengthString(2);
+    light.kind = static_cast<LightKind>(data.ConsumeIntegralInRange(0, 9));
+    picture.lights.push_back(light);
+  }
+  for (int i = data.ConsumeIntegralInRange(0, 2); i > 0; --i) {
+    picture.names.objects.push_back(std::to_string(i));
+    picture.names.materials.push_back(std::to_string(i));
+  }
+  picture.metadata.samples = data.ConsumeIntegralInRange(1, 8);
+  picture.metadata.settings = {{"ambient", "0"}};
+  return picture;
+}
+
+/// A file that is what its header says, unless the data say otherwise.
+void write_likely(FuzzedDataProvider& data, const std::string& file) {
+  Checkpoint part;
+  part.picture = any_picture(data);
+  TraceState& state = part.state;
+  state.slice_samples = data.ConsumeIntegralInRange<std::uint32_t>(0, 64);
+  state.first_sample = data.ConsumeIntegralInRange<std::uint32_t>(0, 16);
+  const PixelRect& crop = part.picture.crop;
+  const bool sound = crop.x0 >= 0 && crop.y0 >= 0 && crop.x0 <= crop.x1 && crop.y0 <= crop.y1;
+  const std::size_t pixels = sound ? part.picture.pixel_count() : 1;
+  const std::size_t planes = sound ? part.picture.layout().plane_count : 1;
+  state.sums.resize(pixels * planes + data.ConsumeIntegralInRange<std::size_t>(0, 1));
+  for (std::int64_t& sum : state.sums)
+    if (data.remaining_bytes() > 0) sum = data.ConsumeIntegral<std::int64_t>();
+  state.samples.assign(pixels, data.ConsumeIntegralInRange<std::uint32_t>(0, 16));
+  if (part.picture.options.cryptomattes.any()) {
+    state.mattes.assign(pixels, 0);
+    if (data.ConsumeBool()) state.mattes[0] = data.ConsumeIntegral<std::uint32_t>();
+  }
+  if (part.picture.options.motion) state.motion = MotionSums(pixels);
+  for (int i = data.ConsumeIntegralInRange(0, 2); i > 0; --i) {
+    const auto corner = [&] { return data.ConsumeIntegralInRange(-1, 6); };
+    const auto ray = [&] { return data.ConsumeIntegralInRange<std::uint32_t>(0, 9); };
+    part.pieces.push_back({{corner(), corner(), corner(), corner()}, {ray(), ray()}});
+  }
+  write_checkpoint(file, part, state);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  FuzzedDataProvider data(bytes, size);
+  std::vector<std::string> paths;
+  for (int i = data.ConsumeIntegralInRange(1, 2); i > 0; --i) {
+    paths.push_back(path(i));
+    if (data.ConsumeIntegralInRange(0, 7) == 0)
+      write_any(data, paths.back());
+    else
+      write_likely(data, paths.back());
+  }
+  try {
+    const Merge merge = merge_parts(paths, path(0));
+    const PixelRect& window = merge.result.film.data_window;
+    for (const Plane& plane : merge.result.film.planes)
+      require(plane.pixels.size() == static_cast<std::size_t>(window.width() * window.height()));
+    require(merge_parts({path(0)}).missing == merge.missing);
+  } catch (const Error& error) {
+    require(std::string(error.what()).find("dapple_part_") != std::string::npos);
+  }
+  return 0;
+}

@@ -1,0 +1,65 @@
+// Dome images whose radiance is beyond what a light may have are refused with the pixel, so that no
+// picture has infinite pixels.
+#include <gtest/gtest.h>
+
+#include "dapple/render.hpp"
+#include "scene/images/dome_image.hpp"
+#include "support/film_files.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace film_test;
+
+class DomeRange : public FilmFile {
+ protected:
+  /// A Radiance image of 2 x 1 pixels with these exponents.
+  [[nodiscard]] std::string radiance_file(int first, int second) const {
+    std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
+    for (const int exponent : {first, second}) {
+      bytes += std::string(3, '\x80');
+      bytes += static_cast<char>(exponent);
+    }
+    write_bytes(path("a.hdr"), bytes);
+    return path("a.hdr");
+  }
+  [[nodiscard]] std::string exr_file(float value) const {
+    Film film;
+    film.width = 2;
+    film.height = 1;
+    film.data_window = {0, 0, 1, 0};
+    for (const char* channel : {"R", "G", "B"}) film.planes.push_back({channel, {1, value}});
+    write_exr(film, path("a.exr"));
+    return path("a.exr");
+  }
+};
+
+TEST_F(DomeRange, PixelsThatNoLightMayHaveAreRefused) {
+  EXPECT_TRUE(contains(error_of([&] { load_environment(radiance_file(129, 255)); }).what(),
+                       "a.hdr: pixel 1, 0 is 8.51e+37, above 1e+30"));
+  EXPECT_TRUE(contains(error_of([&] { load_environment(exr_file(3e38f)); }).what(),
+                       "a.exr: pixel 1, 0 is 3e+38, above 1e+30"));
+}
+
+TEST_F(DomeRange, TheBrightestDomeMakesAFinitePicture) {
+  Scene scene = make_procedural("scene:cube");
+  Light light;
+  light.name = "dome";
+  light.kind = LightKind::dome;
+  light.environment = load_environment(exr_file(1e30f));
+  scene.lights = {light};
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.spp = 4;
+  const RenderResult result = render(scene, options, Progress());
+  for (const Plane& plane : result.film.planes) {
+    if (plane.channel == "Z") continue;
+    for (const float pixel : plane.pixels) EXPECT_TRUE(std::isfinite(pixel)) << plane.channel;
+  }
+  scene.lights[0].radiance = V3f(100);
+  EXPECT_TRUE(contains(error_of([&] { render(scene, options, Progress()); }).what(),
+                       "a.exr: the dome's mean radiance is "));
+}
+
+}  // namespace
+}  // namespace dapple
