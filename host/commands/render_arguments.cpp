@@ -133,33 +133,6 @@ void add_checkpoint_options(CLI::App& app, RenderArguments& a) {
                  "in 2/8; --spp is that of the whole image");
 }
 
-void add_file_options(CLI::App& app, RenderArguments& a) {
-  app.add_option("--png", a.png,
-                 "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
-                 "NAME_visits.png");
-  app.add_option(
-         "--exposure", a.exposure,
-         "Exposure of the PNG in stops: 1 is twice as bright; auto: dapple chooses it from the "
-         "brightness of the picture")
-      ->capture_default_str();
-  app.add_option(
-         "--background", a.background,
-         "Background of the PNG: sky (a gradient), none (keeps alpha), or a linear colour R,G,B "
-         "from 0 to 1")
-      ->capture_default_str();
-  app.add_option(
-      "--half", a.half,
-      "Layers to store as 16-bit floats: names separated by commas, or all. Z, P, samples "
-      "and Cryptomattes stay 32-bit");
-  app.add_option("--deep", a.deep,
-                 "Also write a deep OpenEXR file: the opacity (A) at depths (Z) of each pixel");
-  app.add_flag("--multipart", a.multipart, "Write a part for each layer");
-  app.add_option("--compression", a.compression,
-                 "Compression of the EXR: zip, zips, piz, none; dwaa (lossy, for colours only; "
-                 "with --multipart)")
-      ->capture_default_str();
-}
-
 void add_motion_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& frame =
       *app.add_option("--frame", a.frame,
@@ -242,15 +215,20 @@ void add_file_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--png", a.png,
                  "Also write an 8-bit preview NAME.png; with --passes visits, also a heat map, "
                  "NAME_visits.png");
-  app.add_option("--exposure", a.exposure,
-                 "Exposure of the PNG in stops: 1 is twice as bright; auto: by what is seen")
+  app.add_option(
+         "--exposure", a.exposure,
+         "Exposure of the PNG in stops: 1 is twice as bright; auto: dapple chooses it from the "
+         "brightness of the picture")
       ->capture_default_str();
-  app.add_option("--background", a.background,
-                 "Background of the PNG: sky, none (an alpha channel) or R,G,B, linear, 0 to 1")
+  app.add_option(
+         "--background", a.background,
+         "Background of the PNG: sky (a gradient), none (keeps alpha), or a linear colour R,G,B "
+         "from 0 to 1")
       ->capture_default_str();
-  app.add_option("--half", a.half,
-                 "Layers to store as 16-bit floats, with commas between, or all; Z, P, samples and "
-                 "ids stay 32-bit");
+  app.add_option(
+      "--half", a.half,
+      "Layers to store as 16-bit floats: names separated by commas, or all. Z, P, samples "
+      "and Cryptomattes stay 32-bit");
   app.add_flag("--multipart", a.multipart, "Write a part for each layer");
   app.add_option("--compression", a.compression,
                  "Compression of the EXR: zip, zips, piz, none; dwaa (lossy, for colours only; "
@@ -267,6 +245,8 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
                  "OpenEXR file to write; FILE.dapple: a part for dapple merge")
       ->required();
   add_file_options(app, a);
+  app.add_option("--deep", a.deep,
+                 "Also write a deep OpenEXR file: the opacity (A) at depths (Z) of each pixel");
   add_picture_options(app, a);
   add_scene_options(app, a);
   add_motion_options(app, a);

@@ -163,9 +163,10 @@ RenderResult film_of(const PictureRecord& picture, MergedSums&& sums) {
   TracedPicture traced = std::move(sums).picture();
   statistics.pass_seconds = traced.pass_seconds;
   statistics.bytes.film = layout.sum_bytes();
-  result.film = {picture.width, picture.height, picture.crop,
-                 develop(traced, layout, picture.options, picture.lights, statistics),
-                 picture.metadata};
+  result.film = {
+      picture.width,    picture.height,
+      picture.crop,     develop(traced, layout, picture.options, picture.lights, statistics),
+      picture.metadata, DeepAlpha{}};
   set_ambient(result.film.metadata, statistics.ambient);
   traced.mattes.keep_first();
   add_cryptomattes(result.film, traced.mattes, traced.samples, picture.names,

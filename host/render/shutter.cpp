@@ -30,6 +30,8 @@ void check_shutter(const Shutter& shutter, const RenderOptions& options,
   check_motion(shutter, options);
   if (options.deep && !(control.checkpoint.empty() && control.resume.empty()))
     refuse("--checkpoint and --resume do not go with --deep");
+  if (options.deep && !control.part.empty())
+    refuse("--deep does not go with --shard and -o FILE.dapple: parts have no depths");
   if (shutter.times == 1) return;
   if (options.ground) refuse("with motion blur the ground must be part of the scenes");
   if (is_adaptive(options))
