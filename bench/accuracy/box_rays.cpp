@@ -43,8 +43,8 @@ BoxRay ray_through(const Box3f& box, const V3f& direction, oracle::Random& rando
   // The whole subtree lies inside the box, so rays may start outside.
   const V3f origin = entry - direction * (0.01f * size.length());
   const float length = length_inside(box, entry, direction);
-  const V3f away = (entry + direction * (0.5f * length) - box.center()) / (size * 0.5f);
-  return {{origin, direction}, length / mean_length, away.length2()};
+  const V3f middle = (entry + direction * (0.5f * length) - box.center()) / (size * 0.5f);
+  return {{origin, direction}, length / mean_length, middle};
 }
 
 SampledOpacity sample_opacity(const Truth& subtree, const Box3f& box, const V3f& direction,

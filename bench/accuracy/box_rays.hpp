@@ -11,12 +11,12 @@
 namespace dapple::bench {
 
 /// A ray through a box along a unit direction. `chord`: length inside the box, divided by the mean
-/// length of such rays, which is volume / projected area. `off_centre`: squared distance from the
-/// box's centre to the middle of the chord, in half sizes of the box.
+/// length of such rays, which is volume / projected area. `middle`: of the chord, from the box's
+/// centre, in half sizes of the box.
 struct BoxRay {
   oracle::Segment segment;
   float chord;
-  float off_centre;
+  V3f middle;
 };
 
 /// Projected areas of the box's faces along `direction`, axis by axis, square metres.

@@ -90,7 +90,7 @@ double model_opacity(const Model& model, const JudgedNode& node, const V3f& dire
   double opacity = 0;
   for (const BoxRay& ray : rays)
     opacity +=
-        1 - std::exp(-model_depth(model.directional, known, direction, ray.chord, ray.off_centre));
+        1 - std::exp(-model_depth(model.directional, known, direction, ray.chord, ray.middle));
   return opacity / static_cast<double>(rays.size());
 }
 
@@ -182,6 +182,8 @@ class NodeJudge {
     judged.rectangles = composition.rectangles;
     for (int axis = 0; axis < 3; ++axis) {
       judged.stored.opacity[axis] = 1.0f - std::exp(-depth_decode(node.depth[axis][subtree.slot]));
+      judged.stored.mass_pole[axis] =
+          bvh_mass_pole(node.correlation, static_cast<uint>(axis), subtree.slot);
       judged.stored.correlation[axis] = correlation_decode(node.correlation[axis][subtree.slot]);
       judged.true_axes[axis] = static_cast<float>(
           sample_opacity(truth, judged.box, unit_axis(axis), kAxisRays * options_.rays, random_)

@@ -38,13 +38,16 @@ float depth_with_chord(float depth, Chord chord, float length, const V3f& facing
 }  // namespace
 
 float model_depth(const DirectionalModel& model, const NodeOpacity& node, const V3f& direction,
-                  float chord, float off_centre) {
+                  float chord, const V3f& middle) {
   const V3f faces = facing_areas(node.size, direction);
   const float inverse = 1.0f / (sum(faces) + 1e-37f);
   const V3f area = node.opacity * faces;
   const V3f correlation = model.matrix ? node.correlation : V3f(0.0f);
   const float silhouette = ellipsoid(area, direction, correlation) * inverse;
-  const float weight = model.centred ? centre_weight(node.mass_concentration, off_centre) : 1.0f;
+  const float weight =
+      model.centred ? centre_weight(node.mass_concentration, (middle - node.mass_pole).length2(),
+                                    node.mass_pole.length2())
+                    : 1.0f;
   const auto with_chord = [&](float depth) {
     return weight * depth_with_chord(depth, model.chord, chord, faces);
   };

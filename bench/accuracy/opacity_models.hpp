@@ -11,7 +11,8 @@ struct NodeOpacity {
   V3f size;                      ///< of the quantized box, metres
   V3f opacity;                   ///< along each axis, [0,1]
   V3f correlation{0.0f};         ///< of the normals' components xy, yz, zx, [-1,1]
-  float mass_concentration = 0;  ///< around the box's centre, [0,1]
+  float mass_concentration = 0;  ///< around `mass_pole`, [0,1]
+  V3f mass_pole{0.0f};           ///< from the box's centre, in half sizes
 };
 
 /// How a model combines the opacities along the axes to one along a direction.
@@ -39,9 +40,9 @@ struct DirectionalModel {
 /// The model of child_optical_depths() in kernels/opacity/footprint.clh.
 inline constexpr DirectionalModel kRendererModel{Blend::depths, Chord::scaled, true};
 
-/// Optical depth of the node along a unit direction. `chord` and `off_centre` as in BoxRay.
+/// Optical depth of the node along a unit direction. `chord` and `middle` as in BoxRay.
 float model_depth(const DirectionalModel& model, const NodeOpacity& node, const V3f& direction,
-                  float chord, float off_centre);
+                  float chord, const V3f& middle);
 
 /// Throws Error failed if kRendererModel and the renderer's box_depth() differ.
 void check_renderer_model();

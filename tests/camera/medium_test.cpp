@@ -250,7 +250,7 @@ TEST(OpacityVariance, IsStoredInTheLowestBitsOfCorrelations) {
     for (int pair = 0; pair < 3; ++pair) {
       const float stored = correlation_decode(node.correlation[pair][3]);
       EXPECT_LE(std::fabs(stored), 1.0f);
-      EXPECT_NEAR(stored, opacity.normals.correlation()[pair], 1.001f / 127);
+      EXPECT_NEAR(stored, opacity.normals.correlation()[pair], 0.5001f / 15);
     }
   }
 }

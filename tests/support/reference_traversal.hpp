@@ -116,23 +116,25 @@ class ReferenceTraversal {
       correlations[axis] = std::copysign(1.0f, direction[axis] * direction[next]) *
                            correlation_decode(node.correlation[axis][slot]);
     }
-    const float weight =
-        thin ? 1.0f
-             : centre_weight(bvh_mass_concentration(node.leaf_end, slot), off_centre(c, direction));
+    const float weight = thin ? 1.0f : pole_weight(node, slot, c, direction);
     return weight *
            chord_depth(box_depth(depths[0], depths[1], depths[2], correlations[0], correlations[1],
                                  correlations[2], facing.x, facing.y, facing.z),
                        chord);
   }
 
-  static float off_centre(const Crossing& c, const V3f& direction) {
-    float sum = 0;
+  static float pole_weight(const BvhNode& node, unsigned slot, const Crossing& c,
+                           const V3f& direction) {
+    float sum = 0, square = 0;
     for (int axis = 0; axis < 3; ++axis) {
+      const float pole = bvh_mass_pole(node.correlation, static_cast<uint>(axis), slot);
       const float away = (0.5f * (c.enter + c.leave) * direction[axis] - c.centre[axis]) /
-                         (0.5f * c.size[axis] + 1e-37f);
+                             (0.5f * c.size[axis] + 1e-37f) -
+                         pole;
       sum += away * away;
+      square += pole * pole;
     }
-    return sum;
+    return centre_weight(bvh_mass_concentration(node.leaf_end, slot), sum, square);
   }
 
   /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.

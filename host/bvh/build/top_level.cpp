@@ -38,6 +38,21 @@ Box3f world_box(const std::vector<Box3f>& parts, const M44f& to_world) {
   return world;
 }
 
+/// Returns where the mass of the object is in the instance's world box. Its pole is moved to the
+/// new place of the centroid.
+MassShape placed_mass(const ObjectSummary& object, const M44f& to_world, const Box3f& world) {
+  MassShape mass = object.opacity.mass;
+  if (!(mass.concentration > 0.0f)) return mass;
+  const V3f half = (object.box.max - object.box.min) * 0.5f;
+  const V3f centroid = (object.box.center() + half * mass.centroid()) * to_world - world.center();
+  for (int axis = 0; axis < 3; ++axis) {
+    const float size = 0.5f * (world.max[axis] - world.min[axis]);
+    const float place = size > 0.0f ? centroid[axis] / size : 0.0f;
+    mass.pole[axis] = std::clamp(1.5f * place / mass.concentration, -0.75f, 0.75f);
+  }
+  return mass;
+}
+
 /// Returns the opacity of the instance's world box, from that of the object's root. A ray along the
 /// world axis e crosses the object in direction M^-1 e, and projected areas grow by
 /// |det M| |M^-1 e|.
@@ -48,7 +63,7 @@ NodeOpacity instance_opacity(const ObjectSummary& object, const M44f& to_world,
   NodeOpacity opacity;
   opacity.normals = object.opacity.normals.placed(to_world);
   opacity.clumping = object.opacity.clumping;
-  opacity.mass_concentration = object.opacity.mass_concentration;
+  opacity.mass = placed_mass(object, to_world, world);
   opacity.wall = object.opacity.wall;
   for (int axis = 0; axis < 3; ++axis) {
     V3f world_axis(0.0f), direction;

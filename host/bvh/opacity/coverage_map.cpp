@@ -89,20 +89,22 @@ float CoverageMap::mean_opacity(int axis) const {
 }
 
 DAPPLE_MULTIVERSION
-float CoverageMap::opacity_off_centre(int axis) const {
-  const auto square = [](int cell) {
-    const float x = (static_cast<float>(cell) + 0.5f) * (2.0f / kMapSize) - 1.0f;
-    return x * x;
+OpacityMoments CoverageMap::moments(int axis) const {
+  const auto place = [](int cell) {
+    return (static_cast<float>(cell) + 0.5f) * (2.0f / kMapSize) - 1.0f;
   };
-  Row columns, sum{};
-  for (int i = 0; i < kMapSize; ++i) columns[i] = square(i);
+  Row columns, square{}, column{}, row_sum{};
+  for (int i = 0; i < kMapSize; ++i) columns[i] = place(i);
   const Row one = Row{} + 1.0f;
   for (int row = 0; row < kMapSize; ++row) {
-    Row t;
-    load_row(&transmittance[axis][row * kMapSize], t);
-    sum += (one - t) * (columns + square(row));
+    Row opacity;
+    load_row(&transmittance[axis][row * kMapSize], opacity);
+    opacity = one - opacity;
+    column += opacity * columns;
+    row_sum += opacity * place(row);
+    square += opacity * (columns * columns + place(row) * place(row));
   }
-  return sum_of(sum) / kMapCells;
+  return {sum_of(column) / kMapCells, sum_of(row_sum) / kMapCells, sum_of(square) / kMapCells};
 }
 
 DAPPLE_MULTIVERSION

@@ -29,6 +29,12 @@ inline float face_area(const Box3f& box, int axis) {
 
 void fill_cells(std::array<float, kMapCells>& cells, float value);
 
+/// Means over a view along an axis of opacity times x, times y, and times x^2 + y^2, where x and y
+/// are the places along column_axis() and row_axis() from the middle, in half sizes of the box.
+struct OpacityMoments {
+  float column, row, square;
+};
+
 /// transmittance[axis][row * kMapSize + column], in [0,1].
 struct CoverageMap {
   alignas(64) std::array<std::array<float, kMapCells>, 3> transmittance;
@@ -38,9 +44,7 @@ struct CoverageMap {
   }
   /// Mean opacity of the box along `axis`, [0,1].
   [[nodiscard]] float mean_opacity(int axis) const;
-  /// Mean over the cells of opacity times the squared distance from the middle, in half sizes of
-  /// the box; 2/3 of the mean opacity if all cells have the same opacity.
-  [[nodiscard]] float opacity_off_centre(int axis) const;
+  [[nodiscard]] OpacityMoments moments(int axis) const;
   /// Relative variance of opacity over the box: the variance of the cells divided by the maximum
   /// that their mean permits, for all axes together. 0: all cells are alike; 1: each cell is either
   /// clear or opaque.

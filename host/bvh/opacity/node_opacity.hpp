@@ -26,20 +26,30 @@ struct NormalMoments {
   [[nodiscard]] V3f correlation() const;
 };
 
+/// Where the mass of a box is: its opacity is proportional to centre_weight() of
+/// dapple/shared/opacity.h.
+struct MassShape {
+  float concentration = 0;  ///< 0, 1/3, 2/3 or 1
+  V3f pole{0, 0, 0};        ///< from the centre, in half sizes: -3/4, -1/4, 1/4 or 3/4 each
+  /// Mean of centre_weight() over the box: above 1 where its minimum cuts much off.
+  [[nodiscard]] float mean_weight() const;
+  /// Mean of the positions of the opacity, in half sizes.
+  [[nodiscard]] V3f centroid() const { return pole * (2.0f / 3.0f * concentration); }
+};
+
 struct NodeOpacity {
   V3f axes{0, 0, 0};  ///< opacity along x, y, z, [0,1]
   NormalMoments normals;
-  float clumping = 0;            ///< CoverageMap::clumping()
-  float mass_concentration = 0;  ///< mass_concentration_of(), [0,1]
-  std::size_t triangles = 0;     ///< in the whole subtree; 0: many
-  bool wall = false;             ///< is_wall() of bvh/opacity/wall.hpp: traversal opens it
+  float clumping = 0;  ///< CoverageMap::clumping()
+  MassShape mass = {};
+  std::size_t triangles = 0;  ///< in the whole subtree; 0: many
+  bool wall = false;          ///< is_wall() of bvh/opacity/wall.hpp: traversal opens it
 };
 
-/// Returns the mass concentration for centre_weight() of dapple/shared/opacity.h, [0,1].
-/// `off_centre`: mean squared distance of the occluders from the centre of the box, seen along the
-/// axes, in half sizes of the box. The result is 0 from 2/3 on: content that fills the box
-/// uniformly or lies away from its middle.
-float mass_concentration_of(float off_centre);
+/// Returns the shape that a node can store nearest to these moments, by least squares. Means over
+/// the occluders, seen along the axes: `centroid`, of their positions from the centre of the box;
+/// `off_centre`, of their squared distances from it. Both in half sizes of the box.
+MassShape mass_shape_of(const V3f& centroid, float off_centre);
 
 /// Returns the variance class of a box's opacity, as nodes store it: dapple/shared/opacity.h.
 unsigned variance_class(const NodeOpacity& opacity);

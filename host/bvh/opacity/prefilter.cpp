@@ -48,17 +48,43 @@ struct Leaf {
   [[nodiscard]] Covering covering() const { return {along(0), along(1), along(2)}; }
 };
 
-/// Returns the mean over the triangle, seen along `axis`, of the squared distance from the centre
-/// of the box, in half sizes of the box.
-float mean_off_centre(const CoveringTriangle& t, const Box3f& box, int axis) {
-  float sum = 0;
-  for (const int k : {column_axis(axis), row_axis(axis)}) {
+/// Sums over what is seen along the axes, weighted by occluding area.
+struct MassSums {
+  V3f position{0, 0, 0};  ///< from the centre of the box, half sizes
+  V3f seen{0, 0, 0};      ///< occluding area of the views that see this axis
+  float square = 0, area = 0;
+
+  /// Adds a view along `axis`: its moments per opacity of 1, and the weight of these.
+  void add(int axis, const OpacityMoments& moments, float opacity, float weight) {
+    const int column = column_axis(axis), row = row_axis(axis);
+    position[column] += weight * moments.column;
+    position[row] += weight * moments.row;
+    seen[column] += weight * opacity;
+    seen[row] += weight * opacity;
+    square += weight * moments.square;
+    area += weight * opacity;
+  }
+  [[nodiscard]] MassShape shape() const {
+    if (!(area > 0.0f)) return {};
+    V3f centroid;
+    for (int axis = 0; axis < 3; ++axis)
+      centroid[axis] = seen[axis] > 0.0f ? position[axis] / seen[axis] : 0.0f;
+    return mass_shape_of(centroid, square / area);
+  }
+};
+
+/// Returns the moments of the triangle, seen along `axis`.
+OpacityMoments triangle_moments(const CoveringTriangle& t, const Box3f& box, int axis) {
+  float means[2], square = 0;
+  for (int i = 0; i < 2; ++i) {
+    const int k = i ? row_axis(axis) : column_axis(axis);
     const float halves = 2.0f / (box.max[k] - box.min[k]);
     const float a = (t.vertex[k] - box.min[k]) * halves - 1.0f;
     const float b = a + t.edge1[k] * halves, c = a + t.edge2[k] * halves;
-    sum += (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0f;
+    means[i] = (a + b + c) / 3.0f;
+    square += (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0f;
   }
-  return sum;
+  return {means[0], means[1], square};
 }
 
 /// Returns the opacity of a single layer: the result of map_opacity() for a map of infinitely many
@@ -67,7 +93,8 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
   NodeOpacity opacity;
   opacity.normals = leaf.normals;
   opacity.triangles = leaf.count;
-  float variance = 0, greatest = 0, off_centre = 0, total = 0;
+  float variance = 0, greatest = 0;
+  MassSums mass;
   for (int axis = 0; axis < 3; ++axis) {
     const float face = face_area(box, axis);
     if (!(face > 0.0f)) continue;
@@ -76,15 +103,14 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
       const float share = 0.5f * std::fabs(t.edge1.cross(t.edge2)[axis]) / face;
       occluded += t.opacity * share;
       square += t.opacity * t.opacity * share;
-      off_centre += t.opacity * share * face * mean_off_centre(t, box, axis);
-      total += t.opacity * share * face;
+      mass.add(axis, triangle_moments(t, box, axis), 1.0f, t.opacity * share * face);
     }
     opacity.axes[axis] = occluded = std::min(occluded, 1.0f);
     variance += std::max(0.0f, square - occluded * occluded);
     greatest += occluded * (1.0f - occluded);
   }
   if (greatest > 1e-6f) opacity.clumping = std::min(1.0f, variance / greatest);
-  if (total > 0.0f) opacity.mass_concentration = mass_concentration_of(off_centre / total);
+  opacity.mass = mass.shape();
   return opacity;
 }
 
@@ -250,12 +276,10 @@ class Prefilter {
 NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box) {
   NodeOpacity opacity{V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals,
                       map.clumping()};
-  float off_centre = 0, total = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    off_centre += face_area(box, axis) * map.opacity_off_centre(axis);
-    total += face_area(box, axis) * opacity.axes[axis];
-  }
-  if (total > 0.0f) opacity.mass_concentration = mass_concentration_of(off_centre / total);
+  MassSums mass;
+  for (int axis = 0; axis < 3; ++axis)
+    mass.add(axis, map.moments(axis), opacity.axes[axis], face_area(box, axis));
+  opacity.mass = mass.shape();
   return opacity;
 }
 
@@ -276,23 +300,27 @@ V3f grown_opacity(const V3f& axes, const Box3f& exact, const Box3f& box) {
   return grown;
 }
 
-/// Returns the code nearest to `correlation` whose lowest bit is `bit`.
-schar encode_correlation(float correlation, unsigned bit) {
-  const int last = static_cast<int>(bit), max = 126 + last;
-  const auto half =
-      static_cast<int>(std::lround((127.0f * correlation - static_cast<float>(bit)) / 2));
-  return static_cast<schar>(std::clamp(2 * half + last, -max, max));
+/// The bits of a child's mass pole along an axis.
+unsigned pole_code(float pole) {
+  return static_cast<unsigned>(std::clamp(std::lround(2.0f * pole + 1.5f), 0L, 3L));
 }
 
+struct StoredShape {
+  unsigned opacity_variance;      ///< variance_class()
+  std::array<unsigned, 3> poles;  ///< pole_code()
+  bool wall;
+};
+
 void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
-                  const V3f& correlation, unsigned opacity_variance, bool wall) {
+                  const V3f& correlation, const StoredShape& shape) {
   for (int axis = 0; axis < 3; ++axis) {
     node.depth[axis][slot] =
         encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_MAX_DEPTH));
-    node.correlation[axis][slot] =
-        encode_correlation(correlation[axis], opacity_variance >> axis & 1u);
+    const auto code = static_cast<int>(std::lround(15.0f * correlation[axis]));
+    const unsigned low = shape.poles[axis] << 1 | (shape.opacity_variance >> axis & 1u);
+    node.correlation[axis][slot] = static_cast<schar>(code * 8 + static_cast<int>(low));
   }
-  if (wall) node.depth[0][slot] = DAPPLE_WALL_DEPTH;
+  if (shape.wall) node.depth[0][slot] = DAPPLE_WALL_DEPTH;
 }
 
 }  // namespace
@@ -302,10 +330,14 @@ float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity
   const Box3f box = child_box(node, slot);
   NodeOpacity grown = opacity;
   grown.axes = grown_opacity(opacity.axes, exact, box);
-  const float factor = clumping_factor(grown, box.max - box.min);
+  const float factor = std::clamp(
+      clumping_factor(grown, box.max - box.min) / opacity.mass.mean_weight(), 0.6f, 1.6f);
   store_depths(node, slot, grown.axes, factor, opacity.normals.correlation(),
-               variance_class(opacity), opacity.wall);
-  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.mass_concentration));
+               {variance_class(opacity),
+                {pole_code(opacity.mass.pole.x), pole_code(opacity.mass.pole.y),
+                 pole_code(opacity.mass.pole.z)},
+                opacity.wall});
+  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.mass.concentration));
   node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
   return factor;
 }
@@ -324,8 +356,11 @@ void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
     axes[axis] = std::min(1.0f, axes[axis] * kept.share(axis, slot));
   store_depths(node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
                normals.correlation(),
-               std::max(variance_of_child(node, slot), variance_class({axes, {}})),
-               bvh_is_wall(node.depth, slot));
+               {std::max(variance_of_child(node, slot), variance_class({axes, {}})),
+                {pole_code(bvh_mass_pole(node.correlation, 0, slot)),
+                 pole_code(bvh_mass_pole(node.correlation, 1, slot)),
+                 pole_code(bvh_mass_pole(node.correlation, 2, slot))},
+                bvh_is_wall(node.depth, slot)});
 }
 
 namespace {

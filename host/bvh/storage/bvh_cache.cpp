@@ -38,9 +38,10 @@ struct ObjectRecord {
   std::array<float, 3> axes;
   std::array<float, 6> normals;
   float clumping, mass_concentration;
-  std::uint32_t part_count, stack, wall;
+  std::array<float, 3> mass_pole;
+  std::uint32_t part_count, stack, wall, spare;
 };
-static_assert(sizeof(ObjectRecord) == 2 * 8 + 7 * 8 + (6 + 8 * 6 + 3 + 6 + 2) * 4 + 3 * 4);
+static_assert(sizeof(ObjectRecord) == 2 * 8 + 7 * 8 + (6 + 8 * 6 + 3 + 6 + 2 + 3) * 4 + 4 * 4);
 
 BoxRecord box_record(const Box3f& box) {
   return {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
@@ -64,7 +65,8 @@ ObjectRecord record_of(const CachedObject& cached, const Checksum& key) {
   for (int axis = 0; axis < 3; ++axis) record.axes[axis] = object.opacity.axes[axis];
   record.normals = object.opacity.normals.sum;
   record.clumping = object.opacity.clumping;
-  record.mass_concentration = object.opacity.mass_concentration;
+  record.mass_concentration = object.opacity.mass.concentration;
+  for (int axis = 0; axis < 3; ++axis) record.mass_pole[axis] = object.opacity.mass.pole[axis];
   record.part_count = static_cast<std::uint32_t>(object.parts.size());
   record.stack = object.stack;
   record.wall = object.opacity.wall ? 1 : 0;
@@ -85,7 +87,8 @@ ObjectSummary summary_of(const ObjectRecord& record) {
   summary.opacity.axes = V3f(record.axes[0], record.axes[1], record.axes[2]);
   summary.opacity.normals.sum = record.normals;
   summary.opacity.clumping = record.clumping;
-  summary.opacity.mass_concentration = record.mass_concentration;
+  summary.opacity.mass = {record.mass_concentration,
+                          V3f(record.mass_pole[0], record.mass_pole[1], record.mass_pole[2])};
   summary.stack = record.stack;
   summary.opacity.wall = record.wall != 0;
   return summary;

@@ -30,7 +30,8 @@ typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   uchar upper[3][8];
   uchar depth[3][8];       /* optical depth of child c's quantized box along each axis */
   uchar leaf_end[8];       /* bits 0 to 5: end of child c's primitives; 6, 7: mass concentration */
-  schar correlation[3][8]; /* of its normals' components xy, yz, zx, with its variance class */
+  schar correlation[3][8]; /* bits 3 to 7: of its normals' components xy, yz, zx; 1, 2: mass pole
+                              along x, y, z; 0: of its variance class */
 } BvhNode;
 
 /* This bit of prim_base is set if the object consists of segments: prim_base is then the index of a
@@ -54,6 +55,13 @@ DAPPLE_FUNCTION uint bvh_leaf_begin(DAPPLE_GLOBAL const uchar* leaf_end, uint sl
   return slot == 0u ? 0u : bvh_leaf_end(leaf_end, slot - 1u);
 }
 
+/* Place of the mass pole of child `slot` along an axis, from the centre of its box, in half sizes:
+   -3/4, -1/4, 1/4 or 3/4. */
+DAPPLE_FUNCTION float bvh_mass_pole(DAPPLE_GLOBAL const schar (*correlation)[8], uint axis,
+                                    uint slot) {
+  return (float)(((uint)correlation[axis][slot] >> 1) & 3u) * 0.5f - 0.75f;
+}
+
 /* A child whose depth code along x has this value is a wall (host/bvh/opacity/wall.hpp): it is
    never covered, and its opacity is not used. */
 #define DAPPLE_WALL_DEPTH 255
@@ -62,7 +70,7 @@ DAPPLE_FUNCTION bool bvh_is_wall(DAPPLE_GLOBAL const uchar (*depth)[8], uint slo
   return depth[0][slot] == DAPPLE_WALL_DEPTH;
 }
 
-/* Mass concentration of child `slot` around the centre of its box, [0,1]; for centre_weight(). */
+/* Mass concentration of child `slot` around its mass pole, [0,1]; for centre_weight(). */
 DAPPLE_FUNCTION float bvh_mass_concentration(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
   return (float)(leaf_end[slot] >> 6) * (1.0f / 3.0f);
 }

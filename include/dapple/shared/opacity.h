@@ -45,7 +45,13 @@ DAPPLE_FUNCTION float depth_decode(uchar code) {
 #define DAPPLE_NOT_UNIFORM 7u
 #define DAPPLE_MIN_VARIANCE 1.52587890625e-5f /* 2^-16 */
 
-DAPPLE_FUNCTION float correlation_decode(schar code) { return (float)code * (1.0f / 127.0f); }
+/* The upper five bits, -15 to 15. */
+#define DAPPLE_CORRELATION_MASK (-8)
+#define DAPPLE_CORRELATION_STEP (1.0f / 120.0f)
+
+DAPPLE_FUNCTION float correlation_decode(schar code) {
+  return (float)(code & DAPPLE_CORRELATION_MASK) * DAPPLE_CORRELATION_STEP;
+}
 
 /* Mean optical depth of a box along a direction. facing_k = (projected area along axis k) *
    |direction_k|, depth_k along axis k, correlation_ij in [-1,1] times the sign of
@@ -71,10 +77,13 @@ DAPPLE_FUNCTION float chord_depth(float depth, float chord) {
   return depth * (chord + filled * (1.0f - chord));
 }
 
-/* Factor of the optical depth of a ray for mass concentration: boxes hold less in their corners
-   than in their middle. off_centre: see DAPPLE_MEAN_OFF_CENTRE. */
-DAPPLE_FUNCTION float centre_weight(float mass_concentration, float off_centre) {
-  const float weight = 1.0f + mass_concentration * (DAPPLE_MEAN_OFF_CENTRE - off_centre);
+/* Factor of the optical depth of a ray for the place of the mass: boxes hold less far from their
+   mass pole. off_pole: squared distance from the pole to the middle of the ray's chord;
+   pole_square: from the pole to the centre of the box; both in half sizes. The mean over all rays
+   is 1: DAPPLE_MEAN_OFF_CENTRE + pole_square is the mean of off_pole. */
+DAPPLE_FUNCTION float centre_weight(float mass_concentration, float off_pole, float pole_square) {
+  const float weight =
+      1.0f + mass_concentration * (DAPPLE_MEAN_OFF_CENTRE + pole_square - off_pole);
   return weight > DAPPLE_MIN_CENTRE_WEIGHT ? weight : DAPPLE_MIN_CENTRE_WEIGHT;
 }
 

@@ -89,7 +89,7 @@ TEST(OpacityModel, FactorsOfClumpsAreThoseOfTheirMirrorImagesAndOfAxesRenamed) {
   for (int i = 0; i < 1000; ++i) {
     NodeOpacity clump = random_opacity(random);
     clump.clumping = part(random);
-    clump.mass_concentration = part(random);
+    clump.mass.concentration = part(random);
     clump.triangles = 100;
     const V3f size(1, 2, 0.5f);
     const float factor = clumping_factor(clump, size);
@@ -339,8 +339,8 @@ TEST(OpacityModel, CentreWeightsKeepTheMeanDepthOfRaysThatFillTheBox) {
           enter = std::max(enter, std::min(a, b));
           leave = std::min(leave, std::max(a, b));
         }
-        weights +=
-            centre_weight(mass_concentration, (p + direction * (0.5f * (enter + leave))).length2());
+        weights += centre_weight(mass_concentration,
+                                 (p + direction * (0.5f * (enter + leave))).length2(), 0);
       }
       // The mean off_centre is 0.667 to 0.707, depending on the direction; the model uses 0.68. The
       // minimum weight adds to the error.
@@ -360,9 +360,80 @@ TEST(OpacityModel, SurfacesThroughTheMiddleOfABoxHaveMassConcentration) {
       corners.transmittance[axis][cell] = 0.2f;
   }
   const Box3f box(V3f(0, 0, 0), V3f(1, 2, 3));
-  EXPECT_EQ(map_opacity(middle, {}, box).mass_concentration, 1);
-  EXPECT_NEAR(map_opacity(uniform, {}, box).mass_concentration, 0, 0.02f);
-  EXPECT_EQ(map_opacity(corners, {}, box).mass_concentration, 0);
+  EXPECT_EQ(map_opacity(middle, {}, box).mass.concentration, 1);
+  EXPECT_EQ(map_opacity(uniform, {}, box).mass.concentration, 0);
+  EXPECT_EQ(map_opacity(corners, {}, box).mass.concentration, 0);
+}
+
+TEST(OpacityModel, TheMassPoleIsWhereTheContentsOfABoxAre) {
+  CoverageMap corner, middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int row = 0; row < 6; ++row)
+      for (int column = 0; column < 6; ++column)
+        corner.transmittance[axis][row * kMapSize + column] = 0.2f;
+    for (int row = 5; row < 11; ++row)
+      for (int column = 5; column < 11; ++column)
+        middle.transmittance[axis][row * kMapSize + column] = 0.2f;
+  }
+  const Box3f box(V3f(0, 0, 0), V3f(1, 2, 3));
+  const MassShape shape = map_opacity(corner, {}, box).mass;
+  EXPECT_GT(shape.concentration, 0.5f);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(shape.pole[axis], -0.75f) << axis;
+  // Rays through that corner meet more than rays through the opposite one.
+  const float near = centre_weight(shape.concentration, 0, shape.pole.length2()),
+              far = centre_weight(shape.concentration, (V3f(0.75f) - shape.pole).length2(),
+                                  shape.pole.length2());
+  EXPECT_GT(near, 2);
+  EXPECT_EQ(far, DAPPLE_MIN_CENTRE_WEIGHT);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_EQ(std::fabs(map_opacity(middle, {}, box).mass.pole[axis]), 0.25f) << axis;
+}
+
+TEST(OpacityModel, StoredMassPolesComeBack) {
+  BvhNode node{};
+  set_grid(node, Box3f(V3f(0, 0, 0), V3f(1, 1, 1)));
+  const Box3f box(V3f(0, 0, 0), V3f(1, 1, 1));
+  set_child_box(node, 3, box);
+  NodeOpacity opacity;
+  opacity.axes = V3f(0.5f, 0.4f, 0.3f);
+  for (int code = 0; code < 64; ++code) {
+    opacity.mass.concentration = 2.0f / 3.0f;
+    for (int axis = 0; axis < 3; ++axis)
+      opacity.mass.pole[axis] = 0.5f * static_cast<float>(code >> 2 * axis & 3) - 0.75f;
+    set_child_opacity(node, 3, opacity, box);
+    for (unsigned axis = 0; axis < 3; ++axis)
+      EXPECT_EQ(bvh_mass_pole(node.correlation, axis, 3), opacity.mass.pole[axis]);
+    EXPECT_NEAR(bvh_mass_concentration(node.leaf_end, 3), 2.0f / 3.0f, 1e-6f);
+  }
+}
+
+TEST(OpacityModel, MeanWeightsAreThoseOfRaysThroughABox) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (int level = 1; level <= 3; ++level) {
+    for (int away = 0; away <= 3; ++away) {
+      MassShape shape;
+      shape.concentration = static_cast<float>(level) / 3.0f;
+      for (int axis = 0; axis < 3; ++axis) shape.pole[axis] = axis < away ? 0.75f : -0.25f;
+      double weights = 0;
+      constexpr int kPoints = 40000;
+      for (int i = 0; i < kPoints; ++i) {
+        const V3f p(unit(random), unit(random), unit(random));
+        const V3f direction = random_direction(random);
+        float enter = -100, leave = 100;
+        for (int axis = 0; axis < 3; ++axis) {
+          const float a = (-1 - p[axis]) / direction[axis], b = (1 - p[axis]) / direction[axis];
+          enter = std::max(enter, std::min(a, b));
+          leave = std::min(leave, std::max(a, b));
+        }
+        const V3f middle = p + direction * (0.5f * (enter + leave));
+        weights += centre_weight(shape.concentration, (middle - shape.pole).length2(),
+                                 shape.pole.length2());
+      }
+      // Five standard errors of weights whose variance is below 1.
+      EXPECT_NEAR(weights / kPoints, shape.mean_weight(), 0.025) << level << ", " << away;
+    }
+  }
 }
 
 }  // namespace
