@@ -81,7 +81,7 @@ void expect_steady_line(const char* name) {
     expect_steady(sphere.steps_at(footprint), at + ", sphere", 0);
   }
   // Otherwise this test could not find popping.
-  EXPECT_GT(largest(sphere.steps_between(1, 1024)).excess, 2 * kInvisible) << name;
+  EXPECT_GT(largest(sphere.steps_between(1, 1 << 18)).excess, kInvisible) << name;
 }
 
 TEST(Popping, OcclusionAlongALineThroughATreeChangesLittleMoreThanExactDoes) {
