@@ -45,10 +45,13 @@ void add_point_options(CLI::App& app, Arguments& a) {
       "--at", a.at,
       "Points: .csv, .npy or .ply with columns x, y, z and optionally the normal nx, ny, nz. Give "
       "one of --at, --grid and --per-triangle");
-  app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
-      ->delimiter(',')
-      ->expected(5);
-  app.add_option("--height", a.height, "Height of the grid, metres")->capture_default_str();
+  CLI::Option* grid =
+      app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
+          ->delimiter(',')
+          ->expected(5);
+  app.add_option("--height", a.height, "Height of the grid, metres")
+      ->capture_default_str()
+      ->needs(grid);
   app.add_flag("--per-triangle", a.per_triangle,
                "Two points at the centre of each triangle of the scene: its front, then its back");
   PointOptions& o = a.options;
@@ -66,14 +69,15 @@ void add_point_options(CLI::App& app, Arguments& a) {
                  "CSV of suns: azimuth,elevation,irradiance (degrees from -Z to +X, W/m^2), or "
                  "x,y,z,irradiance with the direction towards the sun");
   app.add_flag("--per-sun", o.per_sun, "Write a column for each sun instead of their sum");
-  app.add_option(
+  CLI::Option* sky = app.add_option(
       "--sky", a.sky,
       "Also write the irradiance of a sky: uniform, overcast (CIE) or an image (.exr, .hdr)");
   app.add_option("--sky-irradiance", a.sky_irradiance,
                  "Irradiance of a uniform or overcast sky on an open horizontal plane, W/m^2; an "
                  "image keeps "
                  "its own")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(sky);
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--periodic", a.periodic,
                  "X,Z: the scene repeats itself with these periods, metres")

@@ -83,9 +83,11 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
   app.add_option("--camera", o.camera,
                  "Camera by name; default: the scene's first, or one that shows all of it");
-  app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
+  CLI::Option& look_from =
+      *app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
   app.add_option("--look-at", a.look_at, "Point that this camera looks at: X,Y,Z");
-  app.add_option("--up", a.up, "Up direction of this camera: X,Y,Z; default 0,1,0");
+  app.add_option("--up", a.up, "Up direction of this camera: X,Y,Z; default 0,1,0")
+      ->needs(&look_from);
   app.add_option("--fov", o.fov_degrees,
                  "Vertical field of view, degrees; default: the camera's own, or 40");
   app.add_option("--aperture", o.aperture,
@@ -96,13 +98,14 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
       "Distance along the view direction that is sharp, metres; default: the camera's own, "
       "--look-at, or the middle of the scene. Needs --aperture or a camera with a lens");
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
-  app.add_option(
+  CLI::Option& dome = *app.add_option(
       "--dome", a.dome,
       "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
       "around, in addition to the other lights");
   app.add_option("--dome-rotation", a.dome_rotation,
                  "Rotation of the dome about +Y, degrees, from +Z towards +X")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(&dome);
   app.add_option("--light-radius", a.scene_options.light_radius,
                  "Radius that glTF point lights get, metres")
       ->capture_default_str();

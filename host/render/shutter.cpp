@@ -8,8 +8,8 @@
 
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
-#include "scene/corner_normals.hpp"
 #include "sampling/shard.hpp"
+#include "scene/corner_normals.hpp"
 
 namespace dapple {
 namespace {

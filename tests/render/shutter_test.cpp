@@ -120,7 +120,7 @@ TEST(Shutter, AMovingDiskCoversAPointForTheTimeThatItsChordTakes) {
 
 /// A sphere that is smooth, or has the normals of its faces; of the same triangles.
 Scene sphere(bool is_smooth) {
-  Scene scene = test::scene_of(test::smooth_sphere());
+  Scene scene = test::scene_of(test::smooth_sphere(11, 7));
   if (!is_smooth) std::fill(scene.meshes[0].normals.begin(), scene.meshes[0].normals.end(), V3f(0));
   Camera camera;
   camera.kind = Camera::Kind::orthographic;
