@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr SealedKind kKind{"checkpoint", 2};
+constexpr SealedKind kKind{"checkpoint", 3};
 constexpr std::size_t kFirstGroup = 4;  ///< section of the first group
 
 /// Pixels have at most 2^20 samples, and slices are not larger.
@@ -43,6 +43,7 @@ json header(const Checkpoint& checkpoint, const TraceState& state) {
   return {{"options", settings_json(checkpoint.options)},
           {"content", settings_json(checkpoint.content)},
           {"footprint_spp", checkpoint.footprint_spp},
+          {"footprint", checkpoint.footprint},
           {"device", checkpoint.device},
           {"pass_seconds", state.pass_seconds},
           {"slice_samples", state.slice_samples},
@@ -81,6 +82,9 @@ Checkpoint checkpoint_of(const SealedFile& file) {
   checkpoint.options = settings_of(about.at("options"));
   checkpoint.content = settings_of(about.at("content"));
   checkpoint.footprint_spp = about.at("footprint_spp").get<int>();
+  checkpoint.footprint = about.at("footprint").get<float>();
+  if (!(checkpoint.footprint >= 0 && checkpoint.footprint <= 1e6f))
+    throw Error(ErrorKind::failed, "damaged: its footprint is out of range");
   checkpoint.device = about.at("device").get<std::string>();
   TraceState& state = checkpoint.state;
   state.pass_seconds = about.at("pass_seconds").get<std::map<std::string, double>>();

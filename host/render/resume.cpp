@@ -28,9 +28,9 @@ void require_enough_samples(const std::string& path, const TraceState& state,
 
 }  // namespace
 
-Checkpoint resume(const std::string& path, const View& view, RenderOptions& options) {
+Checkpoint resume(const std::string& path, const Settings& asked, RenderOptions& options) {
   Checkpoint checkpoint = read_checkpoint(path);
-  require_same(path, checkpoint.options, option_settings(options, view));
+  require_same(path, checkpoint.options, asked);
   require_enough_samples(path, checkpoint.state, options);
   if (options.footprint_spp > 0 && options.footprint_spp != checkpoint.footprint_spp) {
     throw Error(ErrorKind::usage,
@@ -38,6 +38,7 @@ Checkpoint resume(const std::string& path, const View& view, RenderOptions& opti
                             checkpoint.footprint_spp, options.footprint_spp));
   }
   options.footprint_spp = checkpoint.footprint_spp;
+  options.footprint = checkpoint.footprint;
   return checkpoint;
 }
 
