@@ -23,6 +23,7 @@ struct BakeArguments {
   std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply",
               bent_channel = "_BENT_NORMAL";
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered";
+  std::string report_bias = "2%";
   std::vector<std::string> opacity, occluders;
   SceneOptions scene_options;
   std::optional<int> rays;
