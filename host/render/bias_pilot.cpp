@@ -45,12 +45,12 @@ BiasPilot::BiasPilot(DeviceContext& context, const DeviceBuffers& scene, const V
       camera_(camera),
       grid_(view),
       order_(spread_units(grid_)),
+      units_at_once_(std::min(kUnitsAtOnce, order_.size())),
       rounds_(static_cast<std::size_t>(options.spp) / splitting_factor(options)),
       units_(grid_.empty_units()),
       layers_((options.ao ? 1 : 0) + layout.lights.size()) {
   camera_.keep_hits = layout.normals ? 1u : 0u;
-  const std::size_t samples =
-      std::min(kUnitsAtOnce, order_.size()) * kUnitPixels * splitting_factor(options);
+  const std::size_t samples = units_at_once_ * kUnitPixels * splitting_factor(options);
   const int rays =
       std::max(options.ao ? options.ao_rays : 1, layout.lights.empty() ? 1 : options.light_rays);
   queues_ = make_queues(context, samples, static_cast<std::size_t>(rays));
@@ -75,7 +75,7 @@ void BiasPilot::grow(std::size_t rays) {
         std::min(layers_.front().params.rays_per_point, layers_.back().params.rays_per_point);
     const std::size_t missing =
         (rays - this->rays()) / (kUnitPixels * std::max<std::size_t>(1, least));
-    take_units(std::clamp<std::size_t>(missing, 8, kUnitsAtOnce));
+    take_units(std::clamp<std::size_t>(missing, 1, units_at_once_));
   }
 }
 

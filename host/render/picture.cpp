@@ -71,12 +71,12 @@ class PictureTracer {
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
     film_.sums = context_.allocate_zeros(layout.sum_bytes());
     film_.squares = context_.allocate_zeros(layout.square_bytes());
-    place_sums();
-    resolve_ = resolve_params(view);
     if (has_bias(options) && options.report_bias > 0) {
       begin_bias_sums();
       bias_.emplace(context_, scene_, options, view, layer_count(), std::move(state_.bias));
     }
+    place_sums();
+    resolve_ = resolve_params(view);
   }
 
   TracedPicture trace(const View& view, const TraceControl& control) {

@@ -32,7 +32,7 @@ std::vector<BiasUnit> made_up(double mean, double amplitude, double noise, unsig
 TEST(BiasEstimate, WithoutNoiseItIsTheBiasItself) {
   const Bias bias = estimate_bias(made_up(-0.01, 0.004, 0, 1), 0.02);
   EXPECT_NEAR(bias.mean, -0.01, 1e-12);
-  EXPECT_NEAR(bias.error, 0, 1e-12);
+  EXPECT_NEAR(bias.error, 0, 1e-10);
   EXPECT_NEAR(bias.tile_rmse, std::hypot(0.01, 0.004), 1e-12);
   EXPECT_EQ(bias.share, 0.02);
 }
@@ -98,7 +98,7 @@ TEST(ExactSamples, PixelsOfAUnitAreChosenTogetherAndMoreShareKeepsTheSamples) {
   const ExactSamples few(0.02), many(0.1);
   for (std::uint32_t s = 0; s < 2000; ++s) {
     EXPECT_EQ(few.has(16, 24, s), few.has(23, 31, s));
-    if (few.has(16, 24, s)) EXPECT_TRUE(many.has(16, 24, s));
+    EXPECT_LE(few.has(16, 24, s), many.has(16, 24, s));
   }
 }
 
