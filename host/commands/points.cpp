@@ -14,6 +14,7 @@
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
 #include "commands/shared_options.hpp"
+#include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
@@ -26,6 +27,7 @@ namespace {
 
 struct Arguments {
   std::string scene, output, at, suns, sky, lights, estimator = "prefiltered", stats_json;
+  std::string report_bias = "2%";
   std::vector<double> grid, periodic;
   double height = 0;
   float sky_irradiance = 1;
@@ -137,6 +139,7 @@ void set_lights(const Arguments& a, Scene& scene) {
 PointOptions options_of(const Arguments& a) {
   PointOptions options = a.options;
   options.estimator = parse_estimator(a.estimator);
+  options.report_bias = parse_share("--report-bias", a.report_bias);
   for (const std::string& text : a.opacity) options.opacity.push_back(parse_opacity(text));
   if (!a.periodic.empty()) {
     options.period_x = static_cast<float>(a.periodic[0]);
@@ -180,15 +183,17 @@ void run_points(const Arguments& a) {
                                            {"trace", result.trace_seconds},
                                            {"total", seconds}}},
                                          {"points", list.points.size()},
+                                         {"footprint", result.footprint},
+                                         {"bias", bias_json(result.bias)},
                                          {"device", result.device},
                                          {"notes", result.notes}};
     write_whole_file(a.stats_json, json.dump(2) + "\n");
   }
   if (a.quiet) return;
   for (const std::string& note : result.notes) tell("note: {}\n", note);
-  fmt::print("{} points; load {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\nwrote {}\n",
-             list.points.size(), load_seconds, result.build_seconds, result.trace_seconds, seconds,
-             a.output);
+  fmt::print("{}{} points; load {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\nwrote {}\n",
+             bias_lines(result.bias), list.points.size(), load_seconds, result.build_seconds,
+             result.trace_seconds, seconds, a.output);
 }
 
 }  // namespace

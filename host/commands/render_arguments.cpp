@@ -53,6 +53,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
          "Scale of ray footprints, the areas that rays represent: larger is faster and less noisy, "
          "smaller is closer to exact, 0 is exact")
       ->capture_default_str();
+  add_bias_options(app, a.report_bias, o.max_bias);
   app.add_option("--passes", a.passes,
                  "With commas between: ao, light, albedo (colours), back (AO and light of the side "
                  "that faces away from the camera), motion (image motion until the next frame, in "
@@ -293,6 +294,7 @@ RenderOptions to_options(const RenderArguments& a) {
   if (!a.spp && o.target_rmse > 0) o.spp = 1;
   o.estimator = parse_estimator(a.estimator);
   o.normals = parse_normals(a.normals);
+  o.report_bias = parse_share("--report-bias", a.report_bias);
   o.packets = parse_packets(a.packets);
   parse_passes(a.passes, o);
   o.cryptomattes = parse_cryptomattes(a.cryptomatte);

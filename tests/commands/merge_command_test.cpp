@@ -12,7 +12,7 @@ using namespace program_test;
 
 const std::string kTree =
     "render 'scene:tree?leaves=1000' --width 40 --height 36 --spp 7 --passes ao,light,albedo,back "
-    "--cryptomatte object -q ";
+    "--cryptomatte object --report-bias 0 -q ";
 
 class MergeCommand : public ProgramRun {
  protected:
@@ -48,6 +48,7 @@ TEST_F(MergeCommand, PartsAreRefusedWhereTheyCannotBe) {
                  "--shard does not go with --target-rmse");
   expect_failure(dapple(kTree + "--target-error 0.1 -o a.dapple"), 2,
                  "give --spp in place of --target-error");
+  expect_failure(dapple(kTree + "--max-bias 0.01 -o a.dapple"), 2, "--max-bias does not go with");
   expect_failure(dapple(kTree + "--half ao -o a.dapple"), 2, "give them to dapple merge");
   expect_failure(dapple(kTree + "--frames 1-2 --shard 1/2 -o a.#.dapple"), 2, "needs --ambient");
   expect_failure(dapple(kTree + "--frame 1 --shutter=0,0.5 -o a.dapple"), 2,

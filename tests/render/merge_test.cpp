@@ -27,6 +27,7 @@ RenderOptions small_picture() {
   options.back = true;
   options.camera_splitting = 2;
   options.cryptomattes = {true, true};
+  options.report_bias = 0;  // a merged picture has no report in its metadata
   return options;
 }
 
