@@ -85,7 +85,7 @@ TEST_F(MergeCommand, APlanIsOfTheRightSizeAndWritesNothing) {
   EXPECT_EQ(number_after(json, "camera_rays"), 300 * 200 * 8);
   const double said = number_after(json, "part_bytes"),
                is = static_cast<double>(bytes("part.dapple").size());
-  EXPECT_GT(said, is / 2) << json;
+  EXPECT_GT(said, is / 3) << json;
   EXPECT_LT(said, is * 2) << json;
   EXPECT_GT(number_after(json, "memory_bytes"), 3e7);
   EXPECT_GT(number_after(json, "seconds_of_rays"), 0);

@@ -97,6 +97,26 @@ TEST_F(Interruption, BeforeThereAreSamplesItEndsAtOnceAndLeavesNothing) {
   EXPECT_EQ(files_in_folder(), 0u);
 }
 
+// With an empty cache a driver compiles for many seconds, in other processes and then in this one.
+TEST_F(Interruption, WhileKernelsCompileItEndsWithinTwoSecondsAndLeavesNothing) {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const std::string before = cache ? cache : "";
+  for (const int delay : {300, 1500, 3000}) {
+    const std::string folder = folder_.string() + "_cache";
+    std::filesystem::create_directory(folder);
+    setenv("XDG_CACHE_HOME", folder.c_str(), 1);
+    RunningProgram program(with_checkpoint(kEndless, "1h"), log());
+    std::this_thread::sleep_for(Milliseconds(delay));
+    const auto sent = steady_clock::now();
+    program.send(SIGTERM);
+    EXPECT_EQ(program.wait(), 143) << bytes_of(log());
+    EXPECT_LT(steady_clock::now() - sent, Milliseconds(2'000)) << "after " << delay << " ms";
+    EXPECT_EQ(files_in_folder(), 0u);
+    std::filesystem::remove_all(folder);
+  }
+  before.empty() ? unsetenv("XDG_CACHE_HOME") : setenv("XDG_CACHE_HOME", before.c_str(), 1);
+}
+
 TEST_F(Interruption, ASecondInterruptEndsAtOnceAndTheNextRunCleansUp) {
   RunningProgram program(with_checkpoint(kEndless, "0.02"), log());
   ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLong)) << bytes_of(log());
