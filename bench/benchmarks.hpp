@@ -29,6 +29,9 @@ void register_measured(const std::string& name, int repetitions, const Measure& 
 void register_tracing(BenchScene& scene);
 /// Build: all of build_bvh(). Prefilter: the part of it that computes opacities.
 void register_building(BenchScene& scene);
+/// Layers: pictures at the defaults of `dapple render` with one more layer, and the ratio of
+/// processor time to that without it.
+void register_layers(const SceneRecipe& recipe);
 /// Refit: UpdatableBvh::update() of moving trees of 40 k to 4 M triangles, compared with
 /// build_bvh().
 void register_refitting();

@@ -5,7 +5,9 @@
 
 #include <optional>
 
+#include "bake/bake_bias.hpp"
 #include "bake/bake_checkpoint.hpp"
+#include "bake/bake_pilot.hpp"
 #include "bake/bake_settings.hpp"
 #include "bake/instance_bake.hpp"
 #include "bake/light_tracer.hpp"
@@ -36,20 +38,70 @@ TracePoints trace_against(const OccluderScene& occluders) {
 struct BakeRecords {
   BakeProgress& progress;
   BakeCheckpoint& checkpoint;
+  BakeBias& bias;
   BakeStatistics& statistics;
 };
 
+/// Options of rays that are compared with others.
+struct ComparedOptions {
+  explicit ComparedOptions(const BakeOptions& options) : prefiltered(options), exact(options) {
+    prefiltered.bent = exact.bent = false;
+    exact.estimator = Estimator::exact;
+  }
+  BakeOptions prefiltered, exact;
+};
+
+/// The options must outlive the tracing.
 BakeTracing tracing_against(const OccluderScene& occluders, const BakeOptions& options,
-                            const BakeRecords& records) {
-  BakeTracing tracing{records.checkpoint.with(ao_tracer(trace_against(occluders), options)),
+                            const ComparedOptions& compared, const BakeRecords& records) {
+  const TracePoints trace = trace_against(occluders);
+  BakeTracing tracing{records.checkpoint.with(records.bias.with(
+                          {"ao", ao_tracer(trace, options), ao_tracer(trace, compared.prefiltered),
+                           ao_tracer(trace, compared.exact)})),
                       {},
                       0,
                       records.progress,
                       records.statistics};
   if (!options.light || occluders.lights.empty()) return tracing;
-  tracing.light = records.checkpoint.with(light_tracer(options, occluders));
+  tracing.light = records.checkpoint.with(records.bias.with(
+      {"light", light_tracer(options, occluders), light_tracer(compared.prefiltered, occluders),
+       light_tracer(compared.exact, occluders)}));
   tracing.lights = occluders.lights.size();
   return tracing;
+}
+
+bool has_bias(const BakeOptions& options) {
+  return options.estimator == Estimator::prefiltered && options.footprint > 0;
+}
+
+/// Chooses the footprint and what the target leaves for the noise, from the bias of `meshes`.
+void measure_bias(const OccluderScene& occluders, const std::vector<PilotMesh>& meshes,
+                  BakeOptions& options, BakeStatistics& statistics) {
+  if (!has_bias(options) || meshes.empty()) return;
+  if (options.max_bias <= 0 && options.target_error <= 0) return;
+  const ComparedOptions compared(options);
+  std::vector<BakeOptions> scaled;  // those that tracers refer to
+  scaled.reserve(16);
+  const auto with_footprint = [&](float footprint) -> const BakeOptions& {
+    BakeOptions& added = scaled.emplace_back(compared.prefiltered);
+    added.footprint = footprint;
+    return added;
+  };
+  const TracePoints trace = trace_against(occluders);
+  std::vector<PilotQuantity> quantities{
+      {kRaysPerSample, ao_tracer(trace, compared.exact),
+       [&](float footprint) { return ao_tracer(trace, with_footprint(footprint)); }}};
+  if (options.light && !occluders.lights.empty())
+    quantities.push_back(
+        {options.light_rays, light_tracer(compared.exact, occluders),
+         [&](float footprint) { return light_tracer(with_footprint(footprint), occluders); }});
+  BakePilot pilot(meshes, std::move(quantities), options.seed);
+  const FootprintChoice choice =
+      choose_footprint(pilot, {options.footprint, options.max_bias, options.target_error, true});
+  options.footprint = choice.footprint;
+  if (options.target_error > 0)
+    options.target_error = noise_target(options.target_error, choice.bias_rmse);
+  if (!choice.note.empty()) statistics.notes.push_back(choice.note);
 }
 
 Placements placements_of(const Scene& scene, std::uint32_t mesh, BakeInstances kind) {
@@ -105,18 +157,29 @@ Scene scene_of_mesh(const Scene& scene, std::size_t mesh) {
 /// Traces against the whole scene, or against each mesh alone.
 class MeshOccluders {
  public:
-  MeshOccluders(const Scene& scene, const BakeOptions& options, const OccluderScene* together)
-      : scene_(scene), options_(options), together_(together) {}
+  /// `options`: those that are traced with. With meshes alone each one's bias is measured anew.
+  MeshOccluders(const Scene& scene, BakeOptions& options, const OccluderScene* together)
+      : scene_(scene), asked_(options), options_(options), together_(together) {}
 
   /// Valid until the next call.
   BakeTracing tracing(std::uint32_t mesh, const BakeRecords& records) {
-    if (!together_) alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
-    return tracing_against(together_ ? *together_ : *alone_, options_, records);
+    if (!together_) {
+      alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
+      options_ = asked_;
+      measure_bias(
+          *alone_,
+          {PilotMesh(scene_, mesh, options_, placements_of(scene_, mesh, BakeInstances::alone))},
+          options_, records.statistics);
+    }
+    compared_.emplace(options_);
+    return tracing_against(together_ ? *together_ : *alone_, options_, *compared_, records);
   }
 
  private:
   const Scene& scene_;
-  const BakeOptions& options_;
+  const BakeOptions asked_;
+  BakeOptions& options_;
+  std::optional<ComparedOptions> compared_;
   const OccluderScene* together_;
   std::optional<OccluderScene> alone_;
 };
@@ -131,6 +194,16 @@ bool for_each_mesh(const Scene& scene, const BakeOptions& options, BakeOne bake_
     if (!bake_one(m, placements)) return false;
   }
   return true;
+}
+
+/// Those that for_each_mesh() visits.
+std::vector<PilotMesh> pilot_meshes(const Scene& scene, const BakeOptions& options) {
+  std::vector<PilotMesh> meshes;
+  for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
+    meshes.emplace_back(scene, m, options, placements);
+    return true;
+  });
+  return meshes;
 }
 
 bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,
@@ -163,7 +236,8 @@ bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders&
 bool bake_all_instances(const Scene& scene, const BakeOptions& options,
                         const OccluderScene& together, const BakeRecords& records,
                         BakeResult& result) {
-  BakeTracing tracing = tracing_against(together, options, records);
+  const ComparedOptions compared(options);
+  BakeTracing tracing = tracing_against(together, options, compared, records);
   auto values = bake_instances(scene, options, tracing);
   if (!values) return false;
   result.instance_ao = std::move(values->ao);
@@ -185,6 +259,8 @@ void validate(const BakeOptions& options) {
   check("--margin", options.margin, 0, 1024);
   check("--target-error", double{options.target_error}, 0, 1);
   check("--footprint", double{options.footprint}, 0, 1e6);
+  check("--report-bias", double{options.report_bias}, 0, 1);
+  check("--max-bias", double{options.max_bias}, 0, 1);
   check("--ao-distance", double{options.distance}, 0, 1e30);
   check("--ao-falloff", double{options.falloff}, 0, 100);
   if (options.light && options.placement == BakeInstances::alone)
@@ -192,9 +268,10 @@ void validate(const BakeOptions& options) {
                 "--passes light needs --instances together or unique: a mesh alone is not lit");
 }
 
-BakeResult bake(const Scene& scene, const BakeOptions& options, const RenderControl& control,
+BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderControl& control,
                 const std::vector<Scene>& occluders) {
-  validate(options);
+  validate(asked);
+  BakeOptions options = asked;
   const Stopwatch total;
   BakeResult result;
   BakeStatistics& s = result.statistics;
@@ -208,11 +285,13 @@ BakeResult bake(const Scene& scene, const BakeOptions& options, const RenderCont
     s.notes = together->notes;
   }
   BakeProgress progress(expected_samples(scene, options), control);
-  Settings settings = bake_settings(scene, options, occluders);
+  Settings settings = bake_settings(scene, asked, occluders);
   if (together) settings.emplace_back("device", s.device);
   BakeCheckpoint checkpoint(control, std::move(settings));
-  const BakeRecords records{progress, checkpoint, s};
+  BakeBias bias(has_bias(options) ? double{options.report_bias} : 0.0);
+  const BakeRecords records{progress, checkpoint, bias, s};
   const Stopwatch tracing;
+  if (together && !alone) measure_bias(*together, pilot_meshes(scene, options), options, s);
   MeshOccluders mesh_occluders(scene, options, alone ? nullptr : &*together);
   if (options.vertices)
     result.interrupted = !bake_vertices(scene, options, mesh_occluders, records, result);
@@ -222,6 +301,8 @@ BakeResult bake(const Scene& scene, const BakeOptions& options, const RenderCont
     result.interrupted = !bake_all_instances(scene, options, *together, records, result);
   if (options.light && !result.interrupted)
     add_up_groups(options.lights.empty() ? scene.lights : options.lights, result);
+  s.bias = bias.report();
+  s.footprint = options.footprint;
   checkpoint.save(true);
   result.checkpoint_failure = checkpoint.failure();
   if (checkpoint.points_read() > 0)

@@ -23,6 +23,11 @@ std::string expected_values(const CLI::App& app, const std::string& flag) {
   return "another value";
 }
 
+bool takes_number(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type == "UINT" || type == "INT" || type == "FLOAT";
+}
+
 /// "--output" of "-o,--output".
 std::string long_name(const std::string& names) {
   const std::size_t comma = names.rfind(',');
@@ -61,7 +66,8 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
     return fmt::format("{} {}: expected {}", flag, match[2].str(), expected_values(app, flag));
   }
   if (name == "ArgumentMismatch") return mismatch_text(what);
-  if (name == "ExtrasError") return extras_text(app);
+  // Its name is that of the command.
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) return extras_text(app);
   if (name == "RequiredError" && std::regex_match(what, match, std::regex("(\\S+) is required")))
     return long_name(match[1]) + " is missing";
   if (name == "RequiresError" &&
@@ -71,6 +77,15 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
       std::regex_match(what, match, std::regex("(\\S+) excludes (\\S+)")))
     return fmt::format("{} does not go with {}", long_name(match[1]), long_name(match[2]));
   return what;
+}
+
+void refuse_empty_numbers(CLI::App& command) {
+  for (CLI::Option* option : command.get_options()) {
+    if (!takes_number(*option)) continue;
+    option->check([](const std::string& text) {
+      return text.empty() ? std::string("needs a number, its value is empty") : std::string();
+    });
+  }
 }
 
 }  // namespace dapple

@@ -124,6 +124,7 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
          "Scale of ray footprints: larger is faster and less noisy, smaller is closer to exact, "
          "0 is exact")
       ->capture_default_str();
+  add_bias_options(app, a.report_bias, o.max_bias);
   app.add_option("--ao-distance", o.distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
       ->capture_default_str();
@@ -197,6 +198,7 @@ BakeOptions to_options(const BakeArguments& a) {
   if (a.target_error) o.target_error = *a.target_error;
   o.estimator = parse_estimator(a.estimator);
   o.normals = parse_normals(a.normals);
+  o.report_bias = parse_share("--report-bias", a.report_bias);
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   if (o.instances && o.bent)
     throw Error(ErrorKind::usage,

@@ -23,7 +23,7 @@ struct BakeArguments {
   std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply",
               bent_channel = "_BENT_NORMAL";
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered",
-              normals = "shading";
+              normals = "shading", report_bias = "2%";
   std::vector<std::string> opacity, occluders;
   SceneOptions scene_options;
   std::optional<int> rays;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"
 #include "files/output_file.hpp"
 
@@ -45,6 +46,8 @@ void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds,
       {"rays", s.rays},
       {"standard_error", standard_error(s, s.squared_errors)},
       {"standard_error_light", standard_error(s, s.squared_light_errors)},
+      {"bias", bias_json(s.bias)},
+      {"footprint", s.footprint},
       {"hidden_vertices", s.hidden_vertices},
       {"hidden_texels", s.hidden_texels},
       {"device", s.device},
@@ -68,6 +71,7 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
                s.squared_light_errors > 0
                    ? fmt::format(", of light {:.3f}", standard_error(s, s.squared_light_errors))
                    : "");
+  fmt::print("{}", bias_lines(s.bias));
   if (s.hidden_vertices > 0)
     fmt::print("{} vertices lie inside closed geometry and have their neighbours' values\n",
                s.hidden_vertices);

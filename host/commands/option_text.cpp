@@ -55,6 +55,13 @@ PixelRect parse_crop(const std::string& text) {
   return {v[0], v[1], v[2], v[3]};
 }
 
+float parse_share(const std::string& flag, const std::string& text) {
+  const bool is_percentage = text.ends_with('%');
+  const float value =
+      parse_number<float>(flag, is_percentage ? text.substr(0, text.size() - 1) : text);
+  return is_percentage || value >= 1 ? value / 100 : value;
+}
+
 std::pair<std::string, float> parse_opacity(const std::string& text) {
   const auto at = text.rfind('=');
   if (at == std::string::npos || at == 0) {

@@ -15,6 +15,8 @@ namespace dapple {
 V3f parse_vector(const std::string& flag, const std::string& text);
 /// "X0,Y0,X1,Y1", whole numbers
 PixelRect parse_crop(const std::string& text);
+/// "2%" or "2" to 0.02; below 1 a number without % is a share, as 0.02
+float parse_share(const std::string& flag, const std::string& text);
 /// "leaf=0.85"; the name may contain '='
 std::pair<std::string, float> parse_opacity(const std::string& text);
 /// "exact" or "prefiltered"

@@ -56,7 +56,7 @@ RenderOptions trial_options(const RenderOptions& options, double rays) {
   RenderOptions trial = options;
   trial.shard = {};
   trial.footprint_spp = footprint_samples(options);
-  trial.target_error = trial.target_rmse = 0;
+  trial.target_error = trial.target_rmse = trial.max_bias = 0;
   const double share = std::min(1.0, std::max(kShare, kLeastRays / rays));
   const double spp = std::max(1.0, std::floor(options.spp * share));
   trial.spp = static_cast<int>(spp);

@@ -14,6 +14,7 @@
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
 #include "commands/shared_options.hpp"
+#include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
@@ -26,6 +27,7 @@ namespace {
 
 struct Arguments {
   std::string scene, output, at, suns, sky, lights, estimator = "prefiltered", stats_json;
+  std::string report_bias = "2%";
   std::vector<double> grid, periodic;
   double height = 0;
   float sky_irradiance = 1;
@@ -45,10 +47,13 @@ void add_point_options(CLI::App& app, Arguments& a) {
       "--at", a.at,
       "Points: .csv, .npy or .ply with columns x, y, z and optionally the normal nx, ny, nz. Give "
       "one of --at, --grid and --per-triangle");
-  app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
-      ->delimiter(',')
-      ->expected(5);
-  app.add_option("--height", a.height, "Height of the grid, metres")->capture_default_str();
+  CLI::Option* grid =
+      app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
+          ->delimiter(',')
+          ->expected(5);
+  app.add_option("--height", a.height, "Height of the grid, metres")
+      ->capture_default_str()
+      ->needs(grid);
   app.add_flag("--per-triangle", a.per_triangle,
                "Two points at the centre of each triangle of the scene: its front, then its back");
   PointOptions& o = a.options;
@@ -66,14 +71,15 @@ void add_point_options(CLI::App& app, Arguments& a) {
                  "CSV of suns: azimuth,elevation,irradiance (degrees from -Z to +X, W/m^2), or "
                  "x,y,z,irradiance with the direction towards the sun");
   app.add_flag("--per-sun", o.per_sun, "Write a column for each sun instead of their sum");
-  app.add_option(
+  CLI::Option* sky = app.add_option(
       "--sky", a.sky,
       "Also write the irradiance of a sky: uniform, overcast (CIE) or an image (.exr, .hdr)");
   app.add_option("--sky-irradiance", a.sky_irradiance,
                  "Irradiance of a uniform or overcast sky on an open horizontal plane, W/m^2; an "
                  "image keeps "
                  "its own")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(sky);
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--periodic", a.periodic,
                  "X,Z: the scene repeats itself with these periods, metres")
@@ -133,6 +139,7 @@ void set_lights(const Arguments& a, Scene& scene) {
 PointOptions options_of(const Arguments& a) {
   PointOptions options = a.options;
   options.estimator = parse_estimator(a.estimator);
+  options.report_bias = parse_share("--report-bias", a.report_bias);
   for (const std::string& text : a.opacity) options.opacity.push_back(parse_opacity(text));
   if (!a.periodic.empty()) {
     options.period_x = static_cast<float>(a.periodic[0]);
@@ -176,15 +183,17 @@ void run_points(const Arguments& a) {
                                            {"trace", result.trace_seconds},
                                            {"total", seconds}}},
                                          {"points", list.points.size()},
+                                         {"footprint", result.footprint},
+                                         {"bias", bias_json(result.bias)},
                                          {"device", result.device},
                                          {"notes", result.notes}};
     write_whole_file(a.stats_json, json.dump(2) + "\n");
   }
   if (a.quiet) return;
   for (const std::string& note : result.notes) tell("note: {}\n", note);
-  fmt::print("{} points; load {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\nwrote {}\n",
-             list.points.size(), load_seconds, result.build_seconds, result.trace_seconds, seconds,
-             a.output);
+  fmt::print("{}{} points; load {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\nwrote {}\n",
+             bias_lines(result.bias), list.points.size(), load_seconds, result.build_seconds,
+             result.trace_seconds, seconds, a.output);
 }
 
 }  // namespace

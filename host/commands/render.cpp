@@ -154,6 +154,8 @@ void run_render(const RenderArguments& a) {
     if (!png.exposure && !frame.png.empty())
       png.exposure = std::log2(automatic_exposure(result.film));
     if (!options.ambient) options.ambient = static_cast<float>(statistics.ambient);
+    options.footprint = statistics.footprint;  // a sequence has the footprint of its first frame
+    options.max_bias = 0;
     write_pictures(result, frame, format, png);
     for (const std::string& name : half_layers_without_planes(result.film, format))
       statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));

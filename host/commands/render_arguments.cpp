@@ -53,6 +53,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
          "Scale of ray footprints, the areas that rays represent: larger is faster and less noisy, "
          "smaller is closer to exact, 0 is exact")
       ->capture_default_str();
+  add_bias_options(app, a.report_bias, o.max_bias);
   app.add_option("--passes", a.passes,
                  "With commas between: ao, light, albedo (colours), back (AO and light of the side "
                  "that faces away from the camera), motion (image motion until the next frame, in "
@@ -83,9 +84,11 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
   app.add_option("--camera", o.camera,
                  "Camera by name; default: the scene's first, or one that shows all of it");
-  app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
+  CLI::Option& look_from =
+      *app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
   app.add_option("--look-at", a.look_at, "Point that this camera looks at: X,Y,Z");
-  app.add_option("--up", a.up, "Up direction of this camera: X,Y,Z; default 0,1,0");
+  app.add_option("--up", a.up, "Up direction of this camera: X,Y,Z; default 0,1,0")
+      ->needs(&look_from);
   app.add_option("--fov", o.fov_degrees,
                  "Vertical field of view, degrees; default: the camera's own, or 40");
   app.add_option("--aperture", o.aperture,
@@ -96,13 +99,14 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
       "Distance along the view direction that is sharp, metres; default: the camera's own, "
       "--look-at, or the middle of the scene. Needs --aperture or a camera with a lens");
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
-  app.add_option(
+  CLI::Option& dome = *app.add_option(
       "--dome", a.dome,
       "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
       "around, in addition to the other lights");
   app.add_option("--dome-rotation", a.dome_rotation,
                  "Rotation of the dome about +Y, degrees, from +Z towards +X")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(&dome);
   app.add_option("--light-radius", a.scene_options.light_radius,
                  "Radius that glTF point lights get, metres")
       ->capture_default_str();
@@ -290,6 +294,7 @@ RenderOptions to_options(const RenderArguments& a) {
   if (!a.spp && o.target_rmse > 0) o.spp = 1;
   o.estimator = parse_estimator(a.estimator);
   o.normals = parse_normals(a.normals);
+  o.report_bias = parse_share("--report-bias", a.report_bias);
   o.packets = parse_packets(a.packets);
   parse_passes(a.passes, o);
   o.cryptomattes = parse_cryptomattes(a.cryptomatte);

@@ -20,6 +20,7 @@ struct RenderArguments {
   std::string normals = "shading", exposure = "auto", background = "sky";
   std::string cryptomatte, deep, half, compression = "zip";
   bool multipart = false;
+  std::string report_bias = "2%";
   std::string look_from, look_at, up, crop;
   std::vector<std::string> opacity;
   std::optional<double> frame;

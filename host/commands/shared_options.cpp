@@ -9,6 +9,18 @@ void add_estimator_option(CLI::App& app, std::string& estimator) {
       ->capture_default_str();
 }
 
+void add_bias_options(CLI::App& app, std::string& report_bias, float& max_bias) {
+  app.add_option("--max-bias", max_bias,
+                 "Choose the largest footprint, from --footprint down to 0, whose bias is below "
+                 "this in each layer; 0: take --footprint")
+      ->capture_default_str();
+  app.add_option("--report-bias", report_bias,
+                 "Part of the prefiltered rays to trace exactly, too, to report the bias: a "
+                 "percentage, as 2%, or a share below 1, as 0.02; fewer where exact rays are slow; "
+                 "0: no report")
+      ->capture_default_str();
+}
+
 void add_outside_option(CLI::App& app, bool& allow_outside) {
   app.add_flag("--allow-outside", allow_outside,
                "Let a glTF file refer to buffers and images outside its folder");

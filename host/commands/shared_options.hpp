@@ -10,6 +10,9 @@ namespace dapple {
 /// --estimator
 void add_estimator_option(CLI::App& app, std::string& estimator);
 
+/// --max-bias and --report-bias
+void add_bias_options(CLI::App& app, std::string& report_bias, float& max_bias);
+
 /// --allow-outside
 void add_outside_option(CLI::App& app, bool& allow_outside);
 

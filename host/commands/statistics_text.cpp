@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "files/output_file.hpp"
+#include "sampling/bias_estimate.hpp"
 
 namespace dapple {
 namespace {
@@ -52,14 +53,36 @@ std::string refit_line(const RenderStatistics& s) {
       s.refit.cost_ratio);
 }
 
-std::string errors_line(const std::map<std::string, double>& rmse) {
+std::string errors_line(const RenderStatistics& s) {
   std::string passes;
-  for (const auto& [layer, value] : rmse)
+  for (const auto& [layer, value] : s.rmse) {
     passes += fmt::format("{}{} {:.4f}", passes.empty() ? "" : ", ", layer, value);
+    const auto whole = s.rmse_with_bias.find(layer);
+    if (whole != s.rmse_with_bias.end())
+      passes += fmt::format(" (with bias {:.4f})", whole->second);
+  }
   return passes.empty() ? "" : fmt::format("  estimated RMSE: {}\n", passes);
 }
 
 }  // namespace
+
+std::string bias_lines(const std::map<std::string, Bias>& layers) {
+  std::string text;
+  for (const auto& [layer, bias] : layers)
+    text += fmt::format("  bias of {}: {}\n", layer, bias_text(bias));
+  return text;
+}
+
+nlohmann::ordered_json bias_json(const std::map<std::string, Bias>& layers) {
+  nlohmann::ordered_json json;
+  for (const auto& [layer, bias] : layers)
+    json[layer] = {{"mean", bias.mean},
+                   {"error", bias.error},
+                   {"tile_rmse", bias.tile_rmse},
+                   {"tile_rmse_limit", bias.tile_rmse_limit},
+                   {"share_of_rays", bias.share}};
+  return json;
+}
 
 std::string bytes_text(double bytes) {
   if (bytes >= 1e9) return fmt::format("{:.2f} GB", bytes * 1e-9);
@@ -88,6 +111,9 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
   json["triangle_tests_per_ray"] = {
       {"camera", s.camera.tests}, {"ao", s.ao.tests}, {"light", s.light.tests}};
   if (!s.rmse.empty()) json["estimated_rmse"] = s.rmse;
+  if (!s.rmse_with_bias.empty()) json["estimated_rmse_with_bias"] = s.rmse_with_bias;
+  json["footprint"] = s.footprint;
+  if (!s.bias.empty()) json["bias"] = bias_json(s.bias);
   json["triangles"] = s.triangles;
   json["segments"] = s.segments;
   json["nodes"] = s.nodes;
@@ -126,7 +152,8 @@ std::string statistics_text(const RenderStatistics& s) {
   text += rays_line("ao", s.rays.ao, pass_seconds(s, "ao occlusion"), s.ao.visits, s.ao.tests);
   text += rays_line("light", s.rays.light, pass_seconds(s, "light occlusion"), s.light.visits,
                     s.light.tests);
-  text += errors_line(s.rmse);
+  text += errors_line(s);
+  text += bias_lines(s.bias);
   text += cache_line(s);
   text += refit_line(s);
   const auto& t = s.seconds;

@@ -14,6 +14,11 @@ std::string statistics_text(const RenderStatistics& statistics);
 /// Writes them as JSON.
 void write_statistics(const RenderStatistics& statistics, const std::string& path);
 
+/// By layer or value.
+nlohmann::ordered_json bias_json(const std::map<std::string, Bias>& layers);
+/// A line for each layer or value.
+std::string bias_lines(const std::map<std::string, Bias>& layers);
+
 /// "1.7 GB", "512 kB", "12 bytes".
 std::string bytes_text(double bytes);
 

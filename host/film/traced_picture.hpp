@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dapple/bias.hpp"
 #include "device/context.hpp"
 #include "film/deep_sums.hpp"
 #include "film/matte_sums.hpp"
@@ -24,6 +25,7 @@ struct TracedPicture {
   MatteSums mattes;                            ///< of no pixels unless requested
   MotionSums motion;                           ///< of no pixels unless requested
   DeepSums deep;                               ///< of no pixels unless requested
+  std::vector<Bias> bias;                      ///< by layer as BiasSums; empty unless requested
   std::map<std::string, double> pass_seconds;  ///< device seconds by label, of all runs
   std::size_t queue_bytes = 0;
   bool interrupted = false;

@@ -35,6 +35,9 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(
         occlusion_kernel(options.estimator, packets_in_picture(context, options.estimator, rays)));
+    if (measures_bias(options))
+      kernels.push_back(
+          occlusion_kernel(Estimator::exact, packets_in_picture(context, Estimator::exact, rays)));
   };
   if (options.ao) {
     add_occlusion(options.ao_rays);

@@ -34,6 +34,14 @@ void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queu
   shade(context, scene, queues, queues.points, film, true, params, spp);
 }
 
+void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                      const SliceParams& slice) {
+  ResolveParams params{};
+  params.slice = slice;
+  const FilmBuffers none{context.allocate(0), context.allocate(0)};
+  shade(context, scene, queues, queues.points, none, false, params, 1);
+}
+
 void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                       const FilmBuffers& film, const ResolveParams& params, bool shades) {
   const uint samples = params.slice.pixel_count * params.slice.sample_count;

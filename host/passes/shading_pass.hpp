@@ -15,6 +15,10 @@ inline const KernelName kTurnPoints{"turn_points", "film/shading", {}};
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                   const FilmBuffers& film, const ResolveParams& params, int spp);
 
+/// As shading_pass(), but adds nothing to a film. For scenes with normals.
+void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
+                      const SliceParams& slice);
+
 /// Writes the points of a slice, turned to the side that is not seen, to queues.backs, and shades
 /// them if `shades`, without adding anything to the film. Comes before shading_pass().
 void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,

@@ -21,6 +21,11 @@ class BiasCorrection {
   [[nodiscard]] double corrected(double prefiltered) const;
   [[nodiscard]] double standard_error(double prefiltered) const;
 
+  [[nodiscard]] bool is_measured() const { return measured_; }
+  /// Prefiltered less exact, before the correction, and its standard error.
+  [[nodiscard]] double mean_bias() const { return mean_bias_; }
+  [[nodiscard]] double mean_error() const { return mean_error_; }
+
   /// One line about the mean bias and its standard error; empty if nothing was measured.
   [[nodiscard]] std::string note(const std::string& quantity) const;
 

@@ -11,7 +11,7 @@
 #include "dapple/error.hpp"
 #include "dapple/points.hpp"
 #include "film/light_layers.hpp"
-#include "points/periodic.hpp"
+#include "points/bias_sample.hpp"
 #include "points/ring_rays.hpp"
 #include "points/set_sums.hpp"
 #include "render/point_occlusion.hpp"
@@ -20,45 +20,12 @@
 namespace dapple {
 namespace {
 
-/// Independent sets of rays.
-constexpr int kSets = 8;
-
 /// Rays of suns or rings that are traced at once.
 constexpr std::size_t kRaysAtOnce = 1u << 20;
-
-/// Values of points, each from one set, that are also found exactly to learn the bias.
-constexpr std::size_t kBiasSamples = 1024;
 
 constexpr float kSunSolidAngle = 6.8e-5f;
 
 using Imath::V3d;
-
-/// Of the lights of a layer, at point i.
-V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& layer,
-           std::vector<V3f> PointIrradiance::*which, std::size_t i) {
-  V3d sum(0, 0, 0);
-  for (const std::size_t light : layer.lights) sum += V3d((found[light].*which)[i]);
-  return sum;
-}
-
-/// The scene on the device, as its points see it.
-struct SceneOfPoints {
-  SceneOfPoints(Scene given, const PointOptions& options)
-      : device(options.device, options.kernel_dir), scene(std::move(given)) {
-    for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
-    finalize_domes(scene);
-    if (options.period_x > 0) repeat(scene, options.period_x, options.period_z);
-    if (options.ground) add_ground(scene);
-    merge_single_instances(scene);
-    bvh = build_bvh(scene, options.cache);
-    uploaded = upload(device, scene, bvh);
-  }
-
-  Device device;
-  Scene scene;
-  SceneBvh bvh;
-  DeviceScene uploaded;
-};
 
 class Measurement {
  public:
@@ -69,21 +36,23 @@ class Measurement {
         normals_(normals),
         options_(options),
         control_(control),
-        result_(result) {
-    if (options.ao || options.bent) steps_ += kSets;
-    if (options.sky_view_factor) steps_ += kSets;
-    if (options.rings > 0) steps_ += kSets;
-    if (has_lights()) steps_ += kSets;
+        result_(result),
+        sample_(on, points, normals, options) {
+    if (options.ao || options.bent) steps_ += kPointSets;
+    if (options.sky_view_factor) steps_ += kPointSets;
+    if (options.rings > 0) steps_ += kPointSets;
+    if (has_lights()) steps_ += kPointSets;
     if (!options.suns.empty()) steps_ += 1;
-    if (options.estimator == Estimator::prefiltered && options.footprint > 0) choose_sample();
   }
 
   void run() {
+    choose_footprint();
     if (options_.ao || options_.bent) measure_ao();
     if (options_.sky_view_factor) measure_sky_view_factor();
     if (options_.rings > 0) measure_rings();
     if (has_lights()) measure_lights();
     if (!options_.suns.empty()) measure_suns();
+    if (options_.report_bias > 0) result_.bias = sample_.report();
   }
 
  private:
@@ -98,82 +67,40 @@ class Measurement {
   }
 
   [[nodiscard]] OcclusionOptions occlusion_options(int set) const {
-    OcclusionOptions options;
-    options.rays = options_.rays / kSets;
-    options.estimator = options_.estimator;
-    options.footprint = options_.footprint;
-    options.seed = options_.seed * kSets + static_cast<std::uint32_t>(set);
-    return options;
+    return rays_of_set(options_, set);
   }
 
-  void choose_sample() {
-    if (points_.empty()) return;
-    const std::size_t step = (points_.size() + kBiasSamples - 1) / kBiasSamples;
-    for (std::size_t i = 0; i < points_.size(); i += step) {
-      sample_points_.push_back(points_[i]);
-      sample_normals_.push_back(normals_[i]);
+  /// Adds a note about a correction.
+  const BiasCorrection& noted(const std::string& name, const BiasCorrection& correction) {
+    const std::string note = correction.note(name);
+    if (!note.empty()) result_.notes.push_back(note);
+    return correction;
+  }
+
+  [[nodiscard]] bool is_corrected() const {
+    return options_.estimator == Estimator::prefiltered && options_.footprint > 0;
+  }
+
+  /// None where rays are exact.
+  BiasCorrection correction(BiasCorrection (BiasSample::*of)()) {
+    return is_corrected() ? (sample_.*of)() : BiasCorrection();
+  }
+
+  void choose_footprint() {
+    if (options_.max_bias > 0 && !sample_.is_empty()) {
+      const FootprintChoice choice =
+          dapple::choose_footprint(sample_, {options_.footprint, options_.max_bias, 0, true});
+      options_.footprint = choice.footprint;
+      result_.notes.push_back(choice.note);
     }
-    const std::size_t sets = (kBiasSamples + sample_points_.size() - 1) / sample_points_.size();
-    sample_sets_ = static_cast<int>(std::min<std::size_t>(kSets, sets));
-  }
-
-  /// The bias of quantities in [0,1]. `values` finds them at the sample: a list for each.
-  template <class Values>
-  std::vector<BiasCorrection> bias_of(const std::vector<std::string>& names, Values values) {
-    using Lists = std::vector<std::vector<double>>;
-    Lists exact(names.size()), prefiltered(names.size());
-    for (int set = 0; set < sample_sets_; ++set) {
-      for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
-        OcclusionOptions options = occlusion_options(set);
-        options.estimator = estimator;
-        const Lists found = values(options);
-        Lists& all = estimator == Estimator::exact ? exact : prefiltered;
-        for (std::size_t k = 0; k < names.size(); ++k)
-          all[k].insert(all[k].end(), found[k].begin(), found[k].end());
-      }
-    }
-    std::vector<BiasCorrection> corrections;
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      corrections.emplace_back(exact[k], prefiltered[k]);
-      const std::string note = corrections.back().note(names[k]);
-      if (!note.empty()) result_.notes.push_back(note);
-    }
-    return corrections;
-  }
-
-  BiasCorrection occlusion_bias(const std::string& name, std::span<const V3f> normals,
-                                float distance) {
-    return bias_of({name}, [&](OcclusionOptions options) {
-      options.distance = distance;
-      const auto found = occlusion(on_.device, on_.uploaded, sample_points_, normals, options);
-      return std::vector<std::vector<double>>{{found.begin(), found.end()}};
-    })[0];
-  }
-
-  std::vector<BiasCorrection> light_bias(const std::vector<LightLayer>& layers) {
-    std::vector<std::string> names;
-    for (const LightLayer& layer : layers) names.push_back(layer.name);
-    return bias_of(names, [&](const OcclusionOptions& of) {
-      std::vector<std::vector<double>> parts(layers.size());
-      const auto found =
-          irradiance(on_.device, on_.uploaded, on_.scene.lights, sample_points_, sample_normals_,
-                     {of.rays, of.estimator, of.footprint, of.seed});
-      const V3d one(1, 1, 1);
-      for (std::size_t l = 0; l < layers.size(); ++l)
-        for (std::size_t i = 0; i < sample_points_.size(); ++i) {
-          const double all = sum_of(found, layers[l], &PointIrradiance::unoccluded, i).dot(one);
-          if (all > 0)
-            parts[l].push_back(sum_of(found, layers[l], &PointIrradiance::irradiance, i).dot(one) /
-                               all);
-        }
-      return parts;
-    });
+    sample_.use_footprint(options_.footprint);
+    result_.footprint = options_.footprint;
   }
 
   void measure_ao() {
     SetSums sums(points_.size());
     std::vector<V3f> bent(points_.size(), V3f(0, 0, 0));
-    for (int set = 0; set < kSets; ++set) {
+    for (int set = 0; set < kPointSets; ++set) {
       OcclusionOptions options = occlusion_options(set);
       options.distance = options_.distance;
       const PointOcclusion found =
@@ -182,8 +109,7 @@ class Measurement {
       for (std::size_t i = 0; i < found.bent.size(); ++i) bent[i] += found.bent[i];
       if (!step()) return;
     }
-    if (options_.ao)
-      sums.store("ao", occlusion_bias("ao", sample_normals_, options_.distance), result_.columns);
+    if (options_.ao) sums.store("ao", noted("ao", correction(&BiasSample::of_ao)), result_.columns);
     for (int axis = 0; axis < 3 && options_.bent; ++axis) {
       PointColumn column{std::string("bent_") + "xyz" [axis], {}};
       for (const V3f& b : bent) column.values.push_back(b.normalized()[axis]);
@@ -194,14 +120,15 @@ class Measurement {
   void measure_sky_view_factor() {
     const std::vector<V3f> up(points_.size(), V3f(0, 1, 0));
     SetSums sums(points_.size());
-    for (int set = 0; set < kSets; ++set) {
+    for (int set = 0; set < kPointSets; ++set) {
       const std::vector<float> found =
           occlusion(on_.device, on_.uploaded, points_, up, occlusion_options(set));
       sums.add([&](std::size_t i) { return double{found[i]}; });
       if (!step()) return;
     }
-    const std::vector<V3f> sample_up(sample_points_.size(), V3f(0, 1, 0));
-    sums.store("sky_view_factor", occlusion_bias("sky_view_factor", sample_up, 0), result_.columns);
+    sums.store("sky_view_factor",
+               noted("sky_view_factor", correction(&BiasSample::of_sky_view_factor)),
+               result_.columns);
   }
 
   /// Calls add(point, ray of the point, transmittance) for rays that make(point, rays) appends.
@@ -225,14 +152,14 @@ class Measurement {
 
   void measure_rings() {
     const std::vector<ZenithRing> rings = zenith_rings(options_.rings);
-    const int each = std::max(1, options_.rays / kSets);
+    const int each = std::max(1, options_.rays / kPointSets);
     std::vector<SetSums> sums(rings.size(), SetSums(points_.size()));
-    for (int set = 0; set < kSets; ++set) {
+    for (int set = 0; set < kPointSets; ++set) {
       std::vector<double> means(points_.size() * rings.size());
       const auto make = [&](std::size_t i, std::vector<Ray>& rays) {
         for (const ZenithRing& ring : rings)
           append_ring_rays(points_[i], ring, each,
-                           options_.seed * kSets + static_cast<std::uint32_t>(set),
+                           options_.seed * kPointSets + static_cast<std::uint32_t>(set),
                            static_cast<std::uint32_t>(i), rays);
       };
       const auto add = [&](std::size_t i, std::size_t r, double transmittance) {
@@ -250,7 +177,7 @@ class Measurement {
     const std::vector<Light>& lights = on_.scene.lights;
     const std::vector<LightLayer> layers = light_layers(lights);
     std::vector<SetSums> sums(3 * layers.size(), SetSums(points_.size())), all = sums;
-    for (int set = 0; set < kSets; ++set) {
+    for (int set = 0; set < kPointSets; ++set) {
       const OcclusionOptions of = occlusion_options(set);
       const auto found = irradiance(on_.device, on_.uploaded, lights, points_, normals_,
                                     {of.rays, of.estimator, of.footprint, of.seed});
@@ -266,7 +193,9 @@ class Measurement {
       }
       if (!step()) return;
     }
-    const std::vector<BiasCorrection> bias = light_bias(layers);
+    std::vector<BiasCorrection> bias(layers.size());
+    if (is_corrected()) bias = sample_.of_lights(layers);
+    for (std::size_t l = 0; l < layers.size(); ++l) noted(layers[l].name, bias[l]);
     for (std::size_t k = 0; k < sums.size(); ++k)
       sums[k].store(
           layers[k / 3].name + "_" + "rgb"[k % 3], bias[k / 3],
@@ -302,13 +231,11 @@ class Measurement {
   const SceneOfPoints& on_;
   std::span<const V3f> points_;
   std::span<const V3f> normals_;
-  const PointOptions& options_;
+  PointOptions options_;
   const RenderControl& control_;
   PointResult& result_;
+  BiasSample sample_;
   double steps_ = 0, done_ = 0;
-  /// Where exact values are found, too; none where they are exact already.
-  std::vector<V3f> sample_points_, sample_normals_;
-  int sample_sets_ = 0;
 };
 
 void check_points(std::span<const V3f> points, std::span<const V3f> normals) {
@@ -333,9 +260,11 @@ void validate(const PointOptions& options) {
     throw Error(ErrorKind::usage,
                 fmt::format("{} is {}; it must be from {} to {}", flag, value, low, high));
   };
-  check("--rays", options.rays, kSets, 1 << 20);
+  check("--rays", options.rays, kPointSets, 1 << 20);
   check("--rings", options.rings, 0, 90);
   check("--footprint", double{options.footprint}, 0, 1e6);
+  check("--report-bias", double{options.report_bias}, 0, 1);
+  check("--max-bias", double{options.max_bias}, 0, 1);
   check("--ao-distance", double{options.distance}, 0, 1e30);
   check("--periodic", double{options.period_x}, 0, 1e30);
   check("--periodic", double{options.period_z}, 0, 1e30);

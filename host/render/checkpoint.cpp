@@ -78,6 +78,7 @@ json header(const Checkpoint& checkpoint, const TraceState& state, const Round& 
   return {{"options", settings_json(checkpoint.options)},
           {"content", settings_json(checkpoint.content)},
           {"footprint_spp", checkpoint.footprint_spp},
+          {"footprint", checkpoint.footprint},
           {"device", checkpoint.device},
           {"picture", to_json(checkpoint.picture)},
           {"pieces", pieces_json(finished_pieces(checkpoint, state))},
@@ -131,6 +132,9 @@ Checkpoint checkpoint_of(const SealedFile& file, Read what) {
   checkpoint.options = settings_of(about.at("options"));
   checkpoint.content = settings_of(about.at("content"));
   checkpoint.footprint_spp = about.at("footprint_spp").get<int>();
+  checkpoint.footprint = about.at("footprint").get<float>();
+  if (!(checkpoint.footprint >= 0 && checkpoint.footprint <= 1e6f))
+    throw Error(ErrorKind::failed, "damaged: its footprint is out of range");
   checkpoint.device = about.at("device").get<std::string>();
   checkpoint.picture = picture_record(about.at("picture"));
   checkpoint.pieces = pieces_of(about.at("pieces"), checkpoint.picture.crop);

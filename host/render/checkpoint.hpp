@@ -16,6 +16,7 @@ namespace dapple {
 struct Checkpoint {
   Settings options, content;  ///< option_settings(), content_settings()
   int footprint_spp = 1;      ///< samples that its footprints are computed for
+  float footprint = 0;        ///< scale that was used; the options may have demanded a bias
   std::string device;         ///< name of the device that traced last
   PictureRecord picture = {};
   /// The samples that the file has. Empty: a single piece, once all samples are traced; a file that

@@ -194,6 +194,7 @@ Merge merge_parts(const std::vector<std::string>& paths, const std::string& outp
     merge.result.film.metadata.settings.emplace_back("missing", merge.missing);
   add_notes(sum, merge, merge.result.statistics);
   merge.result.statistics.device = sum.device;
+  merge.result.statistics.footprint = sum.footprint;
   merge.result.statistics.seconds.total = total.seconds();
   return merge;
 }

@@ -164,6 +164,8 @@ void validate(const RenderOptions& options) {
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);
   check_range("--footprint", options.footprint, 0, 1e6);
+  check_range("--report-bias", options.report_bias, 0, 1);
+  check_range("--max-bias", options.max_bias, 0, 1);
   check_range("--ao-distance", options.ao_distance, 0, 1e30f);
   check_range("--ao-falloff", options.ao_falloff, 0, 100);
   if (options.ambient) check_range("--ambient", *options.ambient, 0, 1e30f);

@@ -6,17 +6,18 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "camera/camera_splitting.hpp"
 #include "passes/camera_pass.hpp"
-#include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/queues.hpp"
 #include "passes/ray_packets.hpp"
 #include "passes/resolve_pass.hpp"
 #include "passes/shading_pass.hpp"
+#include "render/bias_report.hpp"
+#include "render/bias_tracer.hpp"
+#include "render/picture_rays.hpp"
 #include "sampling/film_moments.hpp"
 #include "sampling/sample_plan.hpp"
 
@@ -50,6 +51,7 @@ class PictureTracer {
         scene_(*scene.buffers),
         options_(options),
         layout_(layout),
+        rays_(context_, scene_, options, layout),
         light_count_(layout.lights.size()),
         width_(view.crop.width()),
         camera_(camera_params(view, options, scene_.bounds)),
@@ -71,11 +73,15 @@ class PictureTracer {
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
     film_.sums = context_.allocate_zeros(layout.sum_bytes());
     film_.squares = context_.allocate_zeros(layout.square_bytes());
+    if (has_bias(options) && options.report_bias > 0) {
+      begin_bias_sums();
+      bias_.emplace(context_, scene_, options, view, layer_count(), std::move(state_.bias));
+    }
     place_sums();
     resolve_ = resolve_params(view);
   }
 
-  TracedPicture trace(const TraceControl& control) {
+  TracedPicture trace(const View& view, const TraceControl& control) {
     SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples,
                     state_.first_sample);
     traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
@@ -88,6 +94,7 @@ class PictureTracer {
     if (plan.is_adaptive() && all_have_variances(picture.samples))
       picture.errors = standard_errors(picture.samples);
     picture.sums = context_.view(film_.sums);
+    if (bias_) picture.bias = bias_of(picture.samples, view);
     picture.mattes = std::move(mattes_);
     picture.motion = std::move(motion_);
     picture.deep = std::move(deep_);
@@ -129,6 +136,31 @@ class PictureTracer {
     state_.mattes = {};
     state_.motion = MotionSums();
     state_.deep = DeepSums();
+    state_.bias = {};
+  }
+
+  [[nodiscard]] std::size_t layer_count() const {
+    return ((options_.ao ? 1 : 0) + light_count_) * (options_.back ? 2 : 1);
+  }
+
+  /// Samples of earlier runs are not in the sums, unless the state has these.
+  void begin_bias_sums() {
+    if (!state_.bias.differences.empty() || state_.samples.empty()) return;
+    state_.bias.earlier = traced_samples(state_.round, state_.slice_samples, state_.samples);
+  }
+
+  std::vector<Bias> bias_of(const std::vector<std::uint32_t>& samples, const View& view) {
+    bias_->finish();
+    // Without a target states have no squares, and those of earlier runs and moments are missing:
+    // then the largest irradiance counts less of its noise.
+    const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
+    std::vector<double> divisors =
+        FilmMoments(sums, squares, layout_, options_, samples, width_).largest_values();
+    if (options_.back) {
+      const std::vector<double> of_front = divisors;
+      divisors.insert(divisors.end(), of_front.begin(), of_front.end());
+    }
+    return picture_bias(bias_->sums(), sums, samples, layout_, view, divisors);
   }
 
   void read_state(const SamplePlan& plan) {
@@ -142,6 +174,10 @@ class PictureTracer {
     if (lookups_.mattes) state_.mattes = mattes_.packed();
     state_.motion = motion_;
     state_.deep = deep_;
+    if (bias_) {
+      bias_->finish();
+      state_.bias = bias_->sums();
+    }
     state_.samples = plan.samples();
     state_.pass_seconds = pass_seconds();
   }
@@ -269,6 +305,7 @@ class PictureTracer {
     }
     const std::uint32_t hits = compact_pass(context_, queues_, samples);
     if (hits == 0) return;
+    if (bias_) bias_->choose(slice, state_.round.groups[state_.round.group].work);
     const Side front{queues_, layout_.ao, layout_.lights};
     trace_side(front, hits);
     if (!options_.back) return;
@@ -326,45 +363,26 @@ class PictureTracer {
   }
 
   void trace_ao(const Side& side, std::uint32_t hits) {
-    AoParams ao{};
-    ao.point_count = hits;
-    ao.rays = static_cast<uint>(options_.ao_rays);
-    ao.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
-                               static_cast<float>(footprint_ao_rays(options_)));
-    ao.t_max =
-        options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
-    ao.seed = options_.seed;
-    ao.shaded = has_normals();
-    ao_ray_pass(context_, side.queues, ao);
-    OcclusionParams params = occlusion_params(hits, ao.rays);
-    if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
-      params.inverse_distance = 1.0f / options_.ao_distance;
-      params.falloff = options_.ao_falloff;
-    }
+    const OcclusionParams params = rays_.make_ao(side.queues, hits);
     occlusion_pass(context_, side.queues, scene_, "ao occlusion", options_.estimator, params,
                    RayOrder::by_pixel);
+    if (bias_) bias_->collect(first_layer(side), side.queues, params);
     resolve_.plane = side.ao;
     resolve_.squares = side.is_back ? layout_.back_squares : 0;
-    resolve_.rays = ao.rays;
+    resolve_.rays = params.rays_per_point;
     resolve_.scale = layout_.unit_scale;
     resolve_ao_pass(context_, side.queues, film_, resolve_);
   }
 
   void trace_light(const Side& side, uint light, std::uint32_t hits) {
-    LightParams params{};
-    params.point_count = hits;
-    params.rays = static_cast<uint>(options_.light_rays);
-    params.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
-                                   static_cast<float>(options_.light_rays));
-    params.light = light;
-    params.seed = options_.seed;
-    params.shaded = has_normals();
-    light_ray_pass(context_, scene_, side.queues, params);
-    occlusion_pass(context_, side.queues, scene_, "light occlusion", options_.estimator,
-                   occlusion_params(hits, params.rays), RayOrder::by_pixel);
+    const OcclusionParams params = rays_.make_light(side.queues, light, hits);
+    occlusion_pass(context_, side.queues, scene_, "light occlusion", options_.estimator, params,
+                   RayOrder::by_pixel);
+    if (bias_)
+      bias_->collect(first_layer(side) + (options_.ao ? 1 : 0) + light, side.queues, params);
     resolve_.plane = side.lights[light].first;
     resolve_.squares = side.is_back ? layout_.back_squares : layout_.light_squares(light);
-    resolve_.rays = params.rays;
+    resolve_.rays = params.rays_per_point;
     resolve_.scale = layout_.light_scale;
     if (layout_.lights[light].channels == 3)
       resolve_dome_pass(context_, scene_, side.queues, film_, resolve_, light);
@@ -372,27 +390,23 @@ class PictureTracer {
       resolve_light_pass(context_, side.queues, film_, resolve_);
   }
 
-  [[nodiscard]] OcclusionParams occlusion_params(uint points, uint rays_per_point) const {
-    OcclusionParams params{};
-    params.scene = scene_.params;
-    params.ray_count = points * rays_per_point;
-    params.rays_per_point = rays_per_point;
-    params.footprint = options_.footprint;
-    return params;
+  /// In the order of BiasSums.
+  [[nodiscard]] std::size_t first_layer(const Side& side) const {
+    return side.is_back ? layer_count() / 2 : 0;
   }
-
-  [[nodiscard]] uint has_normals() const { return layout_.normals ? 1u : 0u; }
 
   DeviceContext& context_;
   const DeviceBuffers& scene_;
   const RenderOptions& options_;
   const FilmLayout& layout_;
+  PictureRays rays_;
   std::size_t light_count_;
   int width_;  ///< pixels of the crop
   CameraParams camera_;
   ResolveParams resolve_{};
   Queues queues_;
   FilmBuffers film_;
+  std::optional<BiasTracer> bias_;             ///< if a bias is reported
   std::vector<std::vector<float>> variances_;  ///< of the finished film, if known
   TraceState state_;  ///< without sums and squares while these are on the device
   const HitLookups& lookups_;
@@ -413,7 +427,7 @@ TracedPicture trace_picture(const Device& device, const DeviceScene& scene, cons
                             const TraceControl& control, TraceState state,
                             const HitLookups& lookups) {
   return PictureTracer(device, scene, view, options, layout, std::move(state), lookups)
-      .trace(control);
+      .trace(view, control);
 }
 
 }  // namespace dapple

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -21,10 +22,13 @@
 #include "film/film_memory.hpp"
 #include "film/layers.hpp"
 #include "passes/kernel_list.hpp"
+#include "render/bias_pilot.hpp"
+#include "render/bias_report.hpp"
 #include "render/picture.hpp"
 #include "render/resume.hpp"
 #include "render/shutter.hpp"
 #include "render/stopwatch.hpp"
+#include "sampling/bias_estimate.hpp"
 #include "sampling/shard.hpp"
 
 namespace dapple {
@@ -65,6 +69,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   set("normals", name_of(options.normals));
   set("footprint", options.footprint);
   if (options.packets != Packets::automatic) set("packets", name_of(options.packets));
+  if (options.max_bias > 0) set("max_bias", options.max_bias);
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
@@ -150,6 +155,38 @@ MatteNames matte_names(const Scene& scene, const RenderOptions& options) {
   return names;
 }
 
+/// Stores the bias of each layer in the statistics and the metadata.
+void add_bias(RenderResult& result, const TracedPicture& picture, const FilmLayout& layout,
+              const std::vector<Light>& lights) {
+  const std::vector<std::string> layers = bias_layers(layout, lights);
+  const Plane& alpha = *result.film.find("A");
+  const auto seen = std::count_if(alpha.pixels.begin(), alpha.pixels.end(),
+                                  [](float value) { return value > 0; });
+  const double share = static_cast<double>(seen) / static_cast<double>(alpha.pixels.size());
+  for (std::size_t i = 0; i < picture.bias.size(); ++i) {
+    const Bias& bias = picture.bias[i];
+    result.statistics.bias[layers[i]] = bias;
+    result.film.metadata.settings.emplace_back("bias." + layers[i], bias_text(bias));
+    const auto noise = result.statistics.rmse.find(layers[i]);
+    if (noise == result.statistics.rmse.end()) continue;
+    result.statistics.rmse_with_bias[layers[i]] =
+        std::sqrt(noise->second * noise->second + share * mean_square(bias));
+  }
+}
+
+/// The options that the picture is traced with: what a target leaves for the noise. Sets the
+/// footprint in `options`.
+RenderOptions with_measured_bias(const FootprintChoice& choice, RenderOptions& options,
+                                 RenderStatistics& statistics) {
+  options.footprint = choice.footprint;
+  if (!choice.note.empty()) statistics.notes.push_back(choice.note);
+  RenderOptions traced = options;
+  traced.footprint_spp = footprint_samples(options);
+  for (float* target : {&traced.target_error, &traced.target_rmse})
+    if (*target > 0) *target = noise_target(*target, choice.bias_rmse);
+  return traced;
+}
+
 /// The options that a device is opened with.
 std::array<std::string, 3> device_key(const RenderOptions& options) {
   return {options.device, options.kernel_dir, name_of(options.packets)};
@@ -168,6 +205,8 @@ struct Renderer::Kept {
                     RenderStatistics& statistics);
   void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                RenderStatistics& statistics) const;
+  FootprintChoice measure_bias(const View& view, const RenderOptions& options,
+                               const FilmLayout& layout, bool may_shrink) const;
   TracedPicture trace(const Shutter& shutter, const Scene& first, const View& view,
                       const RenderOptions& options, const FilmLayout& layout,
                       const std::vector<Light>& lights, TraceControl tracing, TraceState state,
@@ -233,6 +272,17 @@ std::unique_ptr<HitLookups> Renderer::Kept::hit_lookups(const Shutter& shutter, 
   return lookups;
 }
 
+/// The scene must be on the device.
+FootprintChoice Renderer::Kept::measure_bias(const View& view, const RenderOptions& options,
+                                             const FilmLayout& layout, bool may_shrink) const {
+  const RenderOptions sampled = by_sample(options);
+  CameraParams camera = camera_params(view, sampled, on_device.buffers->bounds);
+  if (options.cryptomattes.any() || options.motion || options.deep) camera.medium_error = 0;
+  BiasPilot pilot(device->context(), *on_device.buffers, view, sampled, layout, camera);
+  return choose_footprint(pilot, {options.footprint, options.max_bias,
+                                  std::max(options.target_error, options.target_rmse), may_shrink});
+}
+
 /// Traces the first moment of the shutter, whose scene is on the device, and then the others: each
 /// continues from the sums of those before.
 TracedPicture Renderer::Kept::trace(const Shutter& shutter, const Scene& first, const View& view,
@@ -287,8 +337,9 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
 
   const View view = prepare_scene(scene, options, statistics.notes);
   options.camera_splitting = choose_camera_splitting(options, scene, view);
+  const Settings asked = option_settings(options, view);
   std::optional<Checkpoint> resumed;
-  if (!control.resume.empty()) resumed = resume(control.resume, view, options);
+  if (!control.resume.empty()) resumed = resume(control.resume, asked, options);
   const RenderOptions sampled = by_sample(options);
   // Moved out until the render succeeds: after an error nothing is kept.
   Kept kept = std::exchange(*kept_, {});
@@ -310,14 +361,24 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const MatteNames names = matte_names(scene, options);
   const FilmLayout layout(view, sampled, bounds, lights,
                           !kept.on_device.buffers->corner_normals.empty());
+  const Stopwatch trace_time;
+  const bool has_pilot = has_bias(options) && (options.max_bias > 0 || is_adaptive(options));
+  const RenderOptions traced =
+      has_pilot ? with_measured_bias(kept.measure_bias(view, options, layout, !resumed), options,
+                                     statistics)
+                : options;
+  const double pilot_seconds = trace_time.seconds();
+  // After the pilot, because they name the footprint that it chose.
   const FilmMetadata about_picture = metadata(scene, view, options, device.info(), control);
   TraceControl tracing{control.progress, control.stop, {}, 0, {}, SampleOrder::pixels};
   TraceState state;
   state.first_sample = rays_of(options.shard, options.spp).first * splitting_factor(options);
   if (resumed || !control.checkpoint.empty() || !control.part.empty()) {
-    Checkpoint about{option_settings(options, view),
+    Checkpoint about{asked,
                      content_settings(options, view, bvh, *kept.on_device.buffers),
-                     footprint_samples(options), statistics.device,
+                     footprint_samples(options),
+                     options.footprint,
+                     statistics.device,
                      record_of(view, sampled, layout, lights, names, about_picture)};
     about.content.emplace_back("names of objects", text_checksum(names.objects));
     if (options.motion)
@@ -329,19 +390,18 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
     write_checkpoints(tracing, control, std::move(about), result);
   }
 
-  const Stopwatch trace_time;
-  const TracedPicture picture = kept.trace(shutter, scene, view, options, layout, lights,
+  const TracedPicture picture = kept.trace(shutter, scene, view, traced, layout, lights,
                                            std::move(tracing), std::move(state), statistics);
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   add_trace_statistics(statistics, picture, layout);
+  if (has_pilot) statistics.pass_seconds["bias pilot"] = pilot_seconds;
+  statistics.footprint = options.footprint;
 
-  result.film = {view.width,
-                 view.height,
-                 view.crop,
-                 develop(picture, layout, sampled, lights, statistics),
-                 about_picture,
-                 options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
+  result.film = {view.width,    view.height,
+                 view.crop,     develop(picture, layout, sampled, lights, statistics),
+                 about_picture, options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
   set_ambient(result.film.metadata, statistics.ambient);
+  add_bias(result, picture, layout, lights);
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
   result.interrupted = picture.interrupted;

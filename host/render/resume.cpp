@@ -44,10 +44,10 @@ void require_one_piece(const std::string& path, const Checkpoint& checkpoint,
 
 }  // namespace
 
-Checkpoint resume(const std::string& path, const View& view, RenderOptions& options) {
+Checkpoint resume(const std::string& path, const Settings& asked, RenderOptions& options) {
   Checkpoint checkpoint = read_checkpoint(path);
   if (checkpoint.pieces.size() > 1) require_one_piece(path, checkpoint, options);
-  require_same(path, checkpoint.options, option_settings(options, view));
+  require_same(path, checkpoint.options, asked);
   require_one_piece(path, checkpoint, options);
   require_enough_samples(path, checkpoint.state, options);
   if (options.footprint_spp > 0 && options.footprint_spp != checkpoint.footprint_spp) {
@@ -56,6 +56,7 @@ Checkpoint resume(const std::string& path, const View& view, RenderOptions& opti
                             checkpoint.footprint_spp, options.footprint_spp));
   }
   options.footprint_spp = checkpoint.footprint_spp;
+  options.footprint = checkpoint.footprint;
   return checkpoint;
 }
 

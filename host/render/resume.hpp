@@ -8,10 +8,10 @@
 
 namespace dapple {
 
-/// Reads the checkpoint `path` and sets the footprints in `options` to those of the first run.
-/// Throws Error failed if it is damaged, Error usage if `options` differ from those of the
-/// checkpoint.
-Checkpoint resume(const std::string& path, const View& view, RenderOptions& options);
+/// Reads the checkpoint `path` and sets the footprints in `options`, whose option_settings() are
+/// `asked`, to those of the first run. Throws Error failed if it is damaged, Error usage if
+/// `options` differ from those of the checkpoint.
+Checkpoint resume(const std::string& path, const Settings& asked, RenderOptions& options);
 
 /// Throws Error unless `resumed`, read from `path`, belongs to the picture that `now` describes.
 /// Adds a note about its origin to `notes`.

@@ -8,8 +8,8 @@
 
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
-#include "scene/corner_normals.hpp"
 #include "sampling/shard.hpp"
+#include "scene/corner_normals.hpp"
 
 namespace dapple {
 namespace {
@@ -32,6 +32,10 @@ void check_shutter(const Shutter& shutter, const RenderOptions& options,
     refuse("--checkpoint and --resume do not go with --deep");
   if (options.deep && !control.part.empty())
     refuse("--deep does not go with --shard and -o FILE.dapple: parts have no depths");
+  if (options.max_bias > 0 && !control.part.empty())
+    refuse(
+        "--max-bias does not go with --shard and -o FILE.dapple: parts would choose footprints by "
+        "their own pixels; give --footprint");
   if (shutter.times == 1) return;
   if (options.ground) refuse("with motion blur the ground must be part of the scenes");
   if (is_adaptive(options))

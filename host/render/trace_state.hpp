@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "film/bias_sums.hpp"
 #include "film/deep_sums.hpp"
 #include "film/motion_sums.hpp"
 #include "sampling/round.hpp"
@@ -22,6 +23,7 @@ struct TraceState {
   std::vector<std::uint32_t> mattes;   ///< MatteSums::packed(), if requested
   MotionSums motion;                   ///< of no pixels unless requested
   DeepSums deep;                       ///< the same; not in checkpoints
+  BiasSums bias;                       ///< of the samples of this run; not in checkpoints
   Round round;
   std::map<std::string, double> pass_seconds;  ///< device seconds so far, by label
 };

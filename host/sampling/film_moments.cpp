@@ -11,8 +11,19 @@ namespace dapple {
 std::vector<std::vector<float>> FilmMoments::variances() const {
   std::vector<std::vector<float>> out;
   if (options_.ao) out.push_back(ao_variances());
+  for (std::size_t light = 0; light < layout_.lights.size(); ++light) {
+    LightVariances of_light = light_variances(light);
+    const double factor = 1.0 / (of_light.largest * of_light.largest);
+    for (float& variance : of_light.absolute) variance = static_cast<float>(variance * factor);
+    out.push_back(std::move(of_light.absolute));
+  }
+  return out;
+}
+
+std::vector<double> FilmMoments::largest_values() const {
+  std::vector<double> out(options_.ao ? 1 : 0, 1.0);
   for (std::size_t light = 0; light < layout_.lights.size(); ++light)
-    out.push_back(light_variances(light));
+    out.push_back(light_variances(light).largest);
   return out;
 }
 
@@ -23,7 +34,7 @@ std::vector<float> FilmMoments::ao_variances() const {
       [&](std::uint32_t p) { return mean(sum(0, p) - sum(layout_.ao, p) * scale, p); }, 0);
 }
 
-std::vector<float> FilmMoments::light_variances(std::size_t light) const {
+FilmMoments::LightVariances FilmMoments::light_variances(std::size_t light) const {
   const LightPlaneRange& planes = layout_.lights[light];
   const double scale = 1.0 / (double{layout_.light_scale} * options_.light_rays);
   const auto irradiance = [&](std::uint32_t p) {
@@ -31,9 +42,7 @@ std::vector<float> FilmMoments::light_variances(std::size_t light) const {
   };
   std::vector<float> variances = variances_of(irradiance, layout_.light_squares(light));
   const double largest = largest_unoccluded(planes, scale, variances);
-  const double factor = 1.0 / (largest * largest);
-  for (float& variance : variances) variance = static_cast<float>(variance * factor);
-  return variances;
+  return {std::move(variances), largest};
 }
 
 // The largest of noisy means is biased upwards. So each mean counts less its standard error,

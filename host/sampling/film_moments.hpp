@@ -30,6 +30,10 @@ class FilmMoments {
   /// unoccluded irradiance.
   [[nodiscard]] std::vector<std::vector<float>> variances() const;
 
+  /// What the errors of every pass are relative to: 1 for AO, of lights the largest unoccluded
+  /// irradiance at radiance 1.
+  [[nodiscard]] std::vector<double> largest_values() const;
+
  private:
   [[nodiscard]] double sum(std::uint32_t plane, std::uint32_t pixel) const {
     return static_cast<double>(sums_[std::size_t{plane} * layout_.pixels + pixel]);
@@ -45,7 +49,12 @@ class FilmMoments {
     return luminance(V3d(sum(first, pixel), sum(first + 1, pixel), sum(first + 2, pixel)));
   }
   [[nodiscard]] std::vector<float> ao_variances() const;
-  [[nodiscard]] std::vector<float> light_variances(std::size_t light) const;
+  /// batch_variances() of a light's irradiance, and its largest unoccluded irradiance.
+  struct LightVariances {
+    std::vector<float> absolute;
+    double largest = 1;
+  };
+  [[nodiscard]] LightVariances light_variances(std::size_t light) const;
   /// The largest unoccluded irradiance of all pixels. `scale`: of the sums; `variances`:
   /// batch_variances() of the irradiance.
   [[nodiscard]] double largest_unoccluded(const LightPlaneRange& planes, double scale,

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +47,8 @@ struct BakeOptions {
   Estimator estimator = Estimator::prefiltered;
   /// As RenderOptions::footprint, for the rays of one point.
   float footprint = 1.5f;
+  float report_bias = kDefaultReportBias;  ///< as RenderOptions::report_bias
+  float max_bias = 0;                      ///< as RenderOptions::max_bias
   float distance = 0;  ///< metres; surfaces farther away do not occlude; 0: no limit
   float falloff = 0;   ///< as RenderOptions::ao_falloff
   Normals normals = Normals::shading;
@@ -105,6 +108,10 @@ struct BakeStatistics {
   std::uint64_t rays = 0;
   double squared_errors = 0;        ///< of AO, estimated; the sum over vertices and texels
   double squared_light_errors = 0;  ///< of all lights together, relative as target_error
+  /// Of the prefiltered samples: the bias of "ao", and of "light", all lights together, relative to
+  /// the largest unoccluded one. Empty if it is not reported.
+  std::map<std::string, Bias> bias;
+  float footprint = 0;              ///< BakeOptions::footprint, or what max_bias chose
   std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
   std::size_t hidden_texels = 0;    ///< the same in the texture
   std::string device;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "dapple/bias.hpp"
 #include "dapple/device.hpp"
 #include "dapple/scene.hpp"
 
@@ -99,6 +100,13 @@ struct RenderOptions {
   int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
   Estimator estimator = Estimator::prefiltered;
   float footprint = kDefaultFootprint;  ///< scale, >= 0; 0 is exact
+  /// Share of the prefiltered rays that are traced exactly, too, to report the bias, [0,1]; 0:
+  /// none. It changes no value of the film.
+  float report_bias = kDefaultReportBias;
+  /// Take the largest of `footprint`, a half of it, a quarter and so on with which the bias of
+  /// every layer, two standard errors included, is at most this, [0,1]; exact rays if none is; 0:
+  /// take `footprint`.
+  float max_bias = 0;
   Normals normals = Normals::shading;
   bool ao = true;       ///< make the AO pass
   bool light = true;    ///< make the light passes
@@ -140,6 +148,18 @@ struct RenderOptions {
 /// a target it returns at least `spp`, and so many samples that the bias over visible surfaces
 /// stays below about a third of target_error, or half of target_rmse.
 [[nodiscard]] int footprint_samples(const RenderOptions& options);
+
+/// Whether a picture has a bias: whether its rays are prefiltered.
+[[nodiscard]] inline bool has_bias(const RenderOptions& options) {
+  return options.estimator == Estimator::prefiltered && options.footprint > 0 &&
+         (options.ao || options.light);
+}
+
+/// Whether rays are traced exactly, too: for the report, for max_bias or for a target.
+[[nodiscard]] inline bool measures_bias(const RenderOptions& options) {
+  return has_bias(options) &&
+         (options.report_bias > 0 || options.max_bias > 0 || is_adaptive(options));
+}
 
 /// The RMSE of a picture for which footprints of footprint_samples() samples are meant, [0,1].
 [[nodiscard]] float footprint_rmse(const RenderOptions& options);

@@ -2,6 +2,7 @@
 // options. Out: named columns of numbers with standard errors. First order only: nothing scatters.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,8 +32,10 @@ struct PointOptions {
   /// For each point and quantity, in eight independent sets, [8, 2^20].
   int rays = 256;
   Estimator estimator = Estimator::prefiltered;
-  float footprint = 1.0f;  ///< of the rays of one set
-  float distance = 0;      ///< of AO, as RenderOptions::ao_distance
+  float footprint = 1.0f;                  ///< of the rays of one set
+  float report_bias = kDefaultReportBias;  ///< 0: PointResult::bias stays empty
+  float max_bias = 0;                      ///< as RenderOptions::max_bias, before the correction
+  float distance = 0;                      ///< of AO, as RenderOptions::ao_distance
   /// The scene repeats itself with these periods along X and Z, metres; 0: it does not.
   float period_x = 0, period_z = 0;
   std::uint32_t seed = 0;
@@ -55,6 +58,11 @@ struct PointResult {
   /// NAME_r, NAME_g and NAME_b of a light, and sun or sun_N, in W/m^2. With each an _error, its
   /// standard error; suns have none, since each is one ray.
   std::vector<PointColumn> columns;
+  /// The bias before it was corrected, by quantity: "ao", "sky_view_factor", and lights by name,
+  /// relative to the unoccluded irradiance. The RMSE over tiles (of neighbouring points) is what
+  /// the correction leaves.
+  std::map<std::string, Bias> bias;
+  float footprint = 0;  ///< PointOptions::footprint, or what max_bias chose
   std::vector<std::string> notes;
   double build_seconds = 0, trace_seconds = 0;
   std::string device;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "dapple/bias.hpp"
 #include "dapple/device.hpp"
 #include "dapple/film.hpp"
 #include "dapple/options.hpp"
@@ -34,6 +35,12 @@ struct RenderStatistics {
   /// With a target: estimated root mean square of the pixels' errors, by layer ("ao",
   /// "light.NAME"); of lights relative to their largest unoccluded irradiance.
   std::map<std::string, double> rmse;
+  /// Of prefiltered pictures: the bias by layer, as `rmse`; also "ao.back" and the like. Empty if
+  /// it is not reported.
+  std::map<std::string, Bias> bias;
+  /// `rmse` together with the bias, where both are known: the estimated distance from the truth.
+  std::map<std::string, double> rmse_with_bias;
+  float footprint = 0;  ///< RenderOptions::footprint, or what max_bias or a target chose
   std::size_t triangles = 0, segments = 0, nodes = 0;
   /// The BVH cache. Small objects are always built and count in neither number.
   struct {

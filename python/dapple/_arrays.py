@@ -16,7 +16,7 @@ FloatArray = npt.NDArray[np.float32]
 IndexArray = npt.NDArray[np.uint32]
 
 
-def _shape_text(shape: tuple[int, ...]) -> str:
+def shape_text(shape: tuple[int, ...]) -> str:
     return "(" + ", ".join(str(n) for n in shape) + ("," if len(shape) == 1 else "") + ")"
 
 
@@ -36,7 +36,7 @@ def vectors(name: str, values: npt.ArrayLike) -> FloatArray:
     if array.ndim == 1 and array.size == 0:
         array = array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
-        raise UsageError(f"{name} has the shape {_shape_text(array.shape)}; it must be (n, 3)")
+        raise UsageError(f"{name} has the shape {shape_text(array.shape)}; it must be (n, 3)")
     with np.errstate(over="ignore"):
         result: FloatArray = np.ascontiguousarray(array, dtype=np.float32)
     if not np.isfinite(result).all():
@@ -66,11 +66,26 @@ def indices(name: str, values: npt.ArrayLike, limit: int) -> IndexArray:
     if array.size == 0:
         return np.zeros((0, 3), np.uint32)
     if array.ndim != 2 or array.shape[1] != 3:
-        raise UsageError(f"{name} has the shape {_shape_text(array.shape)}; it must be (m, 3)")
+        raise UsageError(f"{name} has the shape {shape_text(array.shape)}; it must be (m, 3)")
     if int(array.min()) < 0 or int(array.max()) >= limit:
         wrong = int(array.min()) if int(array.min()) < 0 else int(array.max())
         raise UsageError(f"{name} has the index {wrong}, but there are {limit} vertices")
     return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def irradiances(name: str, values: float | npt.ArrayLike, count: int) -> FloatArray:
+    """`values` as (count,) float32 of 0 or more; one number stands for all of them."""
+    array = _numbers(name, values, "fiu")
+    if array.shape not in ((), (count,)):
+        raise UsageError(
+            f"{name} has the shape {shape_text(array.shape)}; it must be a number or one for each "
+            f"of {count} suns"
+        )
+    with np.errstate(over="ignore"):
+        result: FloatArray = np.ascontiguousarray(np.broadcast_to(array, (count,)), np.float32)
+    if not (np.isfinite(result) & (result >= 0)).all():
+        raise UsageError(f"{name} has a value that is not finite or below 0")
+    return result
 
 
 def opacities(values: float | npt.ArrayLike, count: int) -> tuple[list[float], IndexArray]:
@@ -80,7 +95,7 @@ def opacities(values: float | npt.ArrayLike, count: int) -> tuple[list[float], I
         array = np.broadcast_to(array, (count,))
     if array.shape != (count,):
         raise UsageError(
-            f"opacity has the shape {_shape_text(array.shape)}; it must be a number or one for "
+            f"opacity has the shape {shape_text(array.shape)}; it must be a number or one for "
             f"each of {count} triangles"
         )
     if not ((array >= 0) & (array <= 1)).all():

@@ -7,12 +7,8 @@ import ctypes
 import os
 import shutil
 import tempfile
-import warnings
 from importlib import metadata
 from pathlib import Path
-
-_INTEL = ("intel-opencl-rt", "libintelocl.so")
-_POCL = ("pocl-binary-distribution", "libpocl*.so")
 
 
 def _system_has_driver() -> bool:
@@ -20,31 +16,18 @@ def _system_has_driver() -> bool:
     return vendors.is_dir() and any(vendors.glob("*.icd"))
 
 
-def _library(package: str, pattern: str) -> Path | None:
-    """The file of that pattern in an installed package, or none."""
+def _driver_of_pip() -> Path | None:
+    """Intel's runtime (intel-opencl-rt), wherever pip put it, or none.
+
+    PoCL of pocl-binary-distribution 3.0 is not looked for: it links kernels with the system's `ld`
+    against libgcc and libc, and ends the process where these are missing.
+    """
     try:
-        files = metadata.files(package) or []
+        files = metadata.files("intel-opencl-rt") or []
     except metadata.PackageNotFoundError:
         return None
-    found = (Path(str(file.locate())) for file in files if file.match(pattern))
+    found = (Path(str(file.locate())) for file in files if file.name == "libintelocl.so")
     return next((path.resolve() for path in found if path.exists()), None)
-
-
-def _driver_of_pip() -> Path | None:
-    """Intel's runtime, or else PyPI's PoCL if it finds the linker that it needs, or none."""
-    intel = _library(*_INTEL)
-    if intel is not None:
-        return intel
-    pocl = _library(*_POCL)
-    if pocl is not None and shutil.which("ld") is None:  # it would end the process
-        warnings.warn(
-            "PoCL of pocl-binary-distribution needs the linker ld: install it (Debian: binutils), "
-            "or pip install 'dapple[cpu]'",
-            RuntimeWarning,
-            stacklevel=4,
-        )
-        return None
-    return pocl
 
 
 def use_driver_of_pip() -> None:

@@ -6,6 +6,7 @@ import difflib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Sequence, Tuple, TypedDict, TypeVar
 
+from ._arguments import non_negative
 from ._errors import UsageError
 
 if TYPE_CHECKING:
@@ -110,6 +111,7 @@ class BakeOptions(TypedDict, total=False):
 
 Options = TypeVar("Options")
 
+_NON_NEGATIVE = ("footprint", "distance", "falloff")
 _EXPECTED = {
     "look": "three vectors: (from, at, up)",
     "crop": "four integers: (x0, y0, x1, y1)",
@@ -125,6 +127,8 @@ def apply(call: str, options: Options, values: Mapping[str, Any]) -> Options:
             close = difflib.get_close_matches(name, known, 1)
             hint = f"; did you mean {close[0]}?" if close else f"; known are {', '.join(known)}"
             raise UsageError(f"{call}() has no argument {name}{hint}")
+        if name in _NON_NEGATIVE and isinstance(value, (int, float)):
+            non_negative(f"{call}(): {name}", value)
         if name == "opacity" and isinstance(value, Mapping):
             value = list(value.items())
         try:

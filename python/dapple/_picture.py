@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from os import PathLike, fspath
+from os import PathLike
 from typing import TYPE_CHECKING, Any, Iterator, Mapping
 
 import numpy as np
 
-from . import _native
+from . import _arguments, _native
 from ._arrays import FloatArray
+from ._errors import UsageError
 
 if TYPE_CHECKING:
     import xarray
@@ -75,11 +76,13 @@ class Picture(Mapping[str, FloatArray]):
         >>> picture.save("demo.exr")
         >>> picture.save("demo.png", layer="ao")
         """
-        text = fspath(path)
+        text = _arguments.path("path", path)
         if text.lower().endswith(".png"):
-            self._native.write_png(text, layer)
-        else:
+            self._native.write_png(text, _arguments.text("layer", layer))
+        elif text.lower().endswith(".exr"):
             self._native.write_exr(text)
+        else:
+            raise UsageError(f"{text}: pictures are saved as .exr or .png")
 
     def to_xarray(self) -> xarray.Dataset:
         """All layers as an xarray.Dataset with the dimensions y, x and channel. Needs xarray.

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from os import PathLike, fspath
-from typing import TYPE_CHECKING, Callable, Iterable, Optional, Sequence
+from os import PathLike
+from typing import TYPE_CHECKING, Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _native, _options
+from . import _arguments, _arrays, _native, _options
+from ._arguments import Progress
 from ._arrays import FloatArray, IndexArray
 from ._errors import UsageError
 from ._picture import Picture
@@ -16,9 +17,6 @@ from ._results import Bake, Irradiance, Mesh
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-Progress = Optional[Callable[[float], object]]
-
 
 class Scene:
     """Geometry, materials, lights and cameras. Made by load() or Scene.from_arrays().
@@ -32,6 +30,8 @@ class Scene:
     """
 
     def __init__(self, native: _native.Scene) -> None:
+        if not isinstance(native, _native.Scene):
+            raise UsageError("scenes are made by dapple.load() or dapple.Scene.from_arrays()")
         self._native = native
 
     @classmethod
@@ -118,7 +118,9 @@ class Scene:
         >>> tree = dapple.load("scene:tree?leaves=100")
         >>> tree.set_opacity("leaf", 0.5)
         """
-        self._native.override_opacity(material, value)
+        self._native.override_opacity(
+            _arguments.text("material", material), _arguments.number("value", value)
+        )
 
     def add_ground(self) -> None:
         """Adds an opaque square under the lowest point, 20 times as wide as the scene.
@@ -152,7 +154,7 @@ class Scene:
         >>> tree.lights
         ['noon']
         """
-        self._native.add_lights(fspath(path))
+        self._native.add_lights(_arguments.path("path", path))
 
     def add_sun(
         self,
@@ -171,8 +173,10 @@ class Scene:
         >>> tree.irradiance([[50, 0, 0]], [0, 1, 0])["sun"].irradiance.round()
         array([[1000., 1000., 1000.]], dtype=float32)
         """
-        x, y, z = (float(v) for v in direction)
-        self._native.add_sun((x, y, z), irradiance, angular_diameter, name)
+        towards = _arguments.several("direction", direction, 3)
+        strength = _arguments.number("irradiance", irradiance)
+        degrees = _arguments.number("angular_diameter", angular_diameter)
+        self._native.add_sun(towards, strength, degrees, _arguments.text("name", name))
 
     def add_sky(self, kind: str | PathLike[str] = "uniform", irradiance: float = 1.0) -> None:
         """Adds a sky as the light "sky".
@@ -187,7 +191,8 @@ class Scene:
         >>> bool(abs(sky.unoccluded[0, 0] - 120) < 2)
         True
         """
-        self._native.add_sky(fspath(kind), irradiance)
+        strength = _arguments.non_negative("irradiance", irradiance)
+        self._native.add_sky(_arguments.path("kind", kind), strength)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Writes meshes, instances, materials without textures, and cameras as one GLB file.
@@ -196,7 +201,7 @@ class Scene:
         >>> dapple.load("tree.glb").materials
         ['leaf', 'bark']
         """
-        self._native.write_glb(fspath(path))
+        self._native.write_glb(_arguments.path("path", path))
 
     def occlusion(
         self,
@@ -220,10 +225,12 @@ class Scene:
         (True, True)
         """
         at, facing = _points(points, normals)
+        chosen = _options.apply("occlusion", _native.OcclusionOptions(), options)
+        progress = _arguments.progress_function(progress)
+        name = _arguments.text("device", device)
         if len(at) == 0:
             return np.zeros(0, np.float32)
-        chosen = _options.apply("occlusion", _native.OcclusionOptions(), options)
-        return _native.occlusion(self._native, at, facing, chosen, device, progress)
+        return _native.occlusion(self._native, at, facing, chosen, name, progress)
 
     def irradiance(
         self,
@@ -248,8 +255,10 @@ class Scene:
         """
         at, facing = _points(points, normals)
         chosen = _options.apply("irradiance", _native.IrradianceOptions(), options)
-        found = _native.irradiance(self._native, at, facing, chosen, device, progress)
-        return {name: Irradiance(*arrays) for name, arrays in found}
+        progress = _arguments.progress_function(progress)
+        name = _arguments.text("device", device)
+        found = _native.irradiance(self._native, at, facing, chosen, name, progress)
+        return {light: Irradiance(*arrays) for light, arrays in found}
 
     def measure(
         self,
@@ -281,13 +290,11 @@ class Scene:
         at, facing = _points(points, normals)
         towards = _arrays.vectors("suns", suns)
         towards = _arrays.unit_vectors("suns", towards, len(towards))
-        strength = np.asarray(sun_irradiance, np.float32)
-        if strength.shape not in ((), (len(towards),)):
-            raise UsageError("sun_irradiance must be a number or one for each sun")
+        across = _arrays.irradiances("sun_irradiance", sun_irradiance, len(towards))
         chosen = _options.apply("measure", _native.PointOptions(), options)
         if periodic is not None:
-            chosen.period_x, chosen.period_z = periodic
-        across = np.ascontiguousarray(np.broadcast_to(strength, (len(towards),)))
+            chosen.period_x, chosen.period_z = _arguments.several("periodic", periodic, 2)
+        progress = _arguments.progress_function(progress)
         columns = _native.measure(self._native, at, facing, chosen, towards, across, progress)
         return dict(columns)
 
@@ -304,6 +311,7 @@ class Scene:
         ((18, 32, 3), (18, 32))
         """
         chosen = _options.apply("render", _native.RenderOptions(), options)
+        progress = _arguments.progress_function(progress)
         return Picture(_native.render(self._native, chosen, progress))
 
     def bake(
@@ -325,7 +333,8 @@ class Scene:
         True
         """
         chosen = _options.apply("bake", _native.BakeOptions(), options)
-        others = [scene._native for scene in occluders]
+        others = _natives("occluders", occluders)
+        progress = _arguments.progress_function(progress)
         meshes, instance_ao = _native.bake(self._native, chosen, others, progress)
         return Bake([dict(arrays) for arrays in meshes], instance_ao)
 
@@ -333,6 +342,13 @@ class Scene:
 def _points(points: npt.ArrayLike, normals: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     at = _arrays.vectors("points", points)
     return at, _arrays.unit_vectors("normals", normals, len(at))
+
+
+def _natives(name: str, scenes: Iterable[Scene]) -> list[_native.Scene]:
+    found = list(scenes) if isinstance(scenes, Iterable) else [scenes]
+    if isinstance(scenes, Scene) or not all(isinstance(scene, Scene) for scene in found):
+        raise UsageError(f"{name} is {scenes!r}; it must be a list of scenes")
+    return [scene._native for scene in found]
 
 
 def load(
@@ -353,4 +369,6 @@ def load(
     Traceback (most recent call last):
     dapple.InputError: missing.glb: no such file
     """
-    return Scene(_native.load(fspath(path), time, animation, allow_outside))
+    seconds = None if time is None else _arguments.number("time", time)
+    name = _arguments.text("animation", animation)
+    return Scene(_native.load(_arguments.path("path", path), seconds, name, bool(allow_outside)))

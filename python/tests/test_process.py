@@ -38,27 +38,35 @@ def test_a_progress_function_cannot_call_dapple(tree: dapple.Scene, ground: np.n
         tree.occlusion(ground, UP, progress=lambda _: tree.occlusion(ground, UP))
 
 
-@pytest.mark.parametrize("call", ["occlusion", "render"])
+LONG_CALLS = {
+    "occlusion": 'scene.occlusion(points, UP, rays=1 << 14, estimator="exact")',
+    "irradiance": 'scene.irradiance(points, UP, rays=1 << 10, estimator="exact")',
+    "measure": 'scene.measure(points, UP, rays=1 << 14, estimator="exact")',
+    "render": "scene.render(width=1920, height=1080, spp=4096)",
+    "bake": "scene.bake(rays=1 << 16, target_error=0)",
+}
+
+
+@pytest.mark.parametrize("call", LONG_CALLS.values(), ids=list(LONG_CALLS))
 def test_an_interrupt_ends_a_long_call(call: str) -> None:
     script = f"""
 import dapple, numpy as np, os, signal, threading, time
+UP = {UP}
 scene = dapple.load("scene:tree?leaves=2000")
+scene.add_sun([0, 1, 0], angular_diameter=5)
 points = np.random.default_rng(1).uniform(-2, 2, (1_000_000, 3))
-scene.occlusion(points[:10], {UP})
+scene.occlusion(points[:10], UP)
 def interrupt():
     time.sleep(1)
     os.kill(os.getpid(), signal.SIGINT)
 threading.Thread(target=interrupt).start()
 start = time.time()
 try:
-    if "{call}" == "occlusion":
-        scene.occlusion(points, {UP}, rays=1 << 14, estimator="exact")
-    else:
-        scene.render(width=1920, height=1080, spp=4096)
+    {call}
     print("finished")
 except KeyboardInterrupt:
     print("interrupted")
-assert scene.occlusion(points[:10], {UP}).shape == (10,)
+assert scene.occlusion(points[:10], UP).shape == (10,)
 """
     found = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, timeout=300, check=False

@@ -136,7 +136,6 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   refuses("--frames 1-2 --frame 1 -o o.#.exr", "--frame");
   refuses("--fps 24 -o o.exr", "--frames");
   refuses("--passes motion -o o.exr", "--passes motion needs --frame or --frames");
-  refuses("--passes motion --frame 1 --checkpoint c -o o.exr", "do not go with --passes motion");
   refuses("--shutter 0,1 -o o.exr", "--shutter needs --frame or --frames");
   refuses("--frame 1 --shutter 1,0 -o o.exr", "--shutter 1,0: it must close after it opens");
   refuses("--frame 1 --shutter 1 -o o.exr", "--shutter 1: expected OPEN,CLOSE");

@@ -50,9 +50,9 @@ const std::vector<std::pair<std::string, std::string>> kCommands = {
 
 /// Options that take any text, most of them paths.
 const std::set<std::string> kFreeText = {
-    "--output",     "--png",   "--camera", "--lights",     "--dome",      "--device",
-    "--kernel-dir", "--cache", "--resume", "--stats-json", "--occluders", "--html",
-    "--at",         "--suns",  "--layer",  "--checkpoint", "--animation", "--sky",
+    "--output", "--png",        "--camera",     "--lights",    "--dome", "--device", "--kernel-dir",
+    "--cache",  "--resume",     "--stats-json", "--occluders", "--html", "--at",     "--suns",
+    "--layer",  "--checkpoint", "--animation",  "--sky",       "--deep", "--half",
 };
 
 TEST_F(OptionValues, NeedAValue) {

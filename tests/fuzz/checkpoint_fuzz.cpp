@@ -106,6 +106,7 @@ void write_likely(FuzzedDataProvider& data) {
       {"options", nlohmann::json::array()},
       {"content", nlohmann::json::array()},
       {"footprint_spp", number(16)},
+      {"footprint", number(16)},
       {"device", "fuzz"},
       {"pass_seconds", nlohmann::json::object()},
       {"picture", to_json(PictureRecord{})},

@@ -19,6 +19,7 @@ class CheckpointFile : public FilmFile {};
 std::string small_checkpoint(const std::string& path) {
   Checkpoint checkpoint;
   checkpoint.options = {{"--seed", "1"}};
+  checkpoint.picture.metadata.samples = 8;
   TraceState state;
   state.slice_samples = 64;
   state.sums = {1, 2, 3, 4};

@@ -23,10 +23,11 @@ RenderOptions small_picture() {
   options.width = 40;
   options.height = 36;
   options.spp = 11;
-  options.ao_rays = 3;
+  options.ao_rays = 40;  // a shard has several slices
   options.back = true;
   options.camera_splitting = 2;
   options.cryptomattes = {true, true};
+  options.report_bias = 0;  // a merged picture has no report in its metadata
   return options;
 }
 

@@ -120,7 +120,7 @@ TEST(Shutter, AMovingDiskCoversAPointForTheTimeThatItsChordTakes) {
 
 /// A sphere that is smooth, or has the normals of its faces; of the same triangles.
 Scene sphere(bool is_smooth) {
-  Scene scene = test::scene_of(test::smooth_sphere());
+  Scene scene = test::scene_of(test::smooth_sphere(8, 5));
   if (!is_smooth) std::fill(scene.meshes[0].normals.begin(), scene.meshes[0].normals.end(), V3f(0));
   Camera camera;
   camera.kind = Camera::Kind::orthographic;
@@ -157,12 +157,13 @@ TEST(Shutter, NormalsMayComeAndGoWhileItIsOpen) {
         for (std::size_t p = 0; p < film.find(channel)->pixels.size(); ++p) {
           const double a = double{smooth.find(channel)->pixels[p]};
           const double b = double{flat.find(in_flat)->pixels[p]};
-          // Half of the samples of each picture: the noise of 32 samples at an edge.
-          EXPECT_NEAR(film.find(channel)->pixels[p], 0.5 * (a + b), 0.06) << channel << " " << p;
+          if (film.find("A")->pixels[p] < 1) continue;
+          // Half of the samples of each picture: 32 of a pixel, in which facets may meet.
+          EXPECT_NEAR(film.find(channel)->pixels[p], 0.5 * (a + b), 0.04) << channel << " " << p;
           difference = std::max(difference, std::fabs(a - b));
         }
       }
-      EXPECT_GT(difference, 0.1) << "of smooth and flat";
+      EXPECT_GT(difference, 0.2) << "of smooth and flat";
     }
   }
 }

@@ -126,6 +126,20 @@ TEST(LightKeys, NaNAndNumbersThatNoFloatHoldsAreRefused) {
   }
 }
 
+// Two keys that are not in the table above: the type itself, and the image of a dome.
+TEST(LightKeys, TypesAndImagesAreTextThatMeansSomething) {
+  for (const char* wrong : {"3", "null", "[]", "true"}) {
+    EXPECT_EQ(complaint_about(std::string("\"type\": ") + wrong), "light 1: type must be a string");
+    EXPECT_EQ(complaint_about(std::string("\"type\": \"dome\", \"image\": ") + wrong),
+              "light 1: image must be a string");
+  }
+  EXPECT_EQ(complaint_about("\"radiance\": 1"), "light 1: type is missing");
+  EXPECT_NE(complaint_about("\"type\": \"NaN\"").find("type \"NaN\" is not rect, disk"),
+            std::string::npos);
+  EXPECT_THROW(load_one("\"type\": \"dome\", \"image\": \"no such file.exr\""), Error);
+  EXPECT_THROW(load_one("\"type\": \"dome\", \"image\": \"\""), Error);
+}
+
 TEST(LightKeys, AKeyOfAnotherTypeIsRefusedWithTheKnownOnes) {
   for (const Type& type : every_type()) {
     SCOPED_TRACE(type.name);

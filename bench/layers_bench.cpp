@@ -1,0 +1,109 @@
+// What optional layers cost: pictures at the defaults of `dapple render`, with a layer and without,
+// in turn. In: a scene's recipe. Out: processor seconds of all threads, writing the EXR file
+// included, and their ratio to those without the layer.
+#include <unistd.h>
+
+#include <ctime>
+#include <filesystem>
+#include <functional>
+
+#include "benchmarks.hpp"
+#include "dapple/film.hpp"
+#include "dapple/render.hpp"
+
+namespace dapple::bench {
+namespace {
+
+constexpr int kRepetitions = 7;
+
+struct Layer {
+  std::string name;
+  std::function<void(RenderOptions&)> add;
+  std::function<void(RenderOptions&)> without = [](RenderOptions&) {};
+};
+
+const std::vector<Layer>& layers() {
+  static const std::vector<Layer> all = {
+      {"albedo", [](RenderOptions&) {}, [](RenderOptions& o) { o.albedo = false; }},
+      {"object", [](RenderOptions& o) { o.cryptomattes.objects = true; }},
+      {"mattes",
+       [](RenderOptions& o) {
+         o.cryptomattes = {true, true};
+       }},
+      {"motion", [](RenderOptions& o) { o.motion = true; }},
+      {"back", [](RenderOptions& o) { o.back = true; }},
+      {"deep", [](RenderOptions& o) { o.deep = true; }},
+  };
+  return all;
+}
+
+double processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Renders and writes pictures of one scene. The first builds the BVH and compiles kernels.
+class LayerPictures {
+ public:
+  explicit LayerPictures(const SceneRecipe& recipe) : scene_(load(recipe)) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~LayerPictures() { std::filesystem::remove_all(folder_); }
+  LayerPictures(const LayerPictures&) = delete;
+  LayerPictures& operator=(const LayerPictures&) = delete;
+
+  /// Processor seconds of one picture.
+  double take(const std::function<void(RenderOptions&)>& change) {
+    RenderOptions options;
+    change(options);
+    const double start = processor_seconds();
+    const auto scene_at = [&](int) { return scene_; };
+    const Film film = renderer_.render_shutter(scene_at, 1, options, {}, scene_at).film;
+    write_exr(film, (folder_ / "picture.exr").string());
+    if (options.deep) write_deep_exr(film, (folder_ / "deep.exr").string());
+    return processor_seconds() - start;
+  }
+
+ private:
+  static Scene load(const SceneRecipe& recipe) {
+    SceneOptions options;
+    options.colors = true;
+    Scene scene = load_scene(recipe.spec, options);
+    for (const auto& [material, value] : recipe.opacity) override_opacity(scene, material, value);
+    return scene;
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("dapple_bench_" + std::to_string(getpid()));
+  Scene scene_;
+  Renderer renderer_;
+};
+
+void measure_layer(benchmark::State& state, LayerPictures& pictures, const Layer& layer) {
+  const auto with = [&](RenderOptions& options) { layer.add(options); };
+  for (auto _ : state) {
+    const double before = pictures.take(layer.without);
+    const double seconds = pictures.take(with);
+    state.SetIterationTime(seconds);
+    state.counters["ratio"] = seconds / before;
+  }
+}
+
+}  // namespace
+
+void register_layers(const SceneRecipe& recipe) {
+  const auto pictures = std::make_shared<std::unique_ptr<LayerPictures>>();
+  for (const Layer& layer : layers()) {
+    register_measured("Layers/" + layer.name + "/" + recipe.name, kRepetitions,
+                      [&layer, pictures, recipe](benchmark::State& state) {
+                        if (!*pictures) {
+                          *pictures = std::make_unique<LayerPictures>(recipe);
+                          (*pictures)->take(layer.without);
+                        }
+                        measure_layer(state, **pictures, layer);
+                      });
+  }
+}
+
+}  // namespace dapple::bench

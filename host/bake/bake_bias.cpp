@@ -1,0 +1,101 @@
+#include "bake/bake_bias.hpp"
+
+#include <algorithm>
+
+namespace dapple {
+namespace {
+
+/// Consecutive samples that are chosen together and are a unit.
+constexpr std::size_t kBlock = 64;
+
+/// Units of a tile.
+constexpr std::uint32_t kUnitsOfTile = 4;
+
+/// Comparing may take this part of the time of tracing; beyond it fewer samples are compared.
+constexpr double kMostOfTime = 0.04;
+
+/// An even share of all numbers: multiples of the golden ratio, modulo 2^32.
+bool is_chosen(std::uint32_t block, double share) {
+  return (block + 1) * 2654435769u < static_cast<std::uint64_t>(share * 4294967296.0);
+}
+
+}  // namespace
+
+std::vector<BiasUnit> differences(std::span<const SurfaceSample> samples,
+                                  const TracedSamples& prefiltered, const TracedSamples& exact) {
+  std::vector<BiasUnit> units((samples.size() + kBlock - 1) / kBlock);
+  const auto add = [](BiasUnit& unit, const SideValue& a, const SideValue& b) {
+    unit.count += 1;
+    unit.difference += double{a.scalar} - double{b.scalar};
+  };
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    BiasUnit& unit = units[i / kBlock];
+    if (samples[i].front) add(unit, prefiltered.front[i], exact.front[i]);
+    if (samples[i].back) add(unit, prefiltered.back[i], exact.back[i]);
+  }
+  for (std::uint32_t u = 0; u < units.size(); ++u) units[u].tile = u / kUnitsOfTile;
+  return units;
+}
+
+TraceSamples BakeBias::with(BiasTracing tracing) {
+  if (!(share_ > 0)) return tracing.values;
+  return [this, tracing = std::move(tracing)](
+             std::span<const SurfaceSample> samples, std::span<const std::uint32_t> placement,
+             const Placements& placements, int rays, std::uint32_t hash) {
+    const Stopwatch watch;
+    TracedSamples found = tracing.values(samples, placement, placements, rays, hash);
+    seconds_ += watch.seconds();
+    Quantity& quantity = quantities_[tracing.name];
+    quantity.largest = std::max(quantity.largest, found.largest);
+    quantity.samples += static_cast<double>(samples.size());
+    samples_ += static_cast<double>(samples.size());
+    compare(tracing, samples, placement, placements, rays, hash);
+    return found;
+  };
+}
+
+void BakeBias::compare(const BiasTracing& tracing, std::span<const SurfaceSample> samples,
+                       std::span<const std::uint32_t> placement, const Placements& placements,
+                       int rays, std::uint32_t hash) {
+  std::vector<SurfaceSample> chosen;
+  std::vector<std::uint32_t> places;
+  for (std::size_t begin = 0; begin < samples.size(); begin += kBlock) {
+    if (!is_chosen(next_block_++, share_)) continue;
+    const std::size_t end = std::min(begin + kBlock, samples.size());
+    chosen.insert(chosen.end(), samples.begin() + begin, samples.begin() + end);
+    places.insert(places.end(), placement.begin() + begin, placement.begin() + end);
+  }
+  if (chosen.empty()) return;
+  const Stopwatch watch;
+  Quantity& quantity = quantities_[tracing.name];
+  std::vector<BiasUnit> units =
+      differences(chosen, tracing.prefiltered(chosen, places, placements, rays, hash),
+                  tracing.exact(chosen, places, placements, rays, hash));
+  const std::uint32_t first = quantity.units.empty() ? 0 : (quantity.units.back().tile + 1);
+  for (BiasUnit& unit : units) unit.tile += first;
+  quantity.units.insert(quantity.units.end(), units.begin(), units.end());
+  quantity.compared += static_cast<double>(chosen.size());
+  compared_samples_ += static_cast<double>(chosen.size());
+  compared_seconds_ += watch.seconds();
+  limit_time();
+}
+
+// By the clock: what is baked does not depend on it.
+void BakeBias::limit_time() {
+  if (!(samples_ > 0 && compared_seconds_ > 0)) return;
+  const double times = compared_seconds_ / compared_samples_ * samples_ / seconds_;
+  share_ = std::min(most_, kMostOfTime / times);
+}
+
+std::map<std::string, Bias> BakeBias::report() const {
+  std::map<std::string, Bias> bias;
+  for (const auto& [name, quantity] : quantities_) {
+    if (quantity.units.empty()) continue;
+    std::vector<BiasUnit> units = quantity.units;
+    for (BiasUnit& unit : units) unit.difference /= quantity.largest > 0 ? quantity.largest : 1;
+    bias[name] = estimate_bias(std::move(units), quantity.compared / quantity.samples);
+  }
+  return bias;
+}
+
+}  // namespace dapple

@@ -1,0 +1,60 @@
+// The bias of a bake: a part of its samples is traced exactly, too. In: functions that trace
+// samples. Out: a function that returns the prefiltered values unchanged, and the bias of each
+// quantity.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bake/sample_tracer.hpp"
+#include "dapple/bias.hpp"
+#include "render/stopwatch.hpp"
+#include "sampling/bias_estimate.hpp"
+
+namespace dapple {
+
+/// How samples of a quantity, "ao" or "light", are traced.
+struct BiasTracing {
+  std::string name;
+  TraceSamples values;              ///< as they are baked
+  TraceSamples prefiltered, exact;  ///< to be compared
+};
+
+/// Functions must be called one after the other.
+class BakeBias {
+ public:
+  /// `share`: of the samples, [0,1].
+  explicit BakeBias(double share) : most_(share), share_(share) {}
+  BakeBias(const BakeBias&) = delete;
+  BakeBias& operator=(const BakeBias&) = delete;
+
+  /// tracing.values, which also compares. The object must outlive the function.
+  TraceSamples with(BiasTracing tracing);
+  /// By quantity; empty if nothing was compared.
+  [[nodiscard]] std::map<std::string, Bias> report() const;
+
+ private:
+  struct Quantity {
+    std::vector<BiasUnit> units;
+    float largest = 0;  ///< without occlusion
+    double samples = 0, compared = 0;
+  };
+
+  void compare(const BiasTracing& tracing, std::span<const SurfaceSample> samples,
+               std::span<const std::uint32_t> placement, const Placements& placements, int rays,
+               std::uint32_t hash);
+  void limit_time();
+
+  double most_, share_;  ///< of the samples: at most, and of the next ones
+  std::uint32_t next_block_ = 0;
+  double seconds_ = 0, compared_seconds_ = 0;
+  double samples_ = 0, compared_samples_ = 0;
+  std::map<std::string, Quantity> quantities_;
+};
+
+/// Differences between prefiltered and exact values of samples, by blocks of consecutive ones.
+std::vector<BiasUnit> differences(std::span<const SurfaceSample> samples,
+                                  const TracedSamples& prefiltered, const TracedSamples& exact);
+
+}  // namespace dapple

@@ -1,0 +1,137 @@
+#include "points/bias_sample.hpp"
+
+#include "render/point_occlusion.hpp"
+#include "sampling/bias_estimate.hpp"
+
+namespace dapple {
+namespace {
+
+using Imath::V3d;
+
+/// Values of points, each from one set, that are also found exactly.
+constexpr std::size_t kBiasSamples = 1024;
+
+/// Neighbouring points of the sample that are a tile.
+constexpr std::uint32_t kPointsOfTile = 16;
+
+}  // namespace
+
+OcclusionOptions rays_of_set(const PointOptions& options, int set) {
+  OcclusionOptions of_set;
+  of_set.rays = options.rays / kPointSets;
+  of_set.estimator = options.estimator;
+  of_set.footprint = options.footprint;
+  of_set.seed = options.seed * kPointSets + static_cast<std::uint32_t>(set);
+  return of_set;
+}
+
+V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& layer,
+           std::vector<V3f> PointIrradiance::*which, std::size_t i) {
+  V3d sum(0, 0, 0);
+  for (const std::size_t light : layer.lights) sum += V3d((found[light].*which)[i]);
+  return sum;
+}
+
+BiasSample::BiasSample(const SceneOfPoints& on, std::span<const V3f> points,
+                       std::span<const V3f> normals, const PointOptions& options)
+    : on_(on), options_(options) {
+  if (points.empty() || options.estimator == Estimator::exact || !(options.footprint > 0)) return;
+  const std::size_t step = (points.size() + kBiasSamples - 1) / kBiasSamples;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    points_.push_back(points[i]);
+    normals_.push_back(normals[i]);
+  }
+  const std::size_t sets = (kBiasSamples + points_.size() - 1) / points_.size();
+  sets_ = static_cast<int>(std::min<std::size_t>(kPointSets, sets));
+  share_ = static_cast<double>(points_.size()) * sets_ /
+           (static_cast<double>(points.size()) * kPointSets);
+}
+
+std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& names,
+                                                const Find& find) {
+  std::vector<Values> exact(names.size()), prefiltered(names.size());
+  for (int set = 0; set < sets_; ++set) {
+    for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+      OcclusionOptions options = rays_of_set(options_, set);
+      options.estimator = estimator;
+      const std::vector<Values> found = find(options);
+      std::vector<Values>& all = estimator == Estimator::exact ? exact : prefiltered;
+      for (std::size_t k = 0; k < names.size(); ++k) {
+        all[k].values.insert(all[k].values.end(), found[k].values.begin(), found[k].values.end());
+        all[k].points.insert(all[k].points.end(), found[k].points.begin(), found[k].points.end());
+      }
+    }
+  }
+  std::vector<BiasCorrection> corrections;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    corrections.emplace_back(exact[k].values, prefiltered[k].values);
+    const BiasCorrection& correction = corrections.back();
+    if (!correction.is_measured()) continue;
+    std::vector<BiasUnit> units(points_.size());
+    for (std::uint32_t i = 0; i < units.size(); ++i) units[i].tile = i / kPointsOfTile;
+    for (std::size_t v = 0; v < exact[k].values.size(); ++v) {
+      BiasUnit& unit = units[exact[k].points[v]];
+      unit.count += 1;
+      unit.difference += correction.corrected(prefiltered[k].values[v]) - exact[k].values[v];
+    }
+    Bias bias = estimate_bias(std::move(units), share_);
+    bias.mean = correction.mean_bias();
+    bias.error = correction.mean_error();
+    bias_[names[k]] = bias;
+  }
+  return corrections;
+}
+
+BiasCorrection BiasSample::of_occlusion(const std::string& name, const std::vector<V3f>& normals,
+                                        float distance) {
+  return compare({name}, [&](OcclusionOptions options) {
+    options.distance = distance;
+    const auto found = occlusion(on_.device, on_.uploaded, points_, normals, options);
+    std::vector<Values> of_one(1);
+    for (std::uint32_t i = 0; i < found.size(); ++i) {
+      of_one[0].values.push_back(double{found[i]});
+      of_one[0].points.push_back(i);
+    }
+    return of_one;
+  })[0];
+}
+
+BiasCorrection BiasSample::of_sky_view_factor() {
+  return of_occlusion("sky_view_factor", std::vector<V3f>(points_.size(), V3f(0, 1, 0)), 0);
+}
+
+std::vector<BiasCorrection> BiasSample::of_lights(const std::vector<LightLayer>& layers) {
+  std::vector<std::string> names;
+  for (const LightLayer& layer : layers) names.push_back(layer.name);
+  return compare(names, [&](const OcclusionOptions& of) {
+    const auto found = irradiance(on_.device, on_.uploaded, on_.scene.lights, points_, normals_,
+                                  {of.rays, of.estimator, of.footprint, of.seed});
+    const V3d one(1, 1, 1);
+    std::vector<Values> of_layers(layers.size());
+    for (std::size_t l = 0; l < layers.size(); ++l)
+      for (std::uint32_t i = 0; i < points_.size(); ++i) {
+        const double all = sum_of(found, layers[l], &PointIrradiance::unoccluded, i).dot(one);
+        if (!(all > 0)) continue;
+        of_layers[l].values.push_back(
+            sum_of(found, layers[l], &PointIrradiance::irradiance, i).dot(one) / all);
+        of_layers[l].points.push_back(i);
+      }
+    return of_layers;
+  });
+}
+
+std::vector<Bias> BiasSample::bias(float footprint) {
+  const float used = options_.footprint;
+  options_.footprint = footprint;
+  bias_.clear();
+  if (options_.ao) of_ao();
+  if (options_.sky_view_factor) of_sky_view_factor();
+  if (options_.lights && !on_.scene.lights.empty()) of_lights(light_layers(on_.scene.lights));
+  std::vector<Bias> layers;
+  for (const auto& [name, bias] : bias_) layers.push_back(bias);
+  bias_.clear();
+  options_.footprint = used;
+  return layers;
+}
+
+}  // namespace dapple

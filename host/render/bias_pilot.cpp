@@ -1,0 +1,187 @@
+#include "render/bias_pilot.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "camera/camera_splitting.hpp"
+#include "passes/camera_pass.hpp"
+#include "passes/occlusion_pass.hpp"
+#include "passes/shading_pass.hpp"
+
+namespace dapple {
+namespace {
+
+constexpr std::size_t kUnitPixels = std::size_t{kBiasUnit} * kBiasUnit;
+
+/// Units whose camera rays are traced at once.
+constexpr std::size_t kUnitsAtOnce = 512;
+
+/// Units in an order whose beginnings are evenly spread: by the height of a lattice of two
+/// dimensions above each (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences",
+/// 2018).
+std::vector<std::uint32_t> spread_units(const UnitGrid& grid) {
+  constexpr std::uint32_t kColumn = 3242174889u, kRow = 2447445414u;
+  const auto height = [&](std::uint32_t unit) {
+    return grid.column(unit) * kColumn + grid.row(unit) * kRow;
+  };
+  std::vector<std::uint32_t> order(grid.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return height(a) < height(b); });
+  return order;
+}
+
+}  // namespace
+
+BiasPilot::BiasPilot(DeviceContext& context, const DeviceBuffers& scene, const View& view,
+                     const RenderOptions& options, const FilmLayout& layout,
+                     const CameraParams& camera)
+    : context_(context),
+      scene_(scene),
+      options_(options),
+      layout_(layout),
+      picture_rays_(context, scene, options, layout),
+      camera_(camera),
+      grid_(view),
+      order_(spread_units(grid_)),
+      units_at_once_(std::min(kUnitsAtOnce, order_.size())),
+      rounds_(static_cast<std::size_t>(options.spp) / splitting_factor(options)),
+      units_(grid_.empty_units()),
+      layers_((options.ao ? 1 : 0) + layout.lights.size()) {
+  camera_.keep_hits = layout.normals ? 1u : 0u;
+  const std::size_t samples = units_at_once_ * kUnitPixels * splitting_factor(options);
+  const int rays =
+      std::max(options.ao ? options.ao_rays : 1, layout.lights.empty() ? 1 : options.light_rays);
+  queues_ = make_queues(context, samples, static_cast<std::size_t>(rays));
+  queues_.work = context.allocate(samples * sizeof(PixelWork));
+  traced_ = make_queues(context, kQueryRays, 1);
+}
+
+std::size_t BiasPilot::rays() const {
+  std::size_t least = layers_.front().rays.size();
+  for (const Layer& layer : layers_) least = std::min(least, layer.rays.size());
+  return least;
+}
+
+double BiasPilot::seen() const {
+  if (options_.target_error > 0) return 1;
+  return tried_ > 0 ? seen_ / tried_ : 0;
+}
+
+void BiasPilot::grow(std::size_t rays) {
+  while (this->rays() < rays && !is_complete()) {
+    const std::size_t least =
+        std::min(layers_.front().params.rays_per_point, layers_.back().params.rays_per_point);
+    const std::size_t missing =
+        (rays - this->rays()) / (kUnitPixels * std::max<std::size_t>(1, least));
+    take_units(std::clamp<std::size_t>(missing, 1, units_at_once_));
+  }
+}
+
+// Camera rays of the next units, one for each pixel, and their occlusion rays.
+void BiasPilot::take_units(std::size_t count) {
+  const std::uint32_t splitting = splitting_factor(options_);
+  std::vector<PixelWork> work;
+  std::vector<std::uint32_t> units;  // by entry of the work
+  for (; count > 0 && !is_complete(); --count, ++next_) {
+    const std::uint32_t unit = order_[next_ % order_.size()];
+    const auto first = static_cast<std::uint32_t>(next_ / order_.size()) * splitting;
+    for (const std::uint32_t pixel : grid_.pixels(unit)) {
+      work.push_back({pixel, first});
+      units.push_back(unit);
+    }
+  }
+  context_.write(queues_.work, work.data(), work.size() * sizeof(PixelWork));
+  camera_.slice = {0, static_cast<uint>(work.size()), 0, splitting};
+  camera_pass(context_, scene_, queues_, camera_);
+  if (layout_.normals) move_points_pass(context_, scene_, queues_, camera_.slice);
+  const std::uint32_t hits = compact_pass(context_, queues_, work.size() * splitting);
+  tried_ += static_cast<double>(work.size());
+  if (hits == 0) return;
+  const std::vector<std::uint32_t> of_hits = count_hits(units);
+  std::size_t layer = 0;
+  if (options_.ao) keep(layers_[layer++], of_hits, picture_rays_.make_ao(queues_, hits));
+  for (std::uint32_t light = 0; light < layout_.lights.size(); ++light)
+    keep(layers_[layer++], of_hits, picture_rays_.make_light(queues_, light, hits));
+}
+
+// The unit of each sample that hit; counts pixels that show geometry. `units`: by camera ray.
+std::vector<std::uint32_t> BiasPilot::count_hits(const std::vector<std::uint32_t>& units) {
+  const std::uint32_t splitting = splitting_factor(options_);
+  const HostView view = context_.view(queues_.sample_hits);
+  const std::span<const SampleHits> records = view.values<SampleHits>();
+  std::vector<std::uint32_t> of_hits;
+  for (std::uint32_t entry = 0; entry < units.size(); ++entry) {
+    const std::size_t before = of_hits.size();
+    for (std::uint32_t s = entry * splitting; s < (entry + 1) * splitting; ++s)
+      if (records[s / DAPPLE_HIT_BITS].hits >> s % DAPPLE_HIT_BITS & 1u)
+        of_hits.push_back(units[entry]);
+    if (of_hits.size() == before) continue;
+    units_[units[entry]].count += 1;
+    seen_ += 1;
+  }
+  return of_hits;
+}
+
+// Keeps the rays of the queue and their exact transmittances.
+void BiasPilot::keep(Layer& layer, const std::vector<std::uint32_t>& units,
+                     const OcclusionParams& params) {
+  const std::size_t before = layer.rays.size();
+  layer.params = params;
+  layer.units.insert(layer.units.end(), units.begin(), units.end());
+  layer.rays.resize(before + params.ray_count);
+  context_.read(queues_.rays, &layer.rays[before], params.ray_count * sizeof(Ray));
+  layer.exact.resize(layer.rays.size());
+  trace(layer, Estimator::exact, 0, before, [&](std::size_t first, std::span<const Occlusion> of) {
+    for (std::size_t i = 0; i < of.size(); ++i) layer.exact[first + i] = of[i].transmittance;
+  });
+}
+
+template <class Visit>
+void BiasPilot::trace(const Layer& layer, Estimator estimator, float footprint, std::size_t begin,
+                      Visit visit) {
+  const std::size_t slice = kQueryRays / layer.params.rays_per_point * layer.params.rays_per_point;
+  std::vector<Occlusion> found;
+  for (; begin < layer.rays.size(); begin += slice) {
+    OcclusionParams params = layer.params;
+    params.footprint = footprint;
+    params.ray_count = static_cast<uint>(std::min(slice, layer.rays.size() - begin));
+    context_.write(traced_.rays, &layer.rays[begin], params.ray_count * sizeof(Ray));
+    occlusion_pass(context_, traced_, scene_, "bias pilot", estimator, params, RayOrder::by_pixel);
+    found.resize(params.ray_count);
+    context_.read(traced_.occlusions, found.data(), found.size() * sizeof(Occlusion));
+    visit(begin, std::span<const Occlusion>(found));
+  }
+}
+
+std::vector<Bias> BiasPilot::bias(float footprint) {
+  std::vector<Bias> out;
+  for (std::size_t i = 0; i < layers_.size(); ++i)
+    out.push_back(bias_of(layers_[i], !options_.ao || i > 0, footprint));
+  return out;
+}
+
+Bias BiasPilot::bias_of(const Layer& layer, bool is_light, float footprint) {
+  std::vector<BiasUnit> units = units_;
+  std::vector<double> weights(units.size());  // without occlusion
+  const std::size_t rays = std::max(1u, layer.params.rays_per_point);
+  const double factor = 1.0 / static_cast<double>(rays * splitting_factor(options_));
+  trace(layer, Estimator::prefiltered, footprint, 0,
+        [&](std::size_t first, std::span<const Occlusion> found) {
+          for (std::size_t i = 0; i < found.size(); ++i) {
+            const std::uint32_t unit = layer.units[(first + i) / rays];
+            const double weight = factor * double{layer.rays[first + i].weight};
+            weights[unit] += weight;
+            units[unit].difference +=
+                weight * (double{found[i].transmittance} - double{layer.exact[first + i]});
+          }
+        });
+  double largest = is_light ? 0 : 1;
+  for (std::size_t i = 0; i < units.size() && is_light; ++i)
+    if (units[i].count > 0) largest = std::max(largest, weights[i] / units[i].count);
+  for (BiasUnit& unit : units) unit.difference /= largest > 0 ? largest : 1;
+  return estimate_bias(std::move(units), 1);
+}
+
+}  // namespace dapple

@@ -1,0 +1,67 @@
+// A pilot that measures the bias of a picture before it is sampled. In: scene and options. Out: the
+// bias of each layer for any footprint scale, by the same exact rays. Nothing is added to a film.
+#pragma once
+
+#include <vector>
+
+#include "dapple/bias.hpp"
+#include "passes/queues.hpp"
+#include "render/picture_rays.hpp"
+#include "render/unit_grid.hpp"
+#include "sampling/footprint_choice.hpp"
+
+namespace dapple {
+
+/// The arguments of the constructor must outlive the object.
+class BiasPilot : public BiasSource {
+ public:
+  /// `camera`: parameters of the picture's camera pass.
+  BiasPilot(DeviceContext& context, const DeviceBuffers& scene, const View& view,
+            const RenderOptions& options, const FilmLayout& layout, const CameraParams& camera);
+
+  /// Takes camera rays of more units, well spread over the picture, at most options.spp samples of
+  /// a pixel, and traces their rays exactly.
+  void grow(std::size_t rays) override;
+  [[nodiscard]] bool is_complete() const override { return next_ >= order_.size() * rounds_; }
+  /// Pixels that show geometry; for --target-error only these count.
+  [[nodiscard]] double seen() const override;
+  /// Layers are AO and the lights.
+  std::vector<Bias> bias(float footprint) override;
+
+ private:
+  /// The rays of a layer, all samples in turn.
+  struct Layer {
+    OcclusionParams params{};
+    std::vector<Ray> rays;
+    std::vector<float> exact;          ///< transmittances
+    std::vector<std::uint32_t> units;  ///< by sample
+  };
+
+  [[nodiscard]] std::size_t rays() const;
+  void take_units(std::size_t count);
+  std::vector<std::uint32_t> count_hits(const std::vector<std::uint32_t>& units);
+  void keep(Layer& layer, const std::vector<std::uint32_t>& units, const OcclusionParams& params);
+  Bias bias_of(const Layer& layer, bool is_light, float footprint);
+  /// Calls visit(index of the first ray, transmittances) for consecutive rays of the layer.
+  template <class Visit>
+  void trace(const Layer& layer, Estimator estimator, float footprint, std::size_t begin,
+             Visit visit);
+
+  DeviceContext& context_;
+  const DeviceBuffers& scene_;
+  const RenderOptions& options_;
+  const FilmLayout& layout_;
+  PictureRays picture_rays_;
+  CameraParams camera_;
+  UnitGrid grid_;
+  std::vector<std::uint32_t> order_;  ///< units, those that were not chosen yet as spread as others
+  std::size_t units_at_once_;
+  std::size_t next_ = 0;              ///< of order_, which is taken rounds_ times
+  std::size_t rounds_;                ///< camera rays of a pixel
+  std::vector<BiasUnit> units_;       ///< with counts of pixels that show geometry
+  double seen_ = 0, tried_ = 0;
+  std::vector<Layer> layers_;
+  Queues queues_, traced_;
+};
+
+}  // namespace dapple

@@ -1,0 +1,52 @@
+#include "render/picture_rays.hpp"
+
+#include <limits>
+
+#include "passes/light_pass.hpp"
+#include "passes/occlusion_pass.hpp"
+
+namespace dapple {
+
+OcclusionParams PictureRays::make_ao(const Queues& queues, std::uint32_t hits) const {
+  AoParams ao{};
+  ao.point_count = hits;
+  ao.rays = static_cast<uint>(options_.ao_rays);
+  ao.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
+                             static_cast<float>(footprint_ao_rays(options_)));
+  ao.t_max =
+      options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
+  ao.seed = options_.seed;
+  ao.shaded = shaded_;
+  ao_ray_pass(context_, queues, ao);
+  OcclusionParams params = occlusion_params(hits, options_.ao_rays);
+  if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
+    params.inverse_distance = 1.0f / options_.ao_distance;
+    params.falloff = options_.ao_falloff;
+  }
+  return params;
+}
+
+OcclusionParams PictureRays::make_light(const Queues& queues, std::uint32_t light,
+                                        std::uint32_t hits) const {
+  LightParams params{};
+  params.point_count = hits;
+  params.rays = static_cast<uint>(options_.light_rays);
+  params.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
+                                 static_cast<float>(options_.light_rays));
+  params.light = light;
+  params.seed = options_.seed;
+  params.shaded = shaded_;
+  light_ray_pass(context_, scene_, queues, params);
+  return occlusion_params(hits, options_.light_rays);
+}
+
+OcclusionParams PictureRays::occlusion_params(std::uint32_t points, int rays) const {
+  OcclusionParams params{};
+  params.scene = scene_.params;
+  params.rays_per_point = static_cast<uint>(rays);
+  params.ray_count = points * params.rays_per_point;
+  params.footprint = options_.footprint;
+  return params;
+}
+
+}  // namespace dapple

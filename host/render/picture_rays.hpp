@@ -1,0 +1,34 @@
+// The occlusion rays of a picture: makes those of a slice's surface points. In: queues with points
+// and the list of hits. Out: queues with rays, and the parameters of the pass that traces them.
+#pragma once
+
+#include "dapple/options.hpp"
+#include "device/upload/scene_upload.hpp"
+#include "film/film_sums.hpp"
+#include "passes/queues.hpp"
+
+namespace dapple {
+
+/// The arguments of the constructor must outlive the object.
+class PictureRays {
+ public:
+  /// `options`: by_sample().
+  PictureRays(DeviceContext& context, const DeviceBuffers& scene, const RenderOptions& options,
+              const FilmLayout& layout)
+      : context_(context), scene_(scene), options_(options), shaded_(layout.normals ? 1u : 0u) {}
+
+  /// AO rays of `hits` points.
+  OcclusionParams make_ao(const Queues& queues, std::uint32_t hits) const;
+  /// Rays to one light.
+  OcclusionParams make_light(const Queues& queues, std::uint32_t light, std::uint32_t hits) const;
+
+ private:
+  [[nodiscard]] OcclusionParams occlusion_params(std::uint32_t points, int rays) const;
+
+  DeviceContext& context_;
+  const DeviceBuffers& scene_;
+  const RenderOptions& options_;
+  uint shaded_;
+};
+
+}  // namespace dapple

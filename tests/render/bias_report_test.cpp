@@ -1,0 +1,246 @@
+// The bias that a render reports of itself: it changes no bit of the picture, is what pictures of
+// exact and prefiltered rays differ by, and chooses footprints.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "camera/view.hpp"
+#include "dapple/error.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+RenderOptions small_picture() {
+  RenderOptions options;
+  options.width = 96;
+  options.height = 80;
+  options.spp = 8;
+  return options;
+}
+
+Scene tree() { return make_procedural("scene:tree?leaves=3000"); }
+
+Scene lit_tree() {
+  Scene scene = tree();
+  std::vector<std::string> notes;
+  scene.lights.push_back(key_light(scene, choose_view(scene, small_picture(), notes).camera));
+  return scene;
+}
+
+RenderOptions with_share(RenderOptions options, float share) {
+  options.report_bias = share;
+  return options;
+}
+
+void expect_same_planes(const Film& a, const Film& b) {
+  ASSERT_EQ(a.planes.size(), b.planes.size());
+  for (const Plane& plane : a.planes) EXPECT_EQ(b.find(plane.channel)->pixels, plane.pixels);
+}
+
+/// The mean over pixels that show geometry of how much a channel differs.
+double mean_difference(const Film& a, const Film& b, const std::string& channel) {
+  const std::vector<float>&seen = a.find("A")->pixels, &left = a.find(channel)->pixels,
+        &right = b.find(channel)->pixels;
+  double sum = 0, count = 0;
+  for (std::size_t p = 0; p < seen.size(); ++p) {
+    if (!(seen[p] > 0)) continue;
+    sum += double{left[p]} - double{right[p]};
+    count += 1;
+  }
+  return sum / count;
+}
+
+Film exact_picture(const Scene& scene, RenderOptions options) {
+  options.estimator = Estimator::exact;
+  return render(scene, options).film;
+}
+
+TEST(BiasReport, NoShareOfRaysChangesABitOfThePicture) {
+  const Scene scene = lit_tree();
+  const RenderResult none = render(scene, with_share(small_picture(), 0));
+  EXPECT_TRUE(none.statistics.bias.empty());
+  for (const float share : {0.02f, 0.1f, 1.0f}) {
+    const RenderResult some = render(scene, with_share(small_picture(), share));
+    expect_same_planes(none.film, some.film);
+    EXPECT_EQ(some.statistics.bias.size(), 2u);
+  }
+}
+
+TEST(BiasReport, TargetsDoNotDependOnTheShare) {
+  RenderOptions options = small_picture();
+  options.target_rmse = 0.03f;
+  const RenderResult none = render(tree(), with_share(options, 0));
+  const RenderResult some = render(tree(), with_share(options, 0.1f));
+  expect_same_planes(none.film, some.film);
+  EXPECT_TRUE(none.statistics.rmse_with_bias.empty());
+  EXPECT_GE(some.statistics.rmse_with_bias.at("ao"), some.statistics.rmse.at("ao"));
+}
+
+// By all rays it is the difference of the pictures. No rays are left out, because few leaves cost
+// exact rays little more.
+TEST(BiasReport, OfAllRaysItIsTheDifferenceFromTheExactPicture) {
+  const Scene scene = lit_tree();
+  RenderOptions options = with_share(small_picture(), 1);
+  options.back = true;
+  for (const bool cropped : {false, true}) {
+    if (cropped) options.crop = PixelRect{30, 9, 66, 70};
+    const RenderResult result = render(scene, options);
+    const Film exact = exact_picture(scene, options);
+    const auto& bias = result.statistics.bias;
+    ASSERT_EQ(bias.size(), 4u);
+    EXPECT_NEAR(bias.at("ao").share, 1, 1e-6);
+    EXPECT_NEAR(bias.at("ao").mean, mean_difference(result.film, exact, "ao.R"), 2e-6);
+    EXPECT_NEAR(bias.at("ao.back").mean, mean_difference(result.film, exact, "ao.back.R"), 2e-6);
+    // Of a light it is relative to the largest unoccluded irradiance; ambient is a tenth of that of
+    // the channel in which it is largest, of the noisiest pixel. Here that is a tenth more.
+    const double largest = result.statistics.ambient * 10 * scene_test::kPi;
+    const V3f radiance = scene.lights[0].radiance;
+    const double strongest = std::max({radiance.x, radiance.y, radiance.z});
+    const double difference = mean_difference(result.film, exact, "light.key.R") /
+                              double{radiance.x} * strongest / largest;
+    EXPECT_NEAR(bias.at("light.key").mean, difference, 0.15 * std::fabs(difference) + 1e-6);
+    EXPECT_NE(difference, 0);
+  }
+}
+
+TEST(BiasReport, FewRaysTellTheSameWithinTheError) {
+  const Scene scene = tree();
+  RenderOptions options = small_picture();
+  options.light = false;
+  options.footprint = 32;  // for a large bias
+  double outside = 0;
+  constexpr int kSeeds = 8;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    options.seed = seed;
+    const Bias all = render(scene, with_share(options, 1)).statistics.bias.at("ao");
+    const Bias few = render(scene, with_share(options, 0.1f)).statistics.bias.at("ao");
+    EXPECT_LT(few.error, 0.02);
+    EXPECT_GT(few.error, 1.5 * all.error);
+    outside += std::fabs(few.mean - all.mean) > 2 * few.error ? 1 : 0;
+  }
+  EXPECT_LE(outside, 2);  // one in twenty is expected
+}
+
+TEST(BiasReport, ExactPicturesHaveNone) {
+  RenderOptions options = small_picture();
+  options.footprint = 0;
+  EXPECT_TRUE(render(tree(), options).statistics.bias.empty());
+  options = small_picture();
+  options.estimator = Estimator::exact;
+  EXPECT_TRUE(render(tree(), options).statistics.bias.empty());
+}
+
+TEST(BiasReport, TheMetadataHaveTheFiguresOfEachLayer) {
+  const RenderResult result = render(lit_tree(), small_picture());
+  int found = 0;
+  for (const auto& [name, value] : result.film.metadata.settings) {
+    if (!name.starts_with("bias.")) continue;
+    ++found;
+    EXPECT_TRUE(name == "bias.ao" || name == "bias.light.key") << name;
+    EXPECT_NE(value.find(" +- "), std::string::npos) << value;
+    EXPECT_NE(value.find(", RMSE over tiles "), std::string::npos) << value;
+  }
+  EXPECT_EQ(found, 2);
+}
+
+TEST(BiasReport, OfAShutterItIsThatOfAllMoments) {
+  const RenderOptions options = with_share(small_picture(), 1);
+  const auto still = [](int) { return tree(); };
+  const RenderResult plain = render(tree(), options);
+  const RenderResult open = Renderer().render_shutter(still, 4, options);
+  EXPECT_NEAR(open.statistics.bias.at("ao").mean, plain.statistics.bias.at("ao").mean, 1e-7);
+  EXPECT_NEAR(open.statistics.bias.at("ao").error, plain.statistics.bias.at("ao").error, 1e-6);
+}
+
+TEST(BiasReport, OfAResumedPictureItIsThatOfTheSamplesOfTheLastRun) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("dapple_bias_" + std::to_string(getpid()));
+  RenderControl first, second;
+  first.checkpoint = second.resume = path.string();
+  RenderOptions options = with_share(small_picture(), 1);
+  options.light = false;
+  const Film before = render(tree(), options, first).film;
+  RenderOptions more = options;
+  more.spp = 24;
+  const RenderResult resumed = render(tree(), more, second);
+  more.footprint_spp = options.spp;
+  const Film exact = exact_picture(tree(), more);
+  const Film exact_before = exact_picture(tree(), options);
+  // Two thirds of the samples are new.
+  const double of_all = mean_difference(resumed.film, exact, "ao.R");
+  const double of_new = 1.5 * of_all - 0.5 * mean_difference(before, exact_before, "ao.R");
+  EXPECT_NEAR(resumed.statistics.bias.at("ao").mean, of_new, 0.05 * std::fabs(of_new) + 2e-5);
+  // A run that has nothing to trace has nothing to report.
+  EXPECT_TRUE(render(tree(), options, second).statistics.bias.empty());
+  std::filesystem::remove(path);
+}
+
+TEST(MaxBias, ItTakesTheLargestFootprintWhoseBiasIsSmallEnough) {
+  RenderOptions options = small_picture();
+  options.light = false;
+  options.footprint = 32;
+  options.max_bias = 1;
+  EXPECT_EQ(render(tree(), options).statistics.footprint, 32);
+  options.max_bias = 1e-7f;
+  const RenderResult exact = render(tree(), options);
+  EXPECT_EQ(exact.statistics.footprint, 0);
+  EXPECT_TRUE(exact.statistics.bias.empty());
+  options.max_bias = 0.012f;
+  const RenderResult chosen = render(tree(), options);
+  RenderOptions given = options;
+  given.max_bias = 0;
+  const double unlimited =
+      std::fabs(render(tree(), with_share(given, 1)).statistics.bias.at("ao").mean);
+  ASSERT_GT(unlimited, 0.012) << "else the test shows nothing";
+  EXPECT_LT(chosen.statistics.footprint, 32);
+  EXPECT_GT(chosen.statistics.footprint, 0);
+  given.footprint = chosen.statistics.footprint;
+  const RenderResult same = render(tree(), with_share(given, 1));
+  expect_same_planes(chosen.film, same.film);
+  EXPECT_LE(std::fabs(same.statistics.bias.at("ao").mean), 0.012);
+}
+
+TEST(MaxBias, AResumedPictureKeepsTheFootprint) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("dapple_max_bias_" + std::to_string(getpid()));
+  RenderControl first, second;
+  first.checkpoint = second.resume = path.string();
+  RenderOptions options = small_picture();
+  options.light = false;
+  options.footprint = 32;
+  options.max_bias = 0.012f;
+  const float chosen = render(tree(), options, first).statistics.footprint;
+  options.spp = 16;
+  EXPECT_EQ(render(tree(), options, second).statistics.footprint, chosen);
+  options.max_bias = 0.5f;
+  EXPECT_THROW(render(tree(), options, second), Error);
+  std::filesystem::remove(path);
+}
+
+// With footprints of 64 the bias is far above half of the target.
+TEST(Targets, TheWholeErrorIsBelowTheTarget) {
+  RenderOptions options = small_picture();
+  options.light = false;
+  options.spp = 8;
+  options.footprint = 64;
+  options.footprint_spp = 8;
+  options.target_rmse = 0.02f;
+  const RenderResult result = render(tree(), options);
+  EXPECT_LT(result.statistics.footprint, 64);
+  RenderOptions many = small_picture();
+  many.light = false;
+  many.spp = 1024;
+  const Film truth = exact_picture(tree(), many);
+  const std::vector<float>&a = result.film.find("ao.R")->pixels, &b = truth.find("ao.R")->pixels;
+  double square = 0;
+  for (std::size_t p = 0; p < a.size(); ++p) square += std::pow(double{a[p]} - double{b[p]}, 2);
+  EXPECT_LT(std::sqrt(square / static_cast<double>(a.size())), 0.02);
+}
+
+}  // namespace
+}  // namespace dapple

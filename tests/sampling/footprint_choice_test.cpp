@@ -1,0 +1,64 @@
+// The choice of a footprint scale, from a made-up bias that grows with the scale.
+#include "sampling/footprint_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sampling/bias_estimate.hpp"
+
+namespace dapple {
+namespace {
+
+/// The bias is 0.001 times the scale; its error falls with the number of rays.
+class MadeUpBias : public BiasSource {
+ public:
+  explicit MadeUpBias(std::size_t most) : most_(most) {}
+  void grow(std::size_t rays) override { rays_ = std::max(rays_, std::min(rays, most_)); }
+  [[nodiscard]] bool is_complete() const override { return rays_ >= most_; }
+  std::vector<Bias> bias(float footprint) override {
+    const double mean = -0.001 * double{footprint};
+    const double error = 0.2 / std::sqrt(static_cast<double>(rays_));
+    return {{0, error, 0, 0, 1}, {mean, error, std::fabs(mean), std::fabs(mean), 1}};
+  }
+  [[nodiscard]] std::size_t rays() const { return rays_; }
+
+ private:
+  std::size_t most_, rays_ = 0;
+};
+
+TEST(FootprintChoice, TheLargestScaleWithLessBiasIsTaken) {
+  MadeUpBias source(1u << 20);
+  EXPECT_EQ(choose_footprint(source, {4, 0.01f, 0, true}).footprint, 4);
+  EXPECT_EQ(choose_footprint(source, {4, 0.0025f, 0, true}).footprint, 2);
+  EXPECT_EQ(choose_footprint(source, {4, 0.00145f, 0, true}).footprint, 1);
+  EXPECT_EQ(choose_footprint(source, {4, 0.00001f, 0, true}).footprint, 0);
+}
+
+TEST(FootprintChoice, WhatFewRaysCannotShowIsNotTaken) {
+  MadeUpBias source(1u << 12);  // an error of 0.003
+  EXPECT_EQ(choose_footprint(source, {4, 0.005f, 0, true}).footprint, 0);
+  EXPECT_EQ(choose_footprint(source, {4, 0.02f, 0, true}).footprint, 4);
+}
+
+TEST(FootprintChoice, ClearCasesNeedFewRays) {
+  MadeUpBias clear(1u << 20), close(1u << 20);
+  choose_footprint(clear, {4, 0.1f, 0, true});
+  choose_footprint(close, {4, 0.0045f, 0, true});
+  EXPECT_LT(clear.rays(), 40000u);
+  EXPECT_GT(close.rays(), 4 * clear.rays());
+}
+
+TEST(FootprintChoice, ATargetAllowsHalfOfItAndTellsHowMuchThereIs) {
+  MadeUpBias source(1u << 20);
+  const FootprintChoice choice = choose_footprint(source, {4, 0, 0.005f, true});
+  EXPECT_EQ(choice.footprint, 2);
+  EXPECT_NEAR(choice.bias_rmse, 0.002, 1e-9);
+  EXPECT_EQ(choose_footprint(source, {4, 0, 0.02f, true}).note, "");
+  const FootprintChoice fixed = choose_footprint(source, {4, 0, 0.005f, false});
+  EXPECT_EQ(fixed.footprint, 4);
+  EXPECT_NEAR(fixed.bias_rmse, 0.004, 1e-9);
+}
+
+}  // namespace
+}  // namespace dapple
