@@ -260,6 +260,8 @@ RenderOptions to_options(const RenderArguments& a) {
                     a.up.empty() ? V3f(0, 1, 0) : parse_vector("--up", a.up)};
   }
   parse_png_options(a.exposure, a.background);
+  if (!std::isfinite(a.dome_rotation))
+    throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
   check_motion(a);
