@@ -187,6 +187,9 @@ RenderOptions biased_picture() {
   return options;
 }
 
+/// Below the bias of the head of hair with the default footprint.
+constexpr float kLimit = 0.006f;
+
 Scene hair() { return make_procedural("scene:hair?strands=3000"); }
 
 TEST(MaxBias, ItTakesTheLargestFootprintWhoseBiasIsSmallEnough) {
@@ -197,19 +200,19 @@ TEST(MaxBias, ItTakesTheLargestFootprintWhoseBiasIsSmallEnough) {
   const RenderResult exact = render(hair(), options);
   EXPECT_EQ(exact.statistics.footprint, 0);
   EXPECT_TRUE(exact.statistics.bias.empty());
-  options.max_bias = 0.012f;
+  options.max_bias = kLimit;
   const RenderResult chosen = render(hair(), options);
   RenderOptions given = options;
   given.max_bias = 0;
   const double unlimited =
       std::fabs(render(hair(), with_share(given, 1)).statistics.bias.at("ao").mean);
-  ASSERT_GT(unlimited, 0.012) << "else the test shows nothing";
+  ASSERT_GT(unlimited, kLimit) << "else the test shows nothing";
   EXPECT_LT(chosen.statistics.footprint, options.footprint);
   EXPECT_GT(chosen.statistics.footprint, 0);
   given.footprint = chosen.statistics.footprint;
   const RenderResult same = render(hair(), with_share(given, 1));
   expect_same_planes(chosen.film, same.film);
-  EXPECT_LE(std::fabs(same.statistics.bias.at("ao").mean), 0.012);
+  EXPECT_LE(std::fabs(same.statistics.bias.at("ao").mean), kLimit);
 }
 
 TEST(MaxBias, AResumedPictureKeepsTheFootprint) {
@@ -218,7 +221,7 @@ TEST(MaxBias, AResumedPictureKeepsTheFootprint) {
   RenderControl first, second;
   first.checkpoint = second.resume = path.string();
   RenderOptions options = biased_picture();
-  options.max_bias = 0.012f;
+  options.max_bias = kLimit;
   const float chosen = render(hair(), options, first).statistics.footprint;
   options.spp = 16;
   EXPECT_EQ(render(hair(), options, second).statistics.footprint, chosen);
