@@ -61,7 +61,9 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
     return fmt::format("{} {}: expected {}", flag, match[2].str(), expected_values(app, flag));
   }
   if (name == "ArgumentMismatch") return mismatch_text(what);
-  if (name == "ExtrasError") return extras_text(app);
+  // Its name is that of the command.
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
+    return extras_text(app);
   if (name == "RequiredError" && std::regex_match(what, match, std::regex("(\\S+) is required")))
     return long_name(match[1]) + " is missing";
   if (name == "RequiresError" &&
