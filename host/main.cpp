@@ -38,6 +38,15 @@ void occupy_closed_descriptors() {
   }
 }
 
+int refuse(const CLI::App& app, const CLI::ParseError& error) {
+  const auto parsed = app.get_subcommands();
+  const std::string command = parsed.empty() ? "" : " " + parsed.front()->get_name();
+  say(fmt::format("{}; dapple{} --help lists the options", dapple::argument_error_text(app, error),
+                  command)
+          .c_str());
+  return kUsage;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
       "Ambient occlusion and soft shadows through foliage, hair and forests.\n\n"
@@ -81,13 +90,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    const auto parsed = app.get_subcommands();
-    const std::string command = parsed.empty() ? "" : " " + parsed.front()->get_name();
-    say(fmt::format("{}; dapple{} --help lists the options",
-                    dapple::argument_error_text(app, error), command)
-            .c_str());
-    return kUsage;
+    return error.get_exit_code() == 0 ? app.exit(error) : refuse(app, error);  // 0: --help
   }
   if (version) {
     dapple::print_version(verbose);

@@ -67,7 +67,8 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
   }
   if (name == "ArgumentMismatch") return mismatch_text(what);
   // Its name is that of the command.
-  if (dynamic_cast<const CLI::ExtrasError*>(&error)) return extras_text(app);
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
+    return extras_text(app);
   if (name == "RequiredError" && std::regex_match(what, match, std::regex("(\\S+) is required")))
     return long_name(match[1]) + " is missing";
   if (name == "RequiresError" &&

@@ -47,13 +47,10 @@ void add_point_options(CLI::App& app, Arguments& a) {
       "--at", a.at,
       "Points: .csv, .npy or .ply with columns x, y, z and optionally the normal nx, ny, nz. Give "
       "one of --at, --grid and --per-triangle");
-  CLI::Option* grid =
-      app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
-          ->delimiter(',')
-          ->expected(5);
-  app.add_option("--height", a.height, "Height of the grid, metres")
-      ->capture_default_str()
-      ->needs(grid);
+  app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
+      ->delimiter(',')
+      ->expected(5);
+  app.add_option("--height", a.height, "Height of the grid, metres")->capture_default_str();
   app.add_flag("--per-triangle", a.per_triangle,
                "Two points at the centre of each triangle of the scene: its front, then its back");
   PointOptions& o = a.options;
@@ -71,15 +68,14 @@ void add_point_options(CLI::App& app, Arguments& a) {
                  "CSV of suns: azimuth,elevation,irradiance (degrees from -Z to +X, W/m^2), or "
                  "x,y,z,irradiance with the direction towards the sun");
   app.add_flag("--per-sun", o.per_sun, "Write a column for each sun instead of their sum");
-  CLI::Option* sky = app.add_option(
+  app.add_option(
       "--sky", a.sky,
       "Also write the irradiance of a sky: uniform, overcast (CIE) or an image (.exr, .hdr)");
   app.add_option("--sky-irradiance", a.sky_irradiance,
                  "Irradiance of a uniform or overcast sky on an open horizontal plane, W/m^2; an "
                  "image keeps "
                  "its own")
-      ->capture_default_str()
-      ->needs(sky);
+      ->capture_default_str();
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--periodic", a.periodic,
                  "X,Z: the scene repeats itself with these periods, metres")
@@ -147,6 +143,10 @@ PointOptions options_of(const Arguments& a) {
     if (!(options.period_x > 0))
       throw Error(ErrorKind::usage, "--periodic needs two periods above 0");
   }
+  if (!std::isfinite(a.height)) throw Error(ErrorKind::usage, "--height must be a finite number");
+  if (!(a.sky_irradiance >= 0 && a.sky_irradiance <= 1e30f))
+    throw Error(ErrorKind::usage, fmt::format("--sky-irradiance is {}; it must be from 0 to 1e+30",
+                                              a.sky_irradiance));
   validate(options);
   return options;
 }

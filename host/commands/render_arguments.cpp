@@ -99,14 +99,13 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
       "Distance along the view direction that is sharp, metres; default: the camera's own, "
       "--look-at, or the middle of the scene. Needs --aperture or a camera with a lens");
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's own");
-  CLI::Option& dome = *app.add_option(
+  app.add_option(
       "--dome", a.dome,
       "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
       "around, in addition to the other lights");
   app.add_option("--dome-rotation", a.dome_rotation,
                  "Rotation of the dome about +Y, degrees, from +Z towards +X")
-      ->capture_default_str()
-      ->needs(&dome);
+      ->capture_default_str();
   app.add_option("--light-radius", a.scene_options.light_radius,
                  "Radius that glTF point lights get, metres")
       ->capture_default_str();
@@ -309,6 +308,8 @@ RenderOptions to_options(const RenderArguments& a) {
   }
   if (!a.shard.empty()) o.shard = parse_shard(a.shard);
   parse_png_options(a.exposure, a.background);
+  if (!std::isfinite(a.dome_rotation))
+    throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
   check_part(a, o);

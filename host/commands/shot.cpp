@@ -6,15 +6,12 @@
 #include <utility>
 
 #include "camera/view.hpp"
-#include "dapple/error.hpp"
 #include "scene/ground.hpp"
 
 namespace dapple {
 namespace {
 
 Light read_dome(const RenderArguments& a) {
-  if (!std::isfinite(a.dome_rotation))
-    throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
   Light dome;
   dome.name = "dome";
   dome.kind = LightKind::dome;

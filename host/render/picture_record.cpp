@@ -131,7 +131,7 @@ void check(const PictureRecord& record) {
           "camera splitting");
   require(!o.ambient || (*o.ambient >= 0 && std::isfinite(*o.ambient)), "ambient");
   require(is_scale(record.scales.position) && is_scale(record.scales.depth), "scales");
-  require(is_from(record.metadata.samples, 1, 1 << 20), "number of samples");
+  require(is_from(record.metadata.samples, 0, 1 << 20), "number of samples");
   require(record.lights.size() <= kMaxLights, "lights");
   for (const Light& light : record.lights)
     for (int channel = 0; channel < 3; ++channel)

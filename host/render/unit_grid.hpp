@@ -16,9 +16,9 @@ namespace dapple {
 inline constexpr double kMinBiasTiles = 64;
 
 /// Side in pixels of the tiles of a picture: the largest power of two of which it has enough, but
-/// at least one unit.
+/// at least two units: one alone does not tell its bias from its noise.
 inline std::uint32_t bias_tile_side(int width, int height) {
-  std::uint32_t side = kBiasUnit;
+  std::uint32_t side = 2 * kBiasUnit;
   while (static_cast<double>(width) * height / (4.0 * side * side) >= kMinBiasTiles) side *= 2;
   return side;
 }

@@ -27,6 +27,7 @@ RenderOptions small_picture() {
   options.spp = 40;
   options.ao_rays = 32;  // slices have 8,192 samples
   options.visits = true;
+  options.report_bias = 0;  // a report is that of the samples of the last run
   return options;
 }
 

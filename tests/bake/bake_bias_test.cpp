@@ -1,0 +1,91 @@
+// The bias that a bake reports of itself: it changes no value, agrees with exact values, and
+// chooses footprints.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "dapple/bake.hpp"
+#include "dapple/error.hpp"
+
+namespace dapple {
+namespace {
+
+BakeOptions few_rays() {
+  BakeOptions options;
+  options.rays = 64;
+  options.target_error = 0;
+  return options;
+}
+
+Scene tree() { return make_procedural("scene:tree?leaves=3000"); }
+
+double mean_ao(const BakeResult& baked) {
+  double sum = 0, count = 0;
+  for (const BakedMesh& mesh : baked.meshes)
+    for (const float value : mesh.ao) {
+      sum += double{value};
+      count += 1;
+    }
+  return sum / count;
+}
+
+TEST(BakeBias, NoShareChangesAValue) {
+  for (const float target : {0.0f, 0.06f}) {
+    BakeOptions options = few_rays();
+    options.target_error = target;
+    options.report_bias = 0;
+    const BakeResult none = bake(tree(), options);
+    EXPECT_TRUE(none.statistics.bias.empty());
+    options.report_bias = 1;
+    const BakeResult all = bake(tree(), options);
+    ASSERT_EQ(all.meshes.size(), none.meshes.size());
+    for (std::size_t m = 0; m < all.meshes.size(); ++m)
+      EXPECT_EQ(all.meshes[m].ao, none.meshes[m].ao);
+    EXPECT_EQ(all.statistics.bias.count("ao"), 1u);
+  }
+}
+
+TEST(BakeBias, ItAgreesWithExactValues) {
+  BakeOptions options = few_rays();
+  options.sides = BakeSides::front;
+  options.at_vertices = true;  // each value is one sample, so that both have equal weights
+  options.footprint = 16;
+  options.report_bias = 1;
+  const BakeResult prefiltered = bake(tree(), options);
+  options.estimator = Estimator::exact;
+  const BakeResult exact = bake(tree(), options);
+  EXPECT_TRUE(exact.statistics.bias.empty());
+  const Bias& bias = prefiltered.statistics.bias.at("ao");
+  // Values of vertex groups count once in the bias, and by vertex here.
+  EXPECT_NEAR(bias.mean, mean_ao(prefiltered) - mean_ao(exact), 2 * bias.error + 0.002);
+  EXPECT_GT(bias.error, 0);
+}
+
+TEST(BakeBias, MaxBiasChoosesAFootprint) {
+  BakeOptions options = few_rays();
+  options.max_bias = 1;
+  EXPECT_EQ(bake(tree(), options).statistics.footprint, options.footprint);
+  options.max_bias = 1e-7f;
+  EXPECT_EQ(bake(tree(), options).statistics.footprint, 0);
+  options.max_bias = 2;
+  EXPECT_THROW(bake(tree(), options), Error);
+}
+
+TEST(BakeBias, LightsHaveOne) {
+  BakeOptions options = few_rays();
+  options.light = true;
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::sun;
+  sun.direction = V3f(0.3f, -0.9f, 0.2f).normalized();
+  sun.angular_radius = 0.05f;
+  options.lights = {sun};
+  options.report_bias = 1;
+  const BakeResult baked = bake(tree(), options);
+  ASSERT_EQ(baked.statistics.bias.count("light"), 1u);
+  EXPECT_LT(std::fabs(baked.statistics.bias.at("light").mean), 0.05);
+}
+
+}  // namespace
+}  // namespace dapple
