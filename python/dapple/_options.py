@@ -20,6 +20,8 @@ class QueryOptions(TypedDict, total=False):
     rays: int
     estimator: Estimator
     footprint: float
+    report_bias: float
+    max_bias: float
     seed: int
 
 
@@ -60,6 +62,8 @@ class RenderOptions(TypedDict, total=False):
     light_rays: int
     estimator: Estimator
     footprint: float
+    report_bias: float
+    max_bias: float
     ao: bool
     light: bool
     visits: bool
@@ -93,6 +97,8 @@ class BakeOptions(TypedDict, total=False):
     rays: int
     estimator: Estimator
     footprint: float
+    report_bias: float
+    max_bias: float
     distance: float
     falloff: float
     at_vertices: bool
