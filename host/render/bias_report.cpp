@@ -1,11 +1,42 @@
 #include "render/bias_report.hpp"
 
-#include <utility>
+#include <algorithm>
+#include <cmath>
 
 #include "film/layers.hpp"
 #include "render/unit_grid.hpp"
 
 namespace dapple {
+
+namespace {
+
+/// The standard error of the mean over pixels. Rays of different pixels are independent, and there
+/// are many more pixels than units, so that few rays tell it. What pixels of a unit have in common
+/// is that they are chosen together: that adds what independent choices of its samples would.
+class PixelError {
+ public:
+  void add(double difference, double samples) {
+    squares_ += difference * difference;
+    samples_ += samples;
+  }
+  [[nodiscard]] double value(const std::vector<BiasUnit>& units, double mean, double share) const {
+    double count = 0, squared_counts = 0;
+    for (const BiasUnit& unit : units) {
+      count += unit.count;
+      squared_counts += unit.count * unit.count;
+    }
+    if (count < 2) return 0;
+    const double of_rays = std::max(0.0, squares_ - count * mean * mean) * count / (count - 1);
+    const double of_choice =
+        std::max(0.0, 1 / share - 1) * count / samples_ * squared_counts * mean * mean;
+    return std::sqrt(of_rays + of_choice) / count;
+  }
+
+ private:
+  double squares_ = 0, samples_ = 0;
+};
+
+}  // namespace
 
 std::vector<std::string> bias_layers(const FilmLayout& layout, const std::vector<Light>& lights) {
   std::vector<std::string> names;
@@ -26,15 +57,21 @@ std::vector<Bias> picture_bias(const BiasSums& sums, const HostView& film,
   std::vector<Bias> out;
   for (std::size_t layer = 0; layer < sums.differences.size(); ++layer) {
     std::vector<BiasUnit> units = grid.empty_units();
+    PixelError error;
     for (std::uint32_t pixel = 0; pixel < layout.pixels; ++pixel) {
       const std::uint32_t taken =
           samples[pixel] - (sums.earlier.empty() ? 0u : sums.earlier[pixel]);
       if (hits[pixel] == 0 || taken == 0) continue;
       BiasUnit& unit = units[grid.unit(pixel)];
+      const double difference = double{sums.differences[layer][pixel]} / (taken * divisors[layer]);
       unit.count += 1;
-      unit.difference += double{sums.differences[layer][pixel]} / (taken * divisors[layer]);
+      unit.difference += difference;
+      error.add(difference, taken);
     }
-    out.push_back(estimate_bias(std::move(units), sums.exact_rays / sums.rays));
+    const double share = sums.exact_rays / sums.rays;
+    Bias bias = estimate_bias(units, share);
+    bias.error = error.value(units, bias.mean, share);
+    out.push_back(bias);
   }
   return out;
 }

@@ -21,6 +21,8 @@ class QueryOptions(TypedDict, total=False):
     rays: int
     estimator: Estimator
     footprint: float
+    report_bias: float
+    max_bias: float
     seed: int
 
 
@@ -61,6 +63,8 @@ class RenderOptions(TypedDict, total=False):
     light_rays: int
     estimator: Estimator
     footprint: float
+    report_bias: float
+    max_bias: float
     ao: bool
     light: bool
     albedo: bool
@@ -97,6 +101,8 @@ class BakeOptions(TypedDict, total=False):
     rays: int
     estimator: Estimator
     footprint: float
+    report_bias: float
+    max_bias: float
     distance: float
     falloff: float
     at_vertices: bool
