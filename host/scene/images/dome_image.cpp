@@ -45,7 +45,7 @@ Environment environment_of(const ExrImage& image, const std::string& path) {
 }
 
 /// The largest radiance of a light, as in lights files: sums over lights and pixels stay finite.
-constexpr double kMaxRadiance = 1e30;
+constexpr float kMaxRadiance = 1e30f;
 
 /// Sets negative values to 0. Throws Error input for values that no light may have.
 void check_radiance(Environment& environment, const std::string& path) {
