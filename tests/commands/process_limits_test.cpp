@@ -14,8 +14,8 @@ using namespace program_test;
 class ProcessLimits : public ProgramRun {};
 
 TEST_F(ProcessLimits, OfFilesAndStacksAreNamed) {
-  // The shell itself needs a descriptor above 9.
-  expect_failure(render("", "ulimit -n 16;"), 1, "only 16 files may be open here (ulimit -n)");
+  expect_failure(render("", "bash -c 'ulimit -n 5; exec \"$0\" \"$@\"'"), 1,
+                 "only 5 files may be open here (ulimit -n)");
   expect_failure(render("", "ulimit -s 64;"), 1, "stacks may only have 64 kB here (ulimit -s)");
   EXPECT_EQ(files_in_folder(), 0u);
 }
