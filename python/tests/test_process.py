@@ -43,7 +43,8 @@ LONG_CALLS = {
     "irradiance": 'scene.irradiance(points, UP, rays=1 << 10, estimator="exact")',
     "measure": 'scene.measure(points, UP, rays=1 << 14, estimator="exact")',
     "render": "scene.render(width=1920, height=1080, spp=4096)",
-    "bake": "scene.bake(rays=1 << 16, target_error=0)",
+    # Between two questions whether to stop are 262,144 samples, of more rays the more rays there are.
+    "bake": 'dapple.load("scene:tree?leaves=200000").bake(rays=1024, target_error=0)',
 }
 
 
