@@ -307,6 +307,7 @@ RenderOptions to_options(const RenderArguments& a) {
                     a.up.empty() ? V3f(0, 1, 0) : parse_vector("--up", a.up)};
   }
   if (!a.shard.empty()) o.shard = parse_shard(a.shard);
+  if (!a.up.empty()) parse_vector("--up", a.up);
   parse_png_options(a.exposure, a.background);
   if (!std::isfinite(a.dome_rotation))
     throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
