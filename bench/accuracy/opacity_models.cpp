@@ -65,7 +65,7 @@ void check_renderer_model() {
     for (const float y : {0.02f, 0.3f, 0.7f, 0.99f}) {
       const NodeOpacity node{V3f(1, 2, 3), V3f(x, y, 0.6f), correlation};
       const V3f faces = facing_areas(node.size, direction);
-      const float here = model_depth(kRendererModel, node, direction, 1.0f, 0.0f);
+      const float here = model_depth(kRendererModel, node, direction, 1.0f, V3f(0.0f));
       const float there = box_depth(depth_of(x), depth_of(y), depth_of(0.6f), -correlation.x,
                                     -correlation.y, correlation.z, faces.x, faces.y, faces.z);
       if (std::fabs(here - there) > 1e-4f * (1.0f + there))
