@@ -140,7 +140,7 @@ TEST_F(Interruption, IgnoredSignalsStayIgnored) {
 // The picture is larger than the files of the OpenCL compiler, so that these fit into the limit.
 TEST_F(Interruption, ACheckpointTooLargeForTheDiskIsAnErrorAndTheOneBeforeIsKept) {
   std::vector<std::string> arguments = with_checkpoint(4, "1h");
-  arguments.insert(arguments.end(), {"--crop", "0,100,799,499"});
+  arguments.insert(arguments.end(), {"--crop", "0,100,799,499", "--half", "all"});
   arguments[5] = "800";
   arguments[7] = "600";
   ASSERT_EQ(run(arguments), 0) << bytes_of(log());
