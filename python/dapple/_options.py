@@ -21,8 +21,6 @@ class QueryOptions(TypedDict, total=False):
     rays: int
     estimator: Estimator
     footprint: float
-    report_bias: float
-    max_bias: float
     seed: int
 
 
@@ -36,6 +34,8 @@ class OcclusionOptions(QueryOptions, total=False):
 class MeasureOptions(QueryOptions, total=False):
     """Of measure(), as the program's `dapple points`."""
 
+    report_bias: float
+    max_bias: float
     ao: bool
     sky_view_factor: bool
     bent: bool
