@@ -101,6 +101,7 @@ class BakeOptions(TypedDict, total=False):
     rays: int
     estimator: Estimator
     footprint: float
+    normals: Literal["shading", "geometric"]
     report_bias: float
     max_bias: float
     distance: float
