@@ -106,12 +106,20 @@ TEST_F(DriverStart, AKernelThatDoesNotCompileNamesFileAndLine) {
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
-// PoCL aborts if it cannot link the code that it compiled.
-TEST_F(DriverStartCold, ADriverThatAbortsIsAMessageNotASignal) {
+TEST_F(DriverStartCold, PoclWithoutItsLinkerIsAMessageAtOnce) {
   if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
   const std::string hide = "mount --bind /dev/null $(readlink -f /usr/bin/ld)";
   const Outcome run = render("", "POCL_CACHE_DIR='" + path("cache") + "' " + in_namespace(hide));
   expect_failure(run, 4, "PoCL links kernels with the program ld, which is not in PATH");
+  EXPECT_FALSE(fs::exists(path("out.exr")));
+}
+
+// PoCL aborts if it cannot link the code that it compiled: here its linker always fails.
+TEST_F(DriverStartCold, ADriverThatAbortsIsAMessageNotASignal) {
+  if (!has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
+  const std::string fail = "mount --bind $(readlink -f /bin/false) $(readlink -f /usr/bin/ld)";
+  const Outcome run = render("", "POCL_CACHE_DIR='" + path("cache") + "' " + in_namespace(fail));
+  expect_failure(run, 4, "the OpenCL driver crashed while ");
   EXPECT_FALSE(fs::exists(path("out.exr")));
 }
 
