@@ -44,6 +44,7 @@ struct CoverageMap {
   }
   /// Mean opacity of the box along `axis`, [0,1].
   [[nodiscard]] float mean_opacity(int axis) const;
+  /// Moments of the view along `axis`.
   [[nodiscard]] OpacityMoments moments(int axis) const;
   /// Relative variance of opacity over the box: the variance of the cells divided by the maximum
   /// that their mean permits, for all axes together. 0: all cells are alike; 1: each cell is either

@@ -300,14 +300,15 @@ V3f grown_opacity(const V3f& axes, const Box3f& exact, const Box3f& box) {
   return grown;
 }
 
-/// The bits of a child's mass pole along an axis.
+/// The bits of a child's mass pole along an axis; the nearest place that can be stored.
 unsigned pole_code(float pole) {
   return static_cast<unsigned>(std::clamp(std::lround(2.0f * pole + 1.5f), 0L, 3L));
 }
 
+/// What a node stores of a child beside its depths and correlations.
 struct StoredShape {
-  unsigned opacity_variance;      ///< variance_class()
-  std::array<unsigned, 3> poles;  ///< pole_code()
+  unsigned opacity_variance;  ///< variance_class()
+  V3f pole;                   ///< MassShape::pole
   bool wall;
 };
 
@@ -317,7 +318,7 @@ void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
     node.depth[axis][slot] =
         encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_MAX_DEPTH));
     const auto code = static_cast<int>(std::lround(15.0f * correlation[axis]));
-    const unsigned low = shape.poles[axis] << 1 | (shape.opacity_variance >> axis & 1u);
+    const unsigned low = pole_code(shape.pole[axis]) << 1 | (shape.opacity_variance >> axis & 1u);
     node.correlation[axis][slot] = static_cast<schar>(code * 8 + static_cast<int>(low));
   }
   if (shape.wall) node.depth[0][slot] = DAPPLE_WALL_DEPTH;
@@ -333,10 +334,7 @@ float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity
   const float factor = std::clamp(
       clumping_factor(grown, box.max - box.min) / opacity.mass.mean_weight(), 0.6f, 1.6f);
   store_depths(node, slot, grown.axes, factor, opacity.normals.correlation(),
-               {variance_class(opacity),
-                {pole_code(opacity.mass.pole.x), pole_code(opacity.mass.pole.y),
-                 pole_code(opacity.mass.pole.z)},
-                opacity.wall});
+               {variance_class(opacity), opacity.mass.pole, opacity.wall});
   const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.mass.concentration));
   node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
   return factor;
@@ -354,13 +352,13 @@ void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
   V3f axes = layers_in(areas, exact);
   for (int axis = 0; axis < 3; ++axis)
     axes[axis] = std::min(1.0f, axes[axis] * kept.share(axis, slot));
-  store_depths(node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
-               normals.correlation(),
-               {std::max(variance_of_child(node, slot), variance_class({axes, {}})),
-                {pole_code(bvh_mass_pole(node.correlation, 0, slot)),
-                 pole_code(bvh_mass_pole(node.correlation, 1, slot)),
-                 pole_code(bvh_mass_pole(node.correlation, 2, slot))},
-                bvh_is_wall(node.depth, slot)});
+  store_depths(
+      node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
+      normals.correlation(),
+      {std::max(variance_of_child(node, slot), variance_class({axes, {}})),
+       V3f(bvh_mass_pole(node.correlation, 0, slot), bvh_mass_pole(node.correlation, 1, slot),
+           bvh_mass_pole(node.correlation, 2, slot)),
+       bvh_is_wall(node.depth, slot)});
 }
 
 namespace {
