@@ -46,24 +46,44 @@ class Measurement {
   }
 
   void run() {
+    try {
+      measure();
+    } catch (const Error&) {
+      // A query that was stopped says so by an Error.
+      if (!result_.interrupted) throw;
+    }
+    if (options_.report_bias > 0) result_.bias = sample_.report();
+  }
+
+ private:
+  void measure() {
     choose_footprint();
     if (options_.ao || options_.bent) measure_ao();
     if (options_.sky_view_factor) measure_sky_view_factor();
     if (options_.rings > 0) measure_rings();
     if (has_lights()) measure_lights();
     if (!options_.suns.empty()) measure_suns();
-    if (options_.report_bias > 0) result_.bias = sample_.report();
   }
 
- private:
   [[nodiscard]] bool has_lights() const { return options_.lights && !on_.scene.lights.empty(); }
 
   /// False: stopped.
   bool step(double part = 1) {
     done_ += part;
     if (control_.progress) control_.progress(std::min(1.0, done_ / steps_));
+    return !is_stopped();
+  }
+
+  bool is_stopped() {
     result_.interrupted = result_.interrupted || (control_.stop && control_.stop());
-    return !result_.interrupted;
+    return result_.interrupted;
+  }
+
+  /// Stops a query between two of its slices: one set of many points can take minutes.
+  RenderControl stopping() {
+    RenderControl control;
+    control.stop = [this] { return is_stopped(); };
+    return control;
   }
 
   [[nodiscard]] OcclusionOptions occlusion_options(int set) const {
@@ -103,8 +123,8 @@ class Measurement {
     for (int set = 0; set < kPointSets; ++set) {
       OcclusionOptions options = occlusion_options(set);
       options.distance = options_.distance;
-      const PointOcclusion found =
-          point_occlusion(on_.device, on_.uploaded, {points_, normals_}, options, options_.bent);
+      const PointOcclusion found = point_occlusion(on_.device, on_.uploaded, {points_, normals_},
+                                                   options, options_.bent, stopping());
       sums.add([&](std::size_t i) { return double{found.ao[i]}; });
       for (std::size_t i = 0; i < found.bent.size(); ++i) bent[i] += found.bent[i];
       if (!step()) return;
@@ -122,7 +142,7 @@ class Measurement {
     SetSums sums(points_.size());
     for (int set = 0; set < kPointSets; ++set) {
       const std::vector<float> found =
-          occlusion(on_.device, on_.uploaded, points_, up, occlusion_options(set));
+          occlusion(on_.device, on_.uploaded, points_, up, occlusion_options(set), stopping());
       sums.add([&](std::size_t i) { return double{found[i]}; });
       if (!step()) return;
     }
@@ -180,7 +200,7 @@ class Measurement {
     for (int set = 0; set < kPointSets; ++set) {
       const OcclusionOptions of = occlusion_options(set);
       const auto found = irradiance(on_.device, on_.uploaded, lights, points_, normals_,
-                                    {of.rays, of.estimator, of.footprint, of.seed});
+                                    {of.rays, of.estimator, of.footprint, of.seed}, stopping());
       for (std::size_t k = 0; k < sums.size(); ++k) {
         const LightLayer& layer = layers[k / 3];
         const auto c = static_cast<unsigned>(k % 3);
