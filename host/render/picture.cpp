@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -56,13 +55,10 @@ class PictureTracer {
         width_(view.crop.width()),
         camera_(camera_params(view, options, scene_.bounds)),
         state_(std::move(state)),
-        lookups_(lookups),
-        mattes_(lookups.mattes ? layout.pixels : 0,
-                state_.first_sample > 0 ? kAnyMatteSlots : kMaxMatteSlots),
-        motion_(lookups.motion ? layout.pixels : 0),
-        deep_(lookups.deep ? layout.pixels : 0) {
-    camera_.keep_hits = layout.shading() || lookups_.any();
-    if (lookups_.any()) camera_.medium_error = 0;  // a medium's surfaces belong to no primitive
+        looks_up_hits_(lookups.any()),
+        hit_sums_(lookups, layout.pixels, state_.first_sample) {
+    camera_.keep_hits = layout.shading() || looks_up_hits_;
+    if (looks_up_hits_) camera_.medium_error = 0;  // a medium's surfaces belong to no primitive
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
     if (state_.slice_samples == 0)
@@ -95,9 +91,9 @@ class PictureTracer {
       picture.errors = standard_errors(picture.samples);
     picture.sums = context_.view(film_.sums);
     if (bias_) picture.bias = bias_of(picture.samples, view);
-    picture.mattes = std::move(mattes_);
-    picture.motion = std::move(motion_);
-    picture.deep = std::move(deep_);
+    picture.mattes = std::move(hit_sums_.mattes);
+    picture.motion = std::move(hit_sums_.motion);
+    picture.deep = std::move(hit_sums_.deep);
     context_.finish();
     picture.pass_seconds = pass_seconds();
     picture.queue_bytes = queues_.bytes();
@@ -120,9 +116,7 @@ class PictureTracer {
   void place_sums() {
     earlier_seconds_ = state_.pass_seconds;
     for (const auto& [label, seconds] : context_.pass_seconds()) earlier_seconds_[label] -= seconds;
-    if (lookups_.mattes && !state_.mattes.empty()) mattes_.unpack(state_.mattes, layout_.pixels);
-    if (!state_.motion.empty()) motion_ = std::move(state_.motion);
-    if (!state_.deep.empty()) deep_ = std::move(state_.deep);
+    hit_sums_.take_from(state_);
     if (state_.sums.empty()) return;
     context_.write(film_.sums, state_.sums.data(), layout_.sum_bytes());
     if (!state_.squares.empty())
@@ -171,9 +165,7 @@ class PictureTracer {
     if (plan.is_adaptive())
       context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
     context_.finish();
-    if (lookups_.mattes) state_.mattes = mattes_.packed();
-    state_.motion = motion_;
-    state_.deep = deep_;
+    hit_sums_.copy_to(state_);
     if (bias_) {
       bias_->finish();
       state_.bias = bias_->sums();
@@ -293,7 +285,7 @@ class PictureTracer {
     camera_.slice = slice;
     resolve_.slice = slice;
     camera_pass(context_, scene_, queues_, camera_);
-    if (lookups_.any()) look_up_hits(slice);
+    if (looks_up_hits_) add_hits(slice);
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);
@@ -314,39 +306,11 @@ class PictureTracer {
     trace_side(back, hits);
   }
 
-  /// Adds the samples of the slice, pixel by pixel, each in its order. The points still have what
-  /// the camera pass kept for the shading pass.
-  void look_up_hits(const SliceParams& slice) {
-    const std::vector<PixelWork>& work = state_.round.groups[state_.round.group].work;
-    const HostView point_view = context_.view(queues_.points);
-    const HostView hit_view = context_.view(queues_.sample_hits);
-    const std::span<const SurfacePoint> points = point_view.values<SurfacePoint>();
-    const std::span<const SampleHits> hits = hit_view.values<SampleHits>();
-    tbb::parallel_for(0u, slice.pixel_count, [&](uint entry) {
-      const uint pixel = work[slice.first_work + entry].pixel;
-      const uint begin = entry * slice.sample_count;
-      for (uint i = begin; i < begin + slice.sample_count; ++i) {
-        if (!(hits[i / DAPPLE_HIT_BITS].hits >> i % DAPPLE_HIT_BITS & 1u)) continue;
-        add_hit(pixel, work[slice.first_work + entry].first_sample + slice.first_sample + i - begin,
-                points[i]);
-      }
-    });
-  }
-
-  void add_hit(uint pixel, uint sample, const SurfacePoint& point) {
-    const uint instance = std::bit_cast<uint>(point.t), primitive = point.visits;
-    const float* at = point.position;
-    if (lookups_.mattes) {
-      const auto ids = lookups_.mattes->at(instance, primitive);
-      mattes_.add(pixel, ids.object, ids.material, sample);
-    }
-    if (lookups_.motion)
-      motion_.add(pixel, lookups_.motion->at(instance, primitive, {at[0], at[1], at[2]}));
-    if (!lookups_.deep) return;
-    float depth = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      depth += (at[axis] - resolve_.eye[axis]) * resolve_.axis[axis];
-    deep_.add(pixel, depth);
+  void add_hits(const SliceParams& slice) {
+    const HostView points = context_.view(queues_.points);
+    const HostView hits = context_.view(queues_.sample_hits);
+    hit_sums_.add(slice, state_.round.groups[state_.round.group].work,
+                  points.values<SurfacePoint>(), hits.values<SampleHits>(), resolve_);
   }
 
   /// The points of one side of the surfaces, and the planes of what reaches them.
@@ -409,10 +373,8 @@ class PictureTracer {
   std::optional<BiasTracer> bias_;             ///< if a bias is reported
   std::vector<std::vector<float>> variances_;  ///< of the finished film, if known
   TraceState state_;  ///< without sums and squares while these are on the device
-  const HitLookups& lookups_;
-  MatteSums mattes_;
-  MotionSums motion_;
-  DeepSums deep_;
+  bool looks_up_hits_;
+  HitSums hit_sums_;
   double traced_ = 0;         ///< number of samples of all pixels
   double saved_samples_ = 0;  ///< of them in the last checkpoint
   double progress_ = 0;       ///< [0,1], estimated; never decreases

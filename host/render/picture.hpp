@@ -2,14 +2,13 @@
 // sampling chooses the pixels of each round.
 #pragma once
 
-#include <optional>
+#include <functional>
 
 #include "dapple/render.hpp"
 #include "device/upload/scene_upload.hpp"
 #include "film/film_sums.hpp"
 #include "film/traced_picture.hpp"
-#include "render/matte_lookup.hpp"
-#include "render/motion_lookup.hpp"
+#include "render/hit_sums.hpp"
 #include "render/trace_state.hpp"
 #include "sampling/sample_plan.hpp"
 
@@ -23,14 +22,6 @@ struct TraceControl {
   double save_every = 0;                          ///< seconds
   std::function<void(const TraceState&)> finish;  ///< called once all samples are traced
   SampleOrder order = SampleOrder::pixels;
-};
-
-/// What the host does with the hits of camera rays; with any of it there are no media.
-struct HitLookups {
-  std::optional<MatteLookup> mattes;   ///< count what the samples hit
-  std::optional<MotionLookup> motion;  ///< add up how they move until the next frame
-  bool deep = false;                   ///< sort them by depth
-  [[nodiscard]] bool any() const { return mattes || motion || deep; }
 };
 
 /// Runs every pass that `options` select over the view's crop. The result depends on

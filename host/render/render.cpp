@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -24,6 +23,7 @@
 #include "passes/kernel_list.hpp"
 #include "render/bias_pilot.hpp"
 #include "render/bias_report.hpp"
+#include "render/kept_scene.hpp"
 #include "render/picture.hpp"
 #include "render/resume.hpp"
 #include "render/shutter.hpp"
@@ -101,44 +101,6 @@ UploadOptions uploading_of(const RenderOptions& options, bool smooth) {
   return {normals, options.albedo, normals && smooth};
 }
 
-void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
-  s.cache.used = true;
-  s.cache.objects_read = bvh.cache.objects_read;
-  s.cache.objects_written = bvh.cache.objects_written;
-  s.cache.seconds_saved = bvh.cache.seconds_saved;
-  s.seconds.cache = bvh.cache.read_seconds + bvh.cache.write_seconds;
-  if (!bvh.cache.note.empty()) s.notes.push_back("BVH cache: " + bvh.cache.note);
-}
-
-void add_build_seconds(RenderStatistics& s, const BvhStatistics& bvh) {
-  s.seconds.build += bvh.build_seconds;
-  s.seconds.prefilter += bvh.prefilter_seconds;
-}
-
-void add_update_statistics(RenderStatistics& s, const BvhUpdate& update, const BvhStatistics& bvh) {
-  double built = 0;
-  if (update.objects_rebuilt > 0) {
-    add_build_seconds(s, bvh);
-    built = bvh.build_seconds + bvh.prefilter_seconds;
-  }
-  s.seconds.refit += std::max(0.0, update.seconds - built);
-  s.refit = {true, update.objects_kept, update.objects_refitted, update.objects_rebuilt,
-             update.cost_ratio};
-}
-
-void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBuffers& buffers) {
-  s.triangles = bvh.statistics.triangles;
-  s.segments = bvh.statistics.segments;
-  s.nodes = bvh.nodes.size();
-  s.bytes.nodes = buffers.nodes.bytes();
-  s.bytes.triangles = buffers.blocks.bytes() + buffers.textured.bytes() + buffers.normals.bytes() +
-                      buffers.color_words.bytes();
-  s.bytes.segments = buffers.segments.bytes();
-  s.bytes.textures = buffers.texels.bytes() + buffers.materials.bytes() +
-                     buffers.color_texels.bytes() + buffers.color_materials.bytes();
-  s.bytes.instances = buffers.instances.bytes();
-}
-
 void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
                           const FilmLayout& layout) {
   s.pass_seconds = picture.pass_seconds;
@@ -187,131 +149,67 @@ RenderOptions with_measured_bias(const FootprintChoice& choice, RenderOptions& o
   return traced;
 }
 
-/// The options that a device is opened with.
-std::array<std::string, 3> device_key(const RenderOptions& options) {
-  return {options.device, options.kernel_dir, name_of(options.packets)};
-}
-
-}  // namespace
-
-struct Renderer::Kept {
-  std::array<std::string, 3> device_key;
-  std::optional<Device> device;
-  std::optional<UpdatableBvh> bvh;
-  DeviceScene on_device;
-
-  void open(const RenderOptions& options, RenderStatistics& statistics);
-  void update_scene(const Scene& scene, const UploadOptions& uploading, const std::string& cache,
-                    RenderStatistics& statistics);
-  void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
-               RenderStatistics& statistics) const;
-  FootprintChoice measure_bias(const View& view, const RenderOptions& options,
-                               const FilmLayout& layout, bool may_shrink) const;
-  TracedPicture trace(const Shutter& shutter, const Scene& first, const View& view,
-                      const RenderOptions& options, const FilmLayout& layout,
-                      const std::vector<Light>& lights, TraceControl tracing, TraceState state,
-                      RenderStatistics& statistics);
-  std::unique_ptr<HitLookups> hit_lookups(const Shutter& shutter, int time, const Scene& scene,
-                                          const View& view, const RenderOptions& options) const;
-};
-
-void Renderer::Kept::open(const RenderOptions& options, RenderStatistics& statistics) {
-  const auto key = dapple::device_key(options);
-  if (!device || key != device_key) {
-    *this = {};
-    device_key = key;
-    device.emplace(options.device, options.kernel_dir, options.packets);
-  }
-  statistics.device = device->info().name;
-  for (std::string& note : device->context().notes()) statistics.notes.push_back(std::move(note));
-}
-
-/// Builds or refits the BVH and uploads the scene.
-void Renderer::Kept::update_scene(const Scene& scene, const UploadOptions& uploading,
-                                  const std::string& cache, RenderStatistics& statistics) {
-  const Stopwatch updating;
-  if (bvh) {
-    const BvhUpdate changes = update(*device, on_device, *bvh, scene, uploading);
-    add_update_statistics(statistics, changes, bvh->bvh().statistics);
-    statistics.seconds.upload += updating.seconds() - changes.seconds;
-  } else {
-    bvh.emplace(scene, UpdatableBvh::Motion::maybe, cache);
-    const BvhStatistics& built = bvh->bvh().statistics;
-    add_build_seconds(statistics, built);
-    if (!cache.empty()) add_cache_statistics(statistics, built);
-    const Stopwatch upload_time;
-    on_device = upload(*device, scene, bvh->bvh(), uploading);
-    statistics.seconds.upload = upload_time.seconds();
-  }
-  add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
-}
-
-/// Loads the kernels that `processes` compiled and compiles the rest.
-void Renderer::Kept::compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
-                             RenderStatistics& statistics) const {
-  const Stopwatch compiling;
-  processes.wait();
-  for (const KernelName& kernel : kernels) device->context().prepare(kernel);
-  statistics.seconds.kernel_build = compiling.seconds();
-}
-
 /// What the hits of camera rays are looked up in, if the options ask for it. `scene` must be on the
 /// device, and live as long as the result.
-std::unique_ptr<HitLookups> Renderer::Kept::hit_lookups(const Shutter& shutter, int time,
-                                                        const Scene& scene, const View& view,
-                                                        const RenderOptions& options) const {
+std::unique_ptr<HitLookups> hit_lookups(const KeptScene& kept, const Shutter& shutter, int time,
+                                        const Scene& scene, const View& view,
+                                        const RenderOptions& options) {
   auto lookups = std::make_unique<HitLookups>();
-  if (options.cryptomattes.any()) lookups->mattes.emplace(scene, bvh->bvh());
+  if (options.cryptomattes.any()) lookups->mattes.emplace(scene, kept.bvh->bvh());
   lookups->deep = options.deep;
   if (options.motion) {
     std::vector<std::string> notes;  // those of this frame again
     FrameScene next{shutter.next_at(time), {}};
     next.view = prepare_scene(next.scene, options, notes);
-    lookups->motion.emplace(scene, view, bvh->bvh(), std::move(next));
+    lookups->motion.emplace(scene, view, kept.bvh->bvh(), std::move(next));
   }
   return lookups;
 }
 
 /// The scene must be on the device.
-FootprintChoice Renderer::Kept::measure_bias(const View& view, const RenderOptions& options,
-                                             const FilmLayout& layout, bool may_shrink) const {
+FootprintChoice measure_bias(const KeptScene& kept, const View& view, const RenderOptions& options,
+                             const FilmLayout& layout, bool may_shrink) {
   const RenderOptions sampled = by_sample(options);
-  CameraParams camera = camera_params(view, sampled, on_device.buffers->bounds);
+  CameraParams camera = camera_params(view, sampled, kept.on_device.buffers->bounds);
   if (options.cryptomattes.any() || options.motion || options.deep) camera.medium_error = 0;
-  BiasPilot pilot(device->context(), *on_device.buffers, view, sampled, layout, camera);
+  BiasPilot pilot(kept.device->context(), *kept.on_device.buffers, view, sampled, layout, camera);
   return choose_footprint(pilot, {options.footprint, options.max_bias,
                                   std::max(options.target_error, options.target_rmse), may_shrink});
 }
 
 /// Traces the first moment of the shutter, whose scene is on the device, and then the others: each
 /// continues from the sums of those before.
-TracedPicture Renderer::Kept::trace(const Shutter& shutter, const Scene& first, const View& view,
-                                    const RenderOptions& options, const FilmLayout& layout,
-                                    const std::vector<Light>& lights, TraceControl tracing,
-                                    TraceState state, RenderStatistics& statistics) {
+TracedPicture trace(KeptScene& kept, const Shutter& shutter, const Scene& first, const View& view,
+                    const RenderOptions& options, const FilmLayout& layout,
+                    const std::vector<Light>& lights, TraceControl tracing, TraceState state,
+                    RenderStatistics& statistics) {
   const Progress progress = tracing.progress;
   if (shutter.times > 1) {
     tracing.save = [&](const TraceState& saved) { state = saved; };
     tracing.save_every = std::numeric_limits<double>::infinity();
     tracing.progress = part_of(progress, 1, shutter.times);
   }
-  TracedPicture picture =
-      trace_picture(*device, on_device, view, until(options, 0, shutter.times), layout, tracing,
-                    std::move(state), *hit_lookups(shutter, 0, first, view, options));
+  TracedPicture picture = trace_picture(
+      *kept.device, kept.on_device, view, until(options, 0, shutter.times), layout, tracing,
+      std::move(state), *hit_lookups(kept, shutter, 0, first, view, options));
   for (int time = 1; time < shutter.times && !picture.interrupted; ++time) {
     Scene moved = shutter.scene_at(time);
     const View moved_view = prepare_scene(moved, options, statistics.notes);
     if (options.light) check_same_lights(lights, moved.lights);
     check_same_objects(first, moved);
-    const UploadOptions uploading = on_device.buffers->uploaded;
-    update_scene(moved, uploading, options.cache, statistics);
+    const UploadOptions uploading = kept.on_device.buffers->uploaded;
+    kept.update_scene(moved, uploading, options.cache, statistics);
     tracing.progress = part_of(progress, time + 1, shutter.times);
-    picture = trace_picture(*device, on_device, moved_view, until(options, time, shutter.times),
-                            layout, tracing, std::move(state),
-                            *hit_lookups(shutter, time, moved, moved_view, options));
+    picture = trace_picture(*kept.device, kept.on_device, moved_view,
+                            until(options, time, shutter.times), layout, tracing, std::move(state),
+                            *hit_lookups(kept, shutter, time, moved, moved_view, options));
   }
   return picture;
 }
+
+}  // namespace
+
+struct Renderer::Kept : KeptScene {};
 
 Renderer::Renderer() : kept_(std::make_unique<Kept>()) {}
 Renderer::~Renderer() = default;
@@ -364,7 +262,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const Stopwatch trace_time;
   const bool has_pilot = has_bias(options) && (options.max_bias > 0 || is_adaptive(options));
   const RenderOptions traced =
-      has_pilot ? with_measured_bias(kept.measure_bias(view, options, layout, !resumed), options,
+      has_pilot ? with_measured_bias(measure_bias(kept, view, options, layout, !resumed), options,
                                      statistics)
                 : options;
   const double pilot_seconds = trace_time.seconds();
@@ -390,8 +288,8 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
     write_checkpoints(tracing, control, std::move(about), result);
   }
 
-  const TracedPicture picture = kept.trace(shutter, scene, view, traced, layout, lights,
-                                           std::move(tracing), std::move(state), statistics);
+  const TracedPicture picture = trace(kept, shutter, scene, view, traced, layout, lights,
+                                      std::move(tracing), std::move(state), statistics);
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   add_trace_statistics(statistics, picture, layout);
   if (has_pilot) statistics.pass_seconds["bias pilot"] = pilot_seconds;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "device/upload/light_upload.hpp"
+#include "support/random_direction.hpp"
 #include "support/test_kernel.hpp"
 
 namespace dapple {
@@ -156,12 +157,6 @@ TEST(Sampling, AVogelSpiralsPointsAreAGoldenAngleApartInRingsOfOneArea) {
       ASSERT_NEAR(points[k].y, radius * std::sin(angle), off) << k << " turned by " << turn;
     }
   }
-}
-
-V3f random_direction(std::mt19937& random) {
-  std::normal_distribution<float> normal;
-  V3f d(normal(random), normal(random), normal(random));
-  return d.normalized();
 }
 
 TEST(Sampling, FramesAreOrthonormalAndRightHandedForEveryNormal) {

@@ -12,19 +12,11 @@
 
 #include "bvh/build/object_bvh.hpp"
 #include "bvh/build/quantize.hpp"
+#include "support/random_direction.hpp"
 #include "support/test_kernel.hpp"
 
 namespace dapple {
 namespace {
-
-V3f random_direction(std::mt19937& random) {
-  std::normal_distribution<float> normal;
-  V3f d;
-  do {
-    for (int a = 0; a < 3; ++a) d[a] = normal(random);
-  } while (d.length() < 1e-3f);
-  return d.normalized();
-}
 
 /// Optical depth of a box of `size` along the unit direction `d`, with uncorrelated normals.
 float depth_along(const V3f& opacity, const V3f& size, const V3f& d) {
@@ -319,121 +311,6 @@ TEST(OpacityModel, ASparseBoxsDepthGrowsWithTheChordUpToALimitAndAFullOneDoesNot
   const auto short_way = device_depths(full, directions, 0.5f),
              long_way = device_depths(full, directions, 2);
   for (std::size_t i = 0; i < short_way.size(); ++i) EXPECT_NEAR(short_way[i], long_way[i], 1e-5f);
-}
-
-TEST(OpacityModel, CentreWeightsKeepTheMeanDepthOfRaysThatFillTheBox) {
-  std::mt19937 random(9);
-  std::uniform_real_distribution<float> unit(-1, 1);
-  for (const float mass_concentration : {1 / 3.0f, 2 / 3.0f, 1.0f}) {
-    for (int d = 0; d < 20; ++d) {
-      const V3f direction = random_direction(random);
-      double weights = 0;
-      constexpr int kPoints = 20000;
-      // A uniform point in the box selects a ray with a probability in proportion to the ray's
-      // length inside the box. This is the weight of the ray in the mean optical depth.
-      for (int i = 0; i < kPoints; ++i) {
-        const V3f p(unit(random), unit(random), unit(random));
-        float enter = -100, leave = 100;
-        for (int axis = 0; axis < 3; ++axis) {
-          const float a = (-1 - p[axis]) / direction[axis], b = (1 - p[axis]) / direction[axis];
-          enter = std::max(enter, std::min(a, b));
-          leave = std::min(leave, std::max(a, b));
-        }
-        weights += centre_weight(mass_concentration,
-                                 (p + direction * (0.5f * (enter + leave))).length2(), 0);
-      }
-      // The mean off_centre is 0.667 to 0.707, depending on the direction; the model uses 0.68. The
-      // minimum weight adds to the error.
-      EXPECT_NEAR(weights / kPoints, 1, 0.045 * mass_concentration + 0.005) << direction;
-    }
-  }
-}
-
-TEST(OpacityModel, SurfacesThroughTheMiddleOfABoxHaveMassConcentration) {
-  CoverageMap middle, uniform = uniform_map({0.3f, 0.3f, 0.3f}), corners;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int row = 4; row < 12; ++row) {
-      for (int column = 4; column < 12; ++column)
-        middle.transmittance[axis][row * kMapSize + column] = 0.2f;
-    }
-    for (const int cell : {0, kMapSize - 1, kMapCells - kMapSize, kMapCells - 1})
-      corners.transmittance[axis][cell] = 0.2f;
-  }
-  const Box3f box(V3f(0, 0, 0), V3f(1, 2, 3));
-  EXPECT_EQ(map_opacity(middle, {}, box).mass.concentration, 1);
-  EXPECT_EQ(map_opacity(uniform, {}, box).mass.concentration, 0);
-  EXPECT_EQ(map_opacity(corners, {}, box).mass.concentration, 0);
-}
-
-TEST(OpacityModel, TheMassPoleIsWhereTheContentsOfABoxAre) {
-  CoverageMap corner, middle;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int row = 0; row < 6; ++row)
-      for (int column = 0; column < 6; ++column)
-        corner.transmittance[axis][row * kMapSize + column] = 0.2f;
-    for (int row = 5; row < 11; ++row)
-      for (int column = 5; column < 11; ++column)
-        middle.transmittance[axis][row * kMapSize + column] = 0.2f;
-  }
-  const Box3f box(V3f(0, 0, 0), V3f(1, 2, 3));
-  const MassShape shape = map_opacity(corner, {}, box).mass;
-  EXPECT_GT(shape.concentration, 0.5f);
-  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(shape.pole[axis], -0.75f) << axis;
-  // Rays through that corner meet more than rays through the opposite one.
-  const float near = centre_weight(shape.concentration, 0, shape.pole.length2()),
-              far = centre_weight(shape.concentration, (V3f(0.75f) - shape.pole).length2(),
-                                  shape.pole.length2());
-  EXPECT_GT(near, 2);
-  EXPECT_EQ(far, DAPPLE_MIN_CENTRE_WEIGHT);
-  for (int axis = 0; axis < 3; ++axis)
-    EXPECT_EQ(std::fabs(map_opacity(middle, {}, box).mass.pole[axis]), 0.25f) << axis;
-}
-
-TEST(OpacityModel, StoredMassPolesComeBack) {
-  BvhNode node{};
-  set_grid(node, Box3f(V3f(0, 0, 0), V3f(1, 1, 1)));
-  const Box3f box(V3f(0, 0, 0), V3f(1, 1, 1));
-  set_child_box(node, 3, box);
-  NodeOpacity opacity;
-  opacity.axes = V3f(0.5f, 0.4f, 0.3f);
-  for (int code = 0; code < 64; ++code) {
-    opacity.mass.concentration = 2.0f / 3.0f;
-    for (int axis = 0; axis < 3; ++axis)
-      opacity.mass.pole[axis] = 0.5f * static_cast<float>(code >> 2 * axis & 3) - 0.75f;
-    set_child_opacity(node, 3, opacity, box);
-    for (unsigned axis = 0; axis < 3; ++axis)
-      EXPECT_EQ(bvh_mass_pole(node.correlation, axis, 3), opacity.mass.pole[axis]);
-    EXPECT_NEAR(bvh_mass_concentration(node.leaf_end, 3), 2.0f / 3.0f, 1e-6f);
-  }
-}
-
-TEST(OpacityModel, MeanWeightsAreThoseOfRaysThroughABox) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> unit(-1, 1);
-  for (int level = 1; level <= 3; ++level) {
-    for (int away = 0; away <= 3; ++away) {
-      MassShape shape;
-      shape.concentration = static_cast<float>(level) / 3.0f;
-      for (int axis = 0; axis < 3; ++axis) shape.pole[axis] = axis < away ? 0.75f : -0.25f;
-      double weights = 0;
-      constexpr int kPoints = 40000;
-      for (int i = 0; i < kPoints; ++i) {
-        const V3f p(unit(random), unit(random), unit(random));
-        const V3f direction = random_direction(random);
-        float enter = -100, leave = 100;
-        for (int axis = 0; axis < 3; ++axis) {
-          const float a = (-1 - p[axis]) / direction[axis], b = (1 - p[axis]) / direction[axis];
-          enter = std::max(enter, std::min(a, b));
-          leave = std::min(leave, std::max(a, b));
-        }
-        const V3f middle = p + direction * (0.5f * (enter + leave));
-        weights += centre_weight(shape.concentration, (middle - shape.pole).length2(),
-                                 shape.pole.length2());
-      }
-      // Five standard errors of weights whose variance is below 1.
-      EXPECT_NEAR(weights / kPoints, shape.mean_weight(), 0.025) << level << ", " << away;
-    }
-  }
 }
 
 }  // namespace

@@ -1,0 +1,35 @@
+// What a Renderer keeps from one picture for the next: device, BVH and the scene on the device. In:
+// a scene. Out: the scene on the device, built at first and refitted later, and statistics of it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dapple/render.hpp"
+#include "device/context.hpp"
+#include "device/programs/compiler_processes.hpp"
+#include "device/upload/scene_upload.hpp"
+
+namespace dapple {
+
+struct KeptScene {
+  std::array<std::string, 3> device_key;  ///< the options that `device` was opened with
+  std::optional<Device> device;
+  std::optional<UpdatableBvh> bvh;
+  DeviceScene on_device;
+
+  /// Opens the device that the options name, unless it is open.
+  void open(const RenderOptions& options, RenderStatistics& statistics);
+
+  /// Builds or refits the BVH and uploads the scene. `cache`: folder of cached BVHs, or empty.
+  void update_scene(const Scene& scene, const UploadOptions& uploading, const std::string& cache,
+                    RenderStatistics& statistics);
+
+  /// Loads the kernels that `processes` compiled and compiles the rest.
+  void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
+               RenderStatistics& statistics) const;
+};
+
+}  // namespace dapple
