@@ -96,7 +96,7 @@ BladeRange::BladeRange(Mesh& mesh, std::size_t count, std::uint32_t material)
 }
 
 void BladeRange::set(std::size_t i, const Blade& blade) {
-  const V3f side = blade.axis.cross(blade.normal) * (blade.length * kBladeWidth / 2);
+  const V3f side = blade.axis.cross(blade.normal) * (blade.length * blade.width / 2);
   const V3f middle =
       blade.base + blade.axis * (blade.length * 0.45f) + blade.normal * (blade.length * 0.06f);
   V3f* const corner = &mesh_.positions[first_vertex_ + 4 * i];

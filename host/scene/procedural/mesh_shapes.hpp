@@ -24,18 +24,20 @@ void append_square(Mesh& mesh, float side, float y, std::uint32_t material);
 void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float> radii, int sides,
                  std::uint32_t material);
 
-/// One leaf: a rhombus from `base` to `base + axis * length`. Its width is kBladeWidth times its
-/// length. It is slightly folded along its midrib, the edge that its two triangles share.
+/// The width of a broad leaf over its length.
+inline constexpr float kBladeWidth = 0.55f;
+/// Area of a broad leaf divided by the square of its length, without the fold.
+inline constexpr float kBladeArea = kBladeWidth / 2;
+
+/// One leaf: a rhombus from `base` to `base + axis * length`. It is slightly folded along its
+/// midrib, the edge that its two triangles share.
 struct Blade {
   V3f base;
   V3f axis;    ///< unit
   V3f normal;  ///< unit, at right angles to `axis`
   float length = 0;
+  float width = kBladeWidth;  ///< over the length
 };
-
-inline constexpr float kBladeWidth = 0.55f;
-/// Area of a blade divided by the square of its length, without the fold.
-inline constexpr float kBladeArea = kBladeWidth / 2;
 
 /// Appends memory for `count` blades to a mesh; set() fills it in any order.
 class BladeRange {

@@ -66,6 +66,39 @@ std::vector<Recipe> plant_recipes() {
   };
 }
 
+Parameter height_of(double metres) {
+  return {"height", metres, 0.5, 100, false, "height in metres"};
+}
+
+std::vector<Recipe> habit_recipes() {
+  return {
+      {{"palm",
+        "a palm with arching fronds: materials \"leaf\" and \"bark\"",
+        {leaves_of(6000, "number of leaflets, of two triangles each"), opacity_of("leaf", 0.85),
+         leaf_size(), seed(), height_of(10)}},
+       make_palm_scene},
+      {{"conifer",
+        "a conifer with whorls of branches and a mesh for every needle: materials \"leaf\" and "
+        "\"bark\"",
+        {leaves_of(300000, "number of needles, of two triangles each"), opacity_of("leaf", 1),
+         leaf_size(), seed(), height_of(12)}},
+       make_conifer_scene},
+      {{"willow",
+        "a weeping willow, whose twigs hang to the ground: materials \"leaf\" and \"bark\"",
+        {leaves_of(80000, kTwoTriangles), opacity_of("leaf", 0.85), leaf_size(), seed(),
+         height_of(10)}},
+       make_willow_scene},
+      {{"grass",
+        "a field of grass and a camera at a grazing angle: material \"leaf\"",
+        {leaves_of(400000, "number of blades, of two triangles each"),
+         opacity_of("leaf", 1),
+         leaf_size(),
+         seed(),
+         {"length", 100, 1, 1000, false, "length in metres; its width is a fifth"}}},
+       make_grass_scene},
+  };
+}
+
 Recipe hair_recipe() {
   return {{"hair",
            "a head of curly hair looking along +Z: materials \"hair\" and \"skin\"",
@@ -103,12 +136,19 @@ std::vector<Recipe> sheet_and_solid_recipes() {
         {{"gap", 0.1, 0.001, 10, false,
           "metres between sheets, and from the ground to the first"}}},
        make_greys_scene},
+      {{"sieve",
+        "a plate of 2 m with square holes over a ground: material \"plate\"",
+        {{"holes", 100, 1, 2000, true, "number of holes along an edge"},
+         {"open", 0.5, 0.01, 0.99, false, "area of the holes over that of the plate"},
+         {"height", 1, 0.01, 10, false, "metres above the ground"}}},
+       make_sieve_scene},
   };
 }
 
 /// Makes the table, in the order of the output of `dapple scene`.
 std::vector<Recipe> make_recipes() {
   std::vector<Recipe> all = plant_recipes();
+  for (Recipe& recipe : habit_recipes()) all.push_back(std::move(recipe));
   all.push_back(hair_recipe());
   for (Recipe& recipe : sheet_and_solid_recipes()) all.push_back(std::move(recipe));
   return all;

@@ -13,6 +13,12 @@ Scene make_cloud_scene(const ProceduralParameters& parameters);
 Scene make_forest_scene(const ProceduralParameters& parameters);
 Scene make_demo_scene(const ProceduralParameters& parameters);
 
+// Plants of other habits (plants.cpp).
+Scene make_palm_scene(const ProceduralParameters& parameters);
+Scene make_conifer_scene(const ProceduralParameters& parameters);
+Scene make_willow_scene(const ProceduralParameters& parameters);
+Scene make_grass_scene(const ProceduralParameters& parameters);
+
 // Strands (hair.cpp).
 Scene make_hair_scene(const ProceduralParameters& parameters);
 
@@ -21,6 +27,7 @@ Scene make_stack_scene(const ProceduralParameters& parameters);
 Scene make_disk_scene(const ProceduralParameters& parameters);
 Scene make_cube_scene(const ProceduralParameters& parameters);
 Scene make_greys_scene(const ProceduralParameters& parameters);
+Scene make_sieve_scene(const ProceduralParameters& parameters);
 
 /// Makes a material of alpha mode BLEND; `opacity` is in [0, 1].
 Material blend_material(const std::string& name, float opacity);

@@ -98,6 +98,32 @@ Scene make_cube_scene(const ProceduralParameters& parameters) {
   return scene;
 }
 
+Scene make_sieve_scene(const ProceduralParameters& parameters) {
+  const std::uint32_t holes = parameters.whole("holes");
+  const float height = parameters.real("height"), half = 0.5f * std::sqrt(parameters.real("open"));
+  const float cell = kSheetSide / static_cast<float>(holes);
+  Mesh plate;
+  plate.name = "sieve";
+  // Corners of a cell and of its hole, at the same angles.
+  constexpr V2f kCorners[4] = {{-1, 1}, {1, 1}, {1, -1}, {-1, -1}};
+  for (std::uint32_t i = 0; i < holes * holes; ++i) {
+    const V2f centre((static_cast<float>(i % holes) + 0.5f) * cell - kSheetSide / 2,
+                     (static_cast<float>(i / holes) + 0.5f) * cell - kSheetSide / 2);
+    const auto corner = [&](int k, float size) {
+      const V2f at = centre + kCorners[k % 4] * (size * cell);
+      return V3f(at.x, height, at.y);
+    };
+    for (int k = 0; k < 4; ++k)
+      append_quad(plate, corner(k, 0.5f), corner(k + 1, 0.5f), corner(k + 1, half), corner(k, half),
+                  0);
+  }
+  Scene scene;
+  scene.materials = {opaque_material("plate")};
+  place(scene, std::move(plate));
+  add_test_ground(scene);
+  return scene;
+}
+
 Scene make_greys_scene(const ProceduralParameters& parameters) {
   Scene scene;
   scene.materials = {blend_material("quarter", 0.25f), blend_material("half", 0.5f)};

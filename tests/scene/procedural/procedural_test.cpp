@@ -69,7 +69,9 @@ std::string complaint(const std::string& name) {
 }
 
 TEST(Procedural, TheSameSeedGivesTheSameBitsAndAnotherSeedDoesNot) {
-  for (const char* scene : {"tree?leaves=3000", "cloud?leaves=3000", "forest?leaves=100"}) {
+  for (const char* scene :
+       {"tree?leaves=3000", "cloud?leaves=3000", "forest?leaves=100", "palm?leaves=100",
+        "conifer?leaves=100", "willow?leaves=100", "grass?leaves=100"}) {
     const std::string name = std::string("scene:") + scene;
     const std::uint64_t once = hash_of(make_procedural(name + "&seed=5"));
     EXPECT_EQ(once, hash_of(make_procedural(name + "&seed=5"))) << scene;
@@ -303,8 +305,8 @@ TEST(Procedural, DefaultsAreThoseThatTheHelpShows) {
 
 TEST(Procedural, AnUnknownSceneOrKeyIsRefusedWithTheKnownOnes) {
   EXPECT_EQ(complaint("scene:oak"),
-            "scene:oak: there is no such scene; there are: demo, tree, cloud, forest, hair, stack, "
-            "disk, cube, greys");
+            "scene:oak: there is no such scene; there are: demo, tree, cloud, forest, palm, "
+            "conifer, willow, grass, hair, stack, disk, cube, greys, sieve");
   EXPECT_EQ(complaint("scene:cube?side=2"),
             "scene:cube: there is no parameter \"side\"; there are: divisions");
   EXPECT_EQ(complaint("scene:demo?leaves=3"),
