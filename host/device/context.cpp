@@ -317,8 +317,10 @@ void DeviceContext::launch(const KernelName& name, const std::string& label, std
     cl::Kernel& kernel = state_->kernel(name);
     cl_uint index = 0;
     for (const KernelArgument& argument : arguments) {
-      if (argument.buffer) {
+      if (argument.buffer && argument.buffer->memory()) {
         kernel.setArg(index++, argument.buffer->memory()->buffer);
+      } else if (argument.buffer) {
+        kernel.setArg(index++, sizeof(cl_mem), nullptr);  // the kernel does not read it
       } else {
         kernel.setArg(index++, argument.size, argument.value);
       }

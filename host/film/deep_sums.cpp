@@ -10,7 +10,7 @@ void DeepSums::add(std::size_t pixel, float z) {
   const auto behind = std::lower_bound(
       slots.begin(), slots.end(), z, [](const Slot& slot, float depth) { return slot.z < depth; });
   auto nearest = behind;
-  if (nearest == slots.end() || (nearest != slots.begin() && z - (nearest - 1)->z < nearest->z - z))
+  if (nearest != slots.begin() && (nearest == slots.end() || z - (nearest - 1)->z < nearest->z - z))
     --nearest;
   if (!slots.empty() && std::fabs(nearest->z - z) <= kDeepMerge * std::fabs(nearest->z)) {
     ++nearest->count;

@@ -17,7 +17,7 @@ void add_cache_statistics(RenderStatistics& s, const BvhStatistics& bvh) {
 }
 
 void add_build_seconds(RenderStatistics& s, const BvhStatistics& bvh) {
-  s.seconds.build += bvh.build_seconds;
+  s.seconds.build += bvh.build_seconds + bvh.instance_seconds;
   s.seconds.prefilter += bvh.prefilter_seconds;
 }
 
@@ -25,7 +25,7 @@ void add_update_statistics(RenderStatistics& s, const BvhUpdate& update, const B
   double built = 0;
   if (update.objects_rebuilt > 0) {
     add_build_seconds(s, bvh);
-    built = bvh.build_seconds + bvh.prefilter_seconds;
+    built = bvh.build_seconds + bvh.instance_seconds + bvh.prefilter_seconds;
   }
   s.seconds.refit += std::max(0.0, update.seconds - built);
   s.refit = {true, update.objects_kept, update.objects_refitted, update.objects_rebuilt,

@@ -19,6 +19,7 @@ namespace dapple {
 struct BvhStatistics {
   double build_seconds = 0;                              ///< SAH build, collapse, quantization
   double prefilter_seconds = 0;                          ///< directional opacity
+  double instance_seconds = 0;                           ///< BVH over instances, with opacity
   std::size_t triangles = 0;                             ///< distinct, before instancing
   std::size_t segments = 0;                              ///< segments of strands, distinct too
   std::size_t opaque = 0, cut_out = 0, translucent = 0;  ///< of `triangles`

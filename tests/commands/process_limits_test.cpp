@@ -4,6 +4,7 @@
 
 #include "support/program_run.hpp"
 #include "support/running_program.hpp"
+#include "support/sanitizers.hpp"
 
 namespace dapple {
 namespace {
@@ -14,6 +15,7 @@ using namespace program_test;
 class ProcessLimits : public ProgramRun {};
 
 TEST_F(ProcessLimits, OfFilesAndStacksAreNamed) {
+  DAPPLE_SKIP_WITH_SANITIZER();
   expect_failure(render("", "bash -c 'ulimit -n 5; exec \"$0\" \"$@\"'"), 1,
                  "only 5 files may be open here (ulimit -n)");
   expect_failure(render("", "ulimit -s 64;"), 1, "stacks may only have 64 kB here (ulimit -s)");

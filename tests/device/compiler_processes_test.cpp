@@ -131,7 +131,7 @@ TEST_F(CompilingProcessesCold, MachineCodeThatIsMissingIsMadeByProcessesToo) {
   ASSERT_GE(compilers_of(arguments), 2u);
   EXPECT_EQ(compilers_of(arguments), 0u);
   arguments[5] = "ao,light";
-  EXPECT_EQ(compilers_of(arguments), 1u) << "rays to lights, and resolving them";
+  EXPECT_EQ(compilers_of(arguments), 2u) << "rays to the sun and to the sky, and resolving them";
 }
 
 TEST_F(CompilingProcesses, EndWithTheProcessThatWaitsForThem) {

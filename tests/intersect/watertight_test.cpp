@@ -63,7 +63,7 @@ std::vector<Ray> rays_from_inside(const Mesh& mesh, std::size_t count, std::size
   for (std::size_t i = 0; i < count; ++i) {
     if (i % per_point == 0) origin = centre + points.in_cube(0.3f);
     // Half of the rays aim at corners and edges of triangles, to within roundings.
-    const std::size_t t = i * 7919 % mesh.primitive_count();
+    const std::size_t t = i * 7919 % (mesh.indices.size() / 3);
     const V3f& a = mesh.positions[mesh.indices[3 * t]];
     const V3f& b = mesh.positions[mesh.indices[3 * t + 1]];
     const float share = i % 4 ? points.unit() : 0.0f;

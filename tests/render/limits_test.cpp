@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "support/program_run.hpp"
+#include "support/sanitizers.hpp"
 
 namespace dapple {
 namespace {
@@ -31,6 +32,7 @@ class Limits : public program_test::ProgramRun {
 };
 
 TEST_F(Limits, TwentyStepsOfAddressSpaceGiveThePictureOrAnError) {
+  DAPPLE_SKIP_WITH_SANITIZER();
   for (int step = 0; step < 20; ++step) {
     const int kilobytes = 800'000 + step * 168'000;
     SCOPED_TRACE(kilobytes);

@@ -1,10 +1,12 @@
 #include "bvh/build/top_level.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
-#include <tuple>
 
 #include "dapple/error.hpp"
 
@@ -101,35 +103,63 @@ PlacedInstance place(const Instance& instance, const ObjectSummary& object, std:
   return placed_instance;
 }
 
-/// Returns the coverage and the normals of a top-level node, and sets the opacities below it.
-/// Instances count as uniformly filled boxes, since the coverage maps of an object are not known
-/// along the rotated axes.
-std::pair<CoverageMap, NormalMoments> prefilter_top(const WideTree& tree,
-                                                    const std::vector<PrimitiveBox>& order,
-                                                    const std::vector<PlacedInstance>& placed,
-                                                    std::vector<BvhNode>& nodes,
-                                                    std::uint32_t index) {
-  const WideNode& wide = tree.nodes[index];
-  NodeCoverage coverage(wide.box);
+/// What a top-level node covers, as its parent needs it.
+struct Covered {
+  CoverageMap map;
   NormalMoments normals;
-  for (unsigned slot = 0; slot < wide.child_count; ++slot) {
-    const WideChild& child = tree.children_of(wide)[slot];
-    CoverageMap map;
-    NodeOpacity opacity;
-    if (child.count) {
-      opacity = placed[order[child.first].primitive].opacity;
-      map = uniform_map(opacity.axes);
+};
+
+/// Computes what top-level nodes cover, and stores the opacities of their children. Instances count
+/// as uniformly filled boxes, since the coverage maps of an object are not known along the rotated
+/// axes.
+class TopPrefilter {
+ public:
+  TopPrefilter(const WideTree& tree, const std::vector<PrimitiveBox>& order,
+               const std::vector<PlacedInstance>& placed, std::vector<BvhNode>& nodes)
+      : tree_(tree), order_(order), placed_(placed), nodes_(nodes) {}
+
+  /// The children of the first levels are computed in parallel.
+  Covered node(std::uint32_t index, int level = 0) {
+    const auto children = tree_.children_of(tree_.nodes[index]);
+    std::array<NodeOpacity, DAPPLE_BVH_WIDTH> opacities;
+    std::array<CoverageMap, DAPPLE_BVH_WIDTH> maps;
+    const auto cover = [&](std::size_t slot) {
+      opacities[slot] = cover_child(children[slot], maps[slot], level);
+    };
+    if (level < kParallelLevels) {
+      tbb::parallel_for(std::size_t{0}, children.size(), cover);
     } else {
-      NormalMoments below;
-      std::tie(map, below) = prefilter_top(tree, order, placed, nodes, child.first);
-      opacity = map_opacity(map, below, child.box);
+      for (std::size_t slot = 0; slot < children.size(); ++slot) cover(slot);
     }
-    coverage.add(map, child.box);
-    normals.add(opacity.normals);
-    set_child_opacity(nodes[index], slot, opacity, child.box);
+    NodeCoverage coverage(tree_.nodes[index].box);
+    NormalMoments normals;
+    for (unsigned slot = 0; slot < children.size(); ++slot) {
+      coverage.add(maps[slot], children[slot].box);
+      normals.add(opacities[slot].normals);
+      set_child_opacity(nodes_[index], slot, opacities[slot], children[slot].box);
+    }
+    return {coverage.map(), normals};
   }
-  return {coverage.map(), normals};
-}
+
+ private:
+  static constexpr int kParallelLevels = 4;
+
+  NodeOpacity cover_child(const WideChild& child, CoverageMap& map, int level) {
+    if (child.count) {
+      const NodeOpacity& opacity = placed_[order_[child.first].primitive].opacity;
+      map = uniform_map(opacity.axes);
+      return opacity;
+    }
+    const Covered below = node(child.first, level + 1);
+    map = below.map;
+    return map_opacity(map, below.normals, child.box);
+  }
+
+  const WideTree& tree_;
+  const std::vector<PrimitiveBox>& order_;
+  const std::vector<PlacedInstance>& placed_;
+  std::vector<BvhNode>& nodes_;
+};
 
 struct TopLevel {
   std::vector<BvhNode> nodes;
@@ -141,22 +171,27 @@ struct TopLevel {
 /// Builds the BVH over instances, with one instance per leaf. `first_node`: number of nodes that
 /// precede it in the scene.
 TopLevel build_top(const std::vector<PlacedInstance>& placed, std::size_t first_node) {
-  std::vector<PrimitiveBox> boxes;
-  for (std::uint32_t i = 0; i < placed.size(); ++i)
-    boxes.push_back(primitive_box(placed[i].box, i));
+  std::vector<PrimitiveBox> boxes(placed.size());
+  tbb::parallel_for(std::size_t{0}, placed.size(), [&](std::size_t i) {
+    boxes[i] = primitive_box(placed[i].box, static_cast<std::uint32_t>(i));
+  });
   const WideTree wide = build_wide_tree(boxes, 1);
   TopLevel top;
   top.nodes = pack_nodes(wide);
   top.stack = stack_needed(wide);
-  const CoverageMap map = prefilter_top(wide, boxes, placed, top.nodes, 0).first;
+  const CoverageMap map = TopPrefilter(wide, boxes, placed, top.nodes).node(0).map;
   for (int axis = 0; axis < 3; ++axis) top.root_opacity[axis] = map.mean_opacity(axis);
+  std::vector<std::uint32_t> order;
   for (std::size_t n = 0; n < top.nodes.size(); ++n) {
-    top.nodes[n].prim_base = static_cast<std::uint32_t>(top.instances.size());
+    top.nodes[n].prim_base = static_cast<std::uint32_t>(order.size());
     top.nodes[n].child_base += static_cast<std::uint32_t>(first_node);
     for (const WideChild& child : wide.children_of(wide.nodes[n])) {
-      if (child.count) top.instances.push_back(placed[boxes[child.first].primitive].record);
+      if (child.count) order.push_back(boxes[child.first].primitive);
     }
   }
+  top.instances.resize(order.size());
+  tbb::parallel_for(std::size_t{0}, order.size(),
+                    [&](std::size_t i) { top.instances[i] = placed[order[i]].record; });
   return top;
 }
 
@@ -173,26 +208,31 @@ void check_stack(std::uint32_t needed, const std::string& source) {
 std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
                                      const std::vector<ObjectSummary>& objects,
                                      const std::vector<ObjectOffsets>& offsets) {
+  const auto start = std::chrono::steady_clock::now();
   BvhStatistics& statistics = bvh.statistics;
   bvh.bounds.makeEmpty();
   statistics.instanced_triangles = statistics.instanced_segments = 0;
-  std::vector<PlacedInstance> placed;
+  std::vector<std::size_t> sources;
   std::uint32_t object_stack = 0;
-  for (const Instance& instance : scene.instances) {
-    const ObjectSummary& object = objects[instance.mesh];
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const ObjectSummary& object = objects[scene.instances[i].mesh];
     if (object.box.isEmpty()) continue;
-    const auto source = static_cast<std::size_t>(&instance - scene.instances.data());
-    placed.push_back(place(instance, object, offsets[instance.mesh].node, source));
-    bvh.bounds.extendBy(placed.back().box);
+    sources.push_back(i);
     (object.has_strands ? statistics.instanced_segments : statistics.instanced_triangles) +=
         object.triangles;
     object_stack = std::max(object_stack, object.stack);
   }
-  if (placed.empty()) {
+  if (sources.empty()) {
     throw Error(ErrorKind::input,
                 fmt::format("{}: nothing to hit: every triangle and segment is fully transparent",
                             scene.source));
   }
+  std::vector<PlacedInstance> placed(sources.size());
+  tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
+    const Instance& instance = scene.instances[sources[i]];
+    placed[i] = place(instance, objects[instance.mesh], offsets[instance.mesh].node, sources[i]);
+  });
+  for (const PlacedInstance& instance : placed) bvh.bounds.extendBy(instance.box);
   statistics.instances = placed.size();
   const Instance& first = scene.instances.front();
   bvh.has_top = scene.instances.size() > 1 || first.to_world != M44f() || first.light >= 0;
@@ -208,6 +248,8 @@ std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
   for (int axis = 0; axis < 3; ++axis) statistics.root_opacity[axis] = top.root_opacity[axis];
   check_stack(top.stack + object_stack, scene.source);
   bvh.instances = std::move(top.instances);
+  statistics.instance_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return std::move(top.nodes);
 }
 
