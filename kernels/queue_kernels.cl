@@ -2,6 +2,7 @@
    program, since each program costs compile time: experiment 713. Kernels of dome lights are a program
    of their own (lights/dome.cl), as few scenes need them. */
 #include "occlusion/ao.cl"
+#include "occlusion/gather.cl"
 #include "film/compact.cl"
 #include "film/film.cl"
 #include "lights/light.cl"

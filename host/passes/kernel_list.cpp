@@ -13,7 +13,7 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
       {kClosestHit, kRayGroup},         {kCompactHits, kScanItems}, {kAoRays, kRayGeneratorGroup},
       {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
       {kShadePoints, kRayGroup},        {kTurnPoints, kRayGroup},   {kResolveSurface, kRayGroup},
-      {kResolveLight, kRayGroup},
+      {kResolveLight, kRayGroup},       {kGatherRays, kRayGroup},
   };
   for (const bool shared_origin : {true, false})
     kernels.push_back({camera_kernel(shared_origin), kCameraGroup});
@@ -35,9 +35,10 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(
         occlusion_kernel(options.estimator, packets_in_picture(context, options.estimator, rays)));
-    if (measures_bias(options))
-      kernels.push_back(
-          occlusion_kernel(Estimator::exact, packets_in_picture(context, Estimator::exact, rays)));
+    if (!measures_bias(options)) return;
+    kernels.push_back(
+        occlusion_kernel(Estimator::exact, packets_in_picture(context, Estimator::exact, rays)));
+    kernels.push_back(kGatherRays);
   };
   if (options.ao) {
     add_occlusion(options.ao_rays);

@@ -33,6 +33,14 @@ void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& p
                  {queues.points, queues.active, queues.rays, params}, kRayGeneratorGroup);
 }
 
+void gather_pass(DeviceContext& context, const Queues& queues, const Buffer& slots,
+                 const Queues& gathered, uint ray_count, uint rays_per_point, uint first) {
+  context.launch(kGatherRays, "bias report", ray_count,
+                 {slots, ray_count, rays_per_point, first, queues.rays, queues.occlusions,
+                  gathered.rays, gathered.occlusions},
+                 kRayGroup);
+}
+
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order) {

@@ -21,11 +21,17 @@ inline constexpr std::size_t kPointGroup = 1;
 KernelName occlusion_kernel(Estimator estimator, Packets with);
 KernelName point_ao_kernel(Estimator estimator);
 inline const KernelName kAoRays{"ao_rays", "queue_kernels", {}};
+inline const KernelName kGatherRays{"gather_rays", "queue_kernels", {}};
 /// Work-items of a work-group of occlusion_kernel() with packets.
 std::size_t packet_group(const DeviceContext& context, Packets with);
 
 /// Writes the AO rays of the active points to `rays`.
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params);
+
+/// Copies the `rays` and `occlusions` of the points at these slots of the active list, `ray_count`
+/// rays of them, to those of `gathered`, from ray `first` on.
+void gather_pass(DeviceContext& context, const Queues& queues, const Buffer& slots,
+                 const Queues& gathered, uint ray_count, uint rays_per_point, uint first);
 
 /// Writes the transmittance of each ray in `rays` to `occlusions`. CPUs trace point packets if
 /// `params.rays_per_point` is large enough, else pixel packets; other devices trace single rays. A

@@ -1,6 +1,7 @@
 #include "render/bias_tracer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "camera/camera_splitting.hpp"
@@ -29,6 +30,30 @@ std::int64_t slot_of(std::span<const SampleHits> hits, std::uint32_t sample) {
   return std::int64_t{record.first_slot} + std::popcount(record.hits & (bit - 1u));
 }
 
+/// The chosen samples of a pixel, found once for neighbouring pixels of a unit.
+class UnitSamples {
+ public:
+  UnitSamples(const ExactSamples& samples, std::uint32_t splitting_bits, std::uint32_t count)
+      : samples_(samples), splitting_bits_(splitting_bits), count_(count) {}
+
+  /// Those of `count` samples from `first` on, as numbers from 0 on.
+  const std::vector<std::uint32_t>& of(std::uint32_t x, std::uint32_t y, std::uint32_t first) {
+    const std::array unit{x / kBiasUnit, y / kBiasUnit, first};
+    if (unit == unit_) return chosen_;
+    unit_ = unit;
+    chosen_.clear();
+    for (std::uint32_t i = 0; i < count_; ++i)
+      if (samples_.has(x, y, (first + i) >> splitting_bits_)) chosen_.push_back(i);
+    return chosen_;
+  }
+
+ private:
+  const ExactSamples& samples_;
+  std::uint32_t splitting_bits_, count_;
+  std::array<std::uint32_t, 3> unit_{~0u, ~0u, ~0u};
+  std::vector<std::uint32_t> chosen_;
+};
+
 }  // namespace
 
 BiasTracer::BiasTracer(DeviceContext& context, const DeviceBuffers& scene,
@@ -46,85 +71,94 @@ BiasTracer::BiasTracer(DeviceContext& context, const DeviceBuffers& scene,
   for (std::vector<float>& layer : sums_.differences) layer.resize(view.pixel_count());
 }
 
-void BiasTracer::choose(const SliceParams& slice, std::span<const PixelWork> work) {
+void BiasTracer::choose(const SliceParams& slice, std::span<const PixelWork> work,
+                        const Queues& queues) {
   const ExactSamples samples(share_);
+  const HostView hit_view = context_.view(queues.sample_hits);
+  const std::span<const SampleHits> hits = hit_view.values<SampleHits>();
   const auto width = static_cast<std::uint32_t>(crop_.width());
-  chosen_.clear();
+  chosen_slots_.clear();
+  chosen_pixels_.clear();
+  UnitSamples chosen(samples, splitting_bits_, slice.sample_count);
   for (std::uint32_t entry = 0; entry < slice.pixel_count; ++entry) {
     const PixelWork& of_pixel = work[slice.first_work + entry];
     const std::uint32_t x = of_pixel.pixel % width + static_cast<std::uint32_t>(crop_.x0);
     const std::uint32_t y = of_pixel.pixel / width + static_cast<std::uint32_t>(crop_.y0);
-    const std::uint32_t first = of_pixel.first_sample + slice.first_sample;
-    for (std::uint32_t i = 0; i < slice.sample_count; ++i)
-      if (samples.has(x, y, (first + i) >> splitting_bits_))
-        chosen_.push_back({entry * slice.sample_count + i, of_pixel.pixel});
+    for (const std::uint32_t i : chosen.of(x, y, of_pixel.first_sample + slice.first_sample)) {
+      const std::int64_t slot = slot_of(hits, entry * slice.sample_count + i);
+      if (slot < 0) continue;
+      chosen_slots_.push_back(static_cast<std::uint32_t>(slot));
+      chosen_pixels_.push_back(of_pixel.pixel);
+    }
   }
+  const std::size_t bytes = chosen_slots_.size() * sizeof(std::uint32_t);
+  if (slots_.bytes() < bytes) slots_ = context_.allocate(bytes);
+  context_.write(slots_, chosen_slots_.data(), bytes);
 }
 
 void BiasTracer::collect(std::size_t layer, const Queues& queues, const OcclusionParams& params) {
   sums_.rays += params.ray_count;
-  if (chosen_.empty()) return;
+  if (chosen_slots_.empty()) return;
   Waiting& waiting = waiting_[layer];
-  waiting.params = params;
-  {
-    const HostView hit_view = context_.view(queues.sample_hits);
-    const HostView ray_view = context_.view(queues.rays);
-    const HostView found_view = context_.view(queues.occlusions);
-    const std::span<const SampleHits> hits = hit_view.values<SampleHits>();
-    for (const Chosen& chosen : chosen_) {
-      const std::int64_t slot = slot_of(hits, chosen.sample);
-      if (slot < 0) continue;
-      const std::size_t begin = static_cast<std::size_t>(slot) * params.rays_per_point;
-      const auto rays = ray_view.values<Ray>().subspan(begin, params.rays_per_point);
-      const auto found = found_view.values<Occlusion>().subspan(begin, params.rays_per_point);
-      waiting.rays.insert(waiting.rays.end(), rays.begin(), rays.end());
-      waiting.prefiltered.insert(waiting.prefiltered.end(), found.begin(), found.end());
-      waiting.pixels.push_back(chosen.pixel);
-      waiting.factors.push_back(static_cast<float>(1 / share_));
-    }
+  const auto added = static_cast<std::uint32_t>(chosen_slots_.size()) * params.rays_per_point;
+  if ((std::size_t{waiting.count} + added) * sizeof(Ray) > waiting.queues.rays.bytes()) {
+    if (waiting.count) trace(layer);
+    const std::size_t room = kRaysAtOnce + std::size_t{added};
+    waiting.queues.rays = context_.allocate(room * sizeof(Ray));
+    waiting.queues.occlusions = context_.allocate(room * sizeof(Occlusion));
   }
-  if (waiting.rays.size() >= kRaysAtOnce) trace(layer);
+  waiting.params = params;
+  gather_pass(context_, queues, slots_, waiting.queues, added, params.rays_per_point,
+              waiting.count);
+  waiting.count += added;
+  waiting.pixels.insert(waiting.pixels.end(), chosen_pixels_.begin(), chosen_pixels_.end());
+  waiting.factors.resize(waiting.pixels.size(), static_cast<float>(1 / share_));
+  if (waiting.count >= kRaysAtOnce) trace(layer);
 }
 
 void BiasTracer::finish() {
   for (std::size_t layer = 0; layer < waiting_.size(); ++layer)
-    if (!waiting_[layer].rays.empty()) trace(layer);
+    if (waiting_[layer].count) trace(layer);
 }
 
 void BiasTracer::trace(std::size_t layer) {
   Waiting& waiting = waiting_[layer];
-  const std::size_t count = waiting.rays.size();
-  if (queues_.rays.bytes() < count * sizeof(Ray)) {
-    queues_.rays = context_.allocate(count * sizeof(Ray));
-    queues_.occlusions = context_.allocate(count * sizeof(Occlusion));
-  }
-  context_.write(queues_.rays, waiting.rays.data(), count * sizeof(Ray));
+  const std::size_t bytes = waiting.count * sizeof(Occlusion);
+  if (exact_.bytes() < bytes) exact_ = context_.allocate(bytes);
+  Queues queues;
+  queues.rays = waiting.queues.rays;
+  queues.occlusions = exact_;
   OcclusionParams params = waiting.params;
-  params.ray_count = static_cast<uint>(count);
-  occlusion_pass(context_, queues_, scene_, "bias report", Estimator::exact, params,
+  params.ray_count = waiting.count;
+  occlusion_pass(context_, queues, scene_, "bias report", Estimator::exact, params,
                  RayOrder::by_pixel);
-  std::vector<Occlusion> exact(count);
-  context_.read(queues_.occlusions, exact.data(), count * sizeof(Occlusion));
-  add(layer, exact);
-  waiting = {};
+  {
+    const HostView exact = context_.view(exact_), rays = context_.view(waiting.queues.rays),
+                   prefiltered = context_.view(waiting.queues.occlusions);
+    add(layer, rays.values<Ray>(), prefiltered.values<Occlusion>(),
+        exact.values<Occlusion>().first(waiting.count));
+  }
+  waiting.count = 0;
+  waiting.pixels.clear();
+  waiting.factors.clear();
   if (sums_.exact_cost > kMaxCost * sums_.prefiltered_cost)
     share_ = double{options_.report_bias} * kMaxCost * sums_.prefiltered_cost / sums_.exact_cost;
 }
 
-void BiasTracer::add(std::size_t layer, std::span<const Occlusion> exact) {
+void BiasTracer::add(std::size_t layer, std::span<const Ray> rays,
+                     std::span<const Occlusion> prefiltered, std::span<const Occlusion> exact) {
   const Waiting& waiting = waiting_[layer];
-  const std::size_t rays = waiting.params.rays_per_point;
+  const std::size_t of_sample = waiting.params.rays_per_point;
   std::vector<float>& differences = sums_.differences[layer];
   for (std::size_t sample = 0; sample < waiting.pixels.size(); ++sample) {
     float difference = 0;
-    for (std::size_t r = sample * rays; r < (sample + 1) * rays; ++r) {
-      difference +=
-          waiting.rays[r].weight * (waiting.prefiltered[r].transmittance - exact[r].transmittance);
+    for (std::size_t r = sample * of_sample; r < (sample + 1) * of_sample; ++r) {
+      difference += rays[r].weight * (prefiltered[r].transmittance - exact[r].transmittance);
       sums_.exact_cost += cost_of(exact[r]);
-      sums_.prefiltered_cost += cost_of(waiting.prefiltered[r]);
+      sums_.prefiltered_cost += cost_of(prefiltered[r]);
     }
     differences[waiting.pixels[sample]] +=
-        difference * waiting.factors[sample] / static_cast<float>(rays);
+        difference * waiting.factors[sample] / static_cast<float>(of_sample);
   }
   sums_.exact_rays += static_cast<double>(exact.size());
 }

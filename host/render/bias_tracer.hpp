@@ -19,8 +19,8 @@ class BiasTracer {
   BiasTracer(DeviceContext& context, const DeviceBuffers& scene, const RenderOptions& options,
              const View& view, std::size_t layers, BiasSums sums);
 
-  /// Chooses samples of a slice. `work`: of the slice's group.
-  void choose(const SliceParams& slice, std::span<const PixelWork> work);
+  /// Chooses samples of a slice whose hits are listed. `work`: of the slice's group.
+  void choose(const SliceParams& slice, std::span<const PixelWork> work, const Queues& queues);
   /// Takes the rays of the chosen samples, whose transmittances are in queues.occlusions. `params`:
   /// of the pass that wrote them.
   void collect(std::size_t layer, const Queues& queues, const OcclusionParams& params);
@@ -29,22 +29,18 @@ class BiasTracer {
   [[nodiscard]] const BiasSums& sums() const { return sums_; }
 
  private:
-  /// A sample of the slice whose rays are traced exactly.
-  struct Chosen {
-    std::uint32_t sample;  ///< index in the slice
-    std::uint32_t pixel;   ///< in the crop
-  };
-  /// Rays of a layer that wait for being traced.
+  /// Rays of a layer that wait on the device for being traced.
   struct Waiting {
     OcclusionParams params{};
-    std::vector<Ray> rays;
-    std::vector<Occlusion> prefiltered;  ///< by ray
-    std::vector<std::uint32_t> pixels;   ///< by sample
-    std::vector<float> factors;          ///< by sample: 1 / share
+    Queues queues;                      ///< rays, and what the prefiltered pass found
+    std::uint32_t count = 0;            ///< rays
+    std::vector<std::uint32_t> pixels;  ///< by sample, in the crop
+    std::vector<float> factors;         ///< by sample: 1 / share
   };
 
   void trace(std::size_t layer);
-  void add(std::size_t layer, std::span<const Occlusion> exact);
+  void add(std::size_t layer, std::span<const Ray> rays, std::span<const Occlusion> prefiltered,
+           std::span<const Occlusion> exact);
 
   DeviceContext& context_;
   const DeviceBuffers& scene_;
@@ -53,9 +49,10 @@ class BiasTracer {
   std::uint32_t splitting_bits_;
   BiasSums sums_;
   double share_;  ///< of the samples that are chosen next
-  std::vector<Chosen> chosen_;
-  std::vector<Waiting> waiting_;  ///< by layer
-  Queues queues_;                 ///< of exact rays
+  std::vector<std::uint32_t> chosen_slots_, chosen_pixels_;  ///< of the slice's chosen hits
+  Buffer slots_;                                             ///< chosen_slots_ on the device
+  std::vector<Waiting> waiting_;                             ///< by layer
+  Buffer exact_;                                             ///< Occlusion of exact rays
 };
 
 }  // namespace dapple

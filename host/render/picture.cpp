@@ -297,7 +297,7 @@ class PictureTracer {
     }
     const std::uint32_t hits = compact_pass(context_, queues_, samples);
     if (hits == 0) return;
-    if (bias_) bias_->choose(slice, state_.round.groups[state_.round.group].work);
+    if (bias_) bias_->choose(slice, state_.round.groups[state_.round.group].work, queues_);
     const Side front{queues_, layout_.ao, layout_.lights};
     trace_side(front, hits);
     if (!options_.back) return;
