@@ -14,6 +14,7 @@
 #include "passes/kernel_list.hpp"
 #include "support/program_run.hpp"
 #include "support/running_program.hpp"
+#include "support/sanitizers.hpp"
 
 namespace dapple {
 namespace {
@@ -152,6 +153,7 @@ TEST_F(CompilingProcesses, EndWithTheProcessThatWaitsForThem) {
 
 TEST_F(CompilingProcessesCold, WhereNoneCanBeStartedThePictureIsTheSame) {
   if (!program_test::has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
+  DAPPLE_SKIP_WITH_SANITIZER();  // the search for leaks needs /proc
   const std::string picture =
       "render scene:cube --width 16 --height 16 --spp 4 -q --passes ao,light,visits -o ";
   ASSERT_EQ(with_cache(picture + "with.exr").code, 0);

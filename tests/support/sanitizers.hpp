@@ -1,5 +1,5 @@
 // Whether the tests and the program run with a sanitizer, which maps terabytes of address space,
-// keeps freed memory for a while, and needs larger stacks.
+// keeps freed memory for a while, and needs larger stacks and /proc.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,6 +14,6 @@ inline constexpr bool kSanitized = false;
 
 }  // namespace dapple
 
-/// For tests of memory: ends them with a message.
+/// For tests of limits: ends them with a message.
 #define DAPPLE_SKIP_WITH_SANITIZER() \
-  if (dapple::kSanitized) GTEST_SKIP() << "memory is another with a sanitizer: left out"
+  if (dapple::kSanitized) GTEST_SKIP() << "a sanitizer needs more than this test allows: left out"
