@@ -87,7 +87,8 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
       {"nodes", per_primitive(nodes)},
       {"triangles", per_primitive(triangles + segments)},
       {"all", per_primitive(nodes + triangles + segments + textures + instances)}};
-  json["seconds"] = {{"build", s.build_seconds + s.instance_seconds}, {"prefilter", s.prefilter_seconds}};
+  json["seconds"] = {{"build", s.build_seconds + s.instance_seconds},
+                     {"prefilter", s.prefilter_seconds}};
   json["sah_node_visits"] = s.sah_cost;
   json["lane_use"] = s.lane_use;
   json["opacity"] = {s.root_opacity[0], s.root_opacity[1], s.root_opacity[2]};

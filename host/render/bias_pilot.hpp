@@ -56,9 +56,9 @@ class BiasPilot : public BiasSource {
   UnitGrid grid_;
   std::vector<std::uint32_t> order_;  ///< units, those that were not chosen yet as spread as others
   std::size_t units_at_once_;
-  std::size_t next_ = 0;              ///< of order_, which is taken rounds_ times
-  std::size_t rounds_;                ///< camera rays of a pixel
-  std::vector<BiasUnit> units_;       ///< with counts of pixels that show geometry
+  std::size_t next_ = 0;         ///< of order_, which is taken rounds_ times
+  std::size_t rounds_;           ///< camera rays of a pixel
+  std::vector<BiasUnit> units_;  ///< with counts of pixels that show geometry
   double seen_ = 0, tried_ = 0;
   std::vector<Layer> layers_;
   Queues queues_, traced_;
