@@ -97,7 +97,8 @@ TEST_F(Interruption, BeforeThereAreSamplesItEndsAtOnceAndLeavesNothing) {
   EXPECT_EQ(files_in_folder(), 0u);
 }
 
-// With an empty cache a driver compiles for many seconds, in other processes and then in this one.
+// With an empty cache a driver compiles for seconds, in other processes and then in this one. On a
+// fast machine it is done before the last signal: then there are samples, and they are kept.
 TEST_F(Interruption, WhileKernelsCompileItEndsWithinTwoSecondsAndLeavesNothing) {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   const std::string before = cache ? cache : "";
@@ -111,7 +112,11 @@ TEST_F(Interruption, WhileKernelsCompileItEndsWithinTwoSecondsAndLeavesNothing) 
     program.send(SIGTERM);
     EXPECT_EQ(program.wait(), 143) << bytes_of(log());
     EXPECT_LT(steady_clock::now() - sent, Milliseconds(2'000)) << "after " << delay << " ms";
-    EXPECT_EQ(files_in_folder(), 0u);
+    const bool has_samples = contains(bytes_of(log()), "interrupted after ");
+    EXPECT_FALSE(has_samples && delay == 300) << bytes_of(log());
+    EXPECT_EQ(files_in_folder(), has_samples ? 2u : 0u) << "after " << delay << " ms";
+    std::filesystem::remove(path("out.exr"));
+    std::filesystem::remove(path("a.ckpt"));
     std::filesystem::remove_all(folder);
   }
   before.empty() ? unsetenv("XDG_CACHE_HOME") : setenv("XDG_CACHE_HOME", before.c_str(), 1);
