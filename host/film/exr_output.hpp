@@ -14,8 +14,9 @@ namespace dapple {
 /// change the files.
 void use_exr_threads(int count);
 
-/// As write_exr() in film.hpp, which waits until the disk has the file (Durable::yes). An
-/// interrupted render uses Durable::no, in order not to wait for a slow disk.
+/// As write_exr() in film.hpp, which waits until the disk has the file, and verifies it by reading
+/// it back (Durable::yes). An interrupted render must end soon and uses Durable::no, which does
+/// neither.
 void write_exr(const Film& film, const std::string& path, const ExrFormat& format, Durable durable);
 
 }  // namespace dapple

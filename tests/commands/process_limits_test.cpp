@@ -40,6 +40,18 @@ TEST_F(ProcessLimits, AClosedStandardErrorDoesNotSpoilThePicture) {
   EXPECT_EQ(files_in_folder(), 1u);
 }
 
+TEST_F(ProcessLimits, AMissingTemporaryFolderIsNamedAndNoNeedOfRenders) {
+  const std::string missing = "TMPDIR=" + path("missing");
+  EXPECT_EQ(render("", missing).code, 0);
+  expect_failure(dapple("plan 'scene:tree?leaves=2000' --spp 4", missing), 1,
+                 "cannot make a folder in " + path("missing") + ", where TMPDIR says");
+  const std::string errors = path("errors");
+  const std::string setup = missing + " timeout 20 " DAPPLE_SOURCE_FOLDER "/setup test 2>" + errors;
+  EXPECT_EQ(WEXITSTATUS(std::system(setup.c_str())), 1);
+  EXPECT_EQ(bytes_of(errors), "setup: the tests need a folder for their files: " + path("missing") +
+                                  " (TMPDIR, or else /tmp) is missing or not writable\n");
+}
+
 TEST_F(ProcessLimits, OfProcessorTimeSaveACheckpoint) {
   const Outcome run = dapple(
       "render 'scene:tree?leaves=2000' --width 96 --height 80 --spp 1048576 -o out.exr "
