@@ -95,7 +95,6 @@ bool may_be_shaded(const Scene& scene, const RenderOptions& options) {
                      [](const Mesh& mesh) { return !mesh.normals.empty(); });
 }
 
-/// `smooth`: triangles may have normals at other moments of the picture.
 UploadOptions uploading_of(const RenderOptions& options, bool smooth) {
   const bool normals = options.normals == Normals::shading;
   return {normals, options.albedo, normals && smooth};
@@ -103,7 +102,7 @@ UploadOptions uploading_of(const RenderOptions& options, bool smooth) {
 
 void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
                           const FilmLayout& layout) {
-  s.pass_seconds = picture.pass_seconds;
+  s.pass_seconds.insert(picture.pass_seconds.begin(), picture.pass_seconds.end());
   s.bytes.film = layout.sum_bytes() + layout.square_bytes();
   s.bytes.queues = picture.queue_bytes;
 }
@@ -207,6 +206,69 @@ TracedPicture trace(KeptScene& kept, const Shutter& shutter, const Scene& first,
   return picture;
 }
 
+/// Uploads the scene while other processes compile the kernels. `smooth`: triangles may have
+/// normals at other moments of the picture.
+void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
+                   const RenderOptions& options, bool smooth, RenderStatistics& statistics) {
+  kept.open(options, statistics);
+  const Device& device = *kept.device;
+  check_memory(device.info(), min_need(scene), "needs at least");
+  const auto kernels = picture_kernels(device.context(), options, view.camera, scene.lights,
+                                       may_be_shaded(scene, options));
+  CompilerProcesses processes;
+  processes.start(device.context(), kernels, CompileTo::machine_code);
+  kept.update_scene(scene, uploading_of(options, smooth), options.cache, statistics);
+  kept.compile(kernels, processes, statistics);
+}
+
+/// What a picture shows and what its sums mean. `options` are those of its samples.
+struct PictureContent {
+  const Scene& scene;
+  const View& view;
+  const RenderOptions& options;
+  const std::vector<Light>& lights;
+  const MatteNames& names;
+  const FilmLayout& layout;
+  const FilmMetadata& metadata;
+};
+
+/// Describes the picture, so that only runs with the same settings and scene continue from its
+/// checkpoints. `asked`: the options before footprints were chosen.
+Checkpoint describe(const PictureContent& picture, const KeptScene& kept, const Shutter& shutter,
+                    const Settings& asked, const RenderOptions& options) {
+  Checkpoint about{
+      asked,
+      content_settings(options, picture.view, kept.bvh->bvh(), *kept.on_device.buffers),
+      footprint_samples(options),
+      options.footprint,
+      kept.device->info().name,
+      record_of(picture.view, picture.options, picture.layout, picture.lights, picture.names,
+                picture.metadata)};
+  about.content.emplace_back("names of objects", text_checksum(picture.names.objects));
+  if (options.motion)
+    about.content.emplace_back("next frame (--frame, --fps)", pose_checksum(shutter.next_at(0)));
+  return about;
+}
+
+/// Makes the film and its statistics from what was traced.
+void finish(RenderResult& result, const PictureContent& content, const TracedPicture& picture,
+            const RenderControl& control) {
+  const auto& [scene, view, options, lights, names, layout, metadata] = content;
+  RenderStatistics& statistics = result.statistics;
+  add_trace_statistics(statistics, picture, layout);
+  result.film = {view.width, view.height,
+                 view.crop,  develop(picture, layout, options, lights, statistics),
+                 metadata,   options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
+  set_ambient(result.film.metadata, statistics.ambient);
+  add_bias(result, picture, layout, lights);
+  add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
+  statistics.notes.insert(statistics.notes.end(), scene.warnings.begin(), scene.warnings.end());
+  result.interrupted = picture.interrupted;
+  if (!result.interrupted) return;
+  result.film.metadata.settings.emplace_back("interrupted", "yes");
+  statistics.notes.push_back(interruption_note(picture, options, control));
+}
+
 }  // namespace
 
 struct Renderer::Kept : KeptScene {};
@@ -241,72 +303,41 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const RenderOptions sampled = by_sample(options);
   // Moved out until the render succeeds: after an error nothing is kept.
   Kept kept = std::exchange(*kept_, {});
-  kept.open(options, statistics);
-  const Device& device = *kept.device;
-  check_memory(device.info(), min_need(scene), "needs at least");
-  const auto kernels = picture_kernels(device.context(), sampled, view.camera, scene.lights,
-                                       may_be_shaded(scene, sampled));
-  CompilerProcesses processes;
-  processes.start(device.context(), kernels, CompileTo::machine_code);
-  const UploadOptions uploading = uploading_of(options, moments.smooth);
-  kept.update_scene(scene, uploading, options.cache, statistics);
-  kept.compile(kernels, processes, statistics);
-  const SceneBvh& bvh = kept.bvh->bvh();
+  put_on_device(kept, scene, view, sampled, moments.smooth, statistics);
 
   const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
-  Box3f bounds = bvh.bounds;
+  Box3f bounds = kept.bvh->bvh().bounds;
   bounds.extendBy(moments.bounds);
   const MatteNames names = matte_names(scene, options);
   const FilmLayout layout(view, sampled, bounds, lights,
                           !kept.on_device.buffers->corner_normals.empty());
   const Stopwatch trace_time;
-  const bool has_pilot = has_bias(options) && (options.max_bias > 0 || is_adaptive(options));
-  const RenderOptions traced =
-      has_pilot ? with_measured_bias(measure_bias(kept, view, options, layout, !resumed), options,
-                                     statistics)
-                : options;
-  const double pilot_seconds = trace_time.seconds();
-  // After the pilot, because they name the footprint that it chose.
-  const FilmMetadata about_picture = metadata(scene, view, options, device.info(), control);
+  RenderOptions traced = options;
+  if (has_bias(options) && (options.max_bias > 0 || is_adaptive(options))) {
+    traced = with_measured_bias(measure_bias(kept, view, options, layout, !resumed), options,
+                                statistics);
+    statistics.pass_seconds["bias pilot"] = trace_time.seconds();
+  }
+  statistics.footprint = options.footprint;
+
+  // After the pilot, because the metadata name the footprint that it chose.
+  const FilmMetadata about = metadata(scene, view, options, kept.device->info(), control);
+  const PictureContent content{scene, view, sampled, lights, names, layout, about};
   TraceControl tracing{control.progress, control.stop, {}, 0, {}, SampleOrder::pixels};
   TraceState state;
   state.first_sample = rays_of(options.shard, options.spp).first * splitting_factor(options);
   if (resumed || !control.checkpoint.empty() || !control.part.empty()) {
-    Checkpoint about{asked,
-                     content_settings(options, view, bvh, *kept.on_device.buffers),
-                     footprint_samples(options),
-                     options.footprint,
-                     statistics.device,
-                     record_of(view, sampled, layout, lights, names, about_picture)};
-    about.content.emplace_back("names of objects", text_checksum(names.objects));
-    if (options.motion)
-      about.content.emplace_back("next frame (--frame, --fps)", pose_checksum(next_at(0)));
+    Checkpoint checkpoint = describe(content, kept, shutter, asked, options);
     if (resumed) {
-      check_resumed(control.resume, *resumed, about, layout, sampled, statistics.notes);
+      check_resumed(control.resume, *resumed, checkpoint, layout, sampled, statistics.notes);
       state = std::move(resumed->state);
     }
-    write_checkpoints(tracing, control, std::move(about), result);
+    write_checkpoints(tracing, control, std::move(checkpoint), result);
   }
-
   const TracedPicture picture = trace(kept, shutter, scene, view, traced, layout, lights,
                                       std::move(tracing), std::move(state), statistics);
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
-  add_trace_statistics(statistics, picture, layout);
-  if (has_pilot) statistics.pass_seconds["bias pilot"] = pilot_seconds;
-  statistics.footprint = options.footprint;
-
-  result.film = {view.width,    view.height,
-                 view.crop,     develop(picture, layout, sampled, lights, statistics),
-                 about_picture, options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
-  set_ambient(result.film.metadata, statistics.ambient);
-  add_bias(result, picture, layout, lights);
-  add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
-  for (std::string& warning : scene.warnings) statistics.notes.push_back(std::move(warning));
-  result.interrupted = picture.interrupted;
-  if (result.interrupted) {
-    result.film.metadata.settings.emplace_back("interrupted", "yes");
-    statistics.notes.push_back(interruption_note(picture, sampled, control));
-  }
+  finish(result, content, picture, control);
   *kept_ = std::move(kept);
   statistics.seconds.total = total.seconds();
   return result;
