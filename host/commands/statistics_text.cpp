@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "files/output_file.hpp"
 #include "sampling/bias_estimate.hpp"
 
@@ -67,9 +72,18 @@ std::string errors_line(const RenderStatistics& s) {
 }  // namespace
 
 std::string bias_lines(const std::map<std::string, Bias>& layers) {
+  constexpr std::size_t kMost = 16;
+  std::vector<std::pair<std::string, Bias>> largest(layers.begin(), layers.end());
+  if (largest.size() > kMost)
+    std::stable_sort(largest.begin(), largest.end(), [](const auto& a, const auto& b) {
+      return std::abs(a.second.mean) > std::abs(b.second.mean);
+    });
   std::string text;
-  for (const auto& [layer, bias] : layers)
-    text += fmt::format("  bias of {}: {}\n", layer, bias_text(bias));
+  for (std::size_t i = 0; i < std::min(kMost, largest.size()); ++i)
+    text += fmt::format("  bias of {}: {}\n", largest[i].first, bias_text(largest[i].second));
+  if (largest.size() > kMost)
+    text += fmt::format("  bias of {} other layers: at most {:.4f}; --stats-json F lists them\n",
+                        largest.size() - kMost, std::abs(largest[kMost].second.mean));
   return text;
 }
 

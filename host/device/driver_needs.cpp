@@ -19,6 +19,10 @@ constexpr rlim_t kFiles = 32;
 /// PoCL compiles on threads, whose stacks are as large as the limit of the first.
 constexpr rlim_t kStackBytes = rlim_t{1} << 20;
 
+/// PoCL 3.1 and its compiler begin to work with 0.6 GB. With less than 0.2 GB the ICD loader finds
+/// no driver.
+constexpr rlim_t kAddressBytes = rlim_t{1} << 29;
+
 rlim_t limit_of(int resource) {
   rlimit limit{};
   return getrlimit(static_cast<__rlimit_resource>(resource), &limit) == 0 ? limit.rlim_cur
@@ -52,6 +56,13 @@ void check_process_limits() {
         fmt::format("stacks may only have {} kB here (ulimit -s), and OpenCL drivers need {} "
                     "kB to compile kernels",
                     stack / 1024, kStackBytes / 1024));
+  }
+  if (const rlim_t bytes = limit_of(RLIMIT_AS); bytes < kAddressBytes) {
+    throw Error(
+        ErrorKind::failed,
+        fmt::format("the process may only have {} kB of memory here (ulimit -v), and OpenCL "
+                    "drivers need {} kB and more",
+                    bytes / 1024, kAddressBytes / 1024));
   }
 }
 

@@ -65,7 +65,7 @@ void add_layers(Film& film, const std::string& type, const MatteSums& sums,
 /// The metadata of a type: its key is the beginning of its name's hash.
 void add_attributes(FilmMetadata& metadata, const std::string& type,
                     const std::vector<std::string>& names) {
-  nlohmann::ordered_json manifest = nlohmann::ordered_json::object();
+  nlohmann::json manifest = nlohmann::json::object();  // in ordered_json a name takes linear time
   for (const std::string& name : names) manifest[name] = fmt::format("{:08x}", matte_id(name));
   const std::string key =
       "cryptomatte/" + fmt::format("{:08x}", murmur3_32(type)).substr(0, 7) + "/";
@@ -73,8 +73,7 @@ void add_attributes(FilmMetadata& metadata, const std::string& type,
   metadata.attributes.emplace_back(key + "hash", "MurmurHash3_32");
   metadata.attributes.emplace_back(key + "conversion", "uint32_to_float32");
   metadata.attributes.emplace_back(
-      key + "manifest",
-      manifest.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      key + "manifest", manifest.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 std::vector<std::uint32_t> ids_of(const std::vector<std::string>& names) {

@@ -14,11 +14,13 @@ using namespace program_test;
 
 class ProcessLimits : public ProgramRun {};
 
-TEST_F(ProcessLimits, OfFilesAndStacksAreNamed) {
+TEST_F(ProcessLimits, OfFilesStacksAndMemoryAreNamed) {
   DAPPLE_SKIP_WITH_SANITIZER();
   expect_failure(render("", "bash -c 'ulimit -n 5; exec \"$0\" \"$@\"'"), 1,
                  "only 5 files may be open here (ulimit -n)");
   expect_failure(render("", "ulimit -s 64;"), 1, "stacks may only have 64 kB here (ulimit -s)");
+  expect_failure(render("", "ulimit -v 200000;"), 1,
+                 "only have 200000 kB of memory here (ulimit -v)");
   EXPECT_EQ(files_in_folder(), 0u);
 }
 

@@ -9,7 +9,7 @@ namespace {
 /// The maximum number of elements. One element may be two characters of JSON, and tinygltf's object
 /// for it takes some hundred bytes to some kilobytes.
 constexpr std::size_t kMany = std::size_t{1} << 22;  // nodes, accessors: up to 0.7 kB
-constexpr std::size_t kFew = std::size_t{1} << 16;   // materials: 3 kB
+constexpr std::size_t kFew = std::size_t{1} << 17;   // materials: 3 kB
 
 /// How far a colour may lie outside of [0, 1]: exporters round.
 constexpr double kRounding = 1e-3;
