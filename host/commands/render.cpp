@@ -42,7 +42,6 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
 
 void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format,
                     const PngOptions& png) {
-  use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
   if (!is_part_path(frame.output))
     write_exr(result.film, frame.output, format, result.interrupted ? Durable::no : Durable::yes);
   if (!frame.deep.empty()) write_deep_exr(result.film, frame.deep);
@@ -127,6 +126,7 @@ void run_render(const RenderArguments& a) {
   check_files(frames, a);
   if (!options.cache.empty()) prepare_bvh_cache(options.cache);
   catch_interruptions();
+  use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
 
   auto start = Clock::now();
   Shot shot(a, options);

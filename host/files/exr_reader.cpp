@@ -9,6 +9,7 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfStdIO.h>
+#include <ImfThreading.h>
 #include <ImfTileDescriptionAttribute.h>
 #include <ImfVersion.h>
 
@@ -143,7 +144,7 @@ void decode_part(Imf::InputPart& part, ExrImage& image) {
 
 ExrImage decode(const std::string& path, const SeeExrHeader& see_header) {
   check_headers(peek_headers(path));
-  Imf::MultiPartInputFile file(path.c_str(), 0);
+  Imf::MultiPartInputFile file(path.c_str(), Imf::globalThreadCount());
   const Box2i& window = file.header(0).dataWindow();
   if (see_header) see_header(file.header(0));
   ExrImage image;

@@ -3,6 +3,8 @@
 #include "scene/images/dome_image.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <utility>
@@ -38,50 +40,82 @@ Environment environment_of(const ExrImage& image, const std::string& path) {
   const std::vector<float>*r = find("R"), *g = find("G"), *b = find("B");
   if (const auto* y = find("Y"); y && !r && !g && !b) r = g = b = y;
   if (!r || !g || !b) refuse(path, "has neither channels R, G and B nor Y");
-  Environment environment{image.width, image.height, {}};
-  for (std::size_t i = 0; i < r->size(); ++i)
-    environment.radiance.emplace_back((*r)[i], (*g)[i], (*b)[i]);
+  Environment environment{image.width, image.height, std::vector<V3f>(r->size())};
+  tbb::parallel_for(std::size_t{0}, r->size(), [&](std::size_t i) {
+    environment.radiance[i] = V3f((*r)[i], (*g)[i], (*b)[i]);
+  });
   return environment;
 }
 
 /// The largest radiance of a light, as in lights files: sums over lights and pixels stay finite.
 constexpr float kMaxRadiance = 1e30f;
 
-/// Sets negative values to 0. Throws Error input for values that no light may have.
-void check_radiance(Environment& environment, const std::string& path) {
-  for (std::size_t i = 0; i < environment.radiance.size(); ++i) {
-    V3f& radiance = environment.radiance[i];
-    for (int channel = 0; channel < 3; ++channel) {
-      if (!std::isfinite(radiance[channel])) {
-        refuse(path, fmt::format("pixel {}, {} is not finite", i % environment.width,
-                                 i / environment.width));
-      }
-      if (radiance[channel] > kMaxRadiance) {
-        refuse(path, fmt::format("pixel {}, {} is {:.3g}, above {:g}", i % environment.width,
-                                 i / environment.width, radiance[channel], kMaxRadiance));
-      }
-      radiance[channel] = std::max(radiance[channel], 0.0f);
-    }
-  }
+bool is_allowed(const V3f& radiance) {
+  return std::max({radiance.x, radiance.y, radiance.z}) <= kMaxRadiance &&
+         std::isfinite(radiance.x) && std::isfinite(radiance.y) && std::isfinite(radiance.z);
 }
 
-/// Returns the means over boxes of `across` x `down` texels, weighted by solid angle.
-Environment averaged(const Environment& fine, std::uint32_t across, std::uint32_t down) {
-  // Columns and rows that do not fill a box are added to the last box.
-  Environment coarse{
-      std::max(1u, fine.width / across), std::max(1u, fine.height / down), {}, fine.file};
-  std::vector<V3d> sums(std::size_t{coarse.width} * coarse.height, V3d(0.0));
-  std::vector<double> weights(sums.size(), 0.0);
-  for (std::uint32_t y = 0; y < fine.height; ++y) {
+[[noreturn]] void refuse_pixel(const Environment& environment, std::size_t i,
+                               const std::string& path) {
+  const V3f& radiance = environment.radiance[i];
+  const std::string pixel =
+      fmt::format("pixel {}, {} is ", i % environment.width, i / environment.width);
+  for (int channel = 0; channel < 3; ++channel)
+    if (!std::isfinite(radiance[channel])) refuse(path, pixel + "not finite");
+  const float largest = std::max({radiance.x, radiance.y, radiance.z});
+  refuse(path, fmt::format("{}{:.3g}, above {:g}", pixel, largest, kMaxRadiance));
+}
+
+/// Sets negative values to 0. Throws Error input for values that no light may have.
+void check_radiance(Environment& environment, const std::string& path) {
+  const std::size_t count = environment.radiance.size();
+  const std::size_t first_refused = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, count), count,
+      [&](const tbb::blocked_range<std::size_t>& range, std::size_t first) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          V3f& radiance = environment.radiance[i];
+          if (!is_allowed(radiance)) return std::min(first, i);
+          for (int channel = 0; channel < 3; ++channel)
+            radiance[channel] = std::max(radiance[channel], 0.0f);
+        }
+        return first;
+      },
+      [](std::size_t a, std::size_t b) { return std::min(a, b); });
+  if (first_refused < count) refuse_pixel(environment, first_refused, path);
+}
+
+/// A row of means over boxes of `across` x `down` texels, weighted by solid angle. Columns and rows
+/// that do not fill a box belong to the last box.
+void average_row(const Environment& fine, std::uint32_t across, std::uint32_t down,
+                 std::uint32_t row, Environment& coarse) {
+  std::vector<V3d> sums(coarse.width, V3d(0.0));
+  std::vector<double> weights(coarse.width, 0.0);
+  const std::uint32_t end = row + 1 == coarse.height ? fine.height : (row + 1) * down;
+  for (std::uint32_t y = row * down; y < end; ++y) {
     const double weight = texel_solid_angle(fine, y);
-    const std::size_t row = std::min(y / down, coarse.height - 1);
     for (std::uint32_t x = 0; x < fine.width; ++x) {
-      const std::size_t at = row * coarse.width + std::min(x / across, coarse.width - 1);
+      const std::uint32_t at = std::min(x / across, coarse.width - 1);
       sums[at] += V3d(texel(fine, x, y)) * weight;
       weights[at] += weight;
     }
   }
-  for (std::size_t i = 0; i < sums.size(); ++i) coarse.radiance.emplace_back(sums[i] / weights[i]);
+  for (std::uint32_t x = 0; x < coarse.width; ++x)
+    coarse.radiance[std::size_t{row} * coarse.width + x] = V3f(sums[x] / weights[x]);
+}
+
+/// The image, or one of at most kMaxWidth x kMaxHeight texels in its place.
+Environment of_limited_size(Environment environment) {
+  const std::uint32_t across = (environment.width + kMaxWidth - 1) / kMaxWidth;
+  const std::uint32_t down = (environment.height + kMaxHeight - 1) / kMaxHeight;
+  if (across <= 1 && down <= 1) return environment;
+  Environment coarse{std::max(1u, environment.width / across),
+                     std::max(1u, environment.height / down),
+                     {},
+                     environment.file};
+  coarse.radiance.resize(std::size_t{coarse.width} * coarse.height);
+  tbb::parallel_for(0u, coarse.height, [&](std::uint32_t row) {
+    average_row(environment, across, down, row, coarse);
+  });
   return coarse;
 }
 
@@ -97,10 +131,7 @@ double mean_luminance(const Environment& environment) {
 }
 
 void finalize_dome(Light& light) {
-  Environment environment = *light.environment;
-  const std::uint32_t across = (environment.width + kMaxWidth - 1) / kMaxWidth;
-  const std::uint32_t down = (environment.height + kMaxHeight - 1) / kMaxHeight;
-  if (across > 1 || down > 1) environment = averaged(environment, across, down);
+  Environment environment = of_limited_size(*light.environment);
   const double mean = mean_luminance(environment);
   const V3f& given = light.radiance;
   if (mean * std::max({given.x, given.y, given.z}) > kMaxRadiance) {
@@ -131,7 +162,7 @@ std::shared_ptr<const Environment> load_environment(const std::string& path) {
   }
   check_radiance(environment, path);
   environment.file = path;
-  return std::make_shared<const Environment>(std::move(environment));
+  return std::make_shared<const Environment>(of_limited_size(std::move(environment)));
 }
 
 void finalize_domes(Scene& scene) {

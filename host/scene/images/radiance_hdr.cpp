@@ -2,6 +2,8 @@
 // file is complete, so this file checks it first.
 #include "scene/images/radiance_hdr.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -21,7 +23,8 @@
 namespace dapple {
 namespace {
 
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
+/// stb_image counts the bytes of its floats in an int.
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;
 
 struct StbiFree {
   void operator()(float* pixels) const { stbi_image_free(pixels); }
@@ -99,12 +102,11 @@ Environment decode_radiance_hdr(std::span<const std::uint8_t> bytes, const std::
   if (!pixels) refuse(what, std::string("is corrupt (") + stbi_failure_reason() + ")");
   Environment environment{
       static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-  const std::size_t count = std::size_t{environment.width} * environment.height;
-  environment.radiance.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  environment.radiance.resize(std::size_t{environment.width} * environment.height);
+  tbb::parallel_for(std::size_t{0}, environment.radiance.size(), [&](std::size_t i) {
     const float* rgb = pixels.get() + 3 * i;
-    environment.radiance.emplace_back(rgb[0], rgb[1], rgb[2]);
-  }
+    environment.radiance[i] = V3f(rgb[0], rgb[1], rgb[2]);
+  });
   return environment;
 }
 
