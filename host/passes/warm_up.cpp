@@ -18,7 +18,11 @@ namespace {
 /// Arguments of passes, with the smallest buffers.
 struct EmptyStage {
   explicit EmptyStage(const Device& device)
-      : context(device.context()), scene(device), queues(make_queues(context, 0, 0)) {
+      : context(device.context()),
+        scene(device),
+        queues(make_queues(context, 0, 0)),
+        gathered(make_queues(context, 0, 0)),
+        slots(context.allocate(0)) {
     for (Buffer* buffer :
          {&scene.nodes, &scene.blocks, &scene.segments, &scene.textured, &scene.materials,
           &scene.texels, &scene.instances, &scene.normals, &scene.color_words,
@@ -29,7 +33,8 @@ struct EmptyStage {
 
   DeviceContext& context;
   DeviceBuffers scene;
-  Queues queues;
+  Queues queues, gathered;
+  Buffer slots;
   FilmBuffers film;
 };
 
@@ -72,6 +77,10 @@ const std::map<std::string, Pass>& passes() {
        [](EmptyStage& s, const Variant& v) {
          occlude_nothing(s, v.shared_origin ? Packets::point : Packets::pixel, v);
        }},
+      {"gather_rays",
+       [](EmptyStage& s, const Variant&) {
+         gather_pass(s.context, s.queues, s.slots, s.gathered, 0, 1, 0);
+       }},
       {"point_ao", average_nothing},
       {"resolve_surface",
        [](EmptyStage& s, const Variant&) {
@@ -99,13 +108,14 @@ const std::map<std::string, Pass>& passes() {
 
 }  // namespace
 
+bool can_warm_up(const KernelName& kernel) { return passes().contains(kernel.name); }
+
 void warm_up(const Device& device, const std::vector<KernelName>& kernels) {
   EmptyStage stage(device);
   stage.context.warm_up();
   for (const KernelName& kernel : kernels) {
-    const auto pass = passes().find(kernel.name);
-    if (pass == passes().end()) throw Error(ErrorKind::usage, "no kernel: '" + kernel.name + "'");
-    pass->second(stage, kernel.variant);
+    if (!can_warm_up(kernel)) throw Error(ErrorKind::usage, "no kernel: '" + kernel.name + "'");
+    passes().at(kernel.name)(stage, kernel.variant);
   }
   stage.context.finish();
 }

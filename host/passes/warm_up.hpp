@@ -7,7 +7,10 @@
 
 namespace dapple {
 
-/// Launches one of every_kernel(). Throws Error usage for other kernels.
+/// Whether it is one of every_kernel().
+[[nodiscard]] bool can_warm_up(const KernelName& kernel);
+
+/// Launches kernels of every_kernel(). Throws Error usage for other kernels.
 void warm_up(const Device& device, const std::vector<KernelName>& kernels);
 
 }  // namespace dapple

@@ -12,6 +12,7 @@
 #include "device/cpus.hpp"
 #include "device/environment_while.hpp"
 #include "passes/kernel_list.hpp"
+#include "passes/warm_up.hpp"
 #include "support/program_run.hpp"
 #include "support/running_program.hpp"
 #include "support/sanitizers.hpp"
@@ -109,6 +110,11 @@ TEST_F(CompilingProcessesCold, PicturesFindNothingLeftToCompile) {
     EXPECT_EQ(run.code, 0) << run.err;
     EXPECT_EQ(machine_code(), files) << options;
   }
+}
+
+TEST(WarmUp, KnowsEveryKernel) {
+  for (const KernelShape& shape : every_kernel(Device().context()))
+    EXPECT_TRUE(can_warm_up(shape.kernel)) << shape.kernel.name;
 }
 
 TEST_F(CompilingProcesses, BuildingProgramsMakesNoMachineCode) {
