@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -9,6 +10,7 @@
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
 #include "points/number_table.hpp"
+#include "scene/numeric_range.hpp"
 
 namespace dapple {
 namespace {
@@ -55,6 +57,13 @@ void check_finite(const std::string& path, std::size_t row, const V3d& value) {
               fmt::format("{}: row {} has a number that is not finite", path, row));
 }
 
+/// Of length 1, also where the square of its length would be infinite or 0. `v` is finite and not
+/// 0.
+V3f unit_of(const V3d& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return V3f((v / largest).normalized());
+}
+
 V3f direction_of(double azimuth, double elevation) {
   constexpr double kDegree = std::numbers::pi / 180;
   const double ring = std::cos(elevation * kDegree);
@@ -77,10 +86,14 @@ PointList read_points(const std::string& path) {
     const V3d normal = normals.exist() ? normals.at(row) : V3d(0, 1, 0);
     check_finite(path, row, position);
     check_finite(path, row, normal);
-    if (!(normal.length() > 0))
+    if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) >
+        kLargestCoordinate)
+      throw Error(ErrorKind::input, fmt::format("{}: row {} is more than {:g} m from the origin",
+                                                path, row, kLargestCoordinate));
+    if (normal == V3d(0.0))
       throw Error(ErrorKind::input, fmt::format("{}: the normal of row {} is zero", path, row));
     list.points.emplace_back(position);
-    list.normals.emplace_back(normal.normalized());
+    list.normals.push_back(unit_of(normal));
   }
   return list;
 }
@@ -102,10 +115,10 @@ std::vector<SunDirection> read_suns(const std::string& path) {
     const V3d given =
         angles ? V3d(direction_of(values[azimuth], values[elevation])) : directions.at(row);
     check_finite(path, row, given);
-    if (!(given.length() > 0) || !(sun.irradiance >= 0) || !std::isfinite(sun.irradiance))
+    if (given == V3d(0.0) || !(sun.irradiance >= 0) || !std::isfinite(sun.irradiance))
       throw Error(ErrorKind::input,
                   fmt::format("{}: row {} is not a direction with an irradiance", path, row));
-    sun.direction = V3f(given.normalized());
+    sun.direction = unit_of(given);
     suns.push_back(sun);
   }
   return suns;

@@ -1,15 +1,17 @@
-// Writes the scenes of the corpus, and small images, as the first inputs of the fuzzers. The
-// command `seeds FOLDER` makes the folders FOLDER/gltf and FOLDER/image.
+// Writes the scenes of the corpus, small images and point files as the first inputs of the fuzzers.
+// The command `seeds FOLDER` makes the folders FOLDER/gltf, FOLDER/image and FOLDER/points.
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "corpus/corpus.hpp"
+#include "points/point_file.hpp"
 #include "support/gltf_builder.hpp"
 
 namespace {
@@ -48,6 +50,23 @@ void write_images(const std::filesystem::path& folder) {
   }
 }
 
+/// A file of each format; its first byte tells points_fuzz.cpp the format.
+void write_points_and_suns(const std::filesystem::path& folder) {
+  const dapple::PointList list{{{1, 2, 3}, {0.5f, 0, -1}}, {{0, 1, 0}, {1, 0, 0}}};
+  const std::string endings[] = {".csv", ".npy", ".ply"};
+  for (std::size_t format = 0; format < std::size(endings); ++format) {
+    const std::filesystem::path path = folder / ("points" + endings[format]);
+    std::filesystem::create_directories(folder);
+    dapple::write_points(path, list, {{"ao", {0.25f, 1}}});
+    std::ifstream file(path, std::ios::binary);
+    Bytes bytes{static_cast<std::uint8_t>(format)};
+    bytes.insert(bytes.end(), std::istreambuf_iterator<char>(file), {});
+    write_seed(path, bytes);
+  }
+  const std::string suns = "\x03x,y,z,irradiance\n0,1,0,800\n0.5,0.5,0,300\n";
+  write_seed(folder / "suns.csv", Bytes(suns.begin(), suns.end()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -61,5 +80,6 @@ int main(int argc, char** argv) {
   for (const auto& one : dapple::test::tricky_corpus())
     write_scene(folder / "gltf", one.name, one.files);
   write_images(folder / "image");
+  write_points_and_suns(folder / "points");
   return 0;
 }

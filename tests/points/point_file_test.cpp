@@ -74,12 +74,19 @@ TEST_F(PointFile, CsvMayHaveNamesCommentsAndAnySeparator) {
   EXPECT_TRUE(read_points(write("e.csv", "")).points.empty());
 }
 
+TEST_F(PointFile, NormalsOfAnyLengthBecomeUnit) {
+  const PointList list = read_points(write("n.csv", "0,0,0,0,1e300,0\n0,0,0,1e-300,0,0\n"));
+  EXPECT_EQ(list.normals.at(0), V3f(0, 1, 0));
+  EXPECT_EQ(list.normals.at(1), V3f(1, 0, 0));
+}
+
 TEST_F(PointFile, ErrorsOfInvalidFilesNameTheLineOrRow) {
   expect_error(write("a.csv", "1,2,3\n1,2\n"), "line 2");
   expect_error(write("b.csv", "1,2,3\n1,two,3\n"), "\"two\"");
   expect_error(write("c.csv", "a,b\n1,2\n"), "x, y, z");
   expect_error(write("d.csv", "1,2,nan\n"), "row 0");
   expect_error(write("e.csv", "1,2,3,0,0,0\n"), "normal");
+  expect_error(write("f.csv", "1,2,3\n1e300,2,3\n"), "row 1 is more than 1e+12 m");
   expect_error(write("a.npy", "no"), "not an NPY");
   expect_error(write("a.ply", "ply\nformat binary_big_endian 1.0\nend_header\n"), "big_endian");
   expect_error(write("b.ply",
