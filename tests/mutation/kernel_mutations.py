@@ -152,7 +152,7 @@ MUTATIONS = [
         "pixel-footprint-with-a-square", "kernels/camera/camera.clh",
         "pixel_area * shrink * shrink * shrink",
         "pixel_area * shrink * shrink",
-        r"^(View|MipFootprint|FilterTaps|CameraPoints)\."),
+        r"^CameraPoints\."),
     Mutation(
         "last-surface-instead-of-first", "kernels/camera/k_buffer.clh",
         "hit & (through > threshold) & (at->through.v <= threshold)",

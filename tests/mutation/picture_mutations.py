@@ -18,7 +18,7 @@ MUTATIONS = [
         "resumes-with-another-falloff", "host/render/render_settings.cpp",
         "      {\"--ao-falloff\", number(options.ao_falloff)},\n",
         "",
-        r"^(Resume|CheckpointFile)\."),
+        r"^(OptionSettings|Resume)\."),
     Mutation(
         "radiance-of-lights-ignored", "host/film/layers.cpp",
         "return V3d(lights_[light].radiance) * sum * (inverse_",
@@ -39,7 +39,7 @@ MUTATIONS = [
         "bent-normal-begins-a-plane-early", "host/film/layers.cpp",
         "V3d bent(sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p), sums.at(layout.ao + 3, p));",
         "V3d bent(sums.at(layout.ao, p), sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p));",
-        r"^(PictureChannels|ClosedForm|Back)\."),
+        r"^PictureChannels\."),
     Mutation(
         "cryptomatte-ranks-ascend", "host/film/cryptomatte.cpp",
         "? a.count > b.count :",
@@ -108,7 +108,7 @@ MUTATIONS = [
     Mutation(
         "resumed-rounds-forget-where-they-are", "host/sampling/round.cpp",
         "group.samples - (entry < part_end ? round.sample : 0));",
-        "group.samples - round.sample);",
+        "group.samples - (entry <= part_end ? round.sample : 0));",
         r"^(Round|Resume)\."),
     Mutation(
         "tile-bias-with-its-noise", "host/sampling/bias_estimate.cpp",
@@ -135,7 +135,7 @@ MUTATIONS = [
         "standard-error-of-all-sets", "host/points/set_sums.hpp",
         "/ (sets_ - 1);",
         "/ sets_;",
-        r"^(Points|PointTheory)\."),
+        r"^SetSums\."),
     Mutation(
         "sky-of-the-wrong-strength", "host/points/sky.cpp",
         "value * pi * (top * top - bottom * bottom);",
@@ -152,7 +152,7 @@ MUTATIONS = [
         "return difference < 0 ? Chosen::back : Chosen::front;",
         r"^(Bake|BakeClosedForm)\."),
     Mutation(
-        "bake-weighs-all-triangles-alike", "host/bake/surface_samples.cpp",
+        "bake-ignores-areas", "host/bake/surface_samples.cpp",
         "sample.weight[k] = twice_area * barycentric[k];",
         "sample.weight[k] = barycentric[k];",
         r"^(SurfaceSamples|Bake|BakeClosedForm)\."),

@@ -154,7 +154,7 @@ MUTATIONS = [
         "splitting-shrinks-footprints", "host/camera/camera_splitting.cpp",
         "  out.footprint_spp = footprint_samples(options);\n",
         "",
-        r"^(CameraSplitting|FootprintSamples|Options)\."),
+        r"^CameraSplitting\."),
     Mutation(
         "motion-vectors-upside-down", "host/render/motion_lookup.cpp",
         "return {after->x - before->x, before->y - after->y};",
