@@ -145,7 +145,7 @@ MUTATIONS = [
         "repeated-scenes-repeat-lights", "host/points/periodic.cpp",
         "        copy.light = -1;\n",
         "",
-        r"^(Points|PointTheory)\."),
+        r"^Periodic\."),
     Mutation(
         "bake-chooses-the-darker-side", "host/bake/value_sums.cpp",
         "return difference > 0 ? Chosen::back : Chosen::front;",
@@ -175,7 +175,7 @@ MUTATIONS = [
         "instances-bake-the-darker-side", "host/bake/instance_bake.cpp",
         "const bool behind = found.back[s].scalar > found.front[s].scalar;",
         "const bool behind = found.back[s].scalar < found.front[s].scalar;",
-        r"^(Bake|BakeCommand|BakeLight)\."),
+        r"^BakeLight\."),
     Mutation(
         "baked-irradiance-of-both-sides-adds", "host/bake/value_sums.cpp",
         "    if (used > 0) values[i] /= used;\n",
