@@ -172,5 +172,5 @@ MUTATIONS = [
         "wrong-caps-of-strands", "kernels/intersect/segments.clh",
         "segments.end_cap = lanes_of_bits(block->end_caps);",
         "segments.end_cap = lanes_of_bits(block->begin_caps);",
-        r"^(Strands|StrandScene|OracleStrands|SegmentBlock)\."),
+        r"^(Strands|SegmentBlock)\."),
 ]

@@ -76,7 +76,7 @@ MUTATIONS = [
         "tone_mapped(linear * scale)",
         r"^Png\."),
     Mutation(
-        "merged-samples-are-the-last-part's", "host/render/merged_sums.cpp",
+        "merged-samples-of-the-last-part", "host/render/merged_sums.cpp",
         "state_.samples[at(p)] += state.samples[p];",
         "state_.samples[at(p)] = state.samples[p];",
         r"^(MergeParts|MergeCommand)\."),

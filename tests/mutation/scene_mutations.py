@@ -64,7 +64,7 @@ MUTATIONS = [
         "instance-footprint-upside-down", "host/bvh/build/top_level.cpp",
         "static_cast<float>(1.0 / matrix_scale(instance.to_world));",
         "static_cast<float>(matrix_scale(instance.to_world));",
-        r"^(Instance|Packet|Traversal|PrefilterConvergence)\."),
+        r"^MipFootprint\."),
     Mutation(
         "strand-joints-turn-back", "host/bvh/storage/strand_segment.cpp",
         "(same_way ? 1.0f : -1.0f)",
