@@ -113,6 +113,25 @@ TEST(BakeLight, AnInstanceHasTheMeanIrradianceOfItsSamples) {
   EXPECT_NEAR(double{result.instance_light[0][1].x}, kOpen, 0.01 * kOpen);
 }
 
+// Of a floor that is lit from above only, whichever side is its front.
+TEST(BakeLight, SidesAreTheBrighterOneOrTheMean) {
+  for (const bool upside_down : {false, true}) {
+    Scene floor = scene_of(plane(1, 2), true);
+    for (std::size_t t = 0; t < floor.meshes[0].primitive_count() && upside_down; ++t)
+      std::swap(floor.meshes[0].indices[3 * t], floor.meshes[0].indices[3 * t + 1]);
+    BakeOptions options = lit_by({noon()});
+    options.instances = true;
+    for (const auto& [sides, share] : {std::pair(BakeSides::max, 1.0), {BakeSides::mean, 0.5}}) {
+      options.sides = sides;
+      const BakeResult result = bake(floor, options);
+      for (const V3f& light : result.meshes.at(0).light.at(0))
+        EXPECT_NEAR(double{light.x}, share * kOpen, 1e-3 * kOpen) << upside_down;
+      EXPECT_NEAR(double{result.instance_light.at(0).at(0).x}, share * kOpen, 1e-3 * kOpen)
+          << upside_down;
+    }
+  }
+}
+
 TEST(BakeLight, VerticesInsideClosedGeometryHaveTheirNeighboursIrradiance) {
   // A strip of cells from far outside into a cube.
   const Scene cube = make_procedural("scene:cube?divisions=1");

@@ -182,6 +182,26 @@ TEST(Dilation, ATexelTakesTheNearestValidOneWithinTheMargin) {
   }
 }
 
+TEST(Dilation, BetweenTwoValidTexelsEachTexelTakesTheCloserOne) {
+  constexpr std::uint32_t kSize = 32;
+  std::vector<bool> valid(kSize * kSize);
+  const std::uint32_t a = 16 * kSize + 12, b = 16 * kSize + 18;
+  valid[a] = valid[b] = true;
+  const std::vector<std::uint32_t> nearest = nearest_valid(valid, kSize, 10);
+  int reached = 0;
+  for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
+    const auto square = [&](std::uint32_t of) {
+      const int dx = static_cast<int>(i % kSize) - static_cast<int>(of % kSize);
+      const int dy = static_cast<int>(i / kSize) - static_cast<int>(of / kSize);
+      return dx * dx + dy * dy;
+    };
+    if (nearest[i] == kNoTexel) continue;
+    ++reached;
+    EXPECT_EQ(square(nearest[i]), std::min(square(a), square(b))) << i % kSize << ", " << i / kSize;
+  }
+  EXPECT_GE(reached, 21 * 21);
+}
+
 TEST(TextureLayout, TooManyChartsForTheSizeAreAnErrorThatNamesTheSizeThatFits) {
   const Scene scene = make_procedural("scene:cloud?leaves=2000");
   BakeOptions options;

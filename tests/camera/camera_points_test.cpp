@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "camera/view.hpp"
 #include "dapple/shared/geometry.h"
 #include "dapple/shared/segment_block.h"
 #include "support/test_kernel.hpp"
@@ -93,6 +94,25 @@ class PlacedRays {
 };
 
 TEST(CameraPoints, HitPointsOfSixteenRaysEqualThoseOfSingleRays) { PlacedRays().expect_alike(); }
+
+// A pyramid with half sides w and h at distance 1 has the solid angle 4 atan(w h / sqrt(1 + w^2 +
+// h^2)). A pixel is as if it were flat: the midpoint rule is off by less than 1e-3 for these 64 x
+// 32 pixels.
+TEST(CameraPoints, SolidAnglesOfPixelsAddUpToThatOfThePicture) {
+  Camera camera;
+  camera.fov_y = std::acos(0.0f);
+  const View view{camera, 64, 32, {0, 0, 63, 31}};
+  RenderOptions options;
+  options.spp = 1;
+  const CameraParams params = camera_params(view, options, Box3f(V3f(-1), V3f(1)));
+  const uint count = 64 * 32;
+  const Buffer out = device().allocate(count * sizeof(float));
+  run("film_and_camera", "pixel_solid_angles", count / 16, {out, params, count});
+  double sum = 0;
+  for (const float solid_angle : download<float>(out, count)) sum += double{solid_angle};
+  const double expected = 4 * std::atan(2 * 1 / std::sqrt(1.0 + 4 + 1));
+  EXPECT_NEAR(sum, expected, 1e-3 * expected);
+}
 
 TEST(FixedPoints, RoundToEvenSaturateAndTakeNanAsZero) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

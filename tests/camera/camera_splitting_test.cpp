@@ -154,6 +154,18 @@ TEST(CameraSplitting, CountsCameraSamplesAndTheirRays) {
   EXPECT_NEAR(static_cast<double>(rays.ao), hits, 1e-4 * hits);
 }
 
+TEST(CameraSplitting, FootprintsAreAsLargeAsWithoutIt) {
+  for (const float target_rmse : {0.0f, 0.01f}) {
+    RenderOptions options = small_picture(4);
+    options.spp = 12;
+    options.target_rmse = target_rmse;
+    const RenderOptions traced = by_sample(options);
+    EXPECT_EQ(traced.spp, 48);
+    EXPECT_EQ(footprint_samples(traced), footprint_samples(options));
+    EXPECT_EQ(footprint_ao_rays(traced), footprint_ao_rays(options));
+  }
+}
+
 TEST(CameraSplitting, ErrorsWithATargetAreThoseOfWholeCameraRays) {
   RenderOptions many = small_picture(1);
   many.spp = 2048;

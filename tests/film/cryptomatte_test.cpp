@@ -138,6 +138,18 @@ TEST(MatteSums, CountAtMostThirtyTwoSlotsOfAPixel) {
   EXPECT_EQ(sums.of_pixel(0)[31], (MatteSlot{31, 0, 3, 5}));
 }
 
+// What a picture keeps of many slots is what its earliest samples hit, in whatever order parts
+// come.
+TEST(MatteSums, MergedSlotsBeganAtTheEarlierSample) {
+  MatteSums sums(2);
+  for (std::size_t p = 0; p < 2; ++p) {
+    const MatteSlot early{1, 0, 2, 3}, late{1, 0, 5, 40};
+    sums.add(p, {p == 0 ? early : late});
+    sums.add(p, {p == 0 ? late : early});
+    EXPECT_EQ(sums.of_pixel(p), (std::vector<MatteSlot>{{1, 0, 7, 3}})) << p;
+  }
+}
+
 TEST(MatteSums, PackAndUnpackAndRefuseWhatIsNotTheirs) {
   MatteSums sums(3);
   add(sums, 0, 1, 2, 5);

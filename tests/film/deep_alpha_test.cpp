@@ -64,6 +64,16 @@ TEST(DeepSums, MoreDepthsThanFitAreMergedAtTheirNearest) {
   EXPECT_NEAR(flattened(samples), 0.17, 1e-6);
 }
 
+TEST(DeepSums, MergedDepthsAreTheMeanOfTheirSamples) {
+  DeepSums sums(1);
+  for (int i = 0; i < 3; ++i) sums.add(0, 6.1f);
+  for (std::size_t i = kMaxDeepSamples; i > 0; --i) sums.add(0, static_cast<float>(i));
+  const Samples samples = of_pixel(sums.alpha({100}), 0);
+  ASSERT_EQ(samples.size(), kMaxDeepSamples);
+  EXPECT_FLOAT_EQ(samples[5].z, (6 + 3 * 6.1f) / 4);
+  EXPECT_FLOAT_EQ(samples[5].alpha, 4 / 95.0f);
+}
+
 /// Squares of opacity 1/4, 1/2 and 1 before the camera, at 4, 5 and 8 m; the last is half as wide.
 Scene three_squares() {
   Scene scene;

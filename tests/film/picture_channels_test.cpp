@@ -119,6 +119,32 @@ TEST(PictureChannels, AoIsOneWherePixelsMissAndDepthIsNotDistance) {
   EXPECT_NEAR(coverage, 4.2 * 4.2 / (6.0 * 9.0), 45.0 / 16 / (kWidth * kHeight));
 }
 
+// At the foot of an endless wall at +X half of the sky is seen. The cosine-weighted mean direction
+// from there is (-2/3, pi/3, 0): the integrals of cos sin^2 cos(phi) and of cos^2 sin over that
+// half.
+TEST(PictureChannels, BentNormalsTurnAwayFromAWall) {
+  Camera down = look_at({-0.5f, 5, 0}, {-0.5f, 0, 0}, {0, 0, -1}, 0.02f);
+  Scene scene = plane_scene(8000, down);
+  Mesh wall;
+  append_grid(wall, {0, -1, -4000}, {0, 0, 8000}, {0, 8000, 0}, 1, 0);
+  place(scene, std::move(wall));
+  RenderOptions options = small_picture();
+  options.estimator = Estimator::exact;
+  options.ao_rays = 64;
+  const Picture picture(scene, options);
+  V3f sum(0.0f);
+  for (int pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+    EXPECT_NEAR(picture.at("ao.R", pixel), 0.5, 0.1);
+    const V3f bent = picture.at3("bent.", "XYZ", pixel);
+    EXPECT_NEAR(bent.length(), 1, 1e-5);
+    sum += bent;
+  }
+  const V3f expected = V3f(-2.0f / 3, std::numbers::pi_v<float> / 3, 0).normalized();
+  // 400,000 rays, each with a deviation below 1.
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(sum.normalized()[axis], expected[axis], 5e-3) << axis;
+}
+
 Light rect_above(const std::string& name, const V3f& radiance, float x) {
   Light light;
   light.name = name;

@@ -1,4 +1,5 @@
 /* Functions of the camera pass and of resolving, called by kernels for the tests. */
+#include "camera/camera.clh"
 #include "camera/surface_points16.clh"
 #include "film/film.clh"
 
@@ -48,4 +49,24 @@ __kernel void placed_points(__global const TriangleBlock* blocks,
     }
     together[7u * i + 6u] = at.offset.f[i];
   }
+}
+
+/* Out: solid angles of the pixels' shares for rays through their centres, sixteen an item. */
+__kernel void pixel_solid_angles(__global float* solid_angles, CameraParams params, uint count) {
+  const uint first = get_global_id(0) * DAPPLE_GROUP_RAYS;
+  if (first >= count) return;
+  CameraSamples chosen;
+  for (uint i = 0; i < DAPPLE_GROUP_RAYS; ++i) {
+    const uint pixel = first + i;
+    chosen.pixel[i] = pixel;
+    chosen.sample[i] = 0u;
+    chosen.x[i] = (float)(pixel % params.width) + 0.5f;
+    chosen.y[i] = (float)(pixel / params.width) + 0.5f;
+  }
+  FilterTaps taps;
+  Rays16 rays;
+  CameraShares16 shares;
+  uint keys[DAPPLE_GROUP_RAYS];
+  aim(params, &chosen, 0u, &taps, &rays, &shares, keys);
+  vstore16(shares.solid_angle.v, 0, solid_angles + first);
 }

@@ -69,6 +69,23 @@ TEST(AoDistance, APlaneOverheadFallsOffAsItsIntegral) {
   }
 }
 
+TEST(AoDistance, APlaneWithATextureFallsOffAsOneOfTheSameOpacity) {
+  Scene ceiling;
+  ceiling.textures.push_back({"even", 4, 4, std::vector<std::uint8_t>(16, 102)});
+  Material material = material_of(1);
+  material.alpha_texture = 0;
+  ceiling.materials.push_back(material);
+  Mesh plane = square_mesh(64, 1, 128, 0);
+  for (const V3f& at : plane.positions) plane.uvs.emplace_back(at.x, at.z);
+  place(ceiling, std::move(plane));
+  const SceneOnDevice scene(std::move(ceiling));
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    const float ao = scene.occlusion_at({0, 0, 0}, {0, 1, 0}, many_rays(estimator, 3, 2));
+    // 102 of 255 is 0.4; tolerance as above.
+    EXPECT_NEAR(ao, plane_ao(0.4, 1.0 / 3, 2), 2e-3);
+  }
+}
+
 TEST(AoDistance, ANodeThatHoldsTheRaysEndIsOpenedAtEveryDistance) {
   int wrong = 0;
   const auto check = [&](float distance) {

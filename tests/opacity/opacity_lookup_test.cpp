@@ -172,5 +172,33 @@ TEST(OpacityLookup, ATrianglesOpacityIsFactorsTimesTextureThresholdedLast) {
   }
 }
 
+// glTF 2.0, section 3.9.4: an alpha greater than or equal to the cutoff is fully opaque. 0, 1/2 and
+// 1 times the factor 1 are exact in float.
+TEST(OpacityLookup, AnAlphaThatEqualsTheCutoffIsOpaque) {
+  TexturedCorners plain;
+  plain.alpha = {0.5f, 0.5f, 0.5f};
+  TexturedCorners textured;
+  textured.uv = {V2f(0.1f, 0.2f), V2f(0.9f, 0.3f), V2f(0.4f, 0.8f)};
+  textured.alpha = {1, 1, 1};
+  textured.has_texture = true;
+  const std::vector<V2f> barycentrics(16, V2f(0.25f, 0.5f));
+  const Buffer where = upload(barycentrics);
+  const Buffer results = device().allocate(barycentrics.size() * sizeof(float));
+  const auto opacity = [&](const TexturedCorners& corners, uchar alpha, float cutoff) {
+    const std::vector<TexturedTriangle> triangles{
+        pack_textured(corners, Wrap::repeat, Wrap::repeat)};
+    const std::vector<MaterialRecord> materials{{{0, 4, 4, 0}, 1, cutoff, 0, 0, {}}};
+    run("lookup", "look_up_triangle", barycentrics.size(),
+        {upload(triangles), upload(materials), upload(std::vector<uchar>(16, alpha)), where,
+         results, 0u, static_cast<uint>(barycentrics.size())});
+    return download<float>(results, barycentrics.size())[0];
+  };
+  EXPECT_EQ(opacity(plain, 0, 0.5f), 1.0f);
+  EXPECT_EQ(opacity(plain, 0, 0.501f), 0.0f);
+  EXPECT_EQ(opacity(textured, 0, 0.0f), 1.0f);
+  EXPECT_EQ(opacity(textured, 255, 1.0f), 1.0f);
+  EXPECT_EQ(opacity(textured, 254, 1.0f), 0.0f);
+}
+
 }  // namespace
 }  // namespace dapple

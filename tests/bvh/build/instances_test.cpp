@@ -71,6 +71,7 @@ const std::vector<Placing>& placings() {
       {"laid down", {turned({90, 0, 0}) * moved({3, 1, -2})}},
       {"mirrored and scaled", {scaled({-1, 0.5f, 2}) * turned({0, 30, 0})}},
       {"sheared", {sheared}},
+      {"twice as large and three times as long", {scaled({2, 6, 2}) * turned({0, 20, 0})}},
       {"three overlapping",
        {moved({-1, 0, 0}), scaled({1, 1, -1}) * moved({1, 0, 0.5f}), turned({0, 45, 0})}},
   };

@@ -271,6 +271,41 @@ TEST(OpacityMipLevels, CutOutsAreThresholdedBeforeTheyAreAveraged) {
   EXPECT_NEAR(mean(0.5f, 0.45f), 0, 1e-6f);  // the factor is applied before the threshold
 }
 
+TEST(OpacityMipLevels, AnAlphaThatEqualsTheCutoffIsOpaque) {
+  EXPECT_EQ(thresholded(0.5f, 0.5f), 1.0f);
+  EXPECT_EQ(thresholded(0.0f, 0.0f), 1.0f);
+  Texture half;
+  half.width = half.height = 2;
+  half.alpha = {0, 0, 255, 255};
+  EXPECT_EQ(OpacityMipLevels(half, 1, 0).mean({0.5f, 0.5f}, 2), 1.0f);
+  EXPECT_EQ(OpacityMipLevels(half, 1, 1).mean({0.5f, 0.5f}, 2), 0.5f);
+}
+
+// The mip levels of a cut-out are those of the mean alpha of the triangle's corners.
+TEST(OpacityMipLevels, ACutOutCountsTheAlphasOfAllThreeCorners) {
+  Scene scene;
+  scene.textures.push_back({"even", 2, 2, std::vector<std::uint8_t>(4, 204)});  // 0.8
+  Material material;
+  material.alpha_mode = AlphaMode::mask;
+  material.alpha_texture = 0;
+  scene.materials.push_back(material);
+  const auto mean = [&](const std::array<float, 3>& alphas, float cutoff) {
+    scene.materials[0].alpha_cutoff = cutoff;
+    TexturedCorners corners;
+    corners.uv = {V2f(0, 0), V2f(1, 0), V2f(0, 1)};
+    corners.alpha = alphas;
+    corners.has_texture = true;
+    const std::vector<TexturedTriangle> triangle{
+        pack_textured(corners, Wrap::repeat, Wrap::repeat)};
+    return TextureIntegrals(scene, triangle).mean(triangle[0], 0.3f, 0.3f, 1);
+  };
+  for (const auto& alphas :
+       {std::array{0.0f, 1.0f, 1.0f}, {1.0f, 0.0f, 1.0f}, {1.0f, 1.0f, 0.0f}}) {
+    EXPECT_EQ(mean(alphas, 0.5f), 1.0f);  // 0.8 * 2 / 3 is above it
+    EXPECT_EQ(mean(alphas, 0.6f), 0.0f);
+  }
+}
+
 TEST(OpacityMipLevels, CoordinatesFarOutWrapToTheirPositionInTheTile) {
   for (const auto& [s, t] : {std::pair{Wrap::repeat, Wrap::repeat},
                              {Wrap::repeat, Wrap::clamp},

@@ -125,6 +125,18 @@ TEST(Strands, OccludeWhatACapsuleOccludes) {
   EXPECT_NEAR((1 - left) * area, 0.3 * disk, 0.3 * disk * 5e-3);
 }
 
+TEST(Strands, ASegmentHasTheMeanOpacityOfItsEnds) {
+  Scene scene = strand_scene(strand({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}), 0.5f);
+  scene.materials[0].uses_vertex_alpha = true;
+  scene.meshes[0].vertex_alpha = {0.2f, 0.6f, 1};
+  const SceneOnDevice on_device(std::move(scene));
+  const auto found = on_device.trace(
+      {make_ray({-0.5f, 0, 1}, {0, 0, -1}), make_ray({0.5f, 0, 1}, {0, 0, -1})}, Estimator::exact);
+  // Opacities of a block are 255ths of the largest one.
+  EXPECT_NEAR(found[0].transmittance, 1 - 0.5 * 0.4, 0.5 / 255);
+  EXPECT_NEAR(found[1].transmittance, 1 - 0.5 * 0.8, 0.5 / 255);
+}
+
 TEST(Strands, AreCountedOnceWhereSegmentsJoin) {
   // Strands with a bend of up to a right angle, in the plane z = 0 and out of it.
   for (const V3f& last : {V3f(0.1f, 0, 0), V3f(0.1f, 0.04f, 0), V3f(0.1f, 0.1f, 0),

@@ -120,6 +120,24 @@ TEST(GltfGeometry, SparseValuesReplaceThoseOfTheBufferView) {
   expect_same_triangles(world_triangles(builder.load()), plain_square());
 }
 
+// A stride belongs to the buffer view, whose values it separates; those that replace them have
+// none.
+TEST(GltfGeometry, SparseValuesHaveNoStrideWhereTheBufferViewHasOne) {
+  GltfBuilder builder;
+  Bytes bytes;
+  for (std::size_t i = 0; i < kSquare.size(); ++i) {
+    append(bytes, kSquare[i] + (i == 3 || i == 10 ? 99.0f : 0.0f));
+    if (i % 3 == 2) append(bytes, -7.0f);  // another attribute
+  }
+  const int position = builder.add("accessors", {{"bufferView", builder.add_view(bytes, 16)},
+                                                 {"componentType", kFloat},
+                                                 {"count", 4},
+                                                 {"type", "VEC3"}});
+  make_sparse(builder, position, {1, 3}, {2, 0, 0, 0, 1, 0});
+  builder.add_mesh({{"attributes", {{"POSITION", position}}}, {"mode", 6}});
+  expect_same_triangles(world_triangles(builder.load()), plain_square());
+}
+
 TEST(GltfGeometry, SparseValuesWithoutABufferViewReplaceZeros) {
   GltfBuilder builder;
   const int position =

@@ -1,0 +1,176 @@
+"""Bugs in kernels/: in the variants that a render uses by default unless the name says otherwise."""
+
+from mutation import Mutation
+
+MUTATIONS = [
+    Mutation(
+        "slab-sign", "kernels/occlusion/packet_node.clh",
+        "const bool flip = in_order && rays->backward[axis];",
+        "const bool flip = in_order && !rays->backward[axis];",
+        r"^(Packet|ClosedForm)\."),
+    Mutation(
+        "slab-sign-of-single-rays", "kernels/geometry/node.clh",
+        "const int forward = inverse > 0.0f;",
+        "const int forward = inverse < 0.0f;",
+        r"^(Traversal|Packet|PacketsOption)\."),
+    Mutation(
+        "forgotten-child", "kernels/occlusion/packet_stack.clh",
+        "  const uint inner_mask = node->inner_mask;\n#ifdef DAPPLE_PACK_8_INTS",
+        "  const uint inner_mask = node->inner_mask & 0x7fu;\n#ifdef DAPPLE_PACK_8_INTS",
+        r"^(Packet|Traversal|Oracle|OracleRays)\."),
+    Mutation(
+        "swapped-axes-of-opacity", "kernels/occlusion/packet_depth_many.clh",
+        "  const float8 y = decode_depth(node, 1) * boxes->faces[1];\n"
+        "  const float8 z = decode_depth(node, 2) * boxes->faces[2];\n",
+        "  const float8 y = decode_depth(node, 2) * boxes->faces[1];\n"
+        "  const float8 z = decode_depth(node, 1) * boxes->faces[2];\n",
+        r"^(Packet|PacketPicture|PrefilterConvergence|Traversal)\."),
+    Mutation(
+        "swapped-axes-of-opacity-at-points", "kernels/occlusion/packet_depth_one.clh",
+        "  const float8 part_y = decode_depth(node, 1) * facing_y;\n"
+        "  const float8 part_z = decode_depth(node, 2) * facing_z;\n",
+        "  const float8 part_y = decode_depth(node, 2) * facing_y;\n"
+        "  const float8 part_z = decode_depth(node, 1) * facing_z;\n",
+        r"^(Packet|PointSets|PointAo|PrefilterConvergence|Traversal)\."),
+    Mutation(
+        "pdf-of-dome-off-by-two", "kernels/lights/dome.clh",
+        "uniform_light ? cosine_pdf : 0.5f * (cosine_pdf + texel_pdf)",
+        "uniform_light ? cosine_pdf : cosine_pdf + texel_pdf",
+        r"^(Dome|DomeRange)\."),
+    Mutation(
+        "pdf-of-sphere-off-by-two", "kernels/lights/light.cl",
+        "  sample.solid_angle = 2.0f * M_PI_F * one_minus_cos;\n  const float along",
+        "  sample.solid_angle = M_PI_F * one_minus_cos;\n  const float along",
+        r"^(Light|LightSampling|SpotLight)\."),
+    Mutation(
+        "sampler-without-pixel", "kernels/sampling/random.clh",
+        "const uint key = hash_pair(hash_pair(pixel, pair), seed);",
+        "const uint key = hash_pair(hash_uint(pair), seed);",
+        r"^(Sampling|Determinism)\."),
+    Mutation(
+        "footprints-without-sample-index", "kernels/sampling/random.clh",
+        "hash_pair(hash_pair(pixel, pair ^ 0x5851f42du), hash_pair(index, seed))",
+        "hash_pair(hash_pair(pixel, pair ^ 0x5851f42du), hash_uint(seed))",
+        r"^(Sampling|Popping)\."),
+    Mutation(
+        "falloff-ignored-at-covered-nodes", "kernels/occlusion/packet_depth.clh",
+        "    if (falloff) part = depth_with_falloff(params, part, 0.5f * (enter + leave));\n",
+        "",
+        r"^(AoDistance|Packet)\."),
+    Mutation(
+        "falloff-ignored-at-textures", "kernels/occlusion/packet.clh",
+        "  vstore8(surface_depths(1.0f - with_falloff(params, opacity.lo, t.lo)), 0, depth);\n"
+        "  vstore8(surface_depths(1.0f - with_falloff(params, opacity.hi, t.hi)), 1, depth);\n",
+        "  vstore8(surface_depths(1.0f - opacity.lo), 0, depth);\n"
+        "  vstore8(surface_depths(1.0f - opacity.hi), 1, depth);\n",
+        r"^(AoDistance|Packet)\."),
+    Mutation(
+        "alpha-cutoff-greater", "kernels/opacity/opacity_lookup.clh",
+        "alpha >= records->cutoff ?",
+        "alpha > records->cutoff ?",
+        r"^(OpacityLookup|TexturedTriangle|GltfMaterial)\."),
+    Mutation(
+        "wrap-mode-mirror", "kernels/opacity/texel_addresses.clh",
+        "min(there_and_back, 2.0f - there_and_back)",
+        "min(there_and_back, 1.0f)",
+        r"^(OpacityLookup|MipFootprint)\."),
+    Mutation(
+        "wrap-mode-repeat-at-the-edge", "kernels/opacity/texel_addresses.clh",
+        "pairs.first = cell < 0 ? last - beyond : min(cell, last);",
+        "pairs.first = clamp(cell, (int16)(0), last);",
+        r"^(OpacityLookup|MipFootprint)\."),
+    Mutation(
+        "radiance-of-dome-ignored", "kernels/lights/light.cl",
+        "solid_angle * at_least_0(cosine) * samples->radiance.v",
+        "solid_angle * at_least_0(cosine)",
+        r"^(Dome|DomeRange|Light)\."),
+    Mutation(
+        "dome-turns-the-other-way", "kernels/lights/dome.clh",
+        "const float x = direction.x * dome->cosine - direction.z * dome->sine;\n"
+        "  const float z = direction.x * dome->sine + direction.z * dome->cosine;",
+        "const float x = direction.x * dome->cosine + direction.z * dome->sine;\n"
+        "  const float z = direction.z * dome->cosine - direction.x * dome->sine;",
+        r"^Dome\."),
+    Mutation(
+        "one-sided-mesh-light-shines-back", "kernels/lights/light.cl",
+        "fmax(two_sided ? fabs(cosine) : cosine, 0.0f)",
+        "fabs(cosine)",
+        r"^(EmissiveMesh|DiskLight|Light)\."),
+    Mutation(
+        "spot-cone-without-square", "kernels/lights/light.cl",
+        "sample.solid_angle *= edge * edge;",
+        "sample.solid_angle *= edge;",
+        r"^SpotLight\."),
+    Mutation(
+        "mesh-lights-occlude-nothing", "kernels/occlusion/packet.clh",
+        "if (instance->light && instance->light == light) continue;",
+        "if (instance->light) continue;",
+        r"^(EmissiveMesh|Light)\."),
+    Mutation(
+        "footprint-without-cosine", "kernels/occlusion/ao_rays.clh",
+        "min(M_PI_F * params.inverse_count / cosine, 2.0f * M_PI_F)",
+        "min(M_PI_F * params.inverse_count, 2.0f * M_PI_F)",
+        r"^(Sampling|PointSets|PointAo|PrefilterConvergence)\."),
+    Mutation(
+        "hides-rays-above-the-surface", "kernels/occlusion/point_rays.clh",
+        "(rays->facing.v != 0u) & (cosine <= 0.0f)",
+        "(rays->facing.v != 0u) & (cosine >= 0.0f)",
+        r"^(ShadingNormal|SmoothBake)\."),
+    Mutation(
+        "hidden-rays-count-as-free", "kernels/film/film.cl",
+        "const float seen = found.transmittance * rays[ray].weight;",
+        "const float seen = found.transmittance;",
+        r"^ShadingNormal\."),
+    Mutation(
+        "hidden-rays-count-as-free-at-points", "kernels/occlusion/point_ao.cl",
+        "((long)(count - traced) - (long)hidden) * (long)DAPPLE_AO_STEPS",
+        "(long)(count - traced) * (long)DAPPLE_AO_STEPS",
+        r"^(ShadingNormal|SmoothBake|PointAo)\."),
+    Mutation(
+        "shading-normal-as-a-direction", "kernels/camera/shading_normal.clh",
+        "normal = transform_normal(at->to_object, normal);",
+        "normal = transform_vector(at->to_world, normal);",
+        r"^(ShadingNormal|GltfNormals)\."),
+    Mutation(
+        "shading-normal-of-the-wrong-corner", "kernels/camera/shading_normal.clh",
+        "add_corner(first >> 21 | (last & 1023u) << 11, u, away1, smoothed);\n"
+        "  add_corner(last >> 10 & 0x1fffffu, v, away2, smoothed);",
+        "add_corner(last >> 10 & 0x1fffffu, u, away1, smoothed);\n"
+        "  add_corner(first >> 21 | (last & 1023u) << 11, v, away2, smoothed);",
+        r"^ShadingNormal\."),
+    Mutation(
+        "batches-begin-a-sample-late", "kernels/film/film.clh",
+        "if ((sample + 1u) % DAPPLE_SAMPLE_BATCH) return;",
+        "if (sample % DAPPLE_SAMPLE_BATCH) return;",
+        r"^(AdaptiveSampling|FilmMoments|Targets)\."),
+    Mutation(
+        "lens-bends-outwards", "kernels/camera/camera.clh",
+        "rays->direction[axis] -= offset * params.inverse_focus;",
+        "rays->direction[axis] += offset * params.inverse_focus;",
+        r"^DepthOfField\."),
+    Mutation(
+        "pixel-footprint-with-a-square", "kernels/camera/camera.clh",
+        "pixel_area * shrink * shrink * shrink",
+        "pixel_area * shrink * shrink",
+        r"^CameraPoints\."),
+    Mutation(
+        "last-surface-instead-of-first", "kernels/camera/k_buffer.clh",
+        "hit & (through > threshold) & (at->through.v <= threshold)",
+        "hit & (at->through.v <= threshold)",
+        r"^(KBufferOnDevice|CameraSplitting|DeepAlpha)"),
+    Mutation(
+        "vertex-colour-without-decoding", "kernels/camera/surface_color.clh",
+        "  return root * root;\n",
+        "  return root;\n",
+        r"^(Albedo|GltfColors)\."),
+    Mutation(
+        "bilinear-weight-of-colours", "kernels/camera/surface_color.clh",
+        "weight[0] = 1.0f - at.right - weight[2];",
+        "weight[0] = 1.0f - at.right - at.down;",
+        r"^Albedo\."),
+    Mutation(
+        "wrong-caps-of-strands", "kernels/intersect/segments.clh",
+        "segments.end_cap = lanes_of_bits(block->end_caps);",
+        "segments.end_cap = lanes_of_bits(block->begin_caps);",
+        r"^(Strands|SegmentBlock)\."),
+]

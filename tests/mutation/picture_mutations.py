@@ -1,0 +1,189 @@
+"""Bugs in what happens to traced rays: host/render, host/sampling, host/film, host/bake, host/points, host/compare."""
+
+from mutation import Mutation
+
+MUTATIONS = [
+    Mutation(
+        "checkpoint-without-the-back-layers", "host/render/picture_record.cpp",
+        "  o.back = about.at(\"back\").get<bool>();\n",
+        "",
+        r"^(CheckpointFile|MergeParts|Resume|MergeCommand)\."),
+    Mutation(
+        "checkpoint-without-squares", "host/render/picture.cpp",
+        "    if (!state_.squares.empty())\n"
+        "      context_.write(film_.squares, state_.squares.data(), layout_.square_bytes());\n",
+        "",
+        r"^(Resume|AdaptiveSampling)\."),
+    Mutation(
+        "resumes-with-another-falloff", "host/render/render_settings.cpp",
+        "      {\"--ao-falloff\", number(options.ao_falloff)},\n",
+        "",
+        r"^(OptionSettings|Resume)\."),
+    Mutation(
+        "radiance-of-lights-ignored", "host/film/layers.cpp",
+        "return V3d(lights_[light].radiance) * sum * (inverse_",
+        "return sum * (inverse_",
+        r"^(Light|LightLayers|Beauty)\."),
+    Mutation(
+        "misses-count-as-occluded", "host/film/layers.cpp",
+        "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * spp(p)) + 1.0 -\n"
+        "           hits(p) / spp(p);",
+        "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * spp(p));",
+        r"^(Beauty|Film|PictureChannels|ClosedForm)\."),
+    Mutation(
+        "means-over-samples-instead-of-hits", "host/film/layers.cpp",
+        "             (scale * hits(p));",
+        "             (scale * spp(p));",
+        r"^(PictureChannels|Albedo|ShadingNormal)\."),
+    Mutation(
+        "bent-normal-begins-a-plane-early", "host/film/layers.cpp",
+        "V3d bent(sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p), sums.at(layout.ao + 3, p));",
+        "V3d bent(sums.at(layout.ao, p), sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p));",
+        r"^PictureChannels\."),
+    Mutation(
+        "cryptomatte-ranks-ascend", "host/film/cryptomatte.cpp",
+        "? a.count > b.count :",
+        "? a.count < b.count :",
+        r"^(Cryptomatte|CryptomatteRender)\."),
+    Mutation(
+        "hash-of-a-reversed-tail", "host/film/cryptomatte.cpp",
+        "rest |= byte(k) << (8 * (k - i));",
+        "rest = rest << 8 | byte(k);",
+        r"^(Murmur3|MatteId)\."),
+    Mutation(
+        "merged-mattes-keep-the-last", "host/film/matte_sums.cpp",
+        "slot->first = std::min(slot->first, one.first);",
+        "slot->first = std::max(slot->first, one.first);",
+        r"^(MatteSums|CryptomatteResume|MergeParts)\."),
+    Mutation(
+        "deep-alphas-of-all-samples", "host/film/deep_sums.cpp",
+        "      left -= slot.count;\n",
+        "",
+        r"^(DeepSums|DeepAlpha)\."),
+    Mutation(
+        "deep-samples-merge-to-the-wrong-side", "host/film/deep_sums.cpp",
+        "* (b / (a + b))",
+        "* (a / (a + b))",
+        r"^DeepSums\."),
+    Mutation(
+        "lossy-normals", "host/film/exr_parts.cpp",
+        "lossy && !part->color ? ExrCompression::zip",
+        "lossy && part->color ? ExrCompression::zip",
+        r"^ExrFormatTest\."),
+    Mutation(
+        "png-without-dividing-by-alpha", "host/film/png.cpp",
+        "tone_mapped(linear * (scale / alpha))",
+        "tone_mapped(linear * scale)",
+        r"^Png\."),
+    Mutation(
+        "merged-samples-of-the-last-part", "host/render/merged_sums.cpp",
+        "state_.samples[at(p)] += state.samples[p];",
+        "state_.samples[at(p)] = state.samples[p];",
+        r"^(MergeParts|MergeCommand)\."),
+    Mutation(
+        "parts-merge-in-spite-of-footprints", "host/render/merge.cpp",
+        "  settings.emplace_back(\"--spp (footprints)\", fmt::format(\"{}\", about.footprint_spp));\n",
+        "",
+        r"^(MergeParts|MergeCommand)\."),
+    Mutation(
+        "parts-that-touch-overlap", "host/render/pieces.cpp",
+        "a.rays.first < b.rays.end && b.rays.first < a.rays.end;",
+        "a.rays.first <= b.rays.end && b.rays.first <= a.rays.end;",
+        r"^(Pieces|MergeParts)\."),
+    Mutation(
+        "target-of-one-pixel", "host/sampling/sample_allocation.cpp",
+        "return double{rmse} * rmse * static_cast<double>(pixels);",
+        "return double{rmse} * static_cast<double>(pixels);",
+        r"^(AdaptiveSampling|SamplePlan|WantEqual|Targets)\."),
+    Mutation(
+        "freedom-of-pairs-is-that-of-batches", "host/sampling/batch_variance.hpp",
+        "std::max(0.0f, over) / (by_pairs ? freedom_of(batches) : count - 1);",
+        "std::max(0.0f, over) / (count - 1);",
+        r"^(BatchVariances|FilmMoments)\."),
+    Mutation(
+        "largest-irradiance-with-occlusion", "host/sampling/film_moments.cpp",
+        "luminance_sum(planes.unoccluded(), planes.channels, pixel)",
+        "luminance_sum(planes.first, planes.channels, pixel)",
+        r"^FilmMoments\."),
+    Mutation(
+        "resumed-rounds-forget-where-they-are", "host/sampling/round.cpp",
+        "group.samples - (entry < part_end ? round.sample : 0));",
+        "group.samples - (entry <= part_end ? round.sample : 0));",
+        r"^(Round|Resume)\."),
+    Mutation(
+        "tile-bias-with-its-noise", "host/sampling/bias_estimate.cpp",
+        "(tile.difference * tile.difference - tile.squared_differences) / pairs;",
+        "tile.difference * tile.difference / pairs;",
+        r"^(BiasEstimate|BiasReport)\."),
+    Mutation(
+        "bias-of-resumed-samples", "host/render/bias_report.cpp",
+        "samples[pixel] - (sums.earlier.empty() ? 0u : sums.earlier[pixel]);",
+        "samples[pixel];",
+        r"^(BiasReport|Resume)\."),
+    Mutation(
+        "bias-correction-of-the-wrong-sign", "host/points/bias_correction.cpp",
+        "std::clamp(prefiltered + change_ * fall_with_depth(prefiltered), 0.0, 1.0);",
+        "std::clamp(prefiltered - change_ * fall_with_depth(prefiltered), 0.0, 1.0);",
+        r"^(BiasCorrection|PointBias)\."),
+    Mutation(
+        "sun-without-cosine", "host/points/measure_points.cpp",
+        "double{suns[s].irradiance} *\n"
+        "                           std::max(0.0, double{normals_[i].dot(suns[s].direction)});",
+        "double{suns[s].irradiance};",
+        r"^(Points|PointTheory)\."),
+    Mutation(
+        "standard-error-of-all-sets", "host/points/set_sums.hpp",
+        "/ (sets_ - 1);",
+        "/ sets_;",
+        r"^SetSums\."),
+    Mutation(
+        "sky-of-the-wrong-strength", "host/points/sky.cpp",
+        "value * pi * (top * top - bottom * bottom);",
+        "value * 2 * pi * (top - bottom);",
+        r"^(Points|PointTheory)\."),
+    Mutation(
+        "repeated-scenes-repeat-lights", "host/points/periodic.cpp",
+        "        copy.light = -1;\n",
+        "",
+        r"^Periodic\."),
+    Mutation(
+        "bake-chooses-the-darker-side", "host/bake/value_sums.cpp",
+        "return difference > 0 ? Chosen::back : Chosen::front;",
+        "return difference < 0 ? Chosen::back : Chosen::front;",
+        r"^(Bake|BakeClosedForm)\."),
+    Mutation(
+        "bake-ignores-areas", "host/bake/surface_samples.cpp",
+        "sample.weight[k] = twice_area * barycentric[k];",
+        "sample.weight[k] = barycentric[k];",
+        r"^(SurfaceSamples|Bake|BakeClosedForm)\."),
+    Mutation(
+        "hidden-vertices-get-a-sum", "host/bake/vertex_bake.cpp",
+        "ao[hidden.group] = sum(ao, 0.0f) / count;",
+        "ao[hidden.group] = sum(ao, 0.0f);",
+        r"^(Bake|BakeClosedForm)\."),
+    Mutation(
+        "dilation-from-the-farthest-texel", "host/bake/texture/dilation.cpp",
+        "square(source, u, v) < square(nearest[to], u, v)",
+        "square(source, u, v) > square(nearest[to], u, v)",
+        r"^Dilation\."),
+    Mutation(
+        "seams-do-not-turn-edges", "host/bake/texture/seams.cpp",
+        "  if (edge.swapped) return {second, first};\n  return {first, second};",
+        "  return {first, second};",
+        r"^Seams\."),
+    Mutation(
+        "instances-bake-the-darker-side", "host/bake/instance_bake.cpp",
+        "const bool behind = found.back[s].scalar > found.front[s].scalar;",
+        "const bool behind = found.back[s].scalar < found.front[s].scalar;",
+        r"^BakeLight\."),
+    Mutation(
+        "baked-irradiance-of-both-sides-adds", "host/bake/value_sums.cpp",
+        "    if (used > 0) values[i] /= used;\n",
+        "    if (!(used > 0)) values[i] = V3f(0, 0, 0);\n",
+        r"^BakeLight\."),
+    Mutation(
+        "compare-overlooks-a-nan", "host/compare/difference.cpp",
+        "} else if (std::isnan(a) || std::isnan(b)) {",
+        "} else if (std::isnan(a) && std::isnan(b)) {",
+        r"^(CompareLayers|CompareFailure|CompareFigures)\."),
+]

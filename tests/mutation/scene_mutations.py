@@ -1,0 +1,173 @@
+"""Bugs in what happens before a ray is traced: host/scene, host/bvh, host/device, host/camera, motion."""
+
+from mutation import Mutation
+
+MUTATIONS = [
+    Mutation(
+        "quantization-rounds-inwards", "host/bvh/build/quantize.cpp",
+        "std::floor((box.min[axis] - origin) / step - margin(box.min[axis], step));",
+        "std::ceil((box.min[axis] - origin) / step - margin(box.min[axis], step));",
+        r"^(Quantize|Bvh|Watertight)\."),
+    Mutation(
+        "refit-skips-the-root", "host/bvh/refit/refit_object.cpp",
+        "                          if (upper.nodes[n].child_count > 0)\n"
+        "                            set_boxes(",
+        "                          if (upper.nodes[n].child_count > 0 && n > 0)\n"
+        "                            set_boxes(",
+        r"^(Refit|SwayingTree|Renderer)\."),
+    Mutation(
+        "refit-skips-areas-of-subtrees", "host/bvh/refit/refit_subtree.cpp",
+        "  to.areas.add(part.areas);\n",
+        "",
+        r"^(Refit|SwayingTree|Renderer)\."),
+    Mutation(
+        "refitted-blocks-are-not-uploaded", "host/bvh/refit/updatable_bvh.cpp",
+        "    update.blocks.push_back({offsets[m].block, offsets[m + 1].block});\n",
+        "",
+        r"^(Renderer|Refit|SwayingTree)\."),
+    Mutation(
+        "cache-key-without-opacity", "host/bvh/storage/object_key.cpp",
+        "  key.add_value(material.alpha);\n",
+        "",
+        r"^(BvhCache|CacheCommand)\."),
+    Mutation(
+        "cache-key-without-wrap-mode", "host/bvh/storage/object_key.cpp",
+        "  key.add_value(texture.wrap_t);\n",
+        "",
+        r"^(BvhCache|CacheCommand)\."),
+    Mutation(
+        "swapped-correlations", "host/bvh/opacity/node_opacity.cpp",
+        "return {of(3, 0, 1), of(4, 1, 2), of(5, 2, 0)};",
+        "return {of(3, 0, 1), of(5, 2, 0), of(4, 1, 2)};",
+        r"^(NormalMoments|OpacityModel|OpacityCode|Clumping)\."),
+    Mutation(
+        "alpha-cutoff-greater-in-mip-levels", "host/bvh/opacity/opacity_mip_levels.cpp",
+        "return alpha >= cutoff ? 1.0f : 0.0f;",
+        "return alpha > cutoff ? 1.0f : 0.0f;",
+        r"^(OpacityMipLevels|MipFootprint|TexturedTriangle)\."),
+    Mutation(
+        "mip-factor-of-one-corner", "host/bvh/opacity/triangle_opacity.cpp",
+        "material.alpha * (corners.alpha[0] + corners.alpha[1] + corners.alpha[2]) / 3.0f;",
+        "material.alpha * corners.alpha[0];",
+        r"^(TexturedTriangle|OpacityMipLevels|MipFootprint|OpacityModel)\."),
+    Mutation(
+        "segment-opacity-of-one-end", "host/bvh/opacity/triangle_opacity.cpp",
+        "alpha *= 0.5f * (mesh.vertex_alpha[at[0]] + mesh.vertex_alpha[at[1]]);",
+        "alpha *= mesh.vertex_alpha[at[0]];",
+        r"^(Strands|HairFile|StrandScene)\."),
+    Mutation(
+        "instance-opacity-without-its-scale", "host/bvh/build/top_level.cpp",
+        "opacity_along(object.opacity, size, direction) * facing * matrix_scale(to_world);",
+        "double{opacity_along(object.opacity, size, direction)} * facing;",
+        r"^(Instance|OpacityModel|PrefilterConvergence)\."),
+    Mutation(
+        "instance-footprint-upside-down", "host/bvh/build/top_level.cpp",
+        "static_cast<float>(1.0 / matrix_scale(instance.to_world));",
+        "static_cast<float>(matrix_scale(instance.to_world));",
+        r"^MipFootprint\."),
+    Mutation(
+        "strand-joints-turn-back", "host/bvh/storage/strand_segment.cpp",
+        "(same_way ? 1.0f : -1.0f)",
+        "(same_way ? -1.0f : 1.0f)",
+        r"^(Strands|StrandScene|SegmentBlock)\."),
+    Mutation(
+        "merged-normals-as-directions", "host/scene/merge.cpp",
+        "const M44f of_normals = to_world.inverse().transposed();",
+        "const M44f of_normals = to_world;",
+        r"^(Merge|GltfNormals|ShadingNormal)\."),
+    Mutation(
+        "hair-transparency-is-opacity", "host/scene/hair_file.cpp",
+        "return 1 - std::clamp(transparency, 0.0f, 1.0f);",
+        "return std::clamp(transparency, 0.0f, 1.0f);",
+        r"^HairFile\."),
+    Mutation(
+        "hair-thickness-is-radius", "host/scene/hair_file.cpp",
+        "return std::max(thickness / 2, static_cast<float>(kSmallestLength));",
+        "return std::max(thickness, static_cast<float>(kSmallestLength));",
+        r"^HairFile\."),
+    Mutation(
+        "gltf-accessor-without-its-offset", "host/scene/gltf/accessor.cpp",
+        "base_ = view_bytes(document, accessor.bufferView).data() + accessor.byteOffset;",
+        "base_ = view_bytes(document, accessor.bufferView).data();",
+        r"^(GltfGeometry|LoadScene)\."),
+    Mutation(
+        "gltf-sparse-values-with-a-stride", "host/scene/gltf/accessor.cpp",
+        "return sparse_values_ + at * components_ * component_bytes_;",
+        "return sparse_values_ + at * stride_;",
+        r"^(GltfGeometry|GltfMorph)\."),
+    Mutation(
+        "gltf-rotations-take-the-long-way", "host/scene/gltf/animation.cpp",
+        "    to = -to;\n    cosine = -cosine;\n",
+        "    cosine = -cosine;\n",
+        r"^GltfAnimation\."),
+    Mutation(
+        "gltf-cubic-tangents-without-interval", "host/scene/gltf/animation.cpp",
+        "* from + position.interval * (t3 - 2 * t2 + t) * out_tangent +",
+        "* from + (t3 - 2 * t2 + t) * out_tangent +",
+        r"^GltfAnimation\."),
+    Mutation(
+        "gltf-scale-after-rotation", "host/scene/gltf/hierarchy.cpp",
+        "matrix[row][column] *= scale[row];",
+        "matrix[row][column] *= scale[column];",
+        r"^(GltfHierarchy|GltfAnimation)\."),
+    Mutation(
+        "gltf-bind-matrix-on-the-wrong-side", "host/scene/gltf/deformation.cpp",
+        "matrices[j] = bind * matrices[j];",
+        "matrices[j] = matrices[j] * bind;",
+        r"^GltfSkin\."),
+    Mutation(
+        "gltf-wrap-mode-of-the-other-axis", "host/scene/gltf/texture.cpp",
+        "result.wrap_t = wrap_mode(sampler.wrapT);",
+        "result.wrap_t = wrap_mode(sampler.wrapS);",
+        r"^GltfMaterial\."),
+    Mutation(
+        "gltf-texture-turns-the-other-way", "host/scene/gltf/material.cpp",
+        "lookup.du = V2f(cosine, -sine) * scale.x;\n  lookup.dv = V2f(sine, cosine) * scale.y;",
+        "lookup.du = V2f(cosine, sine) * scale.x;\n  lookup.dv = V2f(-sine, cosine) * scale.y;",
+        r"^GltfMaterial\."),
+    Mutation(
+        "gltf-sun-as-bright-as-a-sine", "host/scene/gltf/light.cpp",
+        "irradiance / (std::numbers::pi_v<float> * sine * sine);",
+        "irradiance / (std::numbers::pi_v<float> * sine);",
+        r"^(GltfLight|Light)\."),
+    Mutation(
+        "dome-rows-without-solid-angle", "host/device/upload/dome_upload.cpp",
+        "rows.push_back(row * texel_solid_angle(environment, y));",
+        "rows.push_back(row);",
+        r"^(Dome|DomeRange)\."),
+    Mutation(
+        "mirrored-emitters-face-inwards", "host/device/upload/light_upload.cpp",
+        "const bool mirrored = instance.to_world.determinant() < 0;",
+        "const bool mirrored = false;",
+        r"^(EmissiveMesh|Light)\."),
+    Mutation(
+        "sun-of-twice-the-angle", "host/device/upload/light_upload.cpp",
+        "std::sin(0.5 * light.angular_radius)",
+        "std::sin(1.0 * light.angular_radius)",
+        r"^(Light|LightSampling|ClosedForm)\."),
+    Mutation(
+        "crop-off-by-one", "host/camera/view.cpp",
+        "params.crop_y = static_cast<uint>(view.crop.y0);",
+        "params.crop_y = static_cast<uint>(view.crop.y0 + 1);",
+        r"^(Crop|View|CameraPoints)\."),
+    Mutation(
+        "splitting-shrinks-footprints", "host/camera/camera_splitting.cpp",
+        "  out.footprint_spp = footprint_samples(options);\n",
+        "",
+        r"^CameraSplitting\."),
+    Mutation(
+        "motion-vectors-upside-down", "host/render/motion_lookup.cpp",
+        "return {after->x - before->x, before->y - after->y};",
+        "return {after->x - before->x, after->y - before->y};",
+        r"^Motion\."),
+    Mutation(
+        "still-instances-do-not-deform", "host/render/motion_lookup.cpp",
+        "if (!movement.still || deforms_[of.mesh]) {",
+        "if (!movement.still) {",
+        r"^Motion\."),
+    Mutation(
+        "shutter-without-its-last-moment", "host/render/shutter.cpp",
+        "std::int64_t{options.spp} * (time + 1) / times",
+        "std::int64_t{options.spp} * time / times",
+        r"^Shutter\."),
+]

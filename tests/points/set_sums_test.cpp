@@ -1,0 +1,29 @@
+// Means of independent sets of rays and their standard errors, of numbers that are known.
+#include "points/set_sums.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace dapple {
+namespace {
+
+// The deviations of 0.1, 0.2, 0.3 and 0.6 from their mean are -0.2, -0.1, 0 and 0.3: their squares
+// add up to 0.14, and the variance of the mean is 0.14 / (3 * 4).
+TEST(SetSums, TheStandardErrorIsThatOfTheMean) {
+  SetSums sums(2);
+  for (const double value : {0.1, 0.2, 0.3, 0.6})
+    sums.add([&](std::size_t i) { return i == 0 ? value : 0.5; });
+  std::vector<PointColumn> columns;
+  sums.store("ao", BiasCorrection(), columns);
+  ASSERT_EQ(columns.size(), 2u);
+  EXPECT_EQ(columns[0].name, "ao");
+  EXPECT_FLOAT_EQ(columns[0].values.at(0), 0.3f);
+  EXPECT_FLOAT_EQ(columns[0].values.at(1), 0.5f);
+  EXPECT_EQ(columns[1].name, "ao_error");
+  EXPECT_NEAR(columns[1].values.at(0), std::sqrt(0.14 / 12), 1e-6);
+  EXPECT_EQ(columns[1].values.at(1), 0.0f);
+}
+
+}  // namespace
+}  // namespace dapple
