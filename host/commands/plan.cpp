@@ -1,6 +1,7 @@
 // dapple plan: what a render would take on this machine. In: the options of dapple render. Out:
-// memory, seconds of a shard and bytes of files, from a trial of a thousandth of the samples: a
-// smaller image with fewer samples of each pixel.
+// memory, seconds of a shard and bytes of files, from trials: smaller images with fewer samples of
+// each pixel. The first has a thousandth of the samples; longer ones follow while the time is
+// short.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "commands/command.hpp"
@@ -27,9 +29,15 @@
 namespace dapple {
 namespace {
 
-/// Part of the samples that a trial has, and the least number of its camera rays: with fewer, the
-/// time is that of starting kernels.
+/// Part of the samples that the first trial has, and the least number of its camera rays: with
+/// fewer, the time is that of starting kernels.
 constexpr double kShare = 1e-3, kLeastRays = 1 << 16;
+
+/// While a trial takes less, a longer one follows, of so many times the rays.
+constexpr double kLongEnough = 0.4, kLonger = 8;
+
+/// Samples of a pixel in trials: as in whole renders, many samples share nodes and caches.
+constexpr int kTrialSamples = 64;
 
 struct Plan {
   double pixels = 0, rays = 0;  ///< of the image
@@ -51,16 +59,17 @@ double pixels_of(const RenderOptions& options) {
   return double{1} * window.width() * window.height();
 }
 
-/// The same view in fewer pixels, and fewer samples of each; footprints stay.
+/// The same view with about `rays` camera rays, in fewer and larger pixels, and fewer samples of
+/// each. Footprints stay as large as those of `options`.
 RenderOptions trial_options(const RenderOptions& options, double rays) {
   RenderOptions trial = options;
   trial.shard = {};
-  trial.footprint_spp = footprint_samples(options);
   trial.target_error = trial.target_rmse = trial.max_bias = 0;
-  const double share = std::min(1.0, std::max(kShare, kLeastRays / rays));
-  const double spp = std::max(1.0, std::floor(options.spp * share));
-  trial.spp = static_cast<int>(spp);
-  const double side = std::sqrt(std::min(1.0, share * options.spp / spp));
+  trial.spp = std::min(options.spp, kTrialSamples);
+  const double share = std::min(1.0, rays / (pixels_of(options) * trial.spp));
+  const double side = std::sqrt(share);
+  const double footprints = std::min(footprint_samples(options) / share, double{1 << 20});
+  trial.footprint_spp = static_cast<int>(footprints);
   const auto scaled = [&](int length) { return static_cast<int>(std::ceil(length * side)); };
   trial.width = scaled(options.width);
   trial.height = scaled(options.height);
@@ -107,36 +116,77 @@ double file_bytes(const std::string& path) {
   return static_cast<double>(std::filesystem::file_size(path));
 }
 
-Plan plan_of(const RenderArguments& a, const RenderOptions& options, Scene scene) {
+struct Trial {
+  double pixels = 0, rays = 0;
+  double seconds = 0;         ///< of tracing
+  double before_seconds = 0;  ///< of what comes before
+};
+
+Trial trace_trial(Renderer& renderer, Scene scene, const RenderOptions& options,
+                  const RenderControl& control, RenderResult& result) {
+  result = renderer.render(std::move(scene), options, control);
+  const auto& seconds = result.statistics.seconds;
+  const double pixels = pixels_of(options);
+  return {pixels, pixels * options.spp, seconds.trace, seconds.total - seconds.trace};
+}
+
+/// Seconds of `rays` camera rays, if they grow as from a trial to a longer one.
+double seconds_of(double rays, const Trial& shorter, const Trial& longer) {
+  if (longer.rays <= shorter.rays) return longer.seconds * rays / longer.rays;
+  const double of_ray =
+      std::max(0.0, longer.seconds - shorter.seconds) / (longer.rays - shorter.rays);
+  return std::max(longer.seconds * std::min(1.0, rays / longer.rays),
+                  longer.seconds + of_ray * (rays - longer.rays));
+}
+
+/// Bytes that more pixels take. Images whose sums are saved have them twice.
+double film_bytes(const RenderArguments& a, const RenderOptions& options, std::size_t lights,
+                  double pixels) {
+  const bool saved = is_part_path(a.output) || !a.checkpoint.empty();
+  const auto of_pixel = static_cast<double>(film_bytes_per_pixel(lights, options));
+  return pixels * (saved ? of_pixel : of_pixel / 2);
+}
+
+/// `scene_now` returns the scene, each time the same.
+Plan plan_of(const RenderArguments& a, const RenderOptions& options,
+             const std::function<Scene()>& scene_now) {
   Plan plan;
   plan.pixels = pixels_of(options);
   plan.rays = plan.pixels * options.spp;
   plan.shards = options.shard.count;
   plan.shard_rays = plan.pixels * std::ceil(double{1} * options.spp / plan.shards);
   if (!a.frames.empty()) plan.frames = static_cast<double>(parse_frames(a.frames).count());
-  const RenderOptions trial = trial_options(options, plan.rays);
-  plan.trial_rays = pixels_of(trial) * trial.spp;
 
   const TrialFolder folder;
   RenderControl control;
   ProgressBar progress(a.quiet, "trial");
   control.progress = progress.callback();
   control.part = folder.file("trial.dapple");
+  Scene scene = scene_now();
   const std::size_t lights = options.light ? std::max<std::size_t>(2, scene.lights.size()) : 0;
-  const RenderResult result = render(std::move(scene), trial, control);
+  Renderer renderer;
+  RenderResult result;
+  double rays = std::max(kShare * plan.rays, kLeastRays);
+  Trial shorter;
+  Trial longer =
+      trace_trial(renderer, std::move(scene), trial_options(options, rays), control, result);
+  plan.before_seconds = longer.before_seconds;
+  while (longer.seconds < kLongEnough && longer.pixels < plan.pixels) {
+    rays *= kLonger;
+    shorter = longer;
+    longer = trace_trial(renderer, scene_now(), trial_options(options, rays), control, result);
+  }
   progress.clear();
-  const auto& s = result.statistics.seconds;
   plan.device = result.statistics.device;
-  plan.trial_seconds = s.trace;
-  plan.before_seconds = s.total - s.trace;
-  plan.ray_seconds = s.trace * plan.shard_rays / plan.trial_rays;
-  const double more_pixels = plan.pixels - pixels_of(trial);
+  plan.trial_rays = longer.rays;
+  plan.trial_seconds = longer.seconds;
+  plan.ray_seconds = seconds_of(plan.shard_rays, shorter, longer);
   plan.memory_bytes =
-      resident_bytes() + more_pixels * static_cast<double>(film_bytes_per_pixel(lights, options));
+      resident_bytes() + film_bytes(a, options, lights, plan.pixels - longer.pixels);
   const std::string image = folder.file("trial.exr");
   write_exr(result.film, image, to_format(a));
-  plan.image_bytes = file_bytes(image) * plan.pixels / pixels_of(trial);
-  plan.part_bytes = file_bytes(control.part) * plan.pixels / pixels_of(trial);
+  plan.image_bytes = file_bytes(image) * plan.pixels / longer.pixels;
+  plan.part_bytes = file_bytes(control.part) * plan.pixels / longer.pixels;
   return plan;
 }
 
@@ -190,7 +240,7 @@ void run_plan(RenderArguments a) {
   if (!a.frames.empty())
     seconds = static_cast<double>(parse_frames(a.frames).first) / frames_per_second(a);
   Shot shot(a, options);
-  const Plan plan = plan_of(a, options, shot.frame(seconds));
+  const Plan plan = plan_of(a, options, [&] { return shot.frame(seconds); });
   if (!a.stats_json.empty()) write_whole_file(a.stats_json, plan_json(plan).dump(2) + "\n");
   fmt::print("{}", plan_text(plan));
 }
