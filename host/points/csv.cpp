@@ -53,6 +53,8 @@ NumberTable read_csv(const std::string& path) {
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.find_first_not_of(" \t\r") == std::string_view::npos || line.front() == '#') continue;
     const std::vector<std::string_view> cells = cells_of(line);
+    if (cells.empty())
+      throw Error(ErrorKind::input, fmt::format("{}: line {} has no columns", path, number));
     double value = 0;
     if (table.columns == 0) {
       table.columns = cells.size();

@@ -87,6 +87,7 @@ TEST_F(PointFile, ErrorsOfInvalidFilesNameTheLineOrRow) {
   expect_error(write("d.csv", "1,2,nan\n"), "row 0");
   expect_error(write("e.csv", "1,2,3,0,0,0\n"), "normal");
   expect_error(write("f.csv", "1,2,3\n1e300,2,3\n"), "row 1 is more than 1e+12 m");
+  expect_error(write("g.csv", "\"\"\n1,2,3\n"), "line 1 has no columns");
   expect_error(write("a.npy", "no"), "not an NPY");
   expect_error(write("a.ply", "ply\nformat binary_big_endian 1.0\nend_header\n"), "big_endian");
   expect_error(write("b.ply",
