@@ -77,8 +77,8 @@ void add_amplifiers(MalformedCases& cases) {
   many.doc["accessors"][0]["count"] = 4294967295u;
   add(cases, "bomb_of_zero_positions", many, "accessor 0 has 4,294,967,295 elements");
   GltfBuilder materials = one_triangle();
-  materials.doc["materials"] = json(std::vector<json>(70000, json::object()));
-  add(cases, "bomb_of_materials", materials, "materials has 70,000 elements");
+  materials.doc["materials"] = json(std::vector<json>(140000, json::object()));
+  add(cases, "bomb_of_materials", materials, "materials has 140,000 elements");
 }
 
 GltfBuilder triangle_of(const std::vector<float>& positions) {
