@@ -90,8 +90,9 @@ class TrialFolder {
     const std::string parent = set && *set ? set : "/tmp";
     path_ = parent + "/dapple-plan-XXXXXX";
     if (mkdtemp(path_.data())) return;
-    throw Error(ErrorKind::failed, fmt::format("cannot make a folder in {}, where TMPDIR says: {}",
-                                               parent, std::strerror(errno)));
+    throw Error(ErrorKind::failed,
+                fmt::format("cannot make a folder in {} (TMPDIR, or else /tmp): {}", parent,
+                            std::strerror(errno)));
   }
   ~TrialFolder() {
     std::error_code ignored;
