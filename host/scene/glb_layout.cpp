@@ -1,5 +1,5 @@
 // Describes a scene in terms of glTF 2.0 (Khronos, glTF 2.0 Specification, sections 3 and 5):
-// buffer views, accessors, one primitive for each material of a mesh, nodes, cameras.
+// buffer views, accessors, primitives, nodes, cameras.
 #include "scene/glb_layout.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dapple/error.hpp"
+#include "scene/glb_primitives.hpp"
 
 namespace dapple {
 namespace {
@@ -70,28 +71,24 @@ Json camera_json(const Camera& camera) {
             {"zfar", kOrthographicFar}}}};
 }
 
-Box3f finite_bounds(const Mesh& mesh) {
+Box3f finite_bounds(std::span<const V3f> positions, const std::string& mesh) {
   Box3f bounds;
-  for (const V3f& p : mesh.positions) {
+  for (const V3f& p : positions) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       throw Error(ErrorKind::failed,
-                  fmt::format("mesh \"{}\" has a vertex that is not finite", mesh.name));
+                  fmt::format("mesh \"{}\" has a vertex that is not finite", mesh));
     }
     bounds.extendBy(p);
   }
   return bounds;
 }
 
-// Returns the vertex indices of each material's triangles; empty for a material without any.
-std::vector<std::vector<std::uint32_t>> split_by_material(const Mesh& mesh,
-                                                          std::size_t material_count) {
-  std::vector<std::vector<std::uint32_t>> indices(material_count);
-  for (std::size_t triangle = 0; triangle < mesh.primitive_count(); ++triangle) {
-    const auto first = mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
-    auto& own = indices[mesh.materials[triangle]];
-    own.insert(own.end(), first, first + 3);
-  }
-  return indices;
+template <typename Value>
+std::vector<Value> take(const std::vector<Value>& values, const std::vector<std::uint32_t>& at) {
+  std::vector<Value> taken;
+  taken.reserve(at.size());
+  for (const std::uint32_t i : at) taken.push_back(values[i]);
+  return taken;
 }
 
 std::vector<float> white_with_alpha(const std::vector<float>& alpha) {
@@ -132,15 +129,20 @@ class Describer {
     return json_["accessors"].size() - 1;
   }
 
-  std::size_t add_positions(const Mesh& mesh) {
-    const Box3f bounds = finite_bounds(mesh);
-    return add_accessor(std::as_bytes(std::span(mesh.positions)),
+  std::size_t add_positions(std::span<const V3f> positions, const std::string& mesh) {
+    const Box3f bounds = finite_bounds(positions, mesh);
+    return add_accessor(std::as_bytes(positions),
                         {{"componentType", kFloat},
                          {"type", "VEC3"},
-                         {"count", mesh.positions.size()},
+                         {"count", positions.size()},
                          {"min", vector_json(bounds.min)},
                          {"max", vector_json(bounds.max)}},
                         kArrayBuffer);
+  }
+
+  const std::vector<V3f>& keep(std::vector<V3f> vectors) {
+    layout_.made_vectors.push_back(std::move(vectors));
+    return layout_.made_vectors.back();
   }
 
   std::size_t add_indices(std::vector<std::uint32_t> indices) {
@@ -169,20 +171,43 @@ class Describer {
                   fmt::format("\"{:.100}\": glTF has no strands; render {} without writing it",
                               mesh.name, scene_.source));
     }
-    Json attributes = {{"POSITION", add_positions(mesh)}};
-    Json with_alpha = attributes;
-    if (!mesh.vertex_alpha.empty()) with_alpha["COLOR_0"] = add_colours(mesh.vertex_alpha);
     Json primitives = Json::array();
-    auto indices = split_by_material(mesh, scene_.materials.size());
-    for (std::size_t m = 0; m < indices.size(); ++m) {
-      if (indices[m].empty()) continue;
-      const bool uses_alpha = scene_.materials[m].uses_vertex_alpha;
-      primitives.push_back({{"attributes", uses_alpha ? with_alpha : attributes},
-                            {"indices", add_indices(std::move(indices[m]))},
-                            {"material", m}});
+    Json of_all_vertices;  // shared by the primitives without normals
+    for (GlbPrimitive& primitive : split_into_primitives(mesh, scene_.materials.size())) {
+      Json attributes;
+      if (primitive.has_normals()) {
+        attributes = add_smooth_vertices(mesh, primitive);
+      } else {
+        if (of_all_vertices.is_null()) of_all_vertices = add_all_vertices(mesh);
+        attributes = of_all_vertices;
+      }
+      if (!scene_.materials[primitive.material].uses_vertex_alpha) attributes.erase("COLOR_0");
+      primitives.push_back({{"attributes", attributes},
+                            {"indices", add_indices(std::move(primitive.indices))},
+                            {"material", primitive.material}});
     }
     mesh_numbers_.back() = static_cast<int>(json_["meshes"].size());
     json_["meshes"].push_back({{"name", mesh.name}, {"primitives", primitives}});
+  }
+
+  // Returns the attributes of a primitive without normals.
+  Json add_all_vertices(const Mesh& mesh) {
+    Json attributes = {{"POSITION", add_positions(mesh.positions, mesh.name)}};
+    if (!mesh.vertex_alpha.empty()) attributes["COLOR_0"] = add_colours(mesh.vertex_alpha);
+    return attributes;
+  }
+
+  Json add_smooth_vertices(const Mesh& mesh, const GlbPrimitive& primitive) {
+    const auto& used = primitive.vertices;
+    Json attributes;
+    attributes["POSITION"] = add_positions(keep(take(mesh.positions, used)), mesh.name);
+    attributes["NORMAL"] = add_accessor(
+        std::as_bytes(std::span(keep(take(mesh.normals, used)))),
+        {{"componentType", kFloat}, {"type", "VEC3"}, {"count", used.size()}}, kArrayBuffer);
+    if (!mesh.vertex_alpha.empty()) {
+      attributes["COLOR_0"] = add_colours(take(mesh.vertex_alpha, used));
+    }
+    return attributes;
   }
 
   void add_instance(const Instance& instance) {

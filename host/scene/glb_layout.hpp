@@ -19,6 +19,7 @@ struct GlbLayout {
   std::size_t byte_count = 0;  ///< of all sections; a multiple of 4
   std::vector<std::vector<std::uint32_t>> made_indices;
   std::vector<std::vector<float>> made_colours;
+  std::vector<std::vector<V3f>> made_vectors;
 };
 
 /// Textures are left out. The scene must outlive the layout. Throws Error failed when a vertex is

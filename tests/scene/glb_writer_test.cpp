@@ -14,12 +14,23 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/corner_normals.hpp"
 
 namespace dapple {
 namespace {
 
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
+
+std::size_t smooth_triangles(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
+      count += corner_normals(mesh, t).has_value();
+  }
+  return count;
+}
 
 // A temporary folder that the destructor removes.
 class Folder {
@@ -146,6 +157,26 @@ TEST(GlbWriter, EachMaterialOfAMeshIsOnePrimitiveOverTheSamePositions) {
   EXPECT_EQ(glb.json["accessors"][positions]["max"], Json({1.0, 2.0, 0.0}));
 }
 
+TEST(GlbWriter, TrianglesWithNormalsAreAPrimitiveWithVerticesOfItsOwn) {
+  Scene scene = small_scene();
+  Mesh& mesh = scene.meshes[0];
+  mesh.materials = {1, 1};
+  mesh.normals = {{0, 1, 0}, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}};  // the first triangle lacks one
+  const Glb glb = write_and_take_apart(scene);
+  const Json& primitives = glb.json["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 2u);
+  EXPECT_EQ(primitives[1]["material"], 1);
+  EXPECT_FALSE(primitives[0]["attributes"].contains("NORMAL"));
+  EXPECT_EQ(accessor_values<V3f>(glb, primitives[0]["attributes"]["POSITION"]), mesh.positions);
+  const Json& smooth = primitives[1]["attributes"];
+  EXPECT_EQ(accessor_values<std::uint32_t>(glb, primitives[1]["indices"]),
+            (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(accessor_values<V3f>(glb, smooth["POSITION"]),
+            (std::vector<V3f>{mesh.positions[0], mesh.positions[2], mesh.positions[3]}));
+  EXPECT_EQ(accessor_values<V3f>(glb, smooth["NORMAL"]),
+            (std::vector<V3f>{mesh.normals[0], mesh.normals[2], mesh.normals[3]}));
+}
+
 TEST(GlbWriter, MaterialsCarryTheirAlpha) {
   const Json materials = write_and_take_apart(small_scene()).json["materials"];
   EXPECT_EQ(materials[0]["alphaMode"], "BLEND");
@@ -223,6 +254,8 @@ TEST(GlbWriter, WhatWasWrittenIsReadBack) {
   for (const Instance& i : scene.instances) triangles += scene.meshes[i.mesh].primitive_count();
   for (const Instance& i : read.instances) read_triangles += read.meshes[i.mesh].primitive_count();
   EXPECT_EQ(read_triangles, triangles);
+  EXPECT_GT(smooth_triangles(scene), 1000u);
+  EXPECT_EQ(smooth_triangles(read), smooth_triangles(scene));
   EXPECT_EQ(scene_bounds(read).min, scene_bounds(scene).min);
   EXPECT_EQ(scene_bounds(read).max, scene_bounds(scene).max);
   ASSERT_EQ(read.cameras.size(), 1u);

@@ -18,12 +18,19 @@ std::uint32_t next_vertex(const Mesh& mesh) {
   return static_cast<std::uint32_t>(mesh.positions.size());
 }
 
-void append_ring(Mesh& mesh, V3f centre, V3f u, V3f v, int sides) {
+/// Gives vertices without a normal that of their face, if the mesh has normals.
+void complete_normals(Mesh& mesh) {
+  if (!mesh.normals.empty()) mesh.normals.resize(mesh.positions.size(), V3f(0, 0, 0));
+}
+
+/// `u` and `v`: unit, at right angles to each other.
+void append_ring(Mesh& mesh, V3f centre, float radius, V3f u, V3f v, int sides) {
   for (int i = 0; i < sides; ++i) {
     // Double arithmetic, rounded at the end: differences in libm's last bit do not change the mesh.
     const double angle = 2 * std::numbers::pi * i / sides;
-    mesh.positions.push_back(centre + u * static_cast<float>(std::cos(angle)) +
-                             v * static_cast<float>(std::sin(angle)));
+    const auto x = static_cast<float>(std::cos(angle)), y = static_cast<float>(std::sin(angle));
+    mesh.positions.push_back(centre + u * radius * x + v * radius * y);
+    if (sides >= kSmoothSides) mesh.normals.push_back(u * x + v * y);
   }
 }
 
@@ -56,6 +63,7 @@ V3f perpendicular(V3f direction) {
 void append_quad(Mesh& mesh, V3f a, V3f b, V3f c, V3f d, std::uint32_t material) {
   const std::uint32_t first = next_vertex(mesh);
   mesh.positions.insert(mesh.positions.end(), {a, b, c, d});
+  complete_normals(mesh);
   append_triangle(mesh, first, first + 1, first + 2, material);
   append_triangle(mesh, first, first + 2, first + 3, material);
 }
@@ -68,6 +76,8 @@ void append_square(Mesh& mesh, float side, float y, std::uint32_t material) {
 void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float> radii, int sides,
                  std::uint32_t material) {
   assert(points.size() >= 2 && points.size() == radii.size() && sides >= 3);
+  const bool is_smooth = sides >= kSmoothSides;
+  if (is_smooth) mesh.normals.resize(mesh.positions.size(), V3f(0, 0, 0));
   const std::size_t last = points.size() - 1;
   V3f u = perpendicular(points[1] - points[0]);
   std::uint32_t lower = 0;
@@ -78,11 +88,13 @@ void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float>
     const V3f carried = u - along * u.dot(along);
     u = carried.length2() > 1e-6f ? carried.normalized() : perpendicular(along);
     const std::uint32_t ring = next_vertex(mesh);
-    append_ring(mesh, points[i], u * radii[i], along.cross(u) * -radii[i], sides);
+    append_ring(mesh, points[i], radii[i], u, -along.cross(u), sides);
     if (i > 0) join_rings(mesh, lower, ring, sides, material);
     lower = ring;
   }
   close_ring(mesh, lower, points[last], sides, material);
+  if (is_smooth) mesh.normals.push_back((points[last] - points[last - 1]).normalized());
+  complete_normals(mesh);
 }
 
 BladeRange::BladeRange(Mesh& mesh, std::size_t count, std::uint32_t material)
@@ -91,6 +103,7 @@ BladeRange::BladeRange(Mesh& mesh, std::size_t count, std::uint32_t material)
       first_triangle_(mesh.materials.size()),
       material_(material) {
   mesh.positions.resize(first_vertex_ + 4 * count);
+  complete_normals(mesh);
   mesh.materials.resize(first_triangle_ + 2 * count);
   mesh.indices.resize(3 * mesh.materials.size());
 }

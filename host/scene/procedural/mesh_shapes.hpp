@@ -1,6 +1,6 @@
 // The shapes that procedural scenes consist of: quads, squares, leaf blades and tapered tubes.
-// In: corners, axes and radii in metres; out: vertices, indices and materials appended to a Mesh.
-// Every triangle has an area.
+// In: corners, axes and radii in metres; out: vertices, indices and materials appended to a Mesh,
+// and normals if it has any. Every triangle has an area.
 #pragma once
 
 #include <span>
@@ -18,9 +18,13 @@ void append_quad(Mesh& mesh, V3f a, V3f b, V3f c, V3f d, std::uint32_t material)
 /// Appends a horizontal square facing up, centred at (0, y, 0).
 void append_square(Mesh& mesh, float side, float y, std::uint32_t material);
 
+/// A tube with fewer sides is thin, and its faces are too far from round for the normals of a
+/// cylinder: rays would start into the tube.
+inline constexpr int kSmoothSides = 5;
+
 /// Appends a tube through `points` (two or more) that is open at its beginning and ends in a point
 /// at the last one. Front sides are outside. Its radius at points[i] is radii[i]; the last radius
-/// is not used.
+/// is not used. Tubes with kSmoothSides or more have normals, so that they look round.
 void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float> radii, int sides,
                  std::uint32_t material);
 

@@ -20,13 +20,14 @@ int sides_of(float radius, float trunk_radius) {
   return share > 0.5f ? 12 : share > 0.25f ? 7 : share > 0.12f ? 5 : 3;
 }
 
-/// Moves the vertices of a tube from their rest positions. The tube begins at vertex `first`, and
-/// its rings are around `nodes`.
+/// Moves the vertices of a tube from their rest positions, and turns their normals. The tube begins
+/// at vertex `first`, and its rings are around `nodes`.
 void sway_tube(Mesh& mesh, std::size_t first, const std::vector<std::uint32_t>& nodes, int sides,
                const SwayingSkeleton& swaying) {
   for (std::size_t v = first; v < mesh.positions.size(); ++v) {
-    const std::size_t ring = (v - first) / static_cast<std::size_t>(sides);
-    mesh.positions[v] = swaying.moved(nodes[ring], mesh.positions[v]);
+    const std::uint32_t node = nodes[(v - first) / static_cast<std::size_t>(sides)];
+    mesh.positions[v] = swaying.moved(node, mesh.positions[v]);
+    if (sides >= kSmoothSides) mesh.normals[v] = swaying.turned(node, mesh.normals[v]);
   }
 }
 

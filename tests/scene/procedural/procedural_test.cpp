@@ -11,6 +11,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/corner_normals.hpp"
 #include "support/fingerprint.hpp"
 namespace dapple {
 namespace {
@@ -23,6 +24,7 @@ std::uint64_t hash_of(const Scene& scene) {
     hash.add(mesh.indices);
     hash.add(mesh.materials);
     hash.add(mesh.radii);
+    hash.add(mesh.normals);
   }
   for (const Instance& instance : scene.instances) {
     hash.add_bytes(&instance.mesh, sizeof instance.mesh);
@@ -89,9 +91,9 @@ TEST(Procedural, TheNumberOfThreadsDoesNotChangeABit) {
 // The hashes were recorded once. Pictures are compared across machines and compilers, so their
 // scenes must have the same bits there.
 TEST(Procedural, ASceneHasTheSameBitsOnEveryMachine) {
-  EXPECT_EQ(hash_of(make_procedural("scene:tree?leaves=1000")), 0x7b3697f141657fb3ULL);
+  EXPECT_EQ(hash_of(make_procedural("scene:tree?leaves=1000")), 0xc99b236055b03942ULL);
   EXPECT_EQ(hash_of(make_procedural("scene:cloud?leaves=1000")), 0xd28a0aff605cce05ULL);
-  EXPECT_EQ(hash_of(make_procedural("scene:forest?leaves=50&trees=9")), 0xa09a6504e03f22e4ULL);
+  EXPECT_EQ(hash_of(make_procedural("scene:forest?leaves=50&trees=9")), 0xe9afb7fcfe75c3f1ULL);
 }
 
 TEST(Procedural, ATreeHasExactlyTheNumberOfLeavesOfItsParameter) {
@@ -125,6 +127,24 @@ TEST(Procedural, TheFrontSidesOfBarkAreOutside) {
     flux += 0.5 * double{(b - a).cross(c - a).dot(a)};
   }
   EXPECT_GT(flux, 0);
+}
+
+TEST(Procedural, ThickBranchesAreRoundAndLeavesAreFlat) {
+  const Scene scene = make_procedural("scene:tree?leaves=1000");
+  const Mesh& mesh = scene.meshes.at(0);
+  ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+  const int bark = material_named(scene, "bark");
+  std::size_t smooth = 0;
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+    const auto normals = corner_normals(mesh, t);
+    smooth += normals.has_value();
+    ASSERT_FALSE(normals && static_cast<int>(mesh.materials[t]) != bark);
+  }
+  EXPECT_GT(smooth, triangles_of(mesh, bark) / 20);
+  for (const V3f& normal : mesh.normals) {
+    const float length = normal.length();
+    ASSERT_TRUE(length == 0 || std::abs(length - 1) < 1e-5f) << length;
+  }
 }
 
 TEST(Procedural, ATreeStandsOnTheOriginAndHasAboutTheHeightOfItsParameter) {

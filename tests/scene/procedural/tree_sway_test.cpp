@@ -105,6 +105,32 @@ TEST(TreeSway, DoesNotTearTheWood) {
   }
 }
 
+/// The mean cosine between the normals of corners and their faces.
+double agreement(const Mesh& mesh) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
+    const V3f& normal = mesh.normals.at(mesh.indices[i]);
+    if (normal.length2() == 0) continue;
+    const std::uint32_t* const corner = &mesh.indices[i / 3 * 3];
+    const V3f& a = mesh.positions[corner[0]];
+    sum += double{(mesh.positions[corner[1]] - a)
+                      .cross(mesh.positions[corner[2]] - a)
+                      .normalized()
+                      .dot(normal)};
+    ++count;
+  }
+  return sum / static_cast<double>(count);
+}
+
+TEST(TreeSway, TurnsTheNormalsOfTheWoodWithIt) {
+  const Mesh still = tree_at("scene:tree?leaves=1&wind=2", {});
+  const Mesh swayed = tree_at("scene:tree?leaves=1&wind=2", 4.0);
+  EXPECT_NE(swayed.normals, still.normals);
+  EXPECT_GT(agreement(still), 0.85);
+  EXPECT_NEAR(agreement(swayed), agreement(still), 0.01);
+}
+
 TEST(TreeSway, MoreWindMovesItMore) {
   const Mesh still = tree_at(kWindy, {});
   const float breeze = largest_step(still, tree_at("scene:tree?leaves=3000&wind=0.2", 1.0));
