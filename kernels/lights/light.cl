@@ -1,7 +1,7 @@
 /* The light pass: generates rays from every active point to one light. In: surface points and the light.
    Out: rays whose weights make the mean of weight times transmittance the irradiance at radiance 1. */
 #include "sampling/direction.clh"
-#include "lights/dome.clh"
+#include "lights/dome_samples.clh"
 #include "dapple/shared/light_record.h"
 #include "dapple/shared/pass_params.h"
 #include "occlusion/point_rays.clh"
@@ -10,15 +10,13 @@
 typedef struct LightSample {
   float3 direction;   /* towards the light, unit */
   float distance;
-  float solid_angle;  /* 1 / pdf; the weight without cosine and radiance */
-  float radiance;     /* dome: the luminance from there; else 1 */
+  float solid_angle;  /* 1 / pdf; the weight without cosine */
 } LightSample;
 
 /* Sample of a flat emitter, uniform over `area`. */
 DAPPLE_INLINE LightSample towards(float3 from, float3 to, float3 light_normal, float area,
                                   bool two_sided) {
   LightSample sample;
-  sample.radiance = 1.0f;
   const float3 way = to - from;
   const float square = fmax(dot(way, way), 1e-20f);
   sample.distance = sqrt(square);
@@ -31,7 +29,6 @@ DAPPLE_INLINE LightSample towards(float3 from, float3 to, float3 light_normal, f
 /* Sample of a sphere, uniform in the cone that it subtends; from inside, over all directions. */
 DAPPLE_INLINE LightSample sample_sphere(__global const LightRecord* light, float3 from, float2 u) {
   LightSample sample;
-  sample.radiance = 1.0f;
   const float3 way = load3(light->position) - from;
   const float distance = length(way);
   const float3 axis = distance > 0.0f ? way / distance : (float3)(0.0f, 1.0f, 0.0f);
@@ -51,15 +48,6 @@ DAPPLE_INLINE LightSample sample_sphere(__global const LightRecord* light, float
                              0.0f, 1.0f);
     sample.solid_angle *= edge * edge;
   }
-  return sample;
-}
-
-DAPPLE_INLINE LightSample sample_sun(__global const LightRecord* light, float2 u) {
-  LightSample sample;
-  sample.radiance = 1.0f;
-  sample.direction = sample_cone(-load3(light->direction), light->one_minus_cos, u);
-  sample.solid_angle = 2.0f * M_PI_F * light->one_minus_cos;
-  sample.distance = INFINITY;
   return sample;
 }
 
@@ -85,16 +73,6 @@ DAPPLE_INLINE LightSample sample_mesh(__global const LightRecord* light,
   return towards(from, to, normalize(cross(edge1, edge2)), light->area, light->two_sided != 0u);
 }
 
-DAPPLE_INLINE LightSample sample_around(__global const LightRecord* light,
-                                        __global const float* environments, float3 normal,
-                                        float2 u) {
-  const Dome dome = dome_of(light, environments);
-  LightSample sample;
-  sample.direction = sample_dome(&dome, normal, u, &sample.solid_angle, &sample.radiance);
-  sample.distance = INFINITY;
-  return sample;
-}
-
 DAPPLE_INLINE LightSample sample_disk(__global const LightRecord* light, float3 from, float2 u) {
   float x, y;
   concentric_disk(u.x, u.y, &x, &y);
@@ -102,22 +80,16 @@ DAPPLE_INLINE LightSample sample_disk(__global const LightRecord* light, float3 
   return towards(from, to, load3(light->direction), light->area, false);
 }
 
-/* Sample of a light that is neither a rectangle nor a dome. */
+/* Sample of a sphere, a disk or a mesh. */
 DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
                                         __global const EmitterTriangle* emitters, float3 from,
                                         float2 u) {
   switch (light->kind) {
     case DAPPLE_LIGHT_SPHERE: return sample_sphere(light, from, u);
-    case DAPPLE_LIGHT_SUN: return sample_sun(light, u);
     case DAPPLE_LIGHT_DISK: return sample_disk(light, from, u);
     default: return sample_mesh(light, emitters, from, u);
   }
 }
-
-/* Sixteen LightSamples, one in each lane. */
-typedef struct LightSamples {
-  Floats16 direction[3], distance, solid_angle, radiance;
-} LightSamples;
 
 /* As towards(), for sixteen points of the rectangle. */
 inline void sample_rect(__global const LightRecord* light, const PointRays* rays,
@@ -136,32 +108,61 @@ inline void sample_rect(__global const LightRecord* light, const PointRays* rays
   }
   samples->distance.v = distance;
   samples->solid_angle.v = light->area * at_least_0(against) / square;
-  samples->radiance.v = (float16)(1.0f);
+}
+
+/* Directions uniform in the cone that the sun subtends. */
+inline void sample_sun(__global const LightRecord* light, const PointRays* rays,
+                       LightSamples* samples) {
+  const float16 height = rays->u.v * light->one_minus_cos;
+  const float16 sine = sqrt(at_least_0(height * (2.0f - height)));
+  const Floats16 turn = rays->v;
+  Floats16 x, y;
+  for (uint i = 0; i < DAPPLE_RAY_LANES; ++i)
+    circle_point((uint)(turn.f[i] * 0x1p32f), x.f + i, y.f + i);
+  const float3 axis = -load3(light->direction);
+  float3 tangent, bitangent;
+  make_frame(axis, &tangent, &bitangent);
+  float16 direction[3];
+  direction[0] = (x.v * tangent.x + y.v * bitangent.x) * sine + axis.x * (1.0f - height);
+  direction[1] = (x.v * tangent.y + y.v * bitangent.y) * sine + axis.y * (1.0f - height);
+  direction[2] = (x.v * tangent.z + y.v * bitangent.z) * sine + axis.z * (1.0f - height);
+  const float16 length = sqrt(dot_16(direction, direction));
+  DAPPLE_UNROLL for (uint i = 0; i < 3u; ++i) samples->direction[i].v = direction[i] / length;
+  samples->solid_angle.v = (float16)(2.0f * M_PI_F * light->one_minus_cos);
+  samples->distance.v = (float16)(INFINITY);
+}
+
+/* Samples of a light of which scalars are computed. */
+inline void sample_each(__global const LightRecord* light,
+                        __global const EmitterTriangle* emitters, const PointRays* rays,
+                        LightSamples* samples) {
+  for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
+    const float2 u = (float2)(rays->u.f[i], rays->v.f[i]);
+    const float3 origin =
+        (float3)(rays->origin[0].f[i], rays->origin[1].f[i], rays->origin[2].f[i]);
+    const LightSample sample = sample_source(light, emitters, origin, u);
+    samples->direction[0].f[i] = sample.direction.x;
+    samples->direction[1].f[i] = sample.direction.y;
+    samples->direction[2].f[i] = sample.direction.z;
+    samples->distance.f[i] = sample.distance;
+    samples->solid_angle.f[i] = sample.solid_angle;
+  }
 }
 
 inline void sample_light(__global const LightRecord* light,
                          __global const EmitterTriangle* emitters,
                          __global const float* environments, const PointRays* rays,
                          LightSamples* samples) {
-  if (light->kind == DAPPLE_LIGHT_RECT) {
+  samples->radiance.v = (float16)(1.0f);
+  if (light->kind == DAPPLE_LIGHT_DOME) {
+    const Dome dome = dome_of(light, environments);
+    sample_dome(&dome, rays, samples);
+  } else if (light->kind == DAPPLE_LIGHT_RECT) {
     sample_rect(light, rays, samples);
-    return;
-  }
-  for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
-    const float2 u = (float2)(rays->u.f[i], rays->v.f[i]);
-    const float3 normal =
-        (float3)(rays->normal[0].f[i], rays->normal[1].f[i], rays->normal[2].f[i]);
-    const float3 origin =
-        (float3)(rays->origin[0].f[i], rays->origin[1].f[i], rays->origin[2].f[i]);
-    const LightSample sample = light->kind == DAPPLE_LIGHT_DOME
-                                   ? sample_around(light, environments, normal, u)
-                                   : sample_source(light, emitters, origin, u);
-    samples->direction[0].f[i] = sample.direction.x;
-    samples->direction[1].f[i] = sample.direction.y;
-    samples->direction[2].f[i] = sample.direction.z;
-    samples->distance.f[i] = sample.distance;
-    samples->solid_angle.f[i] = sample.solid_angle;
-    samples->radiance.f[i] = sample.radiance;
+  } else if (light->kind == DAPPLE_LIGHT_SUN) {
+    sample_sun(light, rays, samples);
+  } else {
+    sample_each(light, emitters, rays, samples);
   }
 }
 

@@ -85,3 +85,20 @@ __kernel void light_samples(__global const LightRecord* lights,
   distances[item] = samples.distance.f[lane];
   solid_angles[item] = samples.solid_angle.f[lane];
 }
+
+/* In: points of the plane; out: their angles in turns. */
+__kernel void angles(__global const float* points, __global float* turns, uint count) {
+  const uint item = get_global_id(0);
+  if (item < count) turns[item] = turns_of(points[2u * item + 1u], points[2u * item]);
+}
+
+/* In: `share_count` ascending values, the last is 1; out: the step that each number falls into, and the
+   position within it. */
+__kernel void shares(__global const float* ascending, __global const float* numbers,
+                     __global float* places, uint share_count, uint count) {
+  const uint item = get_global_id(0);
+  if (item >= count) return;
+  float within = numbers[item];
+  const uint step = find_share(ascending, share_count, &within);
+  vstore2((float2)((float)step, within), item, places);
+}

@@ -33,9 +33,9 @@ MUTATIONS = [
         "  const float8 part_z = decode_depth(node, 1) * facing_z;\n",
         r"^(Packet|PointSets|PointAo|PrefilterConvergence|Traversal)\."),
     Mutation(
-        "pdf-of-dome-off-by-two", "kernels/lights/dome.clh",
-        "uniform_light ? cosine_pdf : 0.5f * (cosine_pdf + texel_pdf)",
-        "uniform_light ? cosine_pdf : cosine_pdf + texel_pdf",
+        "pdf-of-dome-off-by-two", "kernels/lights/dome_samples.clh",
+        "0.5f * cosine_pdf + samples->radiance.v * (0.125f / M_PI_F)",
+        "cosine_pdf + samples->radiance.v * (0.25f / M_PI_F)",
         r"^(Dome|DomeRange)\."),
     Mutation(
         "pdf-of-sphere-off-by-two", "kernels/lights/light.cl",
@@ -86,10 +86,10 @@ MUTATIONS = [
         r"^(Dome|DomeRange|Light)\."),
     Mutation(
         "dome-turns-the-other-way", "kernels/lights/dome.clh",
-        "const float x = direction.x * dome->cosine - direction.z * dome->sine;\n"
-        "  const float z = direction.x * dome->sine + direction.z * dome->cosine;",
-        "const float x = direction.x * dome->cosine + direction.z * dome->sine;\n"
-        "  const float z = direction.z * dome->cosine - direction.x * dome->sine;",
+        "const float across = x * dome->cosine - z * dome->sine;\n"
+        "  const float along = x * dome->sine + z * dome->cosine;",
+        "const float across = x * dome->cosine + z * dome->sine;\n"
+        "  const float along = z * dome->cosine - x * dome->sine;",
         r"^Dome\."),
     Mutation(
         "one-sided-mesh-light-shines-back", "kernels/lights/light.cl",

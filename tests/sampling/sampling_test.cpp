@@ -159,6 +159,46 @@ TEST(Sampling, AVogelSpiralsPointsAreAGoldenAngleApartInRingsOfOneArea) {
   }
 }
 
+TEST(Sampling, AnglesAreThoseOfTheMathLibrary) {
+  std::vector<V2f> points = {{0, 0}, {1, 0}, {0, 1}, {-1, 0}, {0, -1}, {-1, -1e-30f}, {3e30f, 1}};
+  std::mt19937 random(3);
+  std::normal_distribution<float> normal;
+  for (int i = 0; i < 100'000; ++i) points.emplace_back(normal(random), normal(random));
+  const auto count = static_cast<uint>(points.size());
+  const Buffer turns = device().allocate(count * sizeof(float));
+  run("sampling", "angles", count, {upload(points), turns, count});
+  const auto found = download<float>(turns, count);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Imath::V2d p(points[i]);
+    ASSERT_NEAR(found[i], std::atan2(p.y, p.x) / (2 * kPi), 1e-7) << p.x << " " << p.y;
+  }
+}
+
+TEST(Sampling, AShareIsTheStepThatANumberFallsInto) {
+  for (const std::size_t steps : {1u, 2u, 3u, 5u, 64u, 1000u}) {
+    std::vector<float> ascending;
+    for (std::size_t i = 1; i <= steps; ++i) {
+      // Every third step is empty: nothing may fall into it.
+      const std::size_t end = i % 3 == 2 && i < steps ? i - 1 : i;
+      ascending.push_back(static_cast<float>(end) / static_cast<float>(steps));
+    }
+    std::vector<float> numbers = {0, 0.99999994f};
+    for (int i = 1; i < 777; ++i) numbers.push_back(static_cast<float>(i) / 777);
+    numbers.insert(numbers.end(), ascending.begin(), ascending.end() - 1);  // the edges
+    const auto count = static_cast<uint>(numbers.size());
+    const Buffer places = device().allocate(count * sizeof(V2f));
+    run("sampling", "shares", count,
+        {upload(ascending), upload(numbers), places, static_cast<uint>(steps), count});
+    const auto found = download<V2f>(places, count);
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const auto above = std::upper_bound(ascending.begin(), ascending.end(), numbers[i]);
+      const float before = above == ascending.begin() ? 0 : *(above - 1);
+      ASSERT_EQ(found[i].x, static_cast<float>(above - ascending.begin())) << steps;
+      ASSERT_NEAR(found[i].y, (numbers[i] - before) / (*above - before), 1e-4f) << steps;
+    }
+  }
+}
+
 TEST(Sampling, FramesAreOrthonormalAndRightHandedForEveryNormal) {
   std::vector<V3f> normals{{0, 0, 1},     {0, 0, -1},     {1, 0, 0},       {0, -1, 0},
                            {1, 0, -0.0f}, {1e-5f, 0, -1}, {0, 1e-20f, -1}, {0.6f, 0.8f, 0}};
