@@ -19,7 +19,7 @@
 namespace dapple {
 namespace {
 
-/// The colour of a dome's light, scaled to luminance 1: dome_colour() of dome.clh.
+/// The colour of a dome's light, scaled to luminance 1: texel_colour() of dome.clh.
 class DomeColor {
  public:
   DomeColor(const DeviceBuffers& scene, const LightRecord& light)

@@ -1,10 +1,27 @@
 /* Resolves the rays to a dome light. As resolve_light in film.cl, but in three channels. */
 #include "lights/dome.clh"
 #include "film/film.clh"
+#include "vectors/vectors.clh"
+
+/* Texels that the rays [first, end) come from, sixteen of them at most. */
+inline void find_texels(const Dome* dome, __global const Ray* rays, uint first, uint end,
+                        Uints16* texels) {
+  Fours16 records;
+  for (uint i = 0; i < 16u; ++i)
+    records.four[DAPPLE_TRANSPOSED_INDEX(i)] =
+        vload4(1, (__global const float*)(rays + min(first + i, end - 1u)));
+  float16 direction[4];
+  transpose_fours(records.v, direction);
+  Floats16 x, y, z;
+  x.v = direction[0];
+  y.v = direction[1];
+  z.v = direction[2];
+  for (uint i = 0; i < 16u; ++i) texels->u[i] = texel_towards(dome, x.f[i], y.f[i], z.f[i]);
+}
 
 /* Contribution of one ray: irradiance with and without occlusion, visits, tests. */
-inline long8 dome_sums(const Dome* dome, __global const Ray* ray, Occlusion found, float scale) {
-  const float3 light = ray->weight * dome_colour(dome, load3(ray->direction)) * scale;
+inline long8 dome_sums(const Dome* dome, uint texel, float weight, Occlusion found, float scale) {
+  const float3 light = weight * texel_colour(dome, texel) * scale;
   const float3 seen = light * found.transmittance;
   return fixed_points((float8)(seen.x, seen.y, seen.z, light.x, light.y, light.z,
                                nodes_of(found), tests_of(found)));
@@ -22,15 +39,24 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
   const uint begin = local_pixel * params.slice.sample_count;
   if (!any_sample_hit(sample_hits, begin, begin + params.slice.sample_count)) return;
   const Dome dome = dome_of(lights + light, environments);
+  const float inverse_rays = 1.0f / params.rays;
   long8 sums = (long8)(0);
   Batches batches = no_batches();
-  uint ray = sample_slot(sample_hits, begin) * params.rays;
+  Uints16 texels;
+  const uint first = sample_slot(sample_hits, begin) * params.rays;
+  const uint last_sample = begin + params.slice.sample_count - 1u;
+  const uint last_slot = sample_slot(sample_hits, last_sample);
+  const uint last = (last_slot + sample_hit(sample_hits, last_sample)) * params.rays;
+  uint ray = first;
   for (uint s = 0; s < params.slice.sample_count; ++s) {
     float value = 0.0f;
     const uint end = ray + (sample_hit(sample_hits, begin + s) ? params.rays : 0u);
     for (; ray < end; ++ray) {
-      sums += dome_sums(&dome, rays + ray, occlusions[ray], params.scale);
-      value += rays[ray].weight * occlusions[ray].transmittance / params.rays;
+      const uint lane = (ray - first) % 16u;
+      if (lane == 0u) find_texels(&dome, rays, ray, last, &texels);
+      const float weight = rays[ray].weight;
+      sums += dome_sums(&dome, texels.u[lane], weight, occlusions[ray], params.scale);
+      value += weight * occlusions[ray].transmittance * inverse_rays;
     }
     add_to_batch(&batches, s, value);
   }
