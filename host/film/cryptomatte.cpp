@@ -1,6 +1,7 @@
 #include "film/cryptomatte.hpp"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -22,11 +23,13 @@ struct Rank {
   std::uint32_t count = 0;
 };
 
-/// The ids of a pixel, those with the largest shares first; `id_of` tells the id of a slot.
+/// Writes the ids of a pixel to `ranks`, those with the largest shares first; `id_of` tells the id
+/// of a slot.
 template <class IdOf>
-std::vector<Rank> ranked(const std::vector<MatteSlot>& slots, const IdOf& id_of) {
-  std::vector<Rank> ranks;
-  for (const MatteSlot& slot : slots) {
+void rank_ids(const MatteSums& sums, std::size_t pixel, const IdOf& id_of,
+              std::vector<Rank>& ranks) {
+  ranks.clear();
+  sums.for_each_slot(pixel, [&](const MatteSlot& slot) {
     const std::uint32_t id = id_of(slot);
     const auto found =
         std::find_if(ranks.begin(), ranks.end(), [&](const Rank& rank) { return rank.id == id; });
@@ -34,11 +37,10 @@ std::vector<Rank> ranked(const std::vector<MatteSlot>& slots, const IdOf& id_of)
       ranks.push_back({id, slot.count});
     else
       found->count += slot.count;
-  }
+  });
   std::sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
     return a.count != b.count ? a.count > b.count : a.id < b.id;
   });
-  return ranks;
 }
 
 /// The first ranks of each pixel as channels R (id), G (coverage), B (id), A (coverage) of layers.
@@ -52,14 +54,18 @@ void add_layers(Film& film, const std::string& type, const MatteSums& sums,
     for (const char channel : {'R', 'G', 'B', 'A'})
       film.planes.push_back({fmt::format("{}{:02}.{}", type, layer, channel),
                              std::vector<float>(sums.pixel_count())});
-  tbb::parallel_for(std::size_t{0}, sums.pixel_count(), [&](std::size_t p) {
-    const std::vector<Rank> ranks = ranked(sums.of_pixel(p), id_of);
-    for (std::size_t r = 0; r < std::min(2 * layers, ranks.size()); ++r) {
-      film.planes[first + 2 * r].pixels[p] = std::bit_cast<float>(ranks[r].id);
-      film.planes[first + 2 * r + 1].pixels[p] =
-          static_cast<float>(double{1} * ranks[r].count / samples[p]);
+  const auto add = [&](const tbb::blocked_range<std::size_t>& pixels) {
+    std::vector<Rank> ranks;
+    for (std::size_t p = pixels.begin(); p < pixels.end(); ++p) {
+      rank_ids(sums, p, id_of, ranks);
+      for (std::size_t r = 0; r < std::min(2 * layers, ranks.size()); ++r) {
+        film.planes[first + 2 * r].pixels[p] = std::bit_cast<float>(ranks[r].id);
+        film.planes[first + 2 * r + 1].pixels[p] =
+            static_cast<float>(double{1} * ranks[r].count / samples[p]);
+      }
     }
-  });
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sums.pixel_count(), 4096), add);
 }
 
 /// The metadata of a type: its key is the beginning of its name's hash.

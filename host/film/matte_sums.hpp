@@ -44,6 +44,14 @@ class MatteSums {
   [[nodiscard]] std::vector<MatteSlot> of_pixel(std::size_t pixel) const {
     return pixels_[pixel].slots();
   }
+  /// Calls `use` with each of them.
+  template <class Use>
+  void for_each_slot(std::size_t pixel, const Use& use) const {
+    const Pixel& of_pixel = pixels_[pixel];
+    if (of_pixel.first.count == 0) return;
+    use(of_pixel.first);
+    for (const MatteSlot& slot : of_pixel.others) use(slot);
+  }
 
   /// For each pixel the number of its slots, and the slots.
   [[nodiscard]] std::vector<std::uint32_t> packed() const;

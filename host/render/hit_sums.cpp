@@ -30,11 +30,14 @@ void HitSums::add(const SliceParams& slice, std::span<const PixelWork> work,
                   const ResolveParams& view) {
   tbb::parallel_for(0u, slice.pixel_count, [&](uint entry) {
     const PixelWork& of_pixel = work[slice.first_work + entry];
-    const uint begin = entry * slice.sample_count;
-    for (uint i = begin; i < begin + slice.sample_count; ++i) {
-      if (!(hits[i / DAPPLE_HIT_BITS].hits >> i % DAPPLE_HIT_BITS & 1u)) continue;
-      add_hit(of_pixel.pixel, of_pixel.first_sample + slice.first_sample + i - begin, points[i],
-              view);
+    const uint begin = entry * slice.sample_count, end = begin + slice.sample_count;
+    const uint first_sample = of_pixel.first_sample + slice.first_sample;
+    for (uint record = begin / DAPPLE_HIT_BITS; record * DAPPLE_HIT_BITS < end; ++record) {
+      for (uint left = hits[record].hits; left; left &= left - 1) {
+        const uint i = record * DAPPLE_HIT_BITS + static_cast<uint>(std::countr_zero(left));
+        if (i < begin || i >= end) continue;  // of another pixel
+        add_hit(of_pixel.pixel, first_sample + i - begin, points[i], view);
+      }
     }
   });
 }
