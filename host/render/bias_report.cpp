@@ -1,5 +1,7 @@
 #include "render/bias_report.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +20,10 @@ class PixelError {
   void add(double difference, double samples) {
     squares_ += difference * difference;
     samples_ += samples;
+  }
+  void add(const PixelError& other) {
+    squares_ += other.squares_;
+    samples_ += other.samples_;
   }
   [[nodiscard]] double value(const std::vector<BiasUnit>& units, double mean, double share) const {
     double count = 0, squared_counts = 0;
@@ -54,21 +60,27 @@ std::vector<Bias> picture_bias(const BiasSums& sums, const HostView& film,
   if (sums.exact_rays == 0) return {};
   const std::span<const std::int64_t> hits = film.values<std::int64_t>().first(layout.pixels);
   const UnitGrid grid(view);
+  const double share = sums.exact_rays / sums.rays;
   std::vector<Bias> out;
   for (std::size_t layer = 0; layer < sums.differences.size(); ++layer) {
     std::vector<BiasUnit> units = grid.empty_units();
+    std::vector<PixelError> errors(grid.row_count());  // added in the same order on any machine
+    tbb::parallel_for(std::uint32_t{0}, grid.row_count(), [&](std::uint32_t row) {
+      const PixelRange pixels = grid.pixels_of_row(row);
+      for (std::uint32_t pixel = pixels.begin; pixel < pixels.end; ++pixel) {
+        const std::uint32_t taken =
+            samples[pixel] - (sums.earlier.empty() ? 0u : sums.earlier[pixel]);
+        if (hits[pixel] == 0 || taken == 0) continue;
+        BiasUnit& unit = units[grid.unit(pixel)];
+        const double difference =
+            double{sums.differences[layer][pixel]} / (taken * divisors[layer]);
+        unit.count += 1;
+        unit.difference += difference;
+        errors[row].add(difference, taken);
+      }
+    });
     PixelError error;
-    for (std::uint32_t pixel = 0; pixel < layout.pixels; ++pixel) {
-      const std::uint32_t taken =
-          samples[pixel] - (sums.earlier.empty() ? 0u : sums.earlier[pixel]);
-      if (hits[pixel] == 0 || taken == 0) continue;
-      BiasUnit& unit = units[grid.unit(pixel)];
-      const double difference = double{sums.differences[layer][pixel]} / (taken * divisors[layer]);
-      unit.count += 1;
-      unit.difference += difference;
-      error.add(difference, taken);
-    }
-    const double share = sums.exact_rays / sums.rays;
+    for (const PixelError& of_row : errors) error.add(of_row);
     Bias bias = estimate_bias(units, share);
     bias.error = error.value(units, bias.mean, share);
     out.push_back(bias);

@@ -1,7 +1,6 @@
 #include "render/bias_tracer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "camera/camera_splitting.hpp"
@@ -30,29 +29,17 @@ std::int64_t slot_of(std::span<const SampleHits> hits, std::uint32_t sample) {
   return std::int64_t{record.first_slot} + std::popcount(record.hits & (bit - 1u));
 }
 
-/// The chosen samples of a pixel, found once for neighbouring pixels of a unit.
-class UnitSamples {
- public:
-  UnitSamples(const ExactSamples& samples, std::uint32_t splitting_bits, std::uint32_t count)
-      : samples_(samples), splitting_bits_(splitting_bits), count_(count) {}
-
-  /// Those of `count` samples from `first` on, as numbers from 0 on.
-  const std::vector<std::uint32_t>& of(std::uint32_t x, std::uint32_t y, std::uint32_t first) {
-    const std::array unit{x / kBiasUnit, y / kBiasUnit, first};
-    if (unit == unit_) return chosen_;
-    unit_ = unit;
-    chosen_.clear();
-    for (std::uint32_t i = 0; i < count_; ++i)
-      if (samples_.has(x, y, (first + i) >> splitting_bits_)) chosen_.push_back(i);
-    return chosen_;
-  }
-
- private:
-  const ExactSamples& samples_;
-  std::uint32_t splitting_bits_, count_;
-  std::array<std::uint32_t, 3> unit_{~0u, ~0u, ~0u};
-  std::vector<std::uint32_t> chosen_;
-};
+/// How many entries of a list from `first` up to `end`, `most` at most, are neighbours in a row of
+/// pixels and continue at the same sample.
+std::uint32_t run_length(std::span<const PixelWork> work, std::uint32_t first, std::uint32_t end,
+                         std::uint32_t most) {
+  const std::uint32_t limit = std::min(most, end - first);
+  std::uint32_t length = 1;
+  while (length < limit && work[first + length].pixel == work[first].pixel + length &&
+         work[first + length].first_sample == work[first].first_sample)
+    ++length;
+  return length;
+}
 
 }  // namespace
 
@@ -71,24 +58,39 @@ BiasTracer::BiasTracer(DeviceContext& context, const DeviceBuffers& scene,
   for (std::vector<float>& layer : sums_.differences) layer.resize(view.pixel_count());
 }
 
-void BiasTracer::choose(const SliceParams& slice, std::span<const PixelWork> work,
-                        const Queues& queues) {
+// Pixels of a row of a unit have the same samples chosen, usually none.
+void BiasTracer::choose(const SliceParams& slice, std::span<const PixelWork> work) {
   const ExactSamples samples(share_);
-  const HostView hit_view = context_.view(queues.sample_hits);
-  const std::span<const SampleHits> hits = hit_view.values<SampleHits>();
   const auto width = static_cast<std::uint32_t>(crop_.width());
+  const std::span<const PixelWork> of_slice = work.subspan(slice.first_work, slice.pixel_count);
+  chosen_samples_.clear();
+  std::uint32_t length = 0;
+  for (std::uint32_t entry = 0; entry < slice.pixel_count; entry += length) {
+    const PixelWork& first = of_slice[entry];
+    const std::uint32_t column = first.pixel % width;
+    const std::uint32_t x = column + static_cast<std::uint32_t>(crop_.x0);
+    const std::uint32_t y = first.pixel / width + static_cast<std::uint32_t>(crop_.y0);
+    length = run_length(of_slice, entry, slice.pixel_count,
+                        std::min(kBiasUnit - x % kBiasUnit, width - column));
+    const std::uint32_t first_sample = first.first_sample + slice.first_sample;
+    for (std::uint32_t i = 0; i < slice.sample_count; ++i) {
+      if (!samples.has(x, y, (first_sample + i) >> splitting_bits_)) continue;
+      for (std::uint32_t k = 0; k < length; ++k)
+        chosen_samples_.push_back({(entry + k) * slice.sample_count + i, first.pixel + k});
+    }
+  }
+}
+
+void BiasTracer::keep_hits(const Queues& queues) {
   chosen_slots_.clear();
   chosen_pixels_.clear();
-  UnitSamples chosen(samples, splitting_bits_, slice.sample_count);
-  for (std::uint32_t entry = 0; entry < slice.pixel_count; ++entry) {
-    const PixelWork& of_pixel = work[slice.first_work + entry];
-    const std::uint32_t x = of_pixel.pixel % width + static_cast<std::uint32_t>(crop_.x0);
-    const std::uint32_t y = of_pixel.pixel / width + static_cast<std::uint32_t>(crop_.y0);
-    for (const std::uint32_t i : chosen.of(x, y, of_pixel.first_sample + slice.first_sample)) {
-      const std::int64_t slot = slot_of(hits, entry * slice.sample_count + i);
+  {
+    const HostView hits = context_.view(queues.sample_hits);
+    for (const ChosenSample& chosen : chosen_samples_) {
+      const std::int64_t slot = slot_of(hits.values<SampleHits>(), chosen.sample);
       if (slot < 0) continue;
       chosen_slots_.push_back(static_cast<std::uint32_t>(slot));
-      chosen_pixels_.push_back(of_pixel.pixel);
+      chosen_pixels_.push_back(chosen.pixel);
     }
   }
   const std::size_t bytes = chosen_slots_.size() * sizeof(std::uint32_t);

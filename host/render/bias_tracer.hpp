@@ -19,8 +19,11 @@ class BiasTracer {
   BiasTracer(DeviceContext& context, const DeviceBuffers& scene, const RenderOptions& options,
              const View& view, std::size_t layers, BiasSums sums);
 
-  /// Chooses samples of a slice whose hits are listed. `work`: of the slice's group.
-  void choose(const SliceParams& slice, std::span<const PixelWork> work, const Queues& queues);
+  /// Chooses samples of a slice, while the device may still trace its camera rays. `work`: of the
+  /// slice's group.
+  void choose(const SliceParams& slice, std::span<const PixelWork> work);
+  /// Keeps those of them that hit something, once the slice's hits are listed.
+  void keep_hits(const Queues& queues);
   /// Takes the rays of the chosen samples, whose transmittances are in queues.occlusions. `params`:
   /// of the pass that wrote them.
   void collect(std::size_t layer, const Queues& queues, const OcclusionParams& params);
@@ -29,6 +32,11 @@ class BiasTracer {
   [[nodiscard]] const BiasSums& sums() const { return sums_; }
 
  private:
+  struct ChosenSample {
+    std::uint32_t sample;  ///< in the slice
+    std::uint32_t pixel;   ///< in the crop
+  };
+
   /// Rays of a layer that wait on the device for being traced.
   struct Waiting {
     OcclusionParams params{};
@@ -48,7 +56,8 @@ class BiasTracer {
   PixelRect crop_;
   std::uint32_t splitting_bits_;
   BiasSums sums_;
-  double share_;  ///< of the samples that are chosen next
+  double share_;                              ///< of the samples that are chosen next
+  std::vector<ChosenSample> chosen_samples_;  ///< of the slice
   std::vector<std::uint32_t> chosen_slots_, chosen_pixels_;  ///< of the slice's chosen hits
   Buffer slots_;                                             ///< chosen_slots_ on the device
   std::vector<Waiting> waiting_;                             ///< by layer

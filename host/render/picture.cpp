@@ -285,6 +285,7 @@ class PictureTracer {
     camera_.slice = slice;
     resolve_.slice = slice;
     camera_pass(context_, scene_, queues_, camera_);
+    if (bias_) bias_->choose(slice, state_.round.groups[state_.round.group].work);
     if (looks_up_hits_) add_hits(slice);
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
@@ -297,7 +298,7 @@ class PictureTracer {
     }
     const std::uint32_t hits = compact_pass(context_, queues_, samples);
     if (hits == 0) return;
-    if (bias_) bias_->choose(slice, state_.round.groups[state_.round.group].work, queues_);
+    if (bias_) bias_->keep_hits(queues_);
     const Side front{queues_, layout_.ao, layout_.lights};
     trace_side(front, hits);
     if (!options_.back) return;

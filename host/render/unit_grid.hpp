@@ -23,6 +23,11 @@ inline std::uint32_t bias_tile_side(int width, int height) {
   return side;
 }
 
+/// Pixels from `begin` up to `end`.
+struct PixelRange {
+  std::uint32_t begin = 0, end = 0;
+};
+
 class UnitGrid {
  public:
   explicit UnitGrid(const View& view)
@@ -33,6 +38,7 @@ class UnitGrid {
         columns_(static_cast<std::uint32_t>(crop_.x1) / kBiasUnit - first_x_ + 1),
         rows_(static_cast<std::uint32_t>(crop_.y1) / kBiasUnit - first_y_ + 1) {}
 
+  [[nodiscard]] std::uint32_t row_count() const { return rows_; }
   [[nodiscard]] std::size_t size() const { return std::size_t{columns_} * rows_; }
   [[nodiscard]] std::uint32_t column(std::size_t unit) const {
     return static_cast<std::uint32_t>(unit % columns_) + first_x_;
@@ -47,6 +53,16 @@ class UnitGrid {
     const std::uint32_t x = pixel % width + static_cast<std::uint32_t>(crop_.x0);
     const std::uint32_t y = pixel / width + static_cast<std::uint32_t>(crop_.y0);
     return std::size_t{y / kBiasUnit - first_y_} * columns_ + (x / kBiasUnit - first_x_);
+  }
+
+  /// The pixels of a row of units, which follow each other; `row`: from 0 on.
+  [[nodiscard]] PixelRange pixels_of_row(std::uint32_t row) const {
+    const auto width = static_cast<std::uint32_t>(crop_.width());
+    const auto first_line = [&](std::uint32_t r) {
+      const int line = static_cast<int>((first_y_ + r) * kBiasUnit);
+      return static_cast<std::uint32_t>(std::clamp(line, crop_.y0, crop_.y1 + 1) - crop_.y0);
+    };
+    return {first_line(row) * width, first_line(row + 1) * width};
   }
 
   /// All units, without values.

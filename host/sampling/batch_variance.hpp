@@ -43,6 +43,15 @@ inline float batch_variance(const BatchMoments& of_pixel, std::uint32_t batches)
   return std::max(0.0f, over) / (by_pairs ? freedom_of(batches) : count - 1);
 }
 
+/// The blend of a pixel's variance with that of its neighbourhood. `sums`: of the variances of the
+/// pixel and its neighbours, and the number of those that have one.
+inline float blended_variance(float of_pixel, const std::array<float, 2>& sums,
+                              std::uint32_t batches) {
+  const float freedom = freedom_of(batches);
+  const float around = sums[0] / sums[1] * kNeighbourhoodWeight;
+  return (of_pixel * freedom + around) / (freedom + kNeighbourhoodWeight);
+}
+
 /// For each pixel the variance of the mean of one batch; the variance of the mean of b batches is
 /// 1 / b of it. The batches of a pair are stratified together, so that means of pairs vary less
 /// than means of two independent batches: pixels with two pairs or more use these. A pixel's
@@ -63,12 +72,26 @@ std::vector<float> batch_variances(const std::vector<std::uint32_t>& samples, in
                          const std::array<float, 2>& sums) {
     if (sums[0] == 0) return;  // most pixels of a picture of one plant
     if (batches(p) < 2) return;
-    const float freedom = freedom_of(batches(p));
-    const float around = sums[0] / sums[1] * kNeighbourhoodWeight;
-    variances[p] = (of_pixel[0] * freedom + around) / (freedom + kNeighbourhoodWeight);
+    variances[p] = blended_variance(of_pixel[0], sums, batches(p));
   };
   visit_neighbourhoods(samples.size(), width, own, blend);
   return variances;
+}
+
+/// The same for one pixel.
+template <class Moments>
+float batch_variance_at(std::size_t pixel, const std::vector<std::uint32_t>& samples, int width,
+                        const Moments& moments) {
+  const auto batches = [&](std::size_t p) { return samples[p] / DAPPLE_SAMPLE_BATCH; };
+  if (batches(pixel) < 2) return 0;
+  std::array<float, 2> sums{};
+  for_each_neighbour(pixel, samples.size(), width, [&](std::size_t p) {
+    if (batches(p) < 2) return;
+    sums[0] += batch_variance(moments(p), batches(p));
+    sums[1] += 1;
+  });
+  if (sums[0] == 0) return 0;
+  return blended_variance(batch_variance(moments(pixel), batches(pixel)), sums, batches(pixel));
 }
 
 }  // namespace dapple

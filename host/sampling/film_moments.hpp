@@ -9,6 +9,7 @@
 #include "dapple/options.hpp"
 #include "device/context.hpp"
 #include "film/film_sums.hpp"
+#include "sampling/batch_variance.hpp"
 #include "scene/images/dome_image.hpp"
 
 namespace dapple {
@@ -49,20 +50,31 @@ class FilmMoments {
     return luminance(V3d(sum(first, pixel), sum(first + 1, pixel), sum(first + 2, pixel)));
   }
   [[nodiscard]] std::vector<float> ao_variances() const;
+
+  /// `scale`: of the sums; `squares`: the first plane of squares.
+  struct LightPass {
+    const LightPlaneRange& planes;
+    double scale;
+    std::uint32_t squares;
+  };
+  [[nodiscard]] LightPass light_pass(std::size_t light) const;
+  [[nodiscard]] BatchMoments light_moments(const LightPass& pass, std::size_t pixel) const;
+  /// batch_variances() of a light's irradiance at one pixel.
+  [[nodiscard]] float variance_at(const LightPass& pass, std::size_t pixel) const;
   /// batch_variances() of a light's irradiance, and its largest unoccluded irradiance.
   struct LightVariances {
     std::vector<float> absolute;
     double largest = 1;
   };
   [[nodiscard]] LightVariances light_variances(std::size_t light) const;
-  /// The largest unoccluded irradiance of all pixels. `scale`: of the sums; `variances`:
-  /// batch_variances() of the irradiance.
-  [[nodiscard]] double largest_unoccluded(const LightPlaneRange& planes, double scale,
-                                          const std::vector<float>& variances) const;
-  /// batch_variances() of a pass. `mean`: returns the mean of a pixel's samples.
+  /// The largest unoccluded irradiance of all pixels. `variance`: returns variance_at() of a pixel;
+  /// it is called for few of them.
+  template <class Variance>
+  [[nodiscard]] double largest_unoccluded(const LightPass& pass, const Variance& variance) const;
+  /// A pixel's batches in a pass. `mean`: returns the mean of a pixel's samples.
   template <class Mean>
-  [[nodiscard]] std::vector<float> variances_of(const Mean& mean,
-                                                std::uint32_t squares_plane) const;
+  [[nodiscard]] BatchMoments moments(const Mean& mean, std::uint32_t squares_plane,
+                                     std::size_t pixel) const;
 
   std::span<const std::int64_t> sums_;
   std::span<const float> squares_;

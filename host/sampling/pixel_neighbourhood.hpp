@@ -52,6 +52,16 @@ class NeighbourhoodRow {
   std::vector<float> values_;
 };
 
+/// Calls `visit` with the indices of a pixel and its up to eight neighbours.
+template <class Visit>
+void for_each_neighbour(std::size_t pixel, std::size_t pixels, int width, const Visit& visit) {
+  const auto columns = static_cast<std::size_t>(width);
+  const std::size_t x = pixel % columns, y = pixel / columns;
+  for (std::size_t row = y - (y > 0); row <= y + 1 && row < pixels / columns; ++row)
+    for (std::size_t column = x - (x > 0); column <= x + 1 && column < columns; ++column)
+      visit(row * columns + column);
+}
+
 /// Calls `take` for each of `pixels` pixels, `width` per row, with its index, its values, and the
 /// sums of the values over it and its up to eight neighbours. `value` returns a pixel's
 /// std::array<float, N>, and is called up to three times per pixel. Memory is needed for a few rows

@@ -102,8 +102,8 @@ MUTATIONS = [
         r"^(BatchVariances|FilmMoments)\."),
     Mutation(
         "largest-irradiance-with-occlusion", "host/sampling/film_moments.cpp",
-        "luminance_sum(planes.unoccluded(), planes.channels, pixel)",
-        "luminance_sum(planes.first, planes.channels, pixel)",
+        "luminance_sum(pass.planes.unoccluded(), pass.planes.channels, pixel)",
+        "luminance_sum(pass.planes.first, pass.planes.channels, pixel)",
         r"^FilmMoments\."),
     Mutation(
         "resumed-rounds-forget-where-they-are", "host/sampling/round.cpp",

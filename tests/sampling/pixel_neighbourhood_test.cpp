@@ -32,6 +32,10 @@ TEST(PixelNeighbourhood, HasThePixelAndThoseBesideItInPicturesOfAnyShape) {
         [&](std::size_t p, const std::array<float, 2>& own, const std::array<float, 2>& around) {
           const int x = static_cast<int>(p) % width, y = static_cast<int>(p) / width;
           ++visits[p];
+          float one_by_one = 0;
+          for_each_neighbour(p, pixels, width,
+                             [&](std::size_t neighbour) { one_by_one += value_of(neighbour); });
+          EXPECT_EQ(one_by_one, around[0]) << x << ", " << y;
           EXPECT_EQ(own[0], value_of(p));
           EXPECT_EQ(around[0], sum_around(x, y, width, height)) << x << ", " << y;
           const int columns = std::min(x + 1, width - 1) - std::max(x - 1, 0) + 1;
