@@ -26,34 +26,9 @@ DAPPLE_INLINE LightSample towards(float3 from, float3 to, float3 light_normal, f
   return sample;
 }
 
-/* Sample of a sphere, uniform in the cone that it subtends; from inside, over all directions. */
-DAPPLE_INLINE LightSample sample_sphere(__global const LightRecord* light, float3 from, float2 u) {
-  LightSample sample;
-  const float3 way = load3(light->position) - from;
-  const float distance = length(way);
-  const float3 axis = distance > 0.0f ? way / distance : (float3)(0.0f, 1.0f, 0.0f);
-  const float sine = light->radius / fmax(distance, light->radius);
-  const bool inside = distance <= light->radius;
-  const float one_minus_cos = inside ? 2.0f : sine * sine / (1.0f + sqrt(fmax(0.0f, 1.0f - sine * sine)));
-  sample.direction = sample_cone(axis, one_minus_cos, u);
-  sample.solid_angle = 2.0f * M_PI_F * one_minus_cos;
-  const float along = dot(sample.direction, way);
-  const float inside_square = light->radius * light->radius - (distance * distance - along * along);
-  const float half_chord = sqrt(fmax(0.0f, inside_square));
-  sample.distance = inside ? along + half_chord : along - half_chord;
-  if (light->cos_outer > -1.0f) {
-    /* KHR_lights_punctual's cone, seen from the light. */
-    const float cosine = -dot(axis, load3(light->direction));
-    const float edge = clamp((cosine - light->cos_outer) / fmax(0.001f, light->cos_inner - light->cos_outer),
-                             0.0f, 1.0f);
-    sample.solid_angle *= edge * edge;
-  }
-  return sample;
-}
-
-DAPPLE_INLINE LightSample sample_mesh(__global const LightRecord* light,
-                                      __global const EmitterTriangle* emitters, float3 from,
-                                      float2 u) {
+DAPPLE_INLINE LightSample sample_triangles(__global const LightRecord* light,
+                                           __global const EmitterTriangle* emitters,
+                                           float3 from, float2 u) {
   uint low = 0, high = light->triangle_count - 1u;
   __global const EmitterTriangle* first = emitters + light->first_triangle;
   while (low < high) {
@@ -73,31 +48,12 @@ DAPPLE_INLINE LightSample sample_mesh(__global const LightRecord* light,
   return towards(from, to, normalize(cross(edge1, edge2)), light->area, light->two_sided != 0u);
 }
 
-DAPPLE_INLINE LightSample sample_disk(__global const LightRecord* light, float3 from, float2 u) {
-  float x, y;
-  concentric_disk(u.x, u.y, &x, &y);
-  const float3 to = load3(light->position) + x * load3(light->edge_u) + y * load3(light->edge_v);
-  return towards(from, to, load3(light->direction), light->area, false);
-}
-
-/* Sample of a sphere, a disk or a mesh. */
-DAPPLE_INLINE LightSample sample_source(__global const LightRecord* light,
-                                        __global const EmitterTriangle* emitters, float3 from,
-                                        float2 u) {
-  switch (light->kind) {
-    case DAPPLE_LIGHT_SPHERE: return sample_sphere(light, from, u);
-    case DAPPLE_LIGHT_DISK: return sample_disk(light, from, u);
-    default: return sample_mesh(light, emitters, from, u);
-  }
-}
-
-/* As towards(), for sixteen points of the rectangle. */
-inline void sample_rect(__global const LightRecord* light, const PointRays* rays,
-                        LightSamples* samples) {
-  const float16 u = rays->u.v - 0.5f, v = rays->v.v - 0.5f;
+/* As towards(), for sixteen points `a` and `b` edges away from the light's position. */
+inline void sample_flat(__global const LightRecord* light, const PointRays* rays, float16 a,
+                        float16 b, LightSamples* samples) {
   float16 way[3], square = (float16)(1e-20f), against = (float16)(0.0f);
   DAPPLE_UNROLL for (uint axis = 0; axis < 3u; ++axis) {
-    way[axis] = light->position[axis] + u * light->edge_u[axis] + v * light->edge_v[axis] -
+    way[axis] = light->position[axis] + a * light->edge_u[axis] + b * light->edge_v[axis] -
                 rays->origin[axis].v;
     square += way[axis] * way[axis];
   }
@@ -110,37 +66,83 @@ inline void sample_rect(__global const LightRecord* light, const PointRays* rays
   samples->solid_angle.v = light->area * at_least_0(against) / square;
 }
 
-/* Directions uniform in the cone that the sun subtends. */
-inline void sample_sun(__global const LightRecord* light, const PointRays* rays,
-                       LightSamples* samples) {
-  const float16 height = rays->u.v * light->one_minus_cos;
+inline void sample_rect(__global const LightRecord* light, const PointRays* rays,
+                        LightSamples* samples) {
+  sample_flat(light, rays, rays->u.v - 0.5f, rays->v.v - 0.5f, samples);
+}
+
+inline void sample_disk(__global const LightRecord* light, const PointRays* rays,
+                        LightSamples* samples) {
+  const Floats16 u = rays->u, v = rays->v;
+  Floats16 x, y;
+  for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) concentric_disk(u.f[i], v.f[i], x.f + i, y.f + i);
+  sample_flat(light, rays, x.v, y.v, samples);
+}
+
+/* Directions about axes, uniform in cones whose 1 - cos are `one_minus_cos`. */
+inline void sample_cones(const float16* axis, float16 one_minus_cos, const PointRays* rays,
+                         LightSamples* samples) {
+  const float16 height = rays->u.v * one_minus_cos;
   const float16 sine = sqrt(at_least_0(height * (2.0f - height)));
   const Floats16 turn = rays->v;
   Floats16 x, y;
   for (uint i = 0; i < DAPPLE_RAY_LANES; ++i)
     circle_point((uint)(turn.f[i] * 0x1p32f), x.f + i, y.f + i);
-  const float3 axis = -load3(light->direction);
-  float3 tangent, bitangent;
-  make_frame(axis, &tangent, &bitangent);
-  float16 direction[3];
-  direction[0] = (x.v * tangent.x + y.v * bitangent.x) * sine + axis.x * (1.0f - height);
-  direction[1] = (x.v * tangent.y + y.v * bitangent.y) * sine + axis.y * (1.0f - height);
-  direction[2] = (x.v * tangent.z + y.v * bitangent.z) * sine + axis.z * (1.0f - height);
+  float16 tangent[3], bitangent[3], direction[3];
+  make_frames(axis[0], axis[1], axis[2], tangent, bitangent);
+  DAPPLE_UNROLL for (uint i = 0; i < 3u; ++i)
+    direction[i] = (x.v * tangent[i] + y.v * bitangent[i]) * sine + axis[i] * (1.0f - height);
   const float16 length = sqrt(dot_16(direction, direction));
   DAPPLE_UNROLL for (uint i = 0; i < 3u; ++i) samples->direction[i].v = direction[i] / length;
-  samples->solid_angle.v = (float16)(2.0f * M_PI_F * light->one_minus_cos);
+  samples->solid_angle.v = 2.0f * M_PI_F * one_minus_cos;
+}
+
+inline void sample_sun(__global const LightRecord* light, const PointRays* rays,
+                       LightSamples* samples) {
+  const float16 axis[3] = {(float16)(-light->direction[0]), (float16)(-light->direction[1]),
+                           (float16)(-light->direction[2])};
+  sample_cones(axis, (float16)(light->one_minus_cos), rays, samples);
   samples->distance.v = (float16)(INFINITY);
 }
 
-/* Samples of a light of which scalars are computed. */
-inline void sample_each(__global const LightRecord* light,
+/* Uniform in the cones that the sphere subtends; from inside, over all directions. */
+inline void sample_sphere(__global const LightRecord* light, const PointRays* rays,
+                          LightSamples* samples) {
+  float16 way[3], axis[3];
+  DAPPLE_UNROLL for (uint i = 0; i < 3u; ++i) way[i] = light->position[i] - rays->origin[i].v;
+  const float16 square = dot_16(way, way), distance = sqrt(square);
+  const int16 away = distance > 0.0f;
+  DAPPLE_UNROLL for (uint i = 0; i < 3u; ++i)
+    axis[i] = away ? way[i] / distance : (float16)(i == 1u ? 1.0f : 0.0f);
+  const float16 sine = light->radius / max(distance, light->radius);
+  const int16 inside = distance <= light->radius;
+  const float16 one_minus_cos =
+      inside ? (float16)(2.0f) : sine * sine / (1.0f + sqrt(at_least_0(1.0f - sine * sine)));
+  sample_cones(axis, one_minus_cos, rays, samples);
+  const float16 along = samples->direction[0].v * way[0] + samples->direction[1].v * way[1] +
+                        samples->direction[2].v * way[2];
+  const float16 half_chord =
+      sqrt(at_least_0(light->radius * light->radius - (square - along * along)));
+  samples->distance.v = inside ? along + half_chord : along - half_chord;
+  if (light->cos_outer > -1.0f) {
+    /* KHR_lights_punctual's cone, seen from the light. */
+    const float16 cosine = -(axis[0] * light->direction[0] + axis[1] * light->direction[1] +
+                             axis[2] * light->direction[2]);
+    const float16 edge = clamp(
+        (cosine - light->cos_outer) / fmax(0.001f, light->cos_inner - light->cos_outer), 0.0f, 1.0f);
+    samples->solid_angle.v *= edge * edge;
+  }
+}
+
+/* Each sample searches for its triangle. */
+inline void sample_mesh(__global const LightRecord* light,
                         __global const EmitterTriangle* emitters, const PointRays* rays,
                         LightSamples* samples) {
   for (uint i = 0; i < DAPPLE_RAY_LANES; ++i) {
     const float2 u = (float2)(rays->u.f[i], rays->v.f[i]);
     const float3 origin =
         (float3)(rays->origin[0].f[i], rays->origin[1].f[i], rays->origin[2].f[i]);
-    const LightSample sample = sample_source(light, emitters, origin, u);
+    const LightSample sample = sample_triangles(light, emitters, origin, u);
     samples->direction[0].f[i] = sample.direction.x;
     samples->direction[1].f[i] = sample.direction.y;
     samples->direction[2].f[i] = sample.direction.z;
@@ -161,8 +163,12 @@ inline void sample_light(__global const LightRecord* light,
     sample_rect(light, rays, samples);
   } else if (light->kind == DAPPLE_LIGHT_SUN) {
     sample_sun(light, rays, samples);
+  } else if (light->kind == DAPPLE_LIGHT_SPHERE) {
+    sample_sphere(light, rays, samples);
+  } else if (light->kind == DAPPLE_LIGHT_DISK) {
+    sample_disk(light, rays, samples);
   } else {
-    sample_each(light, emitters, rays, samples);
+    sample_mesh(light, emitters, rays, samples);
   }
 }
 

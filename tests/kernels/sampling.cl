@@ -55,11 +55,27 @@ __kernel void lane_frames(__global const float* normals, __global float* tangent
   }
 }
 
+/* Each item uses the next of sixteen lanes. */
 __kernel void cone_directions(__global const float* squares, __global const float* axes,
                               __global float* directions, float one_minus_cos, uint count) {
   const uint item = get_global_id(0);
   if (item >= count) return;
-  vstore3(sample_cone(vload3(item, axes), one_minus_cos, vload2(item, squares)), item, directions);
+  const uint lane = item % DAPPLE_RAY_LANES;
+  PointRays rays;
+  Floats16 axis[3];
+  LightSamples samples;
+  for (uint i = 0; i < 3u; ++i) {
+    axis[i].v = (float16)(i == 2u ? 1.0f : 0.0f);
+    axis[i].f[lane] = axes[3u * item + i];
+  }
+  rays.u.v = rays.v.v = (float16)(0.5f);
+  rays.u.f[lane] = squares[2u * item];
+  rays.v.f[lane] = squares[2u * item + 1u];
+  const float16 along[3] = {axis[0].v, axis[1].v, axis[2].v};
+  sample_cones(along, (float16)(one_minus_cos), &rays, &samples);
+  vstore3((float3)(samples.direction[0].f[lane], samples.direction[1].f[lane],
+                   samples.direction[2].f[lane]),
+          item, directions);
 }
 
 /* Direction, distance and solid angle of `count` samples of a light seen from the origin. Each item

@@ -39,8 +39,8 @@ MUTATIONS = [
         r"^(Dome|DomeRange)\."),
     Mutation(
         "pdf-of-sphere-off-by-two", "kernels/lights/light.cl",
-        "  sample.solid_angle = 2.0f * M_PI_F * one_minus_cos;\n  const float along",
-        "  sample.solid_angle = M_PI_F * one_minus_cos;\n  const float along",
+        "samples->solid_angle.v = 2.0f * M_PI_F * one_minus_cos;",
+        "samples->solid_angle.v = M_PI_F * one_minus_cos;",
         r"^(Light|LightSampling|SpotLight)\."),
     Mutation(
         "sampler-without-pixel", "kernels/sampling/random.clh",
@@ -98,8 +98,8 @@ MUTATIONS = [
         r"^(EmissiveMesh|DiskLight|Light)\."),
     Mutation(
         "spot-cone-without-square", "kernels/lights/light.cl",
-        "sample.solid_angle *= edge * edge;",
-        "sample.solid_angle *= edge;",
+        "samples->solid_angle.v *= edge * edge;",
+        "samples->solid_angle.v *= edge;",
         r"^SpotLight\."),
     Mutation(
         "mesh-lights-occlude-nothing", "kernels/occlusion/packet.clh",
