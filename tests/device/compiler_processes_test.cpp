@@ -154,7 +154,7 @@ TEST_F(CompilingProcesses, EndWithTheProcessThatWaitsForThem) {
       return bytes_of("/proc/" + id + "/cmdline").size() > 0;
     });
   };
-  EXPECT_TRUE(program_test::wait_until(are_gone, Milliseconds(500)));
+  EXPECT_TRUE(program_test::wait_until(are_gone, Milliseconds(1000)));
 }
 
 TEST_F(CompilingProcessesCold, WhereNoneCanBeStartedThePictureIsTheSame) {
