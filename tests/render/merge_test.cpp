@@ -109,7 +109,10 @@ TEST_F(MergeParts, AMergeMayBeMergedAndGoesOnToMoreSamples) {
   const Merge all = merge_parts({path("three.dapple"), parts[2]}, path("all.dapple"));
   expect_same(all.result.film, draw(small_picture()));
   merge_parts(parts, path("at_once.dapple"));
-  EXPECT_EQ(bytes_of(path("at_once.dapple")).size(), bytes_of(path("all.dapple")).size());
+  // A merge of merges has no more in it. Seconds compress differently from run to run, and sections
+  // are padded.
+  EXPECT_NEAR(static_cast<double>(bytes_of(path("at_once.dapple")).size()),
+              static_cast<double>(bytes_of(path("all.dapple")).size()), 1024);
   RenderOptions more = small_picture();
   more.spp = 20;
   RenderControl control;
