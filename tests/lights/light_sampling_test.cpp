@@ -1,0 +1,196 @@
+// Samples of lights, as the kernels take them, must integrate to irradiances known in closed form.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "device/upload/light_upload.hpp"
+#include "support/random_direction.hpp"
+#include "support/test_kernel.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace kernel_test;
+
+constexpr double kPi = std::numbers::pi;
+
+/// Lambert's formula: irradiance at the origin, normal +Y, of a polygon of radiance 1 that
+/// lies wholly above the horizon (Baum et al., "Improving Radiosity Solutions Through the
+/// Use of Analytically Determined Form-Factors", 1989).
+double polygon_irradiance(std::vector<V3d> corners) {
+  for (V3d& c : corners) c.normalize();
+  double sum = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const V3d& a = corners[i];
+    const V3d& b = corners[(i + 1) % corners.size()];
+    const V3d edge = a.cross(b);
+    sum += std::atan2(edge.length(), a.dot(b)) * edge.y / edge.length();
+  }
+  return std::fabs(sum) / 2;
+}
+
+struct Samples {
+  std::vector<V3f> directions;
+  std::vector<float> distances, solid_angles;
+
+  /// Mean of weight times cosine: irradiance at the origin, normal +Y, radiance 1.
+  [[nodiscard]] double irradiance() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      sum += solid_angles[i] * std::max(0.0f, directions[i].y);
+    }
+    return sum / static_cast<double>(directions.size());
+  }
+};
+
+constexpr uint kLightSamples = 1u << 14;
+
+Samples light_samples(const Scene& scene) {
+  std::vector<LightRecord> records;
+  std::vector<EmitterTriangle> emitters;
+  pack_lights(scene, records, emitters);
+  const Buffer directions = device().allocate(kLightSamples * sizeof(V3f));
+  const Buffer distances = device().allocate(kLightSamples * sizeof(float));
+  const Buffer solid_angles = device().allocate(kLightSamples * sizeof(float));
+  run("sampling", "light_samples", kLightSamples,
+      {upload(records), upload(emitters), directions, distances, solid_angles, 0u, kLightSamples});
+  return {download<V3f>(directions, kLightSamples), download<float>(distances, kLightSamples),
+          download<float>(solid_angles, kLightSamples)};
+}
+
+/// Relative error allowed for 16,384 points of a (0,2)-sequence on a smooth integrand.
+constexpr double kIntegrationError = 3e-4;
+
+Scene rect_scene(const V3f& position, const V3f& edge_u, const V3f& edge_v, const V3f& direction) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::rect;
+  light.position = position;
+  light.edge_u = edge_u;
+  light.edge_v = edge_v;
+  light.direction = direction.normalized();
+  scene.lights.push_back(light);
+  return scene;
+}
+
+TEST(LightSampling, ARectIntegratesToItsFormFactor) {
+  for (const V3f& at : {V3f(0, 2, 0), V3f(1.5f, 1, -0.5f), V3f(0.3f, 20, 4)}) {
+    const V3f u(2, 0, 0), v(0, 0.5f, 0.8f);
+    const V3f down = u.cross(v).y < 0 ? u.cross(v) : v.cross(u);
+    const V3f c[4] = {at - u * 0.5f - v * 0.5f, at + u * 0.5f - v * 0.5f, at + u * 0.5f + v * 0.5f,
+                      at - u * 0.5f + v * 0.5f};
+    const double expected = polygon_irradiance({V3d(c[0]), V3d(c[1]), V3d(c[2]), V3d(c[3])});
+    // The receiver at the origin is lit only if it is in front of the rect.
+    const bool lit = down.dot(-at) > 0;
+    const double front = light_samples(rect_scene(at, u, v, down)).irradiance();
+    const double back = light_samples(rect_scene(at, u, v, -down)).irradiance();
+    EXPECT_NEAR(lit ? front : back, expected, kIntegrationError * expected) << at;
+    EXPECT_EQ(lit ? back : front, 0) << at;
+  }
+}
+
+TEST(LightSampling, RectSamplesEndOnTheRect) {
+  const V3f at(1, 3, -1);
+  const Samples samples = light_samples(rect_scene(at, {2, 0, 0}, {0, 0, 1}, {0, -1, 0}));
+  for (uint i = 0; i < kLightSamples; ++i) {
+    const V3f p = samples.directions[i] * samples.distances[i] - at;
+    ASSERT_TRUE(std::fabs(p.x) <= 1.0001f && std::fabs(p.y) <= 1e-5f && std::fabs(p.z) <= 0.5001f);
+  }
+}
+
+TEST(LightSampling, ASphereIntegratesToPiTimesTheSquaredSineOfItsRadius) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::sphere;
+  for (const auto& [position, radius] :
+       {std::pair{V3f(0, 2, 0), 1.0f}, {V3f(3, 4, 0), 0.01f}, {V3f(1, 2, 2), 1.9f}}) {
+    light.position = position;
+    light.radius = radius;
+    scene.lights = {light};
+    const Samples samples = light_samples(scene);
+    // A sphere above the horizon: pi sin^2(angular radius) times the cosine to its centre.
+    const double distance = position.length(), sine = radius / distance;
+    const double expected = kPi * sine * sine * position.y / distance;
+    EXPECT_NEAR(samples.irradiance(), expected, kIntegrationError * expected);
+    for (uint i = 0; i < kLightSamples; ++i) {
+      // The distance along a tangent ray is only known to sqrt(roundings of distance^2).
+      const V3f from_centre = samples.directions[i] * samples.distances[i] - position;
+      ASSERT_NEAR(from_centre.length(), radius, 1e-3 * distance);
+      ASSERT_LE(from_centre.dot(samples.directions[i]), 1e-3 * distance) << "the far side";
+    }
+  }
+}
+
+TEST(LightSampling, FromInsideASphereEveryDirectionIsLit) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::sphere;
+  light.position = V3f(0.3f, -0.2f, 0.1f);
+  light.radius = 1;
+  scene.lights = {light};
+  const Samples samples = light_samples(scene);
+  EXPECT_NEAR(samples.irradiance(), kPi, kIntegrationError * kPi);
+  for (uint i = 0; i < kLightSamples; ++i) {
+    ASSERT_NEAR((samples.directions[i] * samples.distances[i] - light.position).length(), 1, 1e-5f);
+  }
+}
+
+TEST(LightSampling, ASunIntegratesToPiTimesTheSquaredSineOfItsRadius) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::sun;
+  light.direction = V3f(0.6f, -0.8f, 0);
+  for (const float radius : {0.00465f, 0.2f, 0.6f}) {
+    light.angular_radius = radius;
+    scene.lights = {light};
+    const Samples samples = light_samples(scene);
+    const double expected = kPi * std::pow(std::sin(radius), 2) * 0.8;
+    EXPECT_NEAR(samples.irradiance(), expected, kIntegrationError * expected);
+    EXPECT_TRUE(std::isinf(samples.distances[0]));
+  }
+}
+
+/// A light of two triangles of different size, transformed by `to_world`; its front faces down.
+Scene mesh_light_scene(const M44f& to_world, bool double_sided) {
+  Scene scene;
+  scene.materials.emplace_back();
+  Mesh mesh;
+  mesh.positions = {{-1, 2, -1},     {2, 2, -1},      {-1, 2, 1},
+                    {0.5f, 1.5f, 0}, {0.8f, 1.5f, 0}, {0.5f, 1.6f, 0.4f}};
+  mesh.indices = {0, 1, 2, 3, 4, 5};
+  mesh.materials = {0, 0};
+  scene.meshes.push_back(mesh);
+  scene.instances.push_back({0, to_world, 0});
+  Light light;
+  light.kind = LightKind::mesh;
+  light.double_sided = double_sided;
+  scene.lights.push_back(light);
+  return scene;
+}
+
+TEST(LightSampling, AMeshIntegratesToTheSumOfItsTriangles) {
+  const M44f mirrored = M44f().setScale(V3f(-1, 1, 1)),
+             sheared = M44f(1, 0, 0.3f, 0, 0, 1.5f, 0, 0, 0.2f, 0, 2, 0, 0.1f, 0.2f, 0, 1);
+  for (const M44f& to_world : {M44f(), mirrored, sheared}) {
+    const Scene scene = mesh_light_scene(to_world, false);
+    const Mesh& mesh = scene.meshes[0];
+    double expected = 0;
+    for (std::size_t t = 0; t < 2; ++t) {
+      std::vector<V3d> corners;
+      for (std::size_t c = 0; c < 3; ++c)
+        corners.emplace_back(mesh.positions[3 * t + c] * to_world);
+      expected += polygon_irradiance(corners);
+    }
+    // Each triangle gets a part of one stretched sequence, which is less even than a whole one.
+    EXPECT_NEAR(light_samples(scene).irradiance(), expected, 10 * kIntegrationError * expected);
+    EXPECT_NEAR(light_samples(mesh_light_scene(to_world, true)).irradiance(), expected,
+                10 * kIntegrationError * expected);
+  }
+}
+
+}  // namespace
+}  // namespace dapple
