@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include "device/upload/light_upload.hpp"
-#include "support/random_direction.hpp"
 #include "support/test_kernel.hpp"
 
 namespace dapple {

@@ -18,7 +18,7 @@ std::uint32_t next_vertex(const Mesh& mesh) {
   return static_cast<std::uint32_t>(mesh.positions.size());
 }
 
-/// Gives vertices without a normal that of their face, if the mesh has normals.
+/// Adds zero normals, which stand for those of the faces, for new vertices of a mesh with normals.
 void complete_normals(Mesh& mesh) {
   if (!mesh.normals.empty()) mesh.normals.resize(mesh.positions.size(), V3f(0, 0, 0));
 }

@@ -18,8 +18,8 @@ void append_quad(Mesh& mesh, V3f a, V3f b, V3f c, V3f d, std::uint32_t material)
 /// Appends a horizontal square facing up, centred at (0, y, 0).
 void append_square(Mesh& mesh, float side, float y, std::uint32_t material);
 
-/// A tube with fewer sides is thin, and its faces are too far from round for the normals of a
-/// cylinder: rays would start into the tube.
+/// Tubes with so many sides or more have the normals of a cylinder. At the edge of a thinner one,
+/// these differ so much from its faces that rays about them would start into the tube.
 inline constexpr int kSmoothSides = 5;
 
 /// Appends a tube through `points` (two or more) that is open at its beginning and ends in a point
