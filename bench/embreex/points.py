@@ -3,7 +3,8 @@
 In: the path of dapple. Out: lines of figures, and JSON with --json. Points lie on a grid below
 scene:tree. dapple measures AO and the sum of suns at all of them; embreex traces rays from a part,
 and its seconds are scaled to all. AO: random directions, as many as give the error that dapple has
-against a reference of many rays; also directions stratified in a square. Suns: a ray to each.
+against a reference of many rays; also directions stratified in a square. Suns: a ray to each, or to a
+random part of them with the error that dapple has.
 All seconds are processor seconds, user and system, so other work on the machine hardly matters:
 dapple divides them among all cores, embreex traces on one.
 
@@ -140,15 +141,31 @@ def measure_ao(tracer: Tracer, table: np.ndarray, samples: int, reference_rays: 
 
 
 def measure_suns(tracer: Tracer, table: np.ndarray, suns: np.ndarray, samples: int) -> dict:
-    """dapple's RMSE of the sum of suns at some points, relative to its mean."""
+    """dapple's RMSE of the sum of suns at some points, relative to its mean, and the suns that
+    embreex needs for the same if it chooses them at random.
+    """
     chosen = np.linspace(0, len(table) - 1, samples).astype(int)
     points = np.stack([table[c][chosen] for c in "xyz"], axis=1).astype(float)
-    exact = tracer.visible(points, suns) @ suns[:, 1]
+    values = tracer.visible(points, suns) * suns[:, 1]
+    exact = values.sum(axis=1)
     found = table["sun"][chosen].astype(float)
+    error = float(np.sqrt(np.mean((found - exact) ** 2)))
+    random = np.random.default_rng(4)
+
+    def error_of(count: int) -> float:
+        """Of so many random suns, of which each counts as if there were no others."""
+        squared = []
+        for row, truth in zip(values, exact):
+            picked = random.permutation(len(suns))[:count]
+            squared.append((row[picked].mean() * len(suns) - truth) ** 2)
+        return float(np.sqrt(np.mean(squared)))
+
     return {
+        "random_suns": next(n for n in range(10, len(suns) + 1, 10) if error_of(n) <= error),
+        "error_said": float(np.sqrt(np.mean(table["sun_error"][chosen] ** 2)) / exact.mean()),
         "mean": float(found.mean()),
         "mean_exact": float(exact.mean()),
-        "relative_rmse": float(np.sqrt(np.mean((found - exact) ** 2)) / exact.mean()),
+        "relative_rmse": error / float(exact.mean()),
     }
 
 

@@ -101,7 +101,7 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.footer(
       "Columns: ao, sky_view_factor, the irradiance of each light, and what options add; each with "
       "its\n"
-      "standard error NAME_error, except bent normals and suns.\n\n"
+      "standard error NAME_error, except bent normals and single suns.\n\n"
       "Examples:\n  dapple points canopy.glb --grid 0,0,10,10,0.5 -o ground.csv --rings 5\n"
       "  dapple points canopy.glb --at sensors.csv -o light.csv --suns day.csv --sky overcast\n"
       "  dapple points plot.glb --per-triangle --periodic 10,10 -o leaves.npy");

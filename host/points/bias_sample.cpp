@@ -1,5 +1,6 @@
 #include "points/bias_sample.hpp"
 
+#include "points/sun_irradiance.hpp"
 #include "render/point_occlusion.hpp"
 #include "sampling/bias_estimate.hpp"
 
@@ -15,15 +16,6 @@ constexpr std::size_t kBiasSamples = 1024;
 constexpr std::uint32_t kPointsOfTile = 16;
 
 }  // namespace
-
-OcclusionOptions rays_of_set(const PointOptions& options, int set) {
-  OcclusionOptions of_set;
-  of_set.rays = options.rays / kPointSets;
-  of_set.estimator = options.estimator;
-  of_set.footprint = options.footprint;
-  of_set.seed = options.seed * kPointSets + static_cast<std::uint32_t>(set);
-  return of_set;
-}
 
 V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& layer,
            std::vector<V3f> PointIrradiance::*which, std::size_t i) {
@@ -120,6 +112,23 @@ std::vector<BiasCorrection> BiasSample::of_lights(const std::vector<LightLayer>&
   });
 }
 
+BiasCorrection BiasSample::of_suns() {
+  const SunRays suns(options_.suns);
+  return compare({"sun"}, [&](const OcclusionOptions& of) {
+    PointOptions options = options_;
+    options.estimator = of.estimator;
+    const auto parts =
+        sun_parts(on_, suns, points_, normals_, options, 1, of.seed, [](double) { return true; });
+    std::vector<Values> of_one(1);
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      if (!(suns.unoccluded(normals_[i]) > 0)) continue;
+      of_one[0].values.push_back(parts[0][i]);
+      of_one[0].points.push_back(i);
+    }
+    return of_one;
+  })[0];
+}
+
 std::vector<Bias> BiasSample::bias(float footprint) {
   const float used = options_.footprint;
   options_.footprint = footprint;
@@ -127,6 +136,7 @@ std::vector<Bias> BiasSample::bias(float footprint) {
   if (options_.ao) of_ao();
   if (options_.sky_view_factor) of_sky_view_factor();
   if (options_.lights && !on_.scene.lights.empty()) of_lights(light_layers(on_.scene.lights));
+  if (is_sampled(options_)) of_suns();
   std::vector<Bias> layers;
   for (const auto& [name, bias] : bias_) layers.push_back(bias);
   bias_.clear();

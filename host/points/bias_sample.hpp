@@ -11,16 +11,11 @@
 #include "dapple/points.hpp"
 #include "film/light_layers.hpp"
 #include "points/bias_correction.hpp"
+#include "points/point_sets.hpp"
 #include "points/scene_of_points.hpp"
 #include "sampling/footprint_choice.hpp"
 
 namespace dapple {
-
-/// Independent sets of rays of each quantity.
-inline constexpr int kPointSets = 8;
-
-/// The rays of one set of AO.
-OcclusionOptions rays_of_set(const PointOptions& options, int set);
 
 /// Of the lights of a layer, at point i.
 Imath::V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& layer,
@@ -36,7 +31,7 @@ class BiasSample : public BiasSource {
   /// The sample is what it is.
   void grow(std::size_t) override {}
   [[nodiscard]] bool is_complete() const override { return true; }
-  /// Layers are AO, the sky view factor and the lights, as far as they are measured.
+  /// Layers are AO, the sky view factor, the lights and the suns, as far as they are measured.
   std::vector<Bias> bias(float footprint) override;
   /// For the measurements from now on.
   void use_footprint(float footprint) { options_.footprint = footprint; }
@@ -44,6 +39,7 @@ class BiasSample : public BiasSource {
   BiasCorrection of_ao() { return of_occlusion("ao", normals_, options_.distance); }
   BiasCorrection of_sky_view_factor();
   std::vector<BiasCorrection> of_lights(const std::vector<LightLayer>& layers);
+  BiasCorrection of_suns();  ///< of their sum, when they are sampled
 
   /// What was measured so far, by quantity.
   [[nodiscard]] const std::map<std::string, Bias>& report() const { return bias_; }

@@ -8,22 +8,20 @@
 #include <numbers>
 #include <numeric>
 
+#include "bake/surface_samples.hpp"
 #include "dapple/error.hpp"
 #include "dapple/points.hpp"
 #include "film/light_layers.hpp"
 #include "points/bias_sample.hpp"
+#include "points/ray_slices.hpp"
 #include "points/ring_rays.hpp"
 #include "points/set_sums.hpp"
+#include "points/sun_irradiance.hpp"
 #include "render/point_occlusion.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
 namespace {
-
-/// Rays of suns or rings that are traced at once.
-constexpr std::size_t kRaysAtOnce = 1u << 20;
-
-constexpr float kSunSolidAngle = 6.8e-5f;
 
 using Imath::V3d;
 
@@ -151,41 +149,33 @@ class Measurement {
                result_.columns);
   }
 
-  /// Calls add(point, ray of the point, transmittance) for rays that make(point, rays) appends.
+  /// trace_slices(), which is `part` of a step.
   template <class Make, class Add>
-  bool trace_rays(std::size_t rays_per_point, double part, Make make, Add add) {
-    const std::size_t slice = std::max<std::size_t>(1, kRaysAtOnce / rays_per_point);
-    for (std::size_t begin = 0; begin < points_.size(); begin += slice) {
-      const std::size_t end = std::min(points_.size(), begin + slice);
-      std::vector<Ray> rays;
-      rays.reserve((end - begin) * rays_per_point);
-      for (std::size_t i = begin; i < end; ++i) make(i, rays);
-      const std::vector<Occlusion> found = trace(on_.device, on_.uploaded, rays, options_.estimator,
-                                                 options_.footprint, rays_per_point);
-      for (std::size_t r = 0; r < found.size(); ++r)
-        add(begin + r / rays_per_point, r % rays_per_point, double{found[r].transmittance});
-      if (!step(part * static_cast<double>(end - begin) / static_cast<double>(points_.size())))
-        return false;
-    }
-    return true;
+  bool trace_rays(std::size_t rays_per_point, double part, const Make& make, const Add& add) {
+    return trace_slices(
+        on_, {points_.size(), rays_per_point, options_.estimator, options_.footprint}, make, add,
+        [&](std::size_t count) {
+          return step(part * static_cast<double>(count) / static_cast<double>(points_.size()));
+        });
   }
 
   void measure_rings() {
     const std::vector<ZenithRing> rings = zenith_rings(options_.rings);
-    const int each = std::max(1, options_.rays / kPointSets);
+    const auto each = static_cast<std::size_t>(std::max(1, options_.rays / kPointSets));
     std::vector<SetSums> sums(rings.size(), SetSums(points_.size()));
     for (int set = 0; set < kPointSets; ++set) {
       std::vector<double> means(points_.size() * rings.size());
-      const auto make = [&](std::size_t i, std::vector<Ray>& rays) {
-        for (const ZenithRing& ring : rings)
-          append_ring_rays(points_[i], ring, each,
-                           options_.seed * kPointSets + static_cast<std::uint32_t>(set),
-                           static_cast<std::uint32_t>(i), rays);
+      const std::uint32_t seed = occlusion_options(set).seed;
+      const auto make = [&](std::size_t i, std::span<Ray> rays) {
+        const std::uint32_t of_point = hash_of(seed, static_cast<std::uint32_t>(i));
+        for (std::size_t k = 0; k < rings.size(); ++k)
+          fill_ring_rays(points_[i], rings[k], hash_of(of_point, static_cast<std::uint32_t>(k)),
+                         rays.subspan(k * each, each));
       };
       const auto add = [&](std::size_t i, std::size_t r, double transmittance) {
-        means[i * rings.size() + r / static_cast<std::size_t>(each)] += transmittance / each;
+        means[i * rings.size() + r / each] += transmittance / static_cast<double>(each);
       };
-      if (!trace_rays(rings.size() * static_cast<std::size_t>(each), 1, make, add)) return;
+      if (!trace_rays(rings.size() * each, 1, make, add)) return;
       for (std::size_t k = 0; k < rings.size(); ++k)
         sums[k].add([&](std::size_t i) { return means[i * rings.size() + k]; });
     }
@@ -223,16 +213,39 @@ class Measurement {
   }
 
   void measure_suns() {
+    if (is_sampled(options_))
+      sample_suns();
+    else
+      trace_each_sun();
+  }
+
+  void sample_suns() {
+    const SunRays suns(options_.suns);
+    SetSums sums(points_.size());
+    const auto parts = sun_parts(on_, suns, points_, normals_, options_, kPointSets, options_.seed,
+                                 [&](double part) { return step(part); });
+    if (result_.interrupted) return;
+    std::vector<double> unoccluded;
+    for (const V3f& normal : normals_) unoccluded.push_back(suns.unoccluded(normal));
+    const auto whole = [&](std::size_t i) { return unoccluded[i]; };
+    for (const std::vector<double>& part : parts)
+      sums.add([&](std::size_t i) { return part[i] * whole(i); });
+    BiasCorrection bias;
+    if (is_corrected()) bias = noted("sun", sample_.of_suns());
+    sums.store("sun", bias, whole, result_.columns);
+  }
+
+  void trace_each_sun() {
     const std::vector<SunDirection>& suns = options_.suns;
-    std::vector<PointColumn> columns(options_.per_sun ? suns.size() : 1);
+    std::vector<PointColumn> columns(options_.per_sun ? suns.size() : 2);
     for (std::size_t s = 0; s < columns.size(); ++s) {
-      columns[s].name = options_.per_sun ? fmt::format("sun_{}", s) : "sun";
+      columns[s].name = fmt::format("sun_{}", s);
       columns[s].values.resize(points_.size());
     }
     std::vector<double> sums(options_.per_sun ? 0 : points_.size());
-    const auto make = [&](std::size_t i, std::vector<Ray>& rays) {
-      for (const SunDirection& sun : suns)
-        rays.push_back(point_ray(points_[i], normals_[i], sun.direction, kSunSolidAngle));
+    const auto make = [&](std::size_t i, std::span<Ray> rays) {
+      for (std::size_t s = 0; s < suns.size(); ++s)
+        rays[s] = point_ray(points_[i], normals_[i], suns[s].direction, kSunSolidAngle);
     };
     const auto add = [&](std::size_t i, std::size_t s, double transmittance) {
       const double value = transmittance * double{suns[s].irradiance} *
@@ -245,6 +258,10 @@ class Measurement {
     if (!trace_rays(suns.size(), 1, make, add)) return;
     for (std::size_t i = 0; i < sums.size(); ++i)
       columns[0].values[i] = static_cast<float>(sums[i]);
+    if (!options_.per_sun) {
+      columns[0].name = "sun";
+      columns[1].name = "sun_error";  // 0: no sun was left out
+    }
     for (PointColumn& column : columns) result_.columns.push_back(std::move(column));
   }
 

@@ -41,23 +41,22 @@ Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float s
   return ray;
 }
 
-void append_ring_rays(const V3f& point, const ZenithRing& ring, int count, std::uint32_t seed,
-                      std::uint32_t index, std::vector<Ray>& rays) {
+void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t random,
+                    std::span<Ray> rays) {
   using std::numbers::pi;
   const double golden = pi * (3 - std::sqrt(5.0));
-  const std::uint32_t random = hash_of(hash_of(seed, index), rays.size() & 0xffffu);
+  const auto count = static_cast<double>(rays.size());
   const double turn = 2 * pi * (random & 0xffffu) / 65536.0, shift = (random >> 16) / 65536.0;
   const double solid_angle = 2 * pi * (ring.cos_inner - ring.cos_outer) / count;
-  for (int i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
     const double y =
         ring.cos_inner + (ring.cos_outer - ring.cos_inner) * std::min(1.0, (i + shift) / count);
     const double radius = std::sqrt(std::max(0.0, 1 - y * y)), angle = turn + golden * i;
-    Ray ray = point_ray(point, V3f(0, 1, 0),
+    rays[i] = point_ray(point, V3f(0, 1, 0),
                         V3f(static_cast<float>(radius * std::cos(angle)), static_cast<float>(y),
                             static_cast<float>(radius * std::sin(angle))),
                         static_cast<float>(solid_angle));
-    ray.key = hash_of(random, static_cast<std::uint32_t>(i));
-    rays.push_back(ray);
+    rays[i].key = hash_of(random, i);
   }
 }
 

@@ -1,6 +1,8 @@
 // Rays from points into zenith rings. In: a point and a ring. Out: rays.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dapple/scene.hpp"
@@ -19,8 +21,8 @@ std::vector<ZenithRing> zenith_rings(int count);
 /// A ray without an end from a point, off it along `normal` by more than rounding errors.
 Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float solid_angle);
 
-/// Appends `count` rays, uniform by solid angle within a ring: a Vogel spiral, turned at random.
-void append_ring_rays(const V3f& point, const ZenithRing& ring, int count, std::uint32_t seed,
-                      std::uint32_t index, std::vector<Ray>& rays);
+/// Fills `rays`, uniform by solid angle within a ring: a Vogel spiral, turned by random bits.
+void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t random,
+                    std::span<Ray> rays);
 
 }  // namespace dapple

@@ -29,7 +29,8 @@ struct PointOptions {
   bool lights = true;  ///< irradiance of each of the scene's lights
   std::vector<SunDirection> suns;
   bool per_sun = false;  ///< a column for each sun; else one for the sum
-  /// For each point and quantity, in eight independent sets, [8, 2^20].
+  /// For each point and quantity, in eight sets, [8, 2^20]. If there are more suns than rays, each
+  /// ray stands for some of them, in their sum.
   int rays = 256;
   Estimator estimator = Estimator::prefiltered;
   float footprint = 1.0f;                  ///< of the rays of one set
@@ -56,10 +57,10 @@ struct PointColumn {
 struct PointResult {
   /// ao, sky_view_factor and gap_N in [0,1]; bent_x, bent_y and bent_z a unit vector or zero;
   /// NAME_r, NAME_g and NAME_b of a light, and sun or sun_N, in W/m^2. With each an _error, its
-  /// standard error; suns have none, since each is one ray.
+  /// standard error; bent_ and sun_N have none, and that of sun is 0 if each sun had a ray.
   std::vector<PointColumn> columns;
-  /// The bias before it was corrected, by quantity: "ao", "sky_view_factor", and lights by name,
-  /// relative to the unoccluded irradiance. The RMSE over tiles (of neighbouring points) is what
+  /// The bias before it was corrected, by quantity: "ao", "sky_view_factor", lights by name, and
+  /// "sun", their sum where suns were chosen; lights and suns are relative to the unoccluded irradiance. The RMSE over tiles (of neighbouring points) is what
   /// the correction leaves.
   std::map<std::string, Bias> bias;
   float footprint = 0;  ///< PointOptions::footprint, or what max_bias chose

@@ -132,6 +132,16 @@ MUTATIONS = [
         "double{suns[s].irradiance};",
         r"^(Points|PointTheory)\."),
     Mutation(
+        "chosen-suns-without-cosine", "host/points/sun_rays.cpp",
+        "double{sun.irradiance} * std::max(0.0, double{normal.dot(sun.direction)});",
+        "normal.dot(sun.direction) > 0 ? double{sun.irradiance} : 0.0;",
+        r"^(SunRays|SunSampling)\."),
+    Mutation(
+        "footprint-of-one-sun", "host/points/sun_rays.cpp",
+        "if (first == last || !(all > 0)) return kSunSolidAngle;",
+        "return kSunSolidAngle;",
+        r"^(SunRays|SunSampling)\."),
+    Mutation(
         "standard-error-of-all-sets", "host/points/set_sums.hpp",
         "/ (sets_ - 1);",
         "/ sets_;",

@@ -1,0 +1,22 @@
+// Each quantity at a point is measured in independent sets of rays, whose differences give its
+// standard error.
+#pragma once
+
+#include "dapple/points.hpp"
+
+namespace dapple {
+
+/// Independent sets of rays of each quantity.
+inline constexpr int kPointSets = 8;
+
+/// The rays of one set of AO.
+inline OcclusionOptions rays_of_set(const PointOptions& options, int set) {
+  OcclusionOptions of_set;
+  of_set.rays = options.rays / kPointSets;
+  of_set.estimator = options.estimator;
+  of_set.footprint = options.footprint;
+  of_set.seed = options.seed * kPointSets + static_cast<std::uint32_t>(set);
+  return of_set;
+}
+
+}  // namespace dapple

@@ -1,0 +1,155 @@
+// Many suns of which each ray stands for some: how often each is chosen, footprints, values and
+// their standard errors against a ray to every sun.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "dapple/points.hpp"
+#include "points/sun_rays.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+const V3f kUp(0, 1, 0);
+
+/// Directions that fill a cap of the sphere around +Y evenly.
+std::vector<SunDirection> cap(int count, double cos_half_angle) {
+  std::vector<SunDirection> suns;
+  for (int i = 0; i < count; ++i) {
+    const double y = 1 - (1 - cos_half_angle) * (i + 0.5) / count, r = std::sqrt(1 - y * y);
+    const double around = 2.399963 * i;
+    suns.push_back({V3f(static_cast<float>(r * std::cos(around)), static_cast<float>(y),
+                        static_cast<float>(r * std::sin(around))),
+                    static_cast<float>(1 + i % 3)});
+  }
+  return suns;
+}
+
+std::vector<Ray> sampled(const SunRays& suns, const V3f& normal, std::size_t count,
+                         std::size_t sets, std::uint32_t random) {
+  std::vector<Ray> rays(count);
+  suns.sample(V3f(0, 0, 0), normal, sets, random, rays);
+  return rays;
+}
+
+TEST(SunRays, ChooseEachSunAsOftenAsItBringsIrradiance) {
+  const std::vector<SunDirection> suns = cap(60, 0.1);
+  const SunRays rays(suns);
+  const V3f normal = V3f(1, 1, 0.3f).normalized();
+  constexpr int kRepeats = 4000, kRays = 16;
+  std::map<std::array<float, 3>, int> chosen;
+  for (std::uint32_t repeat = 0; repeat < kRepeats; ++repeat)
+    for (const Ray& ray : sampled(rays, normal, kRays, 4, repeat * 2654435769u))
+      ++chosen[{ray.direction[0], ray.direction[1], ray.direction[2]}];
+  for (const SunDirection& sun : suns) {
+    const double share =
+        std::max(0.0, double{sun.irradiance * normal.dot(sun.direction)}) / rays.unoccluded(normal);
+    const double expected = share * kRepeats * kRays;
+    const int found = chosen[{sun.direction.x, sun.direction.y, sun.direction.z}];
+    EXPECT_NEAR(found, expected, 5 * std::sqrt(expected)) << sun.direction;
+  }
+}
+
+TEST(SunRays, EachSetTakesOneRayOfEachStratum) {
+  // Two groups of suns of the same irradiance, far apart on the curve.
+  std::vector<SunDirection> suns(100, {V3f(0.6f, 0.8f, 0), 1});
+  suns.resize(200, {V3f(-0.6f, 0.8f, 0), 1});
+  const SunRays rays(suns);
+  for (std::uint32_t random = 0; random < 50; ++random) {
+    const std::vector<Ray> found = sampled(rays, kUp, 64, 8, random * 77);
+    int right[8] = {};
+    for (std::size_t r = 0; r < found.size(); ++r) right[r % 8] += found[r].direction[0] > 0;
+    for (const int in_set : right) EXPECT_EQ(in_set, 4);
+  }
+}
+
+TEST(SunRays, AFootprintIsTheCapOverWhichTheSunsOfAStratumSpread) {
+  constexpr double kCosine = 0.9;
+  const double solid_angle = 2 * std::numbers::pi * (1 - kCosine);
+  const SunRays suns(cap(3000, kCosine));
+  EXPECT_NEAR(double{sampled(suns, kUp, 1, 1, 5)[0].solid_angle}, solid_angle, 0.01 * solid_angle);
+  // Strata of an evenly filled cap have their share of it, or more: on the curve they are not round.
+  double sum = 0;
+  for (const Ray& ray : sampled(suns, kUp, 64, 1, 5)) sum += double{ray.solid_angle};
+  EXPECT_GT(sum, solid_angle);
+  EXPECT_LT(sum, 2 * solid_angle);
+  const SunRays one(std::vector<SunDirection>(10, {V3f(0, 1, 0), 1}));
+  EXPECT_EQ(sampled(one, kUp, 4, 2, 0)[3].solid_angle, kSunSolidAngle);
+}
+
+TEST(SunRays, EndAtOnceWhereNoSunShines) {
+  const SunRays suns(cap(300, 0.5));
+  EXPECT_EQ(suns.unoccluded(V3f(0, -1, 0)), 0);
+  for (const Ray& ray : sampled(suns, V3f(0, -1, 0), 16, 8, 3)) EXPECT_EQ(ray.t_max, 0);
+  for (const Ray& ray : sampled(suns, kUp, 16, 8, 3)) EXPECT_GT(ray.t_max, 1e30f);
+}
+
+const PointColumn& column(const PointResult& result, const std::string& name) {
+  for (const PointColumn& one : result.columns)
+    if (one.name == name) return one;
+  throw std::runtime_error("no column " + name);
+}
+
+PointResult under_tree(const PointOptions& options) {
+  std::vector<V3f> points;
+  for (int i = 0; i < 400; ++i)
+    points.emplace_back(0.3f * static_cast<float>(i % 20) - 3, 0.01f,
+                        0.3f * static_cast<float>(i / 20) - 3);
+  const std::vector<V3f> normals(points.size(), kUp);
+  return measure_points(make_procedural("scene:tree?leaves=20000&opacity=1"), points, normals,
+                        options);
+}
+
+TEST(SunSampling, SumsAgreeWithARayToEachSunWithinTheirErrors) {
+  PointOptions options;
+  options.ao = options.sky_view_factor = false;
+  options.suns = cap(2000, 0.2);
+  options.estimator = Estimator::exact;
+  options.rays = 2000;
+  const PointResult all = under_tree(options);
+  EXPECT_TRUE(all.notes.empty());
+  const std::vector<float>& truth = column(all, "sun").values;
+  for (const float error : column(all, "sun_error").values) EXPECT_EQ(error, 0);
+  options.rays = 256;
+  double whole = 0;
+  for (const SunDirection& sun : options.suns) whole += double{sun.irradiance * sun.direction.y};
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    options.estimator = estimator;
+    const PointResult some = under_tree(options);
+    const std::vector<float>&values = column(some, "sun").values,
+          &errors = column(some, "sun_error").values;
+    double mean = 0, squares = 0, said = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const double difference = double{values[i] - truth[i]} / whole;
+      mean += difference / 400;
+      squares += difference * difference / 400;
+      said += std::pow(double{errors[i]} / whole, 2) / 400;
+    }
+    std::printf("relative mean %+.4f, RMSE %.4f, standard error %.4f\n", mean, std::sqrt(squares),
+                std::sqrt(said));
+    EXPECT_NEAR(mean, 0, 0.003);
+    EXPECT_LT(std::sqrt(squares), 1.2 * std::sqrt(said));
+    EXPECT_LT(std::sqrt(said), 0.02);
+    EXPECT_GT(std::sqrt(said), 0.001);
+    EXPECT_EQ(some.bias.count("sun"), estimator == Estimator::exact ? 0u : 1u);
+  }
+}
+
+TEST(SunSampling, TheSameSeedGivesTheSameBitsAndAnotherOthers) {
+  PointOptions options;
+  options.ao = options.sky_view_factor = false;
+  options.suns = cap(100, 0.2);
+  options.rays = 64;
+  const std::vector<float> first = column(under_tree(options), "sun").values;
+  EXPECT_EQ(column(under_tree(options), "sun").values, first);
+  options.seed = 1;
+  EXPECT_NE(column(under_tree(options), "sun").values, first);
+  options.per_sun = true;
+  EXPECT_EQ(under_tree(options).columns.size(), 100u) << "each sun has its ray";
+}
+
+}  // namespace
+}  // namespace dapple
