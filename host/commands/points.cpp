@@ -93,6 +93,7 @@ void add_point_options(CLI::App& app, Arguments& a) {
          "Scale of ray footprints: larger is faster and less noisy, smaller is closer to exact, "
          "0 is exact")
       ->capture_default_str();
+  add_bias_options(app, a.report_bias, o.max_bias);
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
       ->capture_default_str();
   add_outside_option(app, a.scene_options.allow_outside);

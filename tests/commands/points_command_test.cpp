@@ -1,0 +1,60 @@
+// dapple points as a command: the report of the bias and its limit, and columns of suns.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "support/program_run.hpp"
+
+namespace dapple {
+namespace {
+
+using film_test::bytes_of;
+using film_test::contains;
+
+class PointsCommand : public program_test::ProgramRun {
+ protected:
+  /// Of a grid under a tree; fails unless it succeeds.
+  program_test::Outcome measured(const std::string& arguments) {
+    const program_test::Outcome run =
+        dapple("points 'scene:tree?leaves=3000' --grid=-2,-2,2,2,0.4 --rays 64 " + arguments);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return run;
+  }
+
+  std::string first_line(const std::string& name) {
+    std::ifstream in(path(name));
+    std::string line;
+    std::getline(in, line);
+    return line;
+  }
+};
+
+TEST_F(PointsCommand, ReportsTheBiasUnlessToldNotTo) {
+  EXPECT_TRUE(contains(measured("-o a.csv").out, "bias of ao"));
+  EXPECT_FALSE(contains(measured("-o b.csv --report-bias 0").out, "bias of ao"));
+  EXPECT_EQ(bytes_of(path("a.csv")), bytes_of(path("b.csv")));
+}
+
+TEST_F(PointsCommand, KeepsALimitOfTheBiasAndSaysWithWhichFootprint) {
+  const program_test::Outcome run = measured("-o a.csv --max-bias 1e-7");
+  EXPECT_TRUE(contains(run.err, "footprint 0, exact rays")) << run.err;
+  measured("-o b.csv --footprint 0");
+  EXPECT_EQ(bytes_of(path("a.csv")), bytes_of(path("b.csv")));
+}
+
+TEST_F(PointsCommand, SumsSunsWithAStandardErrorOrWritesEach) {
+  std::ofstream suns(path("suns.csv"));
+  suns << "azimuth,elevation,irradiance\n";
+  for (int i = 0; i < 90; ++i) suns << 2 * i << "," << 10 + i % 60 << ",800\n";
+  suns.close();
+  const program_test::Outcome run = measured("-o sum.csv --suns suns.csv");
+  EXPECT_TRUE(contains(run.out, "bias of sun")) << run.out;
+  EXPECT_TRUE(contains(first_line("sum.csv"), ",sun,sun_error")) << first_line("sum.csv");
+  measured("-o each.csv --suns suns.csv --per-sun");
+  EXPECT_TRUE(contains(first_line("each.csv"), ",sun_0,sun_1")) << first_line("each.csv");
+  EXPECT_FALSE(contains(first_line("each.csv"), "sun_90"));
+}
+
+}  // namespace
+}  // namespace dapple
