@@ -24,6 +24,8 @@
 namespace dapple {
 namespace {
 
+using ExrRows = std::vector<std::vector<float>>;  ///< one vector for each channel
+
 using Imath::Box2i;
 using Imath::V2i;
 
@@ -136,10 +138,15 @@ void decode_part(Imf::InputPart& part, ExrImage& image) {
     // picture fails before it uses much.
     planes.back()->reserve(static_cast<std::size_t>(area(part.header().dataWindow())));
   }
-  for_each_strip(part, channels, [&](std::size_t, const ExrRows& rows) {
+  const Box2i window = part.header().dataWindow();
+  ExrRows rows(channels.size());  // reused, not allocated anew: experiment 803
+  for (std::int64_t y = window.min.y; y <= window.max.y; y += kStripRows) {
+    const int last = static_cast<int>(std::min<std::int64_t>(y + kStripRows - 1, window.max.y));
+    read_rows(part, channels,
+              Box2i(V2i(window.min.x, static_cast<int>(y)), V2i(window.max.x, last)), rows);
     for (std::size_t i = 0; i < rows.size(); ++i)
       planes[i]->insert(planes[i]->end(), rows[i].begin(), rows[i].end());
-  });
+  }
 }
 
 ExrImage decode(const std::string& path, const SeeExrHeader& see_header) {
@@ -158,21 +165,6 @@ ExrImage decode(const std::string& path, const SeeExrHeader& see_header) {
 }
 
 }  // namespace
-
-void for_each_strip(
-    Imf::InputPart& part, const std::vector<std::string>& channels,
-    const std::function<void(std::size_t first_pixel, const ExrRows& rows)>& visit) {
-  const Box2i window = part.header().dataWindow();
-  std::size_t first_pixel = 0;
-  ExrRows rows(channels.size());  // reused, not allocated anew: experiment 803
-  for (std::int64_t y = window.min.y; y <= window.max.y; y += kStripRows) {
-    const int last = static_cast<int>(std::min<std::int64_t>(y + kStripRows - 1, window.max.y));
-    const Box2i strip(V2i(window.min.x, static_cast<int>(y)), V2i(window.max.x, last));
-    read_rows(part, channels, strip, rows);
-    visit(first_pixel, rows);
-    first_pixel += static_cast<std::size_t>(area(strip));
-  }
-}
 
 ExrImage read_exr_image(const std::string& path, const SeeExrHeader& see_header) {
   std::error_code ignored;

@@ -28,11 +28,4 @@ using SeeExrHeader = std::function<void(const Imf::Header&)>;
 /// Throws Error input.
 ExrImage read_exr_image(const std::string& path, const SeeExrHeader& see_header = {});
 
-using ExrRows = std::vector<std::vector<float>>;  ///< one vector for each channel
-
-/// Reads `channels` a few rows at a time, from top to bottom, and calls `visit` with each strip and
-/// the index of its first pixel. Throws OpenEXR's exceptions.
-void for_each_strip(Imf::InputPart& part, const std::vector<std::string>& channels,
-                    const std::function<void(std::size_t first_pixel, const ExrRows& rows)>& visit);
-
 }  // namespace dapple

@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "dapple/error.hpp"
 #include "files/temporary_file.hpp"
@@ -22,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr const char* kDiffers = "what was read back differs from what was written";
 
 std::string cannot_write(const std::string& path, const std::string& reason) {
   return "cannot write " + path + ": " + reason;
@@ -69,21 +69,6 @@ std::string refusal(const std::string& target) {
 void copy_permissions(const std::string& from, int to) {
   struct stat existing {};
   if (stat(from.c_str(), &existing) == 0 && fchmod(to, existing.st_mode & 0777) != 0) errno = 0;
-}
-
-// Whether the file consists of these sections and nothing else.
-bool holds(const std::string& path, std::span<const std::string_view> sections) {
-  std::ifstream file(path, std::ios::binary);
-  std::string block(kBufferBytes, '\0');
-  for (std::string_view section : sections) {
-    while (!section.empty()) {
-      const std::size_t step = std::min(section.size(), block.size());
-      file.read(block.data(), static_cast<std::streamsize>(step));
-      if (!file || section.substr(0, step) != std::string_view(block.data(), step)) return false;
-      section.remove_prefix(step);
-    }
-  }
-  return file.peek() == std::ifstream::traits_type::eof();
 }
 
 }  // namespace
@@ -134,6 +119,7 @@ void PendingFile::write(const char* bytes, std::size_t count) {
 void PendingFile::flush() {
   if (!first_failure_.empty()) fail(first_failure_);
   assert(descriptor_ >= 0);
+  if (!written_.add(descriptor_, flushed_, buffer_)) fail(kDiffers);
   std::size_t done = 0;
   while (done < buffer_.size()) {
     const ssize_t step = pwrite(descriptor_, buffer_.data() + done, buffer_.size() - done,
@@ -161,6 +147,11 @@ void PendingFile::close(Durable durable) {
   if (::close(descriptor) != 0) fail_with_errno();
 }
 
+void PendingFile::verify() {
+  assert(descriptor_ < 0);
+  if (!written_.are_in(temporary_)) fail(kDiffers);
+}
+
 void PendingFile::commit() {
   assert(descriptor_ < 0);
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail_with_errno();
@@ -175,9 +166,7 @@ void write_whole_file(const std::string& path, std::span<const std::string_view>
   PendingFile file(path);
   for (const std::string_view section : sections) file.write(section.data(), section.size());
   file.close();
-  if (!holds(file.temporary_path(), sections)) {
-    file.fail("what was read back differs from what was written");
-  }
+  file.verify();
   file.commit();
 }
 

@@ -1,7 +1,7 @@
 // Files that appear completely or not at all; every writer uses them. In: bytes. Out: a finished
-// file, or an Error. A PendingFile is written in its target's folder. The caller reads it back and
-// verifies it, and only then renames it over the target. Without commit() the file is removed and
-// the target stays as it was.
+// file, or an Error. A PendingFile is written in its target's folder. It is read back and compared
+// with what was written, and only then renamed over the target. Without commit() the file is
+// removed and the target stays as it was.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "files/written_blocks.hpp"
 
 namespace dapple {
 
@@ -38,7 +40,11 @@ class PendingFile {
   /// does) cannot hide it.
   void close(Durable durable = Durable::yes);
 
-  /// Path of the unfinished file. The caller verifies it between close() and commit().
+  /// Reads the file back, between close() and commit(), and fails if it differs from what was
+  /// written. By checksums of blocks.
+  void verify();
+
+  /// Path of the unfinished file.
   [[nodiscard]] const std::string& temporary_path() const { return temporary_; }
 
   /// Renames the file over the target. close() must come first.
@@ -57,6 +63,7 @@ class PendingFile {
   std::string first_failure_;
   std::string buffer_;         // written after the first `flushed_` bytes
   std::uint64_t flushed_ = 0;  // file position at which `buffer_` begins
+  WrittenBlocks written_;
   int descriptor_ = -1;
   int lock_ = -1;  // duplicate that keeps the file locked after close()
 };

@@ -35,13 +35,12 @@ std::string exr_attribute(const std::string& name) {
 Box2i exr_window(const PixelRect& rect) { return {V2i(rect.x0, rect.y0), V2i(rect.x1, rect.y1)}; }
 
 Imf::Header exr_header(const Film& film, Imf::Compression compression) {
-  return {Box2i(V2i(0, 0), V2i(film.width - 1, film.height - 1)),
-          exr_window(film.data_window),
-          1.0f,
-          Imath::V2f(0, 0),
-          1.0f,
-          Imf::INCREASING_Y,
-          compression};
+  Imf::Header header(Box2i(V2i(0, 0), V2i(film.width - 1, film.height - 1)),
+                     exr_window(film.data_window), 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y,
+                     compression);
+  if (compression == Imf::ZIP_COMPRESSION || compression == Imf::ZIPS_COMPRESSION)
+    header.zipCompressionLevel() = 1;  // not 4: experiment 804
+  return header;
 }
 
 void insert_metadata(Imf::Header& header, const FilmMetadata& metadata) {

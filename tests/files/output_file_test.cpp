@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <fstream>
+#include <functional>
 
 #include "support/film_files.hpp"
 
@@ -110,6 +112,57 @@ TEST_F(OutputFile, PendingFileWritesAtThePositionOfASeek) {
   file.close();
   file.commit();
   EXPECT_EQ(bytes_of(path("a.bin")), "aXYdef");
+}
+
+TEST_F(OutputFile, FilesThatHoldWhatWasWrittenPassAlsoAfterASeek) {
+  const std::string bytes(2'500'000, 'x');  // two buffers and a half
+  PendingFile file(path("a.bin"));
+  file.write(bytes.data(), bytes.size());
+  file.seek((1U << 20U) - 2);  // over the end of the first buffer
+  file.write("abcd", 4);
+  file.seek(bytes.size() - 1);  // over the end of the file
+  file.write("yz", 2);
+  file.close();
+  file.verify();
+  file.commit();
+  std::string expected = bytes;
+  expected.replace((1U << 20U) - 2, 4, "abcd").replace(bytes.size() - 1, 1, "yz");
+  EXPECT_TRUE(bytes_of(path("a.bin")) == expected);
+}
+
+TEST_F(OutputFile, ChangedShortenedAndExtendedFilesDiffer) {
+  const auto damage = [&](const std::function<void(std::fstream&, const std::string&)>& change) {
+    PendingFile file(path("a.bin"));
+    file.write(std::string(1'500'000, 'x').data(), 1'500'000);
+    file.seek(7);
+    file.write("seven", 5);
+    file.close();
+    std::fstream bytes(file.temporary_path(), std::ios::in | std::ios::out | std::ios::binary);
+    change(bytes, file.temporary_path());
+    bytes.close();
+    return error_of([&] { file.verify(); }).what();
+  };
+  const auto write_at = [](std::streamoff position, char value) {
+    return [=](std::fstream& bytes, const std::string&) { bytes.seekp(position).put(value); };
+  };
+  const std::string differs = "what was read back differs";
+  EXPECT_TRUE(contains(damage(write_at(0, 'y')), differs));
+  EXPECT_TRUE(contains(damage(write_at(9, 'y')), differs)) << "within what a seek replaced";
+  EXPECT_TRUE(contains(damage(write_at(1'499'999, 'y')), differs));
+  EXPECT_TRUE(contains(damage(write_at(1'500'000, 'x')), differs));
+  EXPECT_TRUE(
+      contains(damage([](std::fstream&, const std::string& of) { fs::resize_file(of, 1'499'999); }),
+               differs));
+  EXPECT_EQ(files_in_folder(), 0U);
+}
+
+TEST_F(OutputFile, DamageUnderWhatASeekReplacesIsNotMadeGood) {
+  PendingFile file(path("a.bin"));
+  file.write("abcdef", 6);
+  file.seek(0);
+  std::fstream(file.temporary_path(), std::ios::in | std::ios::out).seekp(5).put('x');
+  file.write("AB", 2);
+  EXPECT_TRUE(contains(error_of([&] { file.close(); }).what(), "what was read back differs"));
 }
 
 TEST_F(OutputFile, WholeFilesHoldWhatWasGiven) {
