@@ -1,12 +1,15 @@
 // Chooses a command, and turns what goes wrong into one line and an exit code.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,6 +30,18 @@ int say(const char* what, int reason = 0) {
   std::fprintf(stderr, "dapple: %s%s%s\n", what, reason ? ": " : "",
                reason ? std::strerror(reason) : "");
   return kFailed;
+}
+
+/// Whether even arguments could not be read without an overflow. Says so with hardly any stack.
+bool is_stack_too_small() {
+  constexpr rlim_t kLeastBytes = 64 * 1024;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= kLeastBytes) return false;
+  constexpr std::string_view kText =
+      "dapple: stacks may only have less than 64 kB here (ulimit -s), and OpenCL drivers need 1024 "
+      "kB to compile kernels\n";
+  (void)!write(STDERR_FILENO, kText.data(), kText.size());
+  return true;
 }
 
 /// Files that are opened later must not become the standard input, output or error.
@@ -111,6 +126,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (is_stack_too_small()) return kFailed;
   occupy_closed_descriptors();
   std::signal(SIGCHLD, SIG_DFL);  // whatever we were started with: we wait for processes of ours
   std::signal(SIGXFSZ, SIG_IGN);  // a write past ulimit -f fails, and says why
