@@ -118,13 +118,7 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
          "Around which rays are spread. shading: the normals of the meshes; geometric: those "
          "of the triangles")
       ->capture_default_str();
-  add_estimator_option(app, a.estimator);
-  app.add_option(
-         "--footprint", o.footprint,
-         "Scale of ray footprints: larger is faster and less noisy, smaller is closer to exact, "
-         "0 is exact")
-      ->capture_default_str();
-  add_bias_options(app, a.report_bias, o.max_bias);
+  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias, o.max_bias);
   app.add_option("--ao-distance", o.distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
       ->capture_default_str();

@@ -87,13 +87,7 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.add_option("--ao-distance", o.distance,
                  "Surfaces farther than this, in metres, do not count for AO; 0: no limit")
       ->capture_default_str();
-  add_estimator_option(app, a.estimator);
-  app.add_option(
-         "--footprint", o.footprint,
-         "Scale of ray footprints: larger is faster and less noisy, smaller is closer to exact, "
-         "0 is exact")
-      ->capture_default_str();
-  add_bias_options(app, a.report_bias, o.max_bias);
+  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias, o.max_bias);
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
       ->capture_default_str();
   add_outside_option(app, a.scene_options.allow_outside);

@@ -47,13 +47,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option("--light-rays", o.light_rays, "Rays per light and shaded surface")
       ->capture_default_str();
-  add_estimator_option(app, a.estimator);
-  app.add_option(
-         "--footprint", o.footprint,
-         "Scale of ray footprints, the areas that rays represent: larger is faster and less noisy, "
-         "smaller is closer to exact, 0 is exact")
-      ->capture_default_str();
-  add_bias_options(app, a.report_bias, o.max_bias);
+  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias, o.max_bias);
   app.add_option("--passes", a.passes,
                  "With commas between: ao, light, albedo (colours), back (AO and light of the side "
                  "that faces away from the camera), motion (image motion until the next frame, in "

@@ -2,14 +2,17 @@
 
 namespace dapple {
 
-void add_estimator_option(CLI::App& app, std::string& estimator) {
+void add_prefiltering_options(CLI::App& app, std::string& estimator, float& footprint,
+                              std::string& report_bias, float& max_bias) {
   app.add_option("--estimator", estimator,
                  "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the "
                  "ray's footprint covers")
       ->capture_default_str();
-}
-
-void add_bias_options(CLI::App& app, std::string& report_bias, float& max_bias) {
+  app.add_option(
+         "--footprint", footprint,
+         "Scale of ray footprints, the areas that rays represent: larger is faster and less "
+         "noisy, smaller is closer to exact, 0 is exact")
+      ->capture_default_str();
   app.add_option("--max-bias", max_bias,
                  "Choose the largest footprint, from --footprint down to 0, whose bias is below "
                  "this in each layer; 0: take --footprint")

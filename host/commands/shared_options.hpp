@@ -7,11 +7,9 @@
 
 namespace dapple {
 
-/// --estimator
-void add_estimator_option(CLI::App& app, std::string& estimator);
-
-/// --max-bias and --report-bias
-void add_bias_options(CLI::App& app, std::string& report_bias, float& max_bias);
+/// --estimator, --footprint, --max-bias and --report-bias
+void add_prefiltering_options(CLI::App& app, std::string& estimator, float& footprint,
+                              std::string& report_bias, float& max_bias);
 
 /// --allow-outside
 void add_outside_option(CLI::App& app, bool& allow_outside);
