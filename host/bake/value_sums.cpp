@@ -29,6 +29,9 @@ constexpr int kIntervals = 16;
 /// Degrees of freedom that the pooled variance counts beside a place's own.
 constexpr float kPooledFreedom = 4;
 
+/// Degrees of freedom that the variance of single rays counts beside those of all samples.
+constexpr float kRayFreedom = 8;
+
 }  // namespace
 
 void ValueSums::Side::add(float w, const SideValue& value) {
@@ -91,9 +94,12 @@ class ValueSums::PooledVariance {
   }
 
   [[nodiscard]] float pooled(float value) const {
-    // Without any repeated sample: of rays that each find everything or nothing.
-    const double all = all_.freedom > 0 ? all_.squares / all_.freedom
-                                        : double{value * (scale_ - value)} / kRaysPerSample;
+    // A few samples may be equal by chance. So the variance of rays that each find everything or
+    // nothing counts as much as some samples. The value is by chance, too: hence the clamp.
+    const double part = std::clamp(double{value / scale_}, 0.1, 0.9);
+    const double of_rays = double{scale_ * scale_} * part * (1 - part) / kRaysPerSample;
+    const double all =
+        (all_.squares + double{kRayFreedom} * of_rays) / (all_.freedom + double{kRayFreedom});
     const Pool& pool = of_interval_[interval(value)];
     return static_cast<float>((pool.squares + double{kPooledFreedom} * all) /
                               (pool.freedom + double{kPooledFreedom}));

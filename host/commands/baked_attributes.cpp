@@ -13,23 +13,90 @@ namespace {
 using gltf::NewAttribute;
 using gltf::SourceFile;
 
-/// Sums over the meshes of a scene that show one primitive's vertices: poses and placements.
+/// A primitive of the file, by its mesh and its number there.
+using Primitive = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Sums over the meshes of a scene that show the same vertices of the file: poses and placements.
 struct VertexSums {
   std::vector<float> ao, weight;
   std::vector<V3f> bent;
   std::vector<std::vector<V3f>> light;  ///< by light
+  std::vector<std::uint32_t> owner;     ///< 1 + the mesh of the file that uses a vertex, or 0
+
+  VertexSums(std::size_t count, const BakedMesh& like)
+      : ao(count), weight(count), light(like.light.size()), owner(count) {
+    if (!like.bent.empty()) bent.resize(count, V3f(0));
+    for (std::vector<V3f>& one : light) one.resize(count, V3f(0));
+  }
+
+  /// Whether no other mesh of the file uses the vertices.
+  [[nodiscard]] bool are_free(const VertexSource& source) const {
+    for (std::uint32_t i = 0; i < source.count; ++i) {
+      const std::uint32_t by = owner[vertex_of(source, i)];
+      if (by != 0 && by != source.mesh + 1) return false;
+    }
+    return true;
+  }
+
+  void add(const VertexSource& source, const BakedMesh& baked) {
+    for (std::uint32_t i = 0; i < source.count; ++i) {
+      const std::uint32_t to = vertex_of(source, i), from = source.first + i;
+      owner[to] = source.mesh + 1;
+      ao[to] += baked.ao[from];
+      weight[to] += 1;
+      if (!baked.bent.empty()) bent[to] += baked.bent[from];
+      for (std::size_t l = 0; l < baked.light.size(); ++l) light[l][to] += baked.light[l][from];
+    }
+  }
+
+  /// AO becomes means, and 1 where there is none.
+  void divide() {
+    for (std::size_t v = 0; v < ao.size(); ++v) ao[v] = weight[v] > 0 ? ao[v] / weight[v] : 1.0f;
+  }
+
+ private:
+  static std::uint32_t vertex_of(const VertexSource& source, std::uint32_t i) {
+    return source.used.empty() ? i : source.used[i];
+  }
 };
 
-void add(const VertexSource& source, const BakedMesh& baked, VertexSums& sums) {
-  for (std::uint32_t i = 0; i < source.count; ++i) {
-    const std::uint32_t to = source.used.empty() ? i : source.used[i];
-    const std::uint32_t from = source.first + i;
-    sums.ao[to] += baked.ao[from];
-    sums.weight[to] += 1;
-    if (!baked.bent.empty()) sums.bent[to] += baked.bent[from];
-    for (std::size_t l = 0; l < baked.light.size(); ++l) sums.light[l][to] += baked.light[l][from];
+/// The sums of all primitives of a file. Primitives may share their vertices. Meshes that use
+/// different ones of these share a set of sums; those that use the same have sets of their own.
+struct FileSums {
+  std::map<gltf::VertexKey, std::vector<VertexSums>> sets;
+  std::map<Primitive, std::pair<gltf::VertexKey, std::uint32_t>> primitives;  ///< and their sets
+
+  FileSums(const SourceFile& file, const Scene& scene, const std::vector<BakedMesh>& meshes,
+           const std::string& attribute) {
+    using Use = std::pair<const VertexSource*, const BakedMesh*>;
+    std::map<std::pair<gltf::VertexKey, std::uint32_t>, std::vector<Use>> uses;  // by mesh of file
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      if (meshes[m].ao.empty()) continue;
+      for (const VertexSource& source : scene.meshes[m].sources) {
+        const auto key = file.vertex_key(source.mesh, source.primitive, attribute);
+        uses[{key, source.mesh}].emplace_back(&source, &meshes[m]);
+      }
+    }
+    for (const auto& [by, of_mesh] : uses) {
+      std::vector<VertexSums>& all = sets[by.first];
+      const auto are_free = [&](const VertexSums& set) {
+        return std::all_of(of_mesh.begin(), of_mesh.end(),
+                           [&](const Use& use) { return set.are_free(*use.first); });
+      };
+      const auto set =
+          static_cast<std::uint32_t>(std::find_if(all.begin(), all.end(), are_free) - all.begin());
+      const VertexSource& first = *of_mesh.front().first;
+      if (set == all.size())
+        all.emplace_back(file.vertex_count(first.mesh, first.primitive), *of_mesh.front().second);
+      for (const auto& [source, baked] : of_mesh) {
+        all[set].add(*source, *baked);
+        primitives[{source->mesh, source->primitive}] = {by.first, set};
+      }
+    }
+    for (auto& [key, all] : sets)
+      for (VertexSums& set : all) set.divide();
   }
-}
+};
 
 NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexSums& sums,
                              const BakeChannel& channel, bool multiply) {
@@ -84,8 +151,8 @@ NewAttribute light_attribute(const VertexSums& sums, std::size_t light, const st
   return attribute;
 }
 
-NewAttribute ao_attribute(const SourceFile& file, std::pair<std::uint32_t, std::uint32_t> at,
-                          const VertexSums& sums, const BakeTargets& targets) {
+NewAttribute ao_attribute(const SourceFile& file, const Primitive& at, const VertexSums& sums,
+                          const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
   NewAttribute attribute;
   if (const auto set = uv_set_of(channel.attribute)) {
@@ -151,40 +218,21 @@ void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel
 std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& scene,
                                            const BakeResult& result, const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
-  const std::vector<BakedMesh>& meshes = result.meshes;
-  // Primitives may share their vertices.
-  std::map<gltf::VertexKey, VertexSums> sums;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, gltf::VertexKey> primitives;
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    if (meshes[m].ao.empty()) continue;
-    for (const VertexSource& source : scene.meshes[m].sources) {
-      const gltf::VertexKey key = file.vertex_key(source.mesh, source.primitive, channel.attribute);
-      primitives[{source.mesh, source.primitive}] = key;
-      VertexSums& of = sums[key];
-      const std::size_t count = file.vertex_count(source.mesh, source.primitive);
-      of.ao.resize(count);
-      of.weight.resize(count);
-      if (!meshes[m].bent.empty()) of.bent.resize(count, V3f(0));
-      of.light.resize(meshes[m].light.size());
-      for (std::vector<V3f>& light : of.light) light.resize(count, V3f(0));
-      add(source, meshes[m], of);
-    }
-  }
-  for (auto& [key, of] : sums)
-    for (std::size_t v = 0; v < of.ao.size(); ++v)
-      of.ao[v] = of.weight[v] > 0 ? of.ao[v] / of.weight[v] : 1.0f;
+  const FileSums sums(file, scene, result.meshes, channel.attribute);
   std::vector<NewAttribute> attributes;
-  const auto push = [&](NewAttribute attribute, const auto& primitive) {
-    attribute.mesh = primitive.first;
-    attribute.primitive = primitive.second;
-    attributes.push_back(std::move(attribute));
-  };
-  for (const auto& [primitive, key] : primitives) {
-    const VertexSums& of = sums[key];
-    push(ao_attribute(file, primitive, of, targets), primitive);
-    if (!of.bent.empty()) push(bent_attribute(of, targets.bent_channel), primitive);
+  for (const auto& [primitive, from] : sums.primitives) {
+    const auto& [key, set] = from;
+    const VertexSums& of = sums.sets.at(key)[set];
+    const auto push = [&](NewAttribute attribute) {
+      attribute.mesh = primitive.first;
+      attribute.primitive = primitive.second;
+      attribute.set = set;
+      attributes.push_back(std::move(attribute));
+    };
+    push(ao_attribute(file, primitive, of, targets));
+    if (!of.bent.empty()) push(bent_attribute(of, targets.bent_channel));
     for (std::size_t l = 0; l < of.light.size(); ++l)
-      push(light_attribute(of, l, "_LIGHT_" + result.light_names[l]), primitive);
+      push(light_attribute(of, l, "_LIGHT_" + result.light_names[l]));
   }
   return attributes;
 }

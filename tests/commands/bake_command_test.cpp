@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "dapple/scene.hpp"
 
 namespace dapple {
@@ -100,6 +102,68 @@ TEST_F(BakeCommand, TextFilesKeepTheirSideFilesAndBinaryOnesEmbedThem) {
   ASSERT_EQ(dapple("bake in.gltf -o other/out.glb").code, 0);
   EXPECT_EQ(document("other/out.glb")["buffers"].size(), 1u);
   EXPECT_EQ(load_gltf(path("other/out.glb")).meshes.size(), 1u);
+}
+
+TEST_F(BakeCommand, ATextFileThatNeedsNoMoreDataGetsNoBuffer) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+      builder.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, test::kFloat, "VEC2");
+  json doc = builder.doc;
+  doc["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", "mesh.bin"}}};
+  write("mesh.bin", builder.bin);
+  std::ofstream(path("in.gltf")) << doc.dump();
+  const Outcome run = dapple("bake in.gltf -o out.gltf --to texture --size 16");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(document("out.gltf")["buffers"].size(), 1u);
+  EXPECT_FALSE(std::filesystem::exists(path("out_baked.bin")));
+  EXPECT_EQ(load_gltf(path("out.gltf")).meshes.size(), 1u);
+}
+
+/// Accessors of `attribute` in the first primitives of the first two meshes.
+std::array<json, 2> accessors_of_two(const json& doc, const char* attribute) {
+  std::array<json, 2> found;
+  for (std::size_t m = 0; m < 2; ++m)
+    found[m] = doc["meshes"][m]["primitives"][0]["attributes"][attribute];
+  return found;
+}
+
+TEST_F(BakeCommand, MeshesThatShareVerticesHaveValuesOfTheirOwn) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  builder.doc["nodes"].push_back(
+      {{"mesh", 1}, {"scale", {9, 9, 9}}, {"translation", {-2, -2, 0.1}}});
+  builder.doc["scenes"][0]["nodes"].push_back(1);
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --channel _AO --sides front");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto [first, second] = accessors_of_two(document("out.glb"), "_AO");
+  EXPECT_NE(first, second);
+}
+
+TEST_F(BakeCommand, MeshesThatUseOtherVerticesOfOneBufferShareTheirValues) {
+  GltfBuilder builder = rich_triangle();
+  json& attributes = builder.doc["meshes"][0]["primitives"][0]["attributes"];
+  attributes = {{"POSITION", builder.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1,
+                                                                     1, 0, 1, 0, 0, 0, 1, 0},
+                                                  test::kFloat, "VEC3")}};
+  builder.doc["accessors"].back()["min"] = {0, 0, 0};
+  builder.doc["accessors"].back()["max"] = {1, 1, 0};
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  const auto use = [&](std::size_t mesh, const std::vector<std::uint16_t>& vertices) {
+    builder.doc["meshes"][mesh]["primitives"][0]["indices"] =
+        builder.add_accessor(vertices, test::kUint16, "SCALAR");
+  };
+  for (const bool disjoint : {true, false}) {
+    use(0, {0, 1, 2});
+    use(1, disjoint ? std::vector<std::uint16_t>{3, 5, 4} : std::vector<std::uint16_t>{3, 2, 4});
+    builder.doc["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}};
+    builder.doc["scenes"] = {{{"nodes", {0, 1}}}};
+    write("in.glb", builder.glb());
+    const Outcome run = dapple("bake in.glb -o out.glb --channel _AO");
+    ASSERT_EQ(run.code, 0) << run.err;
+    const auto [first, second] = accessors_of_two(document("out.glb"), "_AO");
+    EXPECT_EQ(first == second, disjoint);
+  }
 }
 
 TEST_F(BakeCommand, ATextureIsInAMaterialOfItsOwnAndTheMeshKeepsItsShape) {

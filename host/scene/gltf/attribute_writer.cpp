@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace dapple::gltf {
 namespace {
@@ -57,10 +58,10 @@ std::size_t add_accessor(Editor& editor, const NewAttribute& attribute, bool of_
 
 void add_attributes(Editor& editor, const SourceFile& source,
                     const std::vector<NewAttribute>& attributes) {
-  std::map<std::pair<VertexKey, std::string>, std::size_t> stored;
+  std::map<std::tuple<VertexKey, std::uint32_t, std::string>, std::size_t> stored;
   for (const NewAttribute& attribute : attributes) {
     const VertexKey key = source.vertex_key(attribute.mesh, attribute.primitive, attribute.name);
-    const auto [at, is_new] = stored.try_emplace({key, attribute.name}, 0);
+    const auto [at, is_new] = stored.try_emplace({key, attribute.set, attribute.name}, 0);
     if (is_new) at->second = add_accessor(editor, attribute, true);
     editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive]["attributes"]
                  [attribute.name] = at->second;

@@ -19,8 +19,10 @@ enum class Storage : std::uint8_t {
 /// Values of all vertices of a primitive, `components` numbers each.
 struct NewAttribute {
   std::uint32_t mesh = 0, primitive = 0;  ///< indices in the file
-  std::string name;                       ///< such as "COLOR_0"; replaced if there is one
-  std::uint32_t components = 1;           ///< 1 to 4
+  /// Meshes that share vertices have several sets of values, if they use the same ones.
+  std::uint32_t set = 0;
+  std::string name;              ///< such as "COLOR_0"; replaced if there is one
+  std::uint32_t components = 1;  ///< 1 to 4
   Storage storage = Storage::float32;
   std::vector<float> values;
 };
@@ -34,7 +36,7 @@ struct NodeValues {
   std::vector<float> values;
 };
 
-/// Adds the attributes. Those with the same vertex_key() are stored once.
+/// Adds the attributes. Those with the same vertex_key() and set are stored once.
 void add_attributes(Editor& editor, const SourceFile& source,
                     const std::vector<NewAttribute>& attributes);
 

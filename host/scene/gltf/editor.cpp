@@ -63,7 +63,10 @@ std::size_t Editor::add_image(const std::string& png, const std::string& suffix)
 }
 
 void Editor::write() {
-  json_["buffers"][buffer_]["byteLength"] = bytes_.size();
+  if (bytes_.empty())
+    remove_buffer();  // a buffer has at least one byte
+  else
+    json_["buffers"][buffer_]["byteLength"] = bytes_.size();
   const std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (is_glb_out()) {
     align(bytes_, 4);
@@ -73,8 +76,16 @@ void Editor::write() {
   }
   copy_side_files();
   for (const auto& [path, bytes] : new_images_) write_whole_file(path, bytes);
-  write_whole_file((fs::path(out_).parent_path() / side_name()).string(), bytes_);
+  if (!bytes_.empty())
+    write_whole_file((fs::path(out_).parent_path() / side_name()).string(), bytes_);
   write_whole_file(out_, text + "\n");
+}
+
+// It is the last one, and nothing refers to it.
+void Editor::remove_buffer() {
+  Json& buffers = json_["buffers"];
+  buffers.erase(buffer_);
+  if (buffers.empty()) json_.erase("buffers");
 }
 
 std::vector<std::string> Editor::side_files_written() const {

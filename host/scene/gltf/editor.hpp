@@ -30,7 +30,7 @@ class Editor {
   /// names are copied there unless they are there already.
   void write();
 
-  /// Other files that write() would write, without images of add_image().
+  /// Other files that write() may write, without images of add_image().
   [[nodiscard]] std::vector<std::string> side_files_written() const;
 
  private:
@@ -41,6 +41,7 @@ class Editor {
   void start_from_binary();
   void embed_buffers();
   void embed_images();
+  void remove_buffer();
   void copy_side_files() const;
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> side_files() const;
 
