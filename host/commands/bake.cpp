@@ -40,7 +40,9 @@ class SceneFile {
     path_ = output + ".scene.glb";
     is_made_ = true;
     remove_when_interrupted(path_);
-    write_glb(make_procedural(spec), path_);
+    const Scene scene = make_procedural(spec);
+    lights_ = scene.lights;
+    write_glb(scene, path_);
   }
   ~SceneFile() {
     std::error_code ignored;
@@ -51,9 +53,12 @@ class SceneFile {
   SceneFile(const SceneFile&) = delete;
   SceneFile& operator=(const SceneFile&) = delete;
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// Those of a procedural scene: a GLB file has no sky.
+  [[nodiscard]] const std::vector<Light>& lights() const { return lights_; }
 
  private:
   std::string path_;
+  std::vector<Light> lights_;
   bool is_made_ = false;
 };
 
@@ -179,6 +184,7 @@ void run_bake(const BakeArguments& a) {
   const RenderControl control = to_control(a, progress);
   std::optional<SceneFile> input(std::in_place, a.scene, a.output);
   Scene scene = load_gltf(input->path(), a.scene_options);
+  if (!input->lights().empty()) scene.lights = input->lights();
   check_outputs_spare(outputs, scene.files);
   std::vector<Scene> occluders;
   for (const std::string& path : a.occluders)

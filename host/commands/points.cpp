@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -122,6 +123,10 @@ void set_lights(const Arguments& a, Scene& scene) {
   } else {
     sky.name = "sky";
     sky.kind = LightKind::dome;
+    if (!std::filesystem::exists(a.sky))
+      throw Error(ErrorKind::usage, fmt::format("--sky is {}; it must be uniform, overcast or an "
+                                                "image file (.exr, .hdr)",
+                                                a.sky));
     sky.environment = load_environment(a.sky);
   }
   scene.lights.push_back(std::move(sky));

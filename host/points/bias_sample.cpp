@@ -1,5 +1,7 @@
 #include "points/bias_sample.hpp"
 
+#include <fmt/format.h>
+
 #include "points/sun_irradiance.hpp"
 #include "render/point_occlusion.hpp"
 #include "sampling/bias_estimate.hpp"
@@ -16,6 +18,8 @@ constexpr std::size_t kBiasSamples = 1024;
 constexpr std::uint32_t kPointsOfTile = 16;
 
 }  // namespace
+
+std::string gap_name(std::size_t ring) { return fmt::format("gap_{}", ring + 1); }
 
 V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& layer,
            std::vector<V3f> PointIrradiance::*which, std::size_t i) {
@@ -112,6 +116,21 @@ std::vector<BiasCorrection> BiasSample::of_lights(const std::vector<LightLayer>&
   });
 }
 
+std::vector<BiasCorrection> BiasSample::of_rings(const std::vector<ZenithRing>& rings) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < rings.size(); ++k) names.push_back(gap_name(k));
+  return compare(names, [&](const OcclusionOptions& of) {
+    const auto means = gap_fractions(on_, rings, points_, of, [](double) { return true; });
+    std::vector<Values> of_rings(rings.size());
+    for (std::size_t k = 0; k < rings.size(); ++k)
+      for (std::uint32_t i = 0; i < points_.size(); ++i) {
+        of_rings[k].values.push_back(means[i * rings.size() + k]);
+        of_rings[k].points.push_back(i);
+      }
+    return of_rings;
+  });
+}
+
 BiasCorrection BiasSample::of_suns() {
   const SunRays suns(options_.suns);
   return compare({"sun"}, [&](const OcclusionOptions& of) {
@@ -136,6 +155,7 @@ std::vector<Bias> BiasSample::bias(float footprint) {
   if (options_.ao) of_ao();
   if (options_.sky_view_factor) of_sky_view_factor();
   if (options_.lights && !on_.scene.lights.empty()) of_lights(light_layers(on_.scene.lights));
+  if (options_.rings > 0) of_rings(zenith_rings(options_.rings));
   if (is_sampled(options_)) of_suns();
   std::vector<Bias> layers;
   for (const auto& [name, bias] : bias_) layers.push_back(bias);

@@ -12,10 +12,14 @@
 #include "film/light_layers.hpp"
 #include "points/bias_correction.hpp"
 #include "points/point_sets.hpp"
+#include "points/ring_rays.hpp"
 #include "points/scene_of_points.hpp"
 #include "sampling/footprint_choice.hpp"
 
 namespace dapple {
+
+/// The column of a ring's gap fraction, counted from 0 at the zenith.
+std::string gap_name(std::size_t ring);
 
 /// Of the lights of a layer, at point i.
 Imath::V3d sum_of(const std::vector<PointIrradiance>& found, const LightLayer& layer,
@@ -31,7 +35,7 @@ class BiasSample : public BiasSource {
   /// The sample is what it is.
   void grow(std::size_t) override {}
   [[nodiscard]] bool is_complete() const override { return true; }
-  /// Layers are AO, the sky view factor, the lights and the suns, as far as they are measured.
+  /// Layers are AO, the sky view factor, rings, lights and suns, as far as they are measured.
   std::vector<Bias> bias(float footprint) override;
   /// For the measurements from now on.
   void use_footprint(float footprint) { options_.footprint = footprint; }
@@ -39,6 +43,7 @@ class BiasSample : public BiasSource {
   BiasCorrection of_ao() { return of_occlusion("ao", normals_, options_.distance); }
   BiasCorrection of_sky_view_factor();
   std::vector<BiasCorrection> of_lights(const std::vector<LightLayer>& layers);
+  std::vector<BiasCorrection> of_rings(const std::vector<ZenithRing>& rings);
   BiasCorrection of_suns();  ///< of their sum, when they are sampled
 
   /// What was measured so far, by quantity.

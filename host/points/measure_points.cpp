@@ -8,7 +8,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "bake/surface_samples.hpp"
 #include "dapple/error.hpp"
 #include "dapple/points.hpp"
 #include "film/light_layers.hpp"
@@ -161,26 +160,20 @@ class Measurement {
 
   void measure_rings() {
     const std::vector<ZenithRing> rings = zenith_rings(options_.rings);
-    const auto each = static_cast<std::size_t>(std::max(1, options_.rays / kPointSets));
     std::vector<SetSums> sums(rings.size(), SetSums(points_.size()));
     for (int set = 0; set < kPointSets; ++set) {
-      std::vector<double> means(points_.size() * rings.size());
-      const std::uint32_t seed = occlusion_options(set).seed;
-      const auto make = [&](std::size_t i, std::span<Ray> rays) {
-        const std::uint32_t of_point = hash_of(seed, static_cast<std::uint32_t>(i));
-        for (std::size_t k = 0; k < rings.size(); ++k)
-          fill_ring_rays(points_[i], rings[k], hash_of(of_point, static_cast<std::uint32_t>(k)),
-                         rays.subspan(k * each, each));
-      };
-      const auto add = [&](std::size_t i, std::size_t r, double transmittance) {
-        means[i * rings.size() + r / each] += transmittance / static_cast<double>(each);
-      };
-      if (!trace_rays(rings.size() * each, 1, make, add)) return;
+      const std::vector<double> means = gap_fractions(on_, rings, points_, occlusion_options(set),
+                                                      [&](double part) { return step(part); });
+      if (result_.interrupted) return;
       for (std::size_t k = 0; k < rings.size(); ++k)
         sums[k].add([&](std::size_t i) { return means[i * rings.size() + k]; });
     }
-    for (std::size_t k = 0; k < rings.size(); ++k)
-      sums[k].store(fmt::format("gap_{}", k + 1), BiasCorrection(), result_.columns);
+    std::vector<BiasCorrection> bias(rings.size());
+    if (is_corrected()) bias = sample_.of_rings(rings);
+    for (std::size_t k = 0; k < rings.size(); ++k) {
+      const std::string name = gap_name(k);
+      sums[k].store(name, noted(name, bias[k]), result_.columns);
+    }
   }
 
   void measure_lights() {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "bake/surface_samples.hpp"
+#include "points/ray_slices.hpp"
 
 namespace dapple {
 namespace {
@@ -58,6 +59,27 @@ void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t rand
                         static_cast<float>(solid_angle));
     rays[i].key = hash_of(random, i);
   }
+}
+
+std::vector<double> gap_fractions(const SceneOfPoints& on, const std::vector<ZenithRing>& rings,
+                                  std::span<const V3f> points, const OcclusionOptions& of_ring,
+                                  const std::function<bool(double)>& step) {
+  const auto each = static_cast<std::size_t>(std::max(1, of_ring.rays));
+  std::vector<double> means(points.size() * rings.size());
+  const auto make = [&](std::size_t i, std::span<Ray> rays) {
+    const std::uint32_t of_point = hash_of(of_ring.seed, static_cast<std::uint32_t>(i));
+    for (std::size_t k = 0; k < rings.size(); ++k)
+      fill_ring_rays(points[i], rings[k], hash_of(of_point, static_cast<std::uint32_t>(k)),
+                     rays.subspan(k * each, each));
+  };
+  const auto add = [&](std::size_t i, std::size_t r, double transmittance) {
+    means[i * rings.size() + r / each] += transmittance / static_cast<double>(each);
+  };
+  trace_slices(on, {points.size(), rings.size() * each, of_ring.estimator, of_ring.footprint}, make,
+               add, [&](std::size_t count) {
+                 return step(static_cast<double>(count) / static_cast<double>(points.size()));
+               });
+  return means;
 }
 
 }  // namespace dapple

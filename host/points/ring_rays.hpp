@@ -1,12 +1,14 @@
-// Rays from points into zenith rings. In: a point and a ring. Out: rays.
+// Rays from points into zenith rings. In: a point and a ring. Out: rays, or gap fractions.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "dapple/scene.hpp"
 #include "dapple/shared/ray.h"
+#include "points/scene_of_points.hpp"
 
 namespace dapple {
 
@@ -24,5 +26,11 @@ Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float s
 /// Fills `rays`, uniform by solid angle within a ring: a Vogel spiral, turned by random bits.
 void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t random,
                     std::span<Ray> rays);
+
+/// Gap fractions of one set of `of_ring` rays for each ring, [point * rings + ring]. step(part of
+/// the points) after each slice returns false to stop.
+std::vector<double> gap_fractions(const SceneOfPoints& on, const std::vector<ZenithRing>& rings,
+                                  std::span<const V3f> points, const OcclusionOptions& of_ring,
+                                  const std::function<bool(double)>& step);
 
 }  // namespace dapple

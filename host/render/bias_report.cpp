@@ -12,6 +12,9 @@ namespace dapple {
 
 namespace {
 
+/// Fewer rays say nothing about a bias: most differences are 0.
+constexpr double kLeastRays = 32;
+
 /// The standard error of the mean over pixels. Rays of different pixels are independent, and there
 /// are many more pixels than units, so that few rays tell it. What pixels of a unit have in common
 /// is that they are chosen together: that adds what independent choices of its samples would.
@@ -57,7 +60,7 @@ std::vector<std::string> bias_layers(const FilmLayout& layout, const std::vector
 std::vector<Bias> picture_bias(const BiasSums& sums, const HostView& film,
                                const std::vector<std::uint32_t>& samples, const FilmLayout& layout,
                                const View& view, const std::vector<double>& divisors) {
-  if (sums.exact_rays == 0) return {};
+  if (sums.exact_rays < kLeastRays) return {};
   const std::span<const std::int64_t> hits = film.values<std::int64_t>().first(layout.pixels);
   const UnitGrid grid(view);
   const double share = sums.exact_rays / sums.rays;

@@ -106,6 +106,30 @@ TEST(PointTheory, TheSkyViewFactorUnderARandomCanopyIsThatOfTheory) {
   }
 }
 
+// The mean of exp(-L / (2 cos)) over a ring, uniform by solid angle: by cos.
+TEST(PointTheory, GapFractionsUnderARandomCanopyAreThoseOfTheory) {
+  constexpr double kAreaIndex = 2;
+  const double degrees[5][2] = {{0, 13}, {16, 28}, {32, 43}, {47, 58}, {61, 74}};
+  const Scene scene = canopy(kAreaIndex, 1);
+  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+    PointOptions options = periodic(estimator);
+    options.ao = options.sky_view_factor = false;
+    options.rings = 5;
+    const PointResult found = measure(scene, ground_points(32), options);
+    EXPECT_EQ(found.notes.size(), estimator == Estimator::exact ? 0u : 5u);
+    for (int ring = 0; ring < 5; ++ring) {
+      const double inner = std::cos(degrees[ring][0] * kPi / 180),
+                   outer = std::cos(degrees[ring][1] * kPi / 180);
+      double expected = 0;
+      for (int i = 0; i < 1000; ++i)
+        expected += std::exp(-kAreaIndex / 2 / (outer + (inner - outer) * (i + 0.5) / 1000)) / 1000;
+      EXPECT_NEAR(mean_of(found, "gap_" + std::to_string(ring + 1)), expected,
+                  estimator == Estimator::exact ? 0.004 : 0.006)
+          << ring;
+    }
+  }
+}
+
 TEST(PointTheory, PrefilteredValuesAreCorrectedByExactOnesAndSaySo) {
   Scene scene = canopy(2, 1);
   scene.lights = {uniform_sky()};
