@@ -263,6 +263,8 @@ void validate(const BakeOptions& options) {
   check("--max-bias", double{options.max_bias}, 0, 1);
   check("--ao-distance", double{options.distance}, 0, 1e30);
   check("--ao-falloff", double{options.falloff}, 0, 100);
+  if (options.falloff > 0 && !(options.distance > 0))
+    throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
   if (options.light && options.placement == BakeInstances::alone)
     throw Error(ErrorKind::usage,
                 "--passes light needs --instances together or unique: a mesh alone is not lit");

@@ -13,12 +13,15 @@ const CLI::App& parsed_command(const CLI::App& app) {
   return commands.empty() ? app : *commands.front();
 }
 
-/// Values that an option of this type takes, by CLI11's name of the type.
-std::string expected_values(const CLI::App& app, const std::string& flag) {
+/// Values that an option of this type takes, by CLI11's name of the type; `text` is none of them.
+std::string expected_values(const CLI::App& app, const std::string& flag, const std::string& text) {
   const CLI::Option* option = parsed_command(app).get_option_no_throw(flag);
   const std::string type = option ? option->get_type_name() : "";
-  if (type == "UINT") return "a whole number from 0 to 4294967295";
-  if (type == "INT") return "a whole number from -2147483648 to 2147483647";
+  const bool is_whole = std::regex_match(text, std::regex("[+-]?\\d+"));
+  if (type == "UINT")
+    return is_whole ? "a whole number from 0 to 4294967295" : "a whole number, 0 or more";
+  if (type == "INT")
+    return is_whole ? "a whole number from -2147483648 to 2147483647" : "a whole number";
   if (type == "FLOAT") return "a number";
   return "another value";
 }
@@ -40,6 +43,9 @@ std::string mismatch_text(const std::string& what) {
     return fmt::format("{} is given more than once", long_name(match[1]));
   if (std::regex_match(what, match, std::regex("([^:]*): .*required.*missing")))
     return fmt::format("{} needs a value", long_name(match[1]));
+  if (std::regex_match(what, match, std::regex("([^:]*): At least (\\d+) required .* (\\d+)")))
+    return fmt::format("{} has {} numbers; it needs {}, with commas between", long_name(match[1]),
+                       match[3].str(), match[2].str());
   return what;
 }
 
@@ -63,7 +69,8 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
   if (name == "ConversionError" &&
       std::regex_match(what, match, std::regex("Could not convert: (\\S+) = (.*)"))) {
     const std::string flag = long_name(match[1]);
-    return fmt::format("{} {}: expected {}", flag, match[2].str(), expected_values(app, flag));
+    return fmt::format("{} {}: expected {}", flag, match[2].str(),
+                       expected_values(app, flag, match[2].str()));
   }
   if (name == "ArgumentMismatch") return mismatch_text(what);
   // Its name is that of the command.

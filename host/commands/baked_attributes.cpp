@@ -134,7 +134,8 @@ NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
   attribute.name = name;
   attribute.components = 3;
   for (const V3f& bent : sums.bent) {
-    const V3f unit = bent.normalized();
+    // Of vertices that no triangle uses, or that see nothing: glTF wants unit vectors.
+    const V3f unit = bent.length2() > 0 ? bent.normalized() : V3f(0, 1, 0);
     attribute.values.insert(attribute.values.end(), {unit.x, unit.y, unit.z});
   }
   return attribute;

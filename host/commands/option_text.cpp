@@ -172,6 +172,9 @@ PngOptions parse_png_options(const std::string& exposure, const std::string& bac
   options.background = PngOptions::Background::none;
   if (background == "none") return options;
   options.background = PngOptions::Background::color;
+  if (background.find(',') == std::string::npos)
+    throw Error(ErrorKind::usage,
+                fmt::format("--background {}: it is sky, none or R,G,B from 0 to 1", background));
   options.color = parse_vector("--background", background);
   for (int channel = 0; channel < 3; ++channel) {
     if (options.color[channel] >= 0 && options.color[channel] <= 1) continue;
@@ -218,6 +221,10 @@ void parse_passes(const std::string& text, RenderOptions& options) {
           fmt::format("--passes {}: there are ao, light, albedo, back, motion and visits", text));
     }
   }
+  if (options.back && !options.ao && !options.light)
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--passes {}: back is the other side of ao or light: name one, too", text));
 }
 
 }  // namespace dapple

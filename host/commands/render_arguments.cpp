@@ -184,6 +184,16 @@ void check_motion(const RenderArguments& a) {
 }
 
 /// A part is for dapple merge, which makes the image.
+/// --output is an EXR file or a part, whatever its name; these names would deceive.
+void check_output_name(const RenderArguments& a) {
+  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr"})
+    if (a.output.ends_with(other))
+      throw Error(ErrorKind::usage,
+                  fmt::format("--output is {}, but images are OpenEXR files (.exr); --png FILE "
+                              "writes a preview beside it",
+                              a.output));
+}
+
 void check_part(const RenderArguments& a, const RenderOptions& options) {
   const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
   if (!is_part_path(a.output)) {
@@ -303,10 +313,13 @@ RenderOptions to_options(const RenderArguments& a) {
   if (!a.shard.empty()) o.shard = parse_shard(a.shard);
   if (!a.up.empty()) parse_vector("--up", a.up);
   parse_png_options(a.exposure, a.background);
+  if (a.dome_rotation != 0 && a.dome.empty())
+    throw Error(ErrorKind::usage, "--dome-rotation needs --dome");
   if (!std::isfinite(a.dome_rotation))
     throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
+  check_output_name(a);
   check_part(a, o);
   check_motion(a);
   return o;

@@ -46,7 +46,7 @@ double BiasCorrection::standard_error(double prefiltered) const {
 }
 
 std::string BiasCorrection::note(const std::string& quantity) const {
-  if (!measured_) return {};
+  if (!measured_ || std::fabs(mean_bias_) < 5e-5) return {};
   return fmt::format("prefiltered {} was {:.4f} (+-{:.4f}) too {} on average; corrected", quantity,
                      std::fabs(mean_bias_), mean_error_, mean_bias_ < 0 ? "dark" : "light");
 }

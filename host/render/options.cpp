@@ -12,8 +12,8 @@ namespace {
 
 void check_range(const char* flag, double value, double low, double high) {
   if (value >= low && value <= high) return;  // false for NaN
-  throw Error(ErrorKind::usage,
-              fmt::format("{} is {:g}; it must be from {:g} to {:g}", flag, value, low, high));
+  throw Error(ErrorKind::usage, fmt::format("{} is {:.7g}; it must be from {:.7g} to {:.7g}", flag,
+                                            value, low, high));
 }
 
 void check_point(const char* flag, const V3f& v) {

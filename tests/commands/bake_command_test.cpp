@@ -127,6 +127,28 @@ std::array<json, 2> accessors_of_two(const json& doc, const char* attribute) {
   return found;
 }
 
+TEST_F(BakeCommand, BentNormalsAreUnitVectorsAlsoWhereNoTriangleIs) {
+  ASSERT_EQ(dapple("bake 'scene:tree?leaves=100' -o out.glb --passes ao,bent --rays 16").code, 0);
+  const json after = document("out.glb");
+  const std::string bytes = bytes_of(path("out.glb"));
+  std::uint32_t json_size = 0;
+  std::memcpy(&json_size, bytes.data() + 12, 4);
+  std::size_t found = 0;
+  for (const json& primitive : after["meshes"][0]["primitives"]) {
+    const json& accessor =
+        after["accessors"][primitive["attributes"]["_BENT_NORMAL"].get<std::size_t>()];
+    const json& view = after["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    const char* at = bytes.data() + 28 + json_size + view["byteOffset"].get<std::size_t>();
+    for (std::size_t i = 0; i < accessor["count"]; ++i) {
+      V3f bent;
+      std::memcpy(&bent.x, at + 12 * i, 12);
+      ASSERT_NEAR(bent.length(), 1, 1e-5f) << i;
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 100u);
+}
+
 TEST_F(BakeCommand, MeshesThatShareVerticesHaveValuesOfTheirOwn) {
   GltfBuilder builder = rich_triangle();
   builder.doc["meshes"].push_back(builder.doc["meshes"][0]);

@@ -145,8 +145,8 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   refuses("--frame 1 --shutter 0,1 --motion-samples 17 -o o.exr", "from 1 to --spp (16)");
   refuses("--frame 1 --shutter 0,1 --target-rmse 0.1 -o o.exr", "do not go with --shutter");
   refuses("--frame 1 --shutter 0,1 --checkpoint c -o o.exr", "do not go with --shutter");
-  refuses("--aperture nan -o o.exr", "--aperture is nan; it must be from 0 to 1e+06");
-  refuses("--aperture -1 -o o.exr", "--aperture is -1; it must be from 0 to 1e+06");
+  refuses("--aperture nan -o o.exr", "--aperture is nan; it must be from 0 to 1000000");
+  refuses("--aperture -1 -o o.exr", "--aperture is -1; it must be from 0 to 1000000");
   refuses("--aperture x -o o.exr", "--aperture");
   refuses("--focus-distance 0 --aperture 1 -o o.exr", "--focus-distance is 0; it must be from");
   refuses("--focus-distance 3 -o o.exr", "--focus-distance needs --aperture");
