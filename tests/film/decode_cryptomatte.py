@@ -139,6 +139,8 @@ def read(path):
 
 
 def values(channels, name, kind=None):
+    if name not in channels:
+        sys.exit(f"there is no channel {name} that is uncompressed or compressed by ZIP or ZIPS")
     data, form = channels[name]
     return [value for (value,) in struct.iter_unpack("<" + (kind or form), data)]
 
