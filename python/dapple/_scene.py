@@ -323,6 +323,11 @@ class Scene:
     ) -> Bake:
         """Bakes values at the vertices of the meshes. Options are those of `dapple bake`.
 
+        vertices, instances, bent, light: what is baked, True or False. rays (0: target_error
+        decides), light_rays, target_error in [0, 1], estimator, footprint, normals, report_bias,
+        max_bias, distance (m), falloff, at_vertices, sides ("auto", "front", "max", "mean"),
+        placement ("together", "alone"), seed, ground, opacity (by material), device, cache.
+
         Each mesh has "ao" (n,) in [0, 1]. bent, light and instances add values beside AO: unit
         vectors (n, 3), W/m^2 (n, 3), and AO (k,) of the instances. occluders occlude but are not
         baked. The command can also write glTF files and textures.
