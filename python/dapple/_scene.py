@@ -323,8 +323,8 @@ class Scene:
     ) -> Bake:
         """Bakes values at the vertices of the meshes. Options are those of `dapple bake`.
 
-        vertices, instances, bent, light: what is baked, True or False. rays (0: target_error
-        decides), light_rays, target_error in [0, 1], estimator, footprint, normals, report_bias,
+        vertices, instances, bent, light: what is baked, True or False. rays (with a target_error
+        at most), light_rays, target_error in [0, 1], estimator, footprint, normals, report_bias,
         max_bias, distance (m), falloff, at_vertices, sides ("auto", "front", "max", "mean"),
         placement ("together", "alone"), seed, ground, opacity (by material), device, cache.
 
