@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "bake/vertex_groups.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -15,6 +16,21 @@ using gltf::SourceFile;
 
 /// A primitive of the file, by its mesh and its number there.
 using Primitive = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Bent normals of what is brighter from behind, mirrored to the front of their triangles: NORMAL
+/// is turned round where the back is seen.
+BakedMesh facing_front(const Mesh& mesh, BakedMesh baked) {
+  if (baked.bent.empty()) return baked;
+  std::vector<V3f> normals(mesh.positions.size(), V3f(0, 0, 0));
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) normals[mesh.indices[3 * t + k]] += area_vector(mesh, t);
+  for (std::size_t v = 0; v < baked.bent.size(); ++v) {
+    const V3f front = normals[v].normalized();
+    const float along = baked.bent[v].dot(front);
+    if (along < 0) baked.bent[v] -= front * (2 * along);
+  }
+  return baked;
+}
 
 /// Sums over the meshes of a scene that show the same vertices of the file: poses and placements.
 struct VertexSums {
@@ -219,7 +235,11 @@ void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel
 std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& scene,
                                            const BakeResult& result, const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
-  const FileSums sums(file, scene, result.meshes, channel.attribute);
+  const bool to_normal = targets.bent_channel == "NORMAL";
+  std::vector<BakedMesh> turned;
+  for (std::size_t m = 0; to_normal && m < result.meshes.size(); ++m)
+    turned.push_back(facing_front(scene.meshes[m], result.meshes[m]));
+  const FileSums sums(file, scene, to_normal ? turned : result.meshes, channel.attribute);
   std::vector<NewAttribute> attributes;
   for (const auto& [primitive, from] : sums.primitives) {
     const auto& [key, set] = from;

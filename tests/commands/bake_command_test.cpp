@@ -123,7 +123,7 @@ TEST_F(BakeCommand, ATextFileThatNeedsNoMoreDataGetsNoBuffer) {
 std::array<json, 2> accessors_of_two(const json& doc, const char* attribute) {
   std::array<json, 2> found;
   for (std::size_t m = 0; m < 2; ++m)
-    found[m] = doc["meshes"][m]["primitives"][0]["attributes"][attribute];
+    found[m] = doc["meshes"][m]["primitives"][0]["attributes"].at(attribute);
   return found;
 }
 
@@ -154,12 +154,41 @@ TEST_F(BakeCommand, MeshesThatShareVerticesHaveValuesOfTheirOwn) {
   builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
   builder.doc["nodes"].push_back(
       {{"mesh", 1}, {"scale", {9, 9, 9}}, {"translation", {-2, -2, 0.1}}});
-  builder.doc["scenes"][0]["nodes"].push_back(1);
+  builder.doc.erase("scenes");
+  builder.add("scenes", {{"nodes", {0, 1}}});
   write("in.glb", builder.glb());
   const Outcome run = dapple("bake in.glb -o out.glb --channel _AO --sides front");
   ASSERT_EQ(run.code, 0) << run.err;
   const auto [first, second] = accessors_of_two(document("out.glb"), "_AO");
   EXPECT_NE(first, second);
+}
+
+TEST_F(BakeCommand, NormalsOfSheetsThatAreBrighterFromBehindStayInFront) {
+  GltfBuilder builder = rich_triangle();
+  builder.add("materials", {{"doubleSided", true}});
+  builder.doc["meshes"][0]["primitives"][0]["material"] = 0;
+  builder.doc["nodes"].push_back(
+      {{"mesh", 0}, {"scale", {9, 9, 9}}, {"translation", {-2, -2, 0.1}}});
+  builder.doc.erase("scenes");
+  builder.add("scenes", {{"nodes", {0, 1}}});
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  builder.doc["nodes"][1]["mesh"] = 1;
+  write("in.glb", builder.glb());
+  for (const char* channel : {"NORMAL", "_BENT_NORMAL"}) {
+    const Outcome run = dapple(std::string("bake in.glb -o out.glb --passes ao,bent ") +
+                               "--channel _AO --bent-channel " + channel);
+    ASSERT_EQ(run.code, 0) << run.err;
+    const json after = document("out.glb");
+    const json index = accessors_of_two(after, channel)[0];
+    const json& accessor = after["accessors"][index.get<std::size_t>()];
+    const json& view = after["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    const std::string bytes = bytes_of(path("out.glb"));
+    std::uint32_t json_size = 0;
+    std::memcpy(&json_size, bytes.data() + 12, 4);
+    V3f bent;
+    std::memcpy(&bent.x, bytes.data() + 28 + json_size + view["byteOffset"].get<std::size_t>(), 12);
+    EXPECT_EQ(bent.z > 0, channel == std::string("NORMAL")) << bent;
+  }
 }
 
 TEST_F(BakeCommand, MeshesThatUseOtherVerticesOfOneBufferShareTheirValues) {
