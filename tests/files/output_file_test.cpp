@@ -131,7 +131,8 @@ TEST_F(OutputFile, FilesThatHoldWhatWasWrittenPassAlsoAfterASeek) {
 }
 
 TEST_F(OutputFile, ChangedShortenedAndExtendedFilesDiffer) {
-  const auto damage = [&](const std::function<void(std::fstream&, const std::string&)>& change) {
+  const auto damage =
+      [&](const std::function<void(std::fstream&, const std::string&)>& change) -> std::string {
     PendingFile file(path("a.bin"));
     file.write(std::string(1'500'000, 'x').data(), 1'500'000);
     file.seek(7);
