@@ -79,7 +79,7 @@ WRONG: dict[str, Call] = {
         look=[(0, NAN, 0), (0, 0, 0), (0, 1, 0)], **SMALL
     ),
     "--fov is nan": lambda s: s.render(fov_degrees=NAN, **SMALL),
-    "--width is 1e+06": lambda s: s.render(width=1_000_000),
+    "--width is 1000000": lambda s: s.render(width=1_000_000),
     "width is 8.5": lambda s: s.render(width=8.5),  # type: ignore[typeddict-item]
     "--crop 4,4,99,99": lambda s: s.render(crop=(4, 4, 99, 99), **SMALL),
     "footprint is nan": lambda s: s.occlusion(AT, UP, footprint=NAN),
