@@ -95,7 +95,7 @@ class ValueSums::PooledVariance {
 
   [[nodiscard]] float pooled(float value) const {
     // A few samples may be equal by chance. So the variance of rays that each find everything or
-    // nothing counts as much as some samples. The value is by chance, too: hence the clamp.
+    // nothing counts as much as some samples. The value is as uncertain: hence the clamp.
     const double part = std::clamp(double{value / scale_}, 0.1, 0.9);
     const double of_rays = double{scale_ * scale_} * part * (1 - part) / kRaysPerSample;
     const double all =

@@ -40,7 +40,8 @@ void use_lights(Scene& scene, const std::vector<Light>& lights) {
 Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), options_(options) {
   if (!a.lights.empty()) lights_ = load_lights(a.lights);
   if (!a.dome.empty()) dome_ = read_dome(a);
-  if (lights_ && lights_->empty() && !dome_) options.light = false;  // as the user wants it
+  if (lights_ && lights_->empty() && !dome_)
+    options.light = false;  // else default lights would be added
   if (a.frames.empty() && a.shutter.empty() && !options.motion) return;
   moving_.emplace(a.scene, scene_options_of(a, options));
   options.ground = false;

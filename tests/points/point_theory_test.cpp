@@ -106,7 +106,8 @@ TEST(PointTheory, TheSkyViewFactorUnderARandomCanopyIsThatOfTheory) {
   }
 }
 
-// The mean of exp(-L / (2 cos)) over a ring, uniform by solid angle: by cos.
+// The mean of exp(-L / (2 cos)) over a ring, uniform by solid angle: by cos. Rings see fewer leaves
+// of the one canopy than the whole sky does: exact values of the innermost one err by 0.0034.
 TEST(PointTheory, GapFractionsUnderARandomCanopyAreThoseOfTheory) {
   constexpr double kAreaIndex = 2;
   const double degrees[5][2] = {{0, 13}, {16, 28}, {32, 43}, {47, 58}, {61, 74}};
