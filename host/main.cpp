@@ -101,7 +101,8 @@ int run(int argc, char** argv) {
       {&compile, dapple::add_compile_command(compile)},
       {&document, dapple::add_document_command(document)},
   };
-  for (const auto& [command, work] : commands) dapple::refuse_empty_numbers(*command);
+  for (const auto& [command, work] : commands) dapple::refuse_empty_values(*command);
+  dapple::refuse_missing_values(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,6 +4,8 @@
 
 #include <regex>
 
+#include "dapple/error.hpp"
+
 namespace dapple {
 namespace {
 
@@ -87,12 +89,22 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
   return what;
 }
 
-void refuse_empty_numbers(CLI::App& command) {
+void refuse_empty_values(CLI::App& command) {
   for (CLI::Option* option : command.get_options()) {
-    if (!takes_number(*option)) continue;
-    option->check([](const std::string& text) {
-      return text.empty() ? std::string("needs a number, its value is empty") : std::string();
+    if (option->get_expected_max() == 0) continue;  // a flag
+    const std::string what = takes_number(*option) ? "number" : "value";
+    option->check([what](const std::string& text) {
+      return text.empty() ? fmt::format("needs a {}, its value is empty", what) : std::string();
     });
+  }
+}
+
+void refuse_missing_values(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string text = argv[i];
+    if (text.size() > 3 && text.starts_with("--") && text.find('=') == text.size() - 1)
+      throw Error(ErrorKind::usage, fmt::format("{}: needs a value, its value is empty",
+                                                text.substr(0, text.size() - 1)));
   }
 }
 

@@ -9,8 +9,11 @@ namespace dapple {
 /// What is wrong, and what is expected. `app`: the program, whose parsing threw `error`.
 std::string argument_error_text(const CLI::App& app, const CLI::ParseError& error);
 
-/// Makes it an error to give an option of the command that takes a number an empty one, which CLI11
-/// reads as 0: a script with an unset variable would render something else.
-void refuse_empty_numbers(CLI::App& command);
+/// Makes it an error to give an option of the command an empty value, which CLI11 reads as 0 or as
+/// no option: a script with an unset variable would render something else.
+void refuse_empty_values(CLI::App& command);
+
+/// Throws Error usage for "--option=", for which CLI11 takes the next argument.
+void refuse_missing_values(int argc, const char* const* argv);
 
 }  // namespace dapple

@@ -175,7 +175,8 @@ PngOptions parse_png_options(const std::string& exposure, const std::string& bac
   if (background.find(',') == std::string::npos)
     throw Error(ErrorKind::usage,
                 fmt::format("--background {}: it is sky, none or R,G,B from 0 to 1", background));
-  options.color = parse_vector("--background", background);
+  const auto color = parse_numbers<float>("--background", background, 3, "R,G,B");
+  options.color = V3f(color[0], color[1], color[2]);
   for (int channel = 0; channel < 3; ++channel) {
     if (options.color[channel] >= 0 && options.color[channel] <= 1) continue;
     throw Error(ErrorKind::usage,

@@ -74,8 +74,12 @@ class NotePrinter {
 std::string files_text(const Frame& frame, bool interrupted) {
   std::vector<std::string> files;
   if (!interrupted || !is_part_path(frame.output)) files.push_back(frame.output);
-  if (!frame.png.empty()) files.push_back(frame.png);
-  return files.empty() ? "nothing" : fmt::format("{}", fmt::join(files, " and "));
+  for (const std::string& beside : {frame.png, frame.visits_png, frame.deep})
+    if (!beside.empty()) files.push_back(beside);
+  if (files.empty()) return "nothing";
+  const std::string last = files.back();
+  files.pop_back();
+  return files.empty() ? last : fmt::format("{} and {}", fmt::join(files, ", "), last);
 }
 
 void print_summary(const RenderStatistics& s, const Frame& frame, bool interrupted) {

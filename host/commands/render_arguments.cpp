@@ -153,6 +153,16 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
                  "Needs --frame or --frames");
 }
 
+void check_png(const RenderArguments& a) {
+  parse_png_options(a.exposure, a.background);
+  if (!a.png.empty()) return;
+  const RenderArguments defaults;
+  for (const char* flag : {a.exposure != defaults.exposure ? "--exposure" : "",
+                           a.background != defaults.background ? "--background" : ""})
+    if (*flag)
+      throw Error(ErrorKind::usage, fmt::format("{} needs --png: it changes no EXR", flag));
+}
+
 void check_animation(const RenderArguments& a) {
   if (!a.scene_options.animation.empty() && !a.frame && a.frames.empty())
     throw Error(ErrorKind::usage, "--animation needs --frame or --frames: which time to show");
@@ -177,22 +187,24 @@ void check_motion(const RenderArguments& a) {
   if (!(close > open))
     throw Error(ErrorKind::usage,
                 fmt::format("--shutter {}: it must close after it opens", a.shutter));
-  if (a.motion_samples < 0 || a.motion_samples > 1024)
-    throw Error(ErrorKind::usage,
-                fmt::format("--motion-samples is {}; it must be from 1 to 1024", a.motion_samples));
+  if (a.motion_samples && (*a.motion_samples < 1 || *a.motion_samples > 1024))
+    throw Error(ErrorKind::usage, fmt::format("--motion-samples is {}; it must be from 1 to 1024",
+                                              *a.motion_samples));
   check_animation(a);
 }
 
-/// A part is for dapple merge, which makes the image.
-/// --output is an EXR file or a part, whatever its name; these names would deceive.
-void check_output_name(const RenderArguments& a) {
-  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr"})
-    if (a.output.ends_with(other))
-      throw Error(ErrorKind::usage,
-                  fmt::format("--output is {}, but images are OpenEXR files (.exr); --png FILE "
-                              "writes a preview beside it",
-                              a.output));
+/// Outputs are EXR files or a part, whatever their names; these names would deceive.
+void check_output_names(const RenderArguments& a) {
+  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".dapple"})
+    for (const auto& [flag, path] : {std::pair{"--output", a.output}, std::pair{"--deep", a.deep}})
+      if (path.ends_with(other) && !(path == a.output && is_part_path(path)))
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} is {}, but images are OpenEXR files (.exr); --png FILE "
+                                "writes a preview beside it",
+                                flag, path));
 }
+
+/// A part is for dapple merge, which makes the image.
 
 void check_part(const RenderArguments& a, const RenderOptions& options) {
   const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
@@ -229,13 +241,13 @@ void add_file_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option(
          "--background", a.background,
-         "Background of the PNG: sky (a gradient), none (keeps alpha), or a linear colour R,G,B "
+         "Background of the PNG: sky (above a grey plain), none (keeps alpha), or a linear colour R,G,B "
          "from 0 to 1")
       ->capture_default_str();
   app.add_option(
       "--half", a.half,
-      "Layers to store as 16-bit floats: names separated by commas, or all. Z, P, samples "
-      "and Cryptomattes stay 32-bit");
+      "Layers to store as 16-bit floats: names separated by commas, or all. Z, P, motion, "
+      "samples and Cryptomattes stay 32-bit");
   app.add_flag("--multipart", a.multipart, "Write a part for each layer");
   app.add_option("--compression", a.compression,
                  "Compression of the EXR: zip, zips, piz, none; dwaa (lossy, for colours only; "
@@ -272,8 +284,7 @@ double frames_per_second(const RenderArguments& a) { return a.fps.value_or(24); 
 int shutter_times(const RenderArguments& a) {
   constexpr int kDefault = 8;
   if (a.shutter.empty()) return 1;
-  return a.motion_samples > 0 ? a.motion_samples
-                              : std::min(kDefault, a.spp.value_or(a.options.spp));
+  return a.motion_samples.value_or(std::min(kDefault, a.spp.value_or(a.options.spp)));
 }
 
 double shutter_seconds(const RenderArguments& a, double seconds, int k) {
@@ -312,14 +323,14 @@ RenderOptions to_options(const RenderArguments& a) {
   }
   if (!a.shard.empty()) o.shard = parse_shard(a.shard);
   if (!a.up.empty()) parse_vector("--up", a.up);
-  parse_png_options(a.exposure, a.background);
+  check_png(a);
   if (a.dome_rotation != 0 && a.dome.empty())
     throw Error(ErrorKind::usage, "--dome-rotation needs --dome");
   if (!std::isfinite(a.dome_rotation))
     throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
-  check_output_name(a);
+  check_output_names(a);
   check_part(a, o);
   check_motion(a);
   return o;

@@ -27,7 +27,7 @@ struct RenderArguments {
   std::string frames;
   std::optional<double> fps;  ///< default 24
   std::string shutter;
-  int motion_samples = 0;
+  std::optional<int> motion_samples;
   std::string checkpoint, checkpoint_every = "60s", resume, shard;
   SceneOptions scene_options;
   RenderOptions options;

@@ -13,7 +13,7 @@ constexpr const char* kAll = "all";
 
 /// Distances, positions and numbers: 16 bits would round them visibly, or to other numbers.
 bool must_stay_float(const std::string& layer) {
-  constexpr std::array<std::string_view, 3> kFloat = {"Z", "P", "samples"};
+  constexpr std::array<std::string_view, 4> kFloat = {"Z", "P", "samples", "motion"};
   return std::find(kFloat.begin(), kFloat.end(), layer) != kFloat.end() ||
          layer.starts_with("crypto_");
 }

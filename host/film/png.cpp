@@ -21,6 +21,7 @@
 #include "files/output_file.hpp"
 #include "film/film_defect.hpp"
 #include "film/heat_color.hpp"
+#include "film/pixel_elevation.hpp"
 #include "film/tone_map.hpp"
 
 namespace dapple {
@@ -108,6 +109,7 @@ ByteImage main_picture(const Film& film, const PngOptions& options) {
   const Plane* alphas = film.find("A");
   const float scale = options.exposure ? std::exp2(*options.exposure) : automatic_exposure(film);
   const bool with_alpha = options.background == PngOptions::Background::none;
+  const PixelElevation elevation(film);
   const PixelRect& window = film.data_window;
   const std::size_t width = static_cast<std::size_t>(window.width());
   const std::size_t pixels = colors.front()->pixels.size(), channels = with_alpha ? 4 : 3;
@@ -118,10 +120,11 @@ ByteImage main_picture(const Film& film, const PngOptions& options) {
     const V3f linear(colors[0]->pixels[p], colors[1]->pixels[p], colors[2]->pixels[p]);
     V3f shown = alpha > 0 ? tone_mapped(linear * (scale / alpha)) : V3f(0, 0, 0);
     if (!with_alpha) {
-      const auto row = static_cast<float>(static_cast<std::size_t>(window.y0) + p / width);
+      const float x = static_cast<float>(window.x0) + static_cast<float>(p % width) + 0.5f;
+      const float y = static_cast<float>(window.y0) + static_cast<float>(p / width) + 0.5f;
       const V3f behind = options.background == PngOptions::Background::color
                              ? options.color
-                             : sky_color(1 - (row + 0.5f) / static_cast<float>(film.height));
+                             : backdrop_color(elevation.sine(x, y));
       shown = shown * alpha + behind * (1 - alpha);
     }
     for (int c = 0; c < 3; ++c)

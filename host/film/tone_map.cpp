@@ -9,33 +9,67 @@ namespace {
 
 float luminance(const V3f& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
-/// Luminances of the pixels of which at least half is covered, as if all of it were.
-std::vector<float> seen_luminances(const Film& film) {
+/// What a pixel shows where it is covered, and how much of it is.
+struct Seen {
+  float luminance, weight;
+};
+
+std::vector<Seen> seen_luminances(const Film& film) {
   const Plane *r = film.find("R"), *g = film.find("G"), *b = film.find("B"), *a = film.find("A");
-  std::vector<float> seen;
+  std::vector<Seen> seen;
   if (r == nullptr || g == nullptr || b == nullptr) return seen;
   for (std::size_t p = 0; p < r->pixels.size(); ++p) {
-    const float alpha = a == nullptr ? 1.0f : a->pixels[p];
-    if (!(alpha >= 0.5f)) continue;
+    const float alpha = a == nullptr ? 1.0f : std::min(a->pixels[p], 1.0f);
+    if (!(alpha > 0)) continue;
     const float value = luminance({r->pixels[p], g->pixels[p], b->pixels[p]}) / alpha;
-    if (std::isfinite(value)) seen.push_back(std::max(value, 0.0f));
+    if (std::isfinite(value)) seen.push_back({std::max(value, 0.0f), alpha});
   }
   return seen;
+}
+
+/// The luminance that a hundredth of what is seen exceeds.
+double bright_luminance(std::vector<Seen> seen, double weight) {
+  std::sort(seen.begin(), seen.end(),
+            [](const Seen& a, const Seen& b) { return a.luminance > b.luminance; });
+  double brighter = 0;
+  for (const Seen& pixel : seen) {
+    brighter += double{pixel.weight};
+    if (brighter > 0.01 * weight) return double{pixel.luminance};
+  }
+  return 0;
+}
+
+/// Mean luminance of the albedo of what is seen, [0,1]; that of a middle grey without the layer.
+double mean_albedo(const Film& film) {
+  constexpr double kMiddleGrey = 0.5;
+  const Plane *r = film.find("albedo.R"), *g = film.find("albedo.G"), *b = film.find("albedo.B");
+  const Plane* a = film.find("A");
+  if (r == nullptr || g == nullptr || b == nullptr || a == nullptr) return kMiddleGrey;
+  double sum = 0, weight = 0;
+  for (std::size_t p = 0; p < r->pixels.size(); ++p) {
+    const double alpha = double{a->pixels[p]};
+    const double value = double{luminance({r->pixels[p], g->pixels[p], b->pixels[p]})};
+    if (!(alpha > 0) || !std::isfinite(value)) continue;
+    sum += alpha * value;
+    weight += alpha;
+  }
+  return weight > 0 ? std::clamp(sum / weight, 0.01, 1.0) : kMiddleGrey;
 }
 
 }  // namespace
 
 float automatic_exposure(const Film& film) {
-  constexpr double kMiddle = 0.35;
-  std::vector<float> seen = seen_luminances(film);
-  if (seen.empty()) return 1;
-  double sum = 0;
-  for (const float value : seen) sum += value;
-  const double mean = sum / static_cast<double>(seen.size());
-  if (!(mean > 0)) return 1;
-  const auto bright = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() * 99 / 100);
-  std::nth_element(seen.begin(), bright, seen.end());
-  const double scale = std::min(kMiddle / mean, 1.0 / std::max<double>(*bright, mean));
+  constexpr double kMiddle = 0.35, kMiddleGrey = 0.5;
+  const std::vector<Seen> seen = seen_luminances(film);
+  double sum = 0, weight = 0;
+  for (const Seen& pixel : seen) {
+    sum += double{pixel.luminance} * double{pixel.weight};
+    weight += double{pixel.weight};
+  }
+  if (!(sum > 0)) return 1;
+  const double mean = sum / weight;
+  const double shown = kMiddle * std::sqrt(mean_albedo(film) / kMiddleGrey);
+  const double scale = std::min(shown / mean, 1.0 / std::max(bright_luminance(seen, weight), mean));
   return std::isfinite(static_cast<float>(scale)) ? static_cast<float>(scale) : 1;
 }
 
@@ -51,10 +85,10 @@ V3f tone_mapped(V3f color) {
   return color * (to / peak * kept) + V3f(to) * (1 - kept);
 }
 
-V3f sky_color(float height) {
-  const V3f horizon(0.78f, 0.86f, 0.93f), zenith(0.22f, 0.42f, 0.78f);
-  const float up = std::clamp(height, 0.0f, 1.0f);
-  return horizon + (zenith - horizon) * up;
+V3f backdrop_color(float elevation) {
+  const V3f horizon(0.72f, 0.80f, 0.87f), zenith(0.12f, 0.30f, 0.68f), ground(0.33f, 0.33f, 0.32f);
+  const float away = 1 - std::exp(-4 * std::fabs(elevation));
+  return horizon + ((elevation > 0 ? zenith : ground) - horizon) * away;
 }
 
 }  // namespace dapple

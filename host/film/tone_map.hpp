@@ -6,8 +6,10 @@
 
 namespace dapple {
 
-/// The factor that scales RGBA to a medium brightness: the mean luminance of what is seen becomes
-/// 0.35, but at most a hundredth of it is brighter than white. 1 where nothing is seen.
+/// The factor that scales RGBA to a medium brightness. The mean luminance of what is seen becomes
+/// 0.35 sqrt(2 albedo), halfway (in stops) between what makes every subject a middle grey and what
+/// shows it as dark as it is; but at most a hundredth of it is brighter than white. 1 where nothing
+/// is seen.
 float automatic_exposure(const Film& film);
 
 /// Compresses what is brighter than 0.76, and takes its saturation away, so that highlights become
@@ -15,7 +17,8 @@ float automatic_exposure(const Film& film);
 /// without its allowance for reflections.
 V3f tone_mapped(V3f color);
 
-/// The colour of a sky, linear: `height` is 0 at the picture's lower edge, 1 at the upper.
-V3f sky_color(float height);
+/// The colour of a sky over a hazy plain, linear; `elevation` is the sine of the angle above the
+/// horizon, [-1,1].
+V3f backdrop_color(float elevation);
 
 }  // namespace dapple

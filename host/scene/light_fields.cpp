@@ -23,6 +23,11 @@ constexpr std::array<std::string_view, 5> kKeysOfAll = {"name", "type", "group",
 
 std::string element(const char* key, int index) { return fmt::format("{}[{}]", key, index); }
 
+/// In floats, as values are: a limit of 0.0001 allows what a file calls 0.0001.
+bool is_within(float value, double low, double high) {
+  return value >= static_cast<float>(low) && value <= static_cast<float>(high);
+}
+
 }  // namespace
 
 void fail_lights(std::string_view where, std::string_view what) {
@@ -73,7 +78,7 @@ float LightFields::number(const char* key) const { return to_number(get(key), ke
 
 float LightFields::in_range(const char* key, double low, double high) const {
   const float value = number(key);
-  if (!(value >= low && value <= high)) {
+  if (!is_within(value, low, high)) {
     fail_at(key, fmt::format("must be from {:g} to {:g}, and is {:g}", low, high, value));
   }
   return value;
@@ -93,7 +98,7 @@ V2f LightFields::lengths(const char* key) const {
 V3f LightFields::point(const char* key) const {
   const V3f value = numbers(key);
   for (int k = 0; k < 3; ++k) {
-    if (std::abs(value[k]) <= kLargestCoordinate) continue;
+    if (is_within(value[k], -kLargestCoordinate, kLargestCoordinate)) continue;
     fail_at(element(key, k), fmt::format("must be within {:g} m", kLargestCoordinate));
   }
   return value;
@@ -106,7 +111,8 @@ V3f LightFields::direction(const char* key) const {
 }
 
 V3f LightFields::direction_or_target(const char* key, V3f position) const {
-  if (has(key) == has("target")) fail_at(key, "or target must be given, and not both");
+  if (has(key) && has("target")) fail_at(key, "and target are given: leave one out");
+  if (!has(key) && !has("target")) fail_at(key, "or target is missing: where the light shines");
   if (has(key)) return direction(key);
   const Imath::V3d way = Imath::V3d(point("target")) - Imath::V3d(position);
   if (way.length2() == 0) fail_at("target", "is the light's position: no direction leads there");
@@ -114,10 +120,13 @@ V3f LightFields::direction_or_target(const char* key, V3f position) const {
 }
 
 V3f LightFields::colour(const char* key) const {
+  if (!get(key).is_number() && !(get(key).is_array() && get(key).size() == 3))
+    fail_at(key, "must be a number or an array of 3 numbers");
   const V3f value = get(key).is_number() ? V3f(number(key)) : numbers(key);
   for (int k = 0; k < 3; ++k) {
     if (value[k] < 0) fail_at(key, fmt::format("must not be negative, and is {}", value[k]));
-    if (value[k] > kLargestRadiance) fail_at(key, fmt::format("is above {:g}", kLargestRadiance));
+    if (!is_within(value[k], 0, kLargestRadiance))
+      fail_at(key, fmt::format("is above {:g}", kLargestRadiance));
   }
   return value;
 }
@@ -152,7 +161,7 @@ float LightFields::to_number(const Json& value, std::string_view key) const {
 
 float LightFields::require_length(float value, std::string_view key) const {
   if (!(value > 0)) fail_at(key, fmt::format("must be positive, and is {}", value));
-  if (value >= kSmallestLength && value <= kLargestCoordinate) return value;
+  if (is_within(value, kSmallestLength, kLargestCoordinate)) return value;
   fail_at(key, fmt::format("must be from {:g} to {:g} m, and is {:g}", kSmallestLength,
                            kLargestCoordinate, value));
 }

@@ -113,9 +113,10 @@ Light read_sun(const LightFields& fields) {
       fields.has("angle_degrees") ? fields.in_range("angle_degrees", 1e-4, 179.999) : kSunDegrees;
   const double angular_radius = degrees * std::numbers::pi / 360;
   light.angular_radius = static_cast<float>(angular_radius);
-  if (fields.has("radiance") == fields.has("irradiance")) {
-    fields.fail_at("radiance", "or irradiance must be given, and not both");
-  }
+  if (fields.has("radiance") && fields.has("irradiance"))
+    fields.fail_at("radiance", "and irradiance are given: leave one out");
+  if (!fields.has("radiance") && !fields.has("irradiance"))
+    fields.fail_at("radiance", "or irradiance is missing: how bright the sun is");
   if (fields.has("radiance")) {
     light.radiance = fields.colour("radiance");
     return light;
@@ -131,13 +132,23 @@ Light read_sun(const LightFields& fields) {
   return light;
 }
 
+std::shared_ptr<const Environment> read_image(const LightFields& fields,
+                                              const std::filesystem::path& folder) {
+  const std::string name = fields.text("image");
+  if (name.empty()) fields.fail_at("image", "must not be empty");
+  try {
+    return load_environment((folder / name).string());
+  } catch (const Error& error) {
+    fields.fail_at("image", error.what());
+  }
+}
+
 Light read_dome(const LightFields& fields, const std::filesystem::path& folder) {
   fields.allow_only({"image", "radiance", "rotation_degrees"});
   Light light;
   light.kind = LightKind::dome;
   if (fields.has("radiance")) light.radiance = fields.colour("radiance");
-  if (fields.has("image"))
-    light.environment = load_environment((folder / fields.text("image")).string());
+  if (fields.has("image")) light.environment = read_image(fields, folder);
   if (fields.has("rotation_degrees")) {
     light.rotation = static_cast<float>(std::remainder(fields.number("rotation_degrees"), 360.0) *
                                         std::numbers::pi / 180);

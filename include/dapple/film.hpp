@@ -69,7 +69,7 @@ enum class ExrCompression : std::uint8_t {
 struct ExrFormat {
   ExrCompression compression = ExrCompression::zip;  ///< with dwaa, data such as normals have zip
   bool multipart = false;                            ///< a part for each layer
-  /// Layers of 16-bit floats ("ao", "light" for all lights), or "all". Z, P, samples and
+  /// Layers of 16-bit floats ("ao", "light" for all lights), or "all". Z, P, motion, samples and
   /// Cryptomattes always have 32 bits. Finite values beyond 65504 become 65504.
   std::vector<std::string> half;
 };
@@ -95,7 +95,7 @@ Film read_exr(const std::string& path);
 /// How write_png() shows RGBA.
 struct PngOptions {
   enum class Background : std::uint8_t {
-    sky,    ///< a gradient
+    sky,    ///< a sky above a grey plain
     none,   ///< the file has an alpha channel
     color,  ///< `color`
   };

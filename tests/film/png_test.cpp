@@ -14,6 +14,7 @@
 #include <limits>
 #include <memory>
 
+#include "film/pixel_elevation.hpp"
 #include "film/tone_map.hpp"
 #include "support/film_files.hpp"
 
@@ -116,6 +117,57 @@ TEST_F(Png, AutomaticExposureIsTheSameForEveryScaleOfLight) {
   EXPECT_EQ(shown(film).values, once);
   for (Plane& plane : film.planes) std::fill(plane.pixels.begin(), plane.pixels.end(), 0.0f);
   EXPECT_EQ(shown(film, "", {{}, Background::color, V3f(0, 0, 0)}).values, Values(9, 0));
+}
+
+/// A grey surface of one albedo, whose light is `light` in units of pi W/m2, with these alphas.
+Film lit_film(const std::vector<float>& alphas, float albedo, float light) {
+  std::vector<float> values, albedos(alphas.size(), albedo);
+  for (const float alpha : alphas) values.push_back(alpha * albedo * light);
+  std::vector<Plane> planes{{"A", alphas}};
+  for (const char* channel : {"B", "G", "R"}) {
+    planes.push_back({channel, values});
+    planes.push_back({std::string("albedo.") + channel, albedos});
+  }
+  return row_film(planes);
+}
+
+TEST_F(Png, DarkSubjectsStayDarkerThanBrightOnes) {
+  const auto shown_mean = [](float albedo) {
+    const Film film = lit_film({1, 1, 1, 1}, albedo, 3);
+    return albedo * 3 * automatic_exposure(film);
+  };
+  EXPECT_NEAR(shown_mean(0.5f), 0.35, 1e-5);
+  EXPECT_NEAR(shown_mean(0.08f), 0.35 * 0.4, 1e-5) << "0.4: sqrt(0.08 / 0.5)";
+  EXPECT_NEAR(shown_mean(1), 0.35 * std::sqrt(2), 1e-5);
+}
+
+TEST_F(Png, ThinCoverageCountsByItsAlphaForTheExposure) {
+  const float whole = automatic_exposure(lit_film({1, 1}, 0.5f, 1e-4f));
+  EXPECT_NEAR(automatic_exposure(lit_film({0.4f, 0.1f, 0}, 0.5f, 1e-4f)) / whole, 1, 1e-5);
+  // A bright pixel that is hardly covered does not make the others dark.
+  Film film = lit_film({1, 1, 0.01f}, 0.5f, 1);
+  for (Plane& plane : film.planes)
+    if (plane.channel.size() == 1 && plane.channel != "A") plane.pixels[2] *= 100;
+  EXPECT_GT(automatic_exposure(film), 0.6f * automatic_exposure(lit_film({1, 1}, 0.5f, 1)));
+}
+
+// The camera looks down by 45 degrees with a field of view of 90: the upper edge is the horizon.
+TEST_F(Png, TheHorizonOfTheBackgroundIsTheCameras) {
+  Film film;
+  film.width = film.height = 64;
+  const float c = std::sqrt(0.5f);
+  // Columns: right, up, forward of OpenEXR's camera.
+  film.metadata.world_to_camera = M44f(1, 0, 0, 0, 0, c, -c, 0, 0, c, c, 0, 0, 0, 0, 1);
+  const M44f projection(0.5f, 0, 0, 0, 0, -0.5f, 0, 0, 0.5f, 0.5f, 1, 1, 0, 0, 0, 0);
+  film.metadata.world_to_ndc = film.metadata.world_to_camera * projection;
+  const PixelElevation elevation(film);
+  EXPECT_NEAR(elevation.sine(32, 0), 0, 1e-6);
+  EXPECT_NEAR(elevation.sine(32, 32), -c, 1e-6);
+  EXPECT_NEAR(elevation.sine(32, 64), -1, 1e-6) << "straight down";
+  EXPECT_NEAR(elevation.sine(0, 32), -c / std::sqrt(2.0f), 1e-6);
+  film.metadata.world_to_ndc = film.metadata.world_to_camera *
+                               M44f(0.5f, 0, 0, 0, 0, -0.5f, 0, 0, 0, 0, 1, 0, 0.5f, 0.5f, 0, 1);
+  EXPECT_NEAR(PixelElevation(film).sine(0, 0), -c, 1e-6) << "parallel rays";
 }
 
 TEST_F(Png, HighlightsBecomeWhiteInOrderAndDarkerColoursStay) {

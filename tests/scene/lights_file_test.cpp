@@ -90,9 +90,9 @@ TEST(LightsFile, ATargetTakesThePlaceOfANormal) {
   const std::string rect = R"("type": "rect", "position": [1, 5, 1], "size": [1, 1],
       "radiance": 1)";
   EXPECT_EQ(load_one(rect + R"(, "target": [1, -3, 1])").at(0).direction, V3f(0, -1, 0));
-  EXPECT_EQ(complaint_about(rect), "light 1: normal or target must be given, and not both");
+  EXPECT_EQ(complaint_about(rect), "light 1: normal or target is missing: where the light shines");
   EXPECT_EQ(complaint_about(rect + R"(, "normal": [0, -1, 0], "target": [0, 0, 0])"),
-            "light 1: normal or target must be given, and not both");
+            "light 1: normal and target are given: leave one out");
   EXPECT_EQ(complaint_about(rect + R"(, "target": [1, 5, 1])"),
             "light 1: target is the light's position: no direction leads there");
 }
@@ -181,7 +181,7 @@ TEST(LightsFile, AMissingOrMistypedKeyIsNamed) {
   EXPECT_EQ(complaint_about(R"("type": "sun", "name": 3, "direction": [0, 1, 0], "radiance": 1)"),
             "light 1: name must be a string");
   EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1, 0], "radiance": true)"),
-            "light 1: radiance must be an array of 3 numbers");
+            "light 1: radiance must be a number or an array of 3 numbers");
   EXPECT_EQ(complaint("{\"lights\": [3]}"), "light 1: is not an object");
 }
 
@@ -223,11 +223,11 @@ TEST(LightsFile, AKeyTwiceAndLightsByTheMillionAreRefusedAtOnce) {
 }
 
 TEST(LightsFile, ASunHasEitherRadianceOrIrradiance) {
-  const std::string message = "light 1: radiance or irradiance must be given, and not both";
-  EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1, 0])"), message);
+  EXPECT_EQ(complaint_about(R"("type": "sun", "direction": [0, 1, 0])"),
+            "light 1: radiance or irradiance is missing: how bright the sun is");
   EXPECT_EQ(
       complaint_about(R"("type": "sun", "direction": [0, 1, 0], "radiance": 1, "irradiance": 1)"),
-      message);
+      "light 1: radiance and irradiance are given: leave one out");
 }
 
 TEST(LightsFile, AParseErrorSaysItsLineAndColumn) {

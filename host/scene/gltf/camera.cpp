@@ -31,14 +31,16 @@ void check_clip_planes(double near, double far, const std::string& who, const st
   fail(file, "{} has zfar {:g} and znear {:g}; zfar must be larger", who, far, near);
 }
 
-/// Reads a length in metres from the camera's extras; 0 if it is not there.
-float length_in_extras(const nlohmann::json& extras, const char* key, const std::string& who,
-                       const std::string& file) {
+/// Reads a length in metres from the camera's extras; 0 if it is not there. The limits are those of
+/// the command line's options.
+float length_in_extras(const nlohmann::json& extras, const char* key, double low, double high,
+                       const std::string& who, const std::string& file) {
   if (!extras.is_object() || !extras.contains(key)) return 0;
   const nlohmann::json& value = extras[key];
   const double length = value.is_number() ? value.get<double>() : -1;
-  if (length >= 0 && length <= 1e12) return static_cast<float>(length);
-  fail(file, "{} has extras.{} that is not a length in metres from 0 to 1e12", who, key);
+  if (length >= low && length <= high) return static_cast<float>(length);
+  fail(file, "{} has extras.{} that is not a length in metres from {:g} to {:g}", who, key, low,
+       high);
 }
 
 Camera perspective(const tinygltf::PerspectiveCamera& given, const std::string& who,
@@ -76,8 +78,9 @@ std::vector<Camera> read_lenses(const Document& document) {
                          : orthographic(given.orthographic, who, document.file));
     Camera& lens = lenses.back();
     const nlohmann::json& extras = document.camera_extras[i];
-    lens.lens_radius = length_in_extras(extras, "dapple_aperture", who, document.file);
-    lens.focus_distance = length_in_extras(extras, "dapple_focus_distance", who, document.file);
+    lens.lens_radius = length_in_extras(extras, "dapple_aperture", 0, 1e6, who, document.file);
+    lens.focus_distance =
+        length_in_extras(extras, "dapple_focus_distance", 1e-6, 1e12, who, document.file);
   }
   return lenses;
 }

@@ -128,6 +128,10 @@ TEST(GltfCamera, ExtrasBringALens) {
   EXPECT_EQ(camera_with_extras("text").lens_radius, 0);
   for (const json& wrong : {json(-1), json("wide"), json(1e30), json::array({1})})
     EXPECT_THROW(camera_with_extras({{"dapple_aperture", wrong}}), Error) << wrong;
+  for (const auto& [key, wrong] :
+       {std::pair("dapple_aperture", 1.1e6), std::pair("dapple_focus_distance", 0.0),
+        std::pair("dapple_focus_distance", 1.1e12)})
+    EXPECT_THROW(camera_with_extras({{key, wrong}}), Error) << key << " beyond the option's limit";
 }
 
 Light load_light(const json& light, const SceneOptions& options = {}) {
