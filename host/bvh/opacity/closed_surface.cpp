@@ -2,40 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "bvh/opacity/connected_vertices.hpp"
 
 namespace dapple {
 namespace {
 
 /// Maximum length of the sum of a closed surface's area vectors, relative to its area.
 constexpr float kOpenShare = 0.1f;
-
-/// A union-find forest of vertices that triangles connect, with one root for each component.
-class ConnectedVertices {
- public:
-  explicit ConnectedVertices(std::size_t vertices) : parent_(vertices) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  /// Returns the root of `vertex` and halves the path to it (Tarjan and van Leeuwen, "Worst-case
-  /// Analysis of Set Union Algorithms", 1984).
-  std::uint32_t root(std::uint32_t vertex) {
-    while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
-    return vertex;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-V3f area_vector(const Mesh& mesh, const std::uint32_t* index) {
-  const V3f& a = mesh.positions[index[0]];
-  return 0.5f * (mesh.positions[index[1]] - a).cross(mesh.positions[index[2]] - a);
-}
 
 }  // namespace
 
@@ -44,13 +18,9 @@ std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opac
   if (std::none_of(opacities.begin(), opacities.end(), [](float o) { return o == 1.0f; })) {
     return {};
   }
-  ConnectedVertices components(mesh.positions.size());
-  for (std::size_t t = 0; t < opacities.size(); ++t) {
-    if (!opaque(t)) continue;
-    const std::uint32_t* index = &mesh.indices[3 * t];
-    components.join(index[0], index[1]);
-    components.join(index[0], index[2]);
-  }
+  ConnectedVertices components = connect_triangles(
+      mesh.positions.size(), opacities.size(), opaque,
+      [&](std::size_t t, int k) { return mesh.indices[3 * t + static_cast<std::size_t>(k)]; });
   struct Sums {
     V3f vector{0, 0, 0};
     float area = 0;
@@ -58,9 +28,8 @@ std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opac
   std::vector<Sums> sums(mesh.positions.size());
   for (std::size_t t = 0; t < opacities.size(); ++t) {
     if (!opaque(t)) continue;
-    const std::uint32_t* index = &mesh.indices[3 * t];
-    const V3f vector = area_vector(mesh, index);
-    Sums& component = sums[components.root(index[0])];
+    const V3f vector = area_vector(mesh, t);
+    Sums& component = sums[components.root(mesh.indices[3 * t])];
     component.vector += vector;
     component.area += vector.length();
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "bvh/opacity/connected_vertices.hpp"
+
 namespace dapple {
 namespace {
 
@@ -52,7 +54,19 @@ class Rings {
   }
   [[nodiscard]] bool is_closed(std::uint32_t corner) { return entries_[find(corner)].ring == 0; }
 
+  /// Makes room for first_vertex(): the rings are gone.
+  void forget() {
+    for (Entry& entry : entries_) entry.ring = kNone;
+  }
+  /// The vertex that this was first called with for the corner.
+  std::uint32_t first_vertex(std::uint32_t corner, std::uint32_t vertex) {
+    std::uint32_t& first = entries_[find(corner)].ring;
+    if (first == kNone) first = vertex;
+    return first;
+  }
+
  private:
+  static constexpr std::uint32_t kNone = ~0u;
   struct Entry {
     std::uint32_t corner = 0, ring = 0;
   };
@@ -66,6 +80,32 @@ class Rings {
   std::size_t mask_;
   std::vector<Entry> entries_;
 };
+
+/// Adds the triangles at the rim of connected surfaces most of whose area is interior: beside the
+/// rim of a wall, too, light would leak through its box. `belongs`: whether a triangle is in such a
+/// surface; `vertex`: a vertex at the position of a triangle's corner, the same for all there.
+template <class Belongs, class Vertex>
+void extend_to_rims(const Mesh& mesh, const Belongs& belongs, const Vertex& vertex,
+                    std::vector<bool>& interior) {
+  ConnectedVertices surfaces =
+      connect_triangles(mesh.positions.size(), interior.size(), belongs, vertex);
+  struct Areas {
+    float all = 0, interior = 0;
+  };
+  std::vector<Areas> areas(mesh.positions.size());
+  for (std::size_t t = 0; t < interior.size(); ++t) {
+    if (!belongs(t)) continue;
+    Areas& surface = areas[surfaces.root(vertex(t, 0))];
+    const float area = area_vector(mesh, t).length();
+    surface.all += area;
+    if (interior[t]) surface.interior += area;
+  }
+  for (std::size_t t = 0; t < interior.size(); ++t) {
+    if (interior[t] || !belongs(t)) continue;
+    const Areas& surface = areas[surfaces.root(vertex(t, 0))];
+    interior[t] = surface.interior > kInteriorShare * surface.all;
+  }
+}
 
 }  // namespace
 
@@ -81,14 +121,29 @@ std::vector<bool> interior_triangles(const Mesh& mesh, std::span<const float> op
     if (!opaque(t)) continue;
     for (int k = 0; k < 3; ++k) rings.add(corner(t, k), corner(t, k + 1), corner(t, k + 2));
   }
-  std::vector<bool> interior(opacities.size());
+  std::vector<bool> interior(opacities.size()), is_near(mesh.positions.size());
   bool any = false;
   for (std::size_t t = 0; t < opacities.size(); ++t) {
-    interior[t] = opaque(t) && rings.is_closed(corner(t, 0)) && rings.is_closed(corner(t, 1)) &&
-                  rings.is_closed(corner(t, 2));
+    if (!opaque(t)) continue;
+    int closed = 0;
+    for (int k = 0; k < 3; ++k) closed += rings.is_closed(corner(t, k)) ? 1 : 0;
+    interior[t] = closed == 3;
     any |= interior[t];
+    for (int k = 0; closed > 0 && k < 3; ++k) is_near[mesh.indices[3 * t + k]] = true;
   }
-  return any ? interior : std::vector<bool>{};
+  if (!any) return {};
+  rings.forget();
+  extend_to_rims(
+      mesh,
+      [&](std::size_t t) {
+        const std::uint32_t* index = &mesh.indices[3 * t];
+        return opaque(t) && (is_near[index[0]] || is_near[index[1]] || is_near[index[2]]);
+      },
+      [&](std::size_t t, int k) {
+        return rings.first_vertex(corner(t, k), mesh.indices[3 * t + k]);
+      },
+      interior);
+  return interior;
 }
 
 void WallAreas::add(const V3f& area, float opacity, bool is_interior) {

@@ -13,8 +13,9 @@ namespace dapple {
 
 /// Returns which triangles of the mesh lie inside an opaque surface: they are opaque (opacity 1),
 /// and around each corner opaque triangles close a ring. Corners at equal positions count as one.
-/// A leaf has no such triangles, a wall, a trunk or the ground has few others. One entry a
-/// triangle; empty if there are none. Linear in the triangles.
+/// A leaf has no such triangles, a wall, a trunk or the ground has few others; where these make up
+/// most of a connected surface, its rim counts, too. One entry a triangle; empty if there are none.
+/// Almost linear in the triangles.
 std::vector<bool> interior_triangles(const Mesh& mesh, std::span<const float> opacities);
 
 /// Sums over the triangles of a node, by which is_wall() decides.

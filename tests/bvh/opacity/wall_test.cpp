@@ -16,7 +16,7 @@ namespace {
 using namespace scene_test;
 
 std::ptrdiff_t count_interior(const Mesh& mesh, float opacity = 1.0f) {
-  const std::vector<float> opacities(mesh.primitive_count(), opacity);
+  const std::vector<float> opacities(mesh.indices.size() / 3, opacity);
   const std::vector<bool> interior = interior_triangles(mesh, opacities);
   return std::count(interior.begin(), interior.end(), true);
 }
@@ -33,18 +33,30 @@ Mesh with_split_vertices(const Mesh& mesh) {
 
 TEST(InteriorTriangles, AreAllOfAClosedSurface) {
   const Mesh sphere = test::smooth_sphere();
-  EXPECT_EQ(count_interior(sphere), static_cast<std::ptrdiff_t>(sphere.primitive_count()));
+  EXPECT_EQ(count_interior(sphere), static_cast<std::ptrdiff_t>(sphere.indices.size() / 3));
 }
 
 TEST(InteriorTriangles, AreFoundByPositionsNotIndices) {
   const Mesh sphere = with_split_vertices(test::smooth_sphere());
-  EXPECT_EQ(count_interior(sphere), static_cast<std::ptrdiff_t>(sphere.primitive_count()));
+  EXPECT_EQ(count_interior(sphere), static_cast<std::ptrdiff_t>(sphere.indices.size() / 3));
 }
 
-TEST(InteriorTriangles, DoNotTouchTheBorder) {
+TEST(InteriorTriangles, DoNotTouchTheBorderOfASmallSheet) {
   Mesh grid;
-  append_grid(grid, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 8, 0);
-  EXPECT_EQ(count_interior(grid), 2 * 6 * 6);
+  append_grid(grid, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 6, 0);
+  EXPECT_EQ(count_interior(grid), 2 * 4 * 4);
+}
+
+// 36 of 64 quads do not touch the border: more than half of each sheet, with the vertices of
+// neighbours or with vertices of their own.
+TEST(InteriorTriangles, ReachTheBorderOfALargeSheet) {
+  Mesh sheets;
+  append_grid(sheets, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 8, 0);
+  append_grid(sheets, {0, 3, 0}, {1, 0, 0}, {0, 0, 1}, 4, 0);
+  EXPECT_EQ(count_interior(sheets), 2 * 8 * 8 + 2 * 2 * 2) << "a small sheet beside it";
+  // Two triangles have all their corners on the border: they are found by their neighbours'
+  // vertices.
+  EXPECT_EQ(count_interior(with_split_vertices(sheets)), 2 * 8 * 8 - 2 + 2 * 2 * 2);
 }
 
 TEST(InteriorTriangles, AreNoneOfLeavesAndOfTranslucentSurfaces) {
