@@ -2,7 +2,9 @@
 // dapple.
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include "commands/command.hpp"
 #include "commands/statistics_text.hpp"
@@ -28,7 +30,9 @@ void print_device(const DeviceInfo& info) {
   fmt::print("{}\n  {} ({}), driver {}, {} compute units, {}\n", info.name, info.kind,
              info.platform, info.driver, info.compute_units,
              bytes_text(static_cast<double>(info.memory_bytes)));
-  std::fflush(stdout);
+  if (std::fflush(stdout) != 0)
+    throw Error(ErrorKind::failed,
+                std::string("cannot write to the standard output: ") + std::strerror(errno));
 }
 
 /// Whether the device can run every kernel.

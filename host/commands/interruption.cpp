@@ -3,8 +3,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <thread>
+
+#include "device/driver_crash.hpp"
 
 namespace dapple {
 namespace {
@@ -36,14 +39,14 @@ extern "C" void on_alarm(int) {
 }
 
 /// The kernel sends SIGXCPU at the soft limit of processor time, and SIGKILL at the hard one;
-/// `ulimit -t` sets both to the same. Leaves time for saving between them.
+/// `ulimit -t` sets both to the same. Leaves time for saving between them, at most half of all.
 void leave_time_to_save() {
   rlimit limit{};
   if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_max == RLIM_INFINITY) return;
   const rlim_t saving_seconds = kSecondsOfSlice + std::thread::hardware_concurrency();
-  if (limit.rlim_max <= 2 * saving_seconds || limit.rlim_cur + saving_seconds <= limit.rlim_max)
-    return;
-  limit.rlim_cur = limit.rlim_max - saving_seconds;
+  const rlim_t left = std::min(saving_seconds, limit.rlim_max / 2);
+  if (limit.rlim_cur + left <= limit.rlim_max) return;
+  limit.rlim_cur = limit.rlim_max - left;
   setrlimit(RLIMIT_CPU, &limit);
 }
 
@@ -54,12 +57,15 @@ void catch_interruptions() {
   std::signal(SIGALRM, on_alarm);
   for (const int signal : {SIGINT, SIGTERM, SIGXCPU}) {
     struct sigaction action {};
-    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) continue;
-    action = {};
-    action.sa_handler = on_interruption;
-    action.sa_flags = SA_RESTART;
-    sigaction(signal, &action, nullptr);
+    if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
+      action = {};
+      action.sa_handler = on_interruption;
+      action.sa_flags = SA_RESTART;
+      sigaction(signal, &action, nullptr);
+    }
+    keep_signal_handler(signal);
   }
+  keep_signal_handler(SIGQUIT);
 }
 
 Stop save_when_interrupted() {

@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 
+#include "camera/view.hpp"
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
 #include "commands/option_text.hpp"
@@ -165,6 +166,8 @@ Plan plan_of(const RenderArguments& a, const RenderOptions& options,
   control.part = folder.file("trial.dapple");
   Scene scene = scene_now();
   const std::size_t lights = options.light ? std::max<std::size_t>(2, scene.lights.size()) : 0;
+  std::vector<std::string> notes;
+  check_film_memory(choose_view(scene, options, notes), lights, options);
   Renderer renderer;
   RenderResult result;
   double rays = std::max(kShare * plan.rays, kLeastRays);
@@ -236,6 +239,8 @@ void run_plan(RenderArguments a) {
   if (!a.shutter.empty() || options.motion)
     throw Error(ErrorKind::usage,
                 "dapple plan knows no moving scenes: leave --shutter and --passes motion out");
+  if (options.deep)
+    throw Error(ErrorKind::usage, "dapple plan knows no deep files: leave --deep out");
   catch_interruptions();
   std::optional<double> seconds = a.frame;
   if (!a.frames.empty())

@@ -239,10 +239,10 @@ void add_file_options(CLI::App& app, RenderArguments& a) {
          "Exposure of the PNG in stops: 1 is twice as bright; auto: dapple chooses it from the "
          "brightness of the picture")
       ->capture_default_str();
-  app.add_option(
-         "--background", a.background,
-         "Background of the PNG: sky (above a grey plain), none (keeps alpha), or a linear colour R,G,B "
-         "from 0 to 1")
+  app.add_option("--background", a.background,
+                 "Background of the PNG: sky (above a grey plain), none (keeps alpha), or a linear "
+                 "colour R,G,B "
+                 "from 0 to 1")
       ->capture_default_str();
   app.add_option(
       "--half", a.half,

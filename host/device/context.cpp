@@ -163,6 +163,8 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Pa
   State& s = *state_;
   s.chosen_by = name;
   s.kernel_dir = std::move(kernel_dir);
+  if (!s.kernel_dir.empty() && !std::filesystem::is_directory(s.kernel_dir))
+    throw Error(ErrorKind::usage, "--kernel-dir " + s.kernel_dir + ": there is no such folder");
   s.packets = packets;
   s.device = choose_device(name);
   s.info = describe(s.device);

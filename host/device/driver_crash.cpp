@@ -54,7 +54,34 @@ void on_crash(int signal) {
   _exit(static_cast<int>(ErrorKind::device));
 }
 
+struct KeptHandler {
+  int signal;
+  void (*handler)(int);
+  int flags;
+};
+std::array<KeptHandler, 8> kept{};
+std::atomic<std::size_t> kept_count{0};
+
+void renew_kept_handlers() {
+  for (std::size_t i = 0; i < kept_count; ++i) {
+    struct sigaction action {};
+    sigaction(kept[i].signal, nullptr, &action);
+    if (action.sa_handler == kept[i].handler) continue;
+    action = {};
+    action.sa_handler = kept[i].handler;
+    action.sa_flags = kept[i].flags;
+    sigaction(kept[i].signal, &action, nullptr);
+  }
+}
+
 }  // namespace
+
+void keep_signal_handler(int signal) {
+  struct sigaction action {};
+  if (kept_count == kept.size() || sigaction(signal, nullptr, &action) != 0) return;
+  kept[kept_count] = {signal, action.sa_handler, action.sa_flags};
+  ++kept_count;
+}
 
 void report_driver_crashes() {
   reporting = true;
@@ -76,7 +103,10 @@ DriverAtWork::DriverAtWork(const std::string& what) {
   ++calls_under_way;
 }
 
-DriverAtWork::~DriverAtWork() { --calls_under_way; }
+DriverAtWork::~DriverAtWork() {
+  --calls_under_way;
+  renew_kept_handlers();
+}
 
 DriverInUse::DriverInUse() { ++devices_open; }
 

@@ -16,6 +16,10 @@ void report_driver_crashes();
 /// LLVM in PoCL does. Does nothing if report_driver_crashes() was never called.
 void renew_crash_reports();
 
+/// The present handler of `signal` is set again, too, whenever a driver replaced it: the LLVM in PoCL
+/// takes SIGXCPU, and ignores the first.
+void keep_signal_handler(int signal);
+
 /// While an object lives, a crash in any thread counts as the driver's, and the report names the
 /// latest `what`, the driver's task.
 class DriverAtWork {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <numeric>
 
 #include "camera/camera_splitting.hpp"
@@ -181,7 +182,10 @@ Bias BiasPilot::bias_of(const Layer& layer, bool is_light, float footprint) {
   for (std::size_t i = 0; i < units.size() && is_light; ++i)
     if (units[i].count > 0) largest = std::max(largest, weights[i] / units[i].count);
   for (BiasUnit& unit : units) unit.difference /= largest > 0 ? largest : 1;
-  return estimate_bias(std::move(units), 1);
+  Bias bias = estimate_bias(std::move(units), 1);
+  if (!layer.rays.empty())  // as in picture_bias()
+    bias.error = std::hypot(bias.error, 1 / static_cast<double>(layer.rays.size()));
+  return bias;
 }
 
 }  // namespace dapple

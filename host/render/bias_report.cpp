@@ -85,7 +85,9 @@ std::vector<Bias> picture_bias(const BiasSums& sums, const HostView& film,
     PixelError error;
     for (const PixelError& of_row : errors) error.add(of_row);
     Bias bias = estimate_bias(units, share);
-    bias.error = error.value(units, bias.mean, share);
+    // One ray more could have differed by all of its light: rare differences may not be seen.
+    const double rays_of_layer = sums.exact_rays / static_cast<double>(sums.differences.size());
+    bias.error = std::hypot(error.value(units, bias.mean, share), 1 / rays_of_layer);
     out.push_back(bias);
   }
   return out;

@@ -40,10 +40,13 @@ Part describe(const std::string& path) {
 
 /// Whatever parts of one picture must agree in: all but their pixels, samples and devices.
 Settings common_settings(const Checkpoint& about) {
-  Settings settings;
-  for (const auto& setting : about.options)
-    if (setting.first != "--crop" && setting.first != "--shard") settings.push_back(setting);
+  Settings settings, chosen;  // what dapple may have chosen from the scene, which comes first
+  for (const auto& setting : about.options) {
+    if (setting.first == "--crop" || setting.first == "--shard") continue;
+    (setting.first == "--camera-splitting" ? chosen : settings).push_back(setting);
+  }
   settings.insert(settings.end(), about.content.begin(), about.content.end());
+  settings.insert(settings.end(), chosen.begin(), chosen.end());
   settings.emplace_back("--spp (footprints)", fmt::format("{}", about.footprint_spp));
   const PictureRecord& picture = about.picture;
   const auto& ambient = picture.options.ambient;

@@ -265,6 +265,10 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
                  metadata,   options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
   set_ambient(result.film.metadata, statistics.ambient);
   add_bias(result, picture, layout, lights);
+  if (has_bias(options) && statistics.footprint > 0 && options.report_bias > 0 &&
+      picture.bias.empty())
+    result.statistics.notes.emplace_back(
+        "the bias is not reported: too few rays were traced exactly; --report-bias 100% takes all");
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   statistics.notes.insert(statistics.notes.end(), scene.warnings.begin(), scene.warnings.end());
   result.interrupted = picture.interrupted;

@@ -22,25 +22,28 @@ constexpr float kSmallestPart = 1.0f / 16;
 constexpr double kRaysOfTarget = 6.5;
 constexpr std::size_t kFewestRaysOfTarget = 1u << 12, kMostRaysOfTarget = 1u << 18;
 
-enum class Verdict { small_enough, too_large, unknown };
+/// What is known of a footprint's bias, of the layer in which it may be largest.
+struct Judgement {
+  double least = 0, most = 0;  ///< |mean| two standard errors down and up
+};
 
-Verdict judge(const std::vector<Bias>& layers, double most) {
-  Verdict verdict = Verdict::small_enough;
+Judgement judge(const std::vector<Bias>& layers) {
+  Judgement of_all;
   for (const Bias& bias : layers) {
     const double mean = std::fabs(bias.mean);
-    if (mean - 2 * bias.error > most) return Verdict::too_large;
-    if (mean + 2 * bias.error > most) verdict = Verdict::unknown;
+    of_all.least = std::max(of_all.least, mean - 2 * bias.error);
+    of_all.most = std::max(of_all.most, mean + 2 * bias.error);
   }
-  return verdict;
+  return of_all;
 }
 
-/// Whether the bias is at most `most`; it is not if that cannot be told.
-bool is_small(BiasSource& source, float footprint, double most) {
+/// Takes rays until it is clear whether the bias is at most `most`, or there are no more.
+Judgement judge(BiasSource& source, float footprint, double most) {
   for (std::size_t rays = kFirstRays;; rays *= 2) {
     source.grow(rays);
-    const Verdict verdict = judge(source.bias(footprint), most);
-    if (verdict != Verdict::unknown) return verdict == Verdict::small_enough;
-    if (rays >= kMostRays || source.is_complete()) return false;
+    const Judgement found = judge(source.bias(footprint));
+    if (found.most <= most || found.least > most) return found;
+    if (rays >= kMostRays || source.is_complete()) return found;
   }
 }
 
@@ -53,12 +56,24 @@ double rmse_of(BiasSource& source, float footprint, double target) {
   return std::sqrt(largest * source.seen());
 }
 
-std::string note_of(const FootprintDemand& demand, float footprint) {
-  const std::string why = demand.max_bias > 0 ? fmt::format("--max-bias {}", demand.max_bias)
-                                              : std::string("the target");
-  return footprint > 0
-             ? fmt::format("{}: footprint {}", why, footprint)
-             : fmt::format("{}: footprint 0, exact rays: no other has so little bias", why);
+/// `last`: of the smallest footprint that was tried, above 0.
+std::string note_of(const FootprintDemand& demand, float footprint, const Judgement& last) {
+  if (!(demand.max_bias > 0))
+    return footprint > 0 ? fmt::format("the target: footprint {}", footprint)
+                         : std::string(
+                               "the target: exact rays (footprint 0): even the smallest "
+                               "footprint has too much bias");
+  const std::string why = fmt::format("--max-bias {}: ", demand.max_bias);
+  const float smallest = demand.footprint * kSmallestPart;
+  if (footprint > 0)
+    return fmt::format("{}footprint {}, whose bias is at most {:.4f}", why, footprint, last.most);
+  if (last.least > double{demand.max_bias})
+    return fmt::format("{}exact rays (footprint 0): the bias of footprint {} is at least {:.4f}",
+                       why, smallest, last.least);
+  return fmt::format(
+      "{}exact rays (footprint 0): there are too few rays to tell a bias so small (that of "
+      "footprint {} may be {:.4f}); more pixels or samples can tell it",
+      why, smallest, last.most);
 }
 
 }  // namespace
@@ -66,19 +81,21 @@ std::string note_of(const FootprintDemand& demand, float footprint) {
 FootprintChoice choose_footprint(BiasSource& source, const FootprintDemand& demand) {
   FootprintChoice choice{demand.footprint, 0, {}};
   const double target = double{demand.target};
+  Judgement last;
   for (; choice.footprint > 0; choice.footprint *= 0.5f) {
     if (choice.footprint < kSmallestPart * demand.footprint) choice.footprint = 0;
     if (choice.footprint == 0) break;
-    if (demand.may_shrink && demand.max_bias > 0 &&
-        !is_small(source, choice.footprint, double{demand.max_bias}))
-      continue;
+    if (demand.may_shrink && demand.max_bias > 0) {
+      last = judge(source, choice.footprint, double{demand.max_bias});
+      if (last.most > double{demand.max_bias}) continue;
+    }
     if (demand.target <= 0) break;
     choice.bias_rmse = rmse_of(source, choice.footprint, target);
     if (!demand.may_shrink || choice.bias_rmse <= 0.5 * target) break;
   }
   if (choice.footprint == 0) choice.bias_rmse = 0;
   if (demand.may_shrink && (demand.max_bias > 0 || choice.footprint != demand.footprint))
-    choice.note = note_of(demand, choice.footprint);
+    choice.note = note_of(demand, choice.footprint, last);
   return choice;
 }
 

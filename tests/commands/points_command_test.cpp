@@ -38,7 +38,7 @@ TEST_F(PointsCommand, ReportsTheBiasUnlessToldNotTo) {
 
 TEST_F(PointsCommand, KeepsALimitOfTheBiasAndSaysWithWhichFootprint) {
   const program_test::Outcome run = measured("-o a.csv --max-bias 1e-7");
-  EXPECT_TRUE(contains(run.err, "footprint 0, exact rays")) << run.err;
+  EXPECT_TRUE(contains(run.err, "exact rays (footprint 0)")) << run.err;
   measured("-o b.csv --footprint 0");
   EXPECT_EQ(bytes_of(path("a.csv")), bytes_of(path("b.csv")));
 }

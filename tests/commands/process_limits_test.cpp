@@ -91,6 +91,8 @@ TEST_F(ProcessLimits, TheCommandLineSaysWhatItExpects) {
       {"render x.glb -o o.exr --frame 1 --shutter 0,1 --motion-samples 0",
        "--motion-samples is 0; it must be from 1 to 1024"},
       {"render x.glb -o o.exr --png p.png --background 0,0", "expected R,G,B"},
+      {"render scene:cube -o o.exr --kernel-dir missing", "missing: there is no such folder"},
+      {"plan scene:cube --spp 4 --deep d.exr", "dapple plan knows no deep files"},
       {"render x.glb -o o.exr --background blue", "--background blue: it is sky, none or R,G,B"},
       {"bake x.glb -o o.glb --ao-falloff 2", "--ao-falloff needs --ao-distance"},
       {"points x.glb -o o.csv --grid 0,0,1,1", "--grid has 4 numbers; it needs 5"},

@@ -50,7 +50,7 @@ class Interruption : public FilmFile {
 constexpr int kEndless = 1 << 20;
 
 TEST_F(Interruption, ASignalEndsWithItsCodeAPictureAndACheckpointThatGoesOn) {
-  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}, {SIGXCPU, 152}}) {
     std::filesystem::remove(path("a.ckpt"));
     RunningProgram program(with_checkpoint(kEndless, "0.05"), log());
     ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLong)) << bytes_of(log());

@@ -208,6 +208,11 @@ TEST_F(MergeParts, PartsOfOtherPicturesAreRefusedAndTheDifferenceNamed) {
        [](auto& o) {
          o.opacity = {{"leaf", 0.5f}};
        }},
+      {"another scene",
+       [](auto& o) {  // from which another splitting factor follows
+         o.opacity = {{"leaf", 0.1f}};
+         o.camera_splitting = 0;
+       }},
       {"another camera",
        [](auto& o) {
          o.look = LookAt{{9, 9, 9}};

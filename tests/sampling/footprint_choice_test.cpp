@@ -41,6 +41,25 @@ TEST(FootprintChoice, WhatFewRaysCannotShowIsNotTaken) {
   EXPECT_EQ(choose_footprint(source, {4, 0.02f, 0, true}).footprint, 4);
 }
 
+TEST(FootprintChoice, TheNoteSaysWhatIsKnownAndWhy) {
+  MadeUpBias many(1u << 20), few(1u << 12);
+  const auto note = [](MadeUpBias& source, float most) {
+    return choose_footprint(source, {4, most, 0, true}).note;
+  };
+  EXPECT_EQ(note(many, 0.01f).find("--max-bias 0.01: footprint 4, whose bias is at most 0.00"), 0u)
+      << note(many, 0.01f);
+  // The smallest footprint, 0.25, has a bias of 0.00025; its error is above 0.0002.
+  EXPECT_NE(note(many, 0.00001f).find("too few rays to tell"), std::string::npos);
+  EXPECT_NE(note(few, 0.005f)
+                .find("too few rays to tell a bias so small (that of footprint 0.25 "
+                      "may be 0.006"),
+            std::string::npos)
+      << note(few, 0.005f);
+  const FootprintChoice hopeless = choose_footprint(many, {4000, 0.01f, 0, true});
+  EXPECT_NE(hopeless.note.find("the bias of footprint 250 is at least 0.24"), std::string::npos)
+      << hopeless.note;
+}
+
 TEST(FootprintChoice, ClearCasesNeedFewRays) {
   MadeUpBias clear(1u << 20), close(1u << 20);
   choose_footprint(clear, {4, 0.1f, 0, true});
