@@ -91,8 +91,10 @@ TEST(PointTheory, TheSkyViewFactorUnderARandomCanopyIsThatOfTheory) {
   struct Case {
     double area_index, opacity, expected;
   };
-  const Case cases[] = {{1, 1, 0.44321},    {2, 1, 0.21938},   {4, 1, 0.06027},  {2, 0.85, 0.26932},
-                        {3, 0.85, 0.15206}, {1, 0.2, 0.83258}, {4, 0.2, 0.51457}};
+  const Case cases[] = {{1, 1, 0.44321},    {2, 1, 0.21938},    {3, 1, 0.11348},
+                        {4, 1, 0.06027},    {1, 0.85, 0.49553}, {2, 0.85, 0.26932},
+                        {3, 0.85, 0.15206}, {4, 0.85, 0.08787}, {1, 0.2, 0.83258},
+                        {2, 0.2, 0.70389},  {3, 0.2, 0.60008},  {4, 0.2, 0.51457}};
   for (const Case& c : cases) {
     const Scene scene = canopy(c.area_index, static_cast<float>(c.opacity));
     for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
