@@ -22,6 +22,7 @@
 #include "commands/render_arguments.hpp"
 #include "commands/shot.hpp"
 #include "commands/statistics_text.hpp"
+#include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
 #include "film/film_memory.hpp"
@@ -245,6 +246,9 @@ void run_plan(RenderArguments a) {
   std::optional<double> seconds = a.frame;
   if (!a.frames.empty())
     seconds = static_cast<double>(parse_frames(a.frames).first) / frames_per_second(a);
+  if (options.max_bias > 0)
+    tell("note: the plan is for --footprint {}; --max-bias may choose a smaller one\n",
+         options.footprint);
   Shot shot(a, options);
   const Plan plan = plan_of(a, options, [&] { return shot.frame(seconds); });
   if (!a.stats_json.empty()) write_whole_file(a.stats_json, plan_json(plan).dump(2) + "\n");
