@@ -65,7 +65,7 @@ void catch_interruptions() {
     }
     keep_signal_handler(signal);
   }
-  keep_signal_handler(SIGQUIT);
+  keep_signal_handler(SIGQUIT);  // Ctrl-\ ends the process, as by default
 }
 
 Stop save_when_interrupted() {

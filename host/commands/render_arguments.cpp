@@ -194,18 +194,16 @@ void check_motion(const RenderArguments& a) {
 }
 
 /// Outputs are EXR files or a part, whatever their names; these names would deceive.
-void check_output_names(const RenderArguments& a) {
-  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".dapple"})
-    for (const auto& [flag, path] : {std::pair{"--output", a.output}, std::pair{"--deep", a.deep}})
-      if (path.ends_with(other) && !(path == a.output && is_part_path(path)))
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} is {}, but images are OpenEXR files (.exr); --png FILE "
-                                "writes a preview beside it",
-                                flag, path));
+void check_output_name(const char* flag, const std::string& path) {
+  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr"})
+    if (path.ends_with(other))
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} is {}, but images are OpenEXR files (.exr); --png FILE "
+                              "writes a preview beside it",
+                              flag, path));
 }
 
 /// A part is for dapple merge, which makes the image.
-
 void check_part(const RenderArguments& a, const RenderOptions& options) {
   const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
   if (!is_part_path(a.output)) {
@@ -330,7 +328,8 @@ RenderOptions to_options(const RenderArguments& a) {
     throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
-  check_output_names(a);
+  check_output_name("--output", a.output);
+  check_output_name("--deep", a.deep);
   check_part(a, o);
   check_motion(a);
   return o;

@@ -12,8 +12,8 @@ PixelElevation::PixelElevation(const Film& film) : height_(static_cast<float>(fi
   const V3f size(static_cast<float>(film.width), height_, 1);
   has_camera_ = to_ndc[0][0] > 0 && to_ndc[1][1] < 0;
   if (!has_camera_) return;
-  // x / w = z * to_ndc[0][0] ... + to_ndc[2][0]: solved for the direction of z = 1. A parallel
-  // projection looks along z everywhere.
+  // A perspective camera has w = z, so at z = 1 the picture's x is x * to_ndc[0][0] + to_ndc[2][0];
+  // this is the inverse. A parallel camera looks along z everywhere.
   const bool perspective = to_ndc[2][3] > 0;
   for (int k = 0; k < 2; ++k) {
     scale_[k] = perspective ? 1 / (size[k] * to_ndc[k][k]) : 0.0f;

@@ -17,7 +17,7 @@ float automatic_exposure(const Film& film);
 /// without its allowance for reflections.
 V3f tone_mapped(V3f color);
 
-/// The colour of a sky over a hazy plain, linear; `elevation` is the sine of the angle above the
+/// The colour of a sky above a grey plain, linear; `elevation` is the sine of the angle above the
 /// horizon, [-1,1].
 V3f backdrop_color(float elevation);
 

@@ -103,12 +103,15 @@ TEST(HardScenes, AClosedTunnelIsBlackToTheLastBit) {
   }
 }
 
+/// All that such a scene holds are walls, which are opened: what differs is rounding.
+constexpr double kSame = 1e-5;
+
 TEST(HardScenes, AnOpenTunnel) {
   Scene scene = test::scene_of(tunnel(10));
   const RenderOptions options = seen_from({0, 1, 0.5f}, {0.1f, 0.9f, 9});
-  expect_close(difference(scene, options, "ao"), 0.002, 0.004, 0.004);
+  expect_close(difference(scene, options, "ao"), kSame, kSame, kSame);
   scene.lights.push_back(lamp({0, 1, 10}, {0, 0, -1}));
-  expect_close(difference(scene, options, "light.lamp"), 0.001, 0.004, 0.004, std::acos(-1.0));
+  expect_close(difference(scene, options, "light.lamp"), kSame, kSame, kSame, std::acos(-1.0));
 }
 
 TEST(HardScenes, ARoomWithOneWindow) {
@@ -117,8 +120,8 @@ TEST(HardScenes, ARoomWithOneWindow) {
   append_wall(mesh, {-1, 0, 4}, {2, 0, 0}, {0, 2, 0},
               [](int i, int j) { return i >= 20 && i < 32 && j >= 24 && j < 40; });
   const Scene scene = test::scene_of(std::move(mesh));
-  expect_close(difference(scene, seen_from({0.7f, 1.6f, 3.7f}, {-0.3f, 0.6f, 0}), "ao"), 0.002,
-               0.004, 0.004);
+  expect_close(difference(scene, seen_from({0.7f, 1.6f, 3.7f}, {-0.3f, 0.6f, 0}), "ao"), kSame,
+               kSame, kSame);
 }
 
 // Slats are regular, so what one of them lets through the next one stops or not for all rays alike:
