@@ -125,10 +125,10 @@ void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
 
 /// Part of a camera sample's footprint that one texture lookup averages: without filter taps, and
 /// as one of four filter taps.
-constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.35f;
+constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.175f;
 
-/// Part of a camera sample's footprint that the four filter taps cover together: experiment 402.
-constexpr float kTapShare = 1.5f;
+/// Part of a camera sample's footprint that the four filter taps cover together: experiments 402, 446.
+constexpr float kTapShare = 0.75f;
 
 /// With filter taps, the maximum part of a pixel's area that one lookup averages, and that the four
 /// taps cover together, however large footprints are.
@@ -228,6 +228,14 @@ float pixel_width(const View& view, const V3f& at) {
   const float width = 2 * half_extent(view).y / static_cast<float>(view.height);
   const V3f from = view.camera.to_world.translation();
   return view.camera.kind == Camera::Kind::orthographic ? width : width * (at - from).length();
+}
+
+Viewpoint viewpoint(const View& view) {
+  const M44f& m = view.camera.to_world;
+  const bool perspective = view.camera.kind == Camera::Kind::perspective;
+  const V3f at =
+      perspective ? V3f(m[3][0], m[3][1], m[3][2]) : V3f(m[2][0], m[2][1], m[2][2]).normalized();
+  return {{at.x, at.y, at.z}, perspective ? 1.0f : 0.0f, 1};
 }
 
 CameraParams camera_params(const View& view, const RenderOptions& options, const Box3f& bounds) {

@@ -33,6 +33,9 @@ View choose_view(const Scene& scene, const RenderOptions& options, std::vector<s
 /// space.
 CameraParams camera_params(const View& view, const RenderOptions& options, const Box3f& bounds);
 
+/// Where the surface points of a picture are seen from.
+Viewpoint viewpoint(const View& view);
+
 /// How a camera ray averages textures; the fields are those of CameraParams. Zeros: it does not.
 struct TexelFootprint {
   float share = 0, tap_offset = 0, tap_centring = 0;

@@ -42,7 +42,7 @@ BiasPilot::BiasPilot(DeviceContext& context, const DeviceBuffers& scene, const V
       scene_(scene),
       options_(options),
       layout_(layout),
-      picture_rays_(context, scene, options, layout),
+      picture_rays_(context, scene, view, options, layout),
       camera_(camera),
       grid_(view),
       order_(spread_units(grid_)),

@@ -50,7 +50,7 @@ class PictureTracer {
         scene_(*scene.buffers),
         options_(options),
         layout_(layout),
-        rays_(context_, scene_, options, layout),
+        rays_(context_, scene_, view, options, layout),
         light_count_(layout.lights.size()),
         width_(view.crop.width()),
         camera_(camera_params(view, options, scene_.bounds)),

@@ -17,6 +17,7 @@ OcclusionParams PictureRays::make_ao(const Queues& queues, std::uint32_t hits) c
       options_.ao_distance > 0 ? options_.ao_distance : std::numeric_limits<float>::infinity();
   ao.seed = options_.seed;
   ao.shaded = shaded_;
+  ao.viewpoint = viewpoint_;
   ao_ray_pass(context_, queues, ao);
   OcclusionParams params = occlusion_params(hits, options_.ao_rays);
   if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
@@ -36,6 +37,7 @@ OcclusionParams PictureRays::make_light(const Queues& queues, std::uint32_t ligh
   params.light = light;
   params.seed = options_.seed;
   params.shaded = shaded_;
+  params.viewpoint = viewpoint_;
   light_ray_pass(context_, scene_, queues, params);
   return occlusion_params(hits, options_.light_rays);
 }

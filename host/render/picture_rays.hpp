@@ -2,6 +2,7 @@
 // and the list of hits. Out: queues with rays, and the parameters of the pass that traces them.
 #pragma once
 
+#include "camera/view.hpp"
 #include "dapple/options.hpp"
 #include "device/upload/scene_upload.hpp"
 #include "film/film_sums.hpp"
@@ -13,9 +14,13 @@ namespace dapple {
 class PictureRays {
  public:
   /// `options`: by_sample().
-  PictureRays(DeviceContext& context, const DeviceBuffers& scene, const RenderOptions& options,
-              const FilmLayout& layout)
-      : context_(context), scene_(scene), options_(options), shaded_(layout.normals ? 1u : 0u) {}
+  PictureRays(DeviceContext& context, const DeviceBuffers& scene, const View& view,
+              const RenderOptions& options, const FilmLayout& layout)
+      : context_(context),
+        scene_(scene),
+        options_(options),
+        viewpoint_(viewpoint(view)),
+        shaded_(layout.normals ? 1u : 0u) {}
 
   /// AO rays of `hits` points.
   OcclusionParams make_ao(const Queues& queues, std::uint32_t hits) const;
@@ -28,6 +33,7 @@ class PictureRays {
   DeviceContext& context_;
   const DeviceBuffers& scene_;
   const RenderOptions& options_;
+  Viewpoint viewpoint_;
   uint shaded_;
 };
 

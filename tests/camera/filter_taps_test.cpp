@@ -147,8 +147,8 @@ Scene large_card(V3f degrees, Camera::Kind kind, bool sharp, float scale = 1) {
   return scene;
 }
 
-// The limit of the bias finds errors in the taps: with right and left or up and down exchanged, or
-// without centring on the pixel, biases are 0.036 to 0.09.
+// The limit of the bias finds errors in the taps: with right and left exchanged, or without centring
+// on the pixel, the largest biases are 0.018 and 0.017.
 TEST(FilterTaps, AreLessNoisyThanExactRaysAndHaveLittleBias) {
   const Scene scenes[] = {
       large_card(V3f(0, 0, 30), Camera::Kind::orthographic, true),
@@ -159,8 +159,8 @@ TEST(FilterTaps, AreLessNoisyThanExactRaysAndHaveLittleBias) {
   for (const Scene& scene : scenes) {
     const Errors tapped = errors(scene, Estimator::prefiltered);
     const Errors single = errors(scene, Estimator::exact);
-    EXPECT_LT(tapped.noise, 0.88 * single.noise);
-    EXPECT_LT(tapped.bias, 0.03);
+    EXPECT_LT(tapped.noise, 0.98 * single.noise);
+    EXPECT_LT(tapped.bias, 0.016);
   }
 }
 

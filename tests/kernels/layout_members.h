@@ -82,14 +82,16 @@
   MEMBER(CameraParams, seen_left)                                                            \
   MEMBER(CameraParams, seen_above) MEMBER(CameraParams, seen_right)                          \
   MEMBER(CameraParams, seen_below)                                                           \
+  STRUCT(Viewpoint)                                                                          \
+  MEMBER(Viewpoint, at) MEMBER(Viewpoint, to_points) MEMBER(Viewpoint, is_known)             \
   STRUCT(AoParams)                                                                           \
   MEMBER(AoParams, point_count) MEMBER(AoParams, rays) MEMBER(AoParams, inverse_count)       \
   MEMBER(AoParams, t_max) MEMBER(AoParams, seed) MEMBER(AoParams, whole_sets)                \
-  MEMBER(AoParams, shaded)                                                                   \
+  MEMBER(AoParams, shaded) MEMBER(AoParams, viewpoint)                                       \
   STRUCT(LightParams)                                                                        \
   MEMBER(LightParams, point_count) MEMBER(LightParams, rays)                                 \
   MEMBER(LightParams, inverse_count) MEMBER(LightParams, light) MEMBER(LightParams, seed)    \
-  MEMBER(LightParams, shaded)                                                                \
+  MEMBER(LightParams, shaded) MEMBER(LightParams, viewpoint)                                 \
   STRUCT(ResolveParams)                                                                      \
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \

@@ -118,3 +118,22 @@ __kernel void shares(__global const float* ascending, __global const float* numb
   const uint step = find_share(ascending, share_count, &within);
   vstore2((float2)((float)step, within), item, places);
 }
+
+/* Solid angles of rays from `origin`, 1 steradian before, after keep_clear_of_view(). Each item uses the
+   next of sixteen lanes. */
+__kernel void clear_of_view(__global const float* directions, __global const float* origin,
+                            Viewpoint from, __global float* solid_angles, uint count) {
+  const uint item = get_global_id(0), lane = item % DAPPLE_RAY_LANES;
+  if (item >= count) return;
+  PointRays rays;
+  RayDirections aimed;
+  for (uint axis = 0; axis < 3u; ++axis) {
+    rays.origin[axis].v = (float16)(0.0f);
+    rays.origin[axis].f[lane] = origin[axis];
+    aimed.direction[axis].v = (float16)(axis == 2u ? 1.0f : 0.0f);
+    aimed.direction[axis].f[lane] = directions[3u * item + axis];
+  }
+  aimed.solid_angle.v = (float16)(1.0f);
+  keep_clear_of_view(&rays, from, &aimed);
+  solid_angles[item] = aimed.solid_angle.f[lane];
+}

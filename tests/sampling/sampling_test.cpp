@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "dapple/shared/pass_params.h"
 #include "support/random_direction.hpp"
 #include "support/test_kernel.hpp"
 
@@ -248,6 +249,27 @@ TEST(Sampling, ConeDirectionsStayInTheConeAndFillItUniformly) {
     const V3d aside = sum - V3d(axis) * sum.dot(V3d(axis));
     EXPECT_LT(aside.length(), 1e-3 * std::sqrt(one_minus_cos)) << "the mean is off the axis";
   }
+}
+
+TEST(Sampling, FootprintsKeepClearOfTheLineOfSight) {
+  const std::vector<V3f> directions = {
+      {0, 0, 1}, {std::sqrt(0.75f), 0, 0.5f}, {0, 1, 0}, {0, 0, -1}, {0.6f, 0, -0.8f}};
+  const auto solid_angles = [&](const V3f& origin, const Viewpoint& from) {
+    const Buffer found = device().allocate(directions.size() * sizeof(float));
+    run("sampling", "clear_of_view", directions.size(),
+        {upload(directions), upload(std::vector<V3f>{origin}), from, found,
+         static_cast<uint>(directions.size())});
+    return download<float>(found, directions.size());
+  };
+  // 0.8 tan^2 of half the angles 0, 60, 90, 180 and 143 degrees; at most the ray's own, 1.
+  const std::vector<float> wanted = {0, 0.8f / 3, 0.8f, 1, 1};
+  const Viewpoint lens{{1, 2, 7}, 1, 1}, parallel{{0, 0, 1}, 0, 1}, unknown{{1, 2, 7}, 1, 0};
+  for (const auto& found : {solid_angles({1, 2, 3}, lens), solid_angles({5, 5, 5}, parallel)}) {
+    for (std::size_t i = 0; i < directions.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-6f);
+  }
+  EXPECT_EQ(solid_angles({1, 2, 7}, lens), std::vector<float>(directions.size(), 0.0f))
+      << "at the lens itself there is no angle";
+  EXPECT_EQ(solid_angles({1, 2, 3}, unknown), std::vector<float>(directions.size(), 1.0f));
 }
 
 }  // namespace

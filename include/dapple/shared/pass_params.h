@@ -82,6 +82,14 @@ typedef struct CameraParams {
   uint seen_left, seen_above, seen_right, seen_below;
 } CameraParams;
 
+/* Where points were seen from. The vector from a point P to there is at - to_points * P: that to the
+   middle of the lens, or against the viewing direction of an orthographic camera. */
+typedef struct Viewpoint {
+  float at[3];     /* world space */
+  float to_points; /* 1: perspective; 0: orthographic */
+  uint is_known;   /* 0: the points come from a caller, and nothing is known to be free */
+} Viewpoint;
+
 /* AO rays from points: those that the camera pass found, or those of a caller. */
 typedef struct AoParams {
   uint point_count;    /* entries of the active list; without such a list, points */
@@ -92,6 +100,7 @@ typedef struct AoParams {
   uint whole_sets; /* 1: a point has no other rays, and its sample is 0. The directions are
                       then points of a Vogel spiral of that number of points. */
   uint shaded;     /* 1: the shading pass set SurfacePoint::t */
+  Viewpoint viewpoint;
 } AoParams;
 
 typedef struct LightParams {
@@ -101,6 +110,7 @@ typedef struct LightParams {
   uint light; /* index of the LightRecord */
   uint seed;
   uint shaded; /* as in AoParams */
+  Viewpoint viewpoint;
 } LightParams;
 
 /* Adds the samples of each pixel to planes of 64-bit fixed-point numbers. Each scale is a power of
