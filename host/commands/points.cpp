@@ -171,9 +171,10 @@ void run_points(const Arguments& a) {
   ProgressBar progress(a.quiet, "measuring");
   RenderControl control;
   control.progress = progress.callback();
-  const PointResult result =
+  PointResult result =
       measure_points(std::move(scene), list.points, list.normals, options, control);
   progress.clear();
+  result.notes.insert(result.notes.begin(), list.notes.begin(), list.notes.end());
   write_points(a.output, list, result.columns);
   const double seconds = total.seconds();
   if (!a.stats_json.empty()) {

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "dapple/error.hpp"
@@ -36,12 +37,6 @@ bool parse(std::string_view cell, double& value) {
 
 }  // namespace
 
-int NumberTable::find(const std::string& name) const {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return static_cast<int>(i);
-  return -1;
-}
-
 NumberTable read_csv(const std::string& path) {
   const auto bytes = gltf::read_file(path, path);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -66,11 +61,11 @@ NumberTable read_csv(const std::string& path) {
     if (cells.size() != table.columns)
       throw Error(ErrorKind::input, fmt::format("{}: line {} has {} columns, the first one has {}",
                                                 path, number, cells.size(), table.columns));
-    for (const std::string_view cell : cells) {
-      if (!parse(cell, value))
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: line {}: \"{}\" is not a number", path, number, cell));
-      table.values.push_back(value);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const bool is_number = parse(cells[c], value);
+      table.values.push_back(is_number ? value : std::numeric_limits<double>::quiet_NaN());
+      if (!is_number && !cells[c].empty())
+        table.text.try_emplace(c, TextCell{number, std::string(cells[c])});
     }
   }
   return table;
@@ -80,8 +75,11 @@ std::string csv_bytes(const NumberTable& table) {
   std::string text;
   for (std::size_t c = 0; c < table.columns; ++c) text += (c > 0 ? "," : "") + table.names[c];
   text += '\n';
+  const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < table.values.size(); ++i) {
-    fmt::format_to(std::back_inserter(text), "{}", static_cast<float>(table.values[i]));
+    const double value = table.values[i];
+    const auto single = static_cast<float>(value);
+    double{single} == value ? fmt::format_to(out, "{}", single) : fmt::format_to(out, "{}", value);
     text += (i + 1) % table.columns == 0 ? '\n' : ',';
   }
   return text;

@@ -130,21 +130,21 @@ NumberTable read_npy(const std::string& path) {
 
 std::string npy_bytes(const NumberTable& table) {
   std::string fields;
-  for (const std::string& name : table.names) fields += fmt::format("('{}', '<f4'), ", name);
+  bool is_ascii = true;
+  for (std::size_t c = 0; c < table.columns; ++c) {
+    fields += fmt::format("('{}', '{}'), ", table.names[c], table.is_single(c) ? "<f4" : "<f8");
+    for (const char letter : table.names[c]) is_ascii &= static_cast<unsigned char>(letter) < 128;
+  }
   std::string header = fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({},), }}",
                                    fields, table.rows());
   header.append(63 - (12 + header.size()) % 64, ' ');
   header += '\n';
-  std::string bytes = "\x93NUMPY\x02";
+  std::string bytes = "\x93NUMPY";
+  bytes += is_ascii ? '\x02' : '\x03';  // a header of version 3 is UTF-8
   bytes += '\0';
   const auto length = static_cast<std::uint32_t>(header.size());
   bytes.append(reinterpret_cast<const char*>(&length), 4);
-  bytes += header;
-  for (const double value : table.values) {
-    const auto single = static_cast<float>(value);
-    bytes.append(reinterpret_cast<const char*>(&single), 4);
-  }
-  return bytes;
+  return bytes + header + little_endian_rows(table);
 }
 
 }  // namespace dapple

@@ -132,13 +132,10 @@ NumberTable read_ply(const std::string& path) {
 std::string ply_bytes(const NumberTable& table) {
   std::string bytes =
       fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", table.rows());
-  for (const std::string& name : table.names) bytes += "property float " + name + "\n";
-  bytes += "end_header\n";
-  for (const double value : table.values) {
-    const auto single = static_cast<float>(value);
-    bytes.append(reinterpret_cast<const char*>(&single), 4);
-  }
-  return bytes;
+  for (std::size_t c = 0; c < table.columns; ++c)
+    bytes +=
+        fmt::format("property {} {}\n", table.is_single(c) ? "float" : "double", table.names[c]);
+  return bytes + "end_header\n" + little_endian_rows(table);
 }
 
 }  // namespace dapple

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
@@ -14,6 +16,8 @@
 
 namespace dapple {
 namespace {
+
+constexpr const char* kPointNames[] = {"x", "y", "z", "nx", "ny", "nz"};
 
 std::string ending(const std::string& path) {
   return std::filesystem::path(path).extension().string();
@@ -38,6 +42,9 @@ class VectorColumns {
     }
   }
   [[nodiscard]] bool exist() const { return exists_; }
+  [[nodiscard]] bool include(std::size_t column) const {
+    return exists_ && std::ranges::count(column_, static_cast<int>(column)) > 0;
+  }
   [[nodiscard]] V3d at(std::size_t row) const {
     const auto value = [&](std::size_t k) {
       return table_.values[row * table_.columns + static_cast<std::size_t>(column_[k])];
@@ -50,6 +57,45 @@ class VectorColumns {
   int column_[3] = {-1, -1, -1};
   bool exists_ = true;
 };
+
+/// Throws if the column must hold numbers and does not.
+void check_number(const std::string& path, const NumberTable& table, std::size_t column) {
+  const auto found = table.text.find(column);
+  if (found != table.text.end())
+    throw Error(ErrorKind::input, fmt::format("{}: line {}: \"{}\" is not a number", path,
+                                              found->second.line, found->second.text));
+}
+
+/// A name that every format can hold: without separators, quotes and control characters, and
+/// unlike the names before it.
+std::string column_name(const NumberTable& table, std::size_t column, const PointList& list) {
+  std::string name = column < table.names.size() ? table.names[column] : "";
+  for (char& letter : name)
+    if (static_cast<unsigned char>(letter) <= ' ' ||
+        std::string_view(",;\"'\\\x7f").find(letter) != std::string_view::npos)
+      letter = '_';
+  const bool is_taken = std::ranges::count(list.extra, name, &ExtraColumn::name) > 0;
+  return name.empty() || is_taken ? fmt::format("column_{}", column + 1) : name;
+}
+
+/// Columns that are neither positions nor normals.
+void read_extra(const std::string& path, const NumberTable& table, const VectorColumns& positions,
+                const VectorColumns& normals, PointList& list) {
+  for (std::size_t c = 0; c < table.columns; ++c) {
+    if (positions.include(c) || normals.include(c)) continue;
+    ExtraColumn extra{column_name(table, c, list), {}};
+    const auto text = table.text.find(c);
+    if (text != table.text.end()) {
+      list.notes.push_back(
+          fmt::format("{}: the column {} holds text (\"{}\" in line {}) and is left out", path,
+                      extra.name, text->second.text, text->second.line));
+      continue;
+    }
+    for (std::size_t i = c; i < table.values.size(); i += table.columns)
+      extra.values.push_back(table.values[i]);
+    list.extra.push_back(std::move(extra));
+  }
+}
 
 void check_finite(const std::string& path, std::size_t row, const V3d& value) {
   if (std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) return;
@@ -81,6 +127,9 @@ PointList read_points(const std::string& path) {
   if (table.rows() == 0) return list;
   if (!positions.exist())
     throw Error(ErrorKind::input, path + ": needs the columns x, y, z (and nx, ny, nz)");
+  for (std::size_t c = 0; c < table.columns; ++c)
+    if (positions.include(c) || normals.include(c)) check_number(path, table, c);
+  read_extra(path, table, positions, normals, list);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const V3d position = positions.at(row);
     const V3d normal = normals.exist() ? normals.at(row) : V3d(0, 1, 0);
@@ -107,6 +156,11 @@ std::vector<SunDirection> read_suns(const std::string& path) {
   if (irradiance < 0 || !(angles || directions.exist()))
     throw Error(ErrorKind::input,
                 path + ": needs a line of names: azimuth,elevation,irradiance or x,y,z,irradiance");
+  for (std::size_t c = 0; c < table.columns; ++c) {
+    const bool is_angle = angles && (std::cmp_equal(c, azimuth) || std::cmp_equal(c, elevation));
+    if (std::cmp_equal(c, irradiance) || is_angle || (!angles && directions.include(c)))
+      check_number(path, table, c);
+  }
   std::vector<SunDirection> suns;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double* values = &table.values[row * table.columns];
@@ -131,16 +185,23 @@ void check_point_output(const std::string& path) {
 }
 
 void write_points(const std::string& path, const PointList& list,
-                  const std::vector<PointColumn>& columns) {
+                  const std::vector<PointColumn>& results) {
+  std::vector<const ExtraColumn*> extra;
+  for (const ExtraColumn& column : list.extra)
+    if (std::ranges::count(kPointNames, column.name) == 0 &&
+        std::ranges::count(results, column.name, &PointColumn::name) == 0)
+      extra.push_back(&column);
   NumberTable table;
-  table.names = {"x", "y", "z", "nx", "ny", "nz"};
-  for (const PointColumn& column : columns) table.names.push_back(column.name);
+  table.names.assign(std::begin(kPointNames), std::end(kPointNames));
+  for (const ExtraColumn* column : extra) table.names.push_back(column->name);
+  for (const PointColumn& column : results) table.names.push_back(column.name);
   table.columns = table.names.size();
   table.values.reserve(table.columns * list.points.size());
   for (std::size_t i = 0; i < list.points.size(); ++i) {
     for (const V3f& v : {list.points[i], list.normals[i]})
       table.values.insert(table.values.end(), {double{v.x}, double{v.y}, double{v.z}});
-    for (const PointColumn& column : columns) table.values.push_back(double{column.values[i]});
+    for (const ExtraColumn* column : extra) table.values.push_back(column->values[i]);
+    for (const PointColumn& column : results) table.values.push_back(double{column.values[i]});
   }
   check_point_output(path);
   const std::string type = ending(path);

@@ -9,9 +9,17 @@
 
 namespace dapple {
 
+/// A column of a points file that is not read, only written again, such as a sensor's number.
+struct ExtraColumn {
+  std::string name;
+  std::vector<double> values;
+};
+
 struct PointList {
   std::vector<V3f> points;
   std::vector<V3f> normals;  ///< unit; +Y where the file has none
+  std::vector<ExtraColumn> extra;
+  std::vector<std::string> notes;  ///< such as columns that were left out
 };
 
 /// Reads columns x, y, z and, if there are, nx, ny, nz:
@@ -19,7 +27,9 @@ struct PointList {
 /// - .npy: a 2-dimensional array of 3 or 6 columns of float32 or float64, in C order, or a
 ///   structured array with these names
 /// - .ply: element vertex, ascii or binary_little_endian
-/// Normals are scaled to length 1. Throws Error input, "PATH: ..." with the line or row.
+/// Normals are scaled to length 1. Other columns of numbers are `extra`, under their names or as
+/// column_N, N from 1; of columns of text there is a note. Throws Error input, "PATH: ..." with the
+/// line or row.
 PointList read_points(const std::string& path);
 
 /// Reads suns: x, y, z (towards the sun) or azimuth, elevation (degrees; azimuth from -Z, north,
@@ -29,9 +39,10 @@ std::vector<SunDirection> read_suns(const std::string& path);
 /// Throws Error usage unless write_points() can write a file with this ending.
 void check_point_output(const std::string& path);
 
-/// Writes x, y, z, nx, ny, nz and the columns: text (.csv), a structured array of float32 (.npy),
-/// or a binary PLY. Throws Error usage for other endings, failed if the file cannot be written.
+/// Writes x, y, z, nx, ny, nz, the extra columns that have no result's name, and the results:
+/// text (.csv), a structured array (.npy), or a binary PLY. Throws Error usage for other endings,
+/// failed if the file cannot be written.
 void write_points(const std::string& path, const PointList& list,
-                  const std::vector<PointColumn>& columns);
+                  const std::vector<PointColumn>& results);
 
 }  // namespace dapple

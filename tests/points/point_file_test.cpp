@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -72,6 +73,45 @@ TEST_F(PointFile, CsvMayHaveNamesCommentsAndAnySeparator) {
   EXPECT_EQ(plain.points.at(0), V3f(1, 2, 3));
   EXPECT_EQ(plain.normals.at(0), V3f(0, 0, -1));
   EXPECT_TRUE(read_points(write("e.csv", "")).points.empty());
+}
+
+TEST_F(PointFile, OtherColumnsOfNumbersAreWrittenAgainInAllThreeFormats) {
+  const PointList list = read_points(write(
+      "n.csv", "plot no;x;y;z;id;ao;plot no;\n0.1;1;2;3;16777217;0.9;5;\n;4;5;6;8;0.8;6;7\n"));
+  ASSERT_EQ(list.extra.size(), 5u);
+  EXPECT_TRUE(list.notes.empty());
+  for (const char* name : {"a.csv", "a.npy", "a.ply"}) {
+    write_points(path(name), list, {{"ao", {0.25f, 0.5f}}});
+    const PointList again = read_points(path(name));
+    ASSERT_EQ(again.extra.size(), 5u) << name;
+    EXPECT_EQ(again.extra[0].name, "plot_no") << name;
+    EXPECT_EQ(again.extra[0].values[0], 0.1) << name;
+    EXPECT_TRUE(std::isnan(again.extra[0].values[1])) << name;
+    EXPECT_EQ(again.extra[1].name, "id") << name;
+    EXPECT_EQ(again.extra[1].values, (std::vector<double>{16777217, 8})) << name;
+    EXPECT_EQ(again.extra[2].name, "column_7") << name << ": its own name was taken";
+    EXPECT_EQ(again.extra[3].name, "column_8") << name;
+    EXPECT_EQ(again.extra[4].name, "ao") << name;
+    EXPECT_EQ(again.extra[4].values, (std::vector<double>{0.25, 0.5})) << name << ": the result";
+  }
+  const PointList plain = read_points(write("p.csv", "1 2 3 7\n"));
+  ASSERT_EQ(plain.extra.size(), 1u);
+  EXPECT_EQ(plain.extra[0].name, "column_4");
+  EXPECT_EQ(plain.extra[0].values, std::vector<double>{7});
+}
+
+TEST_F(PointFile, ColumnsOfTextAreLeftOutWithANote) {
+  const PointList list = read_points(write("n.csv", "plot,x,y,z,id\nA1,1,2,3,4\n"));
+  ASSERT_EQ(list.extra.size(), 1u);
+  EXPECT_EQ(list.extra[0].name, "id");
+  ASSERT_EQ(list.notes.size(), 1u);
+  EXPECT_NE(list.notes[0].find("plot holds text (\"A1\" in line 2)"), std::string::npos)
+      << list.notes[0];
+  const std::vector<SunDirection> suns =
+      read_suns(write("s.csv", "time,azimuth,elevation,irradiance\n2026-06-21 12:00,180,63,800\n"));
+  ASSERT_EQ(suns.size(), 1u);
+  EXPECT_EQ(suns[0].irradiance, 800);
+  EXPECT_THROW(read_suns(write("t.csv", "azimuth,elevation,irradiance\n180,63,high\n")), Error);
 }
 
 TEST_F(PointFile, NormalsOfAnyLengthBecomeUnit) {
