@@ -1,4 +1,5 @@
-// How much of a bake is done, and whether it is to stop.
+// The progress of a bake. In: numbers of samples that are finished, and the caller's functions.
+// Out: a fraction for the caller's progress function, and whether the caller asks to stop.
 #pragma once
 
 #include <algorithm>

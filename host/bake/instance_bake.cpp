@@ -105,6 +105,9 @@ std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptio
   InstanceSums ao(count, 0), light(count, tracing.lights);
   if (!trace_instances(scene, options, tracing, false, ao)) return {};
   if (tracing.light && !trace_instances(scene, options, tracing, true, light)) return {};
+  tracing.statistics.instances = count;
+  for (const Mesh& mesh : scene.meshes)
+    if (!mesh.has_strands()) tracing.statistics.triangles += mesh.primitive_count();
   InstanceValues values{std::vector<float>(count, 1.0f), std::move(light.light)};
   for (std::size_t i = 0; i < count; ++i) {
     if (!(ao.count[i] > 0)) continue;

@@ -1,5 +1,5 @@
-// The mean ambient occlusion, or irradiance, of each instance of a scene. In: a scene and what
-// traces. Out: a value for each instance.
+// Bakes the mean ambient occlusion, or irradiance, of each instance of a scene. In: a scene, and
+// functions that trace samples. Out: a value for each instance.
 #pragma once
 
 #include <optional>

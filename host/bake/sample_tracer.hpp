@@ -1,6 +1,6 @@
-// What is traced at samples: AO with bent normals, or lights. In: samples of a mesh and the
-// matrices of its placements. Out: a value for each sample and side. What traces the rays is a
-// function, so that others than dapple can be compared.
+// Traces samples: AO with bent normals, or lights. In: samples of a mesh, and the matrices of its
+// placements. Out: a value for each sample and side. The rays are traced by a function that the
+// caller gives, so that other ray tracers can be compared.
 #pragma once
 
 #include <functional>

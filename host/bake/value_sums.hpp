@@ -1,6 +1,6 @@
-// From what was found at samples to values of places: vertices or texels. In: AO and bent normals,
-// or irradiance, of samples, both sides. Out: one value for each place, and how many more samples
-// it needs.
+// Turns results at samples into values of places, which are vertices or texels. In: AO and bent
+// normals, or irradiance, of both sides of each sample. Out: one value for each place, and how many
+// more samples it needs.
 #pragma once
 
 #include <span>

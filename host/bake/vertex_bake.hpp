@@ -1,6 +1,6 @@
-// Values at the vertices of one mesh, in rounds: a sample of each triangle, then more where the
-// values are uncertain. In: a mesh, its placements and what traces. Out: AO, bent normals and
-// irradiance.
+// Bakes the vertices of one mesh in rounds: it takes a sample of each triangle, then more where the
+// values are uncertain. In: a mesh, its placements, and functions that trace samples. Out: AO, bent
+// normals and irradiance at vertices.
 #pragma once
 
 #include <optional>

@@ -144,6 +144,23 @@ void choose_lights(const BakeArguments& a, Scene& scene, BakeOptions& options) {
   (a.lights.empty() ? scene.lights : options.lights).push_back(std::move(dome));
 }
 
+std::vector<Scene> load_occluders(const BakeArguments& a) {
+  std::vector<Scene> occluders;
+  for (const std::string& path : a.occluders)
+    occluders.push_back(load_scene(path, a.scene_options));
+  return occluders;
+}
+
+std::vector<std::string> files_read(const BakeArguments& a, const Scene& scene,
+                                    const std::vector<Scene>& occluders) {
+  std::vector<std::string> files = scene.files;
+  for (const Scene& occluder : occluders)
+    files.insert(files.end(), occluder.files.begin(), occluder.files.end());
+  for (const std::string& path : {a.lights, a.dome})
+    if (!path.empty()) files.push_back(path);
+  return files;
+}
+
 RenderControl to_control(const BakeArguments& a, ProgressBar& progress) {
   RenderControl control;
   control.progress = progress.callback();
@@ -172,8 +189,9 @@ std::string choose_layout(const gltf::SourceFile& file, const Scene& scene, cons
   return chosen.note.empty() ? "" : chosen.note + ": the texture has coordinates of its own";
 }
 
-void run_bake(const BakeArguments& a) {
+void run_bake(const CLI::App& app, const BakeArguments& a) {
   BakeOptions options = to_options(a);
+  refuse_options_without_effect(app, options);
   const std::vector<OutputPath> outputs = named_outputs(a, options);
   if (a.scene.ends_with(".hair"))
     throw Error(ErrorKind::usage, a.scene + ": strands cannot be baked; only glTF files can");
@@ -185,14 +203,13 @@ void run_bake(const BakeArguments& a) {
   std::optional<SceneFile> input(std::in_place, a.scene, a.output);
   Scene scene = load_gltf(input->path(), a.scene_options);
   if (!input->lights().empty()) scene.lights = input->lights();
-  check_outputs_spare(outputs, scene.files);
-  std::vector<Scene> occluders;
-  for (const std::string& path : a.occluders)
-    occluders.push_back(load_scene(path, a.scene_options));
+  const std::vector<Scene> occluders = load_occluders(a);
+  const std::vector<std::string> inputs = files_read(a, scene, occluders);
+  check_outputs_spare(outputs, inputs);
   gltf::SourceFile file(input->path(), a.scene_options.allow_outside);
   input.reset();  // all of it is in memory
   if (a.instances == "unique") make_meshes_unique(file, scene);
-  check_outputs_spare(side_outputs(file, a, options), scene.files);
+  check_outputs_spare(side_outputs(file, a, options), inputs);
   if (options.light) choose_lights(a, scene, options);
   if (options.vertices) check_channel(file, scene, parse_channel(a.channel));
   std::uint32_t uv_set = 0;
@@ -212,6 +229,10 @@ void run_bake(const BakeArguments& a) {
   std::vector<std::string>& notes = result.statistics.notes;
   if (!layout_note.empty()) notes.push_back(layout_note);
   if (options.texture) notes.push_back(texture_note(result.texture));
+  if (options.vertices && parse_channel(a.channel).components == "a")
+    notes.push_back(
+        "COLOR_0.a is opacity in glTF: where AO is low, viewers show masked and blended "
+        "materials more transparent");
   notes.insert(notes.end(), scene.warnings.begin(), scene.warnings.end());
   if (!a.stats_json.empty()) write_statistics(result.statistics, seconds, a.stats_json);
   if (!a.quiet) print_summary(result.statistics, seconds, a.output);
@@ -224,7 +245,7 @@ void run_bake(const BakeArguments& a) {
 Run add_bake_command(CLI::App& app) {
   auto a = std::make_shared<BakeArguments>();
   add_bake_options(app, *a);
-  return [a] { run_bake(*a); };
+  return [a, &app] { run_bake(app, *a); };
 }
 
 }  // namespace dapple

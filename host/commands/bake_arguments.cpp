@@ -167,6 +167,18 @@ void add_bake_options(CLI::App& app, BakeArguments& a) {
       "  dapple bake forest.glb -o forest_ao.glb --to instance");
 }
 
+void refuse_options_without_effect(const CLI::App& app, const BakeOptions& options) {
+  const auto need = [&app](bool met, const char* needed, std::initializer_list<const char*> flags) {
+    for (const char* flag : flags)
+      if (!met && app.count(flag) > 0)
+        throw Error(ErrorKind::usage, fmt::format("{} needs {}", flag, needed));
+  };
+  need(options.vertices, "--to vertex", {"--channel", "--bent-channel", "--blend", "--at"});
+  need(options.texture, "--to texture", {"--size", "--bits", "--margin", "--uv"});
+  need(options.bent, "--passes ao,bent", {"--bent-channel"});
+  need(options.light, "--passes ao,light", {"--lights", "--dome", "--light-rays"});
+}
+
 BakeOptions to_options(const BakeArguments& a) {
   BakeOptions o = a.options;
   enum class To { vertex, texture, instance };
@@ -197,9 +209,6 @@ BakeOptions to_options(const BakeArguments& a) {
   if (o.instances && o.bent)
     throw Error(ErrorKind::usage,
                 "--passes bent needs --to vertex or texture: an instance has one AO value");
-  if ((!a.lights.empty() || !a.dome.empty()) && !o.light)
-    throw Error(ErrorKind::usage, "--lights and --dome need --passes ao,light");
-  if (o.texture && o.at_vertices) throw Error(ErrorKind::usage, "--at vertices needs --to vertex");
   choice<bool>("--uv", a.uv, {{"auto", false}, {"own", true}});
   parse_channel(a.channel);
   choice<bool>("--bent-channel", a.bent_channel, {{"_BENT_NORMAL", false}, {"NORMAL", true}});

@@ -19,6 +19,13 @@ double standard_error(const BakeStatistics& s, double squares) {
   return values > 0 ? std::sqrt(squares / static_cast<double>(values)) : 0.0;
 }
 
+/// What has values, counted.
+std::string values_text(const BakeStatistics& s) {
+  if (s.texels > 0) return fmt::format("{} texels", s.texels);
+  if (s.instances > 0) return fmt::format("{} instances", s.instances);
+  return fmt::format("{} vertices", s.vertices);
+}
+
 }  // namespace
 
 std::string texture_note(const BakedTexture& texture) {
@@ -42,6 +49,7 @@ void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds,
       {"triangles", s.triangles},
       {"vertices", s.vertices},
       {"texels", s.texels},
+      {"instances", s.instances},
       {"points", s.points},
       {"rays", s.rays},
       {"standard_error", standard_error(s, s.squared_errors)},
@@ -60,9 +68,7 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
   fmt::print(
       "{} triangles, {}, {} rays from {} points ({:.1f} million rays per second)\n"
       "load {:.2f}, build {:.2f}, trace {:.2f}, write {:.2f}, total {:.2f} s\n",
-      s.triangles,
-      s.texels > 0 ? fmt::format("{} texels", s.texels) : fmt::format("{} vertices", s.vertices),
-      s.rays, s.points,
+      s.triangles, values_text(s), s.rays, s.points,
       s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
       seconds.load, s.seconds.build, s.seconds.trace, seconds.write, seconds.total);
   if (s.vertices + s.texels > 0)

@@ -105,12 +105,14 @@ Run add_compare_command(CLI::App& app) {
       "--max-rmse", a->max_rmse,
       "Exit with 5 if a layer's RMSE is larger; Z, P and samples count only with --layer");
   app.add_option("--scale", a->scale,
-                 "The last colour of heat maps is the largest value of the layer divided by this")
+                 "The last colour of heat maps is a difference of the layer's range divided by "
+                 "this. The range is 1 for ao and RGBA, the largest value in B for a light")
       ->capture_default_str();
   app.add_flag("--json", a->json, "Print JSON");
   app.footer(
       "Example:\n  dapple compare fast.exr exact.exr --html difference.html --max-rmse 0.02\n\n"
-      "Figures are over all of a layer's channels. Infinity equals infinity; NaN always fails.");
+      "Figures are over all of a layer's channels. Equal infinite values do not differ; NaN always "
+      "fails.");
   return [a] { run_compare(*a); };
 }
 

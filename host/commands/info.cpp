@@ -167,16 +167,18 @@ void run_info(const InfoArguments& a) {
 Run add_info_command(CLI::App& app) {
   auto a = std::make_shared<InfoArguments>();
   app.add_option("SCENE", a->scene, "glTF file, .hair file or procedural scene")->required();
-  app.add_option("--opacity", a->opacity, "MATERIAL=VALUE, as for render");
-  app.add_option("--lights", a->lights,
-                 "JSON file of lights in place of the scene's, as for render");
-  app.add_option("--frame", a->scene_options.time, "Seconds, as for render");
-  app.add_option("--animation", a->scene_options.animation, "As for render");
+  app.add_option("--opacity", a->opacity,
+                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
+  app.add_option("--lights", a->lights, "JSON file of lights, in place of the scene's own");
+  app.add_option("--frame", a->scene_options.time,
+                 "Time to show, in seconds (not a frame number); default: the rest pose");
+  app.add_option("--animation", a->scene_options.animation,
+                 "The glTF animation that plays, by name; *: all at once; default: the first");
   app.add_option("--line-radius", a->scene_options.line_radius,
-                 "Radius of a glTF file's lines, metres, as for render");
+                 "Turn a glTF file's lines into strands of this radius, metres; 0: ignore them");
   app.add_flag("--allow-outside", a->scene_options.allow_outside,
-               "Let a glTF file name buffers and images outside of its folder");
-  app.add_option("--cache", a->cache, "Folder of built BVHs, as for render");
+               "Let a glTF file refer to buffers and images outside its folder");
+  app.add_option("--cache", a->cache, "Keep built BVHs in this folder and reuse them");
   app.add_flag("--json", a->json, "Print JSON");
   app.footer("Example:\n  dapple info tree.glb --opacity leaf=0.85");
   return [a] { run_info(*a); };

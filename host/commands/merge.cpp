@@ -16,6 +16,7 @@
 #include "commands/statistics_text.hpp"
 #include "commands/tell.hpp"
 #include "dapple/error.hpp"
+#include "files/output_file.hpp"
 #include "film/exr_output.hpp"
 #include "film/exr_parts.hpp"
 
@@ -43,6 +44,20 @@ void print(const Merge& merge, const MergeArguments& a) {
              a.files.output, a.files.png.empty() ? "" : " and " + a.files.png);
 }
 
+/// The statistics of a render without what no part tells: its scene, and seconds but of the merge.
+nlohmann::ordered_json merge_json(const Merge& merge, std::size_t parts) {
+  const RenderStatistics& statistics = merge.result.statistics;
+  nlohmann::ordered_json json = statistics_json(statistics);
+  for (const char* of_scene : {"triangles", "segments", "nodes", "bvh", "estimator"})
+    json.erase(of_scene);
+  json["seconds"] = {{"total", statistics.seconds.total}};
+  json["bytes"] = {{"film", statistics.bytes.film}};
+  json["parts"] = parts;
+  json["samples_per_pixel"] = merge.spp;
+  json["missing"] = merge.missing;
+  return json;
+}
+
 void run_merge(const MergeArguments& a) {
   const RenderArguments& files = a.files;
   ExrFormat format = to_format(files);
@@ -56,7 +71,8 @@ void run_merge(const MergeArguments& a) {
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
   if (!is_part_path(files.output)) write_exr(result.film, files.output, format);
   if (!files.png.empty()) write_png(result.film, files.png, "", png);
-  if (!files.stats_json.empty()) write_statistics(result.statistics, files.stats_json);
+  if (!files.stats_json.empty())
+    write_whole_file(files.stats_json, merge_json(merge, a.parts.size()).dump(2) + "\n");
   if (!files.quiet) print(merge, a);
 }
 
@@ -74,7 +90,8 @@ Run add_merge_command(CLI::App& app) {
   app.footer(
       "Example:\n  for i in 1 2 3 4; do\n    dapple render tree.glb --spp 64 --shard $i/4 -o "
       "part_$i.dapple\n  done\n  dapple merge part_*.dapple -o tree.exr\n\n"
-      "Bit for bit what one render makes. Parts of an image may be shards of its samples "
+      "The result equals that of one render, bit for bit.\nParts of an image may be shards of its "
+      "samples "
       "(--shard), "
       "of\nits pixels (--crop), or both.");
   return [a] { run_merge(*a); };

@@ -23,12 +23,16 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-/// The whole of `text` as a number, or an error.
+/// The whole of `text` as a finite number, or an error.
 template <class Number>
 Number parse_number(const std::string& flag, const std::string& text) {
   Number value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size() && !text.empty()) return value;
+  const bool is_whole_text = end == text.data() + text.size() && !text.empty();
+  if (is_whole_text && error == std::errc::result_out_of_range)
+    throw Error(ErrorKind::usage, fmt::format("{}: '{}' is out of range", flag, text));
+  if (is_whole_text && error == std::errc{} && std::isfinite(static_cast<double>(value)))
+    return value;
   throw Error(ErrorKind::usage, fmt::format("{}: '{}' is not a number", flag, text));
 }
 
@@ -59,7 +63,10 @@ float parse_share(const std::string& flag, const std::string& text) {
   const bool is_percentage = text.ends_with('%');
   const float value =
       parse_number<float>(flag, is_percentage ? text.substr(0, text.size() - 1) : text);
-  return is_percentage || value >= 1 ? value / 100 : value;
+  const float share = is_percentage || value >= 1 ? value / 100 : value;
+  if (share >= 0 && share <= 1) return share;
+  throw Error(ErrorKind::usage,
+              fmt::format("{} {}: expected 0% to 100%, as in 2% or 0.02", flag, text));
 }
 
 std::pair<std::string, float> parse_opacity(const std::string& text) {

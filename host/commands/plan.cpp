@@ -239,20 +239,21 @@ void run_plan(RenderArguments a) {
                 "dapple plan needs --spp: with a target nobody knows the samples beforehand");
   if (!a.shutter.empty() || options.motion)
     throw Error(ErrorKind::usage,
-                "dapple plan knows no moving scenes: leave --shutter and --passes motion out");
+                "dapple plan does not support moving scenes: leave out --shutter and --passes "
+                "motion");
   if (options.deep)
     throw Error(ErrorKind::usage, "dapple plan knows no deep files: leave --deep out");
   catch_interruptions();
   std::optional<double> seconds = a.frame;
   if (!a.frames.empty())
     seconds = static_cast<double>(parse_frames(a.frames).first) / frames_per_second(a);
-  if (options.max_bias > 0)
+  if (options.max_bias > 0 && !a.quiet)
     tell("note: the plan is for --footprint {}; --max-bias may choose a smaller one\n",
          options.footprint);
   Shot shot(a, options);
   const Plan plan = plan_of(a, options, [&] { return shot.frame(seconds); });
   if (!a.stats_json.empty()) write_whole_file(a.stats_json, plan_json(plan).dump(2) + "\n");
-  fmt::print("{}", plan_text(plan));
+  if (!a.quiet) fmt::print("{}", plan_text(plan));
 }
 
 }  // namespace

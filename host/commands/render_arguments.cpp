@@ -20,8 +20,10 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
       "--crop", a.crop,
       "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
-  app.add_option("--spp", a.spp, "Camera rays per pixel; with a target the minimum")
-      ->default_str(fmt::format("{}; 8 with --target-rmse", o.spp));
+  app.add_option("--spp", a.spp,
+                 "Camera rays per pixel. With a target this is the minimum, and each pixel gets at "
+                 "least 8 samples: camera rays times --camera-splitting")
+      ->default_str(fmt::format("{}; 1 with --target-rmse", o.spp));
   app.add_option("--target-error", o.target_error,
                  "Sample each pixel until its estimated standard error is below this; 0: no "
                  "target. A light's error is divided by the largest irradiance that it gives "

@@ -11,7 +11,7 @@ void add_prefiltering_options(CLI::App& app, std::string& estimator, float& foot
   app.add_option(
          "--footprint", footprint,
          "Scale of ray footprints, the areas that rays represent: larger is faster and less "
-         "noisy, smaller is closer to exact, 0 is exact")
+         "noisy, smaller is usually closer to exact, 0 is exact")
       ->capture_default_str();
   app.add_option("--max-bias", max_bias,
                  "Choose the largest footprint, from --footprint down to 0, whose bias is below "
@@ -41,7 +41,7 @@ void add_device_options(CLI::App& app, std::string& device, std::string& kernel_
 
 void add_report_options(CLI::App& app, std::string& stats_json, bool& quiet) {
   app.add_option("--stats-json", stats_json, "Write the statistics as JSON");
-  app.add_flag("-q,--quiet", quiet, "Print nothing but errors");
+  app.add_flag("-q,--quiet", quiet, "Print only errors");
 }
 
 }  // namespace dapple

@@ -1,3 +1,5 @@
+// Implements Device of dapple/device.hpp: lists the usable OpenCL devices and opens one. In: part
+// of a device's name. Out: descriptions of devices, a Device, or an Error.
 #include "dapple/device.hpp"
 
 #include "device/context.hpp"

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "dapple/error.hpp"
 
@@ -57,12 +58,14 @@ void check_process_limits() {
                     "kB to compile kernels",
                     stack / 1024, kStackBytes / 1024));
   }
-  if (const rlim_t bytes = limit_of(RLIMIT_AS); bytes < kAddressBytes) {
+  for (const auto& [resource, option] : {std::pair{RLIMIT_AS, "-v"}, {RLIMIT_DATA, "-d"}}) {
+    const rlim_t bytes = limit_of(resource);
+    if (bytes >= kAddressBytes) continue;
     throw Error(
         ErrorKind::failed,
-        fmt::format("the process may only have {} kB of memory here (ulimit -v), and OpenCL "
+        fmt::format("the process may only have {} kB of memory here (ulimit {}), and OpenCL "
                     "drivers need {} kB and more",
-                    bytes / 1024, kAddressBytes / 1024));
+                    bytes / 1024, option, kAddressBytes / 1024));
   }
 }
 

@@ -1,5 +1,5 @@
-// Settings of EXR writing for dapple's own program. In: a film, a number of threads, and whether to
-// wait for the disk. Out: an EXR file.
+// Writes EXR files for dapple's own program: with a choice of durability, and of the number of
+// OpenEXR's threads. In: a film, a format, and whether to wait for the disk. Out: an EXR file.
 #pragma once
 
 #include <string>

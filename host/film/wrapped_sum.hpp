@@ -1,5 +1,5 @@
-// The sum of two fixed-point numbers of files: they may be anything, and C++ does not define what
-// signed numbers do beyond their range.
+// Adds two 64-bit numbers that come from files and may be damaged. The sum wraps around beyond the
+// range, where C++ does not define the sum of signed numbers. In: two numbers. Out: their sum.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// Each quantity at a point is measured in independent sets of rays, whose differences give its
-// standard error.
+// Options of one of the independent sets of rays in which each quantity at a point is measured; the
+// differences between sets give the standard error. In: options of all rays, the number of a set.
+// Out: options of that set.
 #pragma once
 
 #include "dapple/points.hpp"

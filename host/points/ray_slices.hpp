@@ -1,5 +1,5 @@
-// Rays of the host's making, traced in slices. In: how to make the rays of a point. Out: the
-// transmittance of each.
+// Traces rays that the host makes, slice by slice. In: a function that makes the rays of a point.
+// Out: the transmittance of each ray.
 #pragma once
 
 #include <tbb/parallel_for.h>

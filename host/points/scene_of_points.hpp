@@ -1,4 +1,5 @@
-// A scene on the device, as the points of measure_points() see it.
+// The scene of measure_points(), on the device. In: a scene and options. Out: the scene with
+// opacities, copies (--periodic) and ground applied, its BVH, and the uploaded scene.
 #pragma once
 
 #include <utility>

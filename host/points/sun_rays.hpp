@@ -1,5 +1,6 @@
-// Rays from points towards many suns, of which each ray stands for some. In: suns, a point with its
-// normal. Out: rays, all of which bring the same irradiance if nothing occludes them.
+// Makes rays from points towards many suns. Each ray represents several suns that are near each
+// other. In: suns, a point with its normal. Out: rays, all of which bring the same irradiance if
+// nothing occludes them.
 #pragma once
 
 #include <cstdint>

@@ -1,3 +1,6 @@
+// Checks RenderOptions of dapple/options.hpp. In: options. Out: nothing, or an Error that names the
+// option and its range. Also the names of their values, and how many samples footprints are
+// computed for.
 #include "dapple/options.hpp"
 
 #include <fmt/format.h>

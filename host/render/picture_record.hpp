@@ -1,5 +1,5 @@
-// What a picture's layers are made with beside its sums: so much of scene and options that a file
-// of sums becomes a film without them. In: a render. Out: JSON, and the record again.
+// The part of a scene and its options that turns sums into layers. It is stored beside the sums, so
+// that dapple merge needs no scene and no device. In: a render, or JSON. Out: JSON, or the record.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

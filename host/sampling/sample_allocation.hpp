@@ -1,7 +1,7 @@
 // Decides how many sample batches pixels should have: which pixels get more samples. In: variances,
 // the samples that pixels have, and a target. Out: batches of each block of 2x2 pixels. For a
-// target RMSE all blocks that vary get the same number: in proportion to standard deviations
-// (Neyman 1934) costs as much to the same error, experiment 536.
+// target RMSE all blocks that vary get the same number. An allocation in proportion to the standard
+// deviations (Neyman 1934) takes as long to reach the same error (experiment 536).
 #pragma once
 
 #include <cstdint>

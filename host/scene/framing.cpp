@@ -1,4 +1,6 @@
 // Cameras for scenes without their own. In: a scene's bounds, or two points; out: a camera.
+#include <Imath/ImathBoxAlgo.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -10,7 +12,7 @@
 namespace dapple {
 namespace {
 
-constexpr float kFrameMargin = 1.06f;     // width of the frame over width of the scene
+constexpr float kFrameMargin = 1.1f;      // width of the frame over width of the scene
 constexpr float kFrameElevation = 0.21f;  // tangent of the camera's elevation, 12 degrees
 constexpr float kElongation = 2;          // depth over width of a scene that is seen from its side
 
@@ -22,27 +24,26 @@ M44f from_rows(V3f x, V3f y, V3f z, V3f origin) {
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};
 }
 
-V3f corner(const Box3f& box, int i) {
-  return {(i & 1 ? box.max : box.min).x, (i & 2 ? box.max : box.min).y,
-          (i & 4 ? box.max : box.min).z};
+Box3f bounds_or_unit_box(const Scene& scene, const M44f& transform = {}) {
+  const Box3f bounds = scene_bounds(scene, transform);
+  return bounds.isEmpty() ? Imath::transform(Box3f({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}), transform)
+                          : bounds;
 }
 
-// The smallest distance from the box's centre, along the Z axis of `axes`, at which the camera
-// sees every corner.
-float framing_distance(const Box3f& box, const M44f& axes, float tan_x, float tan_y) {
-  float distance = 0;
-  for (int i = 0; i < 8; ++i) {
-    const V3f p = corner(box, i) - box.center();
-    const float across =
-        std::max(std::abs(p.dot(row(axes, 0))) / tan_x, std::abs(p.dot(row(axes, 1))) / tan_y);
-    distance = std::max(distance, p.dot(row(axes, 2)) + kFrameMargin * across);
-  }
-  return distance > 0 ? distance : 1;  // 0: all of the scene is one point
-}
-
-Box3f bounds_or_unit_box(const Scene& scene) {
-  const Box3f bounds = scene_bounds(scene);
-  return bounds.isEmpty() ? Box3f({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}) : bounds;
+// Where a camera is along `across`, and at least how far back. It sees p between two planes if
+// |across . (p - camera)| <= tangent * back . (camera - p). So the two functions of p below are
+// largest where the planes touch the scene.
+struct Fit {
+  float across = 0, back = 0;
+};
+Fit fit_between_planes(const Scene& scene, V3f across, V3f back, float tangent) {
+  const V3f first = across + tangent * back, second = -across + tangent * back;
+  const M44f functions(first.x, second.x, back.x, 0, first.y, second.y, back.y, 0,  //
+                       first.z, second.z, back.z, 0, 0, 0, 0, 1);
+  const Box3f box = bounds_or_unit_box(scene, functions);
+  // The camera is in front of everything, also where the scene is a line along its view or a point.
+  const float closest = box.max.z + (box.size().z > 0 ? 0.1f * box.size().z : 1);
+  return {(box.max.x - box.max.y) / 2, std::max((box.max.x + box.max.y) / (2 * tangent), closest)};
 }
 
 void require_field_of_view(float fov_y) {
@@ -76,13 +77,16 @@ Camera look_at(V3f from, V3f at, V3f up, float fov_y) {
 Camera frame_scene(const Scene& scene, float aspect, float fov_y) {
   require_field_of_view(fov_y);
   assert(aspect > 0);
-  const Box3f bounds = bounds_or_unit_box(scene);
-  const V3f size = bounds.size();
+  const V3f size = bounds_or_unit_box(scene).size();
   const V3f front = size.z > kElongation * size.x ? V3f(1, 0, 0) : V3f(0, 0, 1);
   Camera camera = look_at(front + V3f(0, kFrameElevation, 0), {0, 0, 0}, {0, 1, 0}, fov_y);
-  const float tan_y = std::tan(fov_y / 2);
-  const float distance = framing_distance(bounds, camera.to_world, tan_y * aspect, tan_y);
-  const V3f from = bounds.center() + row(camera.to_world, 2) * distance;
+  const float tangent = std::tan(fov_y / 2) / kFrameMargin;
+  const V3f right = row(camera.to_world, 0), up = row(camera.to_world, 1),
+            back = row(camera.to_world, 2);
+  const Fit horizontal = fit_between_planes(scene, right, back, tangent * aspect);
+  const Fit vertical = fit_between_planes(scene, up, back, tangent);
+  const V3f from = right * horizontal.across + up * vertical.across +
+                   back * std::max(horizontal.back, vertical.back);
   for (int k = 0; k < 3; ++k) camera.to_world[3][k] = from[k];
   camera.name = "frame";
   return camera;

@@ -1,4 +1,4 @@
-// Computes the world-space bounds of a scene. In: meshes and instances; out: a box. Vertices that
+// Computes the bounds of a scene. In: meshes and instances; out: a box. Vertices that
 // no triangle or segment of a strand uses are ignored.
 #include <Imath/ImathBoxAlgo.h>
 #include <tbb/blocked_range.h>
@@ -50,7 +50,7 @@ Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
 
 }  // namespace
 
-Box3f scene_bounds(const Scene& scene) {
+Box3f scene_bounds(const Scene& scene, const M44f& transform) {
   std::vector<std::uint32_t> instance_counts(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) ++instance_counts[instance.mesh];
 
@@ -59,14 +59,14 @@ Box3f scene_bounds(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (instance_counts[instance.mesh] == 1) {
-      bounds.extendBy(mesh_bounds(mesh, instance.to_world));
+      bounds.extendBy(mesh_bounds(mesh, instance.to_world * transform));
       continue;
     }
     // A mesh with several instances is visited once, because a forest has too many triangles. The
     // box around its transformed object-space box is a little larger than needed.
     Box3f& box = object_bounds[instance.mesh];
     if (box.isEmpty()) box = mesh_bounds(mesh, M44f{});
-    if (!box.isEmpty()) bounds.extendBy(Imath::transform(box, instance.to_world));
+    if (!box.isEmpty()) bounds.extendBy(Imath::transform(box, instance.to_world * transform));
   }
   return bounds;
 }

@@ -104,7 +104,7 @@ struct BakeStatistics {
   struct {
     double build = 0, upload = 0, kernel_build = 0, trace = 0, total = 0;
   } seconds;
-  std::size_t triangles = 0, vertices = 0, texels = 0, points = 0;
+  std::size_t triangles = 0, vertices = 0, texels = 0, instances = 0, points = 0;
   std::uint64_t rays = 0;
   double squared_errors = 0;        ///< of AO, estimated; the sum over vertices and texels
   double squared_light_errors = 0;  ///< of all lights together, relative as target_error

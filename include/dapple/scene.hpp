@@ -111,8 +111,9 @@ enum class LightKind : std::uint8_t { rect, sphere, sun, mesh, dome, disk };
 /// +X.
 struct Environment {
   std::uint32_t width = 0, height = 0;
-  std::vector<V3f> radiance;  ///< row by row, linear RGB, finite, not negative
-  std::string file = {};      ///< path that it was read from; empty: none
+  std::vector<V3f> radiance;        ///< row by row, linear RGB, finite, not negative
+  std::string file = {};            ///< path that it was read from; empty: none
+  std::size_t negative_pixels = 0;  ///< of the file; their negative channels became 0
 };
 
 /// A light. Irradiance at a point is the integral of radiance * cosine * transmittance.
@@ -218,8 +219,9 @@ void finalize_domes(Scene& scene);
 /// Writes meshes, instances, materials (no textures), cameras as one GLB file. Throws Error.
 void write_glb(const Scene& scene, const std::string& path);
 
-/// World-space bounds of all instances; an empty box for an empty scene.
-Box3f scene_bounds(const Scene& scene);
+/// Bounds of all instances after `transform` of world space, which is affine; an empty box for an
+/// empty scene.
+Box3f scene_bounds(const Scene& scene, const M44f& transform = {});
 
 /// Gives material `name` the opacity `value` in place of texture, factor and mode.
 /// Throws Error usage if there is no such material or `value` is outside [0,1].
@@ -228,8 +230,9 @@ void override_opacity(Scene& scene, const std::string& name, float value);
 /// Adds an opaque square under the scene's lowest point, 20 times as wide as the scene.
 void add_ground(Scene& scene);
 
-/// A perspective camera that frames the bounds from +Z, or +X if they are twice as deep as wide.
-/// `aspect` is width / height; `fov_y` in radians.
+/// A perspective camera, 12 degrees above the horizon, as close as it can be with all of the scene
+/// in the middle of its frame. It is on the side of +Z, or +X if the scene is twice as deep as
+/// wide. `aspect` is width / height; `fov_y` in radians.
 Camera frame_scene(const Scene& scene, float aspect, float fov_y = 0.7f);
 
 /// A camera at `from` that looks at `at`. Throws Error usage if the three are degenerate.

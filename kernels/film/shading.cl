@@ -1,6 +1,6 @@
-/* The shading pass: gives the surface points of a slice what their meshes say about the surface, and adds
-   that to the film. In: points that the camera pass stored with their triangles, after resolve_surface. Out:
-   points as rays start from them, film sums. One work-item for each pixel. */
+/* The shading pass: adds shading normals and colours to the surface points of a slice. In: points
+   that the camera pass stored with their triangles, after resolve_surface. Out: points moved to
+   where their rays start; sums of normals and albedo in the film. One work-item for each pixel. */
 #include "camera/shading_normal.clh"
 #include "camera/surface_color.clh"
 #include "film/film.clh"

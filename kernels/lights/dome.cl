@@ -1,4 +1,5 @@
-/* Resolves the rays to a dome light. As resolve_light in film.cl, but in three channels. */
+/* Adds the light of a dome to the film, in red, green and blue. In: a slice's rays to the dome and their
+   transmittances. Out: sums of the film, as resolve_light in film/film.cl makes them of other lights. */
 #include "lights/dome.clh"
 #include "film/film.clh"
 #include "vectors/vectors.clh"

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "dapple/render.hpp"
@@ -133,7 +134,9 @@ TEST(CameraSplitting, GivesTheSamePictureWithLessNoise) {
       const auto &found = channel(result, name), &expected = channel(truth, name);
       const double error_of_mean =
           rmse(found, expected) / std::sqrt(static_cast<double>(found.size()));
-      EXPECT_NEAR(mean(found), mean(expected), 3 * error_of_mean) << name << ", " << factor;
+      // Unit vectors along sums of few rays are biased: they have the length of one, not of a mean.
+      const double bias = name == std::string("bent.Y") ? 0.01 : 0;
+      EXPECT_NEAR(mean(found), mean(expected), 3 * error_of_mean + bias) << name << ", " << factor;
     }
     errors.push_back(rmse(channel(result, "ao.R"), channel(truth, "ao.R")));
   }

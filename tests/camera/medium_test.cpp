@@ -72,14 +72,14 @@ double sum(const std::vector<float>& values) {
 }
 
 /// Compares the picture's mean alpha and mean occlusion with those of the same picture without
-/// media. Tolerances: depths of equal nodes are rounded to the same code, up to 3 % off; and a hit
+/// media. Tolerances: depths of equal nodes are rounded to the same code, up to 4 % off; and a hit
 /// point in a medium may be outside of the surfaces that occlude it.
 void expect_shows_the_same(const Scene& scene, RenderOptions with) {
   RenderOptions without = with;
   without.target_rmse = 0;
   const RenderResult medium = render(scene, with), rays = render(scene, without);
   EXPECT_LT(medium.statistics.camera.visits, 0.15 * rays.statistics.camera.visits) << "no medium";
-  EXPECT_NEAR(sum(channel(medium, "A")) / sum(channel(rays, "A")), 1, 0.035);
+  EXPECT_NEAR(sum(channel(medium, "A")) / sum(channel(rays, "A")), 1, 0.04);
   const double pixels = with.width * with.height;
   const double occlusion = pixels - sum(channel(rays, "ao.R"));
   EXPECT_GT(occlusion, 0.001 * pixels) << "nothing to see";

@@ -87,7 +87,10 @@ TEST_F(BakeCommand, AoIsMultipliedWithAColourThatIsThereOrReplacesIt) {
 TEST_F(BakeCommand, TextFilesKeepTheirSideFilesAndBinaryOnesEmbedThem) {
   GltfBuilder builder = rich_triangle();
   json doc = builder.doc;
-  doc["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", "mesh.bin"}}};
+  doc["buffers"] = {{{"byteLength", builder.bin.size()},
+                     {"uri", "mesh.bin"},
+                     {"name", "shapes"},
+                     {"extras", {{"year", 1905}}}}};
   write("mesh.bin", builder.bin);
   std::ofstream(path("in.gltf")) << doc.dump();
   ASSERT_EQ(dapple("bake in.gltf -o out.gltf").code, 0);
@@ -100,7 +103,11 @@ TEST_F(BakeCommand, TextFilesKeepTheirSideFilesAndBinaryOnesEmbedThem) {
   EXPECT_EQ(bytes_of(path("other/mesh.bin")), bytes_of(path("mesh.bin")));
   EXPECT_EQ(load_gltf(path("other/out.gltf")).meshes.size(), 1u);
   ASSERT_EQ(dapple("bake in.gltf -o other/out.glb").code, 0);
-  EXPECT_EQ(document("other/out.glb")["buffers"].size(), 1u);
+  const json embedded = document("other/out.glb")["buffers"];
+  ASSERT_EQ(embedded.size(), 1u);
+  EXPECT_EQ(embedded[0]["name"], "shapes");
+  EXPECT_EQ(embedded[0]["extras"]["year"], 1905);
+  EXPECT_FALSE(embedded[0].contains("uri"));
   EXPECT_EQ(load_gltf(path("other/out.glb")).meshes.size(), 1u);
 }
 
@@ -281,7 +288,11 @@ TEST_F(BakeCommand, ErrorsSayWhatCanBeDoneAndLeaveNothingBehind) {
       {"in.glb -o out.glb --normals smooth", "--normals"},
       {"in.glb -o out.glb --to light", "--to"},
       {"in.glb -o out.glb --to texture --size 0", "--size"},
-      {"in.glb -o out.glb --to texture --at vertices", "--at"},
+      {"in.glb -o out.glb --to texture --at vertices", "--at needs --to vertex"},
+      {"in.glb -o out.glb --to texture --channel _AO", "--channel needs --to vertex"},
+      {"in.glb -o out.glb --margin 4", "--margin needs --to texture"},
+      {"in.glb -o out.glb --bent-channel NORMAL", "--bent-channel needs --passes ao,bent"},
+      {"in.glb -o out.glb --light-rays 4", "--light-rays needs --passes ao,light"},
       {"in.glb -o out.glb --to instance --passes ao,bent", "--passes bent"},
       {"in.glb -o out.obj", ".gltf"},
       {"in.glb -o in.glb", "in.glb"},
@@ -294,6 +305,24 @@ TEST_F(BakeCommand, ErrorsSayWhatCanBeDoneAndLeaveNothingBehind) {
   }
   expect_failure(dapple("bake missing.glb -o out.glb"), 3, "missing.glb");
   EXPECT_EQ(files_in_folder(), 1u);
+}
+
+TEST_F(BakeCommand, NoFileThatIsReadIsOverwritten) {
+  write("in.glb", rich_triangle().glb());
+  write("wall.glb", rich_triangle().glb());
+  std::ofstream(path("sun.json"))
+      << R"({"lights": [{"type": "sun", "name": "noon", "direction": [0, 0, -1]}]})";
+  const std::string lit = "bake in.glb --passes ao,light --lights sun.json ";
+  expect_failure(dapple(lit + "-o wall.glb --occluders wall.glb"), 2, "would overwrite wall.glb");
+  expect_failure(dapple(lit + "-o out.glb --stats-json sun.json"), 2, "would overwrite sun.json");
+  EXPECT_EQ(files_in_folder(), 3u);
+}
+
+TEST_F(BakeCommand, ANoteSaysThatAlphaIsOpacity) {
+  write("in.glb", rich_triangle().glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --channel COLOR_0.a");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NE(run.err.find("COLOR_0.a is opacity"), std::string::npos) << run.err;
 }
 
 }  // namespace

@@ -68,6 +68,16 @@ TEST_F(MergeCommand, FramesAreShardsOfTheirOwn) {
   }
 }
 
+TEST_F(MergeCommand, StatisticsTellWhatPartsKnow) {
+  ASSERT_EQ(dapple(kTree + "--shard 1/2 -o a.dapple").code, 0);
+  ASSERT_EQ(dapple("merge a.dapple -o m.exr --stats-json m.json").code, 0);
+  const std::string json = bytes("m.json");
+  EXPECT_TRUE(contains(json, "\"parts\": 1")) << json;
+  EXPECT_TRUE(contains(json, "\"missing\": \"")) << json;
+  for (const char* unknown : {"triangles\":", "nodes\":", "kernel_build", "bvh"})
+    EXPECT_FALSE(contains(json, unknown)) << unknown;
+}
+
 double number_after(const std::string& json, const std::string& key) {
   const std::size_t at = json.find("\"" + key + "\": ");
   return at == std::string::npos ? -1 : std::stod(json.substr(at + key.size() + 4));
@@ -75,10 +85,13 @@ double number_after(const std::string& json, const std::string& key) {
 
 TEST_F(MergeCommand, APlanIsOfTheRightSizeAndWritesNothing) {
   const std::string options =
-      "'scene:tree?leaves=1000' --width 300 --height 200 --spp 8 --shard 1/2 -q ";
+      "'scene:tree?leaves=1000' --width 300 --height 200 --spp 8 --shard 1/2 ";
   const Outcome plan = dapple("plan " + options + "--stats-json plan.json");
   ASSERT_EQ(plan.code, 0) << plan.err;
   EXPECT_TRUE(contains(plan.out, "a shard: about ")) << plan.out;
+  const Outcome quiet = dapple("plan -q " + options + "--stats-json plan.json");
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
   EXPECT_EQ(files_in_folder(), 1u);
   ASSERT_EQ(dapple("render " + options + "-o part.dapple").code, 0);
   const std::string json = bytes("plan.json");

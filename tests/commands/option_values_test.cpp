@@ -72,7 +72,9 @@ TEST_F(OptionValues, AreNumbersWhereNumbersAreExpectedAndNeverNaN) {
   for (const auto& [command, rest] : kCommands) {
     for (const Option& option : options_in(dapple(command + " --help").out)) {
       if (option.type == "TEXT" && kFreeText.contains(option.flag)) continue;
-      for (const char* value : {"nan", "abc"}) {
+      for (const char* value : {"nan", "abc", "99999999999999999999999"}) {
+        // Some lengths and times may be as large.
+        if (value[0] == '9' && option.type != "INT" && option.type != "UINT") continue;
         SCOPED_TRACE(command + " " + option.flag + " " + value);
         expect_failure(dapple(command + " " + rest + " " + option.flag + " " + value), 2,
                        option.flag);
@@ -80,6 +82,22 @@ TEST_F(OptionValues, AreNumbersWhereNumbersAreExpectedAndNeverNaN) {
     }
   }
   EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(OptionValues, OutOfRangeAreNamedAsTyped) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"--spp 99999999999999999999", "--spp 99999999999999999999: expected a smaller number"},
+      {"--spp -99999999999999999999", "--spp -99999999999999999999: expected a larger number"},
+      {"--shard 1/99999999999", "--shard: '99999999999' is out of range"},
+      {"--report-bias 200%", "--report-bias 200%: expected 0% to 100%"},
+      {"--report-bias -1", "--report-bias -1: expected 0% to 100%"},
+      {"--exposure inf", "--exposure: 'inf' is not a number"},
+      {"--look-from 0,0,1e99 --look-at 0,0,0", "--look-from: '1e99' is out of range"},
+  };
+  for (const auto& [arguments, text] : cases) {
+    SCOPED_TRACE(arguments);
+    expect_failure(dapple(std::string("render scene:cube -o o.exr ") + arguments), 2, text);
+  }
 }
 
 }  // namespace

@@ -25,6 +25,8 @@ TEST_F(ProcessLimits, OfFilesStacksAndMemoryAreNamed) {
                    "stacks may only have less than 64 kB here (ulimit -s)");
   expect_failure(render("", "ulimit -v 200000;"), 1,
                  "only have 200000 kB of memory here (ulimit -v)");
+  expect_failure(render("", "ulimit -d 200000;"), 1,
+                 "only have 200000 kB of memory here (ulimit -d)");
   EXPECT_EQ(files_in_folder(), 0u);
 }
 
@@ -77,7 +79,7 @@ TEST_F(ProcessLimits, TheCommandLineSaysWhatItExpects) {
       {"render x.glb -o o.exr --spp 1 --spp 2", "--spp is given more than once"},
       {"render x.glb -o o.exr --spp", "--spp needs a value"},
       {"render x.glb -o o.exr --spp many", "--spp many: expected a whole number; dapple"},
-      {"render x.glb -o o.exr --spp 99999999999", "expected a whole number from -2147483648"},
+      {"render x.glb -o o.exr --spp 99999999999", "99999999999: expected a smaller number"},
       {"render x.glb -o o.exr --spp 0", "--spp is 0; it must be from 1 to 1048576"},
       {"render x.glb -o o.png", "--output is o.png, but images are OpenEXR files"},
       {"render x.glb -o o.exr --passes back", "back is the other side of ao or light"},

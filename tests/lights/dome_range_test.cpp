@@ -61,5 +61,19 @@ TEST_F(DomeRange, TheBrightestDomeMakesAFinitePicture) {
                        "a.exr: the dome's mean radiance is "));
 }
 
+TEST_F(DomeRange, NegativeRadianceCountsAsZeroAndIsNamed) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::dome;
+  light.environment = load_environment(exr_file(-2));
+  EXPECT_EQ(light.environment->negative_pixels, 1u);
+  EXPECT_EQ(light.environment->radiance[1], V3f(0));
+  scene.lights = {light};
+  finalize_domes(scene);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_TRUE(
+      contains(scene.warnings[0], "a.exr: pixels with negative radiance: 1; it counts as 0"));
+}
+
 }  // namespace
 }  // namespace dapple

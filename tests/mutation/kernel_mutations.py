@@ -38,7 +38,7 @@ MUTATIONS = [
         "cosine_pdf + samples->radiance.v * (0.25f / M_PI_F)",
         r"^(Dome|DomeRange)\."),
     Mutation(
-        "pdf-of-sphere-off-by-two", "kernels/lights/light.cl",
+        "pdf-of-sphere-off-by-two", "kernels/lights/light_samples.clh",
         "samples->solid_angle.v = 2.0f * M_PI_F * one_minus_cos;",
         "samples->solid_angle.v = M_PI_F * one_minus_cos;",
         r"^(Light|LightSampling|SpotLight)\."),
@@ -92,12 +92,12 @@ MUTATIONS = [
         "  const float along = z * dome->cosine - x * dome->sine;",
         r"^Dome\."),
     Mutation(
-        "one-sided-mesh-light-shines-back", "kernels/lights/light.cl",
+        "one-sided-mesh-light-shines-back", "kernels/lights/light_samples.clh",
         "fmax(two_sided ? fabs(cosine) : cosine, 0.0f)",
         "fabs(cosine)",
         r"^(EmissiveMesh|DiskLight|Light)\."),
     Mutation(
-        "spot-cone-without-square", "kernels/lights/light.cl",
+        "spot-cone-without-square", "kernels/lights/light_samples.clh",
         "samples->solid_angle.v *= edge * edge;",
         "samples->solid_angle.v *= edge;",
         r"^SpotLight\."),

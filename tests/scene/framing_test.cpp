@@ -1,4 +1,4 @@
-// The default camera of a scene that has none frames the scene's bounds. Also look_at(), and the
+// The default camera of a scene that has none: the scene fills its frame. Also look_at(), and the
 // views that it refuses.
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
@@ -28,34 +29,58 @@ Scene triangle_at(V3f corner, V3f size) {
   return scene;
 }
 
-// Distance of a point from the picture's centre, in half widths or half heights of the frame (the
-// larger of both): at most 1 inside the frame, infinite behind the camera.
-float frame_excess(const Camera& camera, float aspect, V3f point) {
-  const V3f p = point * camera.to_world.inverse();
+// The part of the frame that the points take, from -1 to 1 in both directions of the picture.
+Imath::Box2f extent_in_frame(const Camera& camera, float aspect, const std::vector<V3f>& points) {
+  const M44f to_camera = camera.to_world.inverse();
   const float tan_y = std::tan(camera.fov_y / 2);
-  if (p.z >= 0) return kInfinity;
-  return std::max(std::abs(p.x / p.z) / (tan_y * aspect), std::abs(p.y / p.z) / tan_y);
+  Imath::Box2f extent;
+  for (const V3f& point : points) {
+    const V3f p = point * to_camera;
+    EXPECT_LT(p.z, 0) << "behind the camera";
+    extent.extendBy(Imath::V2f(-p.x / p.z / (tan_y * aspect), -p.y / p.z / tan_y));
+  }
+  return extent;
 }
 
-TEST(FrameScene, EveryCornerOfTheBoundsIsInTheFrameAndOneIsNearItsEdge) {
+// The longer side of the scene in the picture takes 1 / 1.1 of the frame, and is in its middle.
+void expect_framed(const Camera& camera, float aspect, const std::vector<V3f>& points,
+                   float tolerance = 1e-4f) {
+  const Imath::Box2f extent = extent_in_frame(camera, aspect, points);
+  const Imath::V2f half = extent.size() / 2;
+  const int side = half.x > half.y ? 0 : 1;
+  EXPECT_NEAR(half[side], 1 / 1.1f, tolerance);
+  EXPECT_NEAR(extent.center()[side], 0, tolerance);
+  EXPECT_LE(std::max(extent.max[1 - side], -extent.min[1 - side]), 1);
+}
+
+TEST(FrameScene, TheSceneFillsTheFrameAndIsInItsMiddle) {
   for (const V3f& size : {V3f(1, 1, 1), V3f(30, 1, 2), V3f(1, 50, 1), V3f(1, 2, 80)}) {
     for (const float aspect : {0.5f, 1.0f, 16.0f / 9}) {
       const Scene scene = triangle_at({7, 8, 9}, size);
-      const Box3f box = scene_bounds(scene);
       const Camera camera = frame_scene(scene, aspect, 0.6f);
-      float widest = 0;
-      for (const float x : {box.min.x, box.max.x}) {
-        for (const float y : {box.min.y, box.max.y}) {
-          for (const float z : {box.min.z, box.max.z}) {
-            widest = std::max(widest, frame_excess(camera, aspect, {x, y, z}));
-          }
-        }
-      }
-      EXPECT_LE(widest, 1);
-      EXPECT_GT(widest, 0.9f);
-      EXPECT_GT(camera.to_world[3][1], box.center().y);  // a little above the centre
+      SCOPED_TRACE(testing::Message() << size << " at " << aspect);
+      expect_framed(camera, aspect, scene.meshes[0].positions);
+      EXPECT_GT(camera.to_world[3][1], scene_bounds(scene).center().y);  // it looks down
     }
   }
+}
+
+// The corners of a tree's box are far outside of its crown. They must not make it smaller.
+TEST(FrameScene, EmptyCornersOfTheBoundsDoNotMatter) {
+  Scene scene = triangle_at({0, 0, 0}, {1, 1, 1});
+  std::vector<V3f>& points = scene.meshes[0].positions;
+  points = {{0, 0, 0}, {0, 2, 0}, {0, 1, 1}, {0, 1, -1}, {1, 1, 0}, {-1, 1, 0}};
+  scene.meshes[0].indices = {0, 2, 4, 1, 3, 5};
+  scene.meshes[0].materials = {0, 0};
+  expect_framed(frame_scene(scene, 1), 1, points);
+}
+
+TEST(FrameScene, InstancesAreFramedWhereTheyAre) {
+  Scene scene = triangle_at({0, 0, 0}, {1, 1, 1});
+  scene.instances[0].to_world.setTranslation(V3f(100, 0, -20));
+  std::vector<V3f> points = scene.meshes[0].positions;
+  for (V3f& point : points) point = point * scene.instances[0].to_world;
+  expect_framed(frame_scene(scene, 1.5f), 1.5f, points);
 }
 
 TEST(FrameScene, ALongSceneIsSeenFromItsSide) {

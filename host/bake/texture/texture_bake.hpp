@@ -1,5 +1,5 @@
-// Bakes the texels of a texture that all meshes of a scene share. In: a scene with its layout and a
-// what traces. Out: AO, bent normals and irradiance of all texels.
+// Bakes the texels of a texture that all meshes of a scene share. In: a scene, the layout of its
+// texture, and functions that trace samples. Out: AO, bent normals and irradiance of all texels.
 #pragma once
 
 #include "bake/sample_rounds.hpp"

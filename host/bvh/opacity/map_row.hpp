@@ -1,4 +1,5 @@
-// A row of a coverage map in one to four vector registers.
+// A row of a coverage map in one to four vector registers. In: the row in memory, or two rows. Out:
+// the row as a vector, stored again, or its minimum with another; its sum or maximum.
 #pragma once
 
 #include <cstring>

@@ -1,5 +1,6 @@
 // The BVH cache: a folder with one sealed file for each object, named by object_key(). A file that
-// cannot be read back as it was written counts as missing.
+// cannot be read back as it was written counts as missing: finish_objects() then builds the object
+// again, replaces the file, and a note says so.
 #pragma once
 
 #include <optional>

@@ -113,7 +113,7 @@ void Editor::start_from_binary() {
   buffer_ = 0;
 }
 
-// All buffers become the GLB's own.
+// All buffers become the GLB's own, which has the first one's name and extras.
 void Editor::embed_buffers() {
   std::vector<std::size_t> begin;
   for (const auto& buffer : content().document.buffers) {
@@ -131,7 +131,10 @@ void Editor::embed_buffers() {
       view["buffer"] = 0;
     }
   }
-  json_["buffers"] = Json::array({Json::object()});
+  Json first =
+      json_.contains("buffers") && !json_["buffers"].empty() ? json_["buffers"][0] : Json::object();
+  first.erase("uri");
+  json_["buffers"] = Json::array({std::move(first)});
   buffer_ = 0;
 }
 

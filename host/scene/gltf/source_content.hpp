@@ -1,4 +1,5 @@
-// What a SourceFile holds, for the writers beside it.
+// The private fields of SourceFile: the bytes and JSON of the file, and the document read from
+// them. In: a SourceFile. Out: what the writers in this folder read and change.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,6 @@
-// A glTF file that has been read, with what the writers of baked files need of it.
+// A glTF file that is kept in memory, so that baked values can be added to it. In: a path, then
+// numbers of meshes, primitives and nodes of the file. Out: vertex counts, colours and texture
+// coordinates of primitives; copies of meshes and instances in the kept file.
 #pragma once
 
 #include <Imath/ImathVec.h>
@@ -20,7 +22,7 @@ struct PrimitiveColors {
 /// What identifies the vertices of a primitive: a copy of a mesh, POSITION and another attribute.
 using VertexKey = std::array<std::uint32_t, 3>;
 
-/// A glTF file that has been read, with what its writer needs. Throws Error input.
+/// The kept file. Throws Error input.
 struct SourceFile {
   explicit SourceFile(const std::string& path, bool allow_outside = false);
   ~SourceFile();

@@ -7,6 +7,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "dapple/error.hpp"
@@ -66,15 +67,18 @@ bool is_allowed(const V3f& radiance) {
   refuse(path, fmt::format("{}{:.3g}, above {:g}", pixel, largest, kMaxRadiance));
 }
 
-/// Sets negative values to 0. Throws Error input for values that no light may have.
+/// Sets negative values to 0 and counts their pixels. Throws Error input for values that no light
+/// may have.
 void check_radiance(Environment& environment, const std::string& path) {
   const std::size_t count = environment.radiance.size();
+  std::atomic<std::size_t> negative = 0;
   const std::size_t first_refused = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, count), count,
       [&](const tbb::blocked_range<std::size_t>& range, std::size_t first) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
           V3f& radiance = environment.radiance[i];
           if (!is_allowed(radiance)) return std::min(first, i);
+          if (std::min({radiance.x, radiance.y, radiance.z}) < 0) ++negative;
           for (int channel = 0; channel < 3; ++channel)
             radiance[channel] = std::max(radiance[channel], 0.0f);
         }
@@ -82,6 +86,7 @@ void check_radiance(Environment& environment, const std::string& path) {
       },
       [](std::size_t a, std::size_t b) { return std::min(a, b); });
   if (first_refused < count) refuse_pixel(environment, first_refused, path);
+  environment.negative_pixels = negative;
 }
 
 /// A row of means over boxes of `across` x `down` texels, weighted by solid angle. Columns and rows
@@ -111,7 +116,8 @@ Environment of_limited_size(Environment environment) {
   Environment coarse{std::max(1u, environment.width / across),
                      std::max(1u, environment.height / down),
                      {},
-                     environment.file};
+                     environment.file,
+                     environment.negative_pixels};
   coarse.radiance.resize(std::size_t{coarse.width} * coarse.height);
   tbb::parallel_for(0u, coarse.height, [&](std::uint32_t row) {
     average_row(environment, across, down, row, coarse);
@@ -166,8 +172,14 @@ std::shared_ptr<const Environment> load_environment(const std::string& path) {
 }
 
 void finalize_domes(Scene& scene) {
-  for (Light& light : scene.lights)
-    if (light.kind == LightKind::dome && light.environment) finalize_dome(light);
+  for (Light& light : scene.lights) {
+    if (light.kind != LightKind::dome || !light.environment) continue;
+    if (light.environment->negative_pixels > 0)
+      scene.warnings.push_back(fmt::format("{}: pixels with negative radiance: {}; it counts as 0",
+                                           light.environment->file,
+                                           light.environment->negative_pixels));
+    finalize_dome(light);
+  }
 }
 
 }  // namespace dapple
