@@ -85,7 +85,7 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   app.add_option("--look-at", a.look_at, "Point that this camera looks at: X,Y,Z");
   app.add_option("--up", a.up, "Up direction of this camera: X,Y,Z; default 0,1,0")
       ->needs(&look_from);
-  app.add_option("--fov", o.fov_degrees,
+  app.add_option("--fov", a.fov,
                  "Vertical field of view, degrees; default: the camera's own, or 40");
   app.add_option("--aperture", o.aperture,
                  "Depth of field: radius of the camera's lens, metres; 0: everything is sharp; "
@@ -306,6 +306,9 @@ RenderOptions to_options(const RenderArguments& a) {
   RenderOptions o = a.options;
   if (a.spp) o.spp = *a.spp;
   if (!a.spp && o.target_rmse > 0) o.spp = 1;
+  if (a.fov) o.fov_degrees = *a.fov;
+  if (a.fov && *a.fov == 0)  // in RenderOptions it means the camera's own
+    throw Error(ErrorKind::usage, "--fov is 0; it must be from 0.01 to 179");
   o.estimator = parse_estimator(a.estimator);
   o.normals = parse_normals(a.normals);
   o.report_bias = parse_share("--report-bias", a.report_bias);

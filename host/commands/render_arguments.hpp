@@ -31,6 +31,7 @@ struct RenderArguments {
   std::string checkpoint, checkpoint_every = "60s", resume, shard;
   SceneOptions scene_options;
   RenderOptions options;
+  std::optional<float> fov;  ///< degrees; default: the camera's own, or 40
   std::optional<int> spp;
   bool quiet = false;
 };

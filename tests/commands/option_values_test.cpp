@@ -91,6 +91,7 @@ TEST_F(OptionValues, OutOfRangeAreNamedAsTyped) {
       {"--shard 1/99999999999", "--shard: '99999999999' is out of range"},
       {"--report-bias 200%", "--report-bias 200%: expected 0% to 100%"},
       {"--report-bias -1", "--report-bias -1: expected 0% to 100%"},
+      {"--fov 0", "--fov is 0; it must be from 0.01 to 179"},
       {"--exposure inf", "--exposure: 'inf' is not a number"},
       {"--look-from 0,0,1e99 --look-at 0,0,0", "--look-from: '1e99' is out of range"},
   };

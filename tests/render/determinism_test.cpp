@@ -26,17 +26,18 @@ class Determinism : public ::testing::Test {
   }
   ~Determinism() override { fs::remove_all(folder_); }
 
-  // Renders a small demo in a new process and returns its path; `environment` as "NAME=value ".
+  // Renders a small image in a new process and returns its path; `environment` as "NAME=value ".
   [[nodiscard]] std::string rendered(const std::string& name, const std::string& arguments = "",
                                      const std::string& environment = "") const {
     const std::string path = (folder_ / name).string();
-    const std::string command = environment + "'" + DAPPLE_PROGRAM +
-                                "' render scene:demo --width 64 --height 48 --spp 4 -q -o '" +
-                                path + "' " + arguments;
+    const std::string command = environment + "'" + DAPPLE_PROGRAM + "' render '" + scene_ +
+                                "' --width 64 --height 48 --spp 4 -q -o '" + path + "' " +
+                                arguments;
     EXPECT_EQ(std::system(command.c_str()), 0) << command;
     return path;
   }
 
+  std::string scene_ = "scene:demo";
   fs::path folder_;
 };
 
@@ -64,6 +65,15 @@ TEST_F(Determinism, TheProgramWritesTheSameBytesWithATarget) {
     EXPECT_EQ(bytes_of(rendered("one.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=1 ")), first);
     EXPECT_EQ(bytes_of(rendered("two.exr", adaptive, "POCL_MAX_PTHREAD_COUNT=2 ")), first);
   }
+}
+
+TEST_F(Determinism, TheProgramWritesTheSameBytesWithAnOpenShutterAndALens) {
+  scene_ = "scene:tree?leaves=2000&wind=1";
+  const std::string blurred = "--frame 1 --shutter -0.5,0.5 --motion-samples 3 --aperture 0.1";
+  const std::string first = bytes_of(rendered("first.exr", blurred));
+  EXPECT_NE(bytes_of(rendered("sharp.exr", "--frame 1")), first);
+  EXPECT_EQ(bytes_of(rendered("one.exr", blurred, "POCL_MAX_PTHREAD_COUNT=1 ")), first);
+  EXPECT_EQ(bytes_of(rendered("two.exr", blurred, "POCL_MAX_PTHREAD_COUNT=2 ")), first);
 }
 
 TEST_F(Determinism, AnotherSeedGivesOtherNoiseInEveryPass) {
