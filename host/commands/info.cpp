@@ -96,6 +96,12 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   return json;
 }
 
+/// To five digits.
+std::string point_text(const nlohmann::ordered_json& p) {
+  return fmt::format("({:.5g}, {:.5g}, {:.5g})", p[0].get<double>(), p[1].get<double>(),
+                     p[2].get<double>());
+}
+
 std::string report_text(const nlohmann::ordered_json& r) {
   const auto number = [&](const char* a, const char* b) { return r[a][b].get<double>(); };
   std::string text = fmt::format("{}\n", r["scene"].get<std::string>());
@@ -126,8 +132,8 @@ std::string report_text(const nlohmann::ordered_json& r) {
                     animation["name"].get<std::string>(), animation["seconds"].get<double>());
   }
   if (!animations.empty()) text += fmt::format("  animations  {}\n", animations);
-  text += fmt::format("  bounds      {} to {} m\n", r["bounds"]["min"].dump(),
-                      r["bounds"]["max"].dump());
+  text += fmt::format("  bounds      {} to {} m\n", point_text(r["bounds"]["min"]),
+                      point_text(r["bounds"]["max"]));
   text += fmt::format(
       "  nodes       {}, SAH {:.1f} node visits per ray, {:.0f} % of block lanes used\n",
       r["nodes"].dump(), r["sah_node_visits"].get<double>(), 100 * r["lane_use"].get<double>());

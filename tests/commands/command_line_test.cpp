@@ -302,6 +302,7 @@ TEST_F(CommandLine, InfoAndDevicesPrintTheSceneAndTheDevices) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(json.at("opacity").at(axis), 0.95);
   const Outcome text_run = dapple("info 'scene:cube?divisions=2' --opacity cube=0.5");
   EXPECT_EQ(text_run.code, 0);
+  EXPECT_TRUE(contains(text_run.out, "bounds      (-0.5, 0, -0.5) to (0.5, 1, 0.5) m")) << text_run.out;
   EXPECT_TRUE(contains(text_run.out, "48")) << text_run.out;
   EXPECT_TRUE(contains(text_run.out, "48 translucent")) << text_run.out;
   EXPECT_TRUE(contains(text_run.out, " all per triangle")) << text_run.out;
