@@ -10,12 +10,14 @@ namespace dapple::bench {
 /// end hardly matters.
 inline constexpr unsigned kBatchCapacity = 1024;
 
+/// Rays past `count` are finite, too: where Embree traces a packet of 16 as two of 8 (AVX2), it
+/// asserts that of lanes which are not valid.
 struct RayBatch {
   unsigned count = 0;
-  alignas(64) float origin[3][kBatchCapacity];
-  alignas(64) float direction[3][kBatchCapacity];  ///< unit vectors
-  alignas(64) float t_max[kBatchCapacity];         ///< metres
-  alignas(64) std::uint32_t key[kBatchCapacity];   ///< random bits for stochastic opacity
+  alignas(64) float origin[3][kBatchCapacity] = {};
+  alignas(64) float direction[3][kBatchCapacity] = {};  ///< unit vectors
+  alignas(64) float t_max[kBatchCapacity] = {};         ///< metres
+  alignas(64) std::uint32_t key[kBatchCapacity] = {};   ///< random bits for stochastic opacity
 
   [[nodiscard]] bool is_full() const { return count == kBatchCapacity; }
 };
