@@ -151,6 +151,7 @@ std::vector<Scene> load_occluders(const BakeArguments& a) {
   return occluders;
 }
 
+/// All input files, which no output may replace.
 std::vector<std::string> files_read(const BakeArguments& a, const Scene& scene,
                                     const std::vector<Scene>& occluders) {
   std::vector<std::string> files = scene.files;

@@ -37,7 +37,7 @@ void add_bake_options(CLI::App& app, BakeArguments& a);
 
 /// Throws Error usage, naming the flag.
 BakeOptions to_options(const BakeArguments& a);
-/// Throws Error usage for an option that was typed and changes nothing with these others.
+/// Throws Error usage if an option was given that has no effect with the other options.
 void refuse_options_without_effect(const CLI::App& app, const BakeOptions& options);
 BakeChannel parse_channel(const std::string& text);
 /// n of "TEXCOORD_n", 0 to 9; nothing for other names.

@@ -44,7 +44,8 @@ void print(const Merge& merge, const MergeArguments& a) {
              a.files.output, a.files.png.empty() ? "" : " and " + a.files.png);
 }
 
-/// The statistics of a render without what no part tells: its scene, and seconds but of the merge.
+/// The statistics of a render. Parts do not know the scene, nor the seconds of their renders: these
+/// are left out.
 nlohmann::ordered_json merge_json(const Merge& merge, std::size_t parts) {
   const RenderStatistics& statistics = merge.result.statistics;
   nlohmann::ordered_json json = statistics_json(statistics);
