@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "bvh/build/multiversion.hpp"
 #include "bvh/opacity/map_row.hpp"
 
 namespace dapple {
@@ -29,99 +28,129 @@ void spread_evenly(const CellTriangle& triangle, CellCoverage& coverage) {
 
 /// By column, over the touched rows: the number of full cells, and the sum and the maximum of the
 /// other cells.
+template <int kLanes>
 struct Tally {
-  Row full{}, partial{}, largest{};
+  Row<kLanes> full, partial, largest;
 
-  void add(const Row& in) {
-    const Row zero{}, one = zero + 1.0f;
-    const Row rest = in >= one ? zero : in;
-    full += in >= one ? one : zero;
+  DAPPLE_INLINE void add(const Row<kLanes>& in) {
+    const Row<kLanes> filled = at_least(in, 1.0f), rest = in - filled;
+    full += filled;
     partial += rest;
-    largest = largest > rest ? largest : rest;
+    largest = max(largest, rest);
   }
 };
 
 /// Scales the cells that are not full so that the sum over all cells is the triangle's area.
 /// Returns true if this filled more cells, so that another pass would come closer.
-inline bool scale_partial_cells(const CellTriangle& triangle, Tally& tally,
-                                CellCoverage& coverage) {
-  const float full_sum = sum_of(tally.full), partial_sum = sum_of(tally.partial);
+template <int kLanes>
+DAPPLE_INLINE bool scale_partial_cells(const CellTriangle& triangle, Tally<kLanes>& tally,
+                                       CellCoverage& coverage) {
+  const float full_sum = tally.full.sum(), partial_sum = tally.partial.sum();
   if (full_sum + partial_sum <= 0.0f) {
     spread_evenly(triangle, coverage);
     return false;
   }
   if (partial_sum <= 0.0f) return false;
   const float scale = std::max(0.0f, triangle.area - full_sum) / partial_sum;
-  const bool fills_more = max_of(tally.largest) * scale > 1.0f;
-  const Row zero{}, one = zero + 1.0f;
+  const bool fills_more = tally.largest.max() * scale > 1.0f;
   tally = {};
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    Row out;
-    load_row(&coverage.share[row * kMapSize], out);
-    // One selection by two comparisons would be compiled lane by lane (g++ 12).
-    const Row kept = out >= one ? one : zero;
-    Row scaled = out * scale;
-    scaled = scaled < one ? scaled : one;
-    scaled = scaled > kept ? scaled : kept;
-    store_row(&coverage.share[row * kMapSize], scaled);
+    float* cells = &coverage.share[row * kMapSize];
+    const auto share = Row<kLanes>::load(cells);
+    const Row<kLanes> scaled = max(min(share * scale, 1.0f), at_least(share, 1.0f));
+    scaled.store(cells);
     if (fills_more) tally.add(scaled);
   }
   return fills_more;
 }
 
+/// See rasterize().
+template <int kLanes>
+DAPPLE_INLINE void rasterize_rows(const CellTriangle& triangle, CellCoverage& coverage) {
+  // Each edge cuts a share 1 - c from a cell. If these shares do not overlap, as in a thin sliver
+  // or along an edge, the share c0 + c1 + c2 - 2 remains. Scaling to the known area corrects the
+  // other cells. Whole rows are computed: full vectors without remainders.
+  V2f corner[3] = {triangle.a, triangle.a + triangle.edge1, triangle.a + triangle.edge2};
+  if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x)
+    std::swap(corner[1], corner[2]);
+  float nx[3], ny[3], offset[3];
+  for (int e = 0; e < 3; ++e) {
+    const V2f from = corner[e], along = corner[(e + 1) % 3] - from;
+    const float reach = std::fabs(along.x) + std::fabs(along.y);
+    const float inverse = reach > 0.0f ? 1.0f / reach : 0.0f;
+    nx[e] = -along.y * inverse;
+    ny[e] = along.x * inverse;
+    offset[e] = reach > 0.0f ? 0.5f - nx[e] * from.x - ny[e] * from.y : 1.0f;
+  }
+  // Along a row the shares are linear; from one row to the next they change by ny.
+  const Row<kLanes> x = Row<kLanes>::indices() + 0.5f;
+  Row<kLanes> beyond[3];
+  const float y = static_cast<float>(triangle.row0) + 0.5f;
+  for (int e = 0; e < 3; ++e) beyond[e] = x * nx[e] + (offset[e] + ny[e] * y);
+  Tally<kLanes> tally;
+  for (int row = triangle.row0; row <= triangle.row1; ++row) {
+    Row<kLanes> left(-2.0f);
+    for (int e = 0; e < 3; ++e) {
+      left += min(max(beyond[e], 0.0f), 1.0f);
+      beyond[e] += ny[e];
+    }
+    left = max(left, 0.0f);
+    left.store(&coverage.share[row * kMapSize]);
+    tally.add(left);
+  }
+  for (int pass = 0; pass < kScalingPasses; ++pass) {
+    if (!scale_partial_cells(triangle, tally, coverage)) break;
+  }
+}
+
 }  // namespace
 
-DAPPLE_MULTIVERSION
-void fill_cells(std::array<float, kMapCells>& cells, float value) {
-  const Row filled = Row{} + value;
-  for (int row = 0; row < kMapSize; ++row) store_row(&cells[row * kMapSize], filled);
-}
-
-DAPPLE_MULTIVERSION
 float CoverageMap::mean_opacity(int axis) const {
-  Row sum{};
-  for (int row = 0; row < kMapSize; ++row) {
-    Row t;
-    load_row(&transmittance[axis][row * kMapSize], t);
-    sum += t;
-  }
-  return 1.0f - sum_of(sum) / kMapCells;
+  float mean = 0;
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    Row<kLanes> sum;
+    for (int row = 0; row < kMapSize; ++row) {
+      sum += Row<kLanes>::load(&transmittance[axis][row * kMapSize]);
+    }
+    mean = sum.sum() / kMapCells;
+  });
+  return 1.0f - mean;
 }
 
-DAPPLE_MULTIVERSION
 OpacityMoments CoverageMap::moments(int axis) const {
-  const auto place = [](int cell) {
-    return (static_cast<float>(cell) + 0.5f) * (2.0f / kMapSize) - 1.0f;
-  };
-  Row columns, square{}, column{}, row_sum{};
-  for (int i = 0; i < kMapSize; ++i) columns[i] = place(i);
-  const Row one = Row{} + 1.0f;
-  for (int row = 0; row < kMapSize; ++row) {
-    Row opacity;
-    load_row(&transmittance[axis][row * kMapSize], opacity);
-    opacity = one - opacity;
-    column += opacity * columns;
-    row_sum += opacity * place(row);
-    square += opacity * (columns * columns + place(row) * place(row));
-  }
-  return {sum_of(column) / kMapCells, sum_of(row_sum) / kMapCells, sum_of(square) / kMapCells};
+  OpacityMoments moments{};
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    constexpr float kScale = 2.0f / kMapSize;
+    const Row<kLanes> x = (Row<kLanes>::indices() + 0.5f) * kScale - 1.0f;
+    Row<kLanes> square, column, row_sum;
+    for (int row = 0; row < kMapSize; ++row) {
+      const float y = (static_cast<float>(row) + 0.5f) * kScale - 1.0f;
+      const Row<kLanes> opacity =
+          Row<kLanes>(1.0f) - Row<kLanes>::load(&transmittance[axis][row * kMapSize]);
+      column += opacity * x;
+      row_sum += opacity * y;
+      square += opacity * (x * x + y * y);
+    }
+    moments = {column.sum() / kMapCells, row_sum.sum() / kMapCells, square.sum() / kMapCells};
+  });
+  return moments;
 }
 
-DAPPLE_MULTIVERSION
 float CoverageMap::clumping() const {
   float variance = 0, greatest = 0;
-  for (const auto& map : transmittance) {
-    Row sum{}, squares{};
-    for (int row = 0; row < kMapSize; ++row) {
-      Row t;
-      load_row(&map[row * kMapSize], t);
-      sum += t;
-      squares += t * t;
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    for (const auto& map : transmittance) {
+      Row<kLanes> sum, squares;
+      for (int row = 0; row < kMapSize; ++row) {
+        const auto t = Row<kLanes>::load(&map[row * kMapSize]);
+        sum += t;
+        squares += t * t;
+      }
+      const float mean = sum.sum() / kMapCells;
+      variance += std::max(0.0f, squares.sum() / kMapCells - mean * mean);
+      greatest += std::max(0.0f, mean * (1.0f - mean));
     }
-    const float mean = sum_of(sum) / kMapCells;
-    variance += std::max(0.0f, sum_of(squares) / kMapCells - mean * mean);
-    greatest += std::max(0.0f, mean * (1.0f - mean));
-  }
+  });
   return greatest > 1e-6f ? std::min(1.0f, variance / greatest) : 0.0f;
 }
 
@@ -145,58 +174,23 @@ bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellT
   return true;
 }
 
-DAPPLE_MULTIVERSION
 void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
-  // Each edge cuts a share 1 - c from a cell. If these shares do not overlap, as in a thin sliver
-  // or along an edge, the share c0 + c1 + c2 - 2 remains. Scaling to the known area corrects the
-  // other cells. Whole rows are computed: full vectors without remainders.
-  V2f corner[3] = {triangle.a, triangle.a + triangle.edge1, triangle.a + triangle.edge2};
-  if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x)
-    std::swap(corner[1], corner[2]);
-  float nx[3], ny[3], offset[3];
-  for (int e = 0; e < 3; ++e) {
-    const V2f from = corner[e], along = corner[(e + 1) % 3] - from;
-    const float reach = std::fabs(along.x) + std::fabs(along.y);
-    const float inverse = reach > 0.0f ? 1.0f / reach : 0.0f;
-    nx[e] = -along.y * inverse;
-    ny[e] = along.x * inverse;
-    offset[e] = reach > 0.0f ? 0.5f - nx[e] * from.x - ny[e] * from.y : 1.0f;
-  }
-  const Row zero{}, one = zero + 1.0f;
-  Row x;
-  for (int i = 0; i < kMapSize; ++i) x[i] = static_cast<float>(i) + 0.5f;
-  // Along a row the shares are linear; from one row to the next they change by ny.
-  Row beyond[3], step[3];
-  const float y = static_cast<float>(triangle.row0) + 0.5f;
-  for (int e = 0; e < 3; ++e) {
-    beyond[e] = x * nx[e] + (offset[e] + ny[e] * y);
-    step[e] = zero + ny[e];
-  }
-  Tally tally;
-  for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    Row left = zero - 2.0f;
-    for (int e = 0; e < 3; ++e) {
-      const Row share = beyond[e] > zero ? beyond[e] : zero;
-      left += share < one ? share : one;
-      beyond[e] += step[e];
-    }
-    left = left > zero ? left : zero;
-    store_row(&coverage.share[row * kMapSize], left);
-    tally.add(left);
-  }
-  for (int pass = 0; pass < kScalingPasses; ++pass) {
-    if (!scale_partial_cells(triangle, tally, coverage)) break;
-  }
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    rasterize_rows<kLanes>(triangle, coverage);
+  });
 }
 
-DAPPLE_MULTIVERSION
 void OccludedCells::add_uniform(const CellTriangle& triangle, const CellCoverage& coverage,
                                 float opacity) {
   row0 = std::min(row0, triangle.row0);
   row1 = std::max(row1, triangle.row1);
-  for (int cell = triangle.row0 * kMapSize; cell < (triangle.row1 + 1) * kMapSize; ++cell) {
-    occluded[cell] += opacity * coverage.share[cell];
-  }
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    for (int row = triangle.row0; row <= triangle.row1; ++row) {
+      float* cells = &occluded[row * kMapSize];
+      (Row<kLanes>::load(cells) + Row<kLanes>::load(&coverage.share[row * kMapSize]) * opacity)
+          .store(cells);
+    }
+  });
 }
 
 void OccludedCells::clear() {
@@ -214,11 +208,14 @@ void OccludedCells::enclose(OccludedCells& back) {
   back.clear();
 }
 
-DAPPLE_MULTIVERSION
 void OccludedCells::flush(std::array<float, kMapCells>& map) {
-  for (int cell = row0 * kMapSize; cell < (row1 + 1) * kMapSize; ++cell) {
-    map[cell] *= 1.0f - std::min(1.0f, occluded[cell]);
-  }
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    for (int row = row0; row <= row1; ++row) {
+      const auto share = min(Row<kLanes>::load(&occluded[row * kMapSize]), 1.0f);
+      float* cells = &map[row * kMapSize];
+      (Row<kLanes>::load(cells) * (Row<kLanes>(1.0f) - share)).store(cells);
+    }
+  });
   clear();
 }
 

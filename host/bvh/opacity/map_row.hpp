@@ -1,37 +1,137 @@
-// A row of a coverage map in one to four vector registers. In: the row in memory, or two rows. Out:
-// the row as a vector, stored again, or its minimum with another; its sum or maximum.
+// A row of a coverage map in one, two or four vector registers. In: the row in memory, or two rows.
+// Out: the row in registers, stored again, or results by lane; its sum or maximum.
 #pragma once
 
 #include <cstring>
 
 #include "bvh/opacity/coverage_map.hpp"
+#include "bvh/opacity/register_width.hpp"
 
 namespace dapple {
 
-using Row = float __attribute__((vector_size(kMapSize * sizeof(float))));
+using FourFloats = float __attribute__((vector_size(16)));
+using EightFloats = float __attribute__((vector_size(32)));
+using SixteenFloats = float __attribute__((vector_size(64)));
 
-// By reference: vectors wider than the registers of the instruction set have no calling convention.
-inline void load_row(const float* from, Row& row) { std::memcpy(&row, from, sizeof row); }
-inline void store_row(float* to, const Row& row) { std::memcpy(to, &row, sizeof row); }
+template <int kLanes>
+struct RegisterOf;
+template <>
+struct RegisterOf<4> {
+  using Type = FourFloats;
+};
+template <>
+struct RegisterOf<8> {
+  using Type = EightFloats;
+};
+template <>
+struct RegisterOf<16> {
+  using Type = SixteenFloats;
+};
 
-inline void keep_min(Row& row, const Row& other) { row = row < other ? row : other; }
+/// A row of floats in registers of `kLanes` floats. Vectors that are wider than a register would be
+/// compared lane by lane (g++ 12).
+template <int kLanes>
+struct Row {
+  static constexpr int kParts = kMapSize / kLanes;
+  typename RegisterOf<kLanes>::Type part[kParts];
 
-/// Adds one half of the vector to the other, repeatedly: a chain of four additions, not sixteen.
-inline float sum_of(const Row& row) {
-  Row sum = row;
-  sum += __builtin_shufflevector(sum, sum, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
-  sum += __builtin_shufflevector(sum, sum, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11);
-  sum += __builtin_shufflevector(sum, sum, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
-  return sum[0] + sum[1];
-}
+  DAPPLE_INLINE Row(float value = 0.0f) {
+    for (auto& p : part) p = typename RegisterOf<kLanes>::Type{} + value;
+  }
+  DAPPLE_INLINE static Row load(const float* from) {
+    Row row;
+    for (int i = 0; i < kParts; ++i) std::memcpy(&row.part[i], from + i * kLanes, sizeof part[i]);
+    return row;
+  }
+  DAPPLE_INLINE void store(float* to) const {
+    for (int i = 0; i < kParts; ++i) std::memcpy(to + i * kLanes, &part[i], sizeof part[i]);
+  }
 
-inline float max_of(const Row& row) {
-  Row max = row;
-  const auto take = [&max](const Row& other) { max = max > other ? max : other; };
-  take(__builtin_shufflevector(max, max, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7));
-  take(__builtin_shufflevector(max, max, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11));
-  take(__builtin_shufflevector(max, max, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13));
-  return max[0] > max[1] ? max[0] : max[1];
-}
+  /// 0, 1, 2 ... 15.
+  DAPPLE_INLINE static Row indices() {
+    static constexpr float kIndices[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    static_assert(std::size(kIndices) == kMapSize);
+    return load(kIndices);
+  }
+  /// 1 at `index`, 0 elsewhere; all 0 at kMapSize.
+  DAPPLE_INLINE static Row unit(int index) {
+    static constexpr auto kUnit = [] {
+      std::array<float, 2 * kMapSize> unit{};
+      unit[kMapSize] = 1.0f;
+      return unit;
+    }();
+    return load(&kUnit[kMapSize - index]);
+  }
+
+  DAPPLE_INLINE Row& operator+=(const Row& b) { return *this = *this + b; }
+  DAPPLE_INLINE Row& operator-=(const Row& b) { return *this = *this - b; }
+  DAPPLE_INLINE friend Row operator+(Row a, const Row& b) {
+    for (int i = 0; i < kParts; ++i) a.part[i] += b.part[i];
+    return a;
+  }
+  DAPPLE_INLINE friend Row operator-(Row a, const Row& b) {
+    for (int i = 0; i < kParts; ++i) a.part[i] -= b.part[i];
+    return a;
+  }
+  DAPPLE_INLINE friend Row operator*(Row a, const Row& b) {
+    for (int i = 0; i < kParts; ++i) a.part[i] *= b.part[i];
+    return a;
+  }
+  DAPPLE_INLINE friend Row operator/(Row a, const Row& b) {
+    for (int i = 0; i < kParts; ++i) a.part[i] /= b.part[i];
+    return a;
+  }
+  DAPPLE_INLINE friend Row min(Row a, const Row& b) {
+    for (int i = 0; i < kParts; ++i) a.part[i] = a.part[i] < b.part[i] ? a.part[i] : b.part[i];
+    return a;
+  }
+  DAPPLE_INLINE friend Row max(Row a, const Row& b) {
+    for (int i = 0; i < kParts; ++i) a.part[i] = a.part[i] > b.part[i] ? a.part[i] : b.part[i];
+    return a;
+  }
+  /// 1 where a >= b, 0 elsewhere.
+  DAPPLE_INLINE friend Row at_least(const Row& a, const Row& b) {
+    const typename RegisterOf<kLanes>::Type zero{}, one = zero + 1.0f;
+    Row out;
+    for (int i = 0; i < kParts; ++i) out.part[i] = a.part[i] >= b.part[i] ? one : zero;
+    return out;
+  }
+
+  DAPPLE_INLINE float sum() const {
+    return fold([](auto a, auto b) __attribute__((always_inline)) { return a + b; });
+  }
+  DAPPLE_INLINE float max() const {
+    return fold([](auto a, auto b) __attribute__((always_inline)) { return a > b ? a : b; });
+  }
+
+ private:
+  /// Combines one half of the row with the other, repeatedly: a chain of four operations, not
+  /// sixteen.
+  template <class Combine>
+  DAPPLE_INLINE float fold(Combine combine) const {
+    Row row = *this;
+    for (int half = kParts / 2; half > 0; half /= 2) {
+      for (int i = 0; i < half; ++i) row.part[i] = combine(row.part[i], row.part[i + half]);
+    }
+    return fold_register(row.part[0], combine);
+  }
+  template <class Combine>
+  DAPPLE_INLINE static float fold_register(const FourFloats& r, Combine combine) {
+    const FourFloats two = combine(r, __builtin_shufflevector(r, r, 2, 3, 0, 1));
+    return combine(two[0], two[1]);
+  }
+  template <class Combine>
+  DAPPLE_INLINE static float fold_register(const EightFloats& r, Combine combine) {
+    const FourFloats low = __builtin_shufflevector(r, r, 0, 1, 2, 3);
+    const FourFloats high = __builtin_shufflevector(r, r, 4, 5, 6, 7);
+    return fold_register(combine(low, high), combine);
+  }
+  template <class Combine>
+  DAPPLE_INLINE static float fold_register(const SixteenFloats& r, Combine combine) {
+    const EightFloats low = __builtin_shufflevector(r, r, 0, 1, 2, 3, 4, 5, 6, 7);
+    const EightFloats high = __builtin_shufflevector(r, r, 8, 9, 10, 11, 12, 13, 14, 15);
+    return fold_register(combine(low, high), combine);
+  }
+};
 
 }  // namespace dapple

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvh/build/multiversion.hpp"
 #include "bvh/opacity/coverage_map.hpp"
 #include "bvh/opacity/map_row.hpp"
 
@@ -37,14 +36,17 @@ struct AxisResampling {
   }
 };
 
-/// Computes the share of each parent cell, along one axis, that lies in the range.
-inline void cell_shares(const CellRange& range, Row& share) {
-  const Row zero{};
-  Row begin;
-  for (int i = 0; i < kMapSize; ++i) begin[i] = static_cast<float>(i);
-  const Row end = begin + 1.0f, from = zero + range.from, to = zero + range.to;
-  const Row width = (to < end ? to : end) - (from > begin ? from : begin);
-  share = width > zero ? width : zero;
+/// Returns the share of each parent cell, along one axis, that lies in the range.
+template <int kLanes>
+DAPPLE_INLINE Row<kLanes> cell_shares(const CellRange& range) {
+  const auto begin = Row<kLanes>::indices();
+  return max(min(begin + 1.0f, range.to) - max(begin, range.from), 0.0f);
+}
+
+/// Returns the share of a row of parent cells that lies in the range.
+float row_share(const CellRange& range, int row) {
+  const float y = static_cast<float>(row);
+  return std::max(0.0f, std::min(range.to, y + 1.0f) - std::max(range.from, y));
 }
 
 CellRange cell_range(const Box3f& parent, const Box3f& box, int axis) {
@@ -66,80 +68,69 @@ struct Rows {
 
 /// Adds to `overlap` the share of each cell that both boxes cover, for the rows `within`. Extends
 /// `touched`, the rows that the calls so far added to; the first of them sets all rows to 0.
-inline void add_overlap(const CellRanges& a, const CellRanges& b, int axis, const Rows& within,
-                        Cells& overlap, Rows& touched) {
+template <int kLanes>
+DAPPLE_INLINE void add_overlap(const CellRanges& a, const CellRanges& b, int axis,
+                               const Rows& within, Cells& overlap, Rows& touched) {
   const CellRange columns = intersection(a[column_axis(axis)], b[column_axis(axis)]);
   const CellRange rows = intersection(a[row_axis(axis)], b[row_axis(axis)]);
   if (columns.from >= columns.to || rows.from >= rows.to) return;
   if (touched.last < 0) {
     for (int row = within.first; row <= within.last; ++row) {
-      store_row(&overlap[row * kMapSize], Row{});
+      Row<kLanes>().store(&overlap[row * kMapSize]);
     }
   }
-  Row across, sum;
-  cell_shares(columns, across);
+  const auto across = cell_shares<kLanes>(columns);
   const int first = std::max(within.first, static_cast<int>(rows.from));
   const int last = std::min(within.last, static_cast<int>(rows.to));
   for (int row = first; row <= last; ++row) {
-    const float y = static_cast<float>(row);
-    const float down = std::max(0.0f, std::min(rows.to, y + 1.0f) - std::max(rows.from, y));
-    load_row(&overlap[row * kMapSize], sum);
-    sum += across * down;
-    store_row(&overlap[row * kMapSize], sum);
+    float* cells = &overlap[row * kMapSize];
+    (Row<kLanes>::load(cells) + across * row_share(rows, row)).store(cells);
   }
   touched = {std::min(touched.first, first), std::max(touched.last, last)};
 }
 
 /// Sums the opacities of the child's sixteen rows into the parent's rows by `along`. Writes the
 /// rows along.first .. along.last of `out`, and no others.
-inline void sum_rows(const AxisResampling& along, const float* transmittance, float* out) {
-  const Row zero{}, one = zero + 1.0f;
-  Row sum = zero, carried = zero;
+template <int kLanes>
+DAPPLE_INLINE void sum_rows(const AxisResampling& along, const float* transmittance, float* out) {
+  Row<kLanes> sum, carried;
   int cell = along.first;
   for (int q = 0; q < kMapSize; ++q) {
     for (; cell < along.cell[q]; ++cell) {
-      store_row(out + cell * kMapSize, sum);
+      sum.store(out + cell * kMapSize);
       sum = carried;
-      carried = zero;
+      carried = {};
     }
-    Row row;
-    load_row(transmittance + q * kMapSize, row);
-    row = one - row;
-    sum += row * along.here[q];
-    carried += row * along.next[q];
+    const Row<kLanes> opacity = Row<kLanes>(1.0f) - Row<kLanes>::load(transmittance + q * kMapSize);
+    sum += opacity * along.here[q];
+    carried += opacity * along.next[q];
   }
-  store_row(out + cell * kMapSize, sum);
-  if (cell < along.last) store_row(out + (cell + 1) * kMapSize, carried);
+  sum.store(out + cell * kMapSize);
+  if (cell < along.last) carried.store(out + (cell + 1) * kMapSize);
 }
 
 /// Computes the child's opacity in the parent's cells, times the share of each cell that the child
 /// covers. Returns the rows touched; the others are not set.
-DAPPLE_MULTIVERSION
-Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
-              const AxisResampling& down, Cells& opacity) {
+template <int kLanes>
+DAPPLE_INLINE Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
+                            const AxisResampling& down, Cells& opacity) {
   // First down: a vector is a row of the child's columns. Then across: a vector is a row of the
   // parent's columns.
   Cells rows;
-  sum_rows(down, child.transmittance[axis].data(), rows.data());
+  sum_rows<kLanes>(down, child.transmittance[axis].data(), rows.data());
   Cells shares;
-  const Row zero{};
-  Row column;
-  for (int i = 0; i < kMapSize; ++i) column[i] = static_cast<float>(i);
   for (int p = 0; p < kMapSize; ++p) {
-    const float cell = static_cast<float>(across.cell[p]);
-    const Row here = column == zero + cell ? zero + across.here[p] : zero;
-    const Row next = column == zero + (cell + 1.0f) ? zero + across.next[p] : zero;
-    store_row(&shares[p * kMapSize], here + next);
+    const int cell = across.cell[p];
+    (Row<kLanes>::unit(cell) * across.here[p] + Row<kLanes>::unit(cell + 1) * across.next[p])
+        .store(&shares[p * kMapSize]);
   }
   for (int j = down.first; j <= down.last; ++j) {
-    Row even{}, odd{}, share;
+    Row<kLanes> even, odd;
     for (int p = 0; p < kMapSize; p += 2) {
-      load_row(&shares[p * kMapSize], share);
-      even += share * rows[j * kMapSize + p];
-      load_row(&shares[(p + 1) * kMapSize], share);
-      odd += share * rows[j * kMapSize + p + 1];
+      even += Row<kLanes>::load(&shares[p * kMapSize]) * rows[j * kMapSize + p];
+      odd += Row<kLanes>::load(&shares[(p + 1) * kMapSize]) * rows[j * kMapSize + p + 1];
     }
-    store_row(&opacity[j * kMapSize], even + odd);
+    (even + odd).store(&opacity[j * kMapSize]);
   }
   return {down.first, down.last};
 }
@@ -148,42 +139,30 @@ Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
 /// share F of a cell, the child's box covers f. Occluded areas overlap only in the part that both
 /// cover. There they count as independent, except for the share `enclosed`: in it the larger
 /// occluded area contains the smaller.
-DAPPLE_MULTIVERSION
-void merge_rows(const Rows& rows, const CellRanges& child, int axis, const Cells& opacity,
-                const Cells& overlap, const Rows& overlapped, float enclosed, Cells& map,
-                Cells& map_covered) {
-  const Row zero{}, one = zero + 1.0f;
-  Row across;
-  cell_shares(child[column_axis(axis)], across);
-  const CellRange down = child[row_axis(axis)];
+template <int kLanes>
+DAPPLE_INLINE void merge_rows(const Rows& rows, const CellRanges& child, int axis,
+                              const Cells& opacity, const Cells& overlap, const Rows& overlapped,
+                              float enclosed, Cells& map, Cells& map_covered) {
+  const Row<kLanes> one(1.0f);
+  const auto across = cell_shares<kLanes>(child[column_axis(axis)]);
   for (int row = rows.first; row <= rows.last; ++row) {
-    const float y = static_cast<float>(row);
-    const Row f = across * std::max(0.0f, std::min(down.to, y + 1.0f) - std::max(down.from, y));
-    Row transmittance, covered, added;
-    load_row(&map[row * kMapSize], transmittance);
-    load_row(&map_covered[row * kMapSize], covered);
-    load_row(&opacity[row * kMapSize], added);
-    const Row occluded = one - transmittance;
-    Row now = occluded + added, all = covered + f;
+    const int at = row * kMapSize;
+    const Row<kLanes> f = across * row_share(child[row_axis(axis)], row);
+    const Row<kLanes> occluded = one - Row<kLanes>::load(&map[at]);
+    const auto covered = Row<kLanes>::load(&map_covered[at]);
+    const auto added = Row<kLanes>::load(&opacity[at]);
+    Row<kLanes> now = occluded + added, all = covered + f;
     if (row >= overlapped.first && row <= overlapped.last) {
-      Row both;
-      load_row(&overlap[row * kMapSize], both);
-      keep_min(both, f);
-      keep_min(both, covered);
-      const Row independent = occluded * added;
-      Row smaller = occluded * f;
-      keep_min(smaller, added * covered);
-      Row twice =
-          both * (independent + enclosed * (smaller - independent)) / (covered * f + 1e-20f);
-      keep_min(twice, occluded);
-      keep_min(twice, added);
-      now -= twice;
+      const Row<kLanes> both = min(min(Row<kLanes>::load(&overlap[at]), f), covered);
+      const Row<kLanes> independent = occluded * added;
+      const Row<kLanes> smaller = min(occluded * f, added * covered);
+      const Row<kLanes> twice =
+          both * (independent + (smaller - independent) * enclosed) / (covered * f + 1e-20f);
+      now -= min(min(twice, occluded), added);
       all -= both;
     }
-    keep_min(now, one);
-    keep_min(all, one);
-    store_row(&map[row * kMapSize], one - now);
-    store_row(&map_covered[row * kMapSize], all);
+    (one - min(now, one)).store(&map[at]);
+    min(all, one).store(&map_covered[at]);
   }
 }
 
@@ -193,20 +172,21 @@ CellRanges NodeCoverage::cell_ranges(const Box3f& child) const {
   return {cell_range(box_, child, 0), cell_range(box_, child, 1), cell_range(box_, child, 2)};
 }
 
-DAPPLE_MULTIVERSION
 void NodeCoverage::merge(const CellRanges& child, int axis, int first_row, int last_row,
                          const Cells& opacity, const SurfaceAreas& areas) {
-  const Rows rows{first_row, last_row};
-  Cells overlap;
-  Rows overlapped;
-  for (int c = 0; c < child_count_; ++c) {
-    add_overlap(children_[c], child, axis, rows, overlap, overlapped);
-  }
-  merge_rows(rows, child, axis, opacity, overlap, overlapped, enclosed_share(areas_, areas, axis),
-             map_.transmittance[axis], covered_[axis]);
+  const float enclosed = enclosed_share(areas_, areas, axis);
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    const Rows rows{first_row, last_row};
+    Cells overlap;
+    Rows overlapped;
+    for (int c = 0; c < child_count_; ++c) {
+      add_overlap<kLanes>(children_[c], child, axis, rows, overlap, overlapped);
+    }
+    merge_rows<kLanes>(rows, child, axis, opacity, overlap, overlapped, enclosed,
+                       map_.transmittance[axis], covered_[axis]);
+  });
 }
 
-DAPPLE_MULTIVERSION
 void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
                        const SurfaceAreas& areas) {
   const CellRanges ranges = cell_ranges(child_box);
@@ -215,8 +195,11 @@ void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
   Cells opacity;
   for (int axis = 0; axis < 3; ++axis) {
     if (!(face_area(box_, axis) > 0.0f)) continue;
-    const Rows rows =
-        resample(child, axis, cells[column_axis(axis)], cells[row_axis(axis)], opacity);
+    Rows rows;
+    for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+      rows =
+          resample<kLanes>(child, axis, cells[column_axis(axis)], cells[row_axis(axis)], opacity);
+    });
     merge(ranges, axis, rows.first, rows.last, opacity, areas);
   }
   areas_.add(areas);

@@ -1,0 +1,58 @@
+// Compiles code on rows of floats for the width of the processor's vector registers. In: a generic
+// lambda. Out: its result, from the version for the widest registers that the processor has. No
+// version contracts multiplications and additions, so all give the same bits.
+#pragma once
+
+#include <utility>
+
+#if defined(__x86_64__) && defined(__linux__)
+#define DAPPLE_TARGET(name) __attribute__((target(name)))
+#endif
+
+/// For all that runs inside the lambda of for_register_width(): only code that is inlined is
+/// compiled for the lambda's instruction set.
+#define DAPPLE_INLINE inline __attribute__((always_inline))
+
+namespace dapple {
+
+#ifdef DAPPLE_TARGET
+
+/// Floats in the widest vector register of this processor: 4, 8 or 16.
+int floats_per_register();
+
+template <class Body>
+DAPPLE_TARGET("arch=x86-64-v4")
+void run_with_16_floats(const Body& body) {
+  body.template operator()<16>();
+}
+
+template <class Body>
+DAPPLE_TARGET("avx2")
+void run_with_8_floats(const Body& body) {
+  body.template operator()<8>();
+}
+
+/// Calls body.operator()<kLanes>(), kLanes the number of floats in a vector register. Write the
+/// body as `[&]<int kLanes>() __attribute__((always_inline)) {...}`.
+template <class Body>
+void for_register_width(const Body& body) {
+  switch (floats_per_register()) {
+    case 16:
+      return run_with_16_floats(body);
+    case 8:
+      return run_with_8_floats(body);
+    default:
+      return body.template operator()<4>();
+  }
+}
+
+#else
+
+template <class Body>
+void for_register_width(const Body& body) {
+  body.template operator()<4>();
+}
+
+#endif
+
+}  // namespace dapple
