@@ -20,7 +20,7 @@ void resolve_ao_pass(DeviceContext& context, const Queues& queues, const FilmBuf
 void resolve_light_pass(DeviceContext& context, const Queues& queues, const FilmBuffers& film,
                         const ResolveParams& params);
 
-/// As resolve_light_pass() for a dome: three channels, see DomePlanes in kernels/lights/dome.cl.
+/// As resolve_light_pass() for a dome: three channels, see resolve_dome in kernels/lights/dome.cl.
 void resolve_dome_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                        const FilmBuffers& film, const ResolveParams& params, uint light);
 

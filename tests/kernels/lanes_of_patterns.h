@@ -1,6 +1,6 @@
-/* Kernels that call the functions of lanes.clh. In: patterns of sixteen bits, one an item; out: the
-   result of each function, and which children a packet pushes. Included once for each way in which
-   lanes.clh can be compiled. */
+/* Kernels that call the functions of lanes.clh and ray_sets.clh. In: patterns of sixteen bits, one an
+   item, or sets of rays; out: the result of each function, and which children a packet pushes. Included
+   once for each way in which lanes.clh can be compiled. */
 #include "occlusion/packet_stack.clh"
 
 __kernel void lanes_of_patterns(__global uint* found) {
@@ -53,4 +53,26 @@ __kernel void children_of_patterns(__global BvhNode* nodes, __global uint* found
     to[1u + i] = i < pushed ? stack.entry[DAPPLE_STACK_BOTTOM + i] : 0u;
     to[9u + i] = i < pushed ? (uint)popcount(stack.rays[DAPPLE_STACK_BOTTOM + i]) : 0u;
   }
+}
+
+/* In: for each item two sets of rays for each of eight lanes. Out: 49 words an item: the first sets, added
+   ray by ray; the lanes that hold ray `item`, and that hold any (0 or all bits); the first sets of the
+   lanes in the bits of `item`; both sets after take_rays(); the rays that any lane holds. */
+__kernel void sets_of_rays(__global const ulong* sets, __global ulong* found) {
+  const uint item = get_global_id(0);
+  const ulong8 rays = vload8(2u * item, sets);
+  LaneSets some, taken = to_lane_sets(vload8(2u * item + 1u, sets));
+  start_lane_sets(&some);
+  for (uint i = 0; i < 64u; ++i) add_to_lane_sets(&some, i, convert_int8((rays & 1UL << i) != 0UL));
+  LaneSets kept = some;
+  keep_lanes(&kept, lanes_of_bits(item));
+  __global ulong* to = found + 49u * item;
+  vstore8(from_lane_sets(&some), 0, to);
+  vstore8(as_ulong8(convert_long8(lanes_with_ray(&some, item % 64u))), 1, to);
+  vstore8(as_ulong8(convert_long8(lanes_with_rays(&some))), 2, to);
+  vstore8(from_lane_sets(&kept), 3, to);
+  to[48] = rays_of_any_lane(&some);
+  take_rays(&some, &taken);
+  vstore8(from_lane_sets(&some), 4, to);
+  vstore8(from_lane_sets(&taken), 5, to);
 }

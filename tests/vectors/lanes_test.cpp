@@ -1,11 +1,12 @@
-// Functions of kernels/vectors/lanes.clh, for all patterns of sixteen bits and in each way in which
-// the file can be compiled: conversion of lanes to bits and back, nodes that a packet pushes, and
-// rounding.
+// Functions of kernels/vectors/lanes.clh and kernels/occlusion/ray_sets.clh in each way in which
+// they can be compiled: conversion of lanes to bits and back, nodes that a packet pushes, sets of
+// rays by lane, and rounding.
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include "dapple/shared/bvh_node.h"
@@ -55,11 +56,37 @@ TEST_P(Lanes, OpenedNodesArePushedInOrderAndLeavesAreNot) {
   }
 }
 
+TEST_P(Lanes, SetsOfRaysAreThoseOfWords) {
+  constexpr uint kItems = 256, kLanes = 8, kValues = 49;
+  std::mt19937_64 random(1);
+  std::vector<std::uint64_t> sets(2 * kLanes * kItems);
+  for (std::uint64_t& set : sets) set = random() & random() & (random() % 4 ? ~0ull : 0ull);
+  const Buffer in = upload(sets), out = device().allocate(kItems * kValues * sizeof(sets[0]));
+  run(GetParam(), "sets_of_rays", kItems, {in, out});
+  const auto found = download<std::uint64_t>(out, kItems * kValues);
+  for (uint item = 0; item < kItems; ++item) {
+    std::vector<std::uint64_t> expected(kValues);
+    for (uint lane = 0; lane < kLanes; ++lane) {
+      const std::uint64_t some = sets[2 * kLanes * item + lane];
+      const std::uint64_t others = sets[2 * kLanes * item + kLanes + lane];
+      expected[lane] = some;
+      expected[8 + lane] = some >> item % 64 & 1 ? ~0ull : 0;
+      expected[16 + lane] = some ? ~0ull : 0;
+      expected[24 + lane] = item >> lane & 1 ? some : 0;
+      expected[32 + lane] = some & ~others;
+      expected[40 + lane] = some & others;
+      expected[48] |= some;
+    }
+    const auto* at = &found[kValues * item];
+    ASSERT_EQ(std::vector<std::uint64_t>(at, at + kValues), expected) << "item " << item;
+  }
+}
+
 TEST_P(Lanes, RoundingAgreesWithTheHost) {
   std::vector<float> numbers;
   for (float x = 0.0f; x < 4.0f; x += 0.125f) {  // includes halves, which round to even
-    for (const float at :
-         {x, 1000.0f + x, std::nextafter(x, 9.0f), 8388608.0f + x, 1e18f * x, 2e8f * x})
+    for (const float at : {x, 1000.0f + x, std::nextafter(x, 9.0f), 8388608.0f + x, 1e18f * x,
+                           2e8f * x, 1e12f * x, 0x1p51f * std::nextafter(1.0f, x - 1.0f)})
       numbers.insert(numbers.end(), {at, -at});
   }
   const auto count = static_cast<uint>(numbers.size());

@@ -32,7 +32,8 @@ template <int kLanes>
 struct Tally {
   Row<kLanes> full, partial, largest;
 
-  DAPPLE_INLINE void add(const Row<kLanes>& in) {
+  /// No cell of `in` is above 1.
+  DAPPLE_ALWAYS_INLINE void add(const Row<kLanes>& in) {
     const Row<kLanes> filled = at_least(in, 1.0f), rest = in - filled;
     full += filled;
     partial += rest;
@@ -43,8 +44,8 @@ struct Tally {
 /// Scales the cells that are not full so that the sum over all cells is the triangle's area.
 /// Returns true if this filled more cells, so that another pass would come closer.
 template <int kLanes>
-DAPPLE_INLINE bool scale_partial_cells(const CellTriangle& triangle, Tally<kLanes>& tally,
-                                       CellCoverage& coverage) {
+DAPPLE_ALWAYS_INLINE bool scale_partial_cells(const CellTriangle& triangle, Tally<kLanes>& tally,
+                                              CellCoverage& coverage) {
   const float full_sum = tally.full.sum(), partial_sum = tally.partial.sum();
   if (full_sum + partial_sum <= 0.0f) {
     spread_evenly(triangle, coverage);
@@ -66,7 +67,7 @@ DAPPLE_INLINE bool scale_partial_cells(const CellTriangle& triangle, Tally<kLane
 
 /// See rasterize().
 template <int kLanes>
-DAPPLE_INLINE void rasterize_rows(const CellTriangle& triangle, CellCoverage& coverage) {
+DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCoverage& coverage) {
   // Each edge cuts a share 1 - c from a cell. If these shares do not overlap, as in a thin sliver
   // or along an edge, the share c0 + c1 + c2 - 2 remains. Scaling to the known area corrects the
   // other cells. Whole rows are computed: full vectors without remainders.

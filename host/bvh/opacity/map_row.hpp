@@ -35,26 +35,26 @@ struct Row {
   static constexpr int kParts = kMapSize / kLanes;
   typename RegisterOf<kLanes>::Type part[kParts];
 
-  DAPPLE_INLINE Row(float value = 0.0f) {
+  DAPPLE_ALWAYS_INLINE Row(float value = 0.0f) {
     for (auto& p : part) p = typename RegisterOf<kLanes>::Type{} + value;
   }
-  DAPPLE_INLINE static Row load(const float* from) {
+  DAPPLE_ALWAYS_INLINE static Row load(const float* from) {
     Row row;
     for (int i = 0; i < kParts; ++i) std::memcpy(&row.part[i], from + i * kLanes, sizeof part[i]);
     return row;
   }
-  DAPPLE_INLINE void store(float* to) const {
+  DAPPLE_ALWAYS_INLINE void store(float* to) const {
     for (int i = 0; i < kParts; ++i) std::memcpy(to + i * kLanes, &part[i], sizeof part[i]);
   }
 
   /// 0, 1, 2 ... 15.
-  DAPPLE_INLINE static Row indices() {
+  DAPPLE_ALWAYS_INLINE static Row indices() {
     static constexpr float kIndices[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     static_assert(std::size(kIndices) == kMapSize);
     return load(kIndices);
   }
   /// 1 at `index`, 0 elsewhere; all 0 at kMapSize.
-  DAPPLE_INLINE static Row unit(int index) {
+  DAPPLE_ALWAYS_INLINE static Row unit(int index) {
     static constexpr auto kUnit = [] {
       std::array<float, 2 * kMapSize> unit{};
       unit[kMapSize] = 1.0f;
@@ -63,44 +63,44 @@ struct Row {
     return load(&kUnit[kMapSize - index]);
   }
 
-  DAPPLE_INLINE Row& operator+=(const Row& b) { return *this = *this + b; }
-  DAPPLE_INLINE Row& operator-=(const Row& b) { return *this = *this - b; }
-  DAPPLE_INLINE friend Row operator+(Row a, const Row& b) {
+  DAPPLE_ALWAYS_INLINE Row& operator+=(const Row& b) { return *this = *this + b; }
+  DAPPLE_ALWAYS_INLINE Row& operator-=(const Row& b) { return *this = *this - b; }
+  DAPPLE_ALWAYS_INLINE friend Row operator+(Row a, const Row& b) {
     for (int i = 0; i < kParts; ++i) a.part[i] += b.part[i];
     return a;
   }
-  DAPPLE_INLINE friend Row operator-(Row a, const Row& b) {
+  DAPPLE_ALWAYS_INLINE friend Row operator-(Row a, const Row& b) {
     for (int i = 0; i < kParts; ++i) a.part[i] -= b.part[i];
     return a;
   }
-  DAPPLE_INLINE friend Row operator*(Row a, const Row& b) {
+  DAPPLE_ALWAYS_INLINE friend Row operator*(Row a, const Row& b) {
     for (int i = 0; i < kParts; ++i) a.part[i] *= b.part[i];
     return a;
   }
-  DAPPLE_INLINE friend Row operator/(Row a, const Row& b) {
+  DAPPLE_ALWAYS_INLINE friend Row operator/(Row a, const Row& b) {
     for (int i = 0; i < kParts; ++i) a.part[i] /= b.part[i];
     return a;
   }
-  DAPPLE_INLINE friend Row min(Row a, const Row& b) {
+  DAPPLE_ALWAYS_INLINE friend Row min(Row a, const Row& b) {
     for (int i = 0; i < kParts; ++i) a.part[i] = a.part[i] < b.part[i] ? a.part[i] : b.part[i];
     return a;
   }
-  DAPPLE_INLINE friend Row max(Row a, const Row& b) {
+  DAPPLE_ALWAYS_INLINE friend Row max(Row a, const Row& b) {
     for (int i = 0; i < kParts; ++i) a.part[i] = a.part[i] > b.part[i] ? a.part[i] : b.part[i];
     return a;
   }
   /// 1 where a >= b, 0 elsewhere.
-  DAPPLE_INLINE friend Row at_least(const Row& a, const Row& b) {
+  DAPPLE_ALWAYS_INLINE friend Row at_least(const Row& a, const Row& b) {
     const typename RegisterOf<kLanes>::Type zero{}, one = zero + 1.0f;
     Row out;
     for (int i = 0; i < kParts; ++i) out.part[i] = a.part[i] >= b.part[i] ? one : zero;
     return out;
   }
 
-  DAPPLE_INLINE float sum() const {
+  DAPPLE_ALWAYS_INLINE float sum() const {
     return fold([](auto a, auto b) __attribute__((always_inline)) { return a + b; });
   }
-  DAPPLE_INLINE float max() const {
+  DAPPLE_ALWAYS_INLINE float max() const {
     return fold([](auto a, auto b) __attribute__((always_inline)) { return a > b ? a : b; });
   }
 
@@ -108,7 +108,7 @@ struct Row {
   /// Combines one half of the row with the other, repeatedly: a chain of four operations, not
   /// sixteen.
   template <class Combine>
-  DAPPLE_INLINE float fold(Combine combine) const {
+  DAPPLE_ALWAYS_INLINE float fold(Combine combine) const {
     Row row = *this;
     for (int half = kParts / 2; half > 0; half /= 2) {
       for (int i = 0; i < half; ++i) row.part[i] = combine(row.part[i], row.part[i + half]);
@@ -116,18 +116,18 @@ struct Row {
     return fold_register(row.part[0], combine);
   }
   template <class Combine>
-  DAPPLE_INLINE static float fold_register(const FourFloats& r, Combine combine) {
+  DAPPLE_ALWAYS_INLINE static float fold_register(const FourFloats& r, Combine combine) {
     const FourFloats two = combine(r, __builtin_shufflevector(r, r, 2, 3, 0, 1));
     return combine(two[0], two[1]);
   }
   template <class Combine>
-  DAPPLE_INLINE static float fold_register(const EightFloats& r, Combine combine) {
+  DAPPLE_ALWAYS_INLINE static float fold_register(const EightFloats& r, Combine combine) {
     const FourFloats low = __builtin_shufflevector(r, r, 0, 1, 2, 3);
     const FourFloats high = __builtin_shufflevector(r, r, 4, 5, 6, 7);
     return fold_register(combine(low, high), combine);
   }
   template <class Combine>
-  DAPPLE_INLINE static float fold_register(const SixteenFloats& r, Combine combine) {
+  DAPPLE_ALWAYS_INLINE static float fold_register(const SixteenFloats& r, Combine combine) {
     const EightFloats low = __builtin_shufflevector(r, r, 0, 1, 2, 3, 4, 5, 6, 7);
     const EightFloats high = __builtin_shufflevector(r, r, 8, 9, 10, 11, 12, 13, 14, 15);
     return fold_register(combine(low, high), combine);

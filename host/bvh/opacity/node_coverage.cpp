@@ -38,13 +38,13 @@ struct AxisResampling {
 
 /// Returns the share of each parent cell, along one axis, that lies in the range.
 template <int kLanes>
-DAPPLE_INLINE Row<kLanes> cell_shares(const CellRange& range) {
+DAPPLE_ALWAYS_INLINE Row<kLanes> cell_shares(const CellRange& range) {
   const auto begin = Row<kLanes>::indices();
   return max(min(begin + 1.0f, range.to) - max(begin, range.from), 0.0f);
 }
 
 /// Returns the share of a row of parent cells that lies in the range.
-float row_share(const CellRange& range, int row) {
+DAPPLE_ALWAYS_INLINE float row_share(const CellRange& range, int row) {
   const float y = static_cast<float>(row);
   return std::max(0.0f, std::min(range.to, y + 1.0f) - std::max(range.from, y));
 }
@@ -55,7 +55,7 @@ CellRange cell_range(const Box3f& parent, const Box3f& box, int axis) {
           (box.max[axis] - parent.min[axis]) * to_cells};
 }
 
-CellRange intersection(const CellRange& a, const CellRange& b) {
+DAPPLE_ALWAYS_INLINE CellRange intersection(const CellRange& a, const CellRange& b) {
   return {std::max(a.from, b.from), std::min(a.to, b.to)};
 }
 
@@ -69,8 +69,8 @@ struct Rows {
 /// Adds to `overlap` the share of each cell that both boxes cover, for the rows `within`. Extends
 /// `touched`, the rows that the calls so far added to; the first of them sets all rows to 0.
 template <int kLanes>
-DAPPLE_INLINE void add_overlap(const CellRanges& a, const CellRanges& b, int axis,
-                               const Rows& within, Cells& overlap, Rows& touched) {
+DAPPLE_ALWAYS_INLINE void add_overlap(const CellRanges& a, const CellRanges& b, int axis,
+                                      const Rows& within, Cells& overlap, Rows& touched) {
   const CellRange columns = intersection(a[column_axis(axis)], b[column_axis(axis)]);
   const CellRange rows = intersection(a[row_axis(axis)], b[row_axis(axis)]);
   if (columns.from >= columns.to || rows.from >= rows.to) return;
@@ -92,7 +92,8 @@ DAPPLE_INLINE void add_overlap(const CellRanges& a, const CellRanges& b, int axi
 /// Sums the opacities of the child's sixteen rows into the parent's rows by `along`. Writes the
 /// rows along.first .. along.last of `out`, and no others.
 template <int kLanes>
-DAPPLE_INLINE void sum_rows(const AxisResampling& along, const float* transmittance, float* out) {
+DAPPLE_ALWAYS_INLINE void sum_rows(const AxisResampling& along, const float* transmittance,
+                                   float* out) {
   Row<kLanes> sum, carried;
   int cell = along.first;
   for (int q = 0; q < kMapSize; ++q) {
@@ -112,8 +113,8 @@ DAPPLE_INLINE void sum_rows(const AxisResampling& along, const float* transmitta
 /// Computes the child's opacity in the parent's cells, times the share of each cell that the child
 /// covers. Returns the rows touched; the others are not set.
 template <int kLanes>
-DAPPLE_INLINE Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
-                            const AxisResampling& down, Cells& opacity) {
+DAPPLE_ALWAYS_INLINE Rows resample(const CoverageMap& child, int axis, const AxisResampling& across,
+                                   const AxisResampling& down, Cells& opacity) {
   // First down: a vector is a row of the child's columns. Then across: a vector is a row of the
   // parent's columns.
   Cells rows;
@@ -140,9 +141,10 @@ DAPPLE_INLINE Rows resample(const CoverageMap& child, int axis, const AxisResamp
 /// cover. There they count as independent, except for the share `enclosed`: in it the larger
 /// occluded area contains the smaller.
 template <int kLanes>
-DAPPLE_INLINE void merge_rows(const Rows& rows, const CellRanges& child, int axis,
-                              const Cells& opacity, const Cells& overlap, const Rows& overlapped,
-                              float enclosed, Cells& map, Cells& map_covered) {
+DAPPLE_ALWAYS_INLINE void merge_rows(const Rows& rows, const CellRanges& child, int axis,
+                                     const Cells& opacity, const Cells& overlap,
+                                     const Rows& overlapped, float enclosed, Cells& map,
+                                     Cells& map_covered) {
   const Row<kLanes> one(1.0f);
   const auto across = cell_shares<kLanes>(child[column_axis(axis)]);
   for (int row = rows.first; row <= rows.last; ++row) {

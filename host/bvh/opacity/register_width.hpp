@@ -1,17 +1,15 @@
 // Compiles code on rows of floats for the width of the processor's vector registers. In: a generic
-// lambda. Out: its result, from the version for the widest registers that the processor has. No
+// lambda. Out: what it writes, by the version for the widest registers that the processor has. No
 // version contracts multiplications and additions, so all give the same bits.
 #pragma once
-
-#include <utility>
 
 #if defined(__x86_64__) && defined(__linux__)
 #define DAPPLE_TARGET(name) __attribute__((target(name)))
 #endif
 
-/// For all that runs inside the lambda of for_register_width(): only code that is inlined is
-/// compiled for the lambda's instruction set.
-#define DAPPLE_INLINE inline __attribute__((always_inline))
+/// For functions on rows that run inside the lambda of for_register_width(): only inlined code is
+/// compiled for its instruction set.
+#define DAPPLE_ALWAYS_INLINE inline __attribute__((always_inline))
 
 namespace dapple {
 
@@ -21,7 +19,7 @@ namespace dapple {
 int floats_per_register();
 
 template <class Body>
-DAPPLE_TARGET("arch=x86-64-v4")
+DAPPLE_TARGET("avx512f,avx512bw,avx512cd,avx512dq,avx512vl")
 void run_with_16_floats(const Body& body) {
   body.template operator()<16>();
 }

@@ -1,9 +1,10 @@
-// Rows of coverage maps: registers of 4, 8 and 16 floats give the same bits, those of a loop over
-// the cells.
+// Rows of coverage maps: registers of 4, 8 and 16 floats, where the processor has them, give the
+// same bits, those of a loop over the cells.
 #include "bvh/opacity/map_row.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -34,7 +35,7 @@ Cells second_row() {
 }
 
 template <int kLanes>
-DAPPLE_INLINE Results results_in_registers(const Cells& a, const Cells& b) {
+DAPPLE_ALWAYS_INLINE Results results_in_registers(const Cells& a, const Cells& b) {
   Results out;
   const auto x = Row<kLanes>::load(a.data()), y = Row<kLanes>::load(b.data());
   const auto shares = max(min((x + Row<kLanes>::indices()) * y / (y + 0.5f) - x, 9.0f), 0.0f);
