@@ -158,7 +158,7 @@ void warn_of_totals(const std::string& file, const MeshTotals& totals, std::uint
   warn(file, totals.shining_lines, "line primitives emit, which is ignored", scene);
   warn(file, totals.without_position, "primitives without POSITION are ignored", scene);
   warn(file, totals.without_texcoord,
-       "primitives lack the TEXCOORD of their alpha texture and use its corner", scene);
+       "lacks the TEXCOORD of its base colour texture and uses the texel at 0,0", scene);
   warn(file, totals.without_primitives, "has no primitives, which glTF demands", scene);
   warn(file, totals.without_elements, "has too few vertices for a triangle or segment", scene);
   warn(file, totals.without_view, "has a POSITION without a bufferView: all vertices are at 0,0,0",

@@ -76,7 +76,7 @@ void append_primitive(const Document& document, const PrimitiveSource& source, M
   const bool lines = is_of_lines(primitive);
   const AttributeNeeds needs = needs_of(material, lookup, lines, colors, totals);
   const Attributes attributes = read_attributes(document, primitive, needs, lookup, who);
-  if (material.alpha_texture >= 0 && needs.uvs && !attributes.uvs) ++totals.without_texcoord;
+  totals.without_texcoord.add(needs.uvs && !attributes.uvs ? 1 : 0, who);
   std::vector<std::uint32_t> corners = element_corners(document, primitive, who);
   totals.without_elements.add(corners.empty() ? 1 : 0, who);
   if (corners.empty()) return;

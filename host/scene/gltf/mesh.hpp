@@ -41,10 +41,10 @@ struct MeshTotals {
   std::uint64_t textured_lines = 0;    ///< primitives of lines whose opacity has a texture
   std::uint64_t shining_lines = 0;     ///< primitives of lines that emit
   std::uint64_t without_position = 0;  ///< primitives
-  std::uint64_t without_texcoord = 0;  ///< primitives whose alpha texture lacks its TEXCOORD
   Found without_primitives;            ///< meshes
   Found without_elements;              ///< primitives with fewer vertices than one triangle has
   Found without_view;                  ///< primitives whose POSITION has neither values nor view
+  Found without_texcoord;              ///< primitives that lack the TEXCOORD of their texture
   Found odd_texcoords, odd_alphas;     ///< vertices whose number is NaN, or infinite
 };
 

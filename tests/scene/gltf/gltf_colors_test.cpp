@@ -62,6 +62,19 @@ TEST(GltfColors, AnImageThatCannotBeReadLeavesTheFactorWithANote) {
   expect_says(scene.warnings[0], "its colour goes untextured");
 }
 
+TEST(GltfColors, APrimitiveWithoutTextureCoordinatesIsNamedInANote) {
+  for (const char* mode : {"OPAQUE", "BLEND"}) {
+    GltfBuilder b = colored({1, 1, 1, 1}, one_texel());
+    b.doc["materials"][0]["alphaMode"] = mode;
+    b.doc["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
+    const Scene scene = b.load(with_colors());
+    ASSERT_EQ(scene.warnings.size(), 1u) << mode;
+    expect_says(scene.warnings[0], "mesh 0");
+    expect_says(scene.warnings[0], "lacks the TEXCOORD of its base colour texture");
+  }
+  EXPECT_TRUE(colored({1, 1, 1, 1}).load(with_colors()).warnings.empty());
+}
+
 TEST(GltfColors, ColoursOfVerticesAreLinearWithAndWithoutAlpha) {
   GltfBuilder b = colored({1, 1, 1, 1});
   auto& attributes = b.doc["meshes"][0]["primitives"][0]["attributes"];
