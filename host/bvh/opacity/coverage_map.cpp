@@ -65,7 +65,7 @@ DAPPLE_ALWAYS_INLINE bool scale_partial_cells(const CellTriangle& triangle, Tall
   return fills_more;
 }
 
-/// See rasterize().
+/// rasterize() for registers of `kLanes` floats.
 template <int kLanes>
 DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCoverage& coverage) {
   // Each edge cuts a share 1 - c from a cell. If these shares do not overlap, as in a thin sliver
