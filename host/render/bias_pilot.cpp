@@ -18,6 +18,11 @@ constexpr std::size_t kUnitPixels = std::size_t{kBiasUnit} * kBiasUnit;
 /// Units whose camera rays are traced at once.
 constexpr std::size_t kUnitsAtOnce = 512;
 
+/// Fewest units that are worth a launch, and how many times the units that seem to be missing are
+/// taken: experiment 545.
+constexpr std::size_t kFewestUnits = 16;
+constexpr double kSpareUnits = 1.1;
+
 /// Units in an order whose beginnings are evenly spread: by the height of a lattice of two
 /// dimensions above each (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences",
 /// 2018).
@@ -71,13 +76,18 @@ double BiasPilot::seen() const {
 }
 
 void BiasPilot::grow(std::size_t rays) {
-  while (this->rays() < rays && !is_complete()) {
-    const std::size_t least =
-        std::min(layers_.front().params.rays_per_point, layers_.back().params.rays_per_point);
-    const std::size_t missing =
-        (rays - this->rays()) / (kUnitPixels * std::max<std::size_t>(1, least));
-    take_units(std::clamp<std::size_t>(missing, 1, units_at_once_));
-  }
+  while (this->rays() < rays && !is_complete()) take_units(units_for(rays - this->rays()));
+}
+
+// How many units probably give so many rays, by what the units so far gave.
+std::size_t BiasPilot::units_for(std::size_t rays) const {
+  const double least =
+      std::min(layers_.front().params.rays_per_point, layers_.back().params.rays_per_point);
+  const double of_unit = this->rays() > 0
+                             ? static_cast<double>(this->rays()) / static_cast<double>(next_)
+                             : kUnitPixels * std::max(1.0, least);
+  const double units = kSpareUnits * static_cast<double>(rays) / of_unit;
+  return std::min(std::max(static_cast<std::size_t>(units), kFewestUnits), units_at_once_);
 }
 
 // Camera rays of the next units, one for each pixel, and their occlusion rays.
@@ -133,26 +143,22 @@ void BiasPilot::keep(Layer& layer, const std::vector<std::uint32_t>& units,
   layer.units.insert(layer.units.end(), units.begin(), units.end());
   layer.rays.resize(before + params.ray_count);
   context_.read(queues_.rays, &layer.rays[before], params.ray_count * sizeof(Ray));
-  layer.exact.resize(layer.rays.size());
-  trace(layer, Estimator::exact, 0, before, [&](std::size_t first, std::span<const Occlusion> of) {
-    for (std::size_t i = 0; i < of.size(); ++i) layer.exact[first + i] = of[i].transmittance;
-  });
+  trace(layer, Estimator::exact, 0, layer.exact);
 }
 
-template <class Visit>
-void BiasPilot::trace(const Layer& layer, Estimator estimator, float footprint, std::size_t begin,
-                      Visit visit) {
-  const std::size_t slice = kQueryRays / layer.params.rays_per_point * layer.params.rays_per_point;
-  std::vector<Occlusion> found;
-  for (; begin < layer.rays.size(); begin += slice) {
+void BiasPilot::trace(const Layer& layer, Estimator estimator, float footprint,
+                      std::vector<float>& found) {
+  std::vector<Occlusion> of_slice;
+  while (found.size() < layer.rays.size()) {
     OcclusionParams params = layer.params;
+    const std::size_t slice = kQueryRays / params.rays_per_point * params.rays_per_point;
     params.footprint = footprint;
-    params.ray_count = static_cast<uint>(std::min(slice, layer.rays.size() - begin));
-    context_.write(traced_.rays, &layer.rays[begin], params.ray_count * sizeof(Ray));
+    params.ray_count = static_cast<uint>(std::min(slice, layer.rays.size() - found.size()));
+    context_.write(traced_.rays, &layer.rays[found.size()], params.ray_count * sizeof(Ray));
     occlusion_pass(context_, traced_, scene_, "bias pilot", estimator, params, RayOrder::by_pixel);
-    found.resize(params.ray_count);
-    context_.read(traced_.occlusions, found.data(), found.size() * sizeof(Occlusion));
-    visit(begin, std::span<const Occlusion>(found));
+    of_slice.resize(params.ray_count);
+    context_.read(traced_.occlusions, of_slice.data(), of_slice.size() * sizeof(Occlusion));
+    for (const Occlusion& occlusion : of_slice) found.push_back(occlusion.transmittance);
   }
 }
 
@@ -163,21 +169,20 @@ std::vector<Bias> BiasPilot::bias(float footprint) {
   return out;
 }
 
-Bias BiasPilot::bias_of(const Layer& layer, bool is_light, float footprint) {
+Bias BiasPilot::bias_of(Layer& layer, bool is_light, float footprint) {
+  if (layer.footprint != footprint) layer.prefiltered.clear();
+  layer.footprint = footprint;
+  trace(layer, Estimator::prefiltered, footprint, layer.prefiltered);
   std::vector<BiasUnit> units = units_;
   std::vector<double> weights(units.size());  // without occlusion
   const std::size_t rays = std::max(1u, layer.params.rays_per_point);
   const double factor = 1.0 / static_cast<double>(rays * splitting_factor(options_));
-  trace(layer, Estimator::prefiltered, footprint, 0,
-        [&](std::size_t first, std::span<const Occlusion> found) {
-          for (std::size_t i = 0; i < found.size(); ++i) {
-            const std::uint32_t unit = layer.units[(first + i) / rays];
-            const double weight = factor * double{layer.rays[first + i].weight};
-            weights[unit] += weight;
-            units[unit].difference +=
-                weight * (double{found[i].transmittance} - double{layer.exact[first + i]});
-          }
-        });
+  for (std::size_t i = 0; i < layer.rays.size(); ++i) {
+    const std::uint32_t unit = layer.units[i / rays];
+    const double weight = factor * double{layer.rays[i].weight};
+    weights[unit] += weight;
+    units[unit].difference += weight * (double{layer.prefiltered[i]} - double{layer.exact[i]});
+  }
   double largest = is_light ? 0 : 1;
   for (std::size_t i = 0; i < units.size() && is_light; ++i)
     if (units[i].count > 0) largest = std::max(largest, weights[i] / units[i].count);

@@ -34,18 +34,19 @@ class BiasPilot : public BiasSource {
     OcclusionParams params{};
     std::vector<Ray> rays;
     std::vector<float> exact;          ///< transmittances
+    std::vector<float> prefiltered;    ///< the same with `footprint`, of the first rays
+    float footprint = -1;
     std::vector<std::uint32_t> units;  ///< by sample
   };
 
   [[nodiscard]] std::size_t rays() const;
+  [[nodiscard]] std::size_t units_for(std::size_t rays) const;
   void take_units(std::size_t count);
   std::vector<std::uint32_t> count_hits(const std::vector<std::uint32_t>& units);
   void keep(Layer& layer, const std::vector<std::uint32_t>& units, const OcclusionParams& params);
-  Bias bias_of(const Layer& layer, bool is_light, float footprint);
-  /// Calls visit(index of the first ray, transmittances) for consecutive rays of the layer.
-  template <class Visit>
-  void trace(const Layer& layer, Estimator estimator, float footprint, std::size_t begin,
-             Visit visit);
+  Bias bias_of(Layer& layer, bool is_light, float footprint);
+  /// Appends the transmittances of those rays of the layer that `found` lacks.
+  void trace(const Layer& layer, Estimator estimator, float footprint, std::vector<float>& found);
 
   DeviceContext& context_;
   const DeviceBuffers& scene_;

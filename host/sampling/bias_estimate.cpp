@@ -93,6 +93,13 @@ double mean_square(const Bias& bias) {
       {0.0, bias.mean * bias.mean - bias.error * bias.error, bias.tile_rmse * bias.tile_rmse});
 }
 
+double mean_square_error(const Bias& bias) {
+  const double of_mean = bias.error * (2 * std::fabs(bias.mean) + bias.error);
+  const double of_tiles =
+      0.5 * (bias.tile_rmse_limit * bias.tile_rmse_limit - bias.tile_rmse * bias.tile_rmse);
+  return std::max(of_mean, of_tiles);
+}
+
 std::string bias_text(const Bias& bias) {
   return fmt::format("{:+.4f} +- {:.4f}, RMSE over tiles {:.4f}", bias.mean, bias.error,
                      bias.tile_rmse);

@@ -17,9 +17,13 @@ constexpr std::size_t kFirstRays = 1u << 15, kMostRays = 1u << 20;
 /// Smallest part of the scale that is tried before 0.
 constexpr float kSmallestPart = 1.0f / 16;
 
-/// Rays of a layer for a target of 1: with them the squared bias is known to a tenth of the squared
-/// target. The number grows as the square falls.
+/// Part of a squared target to which the squared bias must be known.
+constexpr double kKnownPart = 0.1;
+
+/// Rays of a layer that tell it for a target of 1, whatever the bias. The number grows as the
+/// square falls. If the bias is small a fourth of them may do: experiment 545.
 constexpr double kRaysOfTarget = 6.5;
+constexpr std::size_t kFirstPart = 4;
 constexpr std::size_t kFewestRaysOfTarget = 1u << 12, kMostRaysOfTarget = 1u << 18;
 
 /// What is known of a footprint's bias, of the layer in which it may be largest.
@@ -47,13 +51,21 @@ Judgement judge(BiasSource& source, float footprint, double most) {
   }
 }
 
-/// The bias that counts for a target.
+/// The bias that counts for a target. Takes rays until its square is known, or there are enough.
 double rmse_of(BiasSource& source, float footprint, double target) {
-  source.grow(std::clamp(static_cast<std::size_t>(kRaysOfTarget / (target * target)),
-                         kFewestRaysOfTarget, kMostRaysOfTarget));
-  double largest = 0;
-  for (const Bias& bias : source.bias(footprint)) largest = std::max(largest, mean_square(bias));
-  return std::sqrt(largest * source.seen());
+  const double square = target * target;
+  const std::size_t most = std::clamp(static_cast<std::size_t>(kRaysOfTarget / square),
+                                      kFewestRaysOfTarget, kMostRaysOfTarget);
+  for (std::size_t rays = std::max(kFewestRaysOfTarget, most / kFirstPart);; rays *= 2) {
+    source.grow(std::min(rays, most));
+    double largest = 0, error = 0;
+    for (const Bias& bias : source.bias(footprint)) {
+      largest = std::max(largest, mean_square(bias));
+      error = std::max(error, mean_square_error(bias));
+    }
+    if (rays >= most || error * source.seen() <= kKnownPart * square)
+      return std::sqrt(largest * source.seen());
+  }
 }
 
 /// `last`: of the smallest footprint that was tried, above 0.

@@ -72,6 +72,11 @@ TEST(BiasEstimate, TheTextHasTheMeanItsErrorAndTheRmse) {
             "-0.0021 +- 0.0004, RMSE over tiles 0.0035");
 }
 
+TEST(MeanSquareError, IsThatOfTheMeanOrOfTheTiles) {
+  EXPECT_NEAR(mean_square_error({-0.01, 0.002, 0, 0, 1}), 0.002 * 0.022, 1e-12);
+  EXPECT_NEAR(mean_square_error({0, 0.001, 0.01, 0.02, 1}), 0.5 * (0.0004 - 0.0001), 1e-12);
+}
+
 TEST(NoiseTarget, TheSquaresAddUpToTheTargetsSquare) {
   EXPECT_FLOAT_EQ(noise_target(0.05f, 0.03), 0.04f);
   EXPECT_FLOAT_EQ(noise_target(0.05f, 0), 0.05f);

@@ -79,5 +79,13 @@ TEST(FootprintChoice, ATargetAllowsHalfOfItAndTellsHowMuchThereIs) {
   EXPECT_NEAR(fixed.bias_rmse, 0.004, 1e-9);
 }
 
+TEST(FootprintChoice, ATargetTakesAFourthOfTheRaysWhereTheyTellTheBias) {
+  MadeUpBias small(1u << 20), large(1u << 20);
+  choose_footprint(small, {1, 0, 0.02f, true});
+  choose_footprint(large, {9, 0, 0.02f, true});
+  EXPECT_EQ(small.rays(), 4096u);
+  EXPECT_EQ(large.rays(), 16250u);
+}
+
 }  // namespace
 }  // namespace dapple
