@@ -1,7 +1,8 @@
 // Decides how many sample batches pixels should have: which pixels get more samples. In: variances,
 // the samples that pixels have, and a target. Out: batches of each block of 2x2 pixels. For a
-// target RMSE all blocks that vary get the same number. An allocation in proportion to the standard
-// deviations (Neyman 1934) takes as long to reach the same error (experiment 536).
+// target RMSE numbers are doubled, because the sequence is stratified best at powers of two: of all
+// blocks that vary, or of those where a batch lowers the error most, until the rest is small
+// enough.
 #pragma once
 
 #include <cstdint>
@@ -29,9 +30,15 @@ double squared_errors(const std::vector<float>& variances, const BatchCounts& ba
 /// The sum of squared errors of so many pixels whose root mean square error is `rmse`.
 double squared_target(float rmse, std::size_t pixels);
 
-/// Raises `wanted` to `batches`, rounded up and at most `max`, where a variance is above 0.
-void want_equal(const std::vector<float>& variances, double batches, std::uint32_t max,
-                BatchCounts& wanted);
+/// Raises `wanted` of blocks with a variance above 0 to `factor` times what they have, at most
+/// `max`.
+void want_multiple(const std::vector<float>& variances, std::uint32_t factor,
+                   const BatchCounts& have, std::uint32_t max, BatchCounts& wanted);
+
+/// Raises `wanted` of blocks to twice what they have, at most `max`: of those where a batch lowers
+/// the sum of squared errors most, until it has fallen by `excess`. `falls`: by how much it falls.
+void want_doubles(const std::vector<float>& falls, double excess, const BatchCounts& have,
+                  std::uint32_t max, BatchCounts& wanted);
 
 /// Raises `wanted` until each standard error is at most `target`, but not above `max`.
 void want_error(const std::vector<float>& variances, float target, std::uint32_t max,

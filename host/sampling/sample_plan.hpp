@@ -38,7 +38,8 @@ class SamplePlan {
   [[nodiscard]] std::uint32_t minimum() const { return min_; }
   [[nodiscard]] bool only_pilot_has_samples() const;
   /// Raises the minimum, up to four times, to the number of samples with which all pilot pixels
-  /// together have the target RMSE, rounded up to a power of two. Returns least().
+  /// together have the target RMSE, rounded to a power of two: down if that is enough for most
+  /// pixels. Returns least().
   std::vector<WorkGroup> after_pilot(const PassVariances& variances);
 
   /// What pixels lack to the minimum, or without a target to the number that each gets; empty if

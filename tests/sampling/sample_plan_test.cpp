@@ -28,12 +28,35 @@ std::vector<float> rising_variances(std::size_t pixels) {
   return variances;
 }
 
-TEST(WantEqual, GivesTheSameNumberWhereAVarianceIsAboveZeroAndKeepsWhatIsWanted) {
-  BatchCounts wanted{2, 2, 7, 2};
-  want_equal({0.5f, 0.0f, 0.1f, 1e-9f}, 4.1, 100, wanted);
-  EXPECT_EQ(wanted, (BatchCounts{5, 2, 7, 5}));
-  want_equal({0.5f, 0.0f, 0.1f, 1e-9f}, 1e12, 100, wanted);
-  EXPECT_EQ(wanted, (BatchCounts{100, 2, 100, 100}));
+TEST(WantMultiple, MultipliesWhereAVarianceIsAboveZeroAndKeepsWhatIsWanted) {
+  BatchCounts wanted{2, 2, 9, 30};
+  want_multiple({0.5f, 0.0f, 0.1f, 1e-9f}, 4, {2, 2, 2, 30}, 100, wanted);
+  EXPECT_EQ(wanted, (BatchCounts{8, 2, 9, 100}));
+}
+
+TEST(WantDoubles, DoublesWhereABatchLowersTheErrorMostUntilItHasFallenEnough) {
+  const std::vector<float> falls{0.3f, 0.0f, 0.2f, 0.4f, 0.1f};
+  const BatchCounts have{4, 2, 2, 8, 2};  // a batch lowers the error by 0.075, 0, 0.1, 0.05, 0.05
+  BatchCounts wanted = have;
+  want_doubles(falls, 0.15, have, 100, wanted);
+  EXPECT_EQ(wanted, (BatchCounts{4, 2, 4, 8, 2}));
+  want_doubles(falls, 0.45, have, 7, wanted);
+  EXPECT_EQ(wanted, (BatchCounts{7, 2, 4, 8, 2})) << "the largest number is 7";
+  want_doubles(falls, 10, have, 100, wanted);
+  EXPECT_EQ(wanted, (BatchCounts{8, 2, 4, 16, 4})) << "not where nothing varies";
+}
+
+TEST(AllocateBatches, MultipliesByAPowerOfTwoAndDoublesOnlySomeForLess) {
+  const auto allocated = [](float variance, float of_first) {
+    std::vector<float> variances(64, variance);
+    for (std::size_t p : {0, 1, 16, 17}) variances[p] = of_first;  // the first block
+    return allocate_batches({variances}, BatchCounts(64, 4), 16, {0, 0.1f}, 100);
+  };
+  EXPECT_EQ(allocated(0.04f, 0.04f), BatchCounts(16, 4)) << "as the target";
+  EXPECT_EQ(allocated(0.19f, 0.19f), BatchCounts(16, 16)) << "4.7 times the squared target";
+  BatchCounts first(16, 4);
+  first[0] = 8;
+  EXPECT_EQ(allocated(0.03f, 0.25f), first) << "1.1 times the squared target";
 }
 
 TEST(SquaredErrors, AreTheSumOfVariancesOverBatches) {
@@ -213,9 +236,9 @@ TEST(SamplePlan, AfterThePilotAllPixelsGetEqualSamples) {
   EXPECT_EQ(count_of(plan.samples(), 8), 1600u);
   EXPECT_EQ(count_of(plan.samples(), 0), 16384u - 1600u);
   ASSERT_TRUE(plan.only_pilot_has_samples());
-  // With batches of variance 0.041 the squared error is 0.01 at 4.1 batches; the next power of two
-  // is 8.
-  const std::vector<WorkGroup> all = plan.after_pilot({std::vector<float>(16384, 0.041f)});
+  // With batches of variance 0.07 the squared error is 0.01 at 7 batches; the next power of two is
+  // 8.
+  const std::vector<WorkGroup> all = plan.after_pilot({std::vector<float>(16384, 0.07f)});
   EXPECT_EQ(count_of(plan.samples(), 8 * DAPPLE_SAMPLE_BATCH), 16384u);
   EXPECT_FALSE(plan.only_pilot_has_samples());
   GaussianPixels pixels(std::vector<float>(16384, 1.0f));
@@ -224,11 +247,11 @@ TEST(SamplePlan, AfterThePilotAllPixelsGetEqualSamples) {
   EXPECT_TRUE(plan.least().empty());
 }
 
-TEST(SamplePlan, AfterThePilotNoSafetyMarginIsAdded) {
-  // A safety margin could double the samples. If the pilot is wrong, a later round adds fewer.
+TEST(SamplePlan, AfterThePilotSamplesAreRoundedDownIfFewAreMissing) {
+  // A later round doubles those of some pixels.
   SamplePlan plan(128, 128, by_rmse(0.1f));
   plan.pilot();
-  plan.after_pilot({std::vector<float>(16384, 0.0399f)});
+  plan.after_pilot({std::vector<float>(16384, 0.067f)});
   EXPECT_EQ(count_of(plan.samples(), 4 * DAPPLE_SAMPLE_BATCH), 16384u);
 }
 
