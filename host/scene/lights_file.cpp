@@ -207,6 +207,7 @@ std::vector<Light> load_lights(const std::string& path) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const LightFields fields(path, i + 1, entries[i]);
     Light light = read_light(fields, i + 1, std::filesystem::path(path).parent_path());
+    light.sequence = static_cast<int>(i);
     if (!fields.has("enabled") || fields.flag("enabled")) lights.push_back(std::move(light));
   }
   return lights;

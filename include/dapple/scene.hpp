@@ -138,6 +138,9 @@ struct Light {
   /// Lights of one group share the layer `light.GROUP`, the sum of their irradiances; empty: the
   /// light has a layer of its own.
   std::string group;
+  /// Number of its sequence of random numbers; below 0: the next one. With a number of its own a
+  /// light keeps its noise when others are removed.
+  int sequence = -1;
 };
 
 struct Camera {

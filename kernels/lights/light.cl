@@ -33,7 +33,7 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   LightSamples samples;
   RayDirections directions;
   load_points(points, active_list, first, end, params.rays, &rays);
-  sample_unit_squares(DAPPLE_PAIR_LIGHT + params.light, params.seed, &rays);
+  sample_unit_squares(DAPPLE_PAIR_LIGHT + light->sequence, params.seed, &rays);
   sample_light(light, emitters, environments, &rays, &samples);
   aim_light_rays(&rays, &samples, params.inverse_count, &directions);
   keep_clear_of_view(&rays, params.viewpoint, &directions);

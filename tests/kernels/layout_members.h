@@ -53,7 +53,7 @@
   MEMBER(LightRecord, triangle_count) MEMBER(LightRecord, two_sided)                         \
   MEMBER(LightRecord, id) MEMBER(LightRecord, environment_first)                             \
   MEMBER(LightRecord, environment_width) MEMBER(LightRecord, environment_height)             \
-  MEMBER(LightRecord, rotation)                                                              \
+  MEMBER(LightRecord, rotation) MEMBER(LightRecord, sequence)                                \
   STRUCT(EmitterTriangle)                                                                    \
   MEMBER(EmitterTriangle, vertex) MEMBER(EmitterTriangle, cumulative)                        \
   MEMBER(EmitterTriangle, edge1) MEMBER(EmitterTriangle, spare1)                             \

@@ -76,6 +76,18 @@ TEST_F(Determinism, TheProgramWritesTheSameBytesWithAnOpenShutterAndALens) {
   EXPECT_EQ(bytes_of(rendered("two.exr", blurred, "POCL_MAX_PTHREAD_COUNT=2 ")), first);
 }
 
+TEST_F(Determinism, ALightKeepsItsNoiseWhenAnotherIsSwitchedOff) {
+  const auto light_b = [&](const std::string& enabled) {
+    const fs::path path = folder_ / "lights.json";
+    std::ofstream(path) << R"({"lights": [{"type": "dome", "name": "a", "enabled": )" << enabled
+                        << R"(}, {"type": "dome", "name": "b"}]})";
+    const Film film = read_exr(rendered("lit.exr", "--lights '" + path.string() + "'"));
+    EXPECT_EQ(film.find("light.a.R") != nullptr, enabled == "true");
+    return film.find("light.b.R")->pixels;
+  };
+  EXPECT_TRUE(same_bits(light_b("true"), light_b("false")));
+}
+
 TEST_F(Determinism, AnotherSeedGivesOtherNoiseInEveryPass) {
   const Film a = read_exr(rendered("a.exr"));
   const Film b = read_exr(rendered("b.exr", "--seed 1"));

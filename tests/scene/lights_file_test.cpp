@@ -117,6 +117,7 @@ TEST(LightsFile, ALightThatIsNotEnabledIsCheckedAndLeftOut) {
   const auto lights = load("{\"lights\": [" + off + "," + on + "]}");
   ASSERT_EQ(lights.size(), 1u);
   EXPECT_EQ(lights[0].name, "dome_2") << "numbers count all lights of the file";
+  EXPECT_EQ(lights[0].sequence, 1) << "and so does its noise";
   EXPECT_EQ(load_one(R"("type": "dome", "enabled": true)").size(), 1u);
   EXPECT_EQ(complaint_about(R"("type": "dome", "enabled": false, "radiance": -1)"),
             "light 1: radiance must not be negative, and is -1");

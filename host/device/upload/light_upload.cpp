@@ -1,5 +1,6 @@
 #include "device/upload/light_upload.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -60,10 +61,14 @@ void store_disk(const Light& light, LightRecord& record) {
 
 void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
                  std::vector<EmitterTriangle>& emitters) {
+  int next_sequence = 0;
   for (std::size_t index = 0; index < scene.lights.size(); ++index) {
     const Light& light = scene.lights[index];
     LightRecord record{};
     record.kind = static_cast<uint>(light.kind);
+    const int sequence = light.sequence >= 0 ? light.sequence : next_sequence;
+    next_sequence = std::max(next_sequence, sequence + 1);
+    record.sequence = static_cast<uint>(sequence);
     store(light.position, record.position);
     store(light.direction, record.direction);
     store(light.edge_u, record.edge_u);

@@ -34,6 +34,7 @@ typedef struct LightRecord {
   uint environment_first; /* dome: index of its first float, see kernels/lights/dome.clh */
   uint environment_width, environment_height;
   float rotation; /* dome: radians about +Y */
+  uint sequence;  /* of random numbers; lights with the same one have correlated noise */
 } LightRecord;
 
 /* A triangle of a mesh light in world space. `cumulative` is the sum of the triangles' areas up to
@@ -48,7 +49,7 @@ typedef struct EmitterTriangle {
 } EmitterTriangle;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(LightRecord) == 104);
+static_assert(sizeof(LightRecord) == 108);
 static_assert(sizeof(EmitterTriangle) == 48);
 }  // namespace dapple
 #endif
