@@ -133,9 +133,10 @@ void run_render(const RenderArguments& a) {
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
 
   auto start = Clock::now();
+  Renderer renderer;
+  renderer.prepare(options);
   Shot shot(a, options);
   NotePrinter notes;
-  Renderer renderer;
   PngOptions png = parse_png_options(a.exposure, a.background);
   for (const Frame& frame : frames) {
     progress.begin(frame.title);

@@ -55,9 +55,11 @@ std::array<std::string, 3> key_of(const RenderOptions& options) {
 void KeptScene::open(const RenderOptions& options, RenderStatistics& statistics) {
   const auto key = key_of(options);
   if (!device || key != device_key) {
+    loader.reset();  // before the device
     *this = {};
     device_key = key;
     device.emplace(options.device, options.kernel_dir, options.packets);
+    loader = std::make_unique<KernelLoader>(device->context());
   }
   statistics.device = device->info().name;
   for (std::string& note : device->context().notes()) statistics.notes.push_back(std::move(note));
@@ -85,6 +87,7 @@ void KeptScene::update_scene(const Scene& scene, const UploadOptions& uploading,
 void KeptScene::compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                         RenderStatistics& statistics) const {
   const Stopwatch compiling;
+  loader->wait();
   processes.wait();
   for (const KernelName& kernel : kernels) device->context().prepare(kernel);
   statistics.seconds.kernel_build = compiling.seconds();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "dapple/render.hpp"
 #include "device/context.hpp"
 #include "device/programs/compiler_processes.hpp"
+#include "device/programs/kernel_loader.hpp"
 #include "device/upload/scene_upload.hpp"
 
 namespace dapple {
@@ -17,6 +19,7 @@ namespace dapple {
 struct KeptScene {
   std::array<std::string, 3> device_key;  ///< the options that `device` was opened with
   std::optional<Device> device;
+  std::unique_ptr<KernelLoader> loader;  ///< of the device
   std::optional<UpdatableBvh> bvh;
   DeviceScene on_device;
 
@@ -27,7 +30,8 @@ struct KeptScene {
   void update_scene(const Scene& scene, const UploadOptions& uploading, const std::string& cache,
                     RenderStatistics& statistics);
 
-  /// Loads the kernels that `processes` compiled and compiles the rest.
+  /// Waits for the kernels that `loader` loads, loads those that `processes` compiled, and compiles
+  /// the rest.
   void compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,
                RenderStatistics& statistics) const;
 };

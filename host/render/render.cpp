@@ -210,8 +210,8 @@ TracedPicture trace(KeptScene& kept, const Shutter& shutter, const Scene& first,
   return picture;
 }
 
-/// Uploads the scene while other processes compile the kernels. `smooth`: triangles may have
-/// normals at other moments of the picture.
+/// Uploads the scene while kernels are loaded and other processes compile those that are missing.
+/// `smooth`: triangles may have normals at other moments of the picture.
 void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
                    const RenderOptions& options, bool smooth, RenderStatistics& statistics) {
   kept.open(options, statistics);
@@ -220,7 +220,9 @@ void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
   const auto kernels = picture_kernels(device.context(), options, view.camera, scene.lights,
                                        may_be_shaded(scene, options));
   CompilerProcesses processes;
+  kept.loader->stop();
   processes.start(device.context(), kernels, CompileTo::machine_code);
+  kept.loader->start(kernels);
   kept.update_scene(scene, uploading_of(options, smooth), options.cache, statistics);
   kept.compile(kernels, processes, statistics);
 }
@@ -285,6 +287,18 @@ Renderer::Renderer() : kept_(std::make_unique<Kept>()) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::prepare(const RenderOptions& options) {
+  RenderStatistics ignored;
+  Camera camera;
+  camera.lens_radius = options.aperture.value_or(0.0f);
+  try {
+    kept_->open(options, ignored);
+    const DeviceContext& context = kept_->device->context();
+    kept_->loader->start(picture_kernels(context, options, camera, daylight(camera), true));
+  } catch (const Error&) {  // thrown again by render()
+  }
+}
 
 RenderResult Renderer::render(Scene scene, RenderOptions options, const RenderControl& control) {
   return render_shutter([&](int) { return std::move(scene); }, 1, std::move(options), control);

@@ -109,6 +109,10 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
+  /// Opens the device and begins to load the kernels that pictures with these options probably need,
+  /// on another thread, while the caller reads a scene. Errors are left to render().
+  void prepare(const RenderOptions& options);
+
   /// Renders `scene` with `options`: applies overrides, ground, lights and camera; builds or refits
   /// the BVH, uploads it and traces. Throws Error usage, input, device or failed; after an Error
   /// nothing is kept.
