@@ -65,7 +65,7 @@ NumberTable read_csv(const std::string& path) {
       const bool is_number = parse(cells[c], value);
       table.values.push_back(is_number ? value : std::numeric_limits<double>::quiet_NaN());
       if (!is_number && !cells[c].empty())
-        table.text.try_emplace(c, TextCell{number, std::string(cells[c])});
+        table.text.try_emplace(c, TextCell{fmt::format("line {}", number), std::string(cells[c])});
     }
   }
   return table;

@@ -1,9 +1,10 @@
-// NPY, versions 1 to 3: little-endian float32 and float64, plain or structured.
-// numpy.org/doc/stable/reference/generated/numpy.lib.format.html
+// NPY, versions 1 to 3: little-endian floats and whole numbers, plain or structured; text in
+// fields. numpy.org/doc/stable/reference/generated/numpy.lib.format.html
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
@@ -56,23 +57,92 @@ std::string_view take_quoted(std::string_view& from, char end) {
   return text;
 }
 
-/// Bytes of a little-endian float, 0 for other types.
-std::size_t float_bytes(std::string_view type) { return type == "<f4" ? 4 : type == "<f8" ? 8 : 0; }
+/// The type of a column: NumPy's letter (f, i, u, b; S, U: text), and bytes.
+struct ColumnType {
+  char kind = 'f';
+  std::size_t bytes = 0;
+  [[nodiscard]] bool is_text() const { return kind == 'S' || kind == 'U'; }
+};
 
-/// Bytes of each column, and names of the columns of a structured array.
-void read_types(const std::string& path, std::string_view descr, NumberTable& table,
-                std::vector<std::size_t>& sizes) {
+/// The type of a text such as "<f4" or "|S10"; of 0 bytes if it is none of a column.
+ColumnType type_of(std::string_view text) {
+  if (text.size() < 3 || (text[0] != '<' && text[0] != '|')) return {};
+  ColumnType type{text[1], 0};
+  const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), type.bytes);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  if (type.is_text()) {
+    constexpr std::size_t kMostLetters = 1u << 20, kBytesOfLetter = 4;
+    if (type.bytes > kMostLetters) return {};
+    if (type.kind == 'U') type.bytes *= kBytesOfLetter;
+    return type;
+  }
+  const std::string_view sizes = type.kind == 'f'                       ? "48"
+                                 : type.kind == 'b'                     ? "1"
+                                 : type.kind == 'i' || type.kind == 'u' ? "1248"
+                                                                        : "";
+  return text.size() == 3 && sizes.find(text[2]) != std::string_view::npos ? type : ColumnType{};
+}
+
+template <class T>
+double number_of(const char* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return static_cast<double>(value);
+}
+
+/// A number of a column that is no text.
+double number_at(const char* at, ColumnType type) {
+  switch (type.kind) {
+    case 'f':
+      return type.bytes == 4 ? number_of<float>(at) : number_of<double>(at);
+    case 'i':
+      return type.bytes == 1   ? number_of<std::int8_t>(at)
+             : type.bytes == 2 ? number_of<std::int16_t>(at)
+             : type.bytes == 4 ? number_of<std::int32_t>(at)
+                               : number_of<std::int64_t>(at);
+    default:
+      return type.bytes == 1   ? number_of<std::uint8_t>(at)
+             : type.bytes == 2 ? number_of<std::uint16_t>(at)
+             : type.bytes == 4 ? number_of<std::uint32_t>(at)
+                               : number_of<std::uint64_t>(at);
+  }
+}
+
+/// The ASCII letters of a text, others as "?".
+std::string text_at(const char* at, ColumnType type) {
+  std::string text;
+  const std::size_t step = type.kind == 'U' ? 4 : 1;
+  for (std::size_t i = 0; i < type.bytes; i += step) {
+    std::uint32_t letter = 0;
+    std::memcpy(&letter, at + i, step);
+    if (letter == 0) break;
+    text += letter < ' ' || letter > '~' ? '?' : static_cast<char>(letter);
+  }
+  return text;
+}
+
+/// The type of each column, and names of the columns of a structured array.
+std::vector<ColumnType> read_types(const std::string& path, std::string_view descr,
+                                   std::vector<std::string>& names) {
+  std::vector<ColumnType> types;
   const bool structured = descr.starts_with('[');
   do {
     if (structured) {
       const std::string_view name = take_quoted(descr, ']');
-      if (name.empty() && !sizes.empty()) return;
-      table.names.emplace_back(name);
+      if (name.empty() && !types.empty()) return types;
+      names.emplace_back(name);
     }
-    sizes.push_back(float_bytes(take_quoted(descr, ']')));
-    if (sizes.back() == 0)
-      fail_npy(path, "must hold little-endian float32 or float64, plain or as named fields");
+    types.push_back(type_of(take_quoted(descr, ']')));
+    if (types.back().bytes == 0 || (!structured && types.back().is_text()))
+      fail_npy(path,
+               "must hold little-endian float32 or float64 or whole numbers, plain or as named "
+               "fields");
+    if (structured &&
+        !descr.substr(std::min(descr.find_first_not_of(' '), descr.size())).starts_with(')'))
+      fail_npy(path, fmt::format("has several values in each \"{}\"; give each a field of its own",
+                                 names.back()));
   } while (structured);
+  return types;
 }
 
 /// The numbers of a tuple, such as (3, 4) or (5,).
@@ -89,6 +159,23 @@ std::vector<std::size_t> read_shape(std::string_view text) {
   }
 }
 
+void read_rows(const std::string& path, std::string_view bytes, std::size_t rows,
+               const std::vector<ColumnType>& types, NumberTable& table) {
+  std::size_t row_bytes = 0;
+  for (const ColumnType& type : types) row_bytes += type.bytes;
+  if (row_bytes == 0 || rows > bytes.size() / row_bytes)
+    fail_npy(path, fmt::format("ends before its {} rows of {} bytes", rows, row_bytes));
+  table.values.reserve(rows * types.size());
+  const char* at = bytes.data();
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t c = 0; c < types.size(); at += types[c++].bytes) {
+      if (types[c].is_text())
+        table.text.try_emplace(c, TextCell{fmt::format("row {}", r), text_at(at, types[c])});
+      table.values.push_back(types[c].is_text() ? std::nan("") : number_at(at, types[c]));
+    }
+  }
+}
+
 }  // namespace
 
 NumberTable read_npy(const std::string& path) {
@@ -96,8 +183,7 @@ NumberTable read_npy(const std::string& path) {
   const std::string bytes(reinterpret_cast<const char*>(raw.data()), raw.size());
   const Header header = read_header(path, bytes);
   NumberTable table;
-  std::vector<std::size_t> sizes;
-  read_types(path, value_of(header.text, "descr"), table, sizes);
+  std::vector<ColumnType> types = read_types(path, value_of(header.text, "descr"), table.names);
   if (value_of(header.text, "fortran_order").starts_with("True"))
     fail_npy(path, "is in Fortran order; save numpy.ascontiguousarray of it");
   const std::vector<std::size_t> shape = read_shape(value_of(header.text, "shape"));
@@ -106,25 +192,10 @@ NumberTable read_npy(const std::string& path) {
              fmt::format("has {} dimension{}; it must have rows and columns, or rows of named "
                          "fields",
                          shape.size(), shape.size() == 1 ? "" : "s"));
-  const std::size_t rows = shape[0];
   constexpr std::size_t kMaxColumns = 1u << 20;
-  if (table.names.empty()) sizes.assign(std::min(shape[1], kMaxColumns), sizes[0]);
-  table.columns = sizes.size();
-  std::size_t row_bytes = 0;
-  for (const std::size_t size : sizes) row_bytes += size;
-  if (row_bytes == 0 || rows > (bytes.size() - header.end) / row_bytes)
-    fail_npy(path, fmt::format("ends before its {} rows of {} bytes", rows, row_bytes));
-  table.values.reserve(rows * sizes.size());
-  const char* at = bytes.data() + header.end;
-  for (std::size_t r = 0; r < rows; ++r) {
-    for (const std::size_t size : sizes) {
-      float single = 0;
-      double value = 0;
-      std::memcpy(size == 4 ? static_cast<void*>(&single) : &value, at, size);
-      table.values.push_back(size == 4 ? double{single} : value);
-      at += size;
-    }
-  }
+  if (table.names.empty()) types.assign(std::min(shape[1], kMaxColumns), types[0]);
+  table.columns = types.size();
+  read_rows(path, std::string_view(bytes).substr(header.end), shape[0], types, table);
   return table;
 }
 

@@ -9,7 +9,7 @@ namespace dapple {
 
 /// A cell that is not a number.
 struct TextCell {
-  std::size_t line = 0;  ///< of the file, from 1
+  std::string place;  ///< "line 2" of a CSV file, "row 0" of an array
   std::string text;
 };
 

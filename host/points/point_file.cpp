@@ -62,8 +62,8 @@ class VectorColumns {
 void check_number(const std::string& path, const NumberTable& table, std::size_t column) {
   const auto found = table.text.find(column);
   if (found != table.text.end())
-    throw Error(ErrorKind::input, fmt::format("{}: line {}: \"{}\" is not a number", path,
-                                              found->second.line, found->second.text));
+    throw Error(ErrorKind::input, fmt::format("{}: {}: \"{}\" is not a number", path,
+                                              found->second.place, found->second.text));
 }
 
 /// A name that every format can hold: without separators, quotes and control characters, and
@@ -87,8 +87,8 @@ void read_extra(const std::string& path, const NumberTable& table, const VectorC
     const auto text = table.text.find(c);
     if (text != table.text.end()) {
       list.notes.push_back(
-          fmt::format("{}: the column {} holds text (\"{}\" in line {}) and is left out", path,
-                      extra.name, text->second.text, text->second.line));
+          fmt::format("{}: the column {} holds text (\"{}\" in {}) and is left out", path,
+                      extra.name, text->second.text, text->second.place));
       continue;
     }
     for (std::size_t i = c; i < table.values.size(); i += table.columns)

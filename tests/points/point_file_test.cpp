@@ -138,28 +138,64 @@ TEST_F(PointFile, ErrorsOfInvalidFilesNameTheLineOrRow) {
   expect_error(path("missing.csv"), "missing.csv");
 }
 
-TEST_F(PointFile, ArraysOfSinglesAndDoublesAreRead) {
-  const auto npy = [&](const std::string& descr, const std::string& shape, const auto& values) {
-    std::string header =
-        "{'descr': " + descr + ", 'fortran_order': False, 'shape': " + shape + ", }";
-    header.append(63 - (10 + header.size()) % 64, ' ');
-    header += '\n';
-    std::string bytes = std::string("\x93NUMPY\x01\0", 8);
-    const auto length = static_cast<std::uint16_t>(header.size());
-    bytes.append(reinterpret_cast<const char*>(&length), 2);
-    bytes += header;
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
-    return bytes;
-  };
-  const std::vector<double> doubles{1, 2, 3, 4, 5, 6};
-  const std::vector<float> singles{1, 2, 3, 0, 0, 5};
+/// The bytes of an NPY file.
+std::string npy(const std::string& descr, const std::string& shape, const std::string& values) {
+  std::string header = "{'descr': " + descr + ", 'fortran_order': False, 'shape': " + shape + ", }";
+  header.append(63 - (10 + header.size()) % 64, ' ');
+  header += '\n';
+  std::string bytes = std::string("\x93NUMPY\x01\0", 8);
+  const auto length = static_cast<std::uint16_t>(header.size());
+  bytes.append(reinterpret_cast<const char*>(&length), 2);
+  return bytes + header + values;
+}
+
+template <class... T>
+std::string bytes_of_all(T... values) {
+  std::string bytes;
+  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+  return bytes;
+}
+
+TEST_F(PointFile, ArraysOfFloatsAndWholeNumbersAreRead) {
+  const std::string doubles = bytes_of_all(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
   EXPECT_EQ(read_points(write("d.npy", npy("'<f8'", "(2, 3)", doubles))).points.at(1),
             V3f(4, 5, 6));
+  const std::string singles = bytes_of_all(1.0f, 2.0f, 3.0f, 0.0f, 0.0f, 5.0f);
   EXPECT_EQ(read_points(write("s.npy", npy("'<f4'", "(1, 6)", singles))).normals.at(0),
             V3f(0, 0, 1));
-  expect_error(write("i.npy", npy("'<i8'", "(2, 3)", doubles)), "float32");
+  const std::string whole = bytes_of_all(std::int16_t{-1}, std::int16_t{2}, std::int16_t{300});
+  EXPECT_EQ(read_points(write("i.npy", npy("'<i2'", "(1, 3)", whole))).points.at(0),
+            V3f(-1, 2, 300));
+  expect_error(write("h.npy", npy("'<f2'", "(2, 3)", doubles)), "float32");
+  expect_error(write("b.npy", npy("'>f8'", "(2, 3)", doubles)), "little-endian");
+  expect_error(write("u.npy", npy("'<U4'", "(1, 3)", doubles)), "whole numbers");
   expect_error(write("t.npy", npy("'<f8'", "(9, 3)", doubles)), "9 rows");
   expect_error(write("o.npy", npy("'<f8'", "(6,)", doubles)), "1 dimension;");
+}
+
+TEST_F(PointFile, FieldsOfStructuredArraysHaveTheirOwnTypes) {
+  const std::string row = bytes_of_all(std::int64_t{-(1ll << 40)}, 1.0f, std::uint8_t{255}, 2.0,
+                                       std::int32_t{-3}, std::uint32_t{4'000'000'000}) +
+                          std::string("A1\0\0", 4) + bytes_of_all(U'\u00e9', U'x') +
+                          bytes_of_all(true);
+  const PointList list = read_points(write(
+      "f.npy", npy("[('id', '<i8'), ('x', '<f4'), ('flag', '|u1'), ('y', '<f8'), ('z', '<i4'), "
+                   "('big', '<u4'), ('plot', '|S4'), ('kind', '<U2'), ('on', '|b1')]",
+                   "(1,)", row)));
+  EXPECT_EQ(list.points.at(0), V3f(1, 2, -3));
+  ASSERT_EQ(list.extra.size(), 4u);
+  EXPECT_EQ(list.extra[0].values.at(0), -static_cast<double>(1ll << 40));
+  EXPECT_EQ(list.extra[1].values.at(0), 255);
+  EXPECT_EQ(list.extra[2].values.at(0), 4e9);
+  EXPECT_EQ(list.extra[3].values.at(0), 1);
+  ASSERT_EQ(list.notes.size(), 2u);
+  EXPECT_NE(list.notes[0].find("plot holds text (\"A1\" in row 0)"), std::string::npos)
+      << list.notes[0];
+  EXPECT_NE(list.notes[1].find("\"?x\""), std::string::npos) << list.notes[1];
+  expect_error(write("x.npy", npy("[('x', '<U2'), ('y', '<f4'), ('z', '<f4')]", "(1,)", row)),
+               "row 0: \"");
+  expect_error(write("a.npy", npy("[('x', '<f4'), ('rgb', '|u1', (3,))]", "(1,)", row)),
+               "several values in each \"rgb\"");
 }
 
 TEST_F(PointFile, SunsAreDirectionsOrAngles) {
