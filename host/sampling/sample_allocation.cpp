@@ -65,13 +65,14 @@ void want_doubles(const std::vector<float>& falls, double excess, const BatchCou
     const float of_batch = falls[block] / static_cast<float>(have[block]);
     return std::bit_cast<std::uint32_t>(of_batch) >> kBinShift;
   };
+  const auto can_fall = [&](std::size_t block) { return falls[block] > 0 && have[block] < max; };
   std::vector<double> of_bins(std::size_t{1} << (32 - kBinShift));
   for (std::size_t block = 0; block < wanted.size(); ++block)
-    if (falls[block] > 0) of_bins[bin_of(block)] += double{falls[block]};
+    if (can_fall(block)) of_bins[bin_of(block)] += double{falls[block]};
   std::size_t first = of_bins.size();
   for (double fallen = 0; first > 0 && fallen < excess;) fallen += of_bins[--first];
   for (std::size_t block = 0; block < wanted.size(); ++block)
-    if (falls[block] > 0 && bin_of(block) >= first)
+    if (can_fall(block) && bin_of(block) >= first)
       wanted[block] = std::max(wanted[block], std::min(2 * have[block], max));
 }
 

@@ -42,6 +42,9 @@ TEST(WantDoubles, DoublesWhereABatchLowersTheErrorMostUntilItHasFallenEnough) {
   EXPECT_EQ(wanted, (BatchCounts{4, 2, 4, 8, 2}));
   want_doubles(falls, 0.45, have, 7, wanted);
   EXPECT_EQ(wanted, (BatchCounts{7, 2, 4, 8, 2})) << "the largest number is 7";
+  BatchCounts others = have;
+  want_doubles(falls, 0.25, have, 4, others);
+  EXPECT_EQ(others, (BatchCounts{4, 2, 4, 8, 4})) << "others, where some have the largest number";
   want_doubles(falls, 10, have, 100, wanted);
   EXPECT_EQ(wanted, (BatchCounts{8, 2, 4, 16, 4})) << "not where nothing varies";
 }
