@@ -93,7 +93,7 @@ double mean_square(const Bias& bias) {
       {0.0, bias.mean * bias.mean - bias.error * bias.error, bias.tile_rmse * bias.tile_rmse});
 }
 
-double mean_square_error(const Bias& bias) {
+double error_of_mean_square(const Bias& bias) {
   const double of_mean = bias.error * (2 * std::fabs(bias.mean) + bias.error);
   const double of_tiles =
       0.5 * (bias.tile_rmse_limit * bias.tile_rmse_limit - bias.tile_rmse * bias.tile_rmse);

@@ -26,8 +26,8 @@ std::string bias_text(const Bias& bias);
 
 /// The mean square of the bias: that of its tiles, or of its mean if that is larger.
 double mean_square(const Bias& bias);
-/// Its standard error.
-double mean_square_error(const Bias& bias);
+/// The standard error of mean_square().
+double error_of_mean_square(const Bias& bias);
 
 /// What a target for the whole error leaves for the noise beside a bias of this RMSE: the squares
 /// of both add up to that of `target`. At least half of the target.

@@ -20,8 +20,8 @@ constexpr float kSmallestPart = 1.0f / 16;
 /// Part of a squared target to which the squared bias must be known.
 constexpr double kKnownPart = 0.1;
 
-/// Rays of a layer that tell it for a target of 1, whatever the bias. The number grows as the
-/// square falls. If the bias is small a fourth of them may do: experiment 545.
+/// Rays of a layer that are enough for that with a target of 1, whatever the bias. The number grows
+/// as the square falls. If the bias is small a fourth of them may do: experiment 545.
 constexpr double kRaysOfTarget = 6.5;
 constexpr std::size_t kFirstPart = 4;
 constexpr std::size_t kFewestRaysOfTarget = 1u << 12, kMostRaysOfTarget = 1u << 18;
@@ -61,7 +61,7 @@ double rmse_of(BiasSource& source, float footprint, double target) {
     double largest = 0, error = 0;
     for (const Bias& bias : source.bias(footprint)) {
       largest = std::max(largest, mean_square(bias));
-      error = std::max(error, mean_square_error(bias));
+      error = std::max(error, error_of_mean_square(bias));
     }
     if (rays >= most || error * source.seen() <= kKnownPart * square)
       return std::sqrt(largest * source.seen());

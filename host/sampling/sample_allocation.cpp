@@ -20,8 +20,8 @@ constexpr std::size_t kSumGrain = 4096;
 /// again.
 constexpr std::uint32_t kMaxFactor = 8;
 
-/// Numbers are multiplied by 2, 4 or 8 if so many times the ratio of squared errors is as much: with
-/// more samples errors fall by more than samples grow.
+/// Numbers are multiplied by 2, 4 or 8 if this times the ratio of squared errors is as much:
+/// squared errors fall by more than the factor, because more samples are better stratified.
 constexpr double kAlmost = 1.15;
 
 /// Bits of a positive float that do not count when blocks are sorted: of 23 those that are below
@@ -103,8 +103,8 @@ BatchCounts allocate_batches(const PassVariances& variances, const BatchCounts& 
     }
     const double square = squared_errors(pass, have), ratio = square / enough;
     if (kAlmost * ratio >= 2) {
-      const auto factor = std::bit_floor(
-          static_cast<std::uint32_t>(std::min(kAlmost * ratio, double{kMaxFactor})));
+      const auto factor =
+          std::bit_floor(static_cast<std::uint32_t>(std::min(kAlmost * ratio, double{kMaxFactor})));
       want_multiple(by_block(pass, width, larger<float>), factor, of_blocks, max, wanted);
     } else if (ratio > 1) {
       std::vector<float> falls(pass.size());

@@ -28,26 +28,25 @@ class LoadingKernels : public FilmFile {
   }
   [[nodiscard]] fs::path source() const { return path("kernels/count_up.cl"); }
 
-  /// Runs the kernel, so that its machine code is kept.
-  void compile() const {
+  /// Compiles the kernel, and loads `lists` one after the other in another context.
+  void expect_loaded_by(const std::vector<std::vector<KernelName>>& lists) const {
+    write_source("compiled");
+    {
+      DeviceContext context("", path("kernels"));
+      if (!context.keeps_compiled()) GTEST_SKIP() << "compiled kernels are not kept";
+      context.launch(kCount, "count", 1, {context.allocate_zeros(4)}, 1);
+      context.finish();
+    }
     DeviceContext context("", path("kernels"));
-    if (!context.keeps_compiled()) GTEST_SKIP() << "compiled kernels are not kept";
-    context.launch(kCount, "count", 1, {context.allocate_zeros(4)}, 1);
-    context.finish();
+    KernelLoader loader(context);
+    for (const std::vector<KernelName>& list : lists) loader.start(list);
+    loader.wait();
+    fs::remove(source());
+    EXPECT_GE(context.largest_group(kCount), 1u);
   }
 };
 
-TEST_F(LoadingKernels, CompiledOnesAreThereWithoutTheirSource) {
-  write_source("compiled");
-  compile();
-  if (IsSkipped()) return;
-  DeviceContext context("", path("kernels"));
-  KernelLoader loader(context);
-  loader.start({kCount});
-  loader.wait();
-  fs::remove(source());
-  EXPECT_GE(context.largest_group(kCount), 1u);
-}
+TEST_F(LoadingKernels, CompiledOnesAreThereWithoutTheirSource) { expect_loaded_by({{kCount}}); }
 
 TEST_F(LoadingKernels, OthersAreLeftForLater) {
   write_source("never compiled, process " + std::to_string(getpid()));
@@ -60,16 +59,7 @@ TEST_F(LoadingKernels, OthersAreLeftForLater) {
 }
 
 TEST_F(LoadingKernels, ANewListTakesThePlaceOfTheOld) {
-  write_source("compiled");
-  compile();
-  if (IsSkipped()) return;
-  DeviceContext context("", path("kernels"));
-  KernelLoader loader(context);
-  loader.start(std::vector<KernelName>(1000, {"no_such_kernel", "", {}}));
-  loader.start({kCount});
-  loader.wait();
-  fs::remove(source());
-  EXPECT_GE(context.largest_group(kCount), 1u);
+  expect_loaded_by({std::vector<KernelName>(1000, {"no_such_kernel", "", {}}), {kCount}});
 }
 
 }  // namespace

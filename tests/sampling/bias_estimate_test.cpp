@@ -72,9 +72,9 @@ TEST(BiasEstimate, TheTextHasTheMeanItsErrorAndTheRmse) {
             "-0.0021 +- 0.0004, RMSE over tiles 0.0035");
 }
 
-TEST(MeanSquareError, IsThatOfTheMeanOrOfTheTiles) {
-  EXPECT_NEAR(mean_square_error({-0.01, 0.002, 0, 0, 1}), 0.002 * 0.022, 1e-12);
-  EXPECT_NEAR(mean_square_error({0, 0.001, 0.01, 0.02, 1}), 0.5 * (0.0004 - 0.0001), 1e-12);
+TEST(ErrorOfMeanSquare, IsThatOfTheMeanOrOfTheTiles) {
+  EXPECT_NEAR(error_of_mean_square({-0.01, 0.002, 0, 0, 1}), 0.002 * 0.022, 1e-12);
+  EXPECT_NEAR(error_of_mean_square({0, 0.001, 0.01, 0.02, 1}), 0.5 * (0.0004 - 0.0001), 1e-12);
 }
 
 TEST(NoiseTarget, TheSquaresAddUpToTheTargetsSquare) {
