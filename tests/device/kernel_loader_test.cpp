@@ -58,7 +58,7 @@ TEST_F(LoadingKernels, OthersAreLeftForLater) {
   EXPECT_THROW(context.largest_group(kCount), Error);
 }
 
-TEST_F(LoadingKernels, ANewListTakesThePlaceOfTheOld) {
+TEST_F(LoadingKernels, ASecondListIsLoadedAfterAFirst) {
   expect_loaded_by({std::vector<KernelName>(1000, {"no_such_kernel", "", {}}), {kCount}});
 }
 
