@@ -106,6 +106,12 @@ DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCover
 
 }  // namespace
 
+void fill_cells(std::array<float, kMapCells>& cells, float value) {
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    for (int row = 0; row < kMapSize; ++row) Row<kLanes>(value).store(&cells[row * kMapSize]);
+  });
+}
+
 float CoverageMap::mean_opacity(int axis) const {
   float mean = 0;
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {

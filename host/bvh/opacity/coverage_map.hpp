@@ -27,6 +27,8 @@ inline float face_area(const Box3f& box, int axis) {
          (box.max[row_axis(axis)] - box.min[row_axis(axis)]);
 }
 
+void fill_cells(std::array<float, kMapCells>& cells, float value);
+
 /// Means over a view along an axis of opacity times x, times y, and times x^2 + y^2, where x and y
 /// are the places along column_axis() and row_axis() from the middle, in half sizes of the box.
 struct OpacityMoments {
@@ -38,7 +40,7 @@ struct CoverageMap {
   alignas(64) std::array<std::array<float, kMapCells>, 3> transmittance;
 
   CoverageMap() {
-    for (auto& map : transmittance) map.fill(1.0f);
+    for (auto& map : transmittance) fill_cells(map, 1.0f);
   }
   /// Mean opacity of the box along `axis`, [0,1].
   [[nodiscard]] float mean_opacity(int axis) const;
@@ -97,7 +99,7 @@ struct OccludedCells {
   std::array<float, kMapCells> occluded;
   int row0 = kMapSize, row1 = -1;  ///< rows touched, inclusive
 
-  OccludedCells() { occluded.fill(0.0f); }
+  OccludedCells() { fill_cells(occluded, 0.0f); }
   void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
   /// Sets each cell to the maximum of this and `back`: fronts and backs of closed surfaces. Clears
   /// `back`.
@@ -121,7 +123,7 @@ using CellRanges = std::array<CellRange, 3>;
 class NodeCoverage {
  public:
   explicit NodeCoverage(const Box3f& box) : box_(box) {
-    for (auto& covered : covered_) covered.fill(0.0f);
+    for (auto& covered : covered_) fill_cells(covered, 0.0f);
   }
 
   /// Adds a child by its map over `child_box`, which lies in the node's box.

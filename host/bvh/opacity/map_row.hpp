@@ -32,11 +32,12 @@ struct RegisterOf<16> {
 /// compared lane by lane (g++ 12).
 template <int kLanes>
 struct Row {
+  using Register = typename RegisterOf<kLanes>::Type;
   static constexpr int kParts = kMapSize / kLanes;
-  typename RegisterOf<kLanes>::Type part[kParts];
+  Register part[kParts];
 
   DAPPLE_ALWAYS_INLINE Row(float value = 0.0f) {
-    for (auto& p : part) p = typename RegisterOf<kLanes>::Type{} + value;
+    for (auto& p : part) p = Register{} + value;
   }
   DAPPLE_ALWAYS_INLINE static Row load(const float* from) {
     Row row;
@@ -53,15 +54,6 @@ struct Row {
     static_assert(std::size(kIndices) == kMapSize);
     return load(kIndices);
   }
-  /// 1 at `index`, 0 elsewhere; all 0 at kMapSize.
-  DAPPLE_ALWAYS_INLINE static Row unit(int index) {
-    static constexpr auto kUnit = [] {
-      std::array<float, 2 * kMapSize> unit{};
-      unit[kMapSize] = 1.0f;
-      return unit;
-    }();
-    return load(&kUnit[kMapSize - index]);
-  }
 
   DAPPLE_ALWAYS_INLINE Row& operator+=(const Row& b) { return *this = *this + b; }
   DAPPLE_ALWAYS_INLINE Row& operator-=(const Row& b) { return *this = *this - b; }
@@ -75,6 +67,15 @@ struct Row {
   }
   DAPPLE_ALWAYS_INLINE friend Row operator*(Row a, const Row& b) {
     for (int i = 0; i < kParts; ++i) a.part[i] *= b.part[i];
+    return a;
+  }
+  /// `a * Row(b)` would add 0 to b, for the sake of -0.
+  DAPPLE_ALWAYS_INLINE friend Row operator*(Row a, float b) {
+    for (int i = 0; i < kParts; ++i) a.part[i] *= b;
+    return a;
+  }
+  DAPPLE_ALWAYS_INLINE friend Row operator+(Row a, float b) {
+    for (int i = 0; i < kParts; ++i) a.part[i] += b;
     return a;
   }
   DAPPLE_ALWAYS_INLINE friend Row operator/(Row a, const Row& b) {
@@ -91,9 +92,17 @@ struct Row {
   }
   /// 1 where a >= b, 0 elsewhere.
   DAPPLE_ALWAYS_INLINE friend Row at_least(const Row& a, const Row& b) {
-    const typename RegisterOf<kLanes>::Type zero{}, one = zero + 1.0f;
+    const Register zero{}, one = zero + 1.0f;
     Row out;
     for (int i = 0; i < kParts; ++i) out.part[i] = a.part[i] >= b.part[i] ? one : zero;
+    return out;
+  }
+
+  /// `value` where a == b, 0 elsewhere.
+  DAPPLE_ALWAYS_INLINE friend Row where_equal(const Row& a, float b, float value) {
+    const Register zero{}, equal = zero + b, chosen = zero + value;
+    Row out;
+    for (int i = 0; i < kParts; ++i) out.part[i] = a.part[i] == equal ? chosen : zero;
     return out;
   }
 

@@ -18,7 +18,7 @@ struct AxisResampling {
   std::array<float, kMapSize> here, next;
   int first, last;  ///< parent cells touched
 
-  AxisResampling(const Box3f& parent, const Box3f& child, int axis) {
+  DAPPLE_ALWAYS_INLINE AxisResampling(const Box3f& parent, const Box3f& child, int axis) {
     const float to_cells = kSize / (parent.max[axis] - parent.min[axis]);
     const float start = std::clamp((child.min[axis] - parent.min[axis]) * to_cells, 0.0f, kSize);
     const float width =
@@ -120,9 +120,10 @@ DAPPLE_ALWAYS_INLINE Rows resample(const CoverageMap& child, int axis, const Axi
   Cells rows;
   sum_rows<kLanes>(down, child.transmittance[axis].data(), rows.data());
   Cells shares;
+  const auto columns = Row<kLanes>::indices();
   for (int p = 0; p < kMapSize; ++p) {
-    const int cell = across.cell[p];
-    (Row<kLanes>::unit(cell) * across.here[p] + Row<kLanes>::unit(cell + 1) * across.next[p])
+    const auto cell = static_cast<float>(across.cell[p]);
+    (where_equal(columns, cell, across.here[p]) + where_equal(columns, cell + 1.0f, across.next[p]))
         .store(&shares[p * kMapSize]);
   }
   for (int j = down.first; j <= down.last; ++j) {
@@ -192,18 +193,17 @@ void NodeCoverage::merge(const CellRanges& child, int axis, int first_row, int l
 void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
                        const SurfaceAreas& areas) {
   const CellRanges ranges = cell_ranges(child_box);
-  const AxisResampling cells[3] = {
-      {box_, child_box, 0}, {box_, child_box, 1}, {box_, child_box, 2}};
-  Cells opacity;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(face_area(box_, axis) > 0.0f)) continue;
-    Rows rows;
-    for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
-      rows =
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    const AxisResampling cells[3] = {
+        {box_, child_box, 0}, {box_, child_box, 1}, {box_, child_box, 2}};
+    Cells opacity;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(face_area(box_, axis) > 0.0f)) continue;
+      const Rows rows =
           resample<kLanes>(child, axis, cells[column_axis(axis)], cells[row_axis(axis)], opacity);
-    });
-    merge(ranges, axis, rows.first, rows.last, opacity, areas);
-  }
+      merge(ranges, axis, rows.first, rows.last, opacity, areas);
+    }
+  });
   areas_.add(areas);
   children_[child_count_++] = ranges;
 }

@@ -5,16 +5,14 @@
 
 namespace dapple {
 
-int floats_per_register() {
-  static const int floats = [] {
-    const bool has_512_bits =
-        __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl");
-    return has_512_bits ? 16 : __builtin_cpu_supports("avx2") ? 8 : 4;
-  }();
-  return floats;
-}
+const int kFloatsPerRegister = [] {
+  __builtin_cpu_init();
+  const bool has_512_bits =
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl");
+  return has_512_bits ? 16 : __builtin_cpu_supports("avx2") ? 8 : 4;
+}();
 
 }  // namespace dapple
 

@@ -15,8 +15,9 @@ namespace dapple {
 
 #ifdef DAPPLE_TARGET
 
-/// Floats in the widest vector register of this processor: 4, 8 or 16.
-int floats_per_register();
+/// Floats in the widest vector register of this processor: 4, 8 or 16. 0, as good as 4, until the
+/// library's static objects are made.
+extern const int kFloatsPerRegister;
 
 template <class Body>
 DAPPLE_TARGET("avx512f,avx512bw,avx512cd,avx512dq,avx512vl")
@@ -34,7 +35,7 @@ void run_with_8_floats(const Body& body) {
 /// body as `[&]<int kLanes>() __attribute__((always_inline)) {...}`.
 template <class Body>
 void for_register_width(const Body& body) {
-  switch (floats_per_register()) {
+  switch (kFloatsPerRegister) {
     case 16:
       return run_with_16_floats(body);
     case 8:

@@ -41,7 +41,9 @@ DAPPLE_ALWAYS_INLINE Results results_in_registers(const Cells& a, const Cells& b
   const auto shares = max(min((x + Row<kLanes>::indices()) * y / (y + 0.5f) - x, 9.0f), 0.0f);
   shares.store(out.shares.data());
   at_least(x, 1.0f).store(out.at_least.data());
-  (Row<kLanes>::unit(3) * 0.5f + Row<kLanes>::unit(kMapSize)).store(out.one_hot.data());
+  const auto columns = Row<kLanes>::indices();
+  (where_equal(columns, 3.0f, 0.5f) + where_equal(columns, kMapSize, 0.25f))
+      .store(out.one_hot.data());
   out.sum = shares.sum();
   out.max = shares.max();
   return out;
@@ -75,7 +77,7 @@ TEST(MapRow, AllRegisterWidthsGiveTheBitsOfALoop) {
   for_register_width(body);
   found.push_back(wide);
 #ifdef DAPPLE_TARGET
-  if (floats_per_register() >= 8) {
+  if (kFloatsPerRegister >= 8) {
     run_with_8_floats(body);
     found.push_back(wide);
   }
