@@ -17,6 +17,7 @@
 #include <array>
 #include <filesystem>
 #include <new>
+#include <set>
 #include <stdexcept>
 
 #include "dapple/error.hpp"
@@ -24,29 +25,16 @@
 namespace dapple {
 namespace {
 
-using ExrRows = std::vector<std::vector<float>>;  ///< one vector for each channel
-
 using Imath::Box2i;
 using Imath::V2i;
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr std::size_t kMaxParts = 4096;
-constexpr int kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
+constexpr std::uint32_t kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
 
 std::int64_t area(const Box2i& window) {
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   return width * (std::int64_t{window.max.y} - window.min.y + 1);
-}
-
-void read_rows(Imf::InputPart& part, const std::vector<std::string>& channels, const Box2i& strip,
-               ExrRows& rows) {
-  Imf::FrameBuffer buffer;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    rows[i].resize(static_cast<std::size_t>(area(strip)));
-    buffer.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, rows[i].data(), strip));
-  }
-  part.setFrameBuffer(buffer);
-  part.readPixels(strip.min.y, strip.max.y);
 }
 
 // Reads only the headers, one for each part; OpenEXR does not yet allocate memory of the size that
@@ -120,66 +108,108 @@ void check_headers(const std::vector<Imf::Header>& headers) {
 }
 
 // Channels of several parts may have one name; then all but the first get their part's in front.
-std::string free_name(const ExrImage& image, const std::string& part, const std::string& channel) {
-  if (!image.channels.contains(channel)) return channel;
+std::string free_name(const std::set<std::string>& taken, const std::string& part,
+                      const std::string& channel) {
+  if (!taken.contains(channel)) return channel;
   std::string name = part + "." + channel;
-  if (image.channels.contains(name))
-    throw std::runtime_error("channel " + name + " is there twice");
+  if (taken.contains(name)) throw std::runtime_error("channel " + name + " is there twice");
   return name;
 }
 
-void decode_part(Imf::InputPart& part, ExrImage& image) {
-  const std::vector<std::string> channels = channel_names(part.header());
-  std::vector<std::vector<float>*> planes;
-  for (const std::string& channel : channels) {
-    const std::string name = part.header().hasName() ? part.header().name() : "";
-    planes.push_back(&image.channels[free_name(image, name, channel)]);
-    // The system allocates reserved memory only when it is filled: a short file that claims a large
-    // picture fails before it uses much.
-    planes.back()->reserve(static_cast<std::size_t>(area(part.header().dataWindow())));
+std::vector<ExrFile::Channel> channels_of(const Imf::MultiPartInputFile& file) {
+  std::vector<ExrFile::Channel> channels;
+  std::set<std::string> taken;
+  for (int part = 0; part < file.parts(); ++part) {
+    const Imf::Header& header = file.header(part);
+    const std::string part_name = header.hasName() ? header.name() : "";
+    for (const std::string& name : channel_names(header)) {
+      channels.push_back({free_name(taken, part_name, name), part, name});
+      taken.insert(channels.back().name);
+    }
   }
-  const Box2i window = part.header().dataWindow();
-  ExrRows rows(channels.size());  // reused, not allocated anew: experiment 803
-  for (std::int64_t y = window.min.y; y <= window.max.y; y += kStripRows) {
-    const int last = static_cast<int>(std::min<std::int64_t>(y + kStripRows - 1, window.max.y));
-    read_rows(part, channels,
-              Box2i(V2i(window.min.x, static_cast<int>(y)), V2i(window.max.x, last)), rows);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      planes[i]->insert(planes[i]->end(), rows[i].begin(), rows[i].end());
-  }
+  return channels;
 }
 
-ExrImage decode(const std::string& path, const SeeExrHeader& see_header) {
-  check_headers(peek_headers(path));
-  Imf::MultiPartInputFile file(path.c_str(), Imf::globalThreadCount());
-  const Box2i& window = file.header(0).dataWindow();
-  if (see_header) see_header(file.header(0));
-  ExrImage image;
-  image.width = static_cast<std::uint32_t>(window.max.x - window.min.x + 1);
-  image.height = static_cast<std::uint32_t>(window.max.y - window.min.y + 1);
-  for (int i = 0; i < file.parts(); ++i) {
-    Imf::InputPart part(file, i);
-    decode_part(part, image);
-  }
-  return image;
-}
-
-}  // namespace
-
-ExrImage read_exr_image(const std::string& path, const SeeExrHeader& see_header) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    throw Error(ErrorKind::input,
-                path + (std::filesystem::exists(path, ignored) ? ": it is not a regular file"
-                                                               : ": there is no such file"));
-  }
+/// Calls `act`. Errors become Error input and name the path.
+template <class Act>
+void with_path(const std::string& path, const Act& act) {
   try {
-    return decode(path, see_header);
+    act();
+  } catch (const Error&) {
+    throw;
   } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::input, path + ": there is not enough memory for its image");
   } catch (const std::exception& problem) {
     throw Error(ErrorKind::input, path + ": " + problem.what());
   }
+}
+
+void refuse_other_files(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) return;
+  throw Error(ErrorKind::input,
+              path + (std::filesystem::exists(path, ignored) ? ": it is not a regular file"
+                                                             : ": there is no such file"));
+}
+
+}  // namespace
+
+ExrFile::ExrFile(const std::string& path) : path_(path) {
+  refuse_other_files(path);
+  with_path(path, [&] {
+    check_headers(peek_headers(path));
+    file_ = std::make_unique<Imf::MultiPartInputFile>(path.c_str(), Imf::globalThreadCount());
+    const Box2i& window = file_->header(0).dataWindow();
+    width_ = static_cast<std::uint32_t>(window.max.x - window.min.x + 1);
+    height_ = static_cast<std::uint32_t>(window.max.y - window.min.y + 1);
+    channels_ = channels_of(*file_);
+  });
+}
+
+ExrFile::~ExrFile() = default;
+
+const Imf::Header& ExrFile::header() const { return file_->header(0); }
+
+void ExrFile::read(std::uint32_t first, std::uint32_t count, std::span<const Channel> channels,
+                   std::vector<std::vector<float>>& rows) {
+  const Box2i& window = header().dataWindow();
+  const V2i begin(window.min.x, window.min.y + static_cast<int>(first));
+  const Box2i strip(begin, V2i(window.max.x, begin.y + static_cast<int>(count) - 1));
+  rows.resize(channels.size());
+  with_path(path_, [&] {
+    for (std::size_t i = 0; i < channels.size();) {
+      const int number = channels[i].part;
+      Imf::FrameBuffer buffer;
+      for (; i < channels.size() && channels[i].part == number; ++i) {
+        rows[i].resize(static_cast<std::size_t>(area(strip)));
+        buffer.insert(channels[i].name_in_part,
+                      Imf::Slice::Make(Imf::FLOAT, rows[i].data(), strip));
+      }
+      Imf::InputPart part(*file_, number);
+      part.setFrameBuffer(buffer);
+      part.readPixels(strip.min.y, strip.max.y);
+    }
+  });
+}
+
+ExrImage ExrFile::image() {
+  ExrImage image{width_, height_, {}};
+  with_path(path_, [&] {
+    std::vector<std::vector<float>*> planes;
+    for (const Channel& channel : channels_) {
+      planes.push_back(&image.channels[channel.name]);
+      // The system allocates reserved memory only when it is filled: a short file that claims a
+      // large picture fails before it uses much.
+      planes.back()->reserve(std::size_t{width_} * height_);
+    }
+    std::vector<std::vector<float>> rows;  // reused, not allocated anew: experiment 803
+    for (std::uint32_t y = 0; y < height_; y += kStripRows) {
+      read(y, std::min(kStripRows, height_ - y), channels_, rows);
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        planes[i]->insert(planes[i]->end(), rows[i].begin(), rows[i].end());
+    }
+  });
+  return image;
 }
 
 }  // namespace dapple

@@ -6,8 +6,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,40 @@ struct ExrImage {
   std::map<std::string, std::vector<float>> channels;
 };
 
-/// Called with the header, for what ExrImage does not contain.
-using SeeExrHeader = std::function<void(const Imf::Header&)>;
+/// An open EXR file: any, scanline or tiled, without subsampling or deep data and of at most 2^28
+/// pixels. Parts must have one data window. Every member but the destructor throws Error input.
+class ExrFile {
+ public:
+  explicit ExrFile(const std::string& path);
+  ~ExrFile();
+  ExrFile(const ExrFile&) = delete;
+  ExrFile& operator=(const ExrFile&) = delete;
 
-/// Reads any EXR, scanline or tiled, without subsampling or deep data and of at most 2^28 pixels;
-/// HALF and UINT become float. Parts must have one data window; the header is that of the first.
-/// Throws Error input.
-ExrImage read_exr_image(const std::string& path, const SeeExrHeader& see_header = {});
+  /// That of the first part.
+  [[nodiscard]] const Imf::Header& header() const;
+  [[nodiscard]] std::uint32_t width() const { return width_; }
+  [[nodiscard]] std::uint32_t height() const { return height_; }
+
+  struct Channel {
+    std::string name;  ///< with the part's in front if an earlier part has one of that name
+    int part = 0;
+    std::string name_in_part = {};
+  };
+  [[nodiscard]] const std::vector<Channel>& channels() const { return channels_; }
+
+  /// Reads `count` rows from row `first` of the data window on to `rows`, a vector for each of
+  /// `channels`, which are in the order of parts. HALF and UINT become float.
+  void read(std::uint32_t first, std::uint32_t count, std::span<const Channel> channels,
+            std::vector<std::vector<float>>& rows);
+
+  /// All channels.
+  [[nodiscard]] ExrImage image();
+
+ private:
+  std::string path_;
+  std::unique_ptr<Imf::MultiPartInputFile> file_;
+  std::uint32_t width_ = 0, height_ = 0;
+  std::vector<Channel> channels_;
+};
 
 }  // namespace dapple

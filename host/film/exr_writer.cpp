@@ -196,9 +196,9 @@ void write_exr(const Film& film, const std::string& path, const ExrFormat& forma
 }
 
 Film read_exr(const std::string& path) {
-  Film film;
-  ExrImage image =
-      read_exr_image(path, [&](const Imf::Header& header) { film = film_without_pixels(header); });
+  ExrFile file(path);
+  Film film = film_without_pixels(file.header());
+  ExrImage image = file.image();
   for (auto& [channel, pixels] : image.channels)
     film.planes.push_back({channel, std::move(pixels)});
   return film;

@@ -194,23 +194,36 @@ std::vector<std::uint8_t> small_hdr() {
 }
 
 TEST(RadianceHdr, RunsAndStoredScanlinesAreRead) {
-  const Environment image = decode_radiance_hdr(small_hdr(), "small.hdr");
-  ASSERT_EQ(image.width, 8u);
-  ASSERT_EQ(image.height, 2u);
-  EXPECT_EQ(texel(image, 5, 0), V3f(1, 0.5f, 0.25f));
-  EXPECT_EQ(texel(image, 2, 1), V3f(3, 0, 0));
+  const std::vector<std::uint8_t> bytes = small_hdr();
+  const RadianceImage image(bytes, "small.hdr");
+  ASSERT_EQ(image.width(), 8u);
+  ASSERT_EQ(image.height(), 2u);
+  const std::vector<V3f> pixels = image.rows(0, 2);
+  EXPECT_EQ(pixels[5], V3f(1, 0.5f, 0.25f));
+  EXPECT_EQ(pixels[8 + 2], V3f(3, 0, 0));
+  EXPECT_EQ(image.rows(1, 1), std::vector<V3f>(pixels.begin() + 8, pixels.end()));
+}
+
+TEST(RadianceHdr, PixelsThatAreNotEncodedAreRead) {
+  const std::vector<std::uint8_t> bytes =
+      hdr_bytes("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 3 +X 1\n",
+                {128, 64, 32, 129, 1, 2, 3, 0, 255, 0, 1, 137});
+  const RadianceImage image(bytes, "flat.hdr");
+  EXPECT_EQ(image.rows(0, 3), (std::vector<V3f>{V3f(1, 0.5f, 0.25f), V3f(0.0f), V3f(510, 0, 2)}));
+  EXPECT_EQ(image.rows(2, 1), std::vector<V3f>{V3f(510, 0, 2)});
 }
 
 TEST(RadianceHdr, DamagedFilesAreRefusedAtEveryLength) {
   const std::vector<std::uint8_t> whole = small_hdr();
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    EXPECT_THROW((void)decode_radiance_hdr(std::span(whole).first(size), "cut.hdr"), Error) << size;
+    EXPECT_THROW(RadianceImage(std::span(whole).first(size), "cut.hdr"), Error) << size;
   }
   for (std::size_t at = 0; at < whole.size(); ++at) {
     std::vector<std::uint8_t> changed = whole;
     changed[at] = 0;
     try {
-      (void)decode_radiance_hdr(changed, "changed.hdr");
+      const RadianceImage image(changed, "changed.hdr");
+      (void)image.rows(0, image.height());
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
     }

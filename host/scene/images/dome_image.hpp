@@ -19,10 +19,13 @@ inline double luminance(const V3d& rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y
 inline double luminance(const V3f& rgb) { return luminance(V3d(rgb)); }
 
 /// The solid angle of one texel of row `y`, in steradians.
-inline double texel_solid_angle(const Environment& environment, std::uint32_t y) {
+inline double texel_solid_angle(std::uint32_t width, std::uint32_t height, std::uint32_t y) {
   using std::numbers::pi;
-  const auto height = static_cast<double>(environment.height);
-  return 2 * pi / environment.width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
+  const auto rows = static_cast<double>(height);
+  return 2 * pi / width * (std::cos(pi * y / rows) - std::cos(pi * (y + 1) / rows));
+}
+inline double texel_solid_angle(const Environment& environment, std::uint32_t y) {
+  return texel_solid_angle(environment.width, environment.height, y);
 }
 
 }  // namespace dapple

@@ -2,9 +2,7 @@
 // file is complete, so this file checks it first.
 #include "scene/images/radiance_hdr.hpp"
 
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -57,24 +55,47 @@ bool skip_channel(std::span<const std::uint8_t>& left, int width) {
   return true;
 }
 
-/// Whether the file has data for all pixels. stb_image would read zeros past the end, and would
-/// loop forever at a run of length zero.
-bool is_whole(std::span<const std::uint8_t> bytes, int width, int height) {
-  std::span<const std::uint8_t> left = bytes.subspan(end_of_header(bytes));
-  const auto is_encoded = [&] {
-    return width >= 8 && width < 32768 && left.size() >= 4 && left[0] == 2 && left[1] == 2 &&
-           (left[2] << 8 | left[3]) == width;
-  };
-  if (!is_encoded())
-    return left.size() >=
-           std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+/// Whether a scanline of that width begins here that is run-length encoded.
+bool is_encoded(std::span<const std::uint8_t> left, int width) {
+  return width >= 8 && width < 32768 && left.size() >= 4 && left[0] == 2 && left[1] == 2 &&
+         (left[2] << 8 | left[3]) == width;
+}
+
+/// Offsets of the encoded scanlines, and that of their end. Empty if there is not data for all of
+/// them: stb_image would read zeros past the end, and would loop forever at a run of length zero.
+std::vector<std::size_t> find_rows(std::span<const std::uint8_t> bytes, std::size_t begin,
+                                   int width, int height) {
+  std::span<const std::uint8_t> left = bytes.subspan(begin);
+  std::vector<std::size_t> starts;
   for (int row = 0; row < height; ++row) {
-    if (!is_encoded()) return false;
+    starts.push_back(bytes.size() - left.size());
+    if (!is_encoded(left, width)) return {};
     left = left.subspan(4);
     for (int channel = 0; channel < 4; ++channel)
-      if (!skip_channel(left, width)) return false;
+      if (!skip_channel(left, width)) return {};
   }
-  return true;
+  starts.push_back(bytes.size() - left.size());
+  return starts;
+}
+
+V3f of_rgbe(const std::uint8_t* pixel) {
+  const float scale = pixel[3] == 0 ? 0.0f : std::ldexp(1.0f, pixel[3] - 136);
+  return V3f(pixel[0], pixel[1], pixel[2]) * scale;
+}
+
+/// Decodes an image with encoded scanlines.
+std::vector<V3f> decode(std::span<const std::uint8_t> bytes, const std::string& what) {
+  int width = 0, height = 0, channels = 0;
+  const std::unique_ptr<float, StbiFree> pixels(stbi_loadf_from_memory(
+      bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 3));
+  if (!pixels) refuse(what, std::string("is corrupt (") + stbi_failure_reason() + ")");
+  std::vector<V3f> radiance(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const float* rgb = pixels.get();
+  for (V3f& pixel : radiance) {
+    pixel = V3f(rgb[0], rgb[1], rgb[2]);
+    rgb += 3;
+  }
+  return radiance;
 }
 
 }  // namespace
@@ -84,30 +105,49 @@ bool is_radiance_hdr(std::span<const std::uint8_t> bytes) {
   return text.starts_with("#?RADIANCE\n") || text.starts_with("#?RGBE\n");
 }
 
-Environment decode_radiance_hdr(std::span<const std::uint8_t> bytes, const std::string& what) {
+RadianceImage::RadianceImage(std::span<const std::uint8_t> bytes, const std::string& what)
+    : bytes_(bytes), what_(what) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     refuse(what, "has more than 2^31 bytes");
-  const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0 || width < 1 ||
-      height < 1)
+  if (stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
+                            &channels) == 0 ||
+      width < 1 || height < 1)
     refuse(what, "is corrupt (its Radiance header)");
-  if (std::int64_t{width} * height > kMaxPixels) {
+  const std::int64_t pixels = std::int64_t{width} * height;
+  if (pixels > kMaxPixels) {
     refuse(what, "is too large (" + std::to_string(width) + " x " + std::to_string(height) +
                      " pixels, at most " + std::to_string(kMaxPixels) + " in all)");
   }
-  if (!is_whole(bytes, width, height)) refuse(what, "is corrupt or ends early");
-  const std::unique_ptr<float, StbiFree> pixels(
-      stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 3));
-  if (!pixels) refuse(what, std::string("is corrupt (") + stbi_failure_reason() + ")");
-  Environment environment{
-      static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-  environment.radiance.resize(std::size_t{environment.width} * environment.height);
-  tbb::parallel_for(std::size_t{0}, environment.radiance.size(), [&](std::size_t i) {
-    const float* rgb = pixels.get() + 3 * i;
-    environment.radiance[i] = V3f(rgb[0], rgb[1], rgb[2]);
-  });
-  return environment;
+  width_ = static_cast<std::uint32_t>(width);
+  height_ = static_cast<std::uint32_t>(height);
+  begin_ = end_of_header(bytes);
+  if (is_encoded(bytes.subspan(begin_), width)) {
+    row_starts_ = find_rows(bytes, begin_, width, height);
+    if (row_starts_.empty()) refuse(what, "is corrupt or ends early");
+  } else if (bytes.size() - begin_ < std::size_t{4} * static_cast<std::size_t>(pixels)) {
+    refuse(what, "is corrupt or ends early");
+  }
+}
+
+std::vector<V3f> RadianceImage::rows(std::uint32_t first, std::uint32_t count) const {
+  if (row_starts_.empty()) {
+    std::vector<V3f> radiance(std::size_t{count} * width_);
+    const std::uint8_t* pixel = bytes_.data() + begin_ + std::size_t{4} * first * width_;
+    for (V3f& of_pixel : radiance) {
+      of_pixel = of_rgbe(pixel);
+      pixel += 4;
+    }
+    return radiance;
+  }
+  // An image of these rows alone.
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(count) +
+                             " +X " + std::to_string(width_) + "\n";
+  std::vector<std::uint8_t> image(header.begin(), header.end());
+  const auto rows =
+      bytes_.subspan(row_starts_[first], row_starts_[first + count] - row_starts_[first]);
+  image.insert(image.end(), rows.begin(), rows.end());
+  return decode(image, what_);
 }
 
 }  // namespace dapple
