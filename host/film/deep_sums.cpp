@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 namespace dapple {
 
 void DeepSums::add(std::size_t pixel, float z) {
   std::vector<Slot>& slots = slots_[pixel];
+  if (slots.empty()) slots.reserve(kMaxDeepSamples / 2);
   const auto behind = std::lower_bound(
       slots.begin(), slots.end(), z, [](const Slot& slot, float depth) { return slot.z < depth; });
   auto nearest = behind;
@@ -36,6 +39,9 @@ void DeepSums::merge_nearest(std::vector<Slot>& slots) {
 DeepAlpha DeepSums::alpha(const std::vector<std::uint32_t>& samples) const {
   DeepAlpha deep;
   deep.first.reserve(slots_.size() + 1);
+  deep.samples.reserve(std::transform_reduce(slots_.begin(), slots_.end(), std::size_t{0},
+                                             std::plus<>(),
+                                             [](const auto& slots) { return slots.size(); }));
   for (std::size_t p = 0; p < slots_.size(); ++p) {
     deep.first.push_back(deep.samples.size());
     std::uint32_t left = samples[p];  // samples that reach the depth

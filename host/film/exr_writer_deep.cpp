@@ -26,8 +26,12 @@ struct DeepPointers {
 DeepPointers pointers_to(const DeepAlpha& deep, const Sample* samples) {
   static_assert(sizeof(Sample) == 2 * sizeof(float));
   const auto* values = reinterpret_cast<const float*>(samples);
+  const std::size_t pixels = deep.first.size() - 1;
   DeepPointers to;
-  for (std::size_t p = 0; p + 1 < deep.first.size(); ++p) {
+  to.count.reserve(pixels);
+  to.z.reserve(pixels);
+  to.alpha.reserve(pixels);
+  for (std::size_t p = 0; p < pixels; ++p) {
     to.count.push_back(static_cast<unsigned>(deep.first[p + 1] - deep.first[p]));
     to.z.push_back(values + 2 * deep.first[p]);
     to.alpha.push_back(values + 2 * deep.first[p] + 1);
