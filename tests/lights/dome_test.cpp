@@ -6,6 +6,7 @@
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
 #include "scene/images/dome_image.hpp"
+#include "scene/images/dome_rows.hpp"
 #include "scene/images/radiance_hdr.hpp"
 #include "support/film_files.hpp"
 #include "support/point_on_ground.hpp"
@@ -250,6 +251,48 @@ TEST_F(LoadEnvironment, ReadsExrChannelsAndRefusesInvalidFiles) {
   std::ofstream(path("not.hdr")) << "P6 1 1 255 abc";
   EXPECT_THROW((void)load_environment(path("not.hdr")), Error);
   EXPECT_THROW((void)load_environment(path("none.hdr")), Error);
+}
+
+TEST_F(LoadEnvironment, LargeExrImagesAreReadStripByStrip) {
+  Film film;
+  film.width = 3;
+  film.height = 2051;
+  film.data_window = {0, 0, film.width - 1, film.height - 1};
+  DomeRows dome(3, 2051);
+  std::vector<V3f> pixels;
+  for (int i = 0; i < 3 * 2051; ++i) {
+    const float value = static_cast<float>(i % 97);
+    pixels.emplace_back(value, 2 * value, 3 * value);
+  }
+  for (const int channel : {0, 1, 2}) {
+    Plane plane{std::string(1, "RGB"[channel]), {}};
+    for (const V3f& pixel : pixels) plane.pixels.push_back(pixel[channel]);
+    film.planes.push_back(std::move(plane));
+  }
+  write_exr(film, path("tall.exr"));
+  const auto image = load_environment(path("tall.exr"));
+  dome.add({0, 2051}, pixels);
+  EXPECT_EQ(image->radiance, dome.take("tall.exr").radiance);
+  EXPECT_EQ(image->height, 683u);
+}
+
+TEST_F(LoadEnvironment, RadianceImagesAreReadStripByStrip) {
+  constexpr int kRows = 40;
+  std::vector<std::uint8_t> bytes =
+      hdr_bytes("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 40 +X 8\n", {});
+  for (int row = 0; row < kRows; ++row) {
+    const std::vector<std::uint8_t> line =
+        hdr_bytes("", {2, 2, 0, 8, 136, row, 136, 2 * row, 136, 0, 136, 136});
+    bytes.insert(bytes.end(), line.begin(), line.end());
+  }
+  std::ofstream(path("rows.hdr"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  const auto image = load_environment(path("rows.hdr"));
+  for (std::uint32_t row = 0; row < kRows; ++row) {
+    const auto value = static_cast<float>(row);
+    EXPECT_EQ(texel(*image, 7, row), V3f(value, 2 * value, 0)) << row;
+  }
 }
 
 }  // namespace
