@@ -22,7 +22,7 @@ double machine_bytes() {
 
 }  // namespace
 
-/// All values count twice. Sums are on the device, which on a CPU uses the same memory, and in the
+/// All values count twice. Sums are on the device and, unless it shares the host's memory, in the
 /// host's copy; channels are in the film and in the file that is being written.
 std::size_t film_bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
   std::size_t sums =

@@ -187,8 +187,8 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
   // Paths may have other bytes than UTF-8; names of objects have not.
   const std::string about =
       header(checkpoint, state, round).dump(-1, ' ', false, json::error_handler_t::replace);
-  std::vector<std::vector<std::byte>> packed{compress(as_section(state.sums)),
-                                             compress(as_section(state.squares)),
+  std::vector<std::vector<std::byte>> packed{compress(as_section(state.sum_values())),
+                                             compress(as_section(state.square_values())),
                                              compress(as_section(state.samples))};
   for (const WorkGroup& group : round.groups) packed.push_back(compress(as_section(group.work)));
   if (!state.mattes.empty()) packed.push_back(compress(as_section(state.mattes)));

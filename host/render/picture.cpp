@@ -127,6 +127,7 @@ class PictureTracer {
   void release_sums() {
     state_.sums = {};
     state_.squares = {};
+    state_.device_sums = state_.device_squares = {};
     state_.mattes = {};
     state_.motion = MotionSums();
     state_.deep = DeepSums();
@@ -158,12 +159,6 @@ class PictureTracer {
   }
 
   void read_state(const SamplePlan& plan) {
-    state_.sums.resize(layout_.sum_bytes() / sizeof(std::int64_t));
-    // Without a target nobody reads them, and they depend on the order of samples.
-    if (plan.is_adaptive()) state_.squares.resize(layout_.square_bytes() / sizeof(float));
-    context_.read(film_.sums, state_.sums.data(), layout_.sum_bytes());
-    if (plan.is_adaptive())
-      context_.read(film_.squares, state_.squares.data(), layout_.square_bytes());
     context_.finish();
     hit_sums_.copy_to(state_);
     if (bias_) {
@@ -172,6 +167,9 @@ class PictureTracer {
     }
     state_.samples = plan.samples();
     state_.pass_seconds = pass_seconds();
+    state_.device_sums = context_.view(film_.sums);
+    // Without a target nobody reads them, and they depend on the order of samples.
+    if (plan.is_adaptive()) state_.device_squares = context_.view(film_.squares);
   }
 
   /// Device seconds of this picture, in this run and in the runs that it resumes.

@@ -188,7 +188,7 @@ TracedPicture trace(KeptScene& kept, const Shutter& shutter, const Scene& first,
                     RenderStatistics& statistics) {
   const Progress progress = tracing.progress;
   if (shutter.times > 1) {
-    tracing.save = [&](const TraceState& saved) { state = saved; };
+    tracing.save = [&](const TraceState& saved) { state = saved.copy(); };
     tracing.save_every = std::numeric_limits<double>::infinity();
     tracing.progress = part_of(progress, 1, shutter.times);
   }

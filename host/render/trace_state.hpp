@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "device/context.hpp"
 #include "film/bias_sums.hpp"
 #include "film/deep_sums.hpp"
 #include "film/motion_sums.hpp"
@@ -26,6 +28,26 @@ struct TraceState {
   BiasSums bias;                       ///< of the samples of this run; not in checkpoints
   Round round;
   std::map<std::string, double> pass_seconds;  ///< device seconds so far, by label
+
+  /// In place of `sums` and `squares`, while the device has them: only until the function returns
+  /// that the state is given to, because kernels add to them later.
+  HostView device_sums, device_squares;
+
+  [[nodiscard]] std::span<const std::int64_t> sum_values() const {
+    return sums.empty() ? device_sums.values<std::int64_t>() : sums;
+  }
+  [[nodiscard]] std::span<const float> square_values() const {
+    return squares.empty() ? device_squares.values<float>() : squares;
+  }
+
+  /// A state that may be kept: it has all values itself.
+  [[nodiscard]] TraceState copy() const {
+    TraceState state = *this;
+    state.sums.assign(sum_values().begin(), sum_values().end());
+    state.squares.assign(square_values().begin(), square_values().end());
+    state.device_sums = state.device_squares = {};
+    return state;
+  }
 };
 
 }  // namespace dapple

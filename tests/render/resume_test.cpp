@@ -68,7 +68,7 @@ class Tracing {
     TraceState state;
     TraceControl control;
     control.stop = stop_after(slices);
-    control.save = [&](const TraceState& now) { state = now; };
+    control.save = [&](const TraceState& now) { state = now.copy(); };
     control.save_every = 1e9;
     (void)trace(control, std::move(from));
     return state;

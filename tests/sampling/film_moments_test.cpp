@@ -126,7 +126,7 @@ TEST(FilmMoments, KernelsSquareTheMeansOfBatchesAndOfPairs) {
   const FilmLayout layout(view, options, cloud.bvh.bounds, {});
   TraceState state;
   TraceControl control;
-  control.save = [&](const TraceState& now) { state = now; };
+  control.save = [&](const TraceState& now) { state = now.copy(); };
   control.save_every = 1e9;
   (void)trace_picture(scene_test::device(), cloud.uploaded, view, options, layout, control);
   ASSERT_EQ(state.squares.size(), 2u * layout.pixels);
