@@ -35,7 +35,7 @@ bool is_exr(std::span<const std::uint8_t> bytes) {
 }
 
 /// The channels R, G and B, or Y for all three.
-std::vector<ExrFile::Channel> colours_of(const ExrFile& file, const std::string& path) {
+std::vector<ExrFile::Channel> color_channels(const ExrFile& file, const std::string& path) {
   std::vector<ExrFile::Channel> rgb, y;
   for (const ExrFile::Channel& channel : file.channels()) {
     if (channel.name == "R" || channel.name == "G" || channel.name == "B") rgb.push_back(channel);
@@ -48,7 +48,7 @@ std::vector<ExrFile::Channel> colours_of(const ExrFile& file, const std::string&
 
 Environment read_exr_dome(const std::string& path) {
   ExrFile file(path);
-  const std::vector<ExrFile::Channel> channels = colours_of(file, path);
+  const std::vector<ExrFile::Channel> channels = color_channels(file, path);
   const auto number_of = [&](const char* name) -> std::size_t {
     for (std::size_t i = 0; i < channels.size(); ++i)
       if (channels[i].name == name) return i;
