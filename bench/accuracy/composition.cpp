@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/strand_coverage.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
 

@@ -7,7 +7,7 @@
 #include "accuracy/composition.hpp"
 #include "accuracy/opacity_models.hpp"
 #include "accuracy/strand_truth.hpp"
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "dapple/shared/opacity.h"
 
 namespace dapple::bench {

@@ -9,8 +9,9 @@
 #include <random>
 
 #include "bvh/build/object_bvh.hpp"
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/node_opacity.hpp"
+#include "bvh/opacity/quantize_opacity.hpp"
 #include "camera/view.hpp"
 #include "dapple/render.hpp"
 #include "dapple/shared/opacity.h"

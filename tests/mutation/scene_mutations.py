@@ -4,7 +4,7 @@ from mutation import Mutation
 
 MUTATIONS = [
     Mutation(
-        "quantization-rounds-inwards", "host/bvh/build/quantize.cpp",
+        "quantization-rounds-inwards", "host/bvh/build/quantize_boxes.cpp",
         "std::floor((box.min[axis] - origin) / step - margin(box.min[axis], step));",
         "std::ceil((box.min[axis] - origin) / step - margin(box.min[axis], step));",
         r"^(Quantize|Bvh|Watertight)\."),

@@ -11,7 +11,7 @@
 #include <span>
 
 #include "bvh/build/coincident_triangles.hpp"
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/wall.hpp"
 #include "bvh/storage/packed_strands.hpp"
 

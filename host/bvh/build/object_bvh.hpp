@@ -62,14 +62,6 @@ std::vector<BvhNode> pack_nodes(const WideTree& tree);
 /// Returns the opacity of a node from its coverage map, its normals and its box.
 NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box);
 
-/// Stores the opacity of child `slot`. `opacity` is that of its `exact` box; it is converted to its
-/// quantized box, which is larger. Returns the clumping_factor() of the child.
-float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
-                        const Box3f& exact);
-
-/// Returns the variance_class() that is stored with the opacity of child `slot`.
-unsigned variance_of_child(const BvhNode& node, unsigned slot);
-
 /// Stores a triangle of the mesh in a lane. `opacity`: in [0,1], or the code of a textured
 /// triangle.
 void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32_t triangle,

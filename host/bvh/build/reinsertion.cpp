@@ -1,8 +1,8 @@
 #include "bvh/build/reinsertion.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "bvh/build/multiversion.hpp"
@@ -20,8 +20,9 @@ constexpr unsigned kDeepest = 64;
 /// a search visits fewer than fifty.
 constexpr std::size_t kLooksPerNode = 64;
 
-/// A binary node with a link to its parent. Node 0 is the root; as a child, 0 means none.
-struct LinkedNode {
+/// A binary node with a link to its parent, in one cache line. Node 0 is the root; as a child, 0
+/// means none.
+struct alignas(64) LinkedNode {
   Box8 box;
   float area;
   std::uint32_t parent;
@@ -38,7 +39,8 @@ struct Insertion {
   float gain = 0;
 };
 
-/// A node to visit, and the gain so far, without the cost of inserting the subtree there.
+/// An inner node whose children are to be visited, and the gain so far, without the cost of
+/// inserting the subtree there.
 struct Candidate {
   std::uint32_t node;
   float gain;
@@ -50,47 +52,71 @@ struct Effort {
   std::vector<Candidate> pending;
 };
 
-/// Updates `best` with the best sibling among `top` and the nodes below, within the remaining
-/// effort.
-inline void look_below(const LinkedNode* nodes, const LinkedNode& moved, Candidate top,
-                       Effort& effort, Insertion& best) {
-  std::vector<Candidate>& pending = effort.pending;
-  pending.assign(1, top);
-  for (; !pending.empty() && effort.looks > 0; --effort.looks) {
-    const Candidate at = pending.back();
-    pending.pop_back();
-    if (at.gain - moved.area <= best.gain) continue;
-    const LinkedNode& node = nodes[at.node];
-    Box8 both = node.box;
+/// The search for the best new sibling of one subtree.
+struct Search {
+  const LinkedNode* nodes;
+  const LinkedNode& moved;
+  Insertion best;
+
+  /// True if no node to which the subtree could be added with this gain is better than the best.
+  [[nodiscard]] bool is_hopeless(float gain) const { return gain - moved.area <= best.gain; }
+
+  /// Takes `node` as the best if it is, and returns the gain with which its children can be
+  /// visited.
+  [[gnu::always_inline]] float look_at(std::uint32_t node, float gain) {
+    Box8 both = nodes[node].box;
     both.add(moved.box);
     const float area = both.half_area();
-    if (at.gain - area > best.gain) best = {at.node, at.gain - area};
-    const float below = at.gain - (area - node.area);
-    if (node.child[0] == 0 || below - moved.area <= best.gain) continue;
-    pending.push_back({node.child[0], below});
-    pending.push_back({node.child[1], below});
+    if (gain - area > best.gain) best = {node, gain - area};
+    return gain - (area - nodes[node].area);
   }
-}
+
+  /// True if the nodes below `node` need a visit.
+  [[nodiscard]] bool goes_below(std::uint32_t node, float gain) const {
+    return nodes[node].child[0] != 0 && !is_hopeless(gain);
+  }
+
+  /// Looks at `top` and the nodes below it, within the remaining effort: at both children of a node
+  /// together, then below the one with the larger gain.
+  [[gnu::always_inline]] void look_below(std::uint32_t top, float gain, Effort& effort) {
+    if (is_hopeless(gain)) return;
+    const float below = look_at(top, gain);
+    if (!goes_below(top, below)) return;
+    std::vector<Candidate>& pending = effort.pending;
+    pending.assign(1, {top, below});
+    for (; !pending.empty() && effort.looks > 1; effort.looks -= 2) {
+      const Candidate at = pending.back();
+      pending.pop_back();
+      if (is_hopeless(at.gain)) continue;
+      Candidate first{nodes[at.node].child[0], 0}, second{nodes[at.node].child[1], 0};
+      first.gain = look_at(first.node, at.gain);
+      second.gain = look_at(second.node, at.gain);
+      if (first.gain < second.gain) std::swap(first, second);
+      if (goes_below(second.node, second.gain)) pending.push_back(second);
+      if (goes_below(first.node, first.gain)) pending.push_back(first);
+    }
+  }
+};
 
 /// Returns the best new sibling of node `moved`; node 0 if it should stay where it is. Its parent
 /// must not be the root.
 DAPPLE_MULTIVERSION
 Insertion find_insertion(const LinkedNode* nodes, std::uint32_t moved, Effort& effort) {
-  Insertion best;
+  Search search{nodes, nodes[moved], {}};
   std::uint32_t below = nodes[moved].parent;
   float gain = nodes[below].area;
   std::uint32_t sibling = nodes[below].other_than(moved);
   Box8 rest = nodes[sibling].box;  // box of the current ancestor without the moved subtree
-  look_below(nodes, nodes[moved], {sibling, gain}, effort, best);
+  search.look_below(sibling, gain, effort);
   while (below != 0) {
     const std::uint32_t ancestor = nodes[below].parent;
     sibling = nodes[ancestor].other_than(below);
-    look_below(nodes, nodes[moved], {sibling, gain}, effort, best);
+    search.look_below(sibling, gain, effort);
     rest.add(nodes[sibling].box);
     gain += nodes[ancestor].area - rest.half_area();
     below = ancestor;
   }
-  return best;
+  return search.best;
 }
 
 class Reinsertion {
@@ -105,14 +131,9 @@ class Reinsertion {
   }
 
   void round() {
-    std::vector<std::uint32_t> order(nodes_.size() - 1);
-    std::iota(order.begin(), order.end(), 1u);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return nodes_[a].area != nodes_[b].area ? nodes_[a].area > nodes_[b].area : a < b;
-    });
     effort_.looks = kLooksPerNode * nodes_.size();
-    for (const std::uint32_t node : order) {
-      if (too_deep_ || effort_.looks == 0) return;
+    for (const std::uint32_t node : by_area()) {
+      if (too_deep_ || effort_.looks <= 1) return;
       if (nodes_[node].parent == 0) continue;
       const Insertion insertion = find_insertion(nodes_.data(), node, effort_);
       if (insertion.node != 0) move(node, insertion.node);
@@ -152,6 +173,15 @@ class Reinsertion {
   }
 
  private:
+  /// Returns all nodes but the root, those of the largest areas first.
+  [[nodiscard]] std::vector<std::uint32_t> by_area() const {
+    std::vector<std::uint64_t> keys(nodes_.size() - 1);  // the bits of positive floats are ordered
+    for (std::uint32_t n = 1; n < nodes_.size(); ++n)
+      keys[n - 1] = std::uint64_t{~std::bit_cast<std::uint32_t>(nodes_[n].area)} << 32 | n;
+    std::sort(keys.begin(), keys.end());
+    return {keys.begin(), keys.end()};
+  }
+
   void set_children(std::uint32_t node, std::uint32_t left, std::uint32_t right) {
     nodes_[node].child[0] = left;
     nodes_[node].child[1] = right;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {

@@ -41,39 +41,24 @@ struct Tally {
   }
 };
 
-/// Scales the cells that are not full so that the sum over all cells is the triangle's area.
-/// Returns true if this filled more cells, so that another pass would come closer.
+/// Scales cells that are not full.
 template <int kLanes>
-DAPPLE_ALWAYS_INLINE bool scale_partial_cells(const CellTriangle& triangle, Tally<kLanes>& tally,
-                                              CellCoverage& coverage) {
-  const float full_sum = tally.full.sum(), partial_sum = tally.partial.sum();
-  if (full_sum + partial_sum <= 0.0f) {
-    spread_evenly(triangle, coverage);
-    return false;
-  }
-  if (partial_sum <= 0.0f) return false;
-  const float scale = std::max(0.0f, triangle.area - full_sum) / partial_sum;
-  const bool fills_more = tally.largest.max() * scale > 1.0f;
-  tally = {};
-  for (int row = triangle.row0; row <= triangle.row1; ++row) {
-    float* cells = &coverage.share[row * kMapSize];
-    const auto share = Row<kLanes>::load(cells);
-    const Row<kLanes> scaled = max(min(share * scale, 1.0f), at_least(share, 1.0f));
-    scaled.store(cells);
-    if (fills_more) tally.add(scaled);
-  }
-  return fills_more;
+DAPPLE_ALWAYS_INLINE Row<kLanes> scaled(const Row<kLanes>& share, float scale,
+                                        const Row<kLanes>& one) {
+  return max(min(share * scale, one), at_least(share, one));
 }
 
-/// rasterize() for registers of `kLanes` floats.
+/// Writes the shares that the edges leave of the cells in the touched rows.
 template <int kLanes>
-DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCoverage& coverage) {
+DAPPLE_ALWAYS_INLINE Tally<kLanes> cut_rows(const CellTriangle& triangle, CellCoverage& coverage) {
   // Each edge cuts a share 1 - c from a cell. If these shares do not overlap, as in a thin sliver
   // or along an edge, the share c0 + c1 + c2 - 2 remains. Scaling to the known area corrects the
   // other cells. Whole rows are computed: full vectors without remainders.
-  V2f corner[3] = {triangle.a, triangle.a + triangle.edge1, triangle.a + triangle.edge2};
-  if (triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x)
-    std::swap(corner[1], corner[2]);
+  const V2f b = triangle.a + triangle.edge1, c = triangle.a + triangle.edge2;
+  const bool turned = triangle.edge1.x * triangle.edge2.y < triangle.edge1.y * triangle.edge2.x;
+  const V2f corner[3] = {triangle.a,
+                         {turned ? c.x : b.x, turned ? c.y : b.y},
+                         {turned ? b.x : c.x, turned ? b.y : c.y}};
   float nx[3], ny[3], offset[3];
   for (int e = 0; e < 3; ++e) {
     const V2f from = corner[e], along = corner[(e + 1) % 3] - from;
@@ -88,20 +73,47 @@ DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCover
   Row<kLanes> beyond[3];
   const float y = static_cast<float>(triangle.row0) + 0.5f;
   for (int e = 0; e < 3; ++e) beyond[e] = x * nx[e] + (offset[e] + ny[e] * y);
+  const auto zero = Row<kLanes>::limit(0.0f), one = Row<kLanes>::limit(1.0f);
   Tally<kLanes> tally;
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
     Row<kLanes> left(-2.0f);
     for (int e = 0; e < 3; ++e) {
-      left += min(max(beyond[e], 0.0f), 1.0f);
+      left += min(max(beyond[e], zero), one);
       beyond[e] += ny[e];
     }
-    left = max(left, 0.0f);
+    left = max(left, zero);
     left.store(&coverage.share[row * kMapSize]);
     tally.add(left);
   }
-  for (int pass = 0; pass < kScalingPasses; ++pass) {
-    if (!scale_partial_cells(triangle, tally, coverage)) break;
+  return tally;
+}
+
+/// rasterize() for registers of `kLanes` floats. Calls finish(row, shares) for each touched row.
+template <int kLanes, class Finish>
+DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCoverage& coverage,
+                                         const Finish& finish) {
+  // Cells that are not full are scaled so that the sum over all cells is the triangle's area. Where
+  // this fills more cells, another pass comes closer.
+  auto tally = cut_rows<kLanes>(triangle, coverage);
+  const auto one = Row<kLanes>::limit(1.0f);
+  float scale = 1.0f;
+  for (int pass = 1;; ++pass) {
+    const float full = tally.full.sum(), partial = tally.partial.sum();
+    if (full + partial <= 0.0f) spread_evenly(triangle, coverage);
+    if (partial <= 0.0f) break;
+    scale = std::max(0.0f, triangle.area - full) / partial;
+    if (pass == kScalingPasses || !(tally.largest.max() * scale > 1.0f)) break;
+    tally = {};
+    for (int row = triangle.row0; row <= triangle.row1; ++row) {
+      float* cells = &coverage.share[row * kMapSize];
+      const auto share = scaled(Row<kLanes>::load(cells), scale, one);
+      share.store(cells);
+      tally.add(share);
+    }
+    scale = 1.0f;
   }
+  for (int row = triangle.row0; row <= triangle.row1; ++row)
+    finish(row, scaled(Row<kLanes>::load(&coverage.share[row * kMapSize]), scale, one));
 }
 
 }  // namespace
@@ -124,41 +136,35 @@ float CoverageMap::mean_opacity(int axis) const {
   return 1.0f - mean;
 }
 
-OpacityMoments CoverageMap::moments(int axis) const {
-  OpacityMoments moments{};
+MapStatistics CoverageMap::statistics() const {
+  MapStatistics out{};
+  float variance = 0, greatest = 0;
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
     constexpr float kScale = 2.0f / kMapSize;
     const Row<kLanes> x = (Row<kLanes>::indices() + 0.5f) * kScale - 1.0f;
-    Row<kLanes> square, column, row_sum;
-    for (int row = 0; row < kMapSize; ++row) {
-      const float y = (static_cast<float>(row) + 0.5f) * kScale - 1.0f;
-      const Row<kLanes> opacity =
-          Row<kLanes>(1.0f) - Row<kLanes>::load(&transmittance[axis][row * kMapSize]);
-      column += opacity * x;
-      row_sum += opacity * y;
-      square += opacity * (x * x + y * y);
-    }
-    moments = {column.sum() / kMapCells, row_sum.sum() / kMapCells, square.sum() / kMapCells};
-  });
-  return moments;
-}
-
-float CoverageMap::clumping() const {
-  float variance = 0, greatest = 0;
-  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
-    for (const auto& map : transmittance) {
-      Row<kLanes> sum, squares;
+    const Row<kLanes> x2 = x * x;
+    for (int axis = 0; axis < 3; ++axis) {
+      Row<kLanes> sum, squares, columns, rows, distances;
       for (int row = 0; row < kMapSize; ++row) {
-        const auto t = Row<kLanes>::load(&map[row * kMapSize]);
+        const auto t = Row<kLanes>::load(&transmittance[axis][row * kMapSize]);
+        const float y = (static_cast<float>(row) + 0.5f) * kScale - 1.0f;
+        const Row<kLanes> opacity = Row<kLanes>(1.0f) - t;
         sum += t;
         squares += t * t;
+        columns += opacity * x;
+        rows += opacity * y;
+        distances += opacity * (x2 + y * y);
       }
       const float mean = sum.sum() / kMapCells;
+      out.opacity[axis] = 1.0f - mean;
+      out.moments[axis] = {columns.sum() / kMapCells, rows.sum() / kMapCells,
+                           distances.sum() / kMapCells};
       variance += std::max(0.0f, squares.sum() / kMapCells - mean * mean);
       greatest += std::max(0.0f, mean * (1.0f - mean));
     }
   });
-  return greatest > 1e-6f ? std::min(1.0f, variance / greatest) : 0.0f;
+  out.clumping = greatest > 1e-6f ? std::min(1.0f, variance / greatest) : 0.0f;
+  return out;
 }
 
 bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellTriangle& out) {
@@ -183,20 +189,23 @@ bool project(const CoveringTriangle& triangle, const Box3f& box, int axis, CellT
 
 void rasterize(const CellTriangle& triangle, CellCoverage& coverage) {
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
-    rasterize_rows<kLanes>(triangle, coverage);
+    rasterize_rows<kLanes>(
+        triangle, coverage, [&](int row, const Row<kLanes>& share) __attribute__((always_inline)) {
+          share.store(&coverage.share[row * kMapSize]);
+        });
   });
 }
 
-void OccludedCells::add_uniform(const CellTriangle& triangle, const CellCoverage& coverage,
-                                float opacity) {
+void OccludedCells::draw(const CellTriangle& triangle, float opacity) {
   row0 = std::min(row0, triangle.row0);
   row1 = std::max(row1, triangle.row1);
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
-    for (int row = triangle.row0; row <= triangle.row1; ++row) {
-      float* cells = &occluded[row * kMapSize];
-      (Row<kLanes>::load(cells) + Row<kLanes>::load(&coverage.share[row * kMapSize]) * opacity)
-          .store(cells);
-    }
+    CellCoverage coverage;
+    rasterize_rows<kLanes>(
+        triangle, coverage, [&](int row, const Row<kLanes>& share) __attribute__((always_inline)) {
+          float* cells = &occluded[row * kMapSize];
+          (Row<kLanes>::load(cells) + share * opacity).store(cells);
+        });
   });
 }
 
@@ -217,26 +226,26 @@ void OccludedCells::enclose(OccludedCells& back) {
 
 void OccludedCells::flush(std::array<float, kMapCells>& map) {
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    const auto one = Row<kLanes>::limit(1.0f);
     for (int row = row0; row <= row1; ++row) {
-      const auto share = min(Row<kLanes>::load(&occluded[row * kMapSize]), 1.0f);
+      const auto share = min(Row<kLanes>::load(&occluded[row * kMapSize]), one);
       float* cells = &map[row * kMapSize];
-      (Row<kLanes>::load(cells) * (Row<kLanes>(1.0f) - share)).store(cells);
+      (Row<kLanes>::load(cells) * (one - share)).store(cells);
     }
   });
   clear();
 }
 
 std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
-                          CellCoverage& coverage, OccludedCells& cells, OccludedCells& back) {
+                          OccludedCells& cells, OccludedCells& back) {
   std::uint64_t done = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (!triangles[t].closed) continue;
     done |= std::uint64_t{1} << t;
     CellTriangle projected;
     if (!project(triangles[t], box, axis, projected)) continue;
-    rasterize(projected, coverage);
     const bool faces_axis = triangles[t].edge1.cross(triangles[t].edge2)[axis] > 0.0f;
-    (faces_axis ? cells : back).add_uniform(projected, coverage, triangles[t].opacity);
+    (faces_axis ? cells : back).draw(projected, triangles[t].opacity);
   }
   cells.enclose(back);
   return done;

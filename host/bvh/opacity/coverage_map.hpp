@@ -35,6 +35,16 @@ struct OpacityMoments {
   float column, row, square;
 };
 
+/// What the opacity of a node is computed from.
+struct MapStatistics {
+  V3f opacity;  ///< means of the views along the axes, [0,1]
+  std::array<OpacityMoments, 3> moments;
+  /// Relative variance of opacity over the box: the variance of the cells divided by the maximum
+  /// that their mean permits, for all axes together. 0: all cells are alike; 1: each cell is either
+  /// clear or opaque.
+  float clumping;
+};
+
 /// transmittance[axis][row * kMapSize + column], in [0,1].
 struct CoverageMap {
   alignas(64) std::array<std::array<float, kMapCells>, 3> transmittance;
@@ -44,12 +54,7 @@ struct CoverageMap {
   }
   /// Mean opacity of the box along `axis`, [0,1].
   [[nodiscard]] float mean_opacity(int axis) const;
-  /// Moments of the view along `axis`.
-  [[nodiscard]] OpacityMoments moments(int axis) const;
-  /// Relative variance of opacity over the box: the variance of the cells divided by the maximum
-  /// that their mean permits, for all axes together. 0: all cells are alike; 1: each cell is either
-  /// clear or opaque.
-  [[nodiscard]] float clumping() const;
+  [[nodiscard]] MapStatistics statistics() const;
 };
 
 /// A triangle to rasterize. If `opacity` is negative, cover() calls `opacity_at(triangle, u, v,
@@ -100,7 +105,8 @@ struct OccludedCells {
   int row0 = kMapSize, row1 = -1;  ///< rows touched, inclusive
 
   OccludedCells() { fill_cells(occluded, 0.0f); }
-  void add_uniform(const CellTriangle& triangle, const CellCoverage& coverage, float opacity);
+  /// Adds the cells that rasterize() gives, times `opacity`.
+  void draw(const CellTriangle& triangle, float opacity);
   /// Sets each cell to the maximum of this and `back`: fronts and backs of closed surfaces. Clears
   /// `back`.
   void enclose(OccludedCells& back);
@@ -186,7 +192,7 @@ void add_varying(OccludedCells& cells, const CellTriangle& t, const CellCoverage
 /// Rasterizes the triangles of closed surfaces into `cells`, with `back` as scratch. Returns a mask
 /// with a bit for each triangle done; leaves hold at most 8 primitives.
 std::uint64_t draw_closed(const Box3f& box, std::span<const CoveringTriangle> triangles, int axis,
-                          CellCoverage& coverage, OccludedCells& cells, OccludedCells& back);
+                          OccludedCells& cells, OccludedCells& back);
 
 template <class OpacityAt>
 void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
@@ -195,25 +201,28 @@ void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
   OccludedCells cells, back;
   for (int axis = 0; axis < 3; ++axis) {
     const std::span<const CoveringTriangle> triangles = covering[axis];
-    std::uint64_t done = draw_closed(box, triangles, axis, coverage, cells, back);
+    std::uint64_t done = draw_closed(box, triangles, axis, cells, back);
     cells.flush(map.transmittance[axis]);
     for (std::size_t first = 0; first < triangles.size(); ++first) {
       // A group: this triangle and every later one that lies side by side with a member.
+      // What is done has been compared with everything before.
+      if (first > 0 && (done >> first & 1u)) continue;
       for (std::size_t t = first; t < triangles.size(); ++t) {
+        if (done >> t & 1u) continue;
         const auto beside = [&](std::size_t other) {
           return (done >> other & 1u) &&
                  (side_by_side(triangles[other], triangles[t]) >> axis & 1u);
         };
         bool joins = t == first;
         for (std::size_t other = first; other < t && !joins; ++other) joins = beside(other);
-        if (!joins || (done >> t & 1u)) continue;
+        if (!joins) continue;
         done |= std::uint64_t{1} << t;
         CellTriangle projected;
         if (!project(triangles[t], box, axis, projected)) continue;
-        rasterize(projected, coverage);
         if (triangles[t].opacity >= 0.0f) {
-          cells.add_uniform(projected, coverage, triangles[t].opacity);
+          cells.draw(projected, triangles[t].opacity);
         } else {
+          rasterize(projected, coverage);
           add_varying(cells, projected, coverage, [&](float u, float v, float share) {
             return opacity_at(triangles[t], u, v, share);
           });

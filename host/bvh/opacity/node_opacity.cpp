@@ -172,24 +172,23 @@ MassShape mass_shape_of(const V3f& centroid, float off_centre) {
   // and the off_centre 2/3 - 8/45 c.
   constexpr float kOfCentroid = 1.0f / 3.0f, kOfSquares = 8.0f / 45.0f;
   const float wanted = (2.0f / 3.0f - off_centre) / kOfSquares;
+  const Four tilt = Four{centroid.x, centroid.y, centroid.z, 0.0f} / kOfCentroid;
   MassShape best;
   float least = std::numeric_limits<float>::max();
   for (int level = 0; level <= 3; ++level) {
-    MassShape shape;
-    shape.concentration = static_cast<float>(level) * (1.0f / 3.0f);
-    float error = kOfSquares * (shape.concentration - wanted) * (shape.concentration - wanted);
-    for (int axis = 0; axis < 3; ++axis) {
-      const float tilt = centroid[axis] / kOfCentroid;
-      const float place = level ? 0.5f * tilt / shape.concentration : 0.0f;
-      const float code = std::clamp(std::floor(place * 2.0f) + 0.5f, -1.5f, 1.5f);
-      shape.pole[axis] = 0.5f * code;
-      const float missed = tilt - 2.0f * shape.concentration * shape.pole[axis];
-      error +=
-          2.0f / 3.0f * kOfCentroid * missed * missed;  // an axis is seen in two of three views
-    }
+    const float concentration = static_cast<float>(level) * (1.0f / 3.0f);
+    const Four place = level ? tilt / concentration : Four{};
+    // The nearest of -3/4, -1/4, 1/4 and 3/4: a comparison that is true is -1.
+    const FourInts steps = (place >= -1.0f) + (place >= 0.0f) + (place >= 1.0f);
+    const Four pole = -0.75f - 0.5f * __builtin_convertvector(steps, Four);
+    const Four missed = tilt - 2.0f * concentration * pole;
+    // An axis is seen in two of three views.
+    const Four errors = 2.0f / 3.0f * kOfCentroid * missed * missed;
+    const float error = kOfSquares * (concentration - wanted) * (concentration - wanted) +
+                        errors[0] + errors[1] + errors[2];
     if (error < least) {
       least = error;
-      best = shape;
+      best = {concentration, V3f(pole[0], pole[1], pole[2])};
     }
   }
   return best;

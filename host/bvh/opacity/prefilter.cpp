@@ -6,25 +6,15 @@
 
 #include <cmath>
 
-#include "bvh/build/quantize.hpp"
+#include "bvh/opacity/quantize_opacity.hpp"
 #include "bvh/opacity/strand_coverage.hpp"
 #include "bvh/storage/segment_block.hpp"
-#include "dapple/shared/opacity.h"
 
 namespace dapple {
 namespace {
 
 /// Subtrees with fewer primitives run in their parent's task.
 constexpr std::uint32_t kTaskPrimitives = 2048;
-
-/// From this opacity to 1, nodes count gradually as parts of a solid.
-constexpr float kNearlySolid = 0.9f;
-
-/// Below the code of walls.
-uchar encode_depth(float depth) {
-  const auto code = std::lround(std::sqrt(depth / DAPPLE_MAX_DEPTH) * 255.0f);
-  return static_cast<uchar>(std::min<long>(code, DAPPLE_WALL_DEPTH - 1));
-}
 
 /// Maximum number of primitives of a leaf.
 constexpr std::size_t kMaxInLeaf = 8;
@@ -73,19 +63,22 @@ struct MassSums {
   }
 };
 
-/// Returns the moments of the triangle, seen along `axis`.
-OpacityMoments triangle_moments(const CoveringTriangle& t, const Box3f& box, int axis) {
-  float means[2], square = 0;
-  for (int i = 0; i < 2; ++i) {
-    const int k = i ? row_axis(axis) : column_axis(axis);
-    const float halves = 2.0f / (box.max[k] - box.min[k]);
-    const float a = (t.vertex[k] - box.min[k]) * halves - 1.0f;
-    const float b = a + t.edge1[k] * halves, c = a + t.edge2[k] * halves;
-    means[i] = (a + b + c) / 3.0f;
+/// The side of a box across a view, as a scale to half sizes.
+struct ViewedSide {
+  int axis;
+  float from, halves;
+
+  ViewedSide(const Box3f& box, int k)
+      : axis(k), from(box.min[k]), halves(2.0f / (box.max[k] - box.min[k])) {}
+
+  /// Adds the mean square of the triangle's positions to `square`, and returns their mean.
+  float add(const CoveringTriangle& t, float& square) const {
+    const float a = (t.vertex[axis] - from) * halves - 1.0f;
+    const float b = a + t.edge1[axis] * halves, c = a + t.edge2[axis] * halves;
     square += (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0f;
+    return (a + b + c) / 3.0f;
   }
-  return {means[0], means[1], square};
-}
+};
 
 /// Returns the opacity of a single layer: the result of map_opacity() for a map of infinitely many
 /// cells.
@@ -98,12 +91,16 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const float face = face_area(box, axis);
     if (!(face > 0.0f)) continue;
+    const ViewedSide column(box, column_axis(axis)), row(box, row_axis(axis));
     float occluded = 0, square = 0;
     for (const CoveringTriangle& t : leaf.along(axis)) {
       const float share = 0.5f * std::fabs(t.edge1.cross(t.edge2)[axis]) / face;
       occluded += t.opacity * share;
       square += t.opacity * t.opacity * share;
-      mass.add(axis, triangle_moments(t, box, axis), 1.0f, t.opacity * share * face);
+      OpacityMoments moments{};
+      moments.column = column.add(t, moments.square);
+      moments.row = row.add(t, moments.square);
+      mass.add(axis, moments, 1.0f, t.opacity * share * face);
     }
     opacity.axes[axis] = occluded = std::min(occluded, 1.0f);
     variance += std::max(0.0f, square - occluded * occluded);
@@ -274,91 +271,13 @@ class Prefilter {
 }  // namespace
 
 NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box) {
-  NodeOpacity opacity{V3f(map.mean_opacity(0), map.mean_opacity(1), map.mean_opacity(2)), normals,
-                      map.clumping()};
+  const MapStatistics seen = map.statistics();
+  NodeOpacity opacity{seen.opacity, normals, seen.clumping};
   MassSums mass;
   for (int axis = 0; axis < 3; ++axis)
-    mass.add(axis, map.moments(axis), opacity.axes[axis], face_area(box, axis));
+    mass.add(axis, seen.moments[axis], seen.opacity[axis], face_area(box, axis));
   opacity.mass = mass.shape();
   return opacity;
-}
-
-namespace {
-
-/// Returns the opacities of a child's quantized `box`, which is larger than its `exact` box. `axes`
-/// are the opacities of the exact box.
-V3f grown_opacity(const V3f& axes, const Box3f& exact, const Box3f& box) {
-  V3f grown;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float area = face_area(box, axis);
-    const float share = area > 0.0f ? std::min(face_area(exact, axis) / area, 1.0f) : 0.0f;
-    // Where the box of a solid part grew, it stays opaque: the neighbouring parts of the solid
-    // fill that space, and light must not leak.
-    const float solid = std::clamp((axes[axis] - kNearlySolid) / (1.0f - kNearlySolid), 0.0f, 1.0f);
-    grown[axis] = axes[axis] * (share + solid * (1.0f - share));
-  }
-  return grown;
-}
-
-/// The bits of a child's mass pole along an axis; the nearest place that can be stored.
-unsigned pole_code(float pole) {
-  return static_cast<unsigned>(std::clamp(std::lround(2.0f * pole + 1.5f), 0L, 3L));
-}
-
-/// What a node stores of a child beside its depths and correlations.
-struct StoredShape {
-  unsigned opacity_variance;  ///< variance_class()
-  V3f pole;                   ///< MassShape::pole
-  bool wall;
-};
-
-void store_depths(BvhNode& node, unsigned slot, const V3f& axes, float factor,
-                  const V3f& correlation, const StoredShape& shape) {
-  for (int axis = 0; axis < 3; ++axis) {
-    node.depth[axis][slot] =
-        encode_depth(std::min(factor * depth_of(axes[axis]), DAPPLE_MAX_DEPTH));
-    const auto code = static_cast<int>(std::lround(15.0f * correlation[axis]));
-    const unsigned low = pole_code(shape.pole[axis]) << 1 | (shape.opacity_variance >> axis & 1u);
-    node.correlation[axis][slot] = static_cast<schar>(code * 8 + static_cast<int>(low));
-  }
-  if (shape.wall) node.depth[0][slot] = DAPPLE_WALL_DEPTH;
-}
-
-}  // namespace
-
-float set_child_opacity(BvhNode& node, unsigned slot, const NodeOpacity& opacity,
-                        const Box3f& exact) {
-  const Box3f box = child_box(node, slot);
-  NodeOpacity grown = opacity;
-  grown.axes = grown_opacity(opacity.axes, exact, box);
-  const float factor = std::clamp(
-      clumping_factor(grown, box.max - box.min) / opacity.mass.mean_weight(), 0.6f, 1.6f);
-  store_depths(node, slot, grown.axes, factor, opacity.normals.correlation(),
-               {variance_class(opacity), opacity.mass.pole, opacity.wall});
-  const auto level = static_cast<unsigned>(std::lround(3.0f * opacity.mass.concentration));
-  node.leaf_end[slot] = static_cast<uchar>(bvh_leaf_end(node.leaf_end, slot) | level << 6);
-  return factor;
-}
-
-unsigned variance_of_child(const BvhNode& node, unsigned slot) {
-  unsigned bits = 0;
-  for (unsigned pair = 0; pair < 3; ++pair)
-    bits |= (static_cast<unsigned>(node.correlation[pair][slot]) & 1u) << pair;
-  return bits;
-}
-
-void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
-                      const SurfaceAreas& areas, const NormalMoments& normals, const Box3f& exact) {
-  V3f axes = layers_in(areas, exact);
-  for (int axis = 0; axis < 3; ++axis)
-    axes[axis] = std::min(1.0f, axes[axis] * kept.share(axis, slot));
-  store_depths(
-      node, slot, grown_opacity(axes, exact, child_box(node, slot)), kept.factor(slot),
-      normals.correlation(),
-      {std::max(variance_of_child(node, slot), variance_class({axes, {}})),
-       V3f(bvh_mass_pole(node.correlation, 0, slot), bvh_mass_pole(node.correlation, 1, slot),
-           bvh_mass_pole(node.correlation, 2, slot)),
-       bvh_is_wall(node.depth, slot)});
 }
 
 namespace {

@@ -55,10 +55,4 @@ struct PrefilterTask {
 /// Sets the opacities of all nodes below the root of the tree. Returns the summary of the root.
 Summary prefilter(const PrefilterTask& task, const TextureIntegrals& integrals);
 
-/// Sets the opacity of child `slot` after motion, from the record's `kept` opacity of the node's
-/// children. `areas` and `normals` are those of the surfaces that the child's `exact` box contains
-/// now.
-void set_kept_opacity(BvhNode& node, unsigned slot, const KeptOpacity& kept,
-                      const SurfaceAreas& areas, const NormalMoments& normals, const Box3f& exact);
-
 }  // namespace dapple

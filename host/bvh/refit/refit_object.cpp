@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "bvh/refit/refit_subtree.hpp"
 
 namespace dapple {

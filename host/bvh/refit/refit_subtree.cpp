@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
+#include "bvh/opacity/quantize_opacity.hpp"
 
 namespace dapple {
 namespace {

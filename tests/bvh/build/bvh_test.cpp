@@ -14,7 +14,7 @@
 #include <random>
 
 #include "bvh/build/object_bvh.hpp"
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {

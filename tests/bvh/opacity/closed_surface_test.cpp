@@ -111,12 +111,12 @@ TEST(ClosedSurface, TwoCrossedTwigsBothOcclude) {
 
 TEST(Clumping, IsZeroForAUniformMapAndOneForAMapOfClearAndFullCells) {
   CoverageMap map = uniform_map({0.3f, 0.5f, 0.9f});
-  EXPECT_NEAR(map.clumping(), 0, 1e-5f);
+  EXPECT_NEAR(map.statistics().clumping, 0, 1e-5f);
   for (auto& axis : map.transmittance) {
     for (int cell = 0; cell < kMapCells; ++cell) axis[cell] = cell % 3 == 0 ? 0.0f : 1.0f;
   }
-  EXPECT_NEAR(map.clumping(), 1, 1e-5f);
-  EXPECT_EQ(uniform_map({1, 1, 1}).clumping(), 0) << "a solid is uniform";
+  EXPECT_NEAR(map.statistics().clumping, 1, 1e-5f);
+  EXPECT_EQ(uniform_map({1, 1, 1}).statistics().clumping, 0) << "a solid is uniform";
 }
 
 TEST(Clumping, AClumpOccludesItsProjectedAreaAndItsFactorMatchesDepths) {

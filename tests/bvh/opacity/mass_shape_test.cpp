@@ -7,7 +7,8 @@
 #include <random>
 
 #include "bvh/build/object_bvh.hpp"
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
+#include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/shared/opacity.h"
 #include "support/random_direction.hpp"
 

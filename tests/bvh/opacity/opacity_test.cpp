@@ -1,6 +1,7 @@
 // The model of directional opacity: the opacity and optical depth of a box along any direction, and
 // the kernels' version of the model, which computes eight boxes at once (footprint.clh). Tests of
-// what nodes store are in stored_opacity_test.cpp.
+// what nodes store are in quantize_opacity_test.cpp.
+#include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/shared/opacity.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 #include <vector>
 
 #include "bvh/build/object_bvh.hpp"
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "support/random_direction.hpp"
 #include "support/test_kernel.hpp"
 

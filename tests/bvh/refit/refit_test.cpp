@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/prefilter.hpp"
 #include "support/failing_opencl.hpp"
 #include "support/scene_on_device.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "bvh/build/object_bvh.hpp"
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 #include "bvh/storage/segment_block.hpp"
 #include "support/curly_strands.hpp"
 

@@ -1,4 +1,4 @@
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 
 #include <algorithm>
 #include <cassert>

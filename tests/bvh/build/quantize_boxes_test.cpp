@@ -1,6 +1,6 @@
 // Quantized child boxes, for boxes of all sizes and positions: they contain the original box, are
 // larger by about one grid step, and the grid is about as fine as 8 bits allow.
-#include "bvh/build/quantize.hpp"
+#include "bvh/build/quantize_boxes.hpp"
 
 #include <gtest/gtest.h>
 
