@@ -18,9 +18,9 @@ std::size_t add_subtrees(const SceneBvh& bvh, std::uint32_t index, std::vector<S
   const BvhNode& node = bvh.nodes[index];
   std::size_t total = 0;
   for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
-    const std::size_t below = is_inner(node, slot) ? add_subtrees(bvh, child_node(node, slot), out)
-                                                   : bvh_leaf_end(node.leaf_end, slot) -
-                                                         bvh_leaf_begin(node.leaf_end, slot);
+    const std::size_t below = is_inner(node, slot)
+                                  ? add_subtrees(bvh, child_node(node, slot), out)
+                                  : bvh_leaf_end(node.leaf_end, slot) - bvh_leaf_begin(&node, slot);
     if (below > 0) out.push_back({index, slot, below});
     total += below;
   }
@@ -108,9 +108,8 @@ std::vector<Subtree> list_subtrees(const SceneBvh& bvh) {
 
 std::vector<LeafTriangle> leaf_triangles(const SceneBvh& bvh, const BvhNode& node, unsigned slot) {
   std::vector<LeafTriangle> triangles;
-  for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < bvh_leaf_end(node.leaf_end, slot);
-       ++i) {
-    const TriangleBlock& block = bvh.blocks[node.prim_base + i / 8];
+  for (std::uint32_t i = bvh_leaf_begin(&node, slot); i < bvh_leaf_end(node.leaf_end, slot); ++i) {
+    const TriangleBlock& block = bvh.blocks[bvh_block(node.prim_base, i)];
     triangles.push_back({corner_of(block, 0, i % 8), edge_of(block, 1, i % 8),
                          edge_of(block, 2, i % 8), block.opacity[i % 8]});
   }
@@ -125,9 +124,8 @@ std::vector<LeafTriangle> triangles_below(const SceneBvh& bvh, const BvhNode& no
 
 std::vector<StrandSegment> leaf_segments(const SceneBvh& bvh, const BvhNode& node, unsigned slot) {
   std::vector<StrandSegment> segments;
-  for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < bvh_leaf_end(node.leaf_end, slot);
-       ++i) {
-    const SegmentBlock& block = bvh.segments[bvh_block_index(node.prim_base) + i / 8];
+  for (std::uint32_t i = bvh_leaf_begin(&node, slot); i < bvh_leaf_end(node.leaf_end, slot); ++i) {
+    const SegmentBlock& block = bvh.segments[bvh_block_index(bvh_block(node.prim_base, i))];
     segments.push_back(unpack_segment(block, i % 8));
   }
   return segments;

@@ -19,7 +19,7 @@ void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& que
   shading.albedo = scene.uploaded.colors && resolves ? 1u : 0u;
   shading.resolves = resolves ? 1u : 0u;
   shading.color_share = static_cast<float>(std::min(kColorSamples, std::max(spp, 1)));
-  shading.segment_words = static_cast<uint>(8 * scene.block_values.size());
+  shading.segment_words = static_cast<uint>(scene.block_values.size());
   context.launch(kShadePoints, "shading", params.slice.pixel_count,
                  {scene.nodes, scene.blocks, scene.textured, scene.instances, scene.normals,
                   scene.color_words, scene.color_materials, scene.color_texels, queues.work, points,

@@ -22,6 +22,13 @@ typedef struct HitGroup {
   uint located;  /* need barycentrics */
 } HitGroup;
 
+/* Of a triangle; zeros if it is flat. */
+inline CornerNormals normals_of(__global const CornerNormals* normals, uint triangle) {
+  const uint group = ((__global const uint*)normals)[triangle >> 3];
+  const CornerNormals flat = {{0u, 0u}};
+  return group ? normals[DAPPLE_NORMAL_GROUP * (ulong)group + (triangle & 7u)] : flat;
+}
+
 /* Takes the hits from the points in `lanes`, whose `t` and `visits` become 0. */
 inline void take_hits(Scene scene, const Shading* shading, uint lanes,
                       __global SurfacePoint* points, HitGroup* group) {
@@ -42,7 +49,7 @@ inline void take_hits(Scene scene, const Shading* shading, uint lanes,
     group->hits.primitive[lane] = primitive;
     const bool is_triangle = !(primitive & DAPPLE_SEGMENTS);
     if (shading->has_normals && is_triangle && !(group->in_media & bit)) {
-      const CornerNormals packed = shading->normals[primitive];
+      const CornerNormals packed = normals_of(shading->normals, primitive);
       group->words.first.u[lane] = packed.words[0];
       group->words.last.u[lane] = packed.words[1];
       group->smooth |= packed.words[0] ? bit : 0u;

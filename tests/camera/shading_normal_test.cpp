@@ -56,6 +56,29 @@ Mesh square(const V3f& normal) {
   return mesh;
 }
 
+TEST(CornerNormals, OnlyBlocksWithSmoothTrianglesStoreNormals) {
+  Mesh mesh = square({0, 0, 1});
+  for (std::uint32_t i = 1; i < 200; ++i) {
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      mesh.positions.push_back(mesh.positions[k] + V3f(3.0f * static_cast<float>(i), 0, 0));
+      mesh.normals.push_back(V3f(0, 0, 1));
+    }
+    for (std::uint32_t k = 0; k < 6; ++k) mesh.indices.push_back(4 * i + mesh.indices[k]);
+  }
+  const auto packed = [&] {
+    const Scene scene = scene_of(mesh);
+    const SceneBvh bvh = build_bvh(scene);
+    return std::pair(pack_normals(scene, bvh).size(), (bvh.blocks.size() + 15) / 16);
+  };
+  EXPECT_EQ(packed().first, 0u) << "all are flat";
+  mesh.normals[400] = V3f(0, 1, 1).normalized();  // of one square
+  const auto [normals, table] = packed();
+  EXPECT_GE(normals, DAPPLE_NORMAL_GROUP * (table + 1));
+  EXPECT_LE(normals, DAPPLE_NORMAL_GROUP * (table + 2));
+  const Scene scene = scene_of(mesh);
+  EXPECT_EQ(pack_normals(scene, build_bvh(scene), true).size(), normals);
+}
+
 TEST(CornerNormals, AnglesBetweenNormalsAndTheirCodesAreBelowASixthOfADegree) {
   Points points(3);
   double worst = 0;

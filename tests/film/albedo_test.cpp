@@ -88,6 +88,41 @@ TEST(Albedo, AConstantColourIsItself) {
   }
 }
 
+TEST(Albedo, TrianglesOfOneBlockHaveTheirOwnMaterialsAndColours) {
+  Scene scene = square();
+  scene.materials.resize(2);
+  scene.materials[0].color = V3f(0.25f, 0.5f, 0.125f);
+  scene.materials[1].color = V3f(1, 0.0625f, 0.25f);
+  scene.meshes[0].materials = {0, 1};
+  const auto check = [&](const V3f& below, const V3f& above) {
+    const Film film = render(scene, picture(16, 1)).film;
+    for (std::size_t p = 0; p < 256; ++p) {
+      const float side = at(film, "P.Y", p) - at(film, "P.X", p);
+      if (std::fabs(side) < 1e-3f) continue;
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(at(film, kAlbedo[c], p), (side < 0 ? below : above)[static_cast<int>(c)],
+                    1e-3f);
+    }
+  };
+  check(scene.materials[0].color, scene.materials[1].color);
+  scene.meshes[0].colors.assign(4, V3f(0.5f, 1, 1));  // then both have words of their own
+  check({0.125f, 0.5f, 0.125f}, {0.5f, 0.0625f, 0.25f});
+}
+
+TEST(Albedo, ABlockOfOneMaterialTakesOneWord) {
+  std::mt19937 bits(3);
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    mesh.positions.emplace_back(static_cast<float>(bits() % 1000),
+                                static_cast<float>(bits() % 1000),
+                                static_cast<float>(bits() % 1000));
+    mesh.indices.push_back(i);
+  }
+  const Scene scene = scene_of(std::move(mesh));
+  const SceneBvh bvh = build_bvh(scene);
+  EXPECT_EQ(pack_colors(scene, bvh).words.size(), bvh.blocks.size() + 2 * scene.materials.size());
+}
+
 // With one sample per pixel the layer P says where the texture was looked up. Texels are stored in
 // 10 bits or more of their square roots: to 1e-3 at white, a quarter of half a step of 8-bit sRGB.
 TEST(Albedo, AMagnifiedTextureIsADirectLookUp) {

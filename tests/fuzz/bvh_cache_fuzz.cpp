@@ -80,16 +80,16 @@ void walk(const FinishedObject& object, std::uint32_t index, std::size_t& visits
       require(node.child_base + inner > index);
       walk(object, node.child_base + inner++, visits);
     }
-    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
+    for (std::uint32_t i = bvh_leaf_begin(&node, slot);
          i < bvh_leaf_end(node.leaf_end, slot); ++i) {
       if (node.prim_base & DAPPLE_SEGMENTS) {
-        const std::size_t block = std::size_t{bvh_block_index(node.prim_base)} + i / 8;
+        const std::size_t block = bvh_block_index(bvh_block(node.prim_base, i));
         require(block < object.segments.size());
         require(object.segments[block].opacity <= 1.0f);
         continue;
       }
-      require(node.prim_base + std::size_t{i / 8} < object.blocks.size());
-      const float opacity = object.blocks[node.prim_base + i / 8].opacity[i % 8];
+      require(bvh_block(node.prim_base, i) < object.blocks.size());
+      const float opacity = object.blocks[bvh_block(node.prim_base, i)].opacity[i % 8];
       require(opacity <= 1.0f);
       if (opacity >= 0.0f) continue;
       const auto textured = static_cast<std::size_t>(-opacity - 1.0f);

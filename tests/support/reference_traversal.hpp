@@ -191,9 +191,8 @@ class ReferenceTraversal {
                    const std::array<bool, DAPPLE_BVH_WIDTH>& open) const {
     for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
       if (!open[slot] || (node.inner_mask >> slot & 1)) continue;
-      for (uint i = bvh_leaf_begin(node.leaf_end, slot); i < bvh_leaf_end(node.leaf_end, slot);
-           ++i) {
-        const TriangleBlock& block = bvh_.blocks[node.prim_base + i / 8];
+      for (uint i = bvh_leaf_begin(&node, slot); i < bvh_leaf_end(node.leaf_end, slot); ++i) {
+        const TriangleBlock& block = bvh_.blocks[bvh_block(node.prim_base, i)];
         const float opacity = block.opacity[i % 8];
         if (opacity < 0) std::abort();  // textured triangles are not supported here
         ++walk.result.tests;

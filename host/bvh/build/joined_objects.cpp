@@ -93,7 +93,8 @@ std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
   const auto push = [&] {
     // The top bit of a stack entry marks instances. The top bit of a primitive's index, of which
     // each block has eight, marks segments. The index of a textured triangle must fit a float.
-    constexpr std::uint32_t kMaxBlocks = DAPPLE_SEGMENTS / 8;
+    constexpr std::uint32_t kMaxBlocks = DAPPLE_MAX_BLOCKS;
+    static_assert(kMaxBlocks <= DAPPLE_SEGMENTS / 8);
     if (nodes >= DAPPLE_SEGMENTS || blocks > kMaxBlocks || segments > kMaxBlocks ||
         textured >= 1u << 24) {
       throw Error(ErrorKind::failed,

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <span>
 
+#include "bvh/build/block_layout.hpp"
 #include "bvh/build/coincident_triangles.hpp"
 #include "bvh/build/quantize_boxes.hpp"
 #include "bvh/opacity/wall.hpp"
@@ -97,34 +98,39 @@ void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> box
   });
 }
 
-/// Packs the triangles of each node's leaves, in the order of the slots. Each node begins a new
-/// block.
-void pack_triangles(BuiltObject& built, std::span<const PrimitiveBox> boxes, const Mesh& mesh,
-                    const std::vector<float>& opacities, const std::vector<bool>& closed,
-                    const std::vector<bool>& interior) {
+/// The lanes whose triangles have a flag, a byte for each block.
+std::vector<std::uint8_t> lanes_with(const std::vector<bool>& flags,
+                                     std::span<const std::uint32_t> primitives) {
+  std::vector<std::uint8_t> lanes(flags.empty() ? 0 : primitives.size() / 8);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lanes.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = 8 * range.begin(); i < 8 * range.end(); ++i) {
+      const bool set = primitives[i] != kNoPrimitive && flags[primitives[i]];
+      lanes[i / 8] = static_cast<std::uint8_t>(lanes[i / 8] | unsigned{set} << i % 8);
+    }
+  });
+  return lanes;
+}
+
+/// Packs the triangles of each node's leaves, in the order of the slots.
+void pack_triangles(BuiltObject& built, const BlockLayout& layout,
+                    std::span<const PrimitiveBox> boxes, const Mesh& mesh,
+                    const std::vector<float>& opacities) {
   ObjectBvh& object = built.object;
   const WideTree& wide = built.tree;
-  std::uint32_t blocks = 0;
-  for (std::size_t n = 0; n < wide.nodes.size(); ++n) {
-    object.nodes[n].prim_base = blocks;
-    blocks += blocks_of(wide.nodes[n]);
-  }
-  if (!closed.empty()) built.closed.assign(blocks, 0);
-  if (!interior.empty()) built.interior.assign(blocks, 0);
-  object.primitives.assign(8 * std::size_t{blocks}, kNoPrimitive);
+  object.primitives.assign(8 * std::size_t{layout.blocks}, kNoPrimitive);
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
         for (std::size_t n = range.begin(); n < range.end(); ++n) {
-          std::uint32_t next = 0;
+          BvhNode& node = object.nodes[n];
+          node.prim_base = layout.prim_base[n];
+          std::uint32_t next = bvh_first_lane(node.prim_base);
+          for (uchar& end : node.leaf_end) end = static_cast<uchar>(end + next);
           for (const WideChild& child : wide.children_of(wide.nodes[n])) {
             for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
               const std::uint32_t triangle = boxes[child.first + i].primitive;
-              const std::uint32_t block = object.nodes[n].prim_base + next / 8;
+              const std::uint32_t block = bvh_block(node.prim_base, next);
               set_lane(object.blocks[block], next % 8, mesh, triangle, opacities[triangle]);
               object.primitives[8 * std::size_t{block} + next % 8] = triangle;
-              const auto bit = static_cast<std::uint8_t>(1u << next % 8);
-              if (!closed.empty() && closed[triangle]) built.closed[block] |= bit;
-              if (!interior.empty() && interior[triangle]) built.interior[block] |= bit;
             }
           }
         }
@@ -166,12 +172,6 @@ void set_lane(TriangleBlock& block, unsigned lane, const Mesh& mesh, std::uint32
 double expected_visits(double half_areas, const Box3f& root) {
   const double area = half_area(root);
   return area > 0 ? half_areas / area : 1;
-}
-
-std::size_t count_blocks(const WideTree& tree) {
-  std::size_t blocks = 0;
-  for (const WideNode& node : tree.nodes) blocks += blocks_of(node);
-  return blocks;
 }
 
 std::vector<BvhNode> pack_nodes(const WideTree& tree) {
@@ -219,9 +219,16 @@ void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
                        [&] { closed = closed_triangles(mesh, opacities); },
                        [&] { interior = interior_triangles(mesh, opacities); });
-  tbb::parallel_invoke([&] { built.object.blocks.resize(count_blocks(built.tree)); },
-                       [&] { summarize(built); });
-  pack_triangles(built, boxes, mesh, opacities, closed, interior);
+  BlockLayout layout;
+  tbb::parallel_invoke(
+      [&] {
+        layout = lay_out_blocks(built.tree);
+        built.object.blocks.resize(layout.blocks);
+      },
+      [&] { summarize(built); });
+  pack_triangles(built, layout, boxes, mesh, opacities);
+  built.closed = lanes_with(closed, built.object.primitives);
+  built.interior = lanes_with(interior, built.object.primitives);
 }
 
 void build_strands(const Mesh& mesh, const std::vector<float>& opacities,

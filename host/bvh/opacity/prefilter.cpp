@@ -209,10 +209,10 @@ class Prefilter {
   Leaf load_strands(const BvhNode& node, unsigned slot) const {
     Leaf leaf;
     std::array<StrandSegment, kMaxInLeaf> segments;
-    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
-         i < bvh_leaf_end(node.leaf_end, slot); ++i) {
-      const std::uint32_t block = bvh_block_index(node.prim_base) + i / 8;
-      segments[leaf.count] = unpack_segment(object_.segments[block], i % 8);
+    for (std::uint32_t i = bvh_leaf_begin(&node, slot); i < bvh_leaf_end(node.leaf_end, slot);
+         ++i) {
+      segments[leaf.count] =
+          unpack_segment(object_.segments[bvh_block_index(bvh_block(node.prim_base, i))], i % 8);
       add_surface(segments[leaf.count++], leaf.normals, leaf.areas);
     }
     const std::span all(segments.data(), leaf.count);
@@ -230,13 +230,13 @@ class Prefilter {
 
   Leaf load_triangles(const BvhNode& node, unsigned slot) const {
     Leaf leaf;
-    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
-         i < bvh_leaf_end(node.leaf_end, slot); ++i) {
-      const TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
+    for (std::uint32_t i = bvh_leaf_begin(&node, slot); i < bvh_leaf_end(node.leaf_end, slot);
+         ++i) {
+      const TriangleBlock& block = object_.blocks[bvh_block(node.prim_base, i)];
       const unsigned lane = i % 8;
       const CoveringTriangle triangle{corner_of(block, 0, lane), edge_of(block, 1, lane),
                                       edge_of(block, 2, lane), block.opacity[lane],
-                                      has_bit(object_.closed, node.prim_base + i / 8, lane)};
+                                      has_bit(object_.closed, bvh_block(node.prim_base, i), lane)};
       leaf.textured |= triangle.opacity < 0.0f;
       const float opacity = triangle.opacity >= 0.0f
                                 ? triangle.opacity
@@ -244,7 +244,7 @@ class Prefilter {
       const V3f area = 0.5f * triangle.edge1.cross(triangle.edge2);
       leaf.normals.add(area, opacity);
       leaf.areas.add(area, opacity, triangle.closed);
-      leaf.walls.add(area, opacity, has_bit(object_.interior, node.prim_base + i / 8, lane));
+      leaf.walls.add(area, opacity, has_bit(object_.interior, bvh_block(node.prim_base, i), lane));
       leaf.storage[leaf.count++] = triangle;
     }
     leaf.drawn = leaf.count;

@@ -143,8 +143,10 @@ class ObjectRefit : public Stumps {
     for (std::size_t n = 0; n < record_.upper.nodes.size(); ++n) {
       const WideNode& wide = record_.upper.nodes[n];
       const BvhNode& node = object_.nodes[record_.upper_nodes[n]];
-      for (std::uint32_t i = 0; wide.child_count > 0 && i < wide.leaf_primitives; ++i)
-        if (object_.blocks[node.prim_base + i / 8].opacity[i % 8] < 0.0f) return true;
+      const std::uint32_t end =
+          wide.child_count > 0 ? bvh_leaf_end(node.leaf_end, DAPPLE_BVH_WIDTH - 1) : 0;
+      for (std::uint32_t i = bvh_first_lane(node.prim_base); i < end; ++i)
+        if (object_.blocks[bvh_block(node.prim_base, i)].opacity[i % 8] < 0.0f) return true;
     }
     return false;
   }

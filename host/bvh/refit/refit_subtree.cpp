@@ -12,7 +12,7 @@ namespace {
 bool is_inner(const BvhNode& node, unsigned slot) { return (node.inner_mask >> slot & 1u) != 0; }
 
 bool is_leaf(const BvhNode& node, unsigned slot) {
-  return bvh_leaf_begin(node.leaf_end, slot) < bvh_leaf_end(node.leaf_end, slot);
+  return bvh_leaf_begin(&node, slot) < bvh_leaf_end(node.leaf_end, slot);
 }
 
 /// Returns the index, among the object's nodes, of the first inner child.
@@ -23,7 +23,7 @@ std::uint32_t first_inner(const BvhNode& node, const ObjectArrays& object) {
 /// Returns the index, among the lanes of the object's refit record, of primitive `i` of the node's
 /// leaves.
 std::size_t lane_of(const BvhNode& node, const ObjectArrays& object, std::uint32_t i) {
-  return 8 * std::size_t{node.prim_base - object.first_block} + i;
+  return 8 * std::size_t{bvh_block_index(node.prim_base) - object.first_block} + i;
 }
 
 /// Box3f::extendBy() without branches: they are hard to predict here.
@@ -59,10 +59,10 @@ void pass_up_boxes(WideTree& tree) {
 MovedPart SubtreeRefit::leaf(const BvhNode& node, unsigned slot) const {
   MovedPart moved;
   const std::uint32_t end = bvh_leaf_end(node.leaf_end, slot);
-  for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot); i < end; ++i) {
+  for (std::uint32_t i = bvh_leaf_begin(&node, slot); i < end; ++i) {
     const std::size_t lane = lane_of(node, object_, i);
     const std::uint32_t triangle = record_.triangles[lane];
-    TriangleBlock& block = object_.blocks[node.prim_base + i / 8];
+    TriangleBlock& block = object_.blocks[bvh_block(node.prim_base, i)];
     float opacity = block.opacity[i % 8];
     set_lane(block, i % 8, mesh_, triangle, opacity);
     join(moved.box, triangle_box(mesh_, triangle));
@@ -101,7 +101,7 @@ void SubtreeRefit::find_triangles(std::uint32_t index,
                                   std::size_t& count) const {
   const BvhNode& node = object_.nodes[index];
   const std::uint32_t own = bvh_leaf_end(node.leaf_end, DAPPLE_BVH_WIDTH - 1);
-  for (std::uint32_t i = 0; i < own; ++i) {
+  for (std::uint32_t i = bvh_first_lane(node.prim_base); i < own; ++i) {
     const std::uint32_t triangle = record_.triangles[lane_of(node, object_, i)];
     __builtin_prefetch(&mesh_.indices[3 * std::size_t{triangle}]);
     triangles[count++] = triangle;
@@ -153,7 +153,7 @@ WideTree wide_subtree(const Mesh& mesh, const ObjectArrays& object, const RefitR
         child.first = static_cast<std::uint32_t>(node_of.size());
         node_of.push_back(inner++);
       } else if (is_leaf(node, slot)) {
-        const std::uint32_t begin = bvh_leaf_begin(node.leaf_end, slot);
+        const std::uint32_t begin = bvh_leaf_begin(&node, slot);
         child.count = bvh_leaf_end(node.leaf_end, slot) - begin;
         for (std::uint32_t i = begin; i < begin + child.count; ++i)
           child.box.extendBy(triangle_box(mesh, record.triangles[lane_of(node, object, i)]));

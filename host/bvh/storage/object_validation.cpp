@@ -13,7 +13,7 @@ namespace {
 
 bool leaves_are_sound(const BvhNode& node, const FinishedObject& object) {
   for (uint slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
-    if (bvh_leaf_begin(node.leaf_end, slot) > bvh_leaf_end(node.leaf_end, slot)) return false;
+    if (bvh_leaf_begin(&node, slot) > bvh_leaf_end(node.leaf_end, slot)) return false;
   }
   const std::uint32_t primitives = bvh_leaf_end(node.leaf_end, DAPPLE_BVH_WIDTH - 1);
   const std::size_t blocks =
@@ -24,7 +24,7 @@ bool leaves_are_sound(const BvhNode& node, const FinishedObject& object) {
 std::uint32_t children_of(const BvhNode& node) {
   std::uint32_t children = 0;
   for (uint slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
-    const bool leaf = bvh_leaf_begin(node.leaf_end, slot) < bvh_leaf_end(node.leaf_end, slot);
+    const bool leaf = bvh_leaf_begin(&node, slot) < bvh_leaf_end(node.leaf_end, slot);
     children += leaf || (node.inner_mask >> slot & 1u) != 0;
   }
   return children;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "bvh/storage/textured_triangle.hpp"
 #include "dapple/error.hpp"
@@ -14,8 +15,11 @@
 namespace dapple {
 namespace {
 
-/// Lanes of one task of a parallel loop.
-constexpr std::size_t kGrain = 1u << 14;
+/// Blocks of one task of a parallel loop.
+constexpr std::size_t kGrain = 1u << 11;
+
+/// Words beyond this number cannot be told from those with DAPPLE_COLOR_LANES.
+constexpr std::size_t kMaxWords = DAPPLE_COLOR_LANES;
 
 /// The sRGB transfer function of IEC 61966-2-1.
 float linear_of(std::size_t code) {
@@ -182,6 +186,26 @@ class MeshEntries {
     return 1 + (flags & DAPPLE_COLOR_UVS ? 6 : 0) + (flags & DAPPLE_COLOR_CORNERS ? corners() : 0);
   }
 
+  /// The flags of all lanes of a block that hold a primitive, if these share an entry.
+  [[nodiscard]] std::optional<uint> common_flags(std::size_t block) const {
+    std::optional<uint> common;
+    for (std::size_t lane = 8 * block; lane < 8 * block + 8; ++lane) {
+      if (primitives_[lane] >= mesh_.primitive_count()) continue;
+      const uint of_lane = flags(lane);
+      if (size(of_lane) > 0 || (common && *common != of_lane)) return {};
+      common = of_lane;
+    }
+    return common.value_or(0);
+  }
+
+  /// Number of words that a block takes besides the one that each has.
+  [[nodiscard]] std::size_t block_size(std::size_t block) const {
+    if (common_flags(block)) return 0;
+    std::size_t words = 8;
+    for (std::size_t lane = 8 * block; lane < 8 * block + 8; ++lane) words += size(flags(lane));
+    return words;
+  }
+
   void write(std::size_t lane, uint flags, uint* entry) const {
     const std::uint32_t* at = &mesh_.indices[corners() * primitives_[lane]];
     *entry++ = flags;
@@ -220,36 +244,50 @@ class MeshEntries {
 };
 
 /// Where the shared entry of a material begins: there is one without and one with coordinates.
-std::size_t shared_entry(std::size_t lanes, uint flags) {
-  return lanes + 2 * std::size_t{flags & DAPPLE_COLOR_MATERIAL} +
-         (flags & DAPPLE_COLOR_OPACITY_UVS ? 1 : 0);
+uint shared_entry(std::size_t first, uint flags) {
+  return static_cast<uint>(first + 2 * std::size_t{flags & DAPPLE_COLOR_MATERIAL} +
+                           (flags & DAPPLE_COLOR_OPACITY_UVS ? 1 : 0));
 }
 
-/// Writes the words of `count` lanes, whose place is at `lane_words`, and their entries at the end.
+/// Writes the words of a block: its own, and those that begin at `at`.
+void write_block(const MeshEntries& entries, std::size_t block, std::size_t word, std::size_t at,
+                 std::size_t shared, std::vector<uint>& words) {
+  if (const auto common = entries.common_flags(block)) {
+    words[word] = shared_entry(shared, *common);
+    return;
+  }
+  words[word] = static_cast<uint>(at) | DAPPLE_COLOR_LANES;
+  std::size_t next = at + 8;
+  for (std::size_t lane = 0; lane < 8; ++lane) {
+    const uint flags = entries.flags(8 * block + lane);
+    const std::size_t size = entries.size(flags);
+    words[at + lane] = size > 0 ? static_cast<uint>(next) : shared_entry(shared, flags);
+    if (size > 0) entries.write(8 * block + lane, flags, &words[next]);
+    next += size;
+  }
+}
+
+/// Writes the words of a mesh's `count` blocks, the first at `first_word`, and appends what they
+/// need besides. `shared`: where the shared entries begin.
 void pack_mesh(const Scene& scene, const MeshEntries& entries, std::size_t first_word,
-               std::size_t count, std::size_t lanes, std::vector<uint>& words) {
+               std::size_t count, std::size_t shared, std::vector<uint>& words) {
   const std::size_t tasks = (count + kGrain - 1) / kGrain;
   std::vector<std::size_t> next(tasks + 1, 0);
-  const auto for_lanes = [&](std::size_t task, const auto& body) {
-    for (std::size_t lane = task * kGrain; lane < std::min(count, (task + 1) * kGrain); ++lane)
-      body(lane, entries.flags(lane));
+  const auto for_blocks = [&](std::size_t task, const auto& body) {
+    for (std::size_t b = task * kGrain; b < std::min(count, (task + 1) * kGrain); ++b) body(b);
   };
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
-    std::size_t size = 0;
-    for_lanes(task, [&](std::size_t, uint flags) { size += entries.size(flags); });
-    next[task + 1] = size;
+    for_blocks(task, [&](std::size_t block) { next[task + 1] += entries.block_size(block); });
   });
   next[0] = words.size();
   for (std::size_t task = 0; task < tasks; ++task) next[task + 1] += next[task];
-  if (next[tasks] > std::numeric_limits<uint>::max()) refuse_size(scene, "triangles");
+  if (next[tasks] > kMaxWords) refuse_size(scene, "triangles");
   words.resize(next[tasks]);
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
     std::size_t at = next[task];
-    for_lanes(task, [&](std::size_t lane, uint flags) {
-      const std::size_t size = entries.size(flags);
-      words[first_word + lane] = static_cast<uint>(size > 0 ? at : shared_entry(lanes, flags));
-      if (size > 0) entries.write(lane, flags, &words[at]);
-      at += size;
+    for_blocks(task, [&](std::size_t block) {
+      write_block(entries, block, first_word + block, at, shared, words);
+      at += entries.block_size(block);
     });
   });
 }
@@ -299,23 +337,22 @@ Checksum color_key(const Scene& scene) {
 SurfaceColors pack_colors(const Scene& scene, const SceneBvh& bvh) {
   SurfaceColors colors;
   pack_materials(scene, colors);
-  const std::size_t lanes = bvh.primitives.size();
+  const std::size_t blocks = bvh.blocks.size() + bvh.segments.size();
   const std::size_t shared = 2 * scene.materials.size();
-  if (lanes + shared > std::numeric_limits<uint>::max()) refuse_size(scene, "triangles");
+  if (blocks + shared > kMaxWords) refuse_size(scene, "triangles");
   std::vector<uint>& words = colors.words;
-  words.resize(lanes + shared);
+  words.resize(blocks + shared);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    words[lanes + 2 * m] = static_cast<uint>(m);
-    words[lanes + 2 * m + 1] = static_cast<uint>(m) | DAPPLE_COLOR_OPACITY_UVS;
+    words[blocks + 2 * m] = static_cast<uint>(m);
+    words[blocks + 2 * m + 1] = static_cast<uint>(m) | DAPPLE_COLOR_OPACITY_UVS;
   }
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const ObjectOffsets &first = bvh.objects[m], &end = bvh.objects[m + 1];
     const bool strands = scene.meshes[m].has_strands();
-    // Lanes of triangles come first, then those of segments.
-    const std::size_t first_word =
-        strands ? 8 * (bvh.blocks.size() + first.segments) : 8 * std::size_t{first.block};
+    // Blocks of triangles come first, then those of segments.
+    const std::size_t first_word = strands ? bvh.blocks.size() + first.segments : first.block;
     pack_mesh(scene, {scene, bvh, scene.meshes[m], first.lane(), first.block}, first_word,
-              end.lane() - first.lane(), lanes, words);
+              (end.lane() - first.lane()) / 8, blocks, words);
   }
   return colors;
 }

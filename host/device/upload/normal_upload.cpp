@@ -4,8 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <cstring>
+#include <optional>
 
 #include "scene/corner_normals.hpp"
 
@@ -23,10 +24,47 @@ std::uint32_t code_of(const V3f& normal) {
   return 1 + steps(x) + DAPPLE_NORMAL_SIDE * steps(y);
 }
 
-/// The normals of a triangle as they are packed; zeros if it is flat.
-CornerNormals normals_of(const Mesh& mesh, std::size_t triangle) {
-  const auto normals = corner_normals(mesh, triangle);
-  return normals ? pack_corner_normals(*normals) : CornerNormals{};
+/// The triangles of a mesh by the lanes of its blocks.
+struct MeshLanes {
+  const Mesh& mesh;
+  const std::uint32_t* primitives;  ///< of the mesh's first lane
+  std::size_t first_block, end_block;
+
+  /// Nothing for flat triangles and empty lanes.
+  [[nodiscard]] std::optional<std::array<V3f, 3>> normals(std::size_t block,
+                                                          std::size_t lane) const {
+    const std::uint32_t triangle = primitives[8 * (block - first_block) + lane];
+    if (triangle >= mesh.primitive_count()) return {};
+    return corner_normals(mesh, triangle);
+  }
+  [[nodiscard]] bool is_smooth(std::size_t block) const {
+    for (std::size_t lane = 0; lane < 8; ++lane)
+      if (normals(block, lane)) return true;
+    return false;
+  }
+};
+
+/// The meshes that have normals.
+std::vector<MeshLanes> meshes_with_normals(const Scene& scene, const SceneBvh& bvh) {
+  std::vector<MeshLanes> meshes;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    if (mesh.normals.empty() || mesh.has_strands()) continue;
+    meshes.push_back({mesh, bvh.primitives.data() + bvh.objects[m].lane(), bvh.objects[m].block,
+                      bvh.objects[m + 1].block});
+  }
+  return meshes;
+}
+
+template <class Body>
+void for_each_block(const std::vector<MeshLanes>& meshes, const Body& body) {
+  for (const MeshLanes& mesh : meshes) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(mesh.first_block, mesh.end_block, 1024),
+                      [&](const auto& range) {
+                        for (std::size_t block = range.begin(); block < range.end(); ++block)
+                          body(mesh, block);
+                      });
+  }
 }
 
 }  // namespace
@@ -37,28 +75,26 @@ CornerNormals pack_corner_normals(const std::array<V3f, 3>& normals) {
 }
 
 std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh, bool keep_flat) {
-  std::vector<CornerNormals> all(keep_flat ? 8 * bvh.blocks.size() : 0);
-  std::atomic<bool> any = false;
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const Mesh& mesh = scene.meshes[m];
-    if (mesh.normals.empty() || mesh.has_strands()) continue;
-    all.resize(8 * bvh.blocks.size(), CornerNormals{});
-    // Where the object's lanes lie among those of triangles, and among all.
-    const ObjectOffsets &first = bvh.objects[m], &end = bvh.objects[m + 1];
-    const std::size_t lanes = 8 * std::size_t{end.block - first.block};
-    const std::uint32_t* primitives = bvh.primitives.data() + first.lane();
-    CornerNormals* normals = all.data() + 8 * std::size_t{first.block};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lanes, 8192), [&](const auto& range) {
-      bool found = false;
-      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        if (primitives[i] >= mesh.primitive_count()) continue;
-        normals[i] = normals_of(mesh, primitives[i]);
-        found |= normals[i].words[0] != 0;
-      }
-      if (found) any = true;
-    });
-  }
-  if (!any && !keep_flat) all.clear();
+  const std::vector<MeshLanes> meshes = meshes_with_normals(scene, bvh);
+  std::vector<std::uint32_t> group_of(bvh.blocks.size(), 0);
+  for_each_block(meshes, [&](const MeshLanes& mesh, std::size_t block) {
+    group_of[block] = mesh.is_smooth(block) ? 1 : 0;
+  });
+  // The table of groups takes the first groups.
+  const std::size_t table = (group_of.size() + 15) / 16;
+  std::size_t groups = table;
+  for (std::uint32_t& group : group_of)
+    if (group) group = static_cast<std::uint32_t>(groups++);
+  if (groups == table && !keep_flat) return {};
+  std::vector<CornerNormals> all(DAPPLE_NORMAL_GROUP * groups, CornerNormals{});
+  std::memcpy(all.data(), group_of.data(), group_of.size() * sizeof(group_of[0]));
+  for_each_block(meshes, [&](const MeshLanes& mesh, std::size_t block) {
+    for (std::size_t lane = 0; group_of[block] && lane < DAPPLE_NORMAL_GROUP; ++lane) {
+      if (const auto normals = mesh.normals(block, lane))
+        all[DAPPLE_NORMAL_GROUP * std::size_t{group_of[block]} + lane] =
+            pack_corner_normals(*normals);
+    }
+  });
   return all;
 }
 

@@ -1,5 +1,6 @@
 // Normals of the corners of triangles, as the shading pass reads them. In: a scene and its BVH.
-// Out: 8 bytes for each lane of the triangle blocks.
+// Out: the array of dapple/shared/corner_normals.h: 8 bytes for each lane of the blocks that hold
+// smooth triangles, and 4 bytes for each block.
 #pragma once
 
 #include <array>

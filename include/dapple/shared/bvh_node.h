@@ -18,14 +18,14 @@ namespace dapple {
 /* The box of child c is, on each axis, origin + lower[axis][c] * 2^e .. origin + upper[axis][c] *
    2^e. An empty slot has lower 255 and upper 0. Inner children are consecutive nodes from
    child_base on, in slot order. A leaf child in slot c owns the primitives from the leaf end of
-   slot c - 1 (0 for c = 0) to its own leaf end, counted from prim_base. Inner and empty slots own
-   none. */
+   slot c - 1 (bvh_first_lane() for c = 0) to its own leaf end, counted from the first lane of the
+   block bvh_block(). Inner and empty slots own none. */
 typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   float origin[3];
   uchar exponent[3]; /* biased by 127, as in a float: scale = 2^(exponent - 127) */
   uchar inner_mask;  /* bit c: child c is a node */
   uint child_base;   /* index of the first inner child's node */
-  uint prim_base;    /* first block, see below (objects), or first instance (top level) */
+  uint prim_base;    /* first block and lane, see below; or first instance (top level) */
   uchar lower[3][8];
   uchar upper[3][8];
   uchar depth[3][8];       /* optical depth of child c's quantized box along each axis */
@@ -39,20 +39,33 @@ typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
    block and in the number of a hit primitive. */
 #define DAPPLE_SEGMENTS 0x80000000u
 
-DAPPLE_FUNCTION uint bvh_block_index(uint block) { return block & ~DAPPLE_SEGMENTS; }
+/* Nodes share blocks: bits 28 to 30 of prim_base are the first lane that is the node's. */
+#define DAPPLE_FIRST_LANE_SHIFT 28u
+#define DAPPLE_MAX_BLOCKS (1u << DAPPLE_FIRST_LANE_SHIFT)
+
+DAPPLE_FUNCTION uint bvh_first_lane(uint prim_base) {
+  return prim_base >> DAPPLE_FIRST_LANE_SHIFT & 7u;
+}
+
+DAPPLE_FUNCTION uint bvh_block_index(uint block) { return block & (DAPPLE_MAX_BLOCKS - 1u); }
+
+/* The block of a primitive that is counted as leaf ends are; with the bit DAPPLE_SEGMENTS. */
+DAPPLE_FUNCTION uint bvh_block(uint prim_base, uint primitive) {
+  return (prim_base & (DAPPLE_SEGMENTS | (DAPPLE_MAX_BLOCKS - 1u))) + (primitive >> 3);
+}
 
 DAPPLE_FUNCTION float bvh_scale(uchar exponent) {
   return dapple_bits_to_float((uint)exponent << 23);
 }
 
-#define DAPPLE_MAX_PRIMITIVES 63 /* of the leaf children of one node */
+#define DAPPLE_MAX_PRIMITIVES 63 /* of the leaf children of one node, with lanes before the first */
 
 DAPPLE_FUNCTION uint bvh_leaf_end(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
   return (uint)leaf_end[slot] & 63u;
 }
 
-DAPPLE_FUNCTION uint bvh_leaf_begin(DAPPLE_GLOBAL const uchar* leaf_end, uint slot) {
-  return slot == 0u ? 0u : bvh_leaf_end(leaf_end, slot - 1u);
+DAPPLE_FUNCTION uint bvh_leaf_begin(DAPPLE_GLOBAL const BvhNode* node, uint slot) {
+  return slot == 0u ? bvh_first_lane(node->prim_base) : bvh_leaf_end(node->leaf_end, slot - 1u);
 }
 
 /* Place of the mass pole of child `slot` along an axis, from the centre of its box, in half sizes:

@@ -17,6 +17,11 @@ typedef struct CornerNormals {
   uint words[2];
 } CornerNormals;
 
+/* An array of CornerNormals begins with a word for each triangle block, padded to a multiple of 16
+   words: the number of the group of eight, counted from the begin of the array, that holds the
+   normals of its lanes; 0: the block is flat. */
+#define DAPPLE_NORMAL_GROUP 8u
+
 #define DAPPLE_NORMAL_SIDE 1448u /* points along a side of the square; its square is below 2^21 */
 
 DAPPLE_FUNCTION uint corner_code(CornerNormals normals, uint corner) {

@@ -69,12 +69,13 @@ class Walk {
     for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t)
       triangles_of_lane_[lane_of(t)].push_back(t);
     visits_.resize(object.nodes.size(), 0);
+    is_used_.resize(8 * object.blocks.size(), false);
   }
 
   void run() {
     const Box3f box = node(0);
     EXPECT_EQ(box, object_.box);
-    EXPECT_EQ(next_blocks(), object_.blocks.size());
+    check_unused_lanes();
     for (std::size_t n = 0; n < visits_.size(); ++n) {
       ASSERT_EQ(visits_[n], 1) << "visits of node " << n;
     }
@@ -116,8 +117,7 @@ class Walk {
     Box3f box;
     std::uint32_t inner = 0;
     for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
-      const std::uint32_t begin = bvh_leaf_begin(n.leaf_end, slot),
-                          end = bvh_leaf_end(n.leaf_end, slot);
+      const std::uint32_t begin = bvh_leaf_begin(&n, slot), end = bvh_leaf_end(n.leaf_end, slot);
       EXPECT_LE(begin, end);
       const bool is_inner = n.inner_mask >> slot & 1;
       if (n.lower[0][slot] > n.upper[0][slot]) {
@@ -141,17 +141,21 @@ class Walk {
           << "slot " << slot << " of node " << index << " does not contain its triangles";
       box.extendBy(child);
     }
-    check_unused_lanes(n);
+    const std::uint32_t own = bvh_leaf_end(n.leaf_end, DAPPLE_BVH_WIDTH - 1),
+                        first = bvh_first_lane(n.prim_base);
+    EXPECT_LE((own + 7) / 8, (own - first + 7) / 8) << "more blocks than triangles need";
     return box;
   }
 
   /// Returns the box of the triangle in lane `i`, and removes the triangle from those still
   /// missing.
   Box3f take(std::uint32_t prim_base, std::uint32_t i) {
-    const std::uint32_t block = prim_base + i / 8;
+    const std::uint32_t block = bvh_block(prim_base, i);
     Box3f box;
     EXPECT_LT(block, object_.blocks.size());
     if (block >= object_.blocks.size()) return box;
+    EXPECT_FALSE(is_used_[8 * std::size_t{block} + i % 8]) << "two nodes own a lane";
+    is_used_[8 * std::size_t{block} + i % 8] = true;
     auto& triangles = triangles_of_lane_[lane_of(object_.blocks[block], i % 8)];
     EXPECT_FALSE(triangles.empty()) << "a lane holds no triangle of the mesh, or one twice";
     if (triangles.empty()) return box;
@@ -160,32 +164,22 @@ class Walk {
     return box;
   }
 
-  void check_unused_lanes(const BvhNode& n) const {
-    const std::uint32_t used = bvh_leaf_end(n.leaf_end, DAPPLE_BVH_WIDTH - 1);
-    EXPECT_LE(used, 64u);
-    for (std::uint32_t i = used; i % 8; ++i) {
-      const TriangleBlock& block = object_.blocks[n.prim_base + i / 8];
-      const Lane lane = lane_of(block, i % 8);
-      EXPECT_TRUE(std::all_of(lane.begin() + 3, lane.end(), [](float e) { return e == 0; }));
-      EXPECT_EQ(block.opacity[i % 8], 0.0f);
+  void check_unused_lanes() const {
+    for (std::size_t lane = 0; lane < is_used_.size(); ++lane) {
+      EXPECT_EQ(is_used_[lane], object_.primitives[lane] != kNoPrimitive);
+      if (is_used_[lane]) continue;
+      const TriangleBlock& block = object_.blocks[lane / 8];
+      const Lane values = lane_of(block, lane % 8);
+      EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](float v) { return v == 0; }));
+      EXPECT_EQ(block.opacity[lane % 8], 0.0f);
     }
-  }
-
-  /// Number of blocks that the nodes own. Checks that the blocks of each node follow those of the
-  /// previous node.
-  std::uint32_t next_blocks() const {
-    std::uint32_t next = 0;
-    for (const BvhNode& n : object_.nodes) {
-      EXPECT_EQ(n.prim_base, next);
-      next += (bvh_leaf_end(n.leaf_end, DAPPLE_BVH_WIDTH - 1) + 7u) / 8u;
-    }
-    return next;
   }
 
   const Mesh& mesh_;
   const ObjectBvh& object_;
   std::map<Lane, std::vector<std::uint32_t>> triangles_of_lane_;
   std::vector<int> visits_;
+  std::vector<bool> is_used_;  ///< lanes
 };
 
 ObjectBvh expect_well_formed(const Scene& scene) {
@@ -326,7 +320,7 @@ Box3f walk_top(const SceneBvh& bvh, const Mesh& mesh, std::uint32_t index,
     if (n.inner_mask >> slot & 1) {
       child = walk_top(bvh, mesh, n.child_base + inner++, found);
     } else {
-      EXPECT_EQ(bvh_leaf_end(n.leaf_end, slot), bvh_leaf_begin(n.leaf_end, slot) + 1);
+      EXPECT_EQ(bvh_leaf_end(n.leaf_end, slot), bvh_leaf_begin(&n, slot) + 1);
       const std::uint32_t instance = n.prim_base + bvh_leaf_end(n.leaf_end, slot) - 1u;
       ++found.at(instance);
       const float* m = bvh.instances[instance].to_world;

@@ -37,7 +37,7 @@ Scene tree(int leaves = 5000) {
 Box3f leaf_box(const SceneBvh& bvh, const BvhNode& node, std::uint32_t begin, std::uint32_t end) {
   Box3f box;
   for (std::uint32_t i = begin; i < end; ++i) {
-    const TriangleBlock& block = bvh.blocks[node.prim_base + i / 8];
+    const TriangleBlock& block = bvh.blocks[bvh_block(node.prim_base, i)];
     for (unsigned corner = 0; corner < 3; ++corner) box.extendBy(corner_of(block, corner, i % 8));
   }
   return box;
@@ -58,7 +58,7 @@ Box3f check_boxes(const SceneBvh& bvh, std::uint32_t index, std::size_t& triangl
   Box3f all;
   std::uint32_t inner = node.child_base;
   for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
-    const std::uint32_t begin = bvh_leaf_begin(node.leaf_end, slot),
+    const std::uint32_t begin = bvh_leaf_begin(&node, slot),
                         end = bvh_leaf_end(node.leaf_end, slot);
     const bool is_inner = (node.inner_mask >> slot & 1u) != 0;
     if (!is_inner && begin == end) continue;

@@ -80,9 +80,9 @@ Box3f walk(const ObjectBvh& object, std::uint32_t index, std::size_t& count) {
     if (node.lower[0][slot] > node.upper[0][slot]) continue;
     Box3f child;
     if (node.inner_mask >> slot & 1) child = walk(object, node.child_base + inner++, count);
-    for (std::uint32_t i = bvh_leaf_begin(node.leaf_end, slot);
+    for (std::uint32_t i = bvh_leaf_begin(&node, slot);
          i < bvh_leaf_end(node.leaf_end, slot); ++i, ++count) {
-      const SegmentBlock& block = object.segments[bvh_block_index(node.prim_base) + i / 8];
+      const SegmentBlock& block = object.segments[bvh_block_index(bvh_block(node.prim_base, i))];
       child.extendBy(bounds(unpack_segment(block, i % 8)));
     }
     const Box3f grown = child_box(node, slot);
