@@ -19,9 +19,9 @@ std::atomic<bool> reporting{false};
 std::atomic<int> calls_under_way{0};
 std::atomic<int> devices_open{0};
 
-/// The driver's latest task, zero-terminated. If a crash happens while another thread writes here,
-/// only the message is garbled.
-std::array<char, 160> doing{};
+/// The driver's latest task, zero-terminated. Threads may write here at the same time; if a crash
+/// happens then, only the message is garbled.
+std::array<std::atomic<char>, 160> doing{};
 
 void say(const char* text) { (void)!write(STDERR_FILENO, text, std::strlen(text)); }
 
@@ -46,7 +46,9 @@ void on_crash(int signal) {
     return;
   }
   say("dapple: the OpenCL driver crashed while ");
-  say(doing.data());
+  std::array<char, doing.size()> task;
+  std::copy(doing.begin(), doing.end(), task.begin());
+  say(task.data());
   say(": ");
   say(name_of(signal));
   say(". What it said itself is above; often memory (ulimit -v) or disk space has run out. "
@@ -98,8 +100,8 @@ void renew_crash_reports() {
 
 DriverAtWork::DriverAtWork(const std::string& what) {
   const std::size_t length = std::min(what.size(), doing.size() - 1);
-  std::memcpy(doing.data(), what.data(), length);
-  doing[length] = '\0';
+  for (std::size_t i = 0; i < length; ++i) doing[i].store(what[i], std::memory_order_relaxed);
+  doing[length].store('\0', std::memory_order_relaxed);
   ++calls_under_way;
 }
 
