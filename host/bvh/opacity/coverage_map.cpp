@@ -43,9 +43,8 @@ struct Tally {
 
 /// Scales cells that are not full.
 template <int kLanes>
-DAPPLE_ALWAYS_INLINE Row<kLanes> scaled(const Row<kLanes>& share, float scale,
-                                        const Row<kLanes>& one) {
-  return max(min(share * scale, one), at_least(share, one));
+DAPPLE_ALWAYS_INLINE Row<kLanes> scaled(const Row<kLanes>& share, float scale) {
+  return max(min(share * scale, 1.0f), at_least(share, 1.0f));
 }
 
 /// Writes the shares that the edges leave of the cells in the touched rows.
@@ -73,15 +72,14 @@ DAPPLE_ALWAYS_INLINE Tally<kLanes> cut_rows(const CellTriangle& triangle, CellCo
   Row<kLanes> beyond[3];
   const float y = static_cast<float>(triangle.row0) + 0.5f;
   for (int e = 0; e < 3; ++e) beyond[e] = x * nx[e] + (offset[e] + ny[e] * y);
-  const auto zero = Row<kLanes>::limit(0.0f), one = Row<kLanes>::limit(1.0f);
   Tally<kLanes> tally;
   for (int row = triangle.row0; row <= triangle.row1; ++row) {
     Row<kLanes> left(-2.0f);
     for (int e = 0; e < 3; ++e) {
-      left += min(max(beyond[e], zero), one);
+      left += min(max(beyond[e], 0.0f), 1.0f);
       beyond[e] += ny[e];
     }
-    left = max(left, zero);
+    left = max(left, 0.0f);
     left.store(&coverage.share[row * kMapSize]);
     tally.add(left);
   }
@@ -95,7 +93,6 @@ DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCover
   // Cells that are not full are scaled so that the sum over all cells is the triangle's area. Where
   // this fills more cells, another pass comes closer.
   auto tally = cut_rows<kLanes>(triangle, coverage);
-  const auto one = Row<kLanes>::limit(1.0f);
   float scale = 1.0f;
   for (int pass = 1;; ++pass) {
     const float full = tally.full.sum(), partial = tally.partial.sum();
@@ -106,14 +103,14 @@ DAPPLE_ALWAYS_INLINE void rasterize_rows(const CellTriangle& triangle, CellCover
     tally = {};
     for (int row = triangle.row0; row <= triangle.row1; ++row) {
       float* cells = &coverage.share[row * kMapSize];
-      const auto share = scaled(Row<kLanes>::load(cells), scale, one);
+      const auto share = scaled(Row<kLanes>::load(cells), scale);
       share.store(cells);
       tally.add(share);
     }
     scale = 1.0f;
   }
   for (int row = triangle.row0; row <= triangle.row1; ++row)
-    finish(row, scaled(Row<kLanes>::load(&coverage.share[row * kMapSize]), scale, one));
+    finish(row, scaled(Row<kLanes>::load(&coverage.share[row * kMapSize]), scale));
 }
 
 }  // namespace
@@ -226,11 +223,10 @@ void OccludedCells::enclose(OccludedCells& back) {
 
 void OccludedCells::flush(std::array<float, kMapCells>& map) {
   for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
-    const auto one = Row<kLanes>::limit(1.0f);
     for (int row = row0; row <= row1; ++row) {
-      const auto share = min(Row<kLanes>::load(&occluded[row * kMapSize]), one);
+      const auto share = min(Row<kLanes>::load(&occluded[row * kMapSize]), 1.0f);
       float* cells = &map[row * kMapSize];
-      (Row<kLanes>::load(cells) * (one - share)).store(cells);
+      (Row<kLanes>::load(cells) * (Row<kLanes>(1.0f) - share)).store(cells);
     }
   });
   clear();

@@ -44,15 +44,6 @@ struct Row {
     for (int i = 0; i < kParts; ++i) std::memcpy(&row.part[i], from + i * kLanes, sizeof part[i]);
     return row;
   }
-  /// A row of `value` for minima and maxima. Of one with a constant that the compiler can see, g++
-  /// 12 makes a comparison and a blend, not one instruction.
-  DAPPLE_ALWAYS_INLINE static Row limit(float value) {
-    Row row(value);
-#ifdef DAPPLE_TARGET
-    for (auto& p : row.part) asm("" : "+v"(p));
-#endif
-    return row;
-  }
   DAPPLE_ALWAYS_INLINE void store(float* to) const {
     for (int i = 0; i < kParts; ++i) std::memcpy(to + i * kLanes, &part[i], sizeof part[i]);
   }

@@ -40,7 +40,7 @@ struct AxisResampling {
 template <int kLanes>
 DAPPLE_ALWAYS_INLINE Row<kLanes> cell_shares(const CellRange& range) {
   const auto begin = Row<kLanes>::indices();
-  return max(min(begin + 1.0f, range.to) - max(begin, range.from), Row<kLanes>::limit(0.0f));
+  return max(min(begin + 1.0f, range.to) - max(begin, range.from), 0.0f);
 }
 
 /// Returns the share of a row of parent cells that lies in the range.
@@ -146,7 +146,7 @@ DAPPLE_ALWAYS_INLINE void merge_rows(const Rows& rows, const CellRanges& child, 
                                      const Cells& opacity, const Cells& overlap,
                                      const Rows& overlapped, float enclosed, Cells& map,
                                      Cells& map_covered) {
-  const auto one = Row<kLanes>::limit(1.0f);
+  const Row<kLanes> one(1.0f);
   const auto across = cell_shares<kLanes>(child[column_axis(axis)]);
   for (int row = rows.first; row <= rows.last; ++row) {
     const int at = row * kMapSize;
