@@ -70,10 +70,6 @@ BakeTracing tracing_against(const OccluderScene& occluders, const BakeOptions& o
   return tracing;
 }
 
-bool has_bias(const BakeOptions& options) {
-  return options.estimator == Estimator::prefiltered && options.footprint > 0;
-}
-
 /// Chooses the footprint and what the target leaves for the noise, from the bias of `meshes`.
 void measure_bias(const OccluderScene& occluders, const std::vector<PilotMesh>& meshes,
                   BakeOptions& options, BakeStatistics& statistics) {

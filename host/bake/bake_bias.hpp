@@ -14,6 +14,11 @@
 
 namespace dapple {
 
+/// Whether values by these options may differ from the truth by more than noise.
+inline bool has_bias(const BakeOptions& options) {
+  return options.estimator == Estimator::prefiltered && options.footprint > 0;
+}
+
 /// How samples of a quantity, "ao" or "light", are traced.
 struct BiasTracing {
   std::string name;

@@ -1,5 +1,9 @@
 #include "bake/occluder_scene.hpp"
 
+#include "bake/bake_bias.hpp"
+#include "bake/surface_samples.hpp"
+#include "device/programs/kernels_ahead.hpp"
+#include "passes/kernel_list.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -27,6 +31,8 @@ void append_scene(Scene& scene, const Scene& other) {
 OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
                              const std::vector<Scene>& others)
     : device(options.device, options.kernel_dir) {
+  const PointQuery query{kRaysPerSample, options.estimator, has_bias(options), true, false};
+  KernelsAhead kernels(device.context(), point_kernels(device.context(), query));
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   if (!options.light || !options.lights.empty()) {
     scene.lights = options.light ? options.lights : std::vector<Light>{};
@@ -43,6 +49,7 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
   const Stopwatch uploading;
   uploaded = upload(device, scene, bvh);
   upload_seconds = uploading.seconds();
+  kernels.finish();
   for (std::string& warning : scene.warnings) notes.push_back(std::move(warning));
 }
 

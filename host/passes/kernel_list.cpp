@@ -3,6 +3,7 @@
 #include "passes/camera_pass.hpp"
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
+#include "passes/ray_packets.hpp"
 #include "passes/resolve_pass.hpp"
 #include "passes/shading_pass.hpp"
 
@@ -50,6 +51,26 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
     for (const Light& light : lights)
       kernels.push_back(light.kind == LightKind::dome ? kResolveDome : kResolveLight);
   }
+  return kernels;
+}
+
+std::vector<KernelName> point_kernels(const DeviceContext& context, const PointQuery& query) {
+  std::vector<KernelName> kernels;
+  const auto add = [&](Estimator by) {
+    const auto rays = static_cast<uint>(query.rays);
+    const KernelName in_queue =
+        occlusion_kernel(by, choose_packets(by, rays, RayOrder::any, context));
+    if (query.light) kernels.push_back(in_queue);
+    if (!query.ao) return;
+    if (has_point_ao_pass(context, by, rays)) {
+      kernels.push_back(point_ao_kernel(by));
+    } else {
+      kernels.insert(kernels.end(), {in_queue, kAoRays});
+    }
+  };
+  add(query.estimator);
+  if (query.measures_bias && query.estimator != Estimator::exact) add(Estimator::exact);
+  if (query.light) kernels.push_back(kLightRays);
   return kernels;
 }
 

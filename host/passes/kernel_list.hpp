@@ -23,4 +23,15 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
                                         const Camera& camera, const std::vector<Light>& lights,
                                         bool shaded = false);
 
+/// What is measured at points.
+struct PointQuery {
+  int rays = 1;  ///< from each point
+  Estimator estimator = Estimator::prefiltered;
+  bool measures_bias = false;  ///< some rays are traced exactly, too
+  bool ao = true, light = false;
+};
+
+/// The kernels of a query. May name one twice.
+std::vector<KernelName> point_kernels(const DeviceContext& context, const PointQuery& query);
+
 }  // namespace dapple
