@@ -1,5 +1,7 @@
 #include "bvh/build/reinsertion.hpp"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -119,6 +121,18 @@ Insertion find_insertion(const LinkedNode* nodes, std::uint32_t moved, Effort& e
   return search.best;
 }
 
+/// Recomputes the boxes of a node and of all its ancestors. Returns how many these are.
+DAPPLE_MULTIVERSION
+unsigned fit_upwards(LinkedNode* nodes, std::uint32_t node) {
+  for (unsigned levels = 1;; node = nodes[node].parent, ++levels) {
+    LinkedNode& it = nodes[node];
+    it.box = nodes[it.child[0]].box;
+    it.box.add(nodes[it.child[1]].box);
+    it.area = it.box.half_area();
+    if (node == 0) return levels;
+  }
+}
+
 class Reinsertion {
  public:
   explicit Reinsertion(const std::vector<BinaryNode>& tree) : nodes_(tree.size()) {
@@ -178,7 +192,7 @@ class Reinsertion {
     std::vector<std::uint64_t> keys(nodes_.size() - 1);  // the bits of positive floats are ordered
     for (std::uint32_t n = 1; n < nodes_.size(); ++n)
       keys[n - 1] = std::uint64_t{~std::bit_cast<std::uint32_t>(nodes_[n].area)} << 32 | n;
-    std::sort(keys.begin(), keys.end());
+    tbb::parallel_sort(keys.begin(), keys.end());
     return {keys.begin(), keys.end()};
   }
 
@@ -203,17 +217,7 @@ class Reinsertion {
     fit(parent);
   }
 
-  /// Recomputes the boxes of a node and of all its ancestors.
-  void fit(std::uint32_t node) {
-    for (unsigned level = 1;; node = nodes_[node].parent, ++level) {
-      LinkedNode& it = nodes_[node];
-      it.box = nodes_[it.child[0]].box;
-      it.box.add(nodes_[it.child[1]].box);
-      it.area = it.box.half_area();
-      too_deep_ |= level > kDeepest;
-      if (node == 0) return;
-    }
-  }
+  void fit(std::uint32_t node) { too_deep_ |= fit_upwards(nodes_.data(), node) > kDeepest; }
 
   std::vector<LinkedNode> nodes_;
   Effort effort_;
