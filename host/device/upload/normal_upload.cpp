@@ -24,22 +24,35 @@ std::uint32_t code_of(const V3f& normal) {
   return 1 + steps(x) + DAPPLE_NORMAL_SIDE * steps(y);
 }
 
+/// Which triangles of a mesh have corner_normals(), a byte each. Found in the order of the mesh,
+/// which its vertices mostly follow in memory; the lanes of blocks do not.
+std::vector<std::uint8_t> smooth_triangles(const Mesh& mesh) {
+  std::vector<std::uint8_t> smooth(mesh.primitive_count());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, smooth.size(), 8192),
+                    [&](const auto& range) {
+                      for (std::size_t t = range.begin(); t < range.end(); ++t)
+                        smooth[t] = corner_normals(mesh, t) ? 1 : 0;
+                    });
+  return smooth;
+}
+
 /// The triangles of a mesh by the lanes of its blocks.
 struct MeshLanes {
   const Mesh& mesh;
-  const std::uint32_t* primitives;  ///< of the mesh's first lane
+  std::vector<std::uint8_t> smooth;  ///< smooth_triangles()
+  const std::uint32_t* primitives;   ///< of the mesh's first lane
   std::size_t first_block, end_block;
 
-  /// Nothing for flat triangles and empty lanes.
-  [[nodiscard]] std::optional<std::array<V3f, 3>> normals(std::size_t block,
-                                                          std::size_t lane) const {
+  /// The triangle in a lane, if it is smooth.
+  [[nodiscard]] std::optional<std::uint32_t> smooth_triangle(std::size_t block,
+                                                             std::size_t lane) const {
     const std::uint32_t triangle = primitives[8 * (block - first_block) + lane];
-    if (triangle >= mesh.primitive_count()) return {};
-    return corner_normals(mesh, triangle);
+    if (triangle >= smooth.size() || !smooth[triangle]) return {};
+    return triangle;
   }
   [[nodiscard]] bool is_smooth(std::size_t block) const {
     for (std::size_t lane = 0; lane < 8; ++lane)
-      if (normals(block, lane)) return true;
+      if (smooth_triangle(block, lane)) return true;
     return false;
   }
 };
@@ -50,8 +63,8 @@ std::vector<MeshLanes> meshes_with_normals(const Scene& scene, const SceneBvh& b
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     if (mesh.normals.empty() || mesh.has_strands()) continue;
-    meshes.push_back({mesh, bvh.primitives.data() + bvh.objects[m].lane(), bvh.objects[m].block,
-                      bvh.objects[m + 1].block});
+    meshes.push_back({mesh, smooth_triangles(mesh), bvh.primitives.data() + bvh.objects[m].lane(),
+                      bvh.objects[m].block, bvh.objects[m + 1].block});
   }
   return meshes;
 }
@@ -90,9 +103,10 @@ std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh,
   std::memcpy(all.data(), group_of.data(), group_of.size() * sizeof(group_of[0]));
   for_each_block(meshes, [&](const MeshLanes& mesh, std::size_t block) {
     for (std::size_t lane = 0; group_of[block] && lane < DAPPLE_NORMAL_GROUP; ++lane) {
-      if (const auto normals = mesh.normals(block, lane))
-        all[DAPPLE_NORMAL_GROUP * std::size_t{group_of[block]} + lane] =
-            pack_corner_normals(*normals);
+      const auto triangle = mesh.smooth_triangle(block, lane);
+      if (!triangle) continue;
+      all[DAPPLE_NORMAL_GROUP * std::size_t{group_of[block]} + lane] =
+          pack_corner_normals(*corner_normals(mesh.mesh, *triangle));
     }
   });
   return all;
