@@ -28,11 +28,36 @@ void append_scene(Scene& scene, const Scene& other) {
   }
 }
 
+namespace {
+
+/// Those of vertices and textures; instances' kernels are compiled when they are launched.
+std::vector<KernelName> kernels_of(const DeviceContext& context, const BakeOptions& options) {
+  if (!options.vertices && !options.texture) return {};
+  PointQuery query;
+  query.estimator = options.estimator;
+  query.measures_bias = has_bias(options) && (options.report_bias > 0 || options.max_bias > 0 ||
+                                              options.target_error > 0);
+  query.ao = !options.bent;
+  query.bent = options.bent;
+  query.rays = kRaysPerSample;
+  if (options.target_error <= 0)
+    query.rays = options.at_vertices ? options.rays : sample_counts(options.rays).rays;
+  std::vector<KernelName> kernels = point_kernels(context, query);
+  if (options.light) {
+    query.ao = query.bent = false;
+    query.light = true;
+    query.rays = options.light_rays;
+    for (KernelName& kernel : point_kernels(context, query)) kernels.push_back(std::move(kernel));
+  }
+  return kernels;
+}
+
+}  // namespace
+
 OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
                              const std::vector<Scene>& others)
     : device(options.device, options.kernel_dir) {
-  const PointQuery query{kRaysPerSample, options.estimator, has_bias(options), true, false};
-  KernelsAhead kernels(device.context(), point_kernels(device.context(), query));
+  KernelsAhead kernels(device.context(), kernels_of(device.context(), options));
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   if (!options.light || !options.lights.empty()) {
     scene.lights = options.light ? options.lights : std::vector<Light>{};

@@ -56,17 +56,13 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
 
 std::vector<KernelName> point_kernels(const DeviceContext& context, const PointQuery& query) {
   std::vector<KernelName> kernels;
+  const auto rays = static_cast<uint>(query.rays);
   const auto add = [&](Estimator by) {
-    const auto rays = static_cast<uint>(query.rays);
-    const KernelName in_queue =
-        occlusion_kernel(by, choose_packets(by, rays, RayOrder::any, context));
-    if (query.light) kernels.push_back(in_queue);
-    if (!query.ao) return;
-    if (has_point_ao_pass(context, by, rays)) {
-      kernels.push_back(point_ao_kernel(by));
-    } else {
-      kernels.insert(kernels.end(), {in_queue, kAoRays});
-    }
+    const bool by_points = query.ao && has_point_ao_pass(context, by, rays);
+    if (by_points) kernels.push_back(point_ao_kernel(by));
+    if ((query.ao && !by_points) || query.bent || query.light || query.given_rays)
+      kernels.push_back(occlusion_kernel(by, choose_packets(by, rays, RayOrder::any, context)));
+    if ((query.ao && !by_points) || query.bent) kernels.push_back(kAoRays);
   };
   add(query.estimator);
   if (query.measures_bias && query.estimator != Estimator::exact) add(Estimator::exact);

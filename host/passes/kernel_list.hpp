@@ -28,7 +28,10 @@ struct PointQuery {
   int rays = 1;  ///< from each point
   Estimator estimator = Estimator::prefiltered;
   bool measures_bias = false;  ///< some rays are traced exactly, too
-  bool ao = true, light = false;
+  bool ao = false;             ///< AO alone
+  bool bent = false;           ///< AO with bent normals
+  bool light = false;          ///< irradiance of lights
+  bool given_rays = false;     ///< rays that the host makes
 };
 
 /// The kernels of a query. May name one twice.

@@ -2,7 +2,9 @@
 // opacities, copies (--periodic) and ground applied, its BVH, and the uploaded scene.
 #pragma once
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "dapple/points.hpp"
 #include "device/programs/kernels_ahead.hpp"
@@ -17,16 +19,34 @@ struct SceneOfPoints {
       : device(options.device, options.kernel_dir), scene(std::move(given)) {
     for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
     finalize_domes(scene);
-    const PointQuery query{options.rays / kPointSets, options.estimator, true,
-                           options.ao || options.sky_view_factor,
-                           (options.lights && !scene.lights.empty()) || !options.suns.empty()};
-    KernelsAhead kernels(device.context(), point_kernels(device.context(), query));
+    KernelsAhead kernels(device.context(), kernels_of(device.context(), scene, options));
     if (options.period_x > 0) repeat(scene, options.period_x, options.period_z);
     if (options.ground) add_ground(scene);
     merge_single_instances(scene);
     bvh = build_bvh(scene, options.cache);
     uploaded = upload(device, scene, bvh);
     kernels.finish();
+  }
+
+  static std::vector<KernelName> kernels_of(const DeviceContext& context, const Scene& scene,
+                                            const PointOptions& options) {
+    PointQuery query;
+    query.estimator = options.estimator;
+    query.measures_bias = options.footprint > 0;
+    query.rays = options.rays / kPointSets;
+    query.ao = options.sky_view_factor || (options.ao && !options.bent);
+    query.bent = options.bent;
+    query.light = options.lights && !scene.lights.empty();
+    query.given_rays = options.rings > 0;
+    std::vector<KernelName> kernels = point_kernels(context, query);
+    if (!options.suns.empty()) {
+      query.ao = query.bent = query.light = false;
+      query.given_rays = true;
+      query.rays =
+          static_cast<int>(std::min(options.suns.size(), static_cast<std::size_t>(options.rays)));
+      for (KernelName& kernel : point_kernels(context, query)) kernels.push_back(std::move(kernel));
+    }
+    return kernels;
   }
 
   Device device;

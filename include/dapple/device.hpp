@@ -57,7 +57,9 @@ struct DeviceScene {
 
 /// What is uploaded besides what rays intersect.
 struct UploadOptions {
-  bool normals = false;  ///< Mesh::normals, 8 bytes per triangle of scenes that have any
+  /// Mesh::normals: 8 bytes for each lane of the blocks that hold smooth triangles, and 4 for every
+  /// block.
+  bool normals = false;
   bool colors = false;   ///< for the albedo: colours of materials, textures and vertices
   /// Upload normals also where all triangles are flat: at other moments of the picture they aren't.
   bool flat_normals = false;

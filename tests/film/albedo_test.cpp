@@ -204,13 +204,24 @@ TEST(Albedo, StrandsHaveTheColoursOfTheirEnds) {
   strand.indices = {0, 1};
   strand.materials = {0};
   Scene scene = square();
+  Scene before_a_square = scene;  // of triangles, whose words come first
   scene.meshes = {strand};
-  const Film film = render(scene, picture(32, 4)).film;
-  const std::size_t middle = 16 * 32 + 16;
-  ASSERT_EQ(at(film, "A", middle), 1.0f);
-  EXPECT_NEAR(at(film, "albedo.R", middle), 0.25f, 1e-3);
-  EXPECT_NEAR(at(film, "albedo.G", middle), 0.5f, 1e-3);
-  EXPECT_NEAR(at(film, "albedo.B", middle), 1, 1e-6);
+  for (V3f& p : before_a_square.meshes[0].positions) p.z = -2;
+  before_a_square.meshes[0].materials = {1, 1};
+  before_a_square.materials.resize(2);
+  before_a_square.materials[1].color = V3f(0.125f, 1, 0.0625f);
+  before_a_square.meshes.push_back(strand);
+  before_a_square.instances.resize(2);
+  before_a_square.instances[1].mesh = 1;
+  const std::size_t middle = 16 * 32 + 16, edge = 2 * 32 + 16;
+  for (const Scene& shown : {scene, before_a_square}) {
+    const Film film = render(shown, picture(32, 4)).film;
+    ASSERT_EQ(at(film, "A", middle), 1.0f);
+    EXPECT_NEAR(at(film, "albedo.R", middle), 0.25f, 1e-3);
+    EXPECT_NEAR(at(film, "albedo.G", middle), 0.5f, 1e-3);
+    EXPECT_NEAR(at(film, "albedo.B", middle), 1, 1e-6);
+    if (shown.meshes.size() > 1) EXPECT_NEAR(at(film, "albedo.R", edge), 0.125f, 1e-3);
+  }
 }
 
 TEST(Albedo, InstancesHaveTheColoursOfTheirMesh) {

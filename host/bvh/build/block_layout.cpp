@@ -19,8 +19,8 @@ struct OpenBlock {
 /// The open blocks, the oldest first.
 class OpenBlocks {
  public:
-  /// Takes out the fullest block from number `from` on in which `triangles` more end at lane `last`
-  /// or before. Returns a block with no lane used if there is none.
+  /// Takes out the fullest open block, numbered `from` or higher, in which `triangles` more fit
+  /// before lane `last`. Returns a block with no lane used if there is none.
   OpenBlock take(std::uint32_t from, std::uint32_t triangles, std::uint32_t last) {
     std::size_t best = open_.size();
     for (std::size_t i = 0; i < open_.size(); ++i) {

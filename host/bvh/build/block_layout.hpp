@@ -1,6 +1,6 @@
 // Lays the triangles of nodes out in blocks of eight lanes. In: a wide tree. Out: where each node's
-// triangles begin. Nodes share blocks, but none needs more blocks than it would alone: rays test
-// as many.
+// triangles begin. Nodes share blocks, but none needs more blocks than it would alone: rays test no
+// more of them.
 #pragma once
 
 #include <cstdint>

@@ -111,6 +111,12 @@ std::vector<std::uint8_t> lanes_with(const std::vector<bool>& flags,
   return lanes;
 }
 
+/// Sets where the primitives of a node begin. Leaf ends count from lane 0 of the block.
+void begin_at(BvhNode& node, std::uint32_t prim_base) {
+  node.prim_base = prim_base;
+  for (uchar& end : node.leaf_end) end = static_cast<uchar>(end + bvh_first_lane(prim_base));
+}
+
 /// Packs the triangles of each node's leaves, in the order of the slots.
 void pack_triangles(BuiltObject& built, const BlockLayout& layout,
                     std::span<const PrimitiveBox> boxes, const Mesh& mesh,
@@ -122,9 +128,8 @@ void pack_triangles(BuiltObject& built, const BlockLayout& layout,
       tbb::blocked_range<std::size_t>(0, wide.nodes.size(), 1024), [&](const auto& range) {
         for (std::size_t n = range.begin(); n < range.end(); ++n) {
           BvhNode& node = object.nodes[n];
-          node.prim_base = layout.prim_base[n];
+          begin_at(node, layout.prim_base[n]);
           std::uint32_t next = bvh_first_lane(node.prim_base);
-          for (uchar& end : node.leaf_end) end = static_cast<uchar>(end + next);
           for (const WideChild& child : wide.children_of(wide.nodes[n])) {
             for (std::uint32_t i = 0; i < child.count; ++i, ++next) {
               const std::uint32_t triangle = boxes[child.first + i].primitive;

@@ -17,9 +17,9 @@ namespace {
 /// chain, which would exceed every stack.
 constexpr unsigned kDeepest = 64;
 
-/// Maximum number of nodes that the searches of a round may visit, divided by the number of nodes.
-/// Where boxes overlap, a subtree fits nearly everywhere, and a search visits many nodes. In plants
-/// a search visits fewer than fifty.
+/// Maximum number of nodes that the searches of a round may look at below the siblings of
+/// ancestors, divided by the number of nodes. Where boxes overlap, a subtree fits nearly
+/// everywhere, and a search visits many nodes. In plants a search visits fewer than fifty.
 constexpr std::size_t kLooksPerNode = 64;
 
 /// A binary node with a link to its parent, in one cache line. Node 0 is the root; as a child, 0
@@ -86,10 +86,11 @@ struct Search {
     if (!goes_below(top, below)) return;
     std::vector<Candidate>& pending = effort.pending;
     pending.assign(1, {top, below});
-    for (; !pending.empty() && effort.looks > 1; effort.looks -= 2) {
+    while (!pending.empty() && effort.looks > 1) {
       const Candidate at = pending.back();
       pending.pop_back();
       if (is_hopeless(at.gain)) continue;
+      effort.looks -= 2;
       Candidate first{nodes[at.node].child[0], 0}, second{nodes[at.node].child[1], 0};
       first.gain = look_at(first.node, at.gain);
       second.gain = look_at(second.node, at.gain);

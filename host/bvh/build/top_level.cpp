@@ -228,9 +228,10 @@ std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
                 fmt::format("{}: nothing to hit: every triangle and segment is fully transparent",
                             scene.source));
   }
-  if (sources.size() > DAPPLE_MAX_BLOCKS) {
-    throw Error(ErrorKind::failed, fmt::format("{}: {} instances, at most {} are possible",
-                                               scene.source, sources.size(), DAPPLE_MAX_BLOCKS));
+  if (sources.size() >= DAPPLE_MAX_BLOCKS) {  // higher bits of prim_base are not theirs
+    throw Error(ErrorKind::failed,
+                fmt::format("{}: {} instances, fewer than {} are possible; merge some",
+                            scene.source, sources.size(), DAPPLE_MAX_BLOCKS));
   }
   std::vector<PlacedInstance> placed(sources.size());
   tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {

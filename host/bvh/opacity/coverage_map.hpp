@@ -205,7 +205,8 @@ void cover(CoverageMap& map, const Box3f& box, const Covering& covering,
     cells.flush(map.transmittance[axis]);
     for (std::size_t first = 0; first < triangles.size(); ++first) {
       // A group: this triangle and every later one that lies side by side with a member.
-      // What is done has been compared with everything before.
+      // A triangle that was drawn in a group has drawn its neighbours there, too. Only those of
+      // draw_closed() have not: the first pass finds them.
       if (first > 0 && (done >> first & 1u)) continue;
       for (std::size_t t = first; t < triangles.size(); ++t) {
         if (done >> t & 1u) continue;

@@ -40,7 +40,7 @@ struct MassShape {
 struct NodeOpacity {
   V3f axes{0, 0, 0};  ///< opacity along x, y, z, [0,1]
   NormalMoments normals;
-  float clumping = 0;  ///< CoverageMap::clumping()
+  float clumping = 0;  ///< MapStatistics::clumping
   MassShape mass = {};
   std::size_t triangles = 0;  ///< in the whole subtree; 0: many
   bool wall = false;          ///< is_wall() of bvh/opacity/wall.hpp: traversal opens it

@@ -63,7 +63,7 @@ struct MassSums {
   }
 };
 
-/// The side of a box across a view, as a scale to half sizes.
+/// An axis across a view, from which positions are converted to half sizes from the middle.
 struct ViewedSide {
   int axis;
   float from, halves;
@@ -72,7 +72,7 @@ struct ViewedSide {
       : axis(k), from(box.min[k]), halves(2.0f / (box.max[k] - box.min[k])) {}
 
   /// Adds the mean square of the triangle's positions to `square`, and returns their mean.
-  float add(const CoveringTriangle& t, float& square) const {
+  float add_square(const CoveringTriangle& t, float& square) const {
     const float a = (t.vertex[axis] - from) * halves - 1.0f;
     const float b = a + t.edge1[axis] * halves, c = a + t.edge2[axis] * halves;
     square += (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0f;
@@ -98,8 +98,8 @@ NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
       occluded += t.opacity * share;
       square += t.opacity * t.opacity * share;
       OpacityMoments moments{};
-      moments.column = column.add(t, moments.square);
-      moments.row = row.add(t, moments.square);
+      moments.column = column.add_square(t, moments.square);
+      moments.row = row.add_square(t, moments.square);
       mass.add(axis, moments, 1.0f, t.opacity * share * face);
     }
     opacity.axes[axis] = occluded = std::min(occluded, 1.0f);

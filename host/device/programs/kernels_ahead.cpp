@@ -5,7 +5,7 @@
 namespace dapple {
 
 KernelsAhead::KernelsAhead(DeviceContext& context, std::vector<KernelName> kernels)
-    : context_(context), kernels_(std::move(kernels)), loader_(context) {
+    : kernels_(std::move(kernels)), loader_(context) {
   processes_.start(context, kernels_, CompileTo::machine_code);
   loader_.start(kernels_);
 }
@@ -13,7 +13,8 @@ KernelsAhead::KernelsAhead(DeviceContext& context, std::vector<KernelName> kerne
 void KernelsAhead::finish() {
   loader_.wait();
   processes_.wait();
-  for (const KernelName& kernel : kernels_) context_.prepare(kernel);
+  loader_.start(kernels_);
+  loader_.wait();
 }
 
 }  // namespace dapple

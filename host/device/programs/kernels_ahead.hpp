@@ -1,5 +1,5 @@
-// Compiles or loads kernels while the caller's thread reads a scene and builds its BVH. In: kernel
-// names. Out: kernels that the context can launch at once.
+// Compiles or loads kernels while the caller's thread builds and uploads a BVH. In: kernel names.
+// Out: kernels that the context can launch at once.
 #pragma once
 
 #include <vector>
@@ -12,15 +12,15 @@ namespace dapple {
 class KernelsAhead {
  public:
   /// Starts compiler processes for those of `kernels` that are not compiled, and loads the others.
-  /// Until finish() no other thread may ask `context`, which must outlive the object, for kernels.
+  /// Until finish() nobody may ask `context`, which must outlive the object, for kernels or launch
+  /// any; uploads are allowed.
   KernelsAhead(DeviceContext& context, std::vector<KernelName> kernels);
 
-  /// Waits for all, and loads what the processes compiled. Throws Error device for a kernel that
-  /// cannot be compiled.
+  /// Waits for all, and loads what the processes compiled. Kernels that are not compiled are left
+  /// to their first launch, which throws what is wrong with them.
   void finish();
 
  private:
-  DeviceContext& context_;
   std::vector<KernelName> kernels_;
   CompilerProcesses processes_;
   KernelLoader loader_;

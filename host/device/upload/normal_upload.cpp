@@ -90,23 +90,23 @@ CornerNormals pack_corner_normals(const std::array<V3f, 3>& normals) {
 std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh, bool keep_flat) {
   const std::vector<MeshLanes> meshes = meshes_with_normals(scene, bvh);
   std::vector<std::uint32_t> group_of(bvh.blocks.size(), 0);
-  for_each_block(meshes, [&](const MeshLanes& mesh, std::size_t block) {
-    group_of[block] = mesh.is_smooth(block) ? 1 : 0;
+  for_each_block(meshes, [&](const MeshLanes& lanes, std::size_t block) {
+    group_of[block] = lanes.is_smooth(block) ? 1 : 0;
   });
   // The table of groups takes the first groups.
   const std::size_t table = (group_of.size() + 15) / 16;
   std::size_t groups = table;
   for (std::uint32_t& group : group_of)
     if (group) group = static_cast<std::uint32_t>(groups++);
-  if (groups == table && !keep_flat) return {};
+  if (group_of.empty() || (groups == table && !keep_flat)) return {};
   std::vector<CornerNormals> all(DAPPLE_NORMAL_GROUP * groups, CornerNormals{});
   std::memcpy(all.data(), group_of.data(), group_of.size() * sizeof(group_of[0]));
-  for_each_block(meshes, [&](const MeshLanes& mesh, std::size_t block) {
+  for_each_block(meshes, [&](const MeshLanes& lanes, std::size_t block) {
     for (std::size_t lane = 0; group_of[block] && lane < DAPPLE_NORMAL_GROUP; ++lane) {
-      const auto triangle = mesh.smooth_triangle(block, lane);
+      const auto triangle = lanes.smooth_triangle(block, lane);
       if (!triangle) continue;
       all[DAPPLE_NORMAL_GROUP * std::size_t{group_of[block]} + lane] =
-          pack_corner_normals(*corner_normals(mesh.mesh, *triangle));
+          pack_corner_normals(*corner_normals(lanes.mesh, *triangle));
     }
   });
   return all;

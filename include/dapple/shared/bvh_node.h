@@ -18,8 +18,8 @@ namespace dapple {
 /* The box of child c is, on each axis, origin + lower[axis][c] * 2^e .. origin + upper[axis][c] *
    2^e. An empty slot has lower 255 and upper 0. Inner children are consecutive nodes from
    child_base on, in slot order. A leaf child in slot c owns the primitives from the leaf end of
-   slot c - 1 (bvh_first_lane() for c = 0) to its own leaf end, counted from the first lane of the
-   block bvh_block(). Inner and empty slots own none. */
+   slot c - 1 (bvh_first_lane() for c = 0) to its own leaf end, counted from lane 0 of the
+   block that prim_base names; bvh_block() is the block of one. Inner and empty slots own none. */
 typedef struct DAPPLE_CACHE_ALIGNED BvhNode {
   float origin[3];
   uchar exponent[3]; /* biased by 127, as in a float: scale = 2^(exponent - 127) */

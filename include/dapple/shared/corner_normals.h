@@ -18,7 +18,7 @@ typedef struct CornerNormals {
 } CornerNormals;
 
 /* An array of CornerNormals begins with a word for each triangle block, padded to a multiple of 16
-   words: the number of the group of eight, counted from the begin of the array, that holds the
+   words: the number of the group of eight, counted from the beginning of the array, that holds the
    normals of its lanes; 0: the block is flat. */
 #define DAPPLE_NORMAL_GROUP 8u
 

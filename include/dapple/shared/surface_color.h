@@ -10,10 +10,11 @@ namespace dapple {
 #endif
 
 /* The words begin with one for each block, of triangles, then of segments: where the entry begins that
-   all lanes share, or, with DAPPLE_COLOR_LANES, where a word for each lane says so. An entry is the number of the material with flags; then, with DAPPLE_COLOR_UVS, the six words of a
-   TexturedTriangle; then, with DAPPLE_COLOR_CORNERS, a colour for each corner, or each end of a segment.
-   With DAPPLE_COLOR_OPACITY_UVS texture coordinates are those of the triangle's opacity. Surfaces
-   without words of their own share the entries of their materials. */
+   all lanes share, or, with DAPPLE_COLOR_LANES, where a word for each lane says so. An entry is the
+   number of the material with flags; then, with DAPPLE_COLOR_UVS, the six words of a TexturedTriangle;
+   then, with DAPPLE_COLOR_CORNERS, a colour for each corner, or each end of a segment. With
+   DAPPLE_COLOR_OPACITY_UVS texture coordinates are those of the triangle's opacity. Surfaces without
+   words of their own share the entries of their materials. */
 #define DAPPLE_COLOR_LANES 0x80000000u
 #define DAPPLE_COLOR_UVS 0x80000000u
 #define DAPPLE_COLOR_OPACITY_UVS 0x40000000u

@@ -320,6 +320,11 @@ TEST_F(BvhCache, ASealedFileWithIndicesOutOfBoundsIsRefused) {
       [](ObjectBvh& o) { o.nodes[0].child_base = 0xfffffff8u; },
       [](ObjectBvh& o) { o.nodes.back().inner_mask = 1; },
       [](ObjectBvh& o) { o.nodes.back().prim_base = 0xffffffffu; },
+      [](ObjectBvh& o) {
+        o.nodes.back().prim_base |= 7u << DAPPLE_FIRST_LANE_SHIFT;
+        o.nodes.back().leaf_end[0] = 6;
+      },
+      [](ObjectBvh& o) { o.nodes.back().prim_base += static_cast<uint>(o.blocks.size()); },
       [](ObjectBvh& o) { o.nodes.back().leaf_end[0] = 63; },
       [](ObjectBvh& o) { o.blocks[3].opacity[0] = -400; },
       [](ObjectBvh& o) { o.blocks[3].opacity[0] = std::numeric_limits<float>::quiet_NaN(); },
