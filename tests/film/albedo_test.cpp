@@ -220,7 +220,9 @@ TEST(Albedo, StrandsHaveTheColoursOfTheirEnds) {
     EXPECT_NEAR(at(film, "albedo.R", middle), 0.25f, 1e-3);
     EXPECT_NEAR(at(film, "albedo.G", middle), 0.5f, 1e-3);
     EXPECT_NEAR(at(film, "albedo.B", middle), 1, 1e-6);
-    if (shown.meshes.size() > 1) EXPECT_NEAR(at(film, "albedo.R", edge), 0.125f, 1e-3);
+    if (shown.meshes.size() > 1) {
+      EXPECT_NEAR(at(film, "albedo.R", edge), 0.125f, 1e-3);
+    }
   }
 }
 
