@@ -55,8 +55,8 @@ BuiltObject build_object(const Scene& scene, const Mesh& mesh);
 void prefilter(BuiltObject& built, const TextureIntegrals& integrals,
                RefitRecord* record = nullptr);
 
-/// Packs the boxes and the layout of a wide tree into nodes. The opacities stay 0. The caller sets
-/// `prim_base`; leaf ends count from its first lane on.
+/// Packs the boxes and the layout of a wide tree into nodes. The opacities stay 0. Leaf ends
+/// count from 0; the caller sets `prim_base`, and adds its first lane to them.
 std::vector<BvhNode> pack_nodes(const WideTree& tree);
 
 /// Returns the opacity of a node from its coverage map, its normals and its box.

@@ -108,46 +108,48 @@ void expect_margin_and_snug(const BvhNode& node, unsigned slot, const Box3f& box
   }
 }
 
-TEST(Quantize, DecodedBoundsContainTheOriginalAndGrowByAboutAStep) {
+/// Calls body(node, parent, boxes) for 500 boxes of each family, with the node's grid around
+/// `parent`.
+template <class Body>
+void for_grids(const Body& body) {
   for (const Family& family : kFamilies) {
     SCOPED_TRACE(family.name);
     BoxSource boxes(family.centre, family.size);
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 500 && !::testing::Test::HasFailure(); ++i) {
+      SCOPED_TRACE(i);
       const Box3f parent = boxes.parent();
       BvhNode node{};
       set_grid(node, parent);
-      for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
-        const Box3f child = slot == 0 ? parent : boxes.inside(parent);
-        set_child_box(node, slot, child);
-        expect_contains(child_box(node, slot), child);
-        expect_margin_and_snug(node, slot, child);
-      }
-      if (::testing::Test::HasFailure()) FAIL() << "box " << i;
+      body(node, parent, boxes);
     }
   }
 }
 
-TEST(Quantize, TheGridIsWithinTwiceTheFinestThatFits) {
-  for (const Family& family : kFamilies) {
-    SCOPED_TRACE(family.name);
-    BoxSource boxes(family.centre, family.size);
-    for (int i = 0; i < 500; ++i) {
-      const Box3f parent = boxes.parent();
-      BvhNode node{};
-      set_grid(node, parent);
-      for (int a = 0; a < 3; ++a) {
-        if (node.exponent[a] == 27) continue;  // 2^-100, the finest step
-        // The origin must be a float below the box and its margin. Where floats are sparse, the
-        // grid has to reach from this float to the box's end. With half the step, 255 steps may
-        // just fail to cover that range.
-        const auto start =
-            static_cast<float>(parent.min[a] - 2 * kGridRounding * std::fabs(parent.min[a]));
-        const double reach = parent.max[a] + kGridRounding * std::fabs(parent.max[a]) -
-                             std::nextafter(start, -kInfinity);
-        EXPECT_GT(reach, 253.0 / 4 * step_of(node, a)) << "axis " << a << ", box " << i;
-      }
+TEST(Quantize, DecodedBoundsContainTheOriginalAndGrowByAboutAStep) {
+  for_grids([](BvhNode& node, const Box3f& parent, BoxSource& boxes) {
+    for (unsigned slot = 0; slot < DAPPLE_BVH_WIDTH; ++slot) {
+      const Box3f child = slot == 0 ? parent : boxes.inside(parent);
+      set_child_box(node, slot, child);
+      expect_contains(child_box(node, slot), child);
+      expect_margin_and_snug(node, slot, child);
     }
-  }
+  });
+}
+
+TEST(Quantize, TheGridIsWithinTwiceTheFinestThatFits) {
+  for_grids([](const BvhNode& node, const Box3f& parent, BoxSource&) {
+    for (int a = 0; a < 3; ++a) {
+      if (node.exponent[a] == 27) continue;  // 2^-100, the finest step
+      // The origin must be a float below the box and its margin. Where floats are sparse, the
+      // grid has to reach from this float to the box's end. With half the step, 255 steps may
+      // just fail to cover that range.
+      const auto start =
+          static_cast<float>(parent.min[a] - 2 * kGridRounding * std::fabs(parent.min[a]));
+      const double reach = parent.max[a] + kGridRounding * std::fabs(parent.max[a]) -
+                           std::nextafter(start, -kInfinity);
+      EXPECT_GT(reach, 253.0 / 4 * step_of(node, a)) << "axis " << a;
+    }
+  });
 }
 
 TEST(Quantize, SidesOfFlatBoxesAreNoDenormalNumbers) {
