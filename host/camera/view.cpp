@@ -127,8 +127,9 @@ void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
 /// as one of four filter taps.
 constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.175f;
 
-/// Part of a camera sample's footprint that the four filter taps cover together: experiments 402, 446.
-constexpr float kTapShare = 0.75f;
+/// Part of a camera sample's footprint that the four filter taps cover together: experiments 402,
+/// 446, 448.
+constexpr float kTapShare = 0.25f;
 
 /// With filter taps, the maximum part of a pixel's area that one lookup averages, and that the four
 /// taps cover together, however large footprints are.

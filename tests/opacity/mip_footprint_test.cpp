@@ -1,7 +1,7 @@
 // Mip footprints (Williams, "Pyramidal Parametrics", 1983): a footprint that covers many texels
-// looks up their mean, in the highest mip level whose texels it covers. Tests each grouping of rays,
-// instances and camera rays. Exact rays, and surfaces that an average would change, are looked up
-// at full resolution.
+// looks up their mean, in the highest mip level whose texels it covers. Tests each grouping of
+// rays, instances and camera rays. Exact rays, and surfaces that an average would change, are
+// looked up at full resolution.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,8 +58,12 @@ Scene card(AlphaMode mode, Texture texture = noise()) {
 /// A ray's key for which footprint_spread() returns 1.
 constexpr std::uint32_t kNoSpread = 0x6a09e667u;
 
-/// Rays along -z to texels of the card. Their footprint is twice the area of a square of 2^level
-/// texels a side, half the area of the next larger square. `scale`: the card's side in the world.
+/// As DAPPLE_TEXTURE_FOOTPRINT of kernels/opacity/footprint.clh.
+constexpr float kShare = 0.5f;
+
+/// Rays along -z to texels of the card. The part of their footprint over which textures are
+/// averaged is twice the area of a square of 2^level texels a side, half the area of the next
+/// larger square. `scale`: the card's side in the world.
 std::vector<Ray> rays_at_texels(int level, float scale = 1) {
   Points points(2);
   std::vector<Ray> rays;
@@ -67,7 +71,7 @@ std::vector<Ray> rays_at_texels(int level, float scale = 1) {
     const float x = std::floor(points.unit() * kTexels) + 0.5f;
     const float y = std::floor(points.unit() * kTexels) + 0.25f;
     Ray ray = make_ray(V3f(x / kTexels, y / kTexels, 1) * scale, {0, 0, -1});
-    ray.first_area = 2 * std::ldexp(scale * scale / (kTexels * kTexels), 2 * level);
+    ray.first_area = 2 / kShare * std::ldexp(scale * scale / (kTexels * kTexels), 2 * level);
     ray.key = kNoSpread;
     rays.push_back(ray);
   }

@@ -44,6 +44,9 @@ class ReferenceTraversal {
   /// stops, so the counts of visits depend on it.
   static constexpr float kOpaqueEnough = 5e-5f;
 
+  /// As DAPPLE_LEAF_COVERING in kernels/opacity/footprint.clh.
+  static constexpr float kLeafCovering = 2;
+
   struct Walk {
     const Ray& ray;
     Result result;
@@ -93,10 +96,10 @@ class ReferenceTraversal {
             size.x * size.y * std::fabs(direction.z)};
   }
 
-  static bool is_covered(const Crossing& c, const V3f& facing, const Space& space, float t_max) {
+  static bool is_covered(const Crossing& c, float needed, const Space& space, float t_max) {
     const float middle = 0.5f * (c.enter + c.leave);
     const float footprint = space.first_area + space.solid_angle * middle * middle;
-    return facing.x + facing.y + facing.z < footprint && c.enter > 0 && c.leave < t_max * 0.999999f;
+    return needed < footprint && c.enter > 0 && c.leave < t_max * 0.999999f;
   }
 
   /// Optical depth of a child, as box_depth(), chord_depth() and centre_weight() of opacity.h give
@@ -167,7 +170,9 @@ class ReferenceTraversal {
       if (!crossing.hit || !prefiltered_) continue;
       const V3f facing = facing_areas(crossing.size, space.direction);
       if (bvh_is_wall(node.depth, slot)) continue;
-      if (!is_covered(crossing, facing, space, t_max)) continue;
+      const bool leaf = !in_top && !(node.inner_mask >> slot & 1);
+      const float needed = (leaf ? kLeafCovering : 1) * (facing.x + facing.y + facing.z);
+      if (!is_covered(crossing, needed, space, t_max)) continue;
       open[slot] = false;
       walk.result.transmittance *= std::exp(-depth(node, slot, crossing, facing, space.direction));
     }
