@@ -1,5 +1,6 @@
 // The bias that measure_points() reports: it is there for each quantity that is corrected, changes
 // no value, and chooses footprints.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +60,7 @@ TEST(PointBias, TheNoteAndTheReportAgree) {
   const Bias& bias = result.bias.at("ao");
   ASSERT_FALSE(result.notes.empty());
   EXPECT_NE(result.notes.back().find(bias.mean < 0 ? "too dark" : "too light"), std::string::npos);
-  EXPECT_NE(result.notes.back().find(std::to_string(std::fabs(bias.mean)).substr(0, 5)),
+  EXPECT_NE(result.notes.back().find(fmt::format("{:.4f}", std::fabs(bias.mean))),
             std::string::npos)
       << result.notes.back();
 }
