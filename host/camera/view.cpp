@@ -129,7 +129,7 @@ constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.175f;
 
 /// Part of a camera sample's footprint that the four filter taps cover together: experiments 402,
 /// 446, 448.
-constexpr float kTapShare = 0.25f;
+constexpr float kTapShare = 0.16f;
 
 /// With filter taps, the maximum part of a pixel's area that one lookup averages, and that the four
 /// taps cover together, however large footprints are.

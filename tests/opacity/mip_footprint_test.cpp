@@ -59,7 +59,7 @@ Scene card(AlphaMode mode, Texture texture = noise()) {
 constexpr std::uint32_t kNoSpread = 0x6a09e667u;
 
 /// As DAPPLE_TEXTURE_FOOTPRINT of kernels/opacity/footprint.clh.
-constexpr float kShare = 0.5f;
+constexpr float kShare = 0.25f;
 
 /// Rays along -z to texels of the card. The part of their footprint over which textures are
 /// averaged is twice the area of a square of 2^level texels a side, half the area of the next

@@ -45,7 +45,7 @@ class ReferenceTraversal {
   static constexpr float kOpaqueEnough = 5e-5f;
 
   /// As DAPPLE_LEAF_COVERING in kernels/opacity/footprint.clh.
-  static constexpr float kLeafCovering = 2;
+  static constexpr float kLeafCovering = 4;
 
   struct Walk {
     const Ray& ray;

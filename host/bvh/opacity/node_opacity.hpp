@@ -42,8 +42,7 @@ struct NodeOpacity {
   NormalMoments normals;
   float clumping = 0;  ///< MapStatistics::clumping
   MassShape mass = {};
-  std::size_t triangles = 0;  ///< in the whole subtree; 0: many
-  bool wall = false;          ///< is_wall() of bvh/opacity/wall.hpp: traversal opens it
+  bool wall = false;  ///< is_wall() of bvh/opacity/wall.hpp: traversal opens it
 };
 
 /// Returns the shape that a node can store nearest to these moments, by least squares. Means over

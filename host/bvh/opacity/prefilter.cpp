@@ -85,7 +85,6 @@ struct ViewedSide {
 NodeOpacity layer_opacity(const Leaf& leaf, const Box3f& box) {
   NodeOpacity opacity;
   opacity.normals = leaf.normals;
-  opacity.triangles = leaf.count;
   float variance = 0, greatest = 0;
   MassSums mass;
   for (int axis = 0; axis < 3; ++axis) {
@@ -166,7 +165,6 @@ class Prefilter {
       }
     }
     NodeOpacity opacity = measured ? *measured : map_opacity(below.map, below.normals, child.box);
-    opacity.triangles = wide.primitives;
     set_opacity(own, slot, opacity, child.box, below.areas, below.walls);
     if (task_.record && !measured && wide.primitives <= kRigidPrimitives &&
         (primitives > kRigidPrimitives || own == 0)) {
@@ -201,7 +199,6 @@ class Prefilter {
     });
     coverage.add(map, box, leaf.areas);
     NodeOpacity opacity = map_opacity(map, leaf.normals, box);
-    opacity.triangles = leaf.count;
     set_opacity(own, slot, opacity, box, leaf.areas, leaf.walls);
     return leaf;
   }
@@ -305,7 +302,6 @@ void prefilter(BuiltObject& built, const TextureIntegrals& integrals, RefitRecor
                             object.segments, built.interior};
   const Summary all = prefilter({arrays, built.tree, {}, record, nullptr}, integrals);
   object.opacity = map_opacity(all.map, all.normals, object.box);
-  object.opacity.triangles = object.triangles;
   object.opacity.wall = is_wall(all.walls, all.normals);
 }
 

@@ -61,7 +61,6 @@ class ObjectRefit : public Stumps {
     const bool wall = summary.opacity.wall;
     summary.opacity = map_opacity(all.map, all.normals, summary.box);
     summary.opacity.wall = wall;
-    summary.opacity.triangles = summary.triangles;
   }
 
   Summary summary(std::uint32_t node) const override {

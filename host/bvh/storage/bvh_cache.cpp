@@ -32,7 +32,7 @@ using BoxRecord = std::array<float, 6>;
 struct ObjectRecord {
   Checksum key;
   double build_seconds, sah_cost;
-  std::uint64_t triangles, opaque, cut_out, translucent, opacity_triangles;
+  std::uint64_t triangles, opaque, cut_out, translucent;
   BoxRecord box;
   std::array<BoxRecord, DAPPLE_BVH_WIDTH> parts;
   std::array<float, 3> axes;
@@ -41,7 +41,7 @@ struct ObjectRecord {
   std::array<float, 3> mass_pole;
   std::uint32_t part_count, stack, wall, spare;
 };
-static_assert(sizeof(ObjectRecord) == 2 * 8 + 7 * 8 + (6 + 8 * 6 + 3 + 6 + 2 + 3) * 4 + 4 * 4);
+static_assert(sizeof(ObjectRecord) == 2 * 8 + 6 * 8 + (6 + 8 * 6 + 3 + 6 + 2 + 3) * 4 + 4 * 4);
 
 BoxRecord box_record(const Box3f& box) {
   return {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
@@ -59,7 +59,6 @@ ObjectRecord record_of(const CachedObject& cached, const Checksum& key) {
   record.opaque = object.opaque;
   record.cut_out = object.cut_out;
   record.translucent = object.translucent;
-  record.opacity_triangles = object.opacity.triangles;
   record.box = box_record(object.box);
   std::transform(object.parts.begin(), object.parts.end(), record.parts.begin(), box_record);
   for (int axis = 0; axis < 3; ++axis) record.axes[axis] = object.opacity.axes[axis];
@@ -80,7 +79,6 @@ ObjectSummary summary_of(const ObjectRecord& record) {
   summary.opaque = record.opaque;
   summary.cut_out = record.cut_out;
   summary.translucent = record.translucent;
-  summary.opacity.triangles = record.opacity_triangles;
   summary.box = box_of(record.box);
   for (std::size_t i = 0; i < std::min<std::size_t>(record.part_count, DAPPLE_BVH_WIDTH); ++i)
     summary.parts.push_back(box_of(record.parts[i]));

@@ -83,7 +83,6 @@ TEST(OpacityModel, FactorsOfClumpsAreThoseOfTheirMirrorImagesAndOfAxesRenamed) {
     NodeOpacity clump = random_opacity(random);
     clump.clumping = part(random);
     clump.mass.concentration = part(random);
-    clump.triangles = 100;
     const V3f size(1, 2, 0.5f);
     const float factor = clumping_factor(clump, size);
     changed += std::fabs(factor - 1.0f) > 0.05f;
