@@ -55,6 +55,11 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
                  "that faces away from the camera), motion (image motion until the next frame, in "
                  "pixels), visits (BVH nodes and triangles that rays tested)")
       ->capture_default_str();
+  app.add_option("--back-every", o.back_every,
+                 "With --passes back: of so many samples one is also traced on that side, 1 to 64. "
+                 "1 gives these layers as little noise as those in front, and takes 1.7 times as "
+                 "long")
+      ->capture_default_str();
   app.add_option(
       "--ambient", o.ambient,
       "Radiance of a uniform sky that lights the RGBA picture through AO. Default: 1 without "

@@ -52,6 +52,8 @@ FilmLayout::FilmLayout(std::uint32_t pixel_count, const RenderOptions& options, 
     squares += 2;
   }
   if (options.back) {
+    back_samples = plane_count;
+    plane_count += 2;
     if (options.ao) {
       back_ao = plane_count;
       plane_count += kAoPlanes;

@@ -44,6 +44,8 @@ struct FilmLayout {
   std::uint32_t normals = 0;  ///< first plane of shading normals; 0: there are none
   std::uint32_t albedo = 0;   ///< first of three planes, or 0
   std::vector<LightPlaneRange> lights;
+  /// Planes of the number of samples whose backs are traced, and of those that hit; 0: none are.
+  std::uint32_t back_samples = 0;
   std::uint32_t back_ao = 0;                 ///< first AO plane of the backs, or 0
   std::vector<LightPlaneRange> back_lights;  ///< of the backs
   /// Planes of squares that the backs write, and that nobody reads.

@@ -53,6 +53,11 @@ double sample_count(const TracedPicture& picture, std::uint32_t pixel) {
   return std::max(1u, picture.samples[pixel]);
 }
 
+/// The same for the sums of backs.
+double back_sample_count(const Sums& sums, const FilmLayout& layout, std::uint32_t pixel) {
+  return std::max(1.0, sums.at(layout.back_samples, pixel));
+}
+
 /// Irradiance of the lights at a pixel, linear RGB: with occlusion, of all lights together or of
 /// one; and the largest without occlusion, of all lights together, over all pixels and channels.
 class LightPlanes {
@@ -71,7 +76,7 @@ class LightPlanes {
     return value;
   }
   [[nodiscard]] V3d one(std::size_t light, std::uint32_t pixel) const {
-    return of_planes(light, layout_.lights[light].first, pixel);
+    return of_planes(light, layout_.lights[light].first, pixel, sample_count(picture_, pixel));
   }
   [[nodiscard]] V3d sum(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
     V3d value(0.0);
@@ -81,7 +86,9 @@ class LightPlanes {
   /// The same of the other side of the surfaces.
   [[nodiscard]] V3d back(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
     V3d value(0.0);
-    for (const std::size_t l : lights) value += of_planes(l, layout_.back_lights[l].first, pixel);
+    for (const std::size_t l : lights)
+      value += of_planes(l, layout_.back_lights[l].first, pixel,
+                         back_sample_count(sums_, layout_, pixel));
     return value;
   }
   [[nodiscard]] double largest_unoccluded() const {
@@ -89,7 +96,7 @@ class LightPlanes {
     for (std::uint32_t p = 0; p < layout_.pixels; ++p) {
       V3d value(0.0);
       for (std::size_t l = 0; l < lights_.size(); ++l)
-        value += of_planes(l, layout_.lights[l].unoccluded(), p);
+        value += of_planes(l, layout_.lights[l].unoccluded(), p, sample_count(picture_, p));
       largest = std::max({largest, value.x, value.y, value.z});
     }
     return largest;
@@ -97,11 +104,12 @@ class LightPlanes {
 
  private:
   /// Irradiance from the light's one plane, or its three, from `first` on.
-  [[nodiscard]] V3d of_planes(std::size_t light, std::uint32_t first, std::uint32_t pixel) const {
+  [[nodiscard]] V3d of_planes(std::size_t light, std::uint32_t first, std::uint32_t pixel,
+                              double samples) const {
     const std::uint32_t last = layout_.lights[light].channels - 1;
     const V3d sum(sums_.at(first, pixel), sums_.at(first + std::min(1u, last), pixel),
                   sums_.at(first + last, pixel));
-    return V3d(lights_[light].radiance) * sum * (inverse_ / sample_count(picture_, pixel));
+    return V3d(lights_[light].radiance) * sum * (inverse_ / samples);
   }
 
   const Sums& sums_;
@@ -225,11 +233,13 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
   const Sums sums(picture.sums.values<std::int64_t>(), layout.pixels);
   const auto spp = [&](std::uint32_t p) { return sample_count(picture, p); };
   const auto hits = [&](std::uint32_t p) { return sums.at(0, p); };
-  const auto ao_of = [&](std::uint32_t plane, std::uint32_t p) {
-    return sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * spp(p)) + 1.0 -
-           hits(p) / spp(p);
+  const auto ao_of = [&](std::uint32_t plane, std::uint32_t p, double hit, double samples) {
+    return sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * samples) + 1.0 -
+           hit / samples;
   };
-  const auto ao = [&](std::uint32_t p) { return options.ao ? ao_of(layout.ao, p) : 1.0; };
+  const auto ao = [&](std::uint32_t p) {
+    return options.ao ? ao_of(layout.ao, p, hits(p), spp(p)) : 1.0;
+  };
   const LightPlanes light(sums, picture, layout, options, lights);
   statistics.ambient = ambient_of(options, lights, light);
   const V3d ambient(statistics.ambient);
@@ -254,7 +264,10 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
   if (options.ao) {
     planes.add3("ao", "RGB", [&](std::uint32_t p) { return V3d(ao(p)); });
     if (options.back)
-      planes.add3("ao.back", "RGB", [&](std::uint32_t p) { return V3d(ao_of(layout.back_ao, p)); });
+      planes.add3("ao.back", "RGB", [&](std::uint32_t p) {
+        return V3d(ao_of(layout.back_ao, p, sums.at(layout.back_samples + 1, p),
+                         back_sample_count(sums, layout, p)));
+      });
     planes.add3("bent", "XYZ", [&](std::uint32_t p) {
       V3d bent(sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p), sums.at(layout.ao + 3, p));
       return bent.length2() > 0 ? bent.normalized() : V3d(0.0);

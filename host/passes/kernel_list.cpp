@@ -1,5 +1,6 @@
 #include "passes/kernel_list.hpp"
 
+#include "passes/back_pass.hpp"
 #include "passes/camera_pass.hpp"
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
@@ -14,7 +15,7 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
       {kClosestHit, kRayGroup},         {kCompactHits, kScanItems}, {kAoRays, kRayGeneratorGroup},
       {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
       {kShadePoints, kRayGroup},        {kTurnPoints, kRayGroup},   {kResolveSurface, kRayGroup},
-      {kResolveLight, kRayGroup},       {kGatherRays, kRayGroup},
+      {kResolveLight, kRayGroup},       {kGatherRays, kRayGroup},   {kCountBacks, kRayGroup},
   };
   for (const bool shared_origin : {true, false})
     kernels.push_back({camera_kernel(shared_origin), kCameraGroup});
@@ -32,7 +33,7 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
                                         bool shaded) {
   std::vector<KernelName> kernels{camera_kernel(is_pinhole(camera)), kCompactHits, kResolveSurface};
   if (shaded) kernels.push_back(kShadePoints);
-  if (options.back) kernels.push_back(kTurnPoints);
+  if (options.back) kernels.insert(kernels.end(), {kTurnPoints, kCountBacks});
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(
         occlusion_kernel(options.estimator, packets_in_picture(context, options.estimator, rays)));

@@ -10,8 +10,8 @@ std::size_t hit_records(std::size_t samples) {
 }
 
 std::size_t Queues::bytes() const {
-  return work.bytes() + rays.bytes() + points.bytes() + backs.bytes() + sample_hits.bytes() +
-         active.bytes() + active_count.bytes() + occlusions.bytes();
+  return work.bytes() + rays.bytes() + points.bytes() + sample_hits.bytes() + active.bytes() +
+         active_count.bytes() + occlusions.bytes();
 }
 
 Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample) {

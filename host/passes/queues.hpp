@@ -19,7 +19,6 @@ struct Queues {
   Buffer work;          ///< PixelWork; the caller of camera_pass() allocates it
   Buffer rays;          ///< Ray
   Buffer points;        ///< SurfacePoint, one a camera sample
-  Buffer backs;         ///< the same, turned to the other side; turn_points_pass()
   Buffer sample_hits;   ///< SampleHits, one for DAPPLE_HIT_BITS samples
   Buffer active;        ///< uint: indices of the samples that hit, ascending
   Buffer active_count;  ///< uint

@@ -11,8 +11,7 @@ constexpr int kColorSamples = 6;
 
 /// `resolves`: add colours and normals of the points to the film.
 void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-           const Buffer& points, const FilmBuffers& film, bool resolves,
-           const ResolveParams& params, int spp) {
+           const FilmBuffers& film, bool resolves, const ResolveParams& params, int spp) {
   ShadingParams shading{};
   shading.resolve = params;
   shading.normals = scene.corner_normals.empty() ? 0u : 1u;
@@ -22,8 +21,8 @@ void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& que
   shading.segment_words = static_cast<uint>(scene.block_values.size());
   context.launch(kShadePoints, "shading", params.slice.pixel_count,
                  {scene.nodes, scene.blocks, scene.textured, scene.instances, scene.normals,
-                  scene.color_words, scene.color_materials, scene.color_texels, queues.work, points,
-                  queues.sample_hits, film.sums, shading},
+                  scene.color_words, scene.color_materials, scene.color_texels, queues.work,
+                  queues.points, queues.sample_hits, film.sums, shading},
                  kRayGroup);
 }
 
@@ -31,7 +30,7 @@ void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& que
 
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                   const FilmBuffers& film, const ResolveParams& params, int spp) {
-  shade(context, scene, queues, queues.points, film, true, params, spp);
+  shade(context, scene, queues, film, true, params, spp);
 }
 
 void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -39,15 +38,7 @@ void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const 
   ResolveParams params{};
   params.slice = slice;
   const FilmBuffers none{context.allocate(0), context.allocate(0)};
-  shade(context, scene, queues, queues.points, none, false, params, 1);
-}
-
-void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                      const FilmBuffers& film, const ResolveParams& params, bool shades) {
-  const uint samples = params.slice.pixel_count * params.slice.sample_count;
-  context.launch(kTurnPoints, "shading", samples, {queues.points, queues.backs, samples},
-                 kRayGroup);
-  if (shades) shade(context, scene, queues, queues.backs, film, false, params, 1);
+  shade(context, scene, queues, none, false, params, 1);
 }
 
 }  // namespace dapple

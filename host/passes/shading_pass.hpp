@@ -8,7 +8,6 @@
 namespace dapple {
 
 inline const KernelName kShadePoints{"shade_points", "film/shading", {}};
-inline const KernelName kTurnPoints{"turn_points", "film/shading", {}};
 
 /// Comes after resolve_surface_pass(), because it moves points to where their rays start. `spp`:
 /// samples a pixel that footprints are computed for.
@@ -18,10 +17,5 @@ void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queu
 /// As shading_pass(), but adds nothing to a film. For scenes with normals.
 void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                       const SliceParams& slice);
-
-/// Writes the points of a slice, turned to the side that is not seen, to queues.backs, and shades
-/// them if `shades`, without adding anything to the film. Comes before shading_pass().
-void turn_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                      const FilmBuffers& film, const ResolveParams& params, bool shades);
 
 }  // namespace dapple

@@ -5,6 +5,7 @@
 
 #include "dapple/error.hpp"
 #include "device/upload/scene_upload.hpp"
+#include "passes/back_pass.hpp"
 #include "passes/camera_pass.hpp"
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
@@ -88,7 +89,11 @@ const std::map<std::string, Pass>& passes() {
        }},
       {"turn_points",
        [](EmptyStage& s, const Variant&) {
-         turn_points_pass(s.context, s.scene, s.queues, s.film, {}, false);
+         turn_points_pass(s.context, s.queues, s.queues, s.film, {});
+       }},
+      {"count_backs",
+       [](EmptyStage& s, const Variant&) {
+         turn_points_pass(s.context, s.queues, s.queues, s.film, {});
        }},
       {"shade_points",
        [](EmptyStage& s, const Variant&) {

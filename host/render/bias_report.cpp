@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "film/layers.hpp"
 #include "render/unit_grid.hpp"
@@ -45,6 +46,10 @@ class PixelError {
   double squares_ = 0, samples_ = 0;
 };
 
+double total(const std::vector<std::uint32_t>& samples) {
+  return static_cast<double>(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}));
+}
+
 }  // namespace
 
 std::vector<std::string> bias_layers(const FilmLayout& layout, const std::vector<Light>& lights) {
@@ -57,22 +62,45 @@ std::vector<std::string> bias_layers(const FilmLayout& layout, const std::vector
   return names;
 }
 
+SideSamples samples_of_bias(const BiasSums& sums, const HostView& film,
+                            const std::vector<std::uint32_t>& samples, const FilmLayout& layout,
+                            std::uint32_t back_every) {
+  SideSamples taken{samples, {}};
+  if (layout.back_samples) {
+    const auto backs =
+        film.values<std::int64_t>().subspan(std::size_t{layout.back_samples} * layout.pixels);
+    taken.backs.assign(backs.begin(), backs.begin() + layout.pixels);
+  }
+  for (std::size_t pixel = 0; pixel < sums.earlier.size(); ++pixel) {
+    const std::uint32_t earlier = sums.earlier[pixel];
+    taken.fronts[pixel] -= earlier;
+    if (!taken.backs.empty())
+      taken.backs[pixel] -= std::min(taken.backs[pixel], earlier / back_every);
+  }
+  return taken;
+}
+
 std::vector<Bias> picture_bias(const BiasSums& sums, const HostView& film,
-                               const std::vector<std::uint32_t>& samples, const FilmLayout& layout,
+                               const SideSamples& samples, const FilmLayout& layout,
                                const View& view, const std::vector<double>& divisors) {
   if (sums.exact_rays < kLeastRays) return {};
   const std::span<const std::int64_t> hits = film.values<std::int64_t>().first(layout.pixels);
   const UnitGrid grid(view);
   const double share = sums.exact_rays / sums.rays;
+  const std::size_t layers = sums.differences.size();
+  const std::size_t in_front = samples.backs.empty() ? layers : layers / 2;
+  const double of_front = total(samples.fronts), of_back = total(samples.backs);
+  const double per_sample =
+      sums.exact_rays / (static_cast<double>(in_front) * (of_front + of_back));
   std::vector<Bias> out;
-  for (std::size_t layer = 0; layer < sums.differences.size(); ++layer) {
+  for (std::size_t layer = 0; layer < layers; ++layer) {
+    const std::vector<std::uint32_t>& of_layer = layer < in_front ? samples.fronts : samples.backs;
     std::vector<BiasUnit> units = grid.empty_units();
     std::vector<PixelError> errors(grid.row_count());  // added in the same order on any machine
     tbb::parallel_for(std::uint32_t{0}, grid.row_count(), [&](std::uint32_t row) {
       const PixelRange pixels = grid.pixels_of_row(row);
       for (std::uint32_t pixel = pixels.begin; pixel < pixels.end; ++pixel) {
-        const std::uint32_t taken =
-            samples[pixel] - (sums.earlier.empty() ? 0u : sums.earlier[pixel]);
+        const std::uint32_t taken = of_layer[pixel];
         if (hits[pixel] == 0 || taken == 0) continue;
         BiasUnit& unit = units[grid.unit(pixel)];
         const double difference =
@@ -86,8 +114,9 @@ std::vector<Bias> picture_bias(const BiasSums& sums, const HostView& film,
     for (const PixelError& of_row : errors) error.add(of_row);
     Bias bias = estimate_bias(units, share);
     // One ray more could have differed by all of its light: rare differences may not be seen.
-    const double rays_of_layer = sums.exact_rays / static_cast<double>(sums.differences.size());
-    bias.error = std::hypot(error.value(units, bias.mean, share), 1 / rays_of_layer);
+    const double rays_of_layer = per_sample * (layer < in_front ? of_front : of_back);
+    bias.error =
+        rays_of_layer > 0 ? std::hypot(error.value(units, bias.mean, share), 1 / rays_of_layer) : 1;
     out.push_back(bias);
   }
   return out;

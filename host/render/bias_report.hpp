@@ -16,10 +16,21 @@ namespace dapple {
 /// Layers that have a bias, "ao" and "light.NAME" by light, then "ao.back" and so on.
 std::vector<std::string> bias_layers(const FilmLayout& layout, const std::vector<Light>& lights);
 
-/// The bias of each of these layers, over pixels that show geometry and were sampled while `sums`
-/// were made. `divisors`: of each layer, what values are divided by. Empty: nothing was compared.
+/// Samples of each pixel, in front and of those whose backs are traced.
+struct SideSamples {
+  std::vector<std::uint32_t> fronts, backs;  ///< backs: empty if there are none
+};
+
+/// Samples that were traced while `sums` were made. `samples`: all of each pixel. `back_every`:
+/// RenderOptions::back_every.
+SideSamples samples_of_bias(const BiasSums& sums, const HostView& film,
+                            const std::vector<std::uint32_t>& samples, const FilmLayout& layout,
+                            std::uint32_t back_every);
+
+/// The bias of each of these layers, over pixels that show geometry and have samples. `samples`: of
+/// `sums`. `divisors`: of each layer, what values are divided by. Empty: nothing was compared.
 std::vector<Bias> picture_bias(const BiasSums& sums, const HostView& film,
-                               const std::vector<std::uint32_t>& samples, const FilmLayout& layout,
+                               const SideSamples& samples, const FilmLayout& layout,
                                const View& view, const std::vector<double>& divisors);
 
 }  // namespace dapple

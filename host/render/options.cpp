@@ -166,6 +166,7 @@ void validate(const RenderOptions& options) {
   check_camera_splitting(options.camera_splitting);
   check_range("--ao-rays", options.ao_rays, 1, 4096);
   check_range("--light-rays", options.light_rays, 1, 4096);
+  check_range("--back-every", options.back_every, 1, 64);
   check_range("--footprint", options.footprint, 0, 1e6);
   check_range("--report-bias", options.report_bias, 0, 1);
   check_range("--max-bias", options.max_bias, 0, 1);

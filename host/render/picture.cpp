@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "camera/camera_splitting.hpp"
+#include "passes/back_pass.hpp"
 #include "passes/camera_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/queues.hpp"
@@ -64,9 +65,12 @@ class PictureTracer {
     if (state_.slice_samples == 0)
       state_.slice_samples = samples_of_slice(device.info(), options, light_count_, rays);
     queues_ = make_queues(context_, state_.slice_samples, rays);
-    if (options.back)
-      queues_.backs = context_.allocate(state_.slice_samples * sizeof(SurfacePoint));
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
+    if (options.back) {
+      backs_ = queues_;
+      backs_.points = context_.allocate(queues_.points.bytes());
+      backs_.sample_hits = context_.allocate(queues_.sample_hits.bytes());
+    }
     film_.sums = context_.allocate_zeros(layout.sum_bytes());
     film_.squares = context_.allocate_zeros(layout.square_bytes());
     if (has_bias(options) && options.report_bias > 0) {
@@ -75,6 +79,7 @@ class PictureTracer {
     }
     place_sums();
     resolve_ = resolve_params(view);
+    back_ = back_params(view);
   }
 
   TracedPicture trace(const View& view, const TraceControl& control) {
@@ -96,7 +101,7 @@ class PictureTracer {
     picture.deep = std::move(hit_sums_.deep);
     context_.finish();
     picture.pass_seconds = pass_seconds();
-    picture.queue_bytes = queues_.bytes();
+    picture.queue_bytes = queues_.bytes() + backs_.points.bytes() + backs_.sample_hits.bytes();
     return picture;
   }
 
@@ -155,7 +160,8 @@ class PictureTracer {
       const std::vector<double> of_front = divisors;
       divisors.insert(divisors.end(), of_front.begin(), of_front.end());
     }
-    return picture_bias(bias_->sums(), sums, samples, layout_, view, divisors);
+    const SideSamples taken = samples_of_bias(bias_->sums(), sums, samples, layout_, back_.every);
+    return picture_bias(bias_->sums(), sums, taken, layout_, view, divisors);
   }
 
   void read_state(const SamplePlan& plan) {
@@ -278,6 +284,18 @@ class PictureTracer {
     return params;
   }
 
+  BackParams back_params(const View& view) const {
+    const int samples = footprint_samples(options_) * splitting_factor(options_);
+    BackParams params{};
+    params.every = static_cast<uint>(std::min(options_.back_every, samples));
+    params.seed = options_.seed;
+    params.width = static_cast<uint>(view.width);
+    params.crop_x = static_cast<uint>(view.crop.x0);
+    params.crop_y = static_cast<uint>(view.crop.y0);
+    params.crop_width = static_cast<uint>(width_);
+    return params;
+  }
+
   void trace_slice(const SliceParams& slice) {
     const std::size_t samples = std::size_t{slice.pixel_count} * slice.sample_count;
     camera_.slice = slice;
@@ -288,8 +306,7 @@ class PictureTracer {
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);
-    if (options_.back)
-      turn_points_pass(context_, scene_, queues_, film_, resolve_, layout_.normals != 0);
+    if (options_.back) turn_points(slice);
     if (layout_.shading()) {
       resolve_.plane = layout_.shading();
       shading_pass(context_, scene_, queues_, film_, resolve_, footprint_samples(options_));
@@ -299,10 +316,22 @@ class PictureTracer {
     if (bias_) bias_->keep_hits(queues_);
     const Side front{queues_, layout_.ao, layout_.lights};
     trace_side(front, hits);
-    if (!options_.back) return;
-    Side back{queues_, layout_.back_ao, layout_.back_lights, true};
-    back.queues.points = queues_.backs;
-    trace_side(back, hits);
+    if (options_.back) trace_backs(samples);
+  }
+
+  void turn_points(const SliceParams& slice) {
+    back_.resolve = resolve_;
+    back_.resolve.plane = layout_.back_samples;
+    turn_points_pass(context_, queues_, backs_, film_, back_);
+    if (layout_.normals) move_points_pass(context_, scene_, backs_, slice);
+  }
+
+  /// After all that reads the list of the slice's hits, which is made again.
+  void trace_backs(std::size_t samples) {
+    const std::uint32_t hits = compact_pass(context_, backs_, samples);
+    if (hits == 0) return;
+    if (bias_) bias_->keep_hits(backs_);
+    trace_side({backs_, layout_.back_ao, layout_.back_lights, true}, hits);
   }
 
   void add_hits(const SliceParams& slice) {
@@ -368,6 +397,8 @@ class PictureTracer {
   CameraParams camera_;
   ResolveParams resolve_{};
   Queues queues_;
+  BackParams back_{};
+  Queues backs_;  ///< queues_ with points that are turned to the other side
   FilmBuffers film_;
   std::optional<BiasTracer> bias_;             ///< if a bias is reported
   std::vector<std::vector<float>> variances_;  ///< of the finished film, if known

@@ -108,6 +108,7 @@ Settings option_settings(const RenderOptions& options, const View& view) {
       {"--camera-splitting", number(options.camera_splitting)},
       {"--ao-rays", number(options.ao_rays)},
       {"--light-rays", number(options.light_rays)},
+      {"--back-every", options.back ? number(options.back_every) : "none"},
       {"--ao-distance", number(options.ao_distance)},
       {"--ao-falloff", number(options.ao_falloff)},
       {"--cryptomatte", name_of(options.cryptomattes)},

@@ -141,14 +141,3 @@ __kernel void shade_points(__global const BvhNode* nodes, __global const Triangl
   add_to_plane(film, params.resolve, plane + 1u, pixel, sums.s4);
   add_to_plane(film, params.resolve, plane + 2u, pixel, sums.s5);
 }
-
-/* Copies the points of a slice, turned to the side of their surfaces that is not seen. Of samples that missed
-   it copies what there is. */
-__kernel void turn_points(__global const SurfacePoint* points, __global SurfacePoint* turned,
-                          uint count) {
-  const uint sample = get_global_id(0);
-  if (sample >= count) return;
-  SurfacePoint point = points[sample];
-  for (uint axis = 0; axis < 3u; ++axis) point.normal[axis] = -point.normal[axis];
-  turned[sample] = point;
-}

@@ -69,6 +69,7 @@ class RenderOptions(TypedDict, total=False):
     light: bool
     albedo: bool
     back: bool
+    back_every: int
     visits: bool
     crypto_object: bool
     crypto_material: bool

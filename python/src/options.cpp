@@ -84,6 +84,7 @@ void bind_render_options(nb::module_& module) {
       .def_rw("light", &RenderOptions::light)
       .def_rw("albedo", &RenderOptions::albedo)
       .def_rw("back", &RenderOptions::back)
+      .def_rw("back_every", &RenderOptions::back_every)
       .def_rw("visits", &RenderOptions::visits)
       .def_prop_rw(
           "crypto_object", [](const RenderOptions& o) { return o.cryptomattes.objects; },

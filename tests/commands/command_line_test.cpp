@@ -85,6 +85,7 @@ TEST_F(CommandLine, UsageErrorsNameTheirFlagAndLeaveNothingBehind) {
       {"--seed 4294967296", "--seed"},
       {"--ao-rays 0", "--ao-rays"},
       {"--light-rays 5000", "--light-rays"},
+      {"--back-every 0", "--back-every"},
       {"--footprint nan", "--footprint"},
       {"--footprint -1", "--footprint"},
       {"--report-bias 101", "--report-bias"},

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "dapple/render.hpp"
+#include "dapple/scene.hpp"
 #include "support/smooth_shapes.hpp"
 
 namespace dapple {
@@ -115,6 +116,69 @@ TEST(Back, MissesCountAsInTheLayersOfTheFront) {
   EXPECT_EQ(mean(film, "A"), 0);
   EXPECT_EQ(mean(film, "ao.back.R"), 1);
   EXPECT_EQ(mean(film, "light.behind.back.R"), 0);
+}
+
+/// Leaves that let light through, under a sun.
+Scene thin_leaves() {
+  Scene scene = make_procedural("scene:cloud?leaves=2000&opacity=0.3");
+  scene.lights = {sun_from("sun", {1, 2, -1})};
+  return scene;
+}
+
+RenderOptions leaf_picture(int splitting, int back_every) {
+  RenderOptions options;
+  options.width = options.height = 64;
+  options.spp = 32;
+  options.camera_splitting = splitting;
+  options.back = true;
+  options.back_every = back_every;
+  options.report_bias = 0;
+  return options;
+}
+
+// Samples that share a camera ray lie on surfaces one behind the other: each must have its turn.
+TEST(Back, OneSampleInEightHasTheMeansOfAllSamples) {
+  const Scene scene = thin_leaves();
+  for (const int splitting : {1, 4}) {
+    const Film all = render(scene, leaf_picture(splitting, 1)).film;
+    for (const int every : {3, 8}) {
+      const Film few = render(scene, leaf_picture(splitting, every)).film;
+      for (const char* channel : {"ao.back.R", "light.sun.back.R"}) {
+        const double expected = mean(all, channel);
+        EXPECT_GT(expected, 0.02) << channel;
+        // The sun has a standard deviation of 0.03.
+        EXPECT_NEAR(mean(few, channel) / expected, 1, 0.08) << channel << " " << splitting;
+        EXPECT_NE(all.find(channel)->pixels, few.find(channel)->pixels) << channel;
+      }
+      EXPECT_EQ(all.find("ao.R")->pixels, few.find("ao.R")->pixels);
+    }
+  }
+}
+
+TEST(Back, EveryPixelHasASampleHoweverFewThereAre) {
+  Scene scene = card(0);
+  scene.lights = {sun_from("behind", {0, 0, -1})};
+  for (const int spp : {1, 2, 5, 16}) {
+    RenderOptions options = picture();
+    options.spp = spp;
+    const Film film = render(scene, options).film;
+    for (const float value : film.find("light.behind.back.R")->pixels) EXPECT_NEAR(value, 1, 0.01);
+  }
+}
+
+TEST(Back, ACropHasTheValuesOfTheWholePicture) {
+  const Scene scene = thin_leaves();
+  RenderOptions options = leaf_picture(2, 8);
+  const Film whole = render(scene, options).film;
+  options.crop = PixelRect{20, 11, 43, 50};
+  const Film part = render(scene, options).film;
+  const std::vector<float>& of_whole = whole.find("ao.back.R")->pixels;
+  const std::vector<float>& of_part = part.find("ao.back.R")->pixels;
+  for (int y = 11; y <= 50; ++y)
+    for (int x = 20; x <= 43; ++x)
+      ASSERT_EQ(of_whole[static_cast<std::size_t>(y * 64 + x)],
+                of_part[static_cast<std::size_t>((y - 11) * 24 + x - 20)])
+          << x << ", " << y;
 }
 
 }  // namespace

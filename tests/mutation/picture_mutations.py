@@ -26,9 +26,9 @@ MUTATIONS = [
         r"^(Light|LightLayers|Beauty)\."),
     Mutation(
         "misses-count-as-occluded", "host/film/layers.cpp",
-        "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * spp(p)) + 1.0 -\n"
-        "           hits(p) / spp(p);",
-        "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * spp(p));",
+        "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * samples) + 1.0 -\n"
+        "           hit / samples;",
+        "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * samples);",
         r"^(Beauty|Film|PictureChannels|ClosedForm)\."),
     Mutation(
         "means-over-samples-instead-of-hits", "host/film/layers.cpp",
@@ -117,9 +117,19 @@ MUTATIONS = [
         r"^(BiasEstimate|BiasReport)\."),
     Mutation(
         "bias-of-resumed-samples", "host/render/bias_report.cpp",
-        "samples[pixel] - (sums.earlier.empty() ? 0u : sums.earlier[pixel]);",
-        "samples[pixel];",
+        "    taken.fronts[pixel] -= earlier;\n",
+        "",
         r"^(BiasReport|Resume)\."),
+    Mutation(
+        "backs-of-the-first-sample-of-each-group", "kernels/film/backs.cl",
+        "== (sample / params.every + shift) % params.every;",
+        "== 0u * shift;",
+        r"^Back\."),
+    Mutation(
+        "backs-divided-by-all-samples", "host/film/layers.cpp",
+        "  return std::max(1.0, sums.at(layout.back_samples, pixel));",
+        "  return std::max(1.0, 8 * sums.at(layout.back_samples, pixel));",
+        r"^Back\."),
     Mutation(
         "bias-correction-of-the-wrong-sign", "host/points/bias_correction.cpp",
         "std::clamp(prefiltered + change_ * fall_with_depth(prefiltered), 0.0, 1.0);",

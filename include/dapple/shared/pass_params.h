@@ -129,6 +129,15 @@ typedef struct ResolveParams {
   float eye[3];
 } ResolveParams;
 
+/* The passes that choose the samples whose backs are traced. */
+typedef struct BackParams {
+  ResolveParams resolve;
+  uint every; /* one in so many samples of a pixel is chosen */
+  uint seed;
+  uint width; /* of the whole picture, pixels */
+  uint crop_x, crop_y, crop_width;
+} BackParams;
+
 /* The shading pass. Its planes: shading normal (3) if there are normals, then albedo (3). */
 typedef struct ShadingParams {
   ResolveParams resolve;
