@@ -56,7 +56,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
                  "pixels), visits (BVH nodes and triangles that rays tested)")
       ->capture_default_str();
   app.add_option("--back-every", o.back_every,
-                 "With --passes back: of so many samples one is also traced on that side, 1 to 64. "
+                 "With --passes back: of so many samples one is also traced on that side: 1, 2, 4, "
+                 "... 64. "
                  "1 gives these layers as little noise as those in front, and takes 1.7 times as "
                  "long")
       ->capture_default_str();

@@ -29,7 +29,7 @@ std::size_t film_bytes_per_pixel(std::size_t lights, const RenderOptions& option
       kSurfacePlanes + kAoPlanes + kNormalPlanes + kAlbedoPlanes + kLightPlanes * lights;
   std::size_t channels = kSurfaceChannels + kLightChannels * lights;
   if (options.back) {
-    sums += kAoPlanes + kLightPlanes * lights;
+    sums += 3 + 3 * lights;  // samples, hits and AO; lights as if all were domes
     channels += 3 * (1 + lights);
   }
   if (options.motion) {

@@ -56,14 +56,12 @@ FilmLayout::FilmLayout(std::uint32_t pixel_count, const RenderOptions& options, 
     plane_count += 2;
     if (options.ao) {
       back_ao = plane_count;
-      plane_count += kAoPlanes;
+      plane_count += 1;
     }
     for (const LightPlaneRange& light : lights) {
-      back_lights.push_back({plane_count, light.channels});
-      plane_count += light.count();
+      back_lights.push_back(plane_count);
+      plane_count += light.channels;
     }
-    back_squares = squares;
-    squares += 2;
   }
   if (has_normals) {
     normals = plane_count;

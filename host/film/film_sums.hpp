@@ -46,10 +46,9 @@ struct FilmLayout {
   std::vector<LightPlaneRange> lights;
   /// Planes of the number of samples whose backs are traced, and of those that hit; 0: none are.
   std::uint32_t back_samples = 0;
-  std::uint32_t back_ao = 0;                 ///< first AO plane of the backs, or 0
-  std::vector<LightPlaneRange> back_lights;  ///< of the backs
-  /// Planes of squares that the backs write, and that nobody reads.
-  std::uint32_t back_squares = 0;
+  std::uint32_t back_ao = 0;  ///< the backs' plane of transmittance, or 0
+  /// The first plane of each light's irradiance with occlusion on the backs.
+  std::vector<std::uint32_t> back_lights;
   std::uint32_t squares = 0;  ///< number of planes of squares: two for AO, two for each light
   float unit_scale = 0;       ///< for values up to 1
   float light_scale = 0;      ///< for irradiance at radiance 1, up to 1024 pi

@@ -87,8 +87,8 @@ class LightPlanes {
   [[nodiscard]] V3d back(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
     V3d value(0.0);
     for (const std::size_t l : lights)
-      value += of_planes(l, layout_.back_lights[l].first, pixel,
-                         back_sample_count(sums_, layout_, pixel));
+      value +=
+          of_planes(l, layout_.back_lights[l], pixel, back_sample_count(sums_, layout_, pixel));
     return value;
   }
   [[nodiscard]] double largest_unoccluded() const {
@@ -132,10 +132,15 @@ class Planes {
   }
   template <class Value>
   void add3(const std::string& layer, const char (&suffixes)[4], const Value& value) {
-    for (int i = 0; i < 3; ++i) {
-      const std::string prefix = layer.empty() ? "" : layer + ".";
-      add(prefix + suffixes[i], [&](std::uint32_t p) { return value(p)[i]; });
-    }
+    const std::string prefix = layer.empty() ? "" : layer + ".";
+    const std::size_t first = planes_.size();
+    for (int i = 0; i < 3; ++i)
+      planes_.push_back({prefix + suffixes[i], std::vector<float>(pixels_)});
+    tbb::parallel_for(0u, pixels_, [&](std::uint32_t p) {
+      const V3d three = value(p);
+      for (std::size_t i = 0; i < 3; ++i)
+        planes_[first + i].pixels[p] = static_cast<float>(three[static_cast<int>(i)]);
+    });
   }
   std::vector<Plane> take() { return std::move(planes_); }
 

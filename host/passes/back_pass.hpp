@@ -7,8 +7,8 @@
 
 namespace dapple {
 
-inline const KernelName kTurnPoints{"turn_points", "film/backs", {}};
-inline const KernelName kCountBacks{"count_backs", "film/backs", {}};
+inline const KernelName kTurnPoints{"turn_points", "queue_kernels", {}};
+inline const KernelName kCountBacks{"count_backs", "queue_kernels", {}};
 
 /// Writes the points of the chosen samples of a slice, turned to the side that is not seen, to
 /// backs.points, and which of them hit to backs.sample_hits; adds their numbers to two planes of

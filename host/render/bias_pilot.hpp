@@ -33,8 +33,8 @@ class BiasPilot : public BiasSource {
   struct Layer {
     OcclusionParams params{};
     std::vector<Ray> rays;
-    std::vector<float> exact;          ///< transmittances
-    std::vector<float> prefiltered;    ///< the same with `footprint`, of the first rays
+    std::vector<float> exact;        ///< transmittances
+    std::vector<float> prefiltered;  ///< the same with `footprint`, of the first rays
     float footprint = -1;
     std::vector<std::uint32_t> units;  ///< by sample
   };

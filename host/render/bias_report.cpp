@@ -56,7 +56,7 @@ std::vector<std::string> bias_layers(const FilmLayout& layout, const std::vector
   std::vector<std::string> names;
   if (layout.ao) names.emplace_back("ao");
   for (const std::string& name : light_names(lights)) names.push_back("light." + name);
-  if (!layout.back_squares) return names;
+  if (!layout.back_samples) return names;
   const std::size_t front = names.size();
   for (std::size_t i = 0; i < front; ++i) names.push_back(names[i] + ".back");
   return names;
@@ -64,7 +64,7 @@ std::vector<std::string> bias_layers(const FilmLayout& layout, const std::vector
 
 SideSamples samples_of_bias(const BiasSums& sums, const HostView& film,
                             const std::vector<std::uint32_t>& samples, const FilmLayout& layout,
-                            std::uint32_t back_every) {
+                            std::uint32_t group_bits) {
   SideSamples taken{samples, {}};
   if (layout.back_samples) {
     const auto backs =
@@ -75,7 +75,7 @@ SideSamples samples_of_bias(const BiasSums& sums, const HostView& film,
     const std::uint32_t earlier = sums.earlier[pixel];
     taken.fronts[pixel] -= earlier;
     if (!taken.backs.empty())
-      taken.backs[pixel] -= std::min(taken.backs[pixel], earlier / back_every);
+      taken.backs[pixel] -= std::min(taken.backs[pixel], earlier >> group_bits);
   }
   return taken;
 }

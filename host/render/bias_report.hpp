@@ -21,11 +21,11 @@ struct SideSamples {
   std::vector<std::uint32_t> fronts, backs;  ///< backs: empty if there are none
 };
 
-/// Samples that were traced while `sums` were made. `samples`: all of each pixel. `back_every`:
-/// RenderOptions::back_every.
+/// Samples that were traced while `sums` were made. `samples`: all of each pixel. `group_bits`:
+/// BackParams::group_bits.
 SideSamples samples_of_bias(const BiasSums& sums, const HostView& film,
                             const std::vector<std::uint32_t>& samples, const FilmLayout& layout,
-                            std::uint32_t back_every);
+                            std::uint32_t group_bits);
 
 /// The bias of each of these layers, over pixels that show geometry and have samples. `samples`: of
 /// `sums`. `divisors`: of each layer, what values are divided by. Empty: nothing was compared.

@@ -18,29 +18,12 @@
 #include "render/bias_report.hpp"
 #include "render/bias_tracer.hpp"
 #include "render/picture_rays.hpp"
+#include "render/slice_params.hpp"
 #include "sampling/film_moments.hpp"
 #include "sampling/sample_plan.hpp"
 
 namespace dapple {
 namespace {
-
-/// Rays of one kind in a slice. On a CPU the queues stay in its caches, and passes are long enough
-/// that their ends do not matter (experiment 706); on a GPU they fill the device.
-constexpr std::size_t kCpuSlice = 1u << 18;
-constexpr std::size_t kGpuSlice = 1u << 19;
-
-/// Rays of all kinds in a slice at most, as a multiple of the above: with many lights a slice would
-/// take too long, and a render stops only between slices.
-constexpr std::size_t kRaysOverInFlight = 4;
-
-std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
-                               std::size_t lights, std::size_t rays_in_flight) {
-  const std::size_t slice = device.kind == "GPU" ? kGpuSlice : kCpuSlice;
-  const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
-                           lights * static_cast<std::size_t>(options.light_rays);
-  const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);
-  return std::max(DAPPLE_SAMPLE_BATCH, static_cast<uint>(samples));
-}
 
 class PictureTracer {
  public:
@@ -78,8 +61,8 @@ class PictureTracer {
       bias_.emplace(context_, scene_, options, view, layer_count(), std::move(state_.bias));
     }
     place_sums();
-    resolve_ = resolve_params(view);
-    back_ = back_params(view);
+    resolve_ = resolve_params(view, layout, camera_.splitting_bits);
+    back_ = back_params(view, options);
   }
 
   TracedPicture trace(const View& view, const TraceControl& control) {
@@ -160,7 +143,8 @@ class PictureTracer {
       const std::vector<double> of_front = divisors;
       divisors.insert(divisors.end(), of_front.begin(), of_front.end());
     }
-    const SideSamples taken = samples_of_bias(bias_->sums(), sums, samples, layout_, back_.every);
+    const SideSamples taken =
+        samples_of_bias(bias_->sums(), sums, samples, layout_, back_.group_bits);
     return picture_bias(bias_->sums(), sums, taken, layout_, view, divisors);
   }
 
@@ -270,32 +254,6 @@ class PictureTracer {
     return errors;
   }
 
-  ResolveParams resolve_params(const View& view) const {
-    ResolveParams params{};
-    params.film_pixels = layout_.pixels;
-    params.splitting_bits = camera_.splitting_bits;
-    params.position_scale = layout_.position_scale;
-    params.depth_scale = layout_.depth_scale;
-    const M44f& m = view.camera.to_world;
-    for (int axis = 0; axis < 3; ++axis) {
-      params.axis[axis] = -m[2][axis];
-      params.eye[axis] = m[3][axis];
-    }
-    return params;
-  }
-
-  BackParams back_params(const View& view) const {
-    const int samples = footprint_samples(options_) * splitting_factor(options_);
-    BackParams params{};
-    params.every = static_cast<uint>(std::min(options_.back_every, samples));
-    params.seed = options_.seed;
-    params.width = static_cast<uint>(view.width);
-    params.crop_x = static_cast<uint>(view.crop.x0);
-    params.crop_y = static_cast<uint>(view.crop.y0);
-    params.crop_width = static_cast<uint>(width_);
-    return params;
-  }
-
   void trace_slice(const SliceParams& slice) {
     const std::size_t samples = std::size_t{slice.pixel_count} * slice.sample_count;
     camera_.slice = slice;
@@ -314,8 +272,7 @@ class PictureTracer {
     const std::uint32_t hits = compact_pass(context_, queues_, samples);
     if (hits == 0) return;
     if (bias_) bias_->keep_hits(queues_);
-    const Side front{queues_, layout_.ao, layout_.lights};
-    trace_side(front, hits);
+    trace_side({queues_}, hits);
     if (options_.back) trace_backs(samples);
   }
 
@@ -331,7 +288,7 @@ class PictureTracer {
     const std::uint32_t hits = compact_pass(context_, backs_, samples);
     if (hits == 0) return;
     if (bias_) bias_->keep_hits(backs_);
-    trace_side({backs_, layout_.back_ao, layout_.back_lights, true}, hits);
+    trace_side({backs_, true}, hits);
   }
 
   void add_hits(const SliceParams& slice) {
@@ -341,15 +298,14 @@ class PictureTracer {
                   points.values<SurfacePoint>(), hits.values<SampleHits>(), resolve_);
   }
 
-  /// The points of one side of the surfaces, and the planes of what reaches them.
+  /// The points of one side of the surfaces.
   struct Side {
-    Queues queues;
-    std::uint32_t ao = 0;
-    const std::vector<LightPlaneRange>& lights;
+    const Queues& queues;
     bool is_back = false;
   };
 
   void trace_side(const Side& side, std::uint32_t hits) {
+    resolve_.backs = side.is_back ? 1 : 0;
     if (options_.ao) trace_ao(side, hits);
     for (uint light = 0; light < light_count_; ++light) trace_light(side, light, hits);
   }
@@ -359,8 +315,8 @@ class PictureTracer {
     occlusion_pass(context_, side.queues, scene_, "ao occlusion", options_.estimator, params,
                    RayOrder::by_pixel);
     if (bias_) bias_->collect(first_layer(side), side.queues, params);
-    resolve_.plane = side.ao;
-    resolve_.squares = side.is_back ? layout_.back_squares : 0;
+    resolve_.plane = side.is_back ? layout_.back_ao : layout_.ao;
+    resolve_.squares = 0;
     resolve_.rays = params.rays_per_point;
     resolve_.scale = layout_.unit_scale;
     resolve_ao_pass(context_, side.queues, film_, resolve_);
@@ -372,8 +328,8 @@ class PictureTracer {
                    RayOrder::by_pixel);
     if (bias_)
       bias_->collect(first_layer(side) + (options_.ao ? 1 : 0) + light, side.queues, params);
-    resolve_.plane = side.lights[light].first;
-    resolve_.squares = side.is_back ? layout_.back_squares : layout_.light_squares(light);
+    resolve_.plane = side.is_back ? layout_.back_lights[light] : layout_.lights[light].first;
+    resolve_.squares = layout_.light_squares(light);
     resolve_.rays = params.rays_per_point;
     resolve_.scale = layout_.light_scale;
     if (layout_.lights[light].channels == 3)

@@ -112,8 +112,9 @@ struct RenderOptions {
   bool light = true;   ///< make the light passes
   bool albedo = true;  ///< make the layer of colours; SceneOptions::colors reads them
   bool back = false;   ///< make layers of what reaches the other side of surfaces
-  /// With `back`: one in so many samples is traced on that side, too, [1, 64]. With the default
-  /// that costs a tenth; layers of the other side have 2.8 times the noise of those in front.
+  /// With `back`: one in so many samples is traced on that side, too, a power of two in [1, 64].
+  /// With the default that costs a tenth; layers of the other side have 2.8 times the noise of
+  /// those in front.
   int back_every = 8;
   bool visits = false;  ///< make layers of node visits and triangle tests
   /// Make layers of motion vectors. Only Renderer::render_shutter() can: it takes the next frame.

@@ -4,11 +4,11 @@
 #include "film/film.clh"
 #include "sampling/random.clh"
 
-/* Whether the backs of sample `sample` are traced. Of `every` consecutive samples it is one, and the next one
-   of the next, so that each surface of a camera ray that several samples share has its turn. */
-inline bool is_chosen(BackParams params, uint pixel, uint sample) {
+/* The sample of a pixel's group whose backs are traced. In the next group it is the next one, so that each
+   surface of a camera ray that several samples share has its turn. */
+inline uint chosen_sample(BackParams params, uint pixel, uint group) {
   const uint shift = hash_pair(pixel, params.seed ^ 0x2f8ac1d3u);
-  return sample % params.every == (sample / params.every + shift) % params.every;
+  return (group << params.group_bits) + ((group + shift) & ((1u << params.group_bits) - 1u));
 }
 
 /* One work-item for each record. A turned point is numbered among those of its pixel, so that its rays are
@@ -22,10 +22,11 @@ __kernel void turn_points(__global const SurfacePoint* points, __global const Sa
   uint chosen = 0u;
   for (uint left = sample_hits[record].hits; left; left &= left - 1u) {
     const uint lane = lowest_bit(left), at = record * DAPPLE_HIT_BITS + lane;
-    SurfacePoint point = points[at];
-    if (!is_chosen(params, point.pixel, point.sample)) continue;
+    const uint sample = points[at].sample, group = sample >> params.group_bits;
+    if (sample != chosen_sample(params, points[at].pixel, group)) continue;
     chosen |= 1u << lane;
-    point.sample /= params.every;
+    SurfacePoint point = points[at];
+    point.sample = group;
     for (uint axis = 0; axis < 3u; ++axis) point.normal[axis] = -point.normal[axis];
     turned[at] = point;
   }
@@ -42,9 +43,12 @@ __kernel void count_backs(__global const PixelWork* work, __global const SampleH
   const PixelWork of = work[slice.first_work + local_pixel];
   const uint pixel = (params.crop_y + of.pixel / params.crop_width) * params.width + params.crop_x +
                      of.pixel % params.crop_width;
-  const uint first = of.first_sample + slice.first_sample;
+  const uint first = of.first_sample + slice.first_sample, last = first + slice.sample_count - 1u;
   uint chosen = 0u, hits = 0u;
-  for (uint s = 0; s < slice.sample_count; ++s) chosen += is_chosen(params, pixel, first + s) ? 1u : 0u;
+  for (uint group = first >> params.group_bits; group <= last >> params.group_bits; ++group) {
+    const uint sample = chosen_sample(params, pixel, group);
+    chosen += sample >= first && sample <= last ? 1u : 0u;
+  }
   if (!chosen) return;
   const uint begin = local_pixel * slice.sample_count, end = begin + slice.sample_count;
   for (uint r = begin / DAPPLE_HIT_BITS; r * DAPPLE_HIT_BITS < end; ++r)

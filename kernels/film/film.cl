@@ -83,7 +83,7 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
-  add_to_planes(film, params, 6u, pixel, sums);
+  add_to_planes(film, params, params.backs ? 1u : 6u, pixel, sums);
 }
 
 /* Planes: irradiance at radiance 1, the same unoccluded, visits, tests. */
@@ -113,5 +113,5 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
-  add_to_planes(film, params, 4u, pixel, sums);
+  add_to_planes(film, params, params.backs ? 1u : 4u, pixel, sums);
 }

@@ -95,10 +95,14 @@
   STRUCT(ResolveParams)                                                                      \
   MEMBER(ResolveParams, slice) MEMBER(ResolveParams, film_pixels)                            \
   MEMBER(ResolveParams, plane) MEMBER(ResolveParams, rays) MEMBER(ResolveParams, squares)    \
-  MEMBER(ResolveParams, splitting_bits)                                                          \
+  MEMBER(ResolveParams, backs) MEMBER(ResolveParams, splitting_bits)                         \
   MEMBER(ResolveParams, scale)                                                               \
   MEMBER(ResolveParams, position_scale) MEMBER(ResolveParams, depth_scale)                   \
   MEMBER(ResolveParams, axis) MEMBER(ResolveParams, eye)                           \
+  STRUCT(BackParams)                                                                         \
+  MEMBER(BackParams, resolve) MEMBER(BackParams, group_bits) MEMBER(BackParams, seed)        \
+  MEMBER(BackParams, width) MEMBER(BackParams, crop_x) MEMBER(BackParams, crop_y)            \
+  MEMBER(BackParams, crop_width)                                                             \
   STRUCT(ShadingParams)                                                                      \
   MEMBER(ShadingParams, resolve) MEMBER(ShadingParams, normals)                              \
   MEMBER(ShadingParams, albedo) MEMBER(ShadingParams, resolves)                              \

@@ -122,8 +122,8 @@ MUTATIONS = [
         r"^(BiasReport|Resume)\."),
     Mutation(
         "backs-of-the-first-sample-of-each-group", "kernels/film/backs.cl",
-        "== (sample / params.every + shift) % params.every;",
-        "== 0u * shift;",
+        "((group + shift) & ((1u << params.group_bits) - 1u));",
+        "0u * shift;",
         r"^Back\."),
     Mutation(
         "backs-divided-by-all-samples", "host/film/layers.cpp",

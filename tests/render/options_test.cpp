@@ -121,6 +121,7 @@ TEST(Options, ValuesOutOfRangeAreRefusedWithTheirFlag) {
       {"--light-rays", set(&O::light_rays, -5)},
       {"--light-rays", set(&O::light_rays, 4097)},
       {"--back-every", set(&O::back_every, 0)},
+      {"--back-every", set(&O::back_every, 12)},
       {"--back-every", set(&O::back_every, 65)},
       {"--footprint", set(&O::footprint, -0.001f)},
       {"--footprint", set(&O::footprint, kNan)},

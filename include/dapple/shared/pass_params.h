@@ -121,6 +121,7 @@ typedef struct ResolveParams {
   uint plane;          /* first plane to add to */
   uint rays;           /* rays a sample */
   uint squares;        /* first of two planes of squares to add to */
+  uint backs;          /* 1: of AO and lights only what arrives is added, and no squares */
   uint splitting_bits; /* as in CameraParams */
   float scale;         /* of values in [0,1] */
   float position_scale;
@@ -132,7 +133,7 @@ typedef struct ResolveParams {
 /* The passes that choose the samples whose backs are traced. */
 typedef struct BackParams {
   ResolveParams resolve;
-  uint every; /* one in so many samples of a pixel is chosen */
+  uint group_bits; /* of each 2^group_bits samples of a pixel one is chosen */
   uint seed;
   uint width; /* of the whole picture, pixels */
   uint crop_x, crop_y, crop_width;

@@ -1,0 +1,59 @@
+#include "render/slice_params.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "camera/camera_splitting.hpp"
+
+namespace dapple {
+namespace {
+
+/// Rays of one kind in a slice. On a CPU the queues stay in its caches, and passes are long enough
+/// that their ends do not matter (experiment 706); on a GPU they fill the device.
+constexpr std::size_t kCpuSlice = 1u << 18;
+constexpr std::size_t kGpuSlice = 1u << 19;
+
+/// Rays of all kinds in a slice at most, as a multiple of the above: with many lights a slice would
+/// take too long, and a render stops only between slices.
+constexpr std::size_t kRaysOverInFlight = 4;
+
+}  // namespace
+
+std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
+                               std::size_t lights, std::size_t rays_in_flight) {
+  const std::size_t slice = device.kind == "GPU" ? kGpuSlice : kCpuSlice;
+  const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
+                           lights * static_cast<std::size_t>(options.light_rays);
+  const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);
+  return std::max(DAPPLE_SAMPLE_BATCH, static_cast<uint>(samples));
+}
+
+ResolveParams resolve_params(const View& view, const FilmLayout& layout, uint splitting_bits) {
+  ResolveParams params{};
+  params.film_pixels = layout.pixels;
+  params.splitting_bits = splitting_bits;
+  params.position_scale = layout.position_scale;
+  params.depth_scale = layout.depth_scale;
+  const M44f& m = view.camera.to_world;
+  for (int axis = 0; axis < 3; ++axis) {
+    params.axis[axis] = -m[2][axis];
+    params.eye[axis] = m[3][axis];
+  }
+  return params;
+}
+
+BackParams back_params(const View& view, const RenderOptions& options) {
+  const auto samples =
+      static_cast<unsigned>(footprint_samples(options) * splitting_factor(options));
+  const unsigned group = std::min(static_cast<unsigned>(options.back_every), samples);
+  BackParams params{};
+  params.group_bits = static_cast<uint>(std::bit_width(group) - 1);  // rounded down
+  params.seed = options.seed;
+  params.width = static_cast<uint>(view.width);
+  params.crop_x = static_cast<uint>(view.crop.x0);
+  params.crop_y = static_cast<uint>(view.crop.y0);
+  params.crop_width = static_cast<uint>(view.crop.width());
+  return params;
+}
+
+}  // namespace dapple
