@@ -128,7 +128,7 @@ void set_seen(const View& view, const Box3f& bounds, CameraParams& params) {
 constexpr float kTexelShare = 0.25f, kTexelShareOfTap = 0.175f;
 
 /// Part of a camera sample's footprint that the four filter taps cover together: experiments 402,
-/// 446, 448.
+/// 446, 448 and 449.
 constexpr float kTapShare = 0.16f;
 
 /// With filter taps, the maximum part of a pixel's area that one lookup averages, and that the four

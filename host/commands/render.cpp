@@ -42,8 +42,11 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
 
 void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format,
                     const PngOptions& png) {
+  ExrFormat used = format;
+  // To end soon: compression takes longer than all else.
+  if (result.interrupted) used.compression = ExrCompression::none;
   if (!is_part_path(frame.output))
-    write_exr(result.film, frame.output, format, result.interrupted ? Durable::no : Durable::yes);
+    write_exr(result.film, frame.output, used, result.interrupted ? Durable::no : Durable::yes);
   if (!frame.deep.empty()) write_deep_exr(result.film, frame.deep);
   if (!frame.png.empty()) write_png(result.film, frame.png, "", png);
   if (!frame.visits_png.empty()) write_heat_map(result.film, frame.visits_png, "visits.nodes");
