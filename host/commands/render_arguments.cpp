@@ -56,10 +56,9 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
                  "pixels), visits (BVH nodes and triangles that rays tested)")
       ->capture_default_str();
   app.add_option("--back-every", o.back_every,
-                 "With --passes back: of so many samples one is also traced on that side: 1, 2, 4, "
-                 "... 64. "
-                 "1 gives these layers as little noise as those in front, and takes 1.7 times as "
-                 "long")
+                 "With --passes back: one in so many samples is traced on that side, too: 1, 2, 4, "
+                 "8, 16, 32 or 64. With 1 these layers have as little noise as those in front, and "
+                 "a render takes up to 1.7 times as long")
       ->capture_default_str();
   app.add_option(
       "--ambient", o.ambient,

@@ -169,8 +169,9 @@ void validate(const RenderOptions& options) {
   check_range("--light-rays", options.light_rays, 1, 4096);
   check_range("--back-every", options.back_every, 1, 64);
   if (!std::has_single_bit(static_cast<unsigned>(options.back_every)))
-    throw Error(ErrorKind::usage,
-                fmt::format("--back-every is {}; it must be a power of two", options.back_every));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--back-every is {}; it must be 1, 2, 4, 8, 16, 32 or 64", options.back_every));
   check_range("--footprint", options.footprint, 0, 1e6);
   check_range("--report-bias", options.report_bias, 0, 1);
   check_range("--max-bias", options.max_bias, 0, 1);

@@ -1,11 +1,11 @@
-/* The samples whose backs are traced, one in every few of each pixel: what reaches the other side of a
-   surface is seen through it, so that a little noise of it does no harm. In: the surface points of a slice,
-   before the shading pass. Out: these samples' points, turned; their hits; planes of their numbers. */
+/* Chooses the samples whose backs are traced, one in each group of 2^group_bits samples of a pixel. In: the
+   surface points of a slice, before the shading pass. Out: the chosen points, turned to the other side, and
+   which of them hit; planes with the numbers of both. */
 #include "film/film.clh"
 #include "sampling/random.clh"
 
-/* The sample of a pixel's group whose backs are traced. In the next group it is the next one, so that each
-   surface of a camera ray that several samples share has its turn. */
+/* The chosen sample of a pixel's group. Its place in the group moves on by one from group to group, so that
+   all surfaces are chosen equally often where several samples share a camera ray. */
 inline uint chosen_sample(BackParams params, uint pixel, uint group) {
   const uint shift = hash_pair(pixel, params.seed ^ 0x2f8ac1d3u);
   return (group << params.group_bits) + ((group + shift) & ((1u << params.group_bits) - 1u));

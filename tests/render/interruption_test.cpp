@@ -1,6 +1,8 @@
 // Signals end renders of the program: exit codes, a complete picture and checkpoint file, and a
 // next run that continues to the same file. A process that is killed loses only the work since its
 // last checkpoint.
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,6 +86,8 @@ TEST_F(Interruption, WithoutACheckpointThePictureSoFarIsWritten) {
   const Film film = read_exr(path("out.exr"));
   const auto& samples = film.find("samples")->pixels;
   EXPECT_EQ(*std::min_element(samples.begin(), samples.end()), 0) << "rows that were not reached";
+  EXPECT_EQ(Imf::InputFile(path("out.exr").c_str()).header().compression(), Imf::NO_COMPRESSION)
+      << "compression would delay the end";
   EXPECT_TRUE(contains(bytes_of(log()), "--checkpoint F")) << bytes_of(log());
   EXPECT_EQ(files_in_folder(), 1u);
 }
