@@ -21,6 +21,8 @@ const char* describe(Packets packets) {
       return "occlusion rays in pixel packets, from 16 rays per point (exact: 32) in point packets";
     case Packets::point:
       return "occlusion rays in point packets";
+    case Packets::scalar:
+      return "each ray in a work-item of its own, one box or triangle at a time";
     default:
       return "single occlusion rays";
   }

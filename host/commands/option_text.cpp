@@ -203,8 +203,9 @@ Packets parse_packets(const std::string& text) {
   if (text == "none") return Packets::none;
   if (text == "pixel") return Packets::pixel;
   if (text == "point") return Packets::point;
+  if (text == "scalar") return Packets::scalar;
   throw Error(ErrorKind::usage,
-              fmt::format("--packets {}: it is auto, none, pixel or point", text));
+              fmt::format("--packets {}: it is auto, none, pixel, point or scalar", text));
 }
 
 void parse_passes(const std::string& text, RenderOptions& options) {

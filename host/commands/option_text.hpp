@@ -25,7 +25,7 @@ Estimator parse_estimator(const std::string& text);
 PngOptions parse_png_options(const std::string& exposure, const std::string& background);
 /// "shading" or "geometric"
 Normals parse_normals(const std::string& text);
-/// "auto", "none", "pixel" or "point"
+/// "auto", "none", "pixel", "point" or "scalar"
 Packets parse_packets(const std::string& text);
 /// "object", "material" or both; empty: none
 Cryptomattes parse_cryptomattes(const std::string& text);

@@ -1,8 +1,13 @@
 #include "passes/camera_pass.hpp"
 
+#include <algorithm>
+
+#include "passes/ray_packets.hpp"
+
 namespace dapple {
 
-KernelName camera_kernel(bool shared_origin) {
+KernelName camera_kernel(const DeviceContext& context, bool shared_origin) {
+  if (traces_scalar(context)) return {"camera_hits_scalar", "scalar/camera_scalar", {}};
   return {"camera_hits", "camera/camera", {false, shared_origin}};
 }
 
@@ -12,14 +17,20 @@ void camera_pass(DeviceContext& context, const DeviceBuffers& scene, const Queue
       std::size_t{params.slice.pixel_count} * (params.slice.sample_count >> params.splitting_bits);
   CameraParams camera = params;
   camera.scene = scene.params;
+  const KernelName kernel =
+      camera_kernel(context, camera.orthographic == 0 && camera.lens_radius == 0);
+  const std::vector<KernelArgument> arguments{scene.nodes,        scene.blocks,    scene.segments,
+                                              scene.textured,     scene.materials, scene.texels,
+                                              scene.instances,    queues.work,     queues.points,
+                                              queues.sample_hits, camera};
+  if (traces_scalar(context)) {
+    context.launch(kernel, "camera", rays, arguments, kRayGroup);
+    return;
+  }
   constexpr std::size_t kCameraRaysPerTicket =
       std::size_t{DAPPLE_ITEM_RAYS} * DAPPLE_ITEMS_PER_TICKET;
-  context.launch_with_tickets(
-      camera_kernel(params.orthographic == 0 && params.lens_radius == 0), "camera",
-      ceil_div(rays, kCameraRaysPerTicket),
-      {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
-       scene.instances, queues.work, queues.points, queues.sample_hits, camera},
-      kCameraGroup);
+  context.launch_with_tickets(kernel, "camera", ceil_div(rays, kCameraRaysPerTicket), arguments,
+                              kCameraGroup);
 }
 
 void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
@@ -33,9 +44,17 @@ void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const 
 }
 
 std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples) {
-  context.launch(kCompactHits, "compact", kScanItems,
-                 {queues.sample_hits, queues.active, queues.active_count,
-                  static_cast<uint>(hit_records(samples))},
+  const std::size_t records = hit_records(samples);
+  const bool parallel = traces_scalar(context);
+  const std::size_t groups = parallel ? std::max<std::size_t>(ceil_div(records, kScanItems), 1) : 1;
+  const auto record_count = static_cast<uint>(records);
+  const auto of_group = parallel ? static_cast<uint>(kScanItems) : record_count;
+  if (parallel)
+    context.launch(kCountHits, "compact", groups * kScanItems,
+                   {queues.sample_hits, queues.group_hits, record_count, of_group}, kScanItems);
+  context.launch(kCompactHits, "compact", groups * kScanItems,
+                 {queues.sample_hits, queues.active, queues.active_count, queues.group_hits,
+                  record_count, of_group},
                  kScanItems);
   std::uint32_t count = 0;
   context.read(queues.active_count, &count, sizeof count);

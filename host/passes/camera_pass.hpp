@@ -9,13 +9,13 @@
 
 namespace dapple {
 
-/// Work-items of a work-group of camera_hits.
+/// Work-items of a work-group of camera_hits; camera_hits_scalar has kRayGroup.
 inline constexpr std::size_t kCameraGroup = 1;
-/// Work-items of the one work-group that compacts; DAPPLE_SCAN_ITEMS in kernels/film/compact.cl.
-inline constexpr std::size_t kScanItems = 256;
 
-KernelName camera_kernel(bool shared_origin);
+/// The kernel of the camera pass on this device. `shared_origin`: is_pinhole() of the camera.
+KernelName camera_kernel(const DeviceContext& context, bool shared_origin);
 inline const KernelName kClosestHit{"closest_hit", "camera/closest_hit", {}};
+inline const KernelName kCountHits{"count_hits", "queue_kernels", {}};
 inline const KernelName kCompactHits{"compact_hits", "queue_kernels", {}};
 
 /// Writes the first surfaces of the slice's camera rays to `points` and `sample_hits`.

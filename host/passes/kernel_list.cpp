@@ -17,8 +17,15 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
       {kShadePoints, kRayGroup},        {kTurnPoints, kRayGroup},   {kResolveSurface, kRayGroup},
       {kResolveLight, kRayGroup},       {kGatherRays, kRayGroup},   {kCountBacks, kRayGroup},
   };
+  if (traces_scalar(context)) {
+    kernels.push_back({kCountHits, kScanItems});
+    kernels.push_back({camera_kernel(context, true), kRayGroup});
+    for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered})
+      kernels.push_back({occlusion_kernel(estimator, Packets::scalar), kRayGroup});
+    return kernels;
+  }
   for (const bool shared_origin : {true, false})
-    kernels.push_back({camera_kernel(shared_origin), kCameraGroup});
+    kernels.push_back({camera_kernel(context, shared_origin), kCameraGroup});
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
     kernels.push_back({occlusion_kernel(estimator, Packets::none), kRayGroup});
     kernels.push_back({point_ao_kernel(estimator), kPointGroup});
@@ -31,7 +38,9 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
 std::vector<KernelName> picture_kernels(const DeviceContext& context, const RenderOptions& options,
                                         const Camera& camera, const std::vector<Light>& lights,
                                         bool shaded) {
-  std::vector<KernelName> kernels{camera_kernel(is_pinhole(camera)), kCompactHits, kResolveSurface};
+  std::vector<KernelName> kernels{camera_kernel(context, is_pinhole(camera)), kCompactHits,
+                                  kResolveSurface};
+  if (traces_scalar(context)) kernels.push_back(kCountHits);
   if (shaded) kernels.push_back(kShadePoints);
   if (options.back) kernels.insert(kernels.end(), {kTurnPoints, kCountBacks});
   const auto add_occlusion = [&](int rays) {

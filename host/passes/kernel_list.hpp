@@ -15,7 +15,7 @@ struct KernelShape {
   std::size_t group = 0;
 };
 
-/// Every kernel that any picture or query launches.
+/// Every kernel that any picture or query launches on this device.
 std::vector<KernelShape> every_kernel(const DeviceContext& context);
 
 /// The kernels that a picture with these options, camera and lights launches.

@@ -13,6 +13,8 @@ constexpr std::size_t kPacketGroup = 16;
 
 KernelName occlusion_kernel(Estimator estimator, Packets with) {
   const bool prefiltered = estimator != Estimator::exact;
+  if (with == Packets::scalar)
+    return {"occlusion_scalar", "scalar/occlusion_scalar", {prefiltered}};
   if (with == Packets::none) return {"occlusion", "occlusion/occlusion", {prefiltered}};
   return {"packet", "occlusion/packet", {prefiltered, with == Packets::point}};
 }
@@ -56,7 +58,7 @@ void occlusion_pass_with(Packets with, DeviceContext& context, const Queues& que
   const std::vector<KernelArgument> arguments{
       scene.nodes,  scene.blocks,    scene.segments, scene.textured,    scene.materials,
       scene.texels, scene.instances, queues.rays,    queues.occlusions, launched};
-  if (with == Packets::none) {
+  if (with == Packets::none || with == Packets::scalar) {
     context.launch(kernel, label, params.ray_count, arguments, kRayGroup);
   } else {
     const uint ticket_count = with == Packets::pixel

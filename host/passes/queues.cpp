@@ -11,7 +11,7 @@ std::size_t hit_records(std::size_t samples) {
 
 std::size_t Queues::bytes() const {
   return work.bytes() + rays.bytes() + points.bytes() + sample_hits.bytes() + active.bytes() +
-         active_count.bytes() + occlusions.bytes();
+         active_count.bytes() + group_hits.bytes() + occlusions.bytes();
 }
 
 Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample) {
@@ -21,6 +21,7 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
   queues.sample_hits = context.allocate(hit_records(samples) * sizeof(SampleHits));
   queues.active = context.allocate(samples * sizeof(uint));
   queues.active_count = context.allocate(sizeof(uint));
+  queues.group_hits = context.allocate(ceil_div(hit_records(samples), kScanItems) * sizeof(uint));
   queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
   return queues;
 }

@@ -14,6 +14,9 @@ inline constexpr std::size_t kQueryRays = 1u << 18;
 /// Work-items of a work-group of kernels that run one ray, pixel or hit record in each.
 inline constexpr std::size_t kRayGroup = 64;
 
+/// Work-items of a work-group that compacts; DAPPLE_SCAN_ITEMS in kernels/film/compact.cl.
+inline constexpr std::size_t kScanItems = 256;
+
 /// Queues for one slice; allocated once, used by every slice.
 struct Queues {
   Buffer work;          ///< PixelWork; the caller of camera_pass() allocates it
@@ -22,6 +25,7 @@ struct Queues {
   Buffer sample_hits;   ///< SampleHits, one for DAPPLE_HIT_BITS samples
   Buffer active;        ///< uint: indices of the samples that hit, ascending
   Buffer active_count;  ///< uint
+  Buffer group_hits;    ///< uint: hits in the records of each work-group that compacts
   Buffer occlusions;    ///< Occlusion, one a ray
   [[nodiscard]] std::size_t bytes() const;
 };

@@ -31,12 +31,18 @@ constexpr uint kRaysPerTicket = 256;
 Packets choose_packets(Estimator estimator, uint rays_per_point, RayOrder order,
                        const DeviceContext& context) {
   if (context.packets() != Packets::automatic) return context.packets();
-  if (context.info().kind != "CPU") return Packets::none;
+  if (context.info().kind != "CPU") return Packets::scalar;
   const uint min_of_point =
       estimator == Estimator::exact ? kMinExactPointPacketRays : kMinPointPacketRays;
   if (rays_per_point >= min_of_point) return Packets::point;
   return rays_per_point >= kMinPacketRays || order == RayOrder::by_pixel ? Packets::pixel
                                                                          : Packets::none;
+}
+
+bool traces_scalar(const DeviceContext& context) {
+  const Packets packets = context.packets();
+  return packets == Packets::scalar ||
+         (packets == Packets::automatic && context.info().kind != "CPU");
 }
 
 Packets packets_in_picture(const DeviceContext& context, Estimator estimator, int rays) {

@@ -1,5 +1,5 @@
-// Chooses how a queue of rays is traced: as single rays, in pixel packets or in point packets; and
-// cuts queues into the batches and tickets of packet kernels.
+// Chooses how a queue of rays is traced: as single rays, of vector or of scalar kernels, in pixel
+// packets or in point packets; and cuts queues into the batches and tickets of packet kernels.
 #pragma once
 
 #include "dapple/options.hpp"
@@ -23,6 +23,10 @@ Packets choose_packets(Estimator estimator, uint rays_per_point, RayOrder order,
 /// The packets of a picture's occlusion rays. `rays`: AO rays, or rays to one light, of each
 /// sample.
 Packets packets_in_picture(const DeviceContext& context, Estimator estimator, int rays);
+
+/// Whether each ray, camera rays too, has a work-item of its own that takes one box or triangle at
+/// a time (kernels/scalar/).
+bool traces_scalar(const DeviceContext& context);
 
 /// Sets large_batches for a queue of ray_count pixel rays; returns the number of batches, each of
 /// which is a ticket. Independent of the number of threads, since batches decide how visits are

@@ -67,13 +67,17 @@ using Pass = std::function<void(EmptyStage&, const Variant&)>;
 const std::map<std::string, Pass>& passes() {
   static const std::map<std::string, Pass> kOfKernel{
       {"camera_hits", find_nothing},
+      {"camera_hits_scalar", find_nothing},
       {"closest_hit",
        [](EmptyStage& s, const Variant&) { closest_hit_pass(s.context, s.scene, s.queues, 0); }},
+      {"count_hits", [](EmptyStage& s, const Variant&) { compact_pass(s.context, s.queues, 0); }},
       {"compact_hits", [](EmptyStage& s, const Variant&) { compact_pass(s.context, s.queues, 0); }},
       {"ao_rays", [](EmptyStage& s, const Variant&) { ao_ray_pass(s.context, s.queues, {}); }},
       {"light_rays",
        [](EmptyStage& s, const Variant&) { light_ray_pass(s.context, s.scene, s.queues, {}); }},
       {"occlusion", [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::none, v); }},
+      {"occlusion_scalar",
+       [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::scalar, v); }},
       {"packet",
        [](EmptyStage& s, const Variant& v) {
          occlude_nothing(s, v.shared_origin ? Packets::point : Packets::pixel, v);

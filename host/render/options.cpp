@@ -127,6 +127,8 @@ std::string name_of(Packets packets) {
       return "pixel";
     case Packets::point:
       return "point";
+    case Packets::scalar:
+      return "scalar";
   }
   return "";
 }

@@ -9,19 +9,33 @@ namespace dapple {
 namespace {
 
 /// Rays of one kind in a slice. On a CPU the queues stay in its caches, and passes are long enough
-/// that their ends do not matter (experiment 706); on a GPU they fill the device.
+/// that their ends do not matter (experiment 706).
 constexpr std::size_t kCpuSlice = 1u << 18;
-constexpr std::size_t kGpuSlice = 1u << 19;
+
+/// The same for each compute unit of a GPU, so that launches are long beside the waits between
+/// them.
+constexpr std::size_t kSliceOfUnit = 1u << 15;
+
+/// Bytes of device memory for each ray of a GPU's slice: the queues take some hundreds of bytes a
+/// ray, and the scene must have room beside them.
+constexpr std::size_t kMemoryOfRay = 2048;
 
 /// Rays of all kinds in a slice at most, as a multiple of the above: with many lights a slice would
 /// take too long, and a render stops only between slices.
 constexpr std::size_t kRaysOverInFlight = 4;
 
+std::size_t rays_of_slice(const DeviceInfo& device) {
+  if (device.kind == "CPU") return kCpuSlice;
+  const auto rays = std::min<std::size_t>(kSliceOfUnit * device.compute_units,
+                                          device.memory_bytes / kMemoryOfRay);
+  return std::max(kCpuSlice, std::bit_floor(rays));
+}
+
 }  // namespace
 
 std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
                                std::size_t lights, std::size_t rays_in_flight) {
-  const std::size_t slice = device.kind == "GPU" ? kGpuSlice : kCpuSlice;
+  const std::size_t slice = rays_of_slice(device);
   const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
                            lights * static_cast<std::size_t>(options.light_rays);
   const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);

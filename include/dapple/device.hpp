@@ -13,10 +13,11 @@ namespace dapple {
 /// Which occlusion rays are traversed together. It changes the time of a render. It changes results
 /// only by rounding, except that prefiltered rays in point packets may stop at other nodes.
 enum class Packets : std::uint8_t {
-  automatic,  ///< on CPUs pixel, or point from 16 rays a point (exact rays: 32); elsewhere none
-  none,       ///< single rays: one work-item a ray
+  automatic,  ///< on CPUs pixel, or point from 16 rays a point (exact rays: 32); elsewhere scalar
+  none,       ///< single rays: a work-item a ray, eight boxes or triangles at a time
   pixel,      ///< coherent packets: up to 64 rays that start on neighbouring pixels
   point,      ///< shared-origin packets: up to 64 rays of one point
+  scalar,     ///< for GPUs: a work-item a ray, camera rays too, one box or triangle at a time
 };
 
 struct DeviceInfo {
@@ -60,7 +61,7 @@ struct UploadOptions {
   /// Mesh::normals: 8 bytes for each lane of the blocks that hold smooth triangles, and 4 for every
   /// block.
   bool normals = false;
-  bool colors = false;   ///< for the albedo: colours of materials, textures and vertices
+  bool colors = false;  ///< for the albedo: colours of materials, textures and vertices
   /// Upload normals also where all triangles are flat: at other moments of the picture they aren't.
   bool flat_normals = false;
   bool operator==(const UploadOptions&) const = default;

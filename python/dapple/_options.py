@@ -84,7 +84,7 @@ class RenderOptions(TypedDict, total=False):
     seed: int
     normals: Literal["shading", "geometric"]
     device: str
-    packets: Literal["auto", "none", "pixel", "point"]
+    packets: Literal["auto", "none", "pixel", "point", "scalar"]
     cache: str
     ground: bool
     opacity: Mapping[str, float]

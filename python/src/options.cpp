@@ -27,10 +27,11 @@ using Names = std::array<std::pair<const char*, Value>, N>;
 
 constexpr Names<Estimator, 2> kEstimators{
     {{"exact", Estimator::exact}, {"prefiltered", Estimator::prefiltered}}};
-constexpr Names<Packets, 4> kPackets{{{"auto", Packets::automatic},
+constexpr Names<Packets, 5> kPackets{{{"auto", Packets::automatic},
                                       {"none", Packets::none},
                                       {"pixel", Packets::pixel},
-                                      {"point", Packets::point}}};
+                                      {"point", Packets::point},
+                                      {"scalar", Packets::scalar}}};
 constexpr Names<Normals, 2> kNormals{
     {{"shading", Normals::shading}, {"geometric", Normals::geometric}}};
 constexpr Names<BakeSides, 4> kSides{{{"auto", BakeSides::automatic},

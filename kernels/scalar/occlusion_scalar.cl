@@ -1,0 +1,17 @@
+/* The occlusion pass with single rays for GPUs: each work-item traces one ray, one box and one primitive at a
+   time. In and out: as occlusion/occlusion.cl. */
+#include "scalar/transmittance.clh"
+
+__kernel void occlusion_scalar(__global const BvhNode* nodes, __global const TriangleBlock* blocks,
+                               __global const SegmentBlock* segments,
+                               __global const TexturedTriangle* textured,
+                               __global const MaterialRecord* materials, __global const uchar* texels,
+                               __global const InstanceRecord* instances, __global const Ray* rays,
+                               __global Occlusion* results, OcclusionParams params) {
+  const uint item = get_global_id(0);
+  if (item >= params.ray_count) return;
+  const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
+  const Transmittance found = traverse_scalar(scene, params, rays[item]);
+  results[item].transmittance = found.value;
+  results[item].visits = min(found.visits, 65535u) | min(found.tests, 65535u) << 16;
+}

@@ -1,0 +1,174 @@
+// Scalar kernels, which GPUs use, find what the vector kernels find: occlusion rays ray by ray, and
+// pictures pixel by pixel.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/traced_scenes.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+// A device whose rays are traced by the kernels of that kind.
+const Device& device_with(Packets packets) {
+  static const Device single("", "", Packets::none), scalar("", "", Packets::scalar);
+  return packets == Packets::scalar ? scalar : single;
+}
+
+std::vector<Scene> scenes_of_every_kind() {
+  std::vector<Scene> scenes;
+  scenes.push_back(make_procedural("scene:tree?leaves=2000"));
+  scenes.push_back(forest_scaled_non_uniformly());
+  scenes.push_back(textured_cards());
+  scenes.push_back(make_procedural("scene:hair?strands=400"));
+  return scenes;
+}
+
+// The kernels round differently, so a ray near the border of a box, of a triangle or of a footprint
+// may hit in one and miss in the other: at most 2 in a thousand.
+constexpr double kOtherWay = 2e-3;
+
+TEST(ScalarKernels, FindTheTransmittanceOfVectorKernelsRayByRay) {
+  for (const Scene& scene : scenes_of_every_kind()) {
+    const SceneBvh bvh = build_bvh(scene);
+    std::vector<Ray> rays = rays_through(bvh.bounds, 8000, bvh.bounds.size().length(), 1e-3f, 5);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (i % 3 == 0)
+        rays[i].t_max = 0.01f * bvh.bounds.size().length() * static_cast<float>(i % 150);
+      rays[i].key = static_cast<std::uint32_t>(i) * 0x9e3779b9u;
+    }
+    for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+      SCOPED_TRACE(scene.source + ", " + name_of(estimator));
+      std::vector<Occlusion> found[2];
+      for (const Packets packets : {Packets::none, Packets::scalar}) {
+        const Device& device = device_with(packets);
+        found[packets == Packets::scalar] =
+            trace(device, upload(device, scene, bvh), rays, estimator);
+      }
+      int different = 0;
+      double difference = 0, hidden = 0, visits[2] = {}, tests[2] = {};
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const float apart = found[1][i].transmittance - found[0][i].transmittance;
+        different += !(std::fabs(apart) <= 1e-4f);
+        difference += apart;
+        hidden += found[0][i].transmittance < 1;
+        for (const int k : {0, 1}) {
+          visits[k] += found[k][i].visits & 65535u;
+          tests[k] += found[k][i].visits >> 16;
+        }
+      }
+      const auto count = static_cast<double>(rays.size());
+      std::printf("%s, %s: %d differ, mean %.2g, visits %.2f and %.2f\n", scene.source.c_str(),
+                  name_of(estimator).c_str(), different, difference / count, visits[0] / count,
+                  visits[1] / count);
+      EXPECT_GT(hidden, 0.2 * count) << "nothing in the way";
+      EXPECT_LE(different, kOtherWay * count);
+      EXPECT_LT(std::fabs(difference / count), 2e-4);
+      EXPECT_NEAR(visits[1], visits[0], 0.01 * visits[0]);
+      EXPECT_NEAR(tests[1], tests[0], 0.01 * tests[0]);
+    }
+  }
+}
+
+// Opacities fade with the distance in covered nodes and on surfaces.
+TEST(ScalarKernels, FadeOcclusionWithTheDistanceAsVectorKernelsDo) {
+  for (const Scene& scene : scenes_of_every_kind()) {
+    SCOPED_TRACE(scene.source);
+    const SceneBvh bvh = build_bvh(scene);
+    Points random(3);
+    std::vector<V3f> points, normals;
+    for (int i = 0; i < 300; ++i) {
+      points.push_back(bvh.bounds.center() + V3f(bvh.bounds.size() * random.in_cube(0.5f)));
+      normals.push_back(random.on_sphere());
+    }
+    OcclusionOptions options;
+    options.rays = 16;
+    options.distance = 0.4f * bvh.bounds.size().length();
+    options.falloff = 2;
+    std::vector<float> ao[2];
+    for (const Packets packets : {Packets::none, Packets::scalar}) {
+      const Device& device = device_with(packets);
+      ao[packets == Packets::scalar] =
+          occlusion(device, upload(device, scene, bvh), points, normals, options);
+    }
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      sum += ao[0][i];
+      squares += (ao[1][i] - ao[0][i]) * (ao[1][i] - ao[0][i]);
+    }
+    EXPECT_LT(sum, 0.98 * 300) << "nothing in the way";
+    EXPECT_LT(std::sqrt(squares / 300), 2e-3);
+  }
+}
+
+// The largest deviation of means, and the RMSE over the pixels, of the layers of two pictures.
+struct Deviation {
+  double mean = 0, rmse = 0;
+};
+
+Deviation deviation_of(const Film& a, const Film& b, const std::string& channel) {
+  const Plane *in_a = a.find(channel), *in_b = b.find(channel);
+  EXPECT_TRUE(in_a && in_b) << channel;
+  Deviation deviation;
+  if (!in_a || !in_b) return deviation;
+  const std::size_t count = in_a->pixels.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (in_a->pixels[i] == in_b->pixels[i]) continue;  // infinite depths too
+    const double apart = in_b->pixels[i] - in_a->pixels[i];
+    deviation.mean += apart / static_cast<double>(count);
+    deviation.rmse += apart * apart / static_cast<double>(count);
+  }
+  deviation.rmse = std::sqrt(deviation.rmse);
+  return deviation;
+}
+
+void expect_the_same_picture(Scene scene, RenderOptions options) {
+  options.width = options.height = 48;
+  options.spp = 16;
+  options.packets = Packets::none;
+  const Film vector = render(scene, options).film;
+  options.packets = Packets::scalar;
+  const Film scalar = render(scene, options).film;
+  for (const char* channel : {"A", "ao.R", "N.X", "N.Y", "Z"}) {
+    const Deviation found = deviation_of(vector, scalar, channel);
+    std::printf("%s %s: mean %.2g, RMSE %.2g\n", scene.source.c_str(), channel, found.mean,
+                found.rmse);
+    // One sample in some thousand sees another surface; in a pixel it counts a sixteenth.
+    const double scale = std::string(channel) == "Z" ? 30 : 1;
+    EXPECT_LT(std::fabs(found.mean), 2e-4 * scale) << channel;
+    EXPECT_LT(found.rmse, 4e-3 * scale) << channel;
+  }
+}
+
+TEST(ScalarKernels, RenderThePicturesOfVectorKernels) {
+  for (Scene& scene : scenes_of_every_kind()) {
+    SCOPED_TRACE(scene.source);
+    RenderOptions options;
+    options.light = false;
+    options.ground = true;
+    expect_the_same_picture(std::move(scene), options);
+  }
+}
+
+// With a target, sparse nodes are media, in which rays stop by their random bits.
+TEST(ScalarKernels, StopInTheSameMedia) {
+  const Scene scene = make_procedural("scene:cloud?leaves=30000&opacity=0.05");
+  RenderOptions options;
+  options.light = false;
+  options.max_spp = 16;
+  options.footprint_spp = 1;
+  options.target_rmse = 0.05f;
+  expect_the_same_picture(scene, options);
+  options.width = options.height = 48;
+  options.spp = 16;
+  options.packets = Packets::scalar;
+  const RenderResult media = render(scene, options);
+  options.target_rmse = 0;
+  const RenderResult surfaces = render(scene, options);
+  EXPECT_LT(media.statistics.camera.visits, 0.5 * surfaces.statistics.camera.visits) << "no medium";
+}
+
+}  // namespace
+}  // namespace dapple
