@@ -13,6 +13,7 @@
 #include "device/platforms.hpp"
 #include "device/programs/kernel_cache.hpp"
 #include "device/programs/kernel_source.hpp"
+#include "device/staged_read.hpp"
 
 namespace dapple {
 namespace {
@@ -96,6 +97,7 @@ struct DeviceContext::State {
   std::shared_ptr<PagePool> page_pool = std::make_shared<PagePool>();
   cl::Context context;
   cl::CommandQueue queue;
+  std::unique_ptr<StagedRead> staged_read;  ///< made when it is needed
   std::map<std::pair<std::string, Variant>, cl::Program> programs;
   std::map<std::tuple<std::string, std::string, Variant>, cl::Kernel> kernels;
   std::vector<std::string> known_programs;  ///< texts that name them in KernelCache
@@ -256,9 +258,16 @@ std::shared_ptr<void> DeviceContext::map(const Buffer& buffer, bool writes) {
 HostView DeviceContext::view(const Buffer& buffer) {
   if (!buffer.bytes()) return {};
   if (!buffer.memory()->on_host) {
-    auto copy = std::make_shared<std::vector<std::byte>>(buffer.bytes());
-    read(buffer, copy->data(), copy->size());
-    return {copy, *copy};
+    std::shared_ptr<Pages> copy(state_->page_pool->take(buffer.bytes()).release(),
+                                [pool = state_->page_pool](Pages* pages) {
+                                  pool->give_back(std::unique_ptr<Pages>(pages));
+                                });
+    in_opencl("reading from the device", [&] {
+      if (!state_->staged_read)
+        state_->staged_read = std::make_unique<StagedRead>(state_->context, state_->queue);
+      state_->staged_read->read(buffer.memory()->buffer, copy->data(), buffer.bytes());
+    });
+    return {copy, {static_cast<const std::byte*>(copy->data()), buffer.bytes()}};
   }
   return in_opencl("reading from the device", [&] {
     const std::shared_ptr<void> mapped = map(buffer, false);

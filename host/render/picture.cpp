@@ -46,7 +46,8 @@ class PictureTracer {
     const std::size_t rays = static_cast<std::size_t>(
         std::max({1, options.ao ? options.ao_rays : 1, light_count_ ? options.light_rays : 1}));
     if (state_.slice_samples == 0)
-      state_.slice_samples = samples_of_slice(device.info(), options, light_count_, rays);
+      state_.slice_samples =
+          samples_of_slice(device.info(), options, light_count_, rays, layout.pixels);
     queues_ = make_queues(context_, state_.slice_samples, rays);
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
     if (options.back) {

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "camera/camera_splitting.hpp"
+#include "render/trace_state.hpp"
 
 namespace dapple {
 namespace {
@@ -14,28 +15,33 @@ constexpr std::size_t kCpuSlice = 1u << 18;
 
 /// The same for each compute unit of a GPU, so that launches are long beside the waits between
 /// them.
-constexpr std::size_t kSliceOfUnit = 1u << 15;
+constexpr std::size_t kSliceOfUnit = 1u << 17;
 
 /// Bytes of device memory for each ray of a GPU's slice: the queues take some hundreds of bytes a
 /// ray, and the scene must have room beside them.
 constexpr std::size_t kMemoryOfRay = 2048;
 
+/// Slices of a picture at least, if they are no smaller than on a CPU: a render tells its progress
+/// and stops between slices.
+constexpr std::size_t kSlicesOfPicture = 8;
+
 /// Rays of all kinds in a slice at most, as a multiple of the above: with many lights a slice would
 /// take too long, and a render stops only between slices.
 constexpr std::size_t kRaysOverInFlight = 4;
 
-std::size_t rays_of_slice(const DeviceInfo& device) {
+std::size_t rays_of_slice(const DeviceInfo& device, std::size_t camera_rays) {
   if (device.kind == "CPU") return kCpuSlice;
-  const auto rays = std::min<std::size_t>(kSliceOfUnit * device.compute_units,
-                                          device.memory_bytes / kMemoryOfRay);
+  const std::size_t rays =
+      std::min({kSliceOfUnit * device.compute_units, device.memory_bytes / kMemoryOfRay,
+                camera_rays / kSlicesOfPicture, std::size_t{kMaxSliceSamples}});
   return std::max(kCpuSlice, std::bit_floor(rays));
 }
 
 }  // namespace
 
 std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
-                               std::size_t lights, std::size_t rays_in_flight) {
-  const std::size_t slice = rays_of_slice(device);
+                               std::size_t lights, std::size_t rays_in_flight, std::size_t pixels) {
+  const std::size_t slice = rays_of_slice(device, pixels * static_cast<std::size_t>(options.spp));
   const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
                            lights * static_cast<std::size_t>(options.light_rays);
   const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);

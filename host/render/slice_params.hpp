@@ -10,10 +10,10 @@
 
 namespace dapple {
 
-/// Samples of a slice. `lights`: number of light passes. `rays_in_flight`: rays of a sample that
-/// are traced together.
+/// Samples of a slice, at most kMaxSliceSamples. `lights`: number of light passes.
+/// `rays_in_flight`: rays of a sample that are traced together. `pixels`: of the picture.
 std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
-                               std::size_t lights, std::size_t rays_in_flight);
+                               std::size_t lights, std::size_t rays_in_flight, std::size_t pixels);
 
 /// Without `slice` and what differs from pass to pass.
 ResolveParams resolve_params(const View& view, const FilmLayout& layout, uint splitting_bits);

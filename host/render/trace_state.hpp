@@ -16,6 +16,9 @@
 
 namespace dapple {
 
+/// So many that a slice's rays can be numbered, with several for each sample.
+inline constexpr std::uint32_t kMaxSliceSamples = 1u << 26;
+
 struct TraceState {
   std::uint32_t slice_samples = 0;     ///< samples of a slice; chosen by the first device
   std::uint32_t first_sample = 0;      ///< the number of each pixel's first sample

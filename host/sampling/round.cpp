@@ -14,12 +14,17 @@ std::uint32_t samples_at_once(const WorkGroup& group, std::uint32_t slice_sample
   return pairs ? pairs * 2 * DAPPLE_SAMPLE_BATCH : DAPPLE_SAMPLE_BATCH;
 }
 
-/// Maximum number of pixels in a slice: for 65,535 work-items or more PoCL compiles kernels again
-/// (experiment 707).
+/// Maximum number of pixels in a CPU's slice: for 65,535 work-items or more PoCL compiles kernels
+/// again (experiment 707). The large slices of GPUs have more pixels: kernels that run one in each
+/// work-item need them to fill the device.
 constexpr std::uint32_t kMaxEntries = 65'472;
 
+/// Samples of a pixel at least, on average over a slice of the largest number of pixels.
+constexpr std::uint32_t kMinSamplesOfEntry = 32;
+
 std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
-  return std::min(slice_samples / samples_at_once(group, slice_samples), kMaxEntries);
+  return std::min(slice_samples / samples_at_once(group, slice_samples),
+                  std::max(kMaxEntries, slice_samples / kMinSamplesOfEntry));
 }
 
 void take_back(std::uint32_t& samples, std::uint32_t pending) {

@@ -7,7 +7,7 @@
 #define DAPPLE_GROUP_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MAX_CAMERA_SPLITTING / DAPPLE_HIT_BITS)
 
 /* Stores where sample `d` of the ray stops. Members as store_stochastic_hit() has them. */
-inline void store_stop(Scene scene, CameraParams params, const CameraSample* chosen, const CameraRay* ray, uint d,
+DAPPLE_INLINE void store_stop(Scene scene, CameraParams params, const CameraSample* chosen, const CameraRay* ray, uint d,
                        SurfaceHit hit, __global SurfacePoint* point) {
   const WorldPoint at = is_medium_hit(hit.instance)
                             ? point_in_medium(scene, hit, ray->origin, ray->direction, ray->key)
@@ -26,7 +26,7 @@ inline void store_stop(Scene scene, CameraParams params, const CameraSample* cho
 
 /* Traces ray `number` of the slice; sets the bits of its samples that hit in `hit_bits`, which begin with those of
    the group's first sample. */
-inline SearchCosts trace_ray(Scene scene, CameraParams params, uint number, __global const PixelWork* work,
+DAPPLE_INLINE SearchCosts trace_ray(Scene scene, CameraParams params, uint number, __global const PixelWork* work,
                              __global SurfacePoint* points, __local uint* hit_bits) {
   const SearchCosts none = {0u, 0u};
   const CameraSample chosen = choose_sample(work, params, number);

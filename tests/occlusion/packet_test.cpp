@@ -89,7 +89,9 @@ TEST(Packet, EqualsExactRayByRayWhenExactAndAsTheFootprintGoesToZero) {
       }
       const std::vector<Occlusion> together = exact_packets(scene, queue, rays);
       EXPECT_LE(count_different(together, exact), 6) << rays;
-      EXPECT_LT(sum_of_visits(together), 0.9 * sum_of_visits(exact)) << rays;
+      if (device().info().kind == "CPU") {  // others trace single rays
+        EXPECT_LT(sum_of_visits(together), 0.9 * sum_of_visits(exact)) << rays;
+      }
     }
   }
 }
@@ -251,6 +253,7 @@ TEST(Packet, ANodeThatHoldsTheRaysEndIsOpened) {
 }
 
 TEST(Packet, FewRaysAreTracedSinglyAndRaysOfOtherPointsAreRefused) {
+  if (device().info().kind != "CPU") GTEST_SKIP() << "only CPUs trace packets";
   const SceneOnDevice scene(make_procedural("scene:tree?leaves=2000"));
   const BakedPoints points = points_on(scene, 200);
   const DeviceScene for_single_rays = upload(single_ray_device(), scene.scene, scene.bvh);

@@ -68,6 +68,13 @@ TEST_F(CheckpointFile, AFlippedBitAndAnotherLengthIsRefusedByName) {
   expect_refused(folder_.string());
 }
 
+TEST_F(CheckpointFile, TheLargestSliceOfAGpuIsAccepted) {
+  small_checkpoint(path("a.ckpt"));
+  TraceState state = read_checkpoint(path("a.ckpt")).state;
+  state.slice_samples = kMaxSliceSamples;
+  check_state("", state, {2, 4, 2});
+}
+
 TEST_F(CheckpointFile, StatesThatDoNotFitThePictureAreRefused) {
   small_checkpoint(path("a.ckpt"));
   const TraceState good = read_checkpoint(path("a.ckpt")).state;
@@ -79,7 +86,7 @@ TEST_F(CheckpointFile, StatesThatDoNotFitThePictureAreRefused) {
       [](auto& s) { s.samples[0] = 3; },
       [](auto& s) { s.samples[0] = ~0u; },
       [](auto& s) { s.slice_samples = 0; },
-      [](auto& s) { s.slice_samples = ~0u; },
+      [](auto& s) { s.slice_samples = kMaxSliceSamples + 1; },
       [](auto& s) { s.round.groups[0].samples = 0; },
       [](auto& s) { s.round.groups[0].samples = ~0u; },
       [](auto& s) { s.round.groups[0].work[1].pixel = 2; },
