@@ -23,7 +23,8 @@ const std::vector<std::string> kHostRooms{"files",  "scene",    "bvh",     "devi
                                           "points", "compare",  "commands"};
 const std::vector<std::string> kKernelRooms{"vectors",   "sampling", "geometry",
                                             "intersect", "opacity",  "occlusion",
-                                            "camera",    "film",     "lights"};
+                                            "camera",    "scalar",   "film",
+                                            "lights"};
 
 /// A library's headers, and the folders and files that may include them.
 struct Library {

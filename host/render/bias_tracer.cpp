@@ -1,5 +1,7 @@
 #include "render/bias_tracer.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <bit>
 
@@ -9,8 +11,14 @@
 namespace dapple {
 namespace {
 
-/// Rays of a layer that are traced at once: enough for all threads of a large machine.
-constexpr std::size_t kRaysAtOnce = 1u << 15;
+/// Rays of a layer that are traced at once: enough for all threads of a large machine, or for a
+/// GPU.
+std::size_t rays_at_once(const DeviceInfo& device) {
+  return device.kind == "CPU" ? std::size_t{1} << 15 : std::size_t{1} << 18;
+}
+
+/// Entries of a slice that a thread looks through at a time.
+constexpr std::uint32_t kEntriesOfThread = 2048;
 
 /// Exact rays may cost so many times what the same rays cost prefiltered; where they cost more,
 /// fewer are traced. Counted in nodes and primitives, because a clock would make results differ
@@ -53,32 +61,48 @@ BiasTracer::BiasTracer(DeviceContext& context, const DeviceBuffers& scene,
       splitting_bits_(std::countr_zero(static_cast<unsigned>(splitting_factor(options)))),
       sums_(std::move(sums)),
       share_(double{options.report_bias}),
+      rays_at_once_(rays_at_once(context.info())),
       waiting_(layers) {
   sums_.differences.resize(layers);
   for (std::vector<float>& layer : sums_.differences) layer.resize(view.pixel_count());
 }
 
-// Pixels of a row of a unit have the same samples chosen, usually none.
 void BiasTracer::choose(const SliceParams& slice, std::span<const PixelWork> work) {
+  const std::span<const PixelWork> of_slice = work.subspan(slice.first_work, slice.pixel_count);
+  std::vector<std::vector<ChosenSample>> parts(ceil_div(slice.pixel_count, kEntriesOfThread));
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const auto begin = static_cast<std::uint32_t>(part) * kEntriesOfThread;
+    parts[part] =
+        chosen_among(slice, of_slice, begin, std::min(begin + kEntriesOfThread, slice.pixel_count));
+  });
+  chosen_samples_.clear();
+  for (const std::vector<ChosenSample>& part : parts)
+    chosen_samples_.insert(chosen_samples_.end(), part.begin(), part.end());
+}
+
+// Pixels of a row of a unit have the same samples chosen, usually none.
+std::vector<BiasTracer::ChosenSample> BiasTracer::chosen_among(const SliceParams& slice,
+                                                               std::span<const PixelWork> of_slice,
+                                                               std::uint32_t begin,
+                                                               std::uint32_t end) const {
   const ExactSamples samples(share_);
   const auto width = static_cast<std::uint32_t>(crop_.width());
-  const std::span<const PixelWork> of_slice = work.subspan(slice.first_work, slice.pixel_count);
-  chosen_samples_.clear();
+  std::vector<ChosenSample> chosen;
   std::uint32_t length = 0;
-  for (std::uint32_t entry = 0; entry < slice.pixel_count; entry += length) {
+  for (std::uint32_t entry = begin; entry < end; entry += length) {
     const PixelWork& first = of_slice[entry];
     const std::uint32_t column = first.pixel % width;
     const std::uint32_t x = column + static_cast<std::uint32_t>(crop_.x0);
     const std::uint32_t y = first.pixel / width + static_cast<std::uint32_t>(crop_.y0);
-    length = run_length(of_slice, entry, slice.pixel_count,
-                        std::min(kBiasUnit - x % kBiasUnit, width - column));
+    length = run_length(of_slice, entry, end, std::min(kBiasUnit - x % kBiasUnit, width - column));
     const std::uint32_t first_sample = first.first_sample + slice.first_sample;
     for (std::uint32_t i = 0; i < slice.sample_count; ++i) {
       if (!samples.has(x, y, (first_sample + i) >> splitting_bits_)) continue;
       for (std::uint32_t k = 0; k < length; ++k)
-        chosen_samples_.push_back({(entry + k) * slice.sample_count + i, first.pixel + k});
+        chosen.push_back({(entry + k) * slice.sample_count + i, first.pixel + k});
     }
   }
+  return chosen;
 }
 
 void BiasTracer::keep_hits(const Queues& queues) {
@@ -105,7 +129,7 @@ void BiasTracer::collect(std::size_t layer, const Queues& queues, const Occlusio
   const auto added = static_cast<std::uint32_t>(chosen_slots_.size()) * params.rays_per_point;
   if ((std::size_t{waiting.count} + added) * sizeof(Ray) > waiting.queues.rays.bytes()) {
     if (waiting.count) trace(layer);
-    const std::size_t room = kRaysAtOnce + std::size_t{added};
+    const std::size_t room = rays_at_once_ + std::size_t{added};
     waiting.queues.rays = context_.allocate(room * sizeof(Ray));
     waiting.queues.occlusions = context_.allocate(room * sizeof(Occlusion));
   }
@@ -115,7 +139,7 @@ void BiasTracer::collect(std::size_t layer, const Queues& queues, const Occlusio
   waiting.count += added;
   waiting.pixels.insert(waiting.pixels.end(), chosen_pixels_.begin(), chosen_pixels_.end());
   waiting.factors.resize(waiting.pixels.size(), static_cast<float>(1 / share_));
-  if (waiting.count >= kRaysAtOnce) trace(layer);
+  if (waiting.count >= rays_at_once_) trace(layer);
 }
 
 void BiasTracer::finish() {

@@ -46,6 +46,11 @@ class BiasTracer {
     std::vector<float> factors;         ///< by sample: 1 / share
   };
 
+  /// The chosen samples of the entries [begin, end) of a slice.
+  [[nodiscard]] std::vector<ChosenSample> chosen_among(const SliceParams& slice,
+                                                       std::span<const PixelWork> of_slice,
+                                                       std::uint32_t begin,
+                                                       std::uint32_t end) const;
   void trace(std::size_t layer);
   void add(std::size_t layer, std::span<const Ray> rays, std::span<const Occlusion> prefiltered,
            std::span<const Occlusion> exact);
@@ -57,6 +62,7 @@ class BiasTracer {
   std::uint32_t splitting_bits_;
   BiasSums sums_;
   double share_;                              ///< of the samples that are chosen next
+  std::size_t rays_at_once_;                  ///< of a layer
   std::vector<ChosenSample> chosen_samples_;  ///< of the slice
   std::vector<std::uint32_t> chosen_slots_, chosen_pixels_;  ///< of the slice's chosen hits
   Buffer slots_;                                             ///< chosen_slots_ on the device

@@ -7,8 +7,8 @@
 #define DAPPLE_GROUP_RECORDS (DAPPLE_ITEM_RAYS * DAPPLE_MAX_CAMERA_SPLITTING / DAPPLE_HIT_BITS)
 
 /* Stores where sample `d` of the ray stops. Members as store_stochastic_hit() has them. */
-DAPPLE_INLINE void store_stop(Scene scene, CameraParams params, const CameraSample* chosen, const CameraRay* ray, uint d,
-                       SurfaceHit hit, __global SurfacePoint* point) {
+DAPPLE_INLINE void store_stop(Scene scene, CameraParams params, const CameraSample* chosen, const CameraRay* ray,
+                              uint d, SurfaceHit hit, __global SurfacePoint* point) {
   const WorldPoint at = is_medium_hit(hit.instance)
                             ? point_in_medium(scene, hit, ray->origin, ray->direction, ray->key)
                             : point_of_hit(scene, hit, ray->origin, ray->direction);
@@ -27,7 +27,7 @@ DAPPLE_INLINE void store_stop(Scene scene, CameraParams params, const CameraSamp
 /* Traces ray `number` of the slice; sets the bits of its samples that hit in `hit_bits`, which begin with those of
    the group's first sample. */
 DAPPLE_INLINE SearchCosts trace_ray(Scene scene, CameraParams params, uint number, __global const PixelWork* work,
-                             __global SurfacePoint* points, __local uint* hit_bits) {
+                                    __global SurfacePoint* points, __local uint* hit_bits) {
   const SearchCosts none = {0u, 0u};
   const CameraSample chosen = choose_sample(work, params, number);
   if (!may_see(params, &chosen)) return none;

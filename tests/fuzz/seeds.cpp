@@ -52,7 +52,9 @@ void write_images(const std::filesystem::path& folder) {
 
 /// A file of each format; its first byte tells points_fuzz.cpp the format.
 void write_points_and_suns(const std::filesystem::path& folder) {
-  const dapple::PointList list{{{1, 2, 3}, {0.5f, 0, -1}}, {{0, 1, 0}, {1, 0, 0}}, {}};
+  dapple::PointList list;
+  list.points = {{1, 2, 3}, {0.5f, 0, -1}};
+  list.normals = {{0, 1, 0}, {1, 0, 0}};
   const std::string endings[] = {".csv", ".npy", ".ply"};
   for (std::size_t format = 0; format < std::size(endings); ++format) {
     const std::filesystem::path path = folder / ("points" + endings[format]);
