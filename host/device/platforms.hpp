@@ -7,11 +7,9 @@
 
 #include "dapple/device.hpp"
 #include "device/opencl.hpp"
+#include "device/platform_names.hpp"
 
 namespace dapple {
-
-/// PoCL's platform name, as in DeviceInfo::platform.
-inline constexpr const char* kPoclPlatform = "Portable Computing Language";
 
 /// Throws Error device.
 DeviceInfo describe(const cl::Device& device);

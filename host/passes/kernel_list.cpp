@@ -12,12 +12,16 @@ namespace dapple {
 
 std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   std::vector<KernelShape> kernels{
-      {kClosestHit, kRayGroup},         {kCompactHits, kScanItems}, {kAoRays, kRayGeneratorGroup},
-      {kLightRays, kRayGeneratorGroup}, {kResolveDome, kRayGroup},  {kResolveAo, kRayGroup},
-      {kShadePoints, kRayGroup},        {kTurnPoints, kRayGroup},   {kResolveSurface, kRayGroup},
-      {kResolveLight, kRayGroup},       {kGatherRays, kRayGroup},   {kCountBacks, kRayGroup},
+      {kClosestHit, kRayGroup},   {kCompactHits, kScanItems},   {kResolveDome, kRayGroup},
+      {kResolveAo, kRayGroup},    {kShadePoints, kRayGroup},    {kTurnPoints, kRayGroup},
+      {kResolveLight, kRayGroup}, {kResolveSurface, kRayGroup}, {kGatherRays, kRayGroup},
+      {kCountBacks, kRayGroup},
   };
-  if (traces_scalar(context)) {
+  const bool scalar = traces_scalar(context);
+  const std::size_t generators = scalar ? kRayGroup : kRayGeneratorGroup;
+  kernels.push_back({ao_ray_kernel(context), generators});
+  kernels.push_back({light_ray_kernel(context), generators});
+  if (scalar) {
     kernels.push_back({kCountHits, kScanItems});
     kernels.push_back({camera_kernel(context, true), kRayGroup});
     for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered})
@@ -53,11 +57,11 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
   };
   if (options.ao) {
     add_occlusion(options.ao_rays);
-    kernels.insert(kernels.end(), {kAoRays, kResolveAo});
+    kernels.insert(kernels.end(), {ao_ray_kernel(context), kResolveAo});
   }
   if (options.light) {
     add_occlusion(options.light_rays);
-    kernels.push_back(kLightRays);
+    kernels.push_back(light_ray_kernel(context));
     for (const Light& light : lights)
       kernels.push_back(light.kind == LightKind::dome ? kResolveDome : kResolveLight);
   }
@@ -72,11 +76,11 @@ std::vector<KernelName> point_kernels(const DeviceContext& context, const PointQ
     if (by_points) kernels.push_back(point_ao_kernel(by));
     if ((query.ao && !by_points) || query.bent || query.light || query.given_rays)
       kernels.push_back(occlusion_kernel(by, choose_packets(by, rays, RayOrder::any, context)));
-    if ((query.ao && !by_points) || query.bent) kernels.push_back(kAoRays);
+    if ((query.ao && !by_points) || query.bent) kernels.push_back(ao_ray_kernel(context));
   };
   add(query.estimator);
   if (query.measures_bias && query.estimator != Estimator::exact) add(Estimator::exact);
-  if (query.light) kernels.push_back(kLightRays);
+  if (query.light) kernels.push_back(light_ray_kernel(context));
   return kernels;
 }
 

@@ -4,13 +4,23 @@
 
 namespace dapple {
 
+KernelName light_ray_kernel(const DeviceContext& context) {
+  if (traces_scalar(context)) return {"light_rays_scalar", "lights/light_scalar", {}};
+  return {"light_rays", "queue_kernels", {}};
+}
+
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  context.launch(kLightRays, "light rays", ceil_div(rays, kRayLanes),
-                 {queues.points, queues.active, scene.lights, scene.emitters, scene.environments,
-                  queues.rays, params},
-                 kRayGeneratorGroup);
+  const std::vector<KernelArgument> arguments{queues.points,  queues.active,      scene.lights,
+                                              scene.emitters, scene.environments, queues.rays,
+                                              params};
+  const KernelName kernel = light_ray_kernel(context);
+  if (traces_scalar(context)) {
+    context.launch(kernel, "light rays", rays, arguments, kRayGroup);
+  } else {
+    context.launch(kernel, "light rays", ceil_div(rays, kRayLanes), arguments, kRayGeneratorGroup);
+  }
 }
 
 }  // namespace dapple

@@ -7,7 +7,8 @@
 
 namespace dapple {
 
-inline const KernelName kLightRays{"light_rays", "queue_kernels", {}};
+/// The kernel that generates rays to lights on this device.
+KernelName light_ray_kernel(const DeviceContext& context);
 
 /// Writes rays from the active points to one light to `rays`.
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,

@@ -19,6 +19,11 @@ KernelName occlusion_kernel(Estimator estimator, Packets with) {
   return {"packet", "occlusion/packet", {prefiltered, with == Packets::point}};
 }
 
+KernelName ao_ray_kernel(const DeviceContext& context) {
+  if (traces_scalar(context)) return {"ao_rays_scalar", "scalar/ao_scalar", {}};
+  return {"ao_rays", "queue_kernels", {}};
+}
+
 KernelName point_ao_kernel(Estimator estimator) {
   return {"point_ao", "occlusion/point_ao", {estimator != Estimator::exact, true}};
 }
@@ -31,8 +36,13 @@ std::size_t packet_group(const DeviceContext& context, Packets with) {
 
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  context.launch(kAoRays, "ao rays", ceil_div(rays, kRayLanes),
-                 {queues.points, queues.active, queues.rays, params}, kRayGeneratorGroup);
+  const std::vector<KernelArgument> arguments{queues.points, queues.active, queues.rays, params};
+  const KernelName kernel = ao_ray_kernel(context);
+  if (traces_scalar(context)) {
+    context.launch(kernel, "ao rays", rays, arguments, kRayGroup);
+  } else {
+    context.launch(kernel, "ao rays", ceil_div(rays, kRayLanes), arguments, kRayGeneratorGroup);
+  }
 }
 
 void gather_pass(DeviceContext& context, const Queues& queues, const Buffer& slots,

@@ -10,7 +10,7 @@
 
 namespace dapple {
 
-/// Work-items of a work-group of the kernels that generate rays.
+/// Work-items of a work-group of the kernels that generate rays; scalar ones have kRayGroup.
 inline constexpr std::size_t kRayGeneratorGroup = 16;
 /// Rays that one work-item of these generates; DAPPLE_RAY_LANES in
 /// kernels/occlusion/point_rays.clh.
@@ -20,7 +20,8 @@ inline constexpr std::size_t kPointGroup = 1;
 
 KernelName occlusion_kernel(Estimator estimator, Packets with);
 KernelName point_ao_kernel(Estimator estimator);
-inline const KernelName kAoRays{"ao_rays", "queue_kernels", {}};
+/// The kernel that generates AO rays on this device.
+KernelName ao_ray_kernel(const DeviceContext& context);
 inline const KernelName kGatherRays{"gather_rays", "queue_kernels", {}};
 /// Work-items of a work-group of occlusion_kernel() with packets.
 std::size_t packet_group(const DeviceContext& context, Packets with);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dapple/shared/ray.h"
+#include "device/platform_names.hpp"
 #include "passes/queues.hpp"
 
 namespace dapple {
@@ -26,23 +27,29 @@ constexpr uint kLargeBatchQuarters = 3;
 /// point per ticket all threads would read the same nodes (experiment 601).
 constexpr uint kRaysPerTicket = 256;
 
+/// Whether scalar kernels are faster. Mesa's driver for CPUs compiles kernels of wide vectors for
+/// tens of minutes (experiment 753).
+bool suits_scalar(const DeviceInfo& device) {
+  return device.kind != "CPU" || device.platform == kMesaPlatform;
+}
+
 }  // namespace
+
+bool traces_scalar(const DeviceContext& context) {
+  const Packets packets = context.packets();
+  return packets == Packets::scalar ||
+         (packets == Packets::automatic && suits_scalar(context.info()));
+}
 
 Packets choose_packets(Estimator estimator, uint rays_per_point, RayOrder order,
                        const DeviceContext& context) {
   if (context.packets() != Packets::automatic) return context.packets();
-  if (context.info().kind != "CPU") return Packets::scalar;
+  if (traces_scalar(context)) return Packets::scalar;
   const uint min_of_point =
       estimator == Estimator::exact ? kMinExactPointPacketRays : kMinPointPacketRays;
   if (rays_per_point >= min_of_point) return Packets::point;
   return rays_per_point >= kMinPacketRays || order == RayOrder::by_pixel ? Packets::pixel
                                                                          : Packets::none;
-}
-
-bool traces_scalar(const DeviceContext& context) {
-  const Packets packets = context.packets();
-  return packets == Packets::scalar ||
-         (packets == Packets::automatic && context.info().kind != "CPU");
 }
 
 Packets packets_in_picture(const DeviceContext& context, Estimator estimator, int rays) {

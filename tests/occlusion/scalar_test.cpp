@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "support/traced_scenes.hpp"
 
@@ -149,6 +150,63 @@ TEST(ScalarKernels, RenderThePicturesOfVectorKernels) {
     options.light = false;
     options.ground = true;
     expect_the_same_picture(std::move(scene), options);
+  }
+}
+
+// Every kind of light: the weights, directions and distances of its rays are in its layer.
+TEST(ScalarKernels, SampleEveryKindOfLightAsVectorKernelsDo) {
+  Scene scene = make_procedural("scene:tree?leaves=2000");
+  const auto add = [&](const char* name, LightKind kind) -> Light& {
+    Light light;
+    light.name = name;
+    light.kind = kind;
+    light.position = V3f(3, 9, 2);
+    light.direction = V3f(-0.3f, -0.9f, 0.1f).normalized();
+    light.edge_u = V3f(1, 0, 0.3f);
+    light.edge_v = V3f(0, 0.3f, 1);
+    light.radius = 0.5f;
+    light.angular_radius = 0.05f;
+    scene.lights.push_back(light);
+    return scene.lights.back();
+  };
+  add("rect", LightKind::rect);
+  add("disk", LightKind::disk);
+  add("sphere", LightKind::sphere);
+  Light& spot = add("spot", LightKind::sphere);
+  spot.cos_inner = 0.99f;
+  spot.cos_outer = 0.8f;
+  add("sun", LightKind::sun);
+  add("even", LightKind::dome);
+  Light& sky = add("sky", LightKind::dome);
+  auto image = std::make_shared<Environment>();
+  image->width = 8;
+  image->height = 4;
+  for (int texel = 0; texel < 32; ++texel)
+    image->radiance.emplace_back(0.1f + static_cast<float>(texel % 7), 0.5f, 1);
+  sky.environment = image;
+  add("glow", LightKind::mesh).double_sided = true;
+  Mesh emitter;
+  append_grid(emitter, {-3, 9, -1}, {6, 0, 0}, {0, 1.5f, 1}, 6, 0);
+  place(scene, std::move(emitter), {}, static_cast<int>(scene.lights.size()) - 1);
+  RenderOptions options;
+  options.width = options.height = 32;
+  options.spp = 4;
+  options.light_rays = 4;
+  options.ground = true;
+  options.packets = Packets::none;
+  const Film vector = render(scene, options).film;
+  options.packets = Packets::scalar;
+  const Film scalar = render(scene, options).film;
+  for (const Light& light : scene.lights) {
+    const std::string channel = "light." + light.name + ".R";
+    const Deviation found = deviation_of(vector, scalar, channel);
+    double sum = 0;
+    for (const float value : vector.find(channel)->pixels) sum += value;
+    const double mean = sum / (32.0 * 32.0);
+    std::printf("%s: %.4g, mean %.2g, RMSE %.2g\n", channel.c_str(), mean, found.mean, found.rmse);
+    EXPECT_GT(mean, 1e-4) << channel;
+    EXPECT_LT(std::fabs(found.mean), 2e-3 * mean) << channel;
+    EXPECT_LT(found.rmse, 0.03 * mean) << channel;
   }
 }
 
