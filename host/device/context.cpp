@@ -316,8 +316,12 @@ bool DeviceContext::is_compiled(const KernelName& kernel, CompileTo to) const {
 void DeviceContext::warm_up() { state_->warming_up = true; }
 
 std::size_t DeviceContext::largest_group(const KernelName& kernel) {
-  return in_opencl("compiling kernel " + kernel.name, [&] {
-    return state_->kernel(kernel).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->device);
+  return in_opencl("compiling kernel " + kernel.name, [&]() -> std::size_t {
+    cl::Kernel& compiled = state_->kernel(kernel);
+    // Mesa says 32 of every kernel, and launches larger work-groups.
+    if (state_->info.platform == kMesaPlatform)
+      return state_->device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+    return compiled.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->device);
   });
 }
 
