@@ -60,18 +60,6 @@ bool is_usable(const cl::Device& device) {
          device.getInfo<CL_DEVICE_ENDIAN_LITTLE>();
 }
 
-/// Greater is better: GPUs, then CPUs, then the rest, Mesa's CPUs last; among equals by the number
-/// of compute units.
-std::pair<int, unsigned> rank(const cl::Device& device) {
-  const auto type = device.getInfo<CL_DEVICE_TYPE>();
-  const bool on_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
-  // Mesa traces on a CPU, too, but a hundred times slower than PoCL.
-  const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
-  const bool slow = on_cpu && trimmed(platform.getInfo<CL_PLATFORM_NAME>()) == kMesaPlatform;
-  const int kind = slow ? 0 : type & CL_DEVICE_TYPE_GPU ? 3 : on_cpu ? 2 : 1;
-  return {kind, device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
-}
-
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -83,6 +71,18 @@ std::string trimmed(std::string text) {
          (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back()))))
     text.pop_back();
   return text;
+}
+
+/// Greater is better: GPUs, then CPUs, then the rest, Mesa's CPUs last; among equals by the number
+/// of compute units.
+std::pair<int, unsigned> rank(const cl::Device& device) {
+  const auto type = device.getInfo<CL_DEVICE_TYPE>();
+  const bool on_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+  // Mesa traces on a CPU, too, but a hundred times slower than PoCL.
+  const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
+  const bool slow = on_cpu && trimmed(platform.getInfo<CL_PLATFORM_NAME>()) == kMesaPlatform;
+  const int kind = slow ? 0 : type & CL_DEVICE_TYPE_GPU ? 3 : on_cpu ? 2 : 1;
+  return {kind, device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
 }
 
 bool is_pocl(const cl::Platform& platform) {
