@@ -173,4 +173,54 @@ MUTATIONS = [
         "segments.end_cap = lanes_of_bits(block->end_caps);",
         "segments.end_cap = lanes_of_bits(block->begin_caps);",
         r"^(Strands|SegmentBlock)\."),
+    Mutation(
+        "scalar-swapped-axes-of-opacity", "kernels/scalar/child_depth.clh",
+        "depth_decode(node->depth[0][slot]), depth_decode(node->depth[1][slot]),",
+        "depth_decode(node->depth[1][slot]), depth_decode(node->depth[0][slot]),",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-falloff-ignored", "kernels/scalar/transmittance.clh",
+        "  return opacity * powr(fmax(1.0f - t * params.inverse_distance, 0.0f), params.falloff);\n",
+        "  return opacity;\n",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-caps-of-strands-inside-out", "kernels/scalar/segment.clh",
+        "cap_distance(-position, direction, of.begin_plane, of.radius, -1.0f);",
+        "cap_distance(-position, direction, of.begin_plane, of.radius, 1.0f);",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-texels-of-the-wrong-row", "kernels/scalar/textured_opacity.clh",
+        "__global const uchar* lower = level->texels + rows.y * (int)level->width;",
+        "__global const uchar* lower = level->texels + rows.x * (int)level->width;",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-rays-forget-what-they-passed", "kernels/scalar/closest_hits.clh",
+        "  hits->before = through;\n",
+        "",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-media-stop-rays-where-they-begin", "kernels/scalar/medium.clh",
+        "const float t = mix(chosen.hit.enter, chosen.hit.leave, along);",
+        "const float t = chosen.hit.enter;",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-spot-cone-without-square", "kernels/lights/light_sample.clh",
+        "sample.solid_angle *= edge * edge;",
+        "sample.solid_angle *= edge;",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-pdf-of-dome-off-by-two", "kernels/lights/light_sample.clh",
+        "0.5f * cosine_pdf + *radiance * (0.125f / M_PI_F);",
+        "cosine_pdf + *radiance * (0.25f / M_PI_F);",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-hides-rays-above-the-surface", "kernels/scalar/point_ray.clh",
+        "(float3)(facing[0], facing[1], facing[2])) > 0.0f) return;",
+        "(float3)(facing[0], facing[1], facing[2])) < 0.0f) return;",
+        r"^ScalarKernels\."),
+    Mutation(
+        "groups-count-their-own-hits-as-earlier", "kernels/film/compact.cl",
+        "i < get_group_id(0); i += DAPPLE_SCAN_ITEMS)",
+        "i <= get_group_id(0); i += DAPPLE_SCAN_ITEMS)",
+        r"^ScalarKernels\."),
 ]

@@ -21,6 +21,8 @@ const Device& device_with(Packets packets) {
 std::vector<Scene> scenes_of_every_kind() {
   std::vector<Scene> scenes;
   scenes.push_back(make_procedural("scene:tree?leaves=2000"));
+  // So thin that rays pass more surfaces than they keep.
+  scenes.push_back(make_procedural("scene:cloud?leaves=3000&opacity=0.05"));
   scenes.push_back(forest_scaled_non_uniformly());
   scenes.push_back(textured_cards());
   scenes.push_back(make_procedural("scene:hair?strands=400"));
