@@ -21,10 +21,9 @@ namespace fs = std::filesystem;
 const std::vector<std::string> kHostRooms{"files",  "scene",    "bvh",     "device", "camera",
                                           "film",   "sampling", "passes",  "render", "bake",
                                           "points", "compare",  "commands"};
-const std::vector<std::string> kKernelRooms{"vectors",   "sampling", "geometry",
-                                            "intersect", "opacity",  "occlusion",
-                                            "camera",    "scalar",   "film",
-                                            "lights"};
+const std::vector<std::string> kKernelRooms{"vectors", "sampling",  "geometry", "intersect",
+                                            "opacity", "occlusion", "camera",   "scalar",
+                                            "film",    "lights"};
 
 /// A library's headers, and the folders and files that may include them.
 struct Library {

@@ -234,7 +234,8 @@ void check_state(const std::string& name, const TraceState& state, const StateSh
   const bool too_many = std::any_of(state.samples.begin(), state.samples.end(),
                                     [](std::uint32_t samples) { return samples > kMaxSamples; });
   if (too_many || state.first_sample > kMaxSamples || state.slice_samples < DAPPLE_SAMPLE_BATCH ||
-      state.slice_samples > kMaxSliceSamples || !fits(state.round, state.slice_samples, shape.pixels)) {
+      state.slice_samples > kMaxSliceSamples ||
+      !fits(state.round, state.slice_samples, shape.pixels)) {
     refuse(name, "damaged: its list of work is not of this picture");
   }
   try {
