@@ -277,8 +277,9 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
   add_checkpoint_options(app, a);
   app.add_option("--packets", a.packets,
                  "How occlusion rays are traced: none (one by one), pixel (packets of rays from "
-                 "neighbouring "
-                 "pixels), point (packets of rays from one point), auto (the device decides)")
+                 "neighbouring pixels), point (packets of rays from one point), scalar (for GPUs: "
+                 "every ray, those of the camera too, in a work-item of its own), auto (the device "
+                 "decides)")
       ->capture_default_str();
   add_device_options(app, a.options.device, a.options.kernel_dir, a.options.cache);
   add_report_options(app, a.stats_json, a.quiet);

@@ -29,6 +29,9 @@ constexpr std::size_t kSlicesOfPicture = 8;
 /// take too long, and a render stops only between slices.
 constexpr std::size_t kRaysOverInFlight = 4;
 
+/// Camera rays of a pixel that targets usually take.
+constexpr int kUsualSpp = 64;
+
 std::size_t rays_of_slice(const DeviceInfo& device, std::size_t camera_rays) {
   if (device.kind == "CPU") return kCpuSlice;
   const std::size_t rays =
@@ -41,7 +44,10 @@ std::size_t rays_of_slice(const DeviceInfo& device, std::size_t camera_rays) {
 
 std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& options,
                                std::size_t lights, std::size_t rays_in_flight, std::size_t pixels) {
-  const std::size_t slice = rays_of_slice(device, pixels * static_cast<std::size_t>(options.spp));
+  // With a target pixels take more than the least number of samples.
+  const int spp = is_adaptive(options) ? std::max(options.spp, std::min(options.max_spp, kUsualSpp))
+                                       : options.spp;
+  const std::size_t slice = rays_of_slice(device, pixels * static_cast<std::size_t>(spp));
   const std::size_t rays = 1 + static_cast<std::size_t>(options.ao ? options.ao_rays : 0) +
                            lights * static_cast<std::size_t>(options.light_rays);
   const std::size_t samples = std::min(slice / rays_in_flight, kRaysOverInFlight * slice / rays);

@@ -1,6 +1,7 @@
 /* Lists the samples that hit a surface, in ascending order. In: hit bits. Out: the active list. Work-groups
    compute prefix sums (Blelloch 1990) of their records; with several of them count_hits runs before. Atomics
-   would change the order between runs. On a CPU one work-group does all, since a slice is small. */
+   would change the order between runs. Where rays are in packets, on CPUs, one work-group does
+   all, since a slice is small. */
 #include "vectors/lanes.clh"
 #include "film/sample_hits.clh"
 

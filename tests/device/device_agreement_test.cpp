@@ -57,7 +57,8 @@ TEST(DeviceAgreement, EachRayFindsTheSameOnEveryDevice) {
     const SceneBvh bvh = build_bvh(scene);
     const auto rays = rays_through(bvh.bounds, 5000, bvh.bounds.size().length(), 1e-3f, 5);
     for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
-      for (const Packets packets : {Packets::none, Packets::pixel, Packets::point}) {
+      for (const Packets packets :
+           {Packets::none, Packets::pixel, Packets::point, Packets::scalar}) {
         SCOPED_TRACE(testing::Message() << name << ", estimator " << static_cast<int>(estimator)
                                         << ", packets " << static_cast<int>(packets));
         const Found first = find(devices[0].name, scene, bvh, rays, estimator, packets);

@@ -35,7 +35,7 @@ class PacketsOption : public program_test::ProgramRun {};
 
 TEST_F(PacketsOption, RenderAcceptsEveryValueAndRefusesOthers) {
   expect_failure(render("--packets nobody"), 2, "--packets nobody: it is auto, none");
-  for (const char* packets : {"auto", "none", "pixel", "point"})
+  for (const char* packets : {"auto", "none", "pixel", "point", "scalar"})
     EXPECT_EQ(render(std::string("-q --packets ") + packets).code, 0) << packets;
 }
 
