@@ -12,15 +12,9 @@ KernelName light_ray_kernel(const DeviceContext& context) {
 void light_ray_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                     const LightParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  const std::vector<KernelArgument> arguments{queues.points,  queues.active,      scene.lights,
-                                              scene.emitters, scene.environments, queues.rays,
-                                              params};
-  const KernelName kernel = light_ray_kernel(context);
-  if (traces_scalar(context)) {
-    context.launch(kernel, "light rays", rays, arguments, kRayGroup);
-  } else {
-    context.launch(kernel, "light rays", ceil_div(rays, kRayLanes), arguments, kRayGeneratorGroup);
-  }
+  generate_rays(context, light_ray_kernel(context), "light rays", rays,
+                {queues.points, queues.active, scene.lights, scene.emitters, scene.environments,
+                 queues.rays, params});
 }
 
 }  // namespace dapple

@@ -34,15 +34,19 @@ std::size_t packet_group(const DeviceContext& context, Packets with) {
   return with == Packets::point && context.info().kind != "CPU" ? kPacketGroup : 1;
 }
 
+void generate_rays(DeviceContext& context, const KernelName& kernel, const std::string& label,
+                   std::size_t rays, const std::vector<KernelArgument>& arguments) {
+  if (traces_scalar(context)) {
+    context.launch(kernel, label, rays, arguments, kRayGroup);
+  } else {
+    context.launch(kernel, label, ceil_div(rays, kRayLanes), arguments, kRayGeneratorGroup);
+  }
+}
+
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params) {
   const std::size_t rays = std::size_t{params.point_count} * params.rays;
-  const std::vector<KernelArgument> arguments{queues.points, queues.active, queues.rays, params};
-  const KernelName kernel = ao_ray_kernel(context);
-  if (traces_scalar(context)) {
-    context.launch(kernel, "ao rays", rays, arguments, kRayGroup);
-  } else {
-    context.launch(kernel, "ao rays", ceil_div(rays, kRayLanes), arguments, kRayGeneratorGroup);
-  }
+  generate_rays(context, ao_ray_kernel(context), "ao rays", rays,
+                {queues.points, queues.active, queues.rays, params});
 }
 
 void gather_pass(DeviceContext& context, const Queues& queues, const Buffer& slots,

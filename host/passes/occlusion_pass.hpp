@@ -26,6 +26,10 @@ inline const KernelName kGatherRays{"gather_rays", "queue_kernels", {}};
 /// Work-items of a work-group of occlusion_kernel() with packets.
 std::size_t packet_group(const DeviceContext& context, Packets with);
 
+/// Launches a kernel that generates `rays` rays: ao_ray_kernel() or light_ray_kernel().
+void generate_rays(DeviceContext& context, const KernelName& kernel, const std::string& label,
+                   std::size_t rays, const std::vector<KernelArgument>& arguments);
+
 /// Writes the AO rays of the active points to `rays`.
 void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& params);
 

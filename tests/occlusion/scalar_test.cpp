@@ -106,7 +106,7 @@ TEST(ScalarKernels, FadeOcclusionWithTheDistanceAsVectorKernelsDo) {
   }
 }
 
-// The largest deviation of means, and the RMSE over the pixels, of the layers of two pictures.
+// The difference of the means of a channel in two pictures, and its RMSE over the pixels.
 struct Deviation {
   double mean = 0, rmse = 0;
 };
