@@ -2,6 +2,8 @@
 // Out: queues of turned points.
 #pragma once
 
+#include <span>
+
 #include "device/upload/scene_upload.hpp"
 #include "passes/queues.hpp"
 
@@ -10,10 +12,22 @@ namespace dapple {
 inline const KernelName kTurnPoints{"turn_points", "queue_kernels", {}};
 inline const KernelName kCountBacks{"count_backs", "queue_kernels", {}};
 
-/// Writes the points of the chosen samples of a slice, turned to the side that is not seen, to
-/// backs.points, and which of them hit to backs.sample_hits; adds their numbers to two planes of
-/// the film. Comes before shading_pass().
+/// BackParams::slots for a slice: how many groups the samples of a pixel are in at most. `work`: of
+/// the slice's group.
+uint groups_touched(const SliceParams& slice, std::span<const PixelWork> work, uint group_bits);
+
+/// The slice of the chosen samples of choice.resolve.slice alone, so that later passes find them
+/// without gaps. Its samples are groups.
+SliceParams packed_slice(const BackParams& choice);
+
+/// Writes the points of the chosen samples, turned to the side that is not seen, to backs.points,
+/// and which of them hit to backs.sample_hits: packed_slice(), from choice.first_packed on. Comes
+/// before shading_pass().
 void turn_points_pass(DeviceContext& context, const Queues& queues, const Queues& backs,
-                      const FilmBuffers& film, const BackParams& params);
+                      const BackParams& choice);
+
+/// Adds the numbers of chosen samples and of those that hit to two planes of the film.
+void count_backs_pass(DeviceContext& context, const Queues& backs, const FilmBuffers& film,
+                      const BackParams& choice);
 
 }  // namespace dapple

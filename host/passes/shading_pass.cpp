@@ -34,9 +34,11 @@ void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queu
 }
 
 void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                      const SliceParams& slice) {
+                      std::size_t samples) {
+  // A work-item for each record, as if it were a pixel.
   ResolveParams params{};
-  params.slice = slice;
+  params.slice.pixel_count = static_cast<uint>(hit_records(samples));
+  params.slice.sample_count = DAPPLE_HIT_BITS;
   const FilmBuffers none{context.allocate(0), context.allocate(0)};
   shade(context, scene, queues, none, false, params, 1);
 }

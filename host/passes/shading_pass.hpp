@@ -14,8 +14,9 @@ inline const KernelName kShadePoints{"shade_points", "film/shading", {}};
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
                   const FilmBuffers& film, const ResolveParams& params, int spp);
 
-/// As shading_pass(), but adds nothing to a film. For scenes with normals.
+/// As shading_pass() for the first `samples` points, but adds nothing to a film. For scenes with
+/// normals.
 void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                      const SliceParams& slice);
+                      std::size_t samples);
 
 }  // namespace dapple

@@ -96,13 +96,9 @@ const std::map<std::string, Pass>& passes() {
          resolve_surface_pass(s.context, s.queues, s.film, {});
        }},
       {"turn_points",
-       [](EmptyStage& s, const Variant&) {
-         turn_points_pass(s.context, s.queues, s.queues, s.film, {});
-       }},
+       [](EmptyStage& s, const Variant&) { turn_points_pass(s.context, s.queues, s.queues, {}); }},
       {"count_backs",
-       [](EmptyStage& s, const Variant&) {
-         turn_points_pass(s.context, s.queues, s.queues, s.film, {});
-       }},
+       [](EmptyStage& s, const Variant&) { count_backs_pass(s.context, s.queues, s.film, {}); }},
       {"shade_points",
        [](EmptyStage& s, const Variant&) {
          shading_pass(s.context, s.scene, s.queues, s.film, {}, 1);

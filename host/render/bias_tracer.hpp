@@ -22,6 +22,8 @@ class BiasTracer {
   /// Chooses samples of a slice, while the device may still trace its camera rays. `work`: of the
   /// slice's group.
   void choose(const SliceParams& slice, std::span<const PixelWork> work);
+  /// Chooses points of turn_points_pass() in place of samples.
+  void choose_backs(const BackParams& choice, std::span<const PixelWork> work);
   /// Keeps those of them that hit something, once the slice's hits are listed.
   void keep_hits(const Queues& queues);
   /// Takes the rays of the chosen samples, whose transmittances are in queues.occlusions. `params`:
@@ -32,6 +34,13 @@ class BiasTracer {
   [[nodiscard]] const BiasSums& sums() const { return sums_; }
 
  private:
+  /// How samples of a pixel are numbered: sample i of a slice that begins at sample `first` of a
+  /// pixel is one of its camera ray, or for backs of its group,
+  /// ((first >> group_bits) + i) >> ray_bits.
+  struct Numbering {
+    uint group_bits, ray_bits;
+  };
+
   struct ChosenSample {
     std::uint32_t sample;  ///< in the slice
     std::uint32_t pixel;   ///< in the crop
@@ -46,11 +55,17 @@ class BiasTracer {
     std::vector<float> factors;         ///< by sample: 1 / share
   };
 
-  /// The chosen samples of the entries [begin, end) of a slice.
-  [[nodiscard]] std::vector<ChosenSample> chosen_among(const SliceParams& slice,
+  /// The entries [begin, end) of a slice.
+  struct Entries {
+    std::uint32_t begin, end;
+  };
+
+  void choose_among(const SliceParams& slice, uint sample_count, const Numbering& numbering,
+                    std::span<const PixelWork> work);
+  [[nodiscard]] std::vector<ChosenSample> chosen_among(const SliceParams& slice, uint sample_count,
+                                                       const Numbering& numbering,
                                                        std::span<const PixelWork> of_slice,
-                                                       std::uint32_t begin,
-                                                       std::uint32_t end) const;
+                                                       const Entries& entries) const;
   void trace(std::size_t layer);
   void add(std::size_t layer, std::span<const Ray> rays, std::span<const Occlusion> prefiltered,
            std::span<const Occlusion> exact);

@@ -8,13 +8,13 @@
 #include <numeric>
 
 #include "camera/camera_splitting.hpp"
-#include "passes/back_pass.hpp"
 #include "passes/camera_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/queues.hpp"
 #include "passes/ray_packets.hpp"
 #include "passes/resolve_pass.hpp"
 #include "passes/shading_pass.hpp"
+#include "render/back_slices.hpp"
 #include "render/bias_report.hpp"
 #include "render/bias_tracer.hpp"
 #include "render/picture_rays.hpp"
@@ -50,11 +50,6 @@ class PictureTracer {
           samples_of_slice(device.info(), options, light_count_, rays, layout.pixels);
     queues_ = make_queues(context_, state_.slice_samples, rays);
     queues_.work = context_.allocate(layout.pixels * sizeof(PixelWork));
-    if (options.back) {
-      backs_ = queues_;
-      backs_.points = context_.allocate(queues_.points.bytes());
-      backs_.sample_hits = context_.allocate(queues_.sample_hits.bytes());
-    }
     film_.sums = context_.allocate_zeros(layout.sum_bytes());
     film_.squares = context_.allocate_zeros(layout.square_bytes());
     if (has_bias(options) && options.report_bias > 0) {
@@ -63,7 +58,9 @@ class PictureTracer {
     }
     place_sums();
     resolve_ = resolve_params(view, layout, camera_.splitting_bits);
-    back_ = back_params(view, options);
+    if (options.back)
+      backs_.emplace(context_, queues_, state_.slice_samples,
+                     back_params(view, options, layout, resolve_));
   }
 
   TracedPicture trace(const View& view, const TraceControl& control) {
@@ -72,8 +69,10 @@ class PictureTracer {
     traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
     saved_samples_ = traced_;
     TracedPicture picture;
-    while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control)))
+    while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control))) {
       picture.interrupted = !trace_round(plan, control);
+      trace_backs();
+    }
     keep_state(plan, control, !picture.interrupted);
     picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
     if (plan.is_adaptive() && all_have_variances(picture.samples))
@@ -85,7 +84,7 @@ class PictureTracer {
     picture.deep = std::move(hit_sums_.deep);
     context_.finish();
     picture.pass_seconds = pass_seconds();
-    picture.queue_bytes = queues_.bytes() + backs_.points.bytes() + backs_.sample_hits.bytes();
+    picture.queue_bytes = queues_.bytes() + (backs_ ? backs_->bytes() : 0);
     return picture;
   }
 
@@ -144,8 +143,8 @@ class PictureTracer {
       const std::vector<double> of_front = divisors;
       divisors.insert(divisors.end(), of_front.begin(), of_front.end());
     }
-    const SideSamples taken =
-        samples_of_bias(bias_->sums(), sums, samples, layout_, back_.group_bits);
+    const SideSamples taken = samples_of_bias(bias_->sums(), sums, samples, layout_,
+                                              backs_ ? backs_->choice().group_bits : 0);
     return picture_bias(bias_->sums(), sums, taken, layout_, view, divisors);
   }
 
@@ -212,11 +211,12 @@ class PictureTracer {
           Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
         save(plan, control);
       const WorkGroup& group = round.groups[round.group];
+      const SliceParams slice = next_slice(round, state_.slice_samples);
+      if (backs_ && !backs_->fits(slice, group.work)) trace_backs();
       if (new_group)
         context_.write(queues_.work, group.work.data(), group.work.size() * sizeof(PixelWork));
-      const SliceParams slice = next_slice(round, state_.slice_samples);
       trace_slice(slice);
-      traced_ += static_cast<double>(slice.pixel_count) * slice.sample_count;
+      traced_ += static_cast<double>(samples_of(slice));
       advance(round, state_.slice_samples);
       progress_ = std::max(progress_, traced_ / total);
       if (control.progress) control.progress(progress_);
@@ -225,6 +225,7 @@ class PictureTracer {
   }
 
   void save(const SamplePlan& plan, const TraceControl& control) {
+    trace_backs();
     read_state(plan);
     control.save(state_);
     release_sums();
@@ -255,48 +256,51 @@ class PictureTracer {
     return errors;
   }
 
+  [[nodiscard]] std::span<const PixelWork> work_of_round() const {
+    return state_.round.groups[state_.round.group].work;
+  }
+
   void trace_slice(const SliceParams& slice) {
-    const std::size_t samples = std::size_t{slice.pixel_count} * slice.sample_count;
     camera_.slice = slice;
     resolve_.slice = slice;
     camera_pass(context_, scene_, queues_, camera_);
-    if (bias_) bias_->choose(slice, state_.round.groups[state_.round.group].work);
+    if (bias_) bias_->choose(slice, work_of_round());
     if (looks_up_hits_) add_hits(slice);
     resolve_.plane = 0;
     resolve_.scale = layout_.unit_scale;
     resolve_surface_pass(context_, queues_, film_, resolve_);
-    if (options_.back) turn_points(slice);
+    if (backs_) backs_->add(slice, work_of_round());
     if (layout_.shading()) {
       resolve_.plane = layout_.shading();
       shading_pass(context_, scene_, queues_, film_, resolve_, footprint_samples(options_));
     }
-    const std::uint32_t hits = compact_pass(context_, queues_, samples);
+    const std::uint32_t hits = compact_pass(context_, queues_, samples_of(slice));
     if (hits == 0) return;
     if (bias_) bias_->keep_hits(queues_);
     trace_side({queues_}, hits);
-    if (options_.back) trace_backs(samples);
   }
 
-  void turn_points(const SliceParams& slice) {
-    back_.resolve = resolve_;
-    back_.resolve.plane = layout_.back_samples;
-    turn_points_pass(context_, queues_, backs_, film_, back_);
-    if (layout_.normals) move_points_pass(context_, scene_, backs_, slice);
-  }
-
-  /// After all that reads the list of the slice's hits, which is made again.
-  void trace_backs(std::size_t samples) {
-    const std::uint32_t hits = compact_pass(context_, backs_, samples);
+  /// Those that wait, if there are any.
+  void trace_backs() {
+    if (!backs_ || backs_->empty()) return;
+    const Queues& queues = backs_->queues();
+    if (bias_) bias_->choose_backs(backs_->choice(), backs_->work());
+    count_backs_pass(context_, queues, film_, backs_->choice());
+    resolve_.slice = packed_slice(backs_->choice());
+    backs_->clear();
+    const std::size_t samples = samples_of(resolve_.slice);
+    if (layout_.normals) move_points_pass(context_, scene_, queues, samples);
+    const std::uint32_t hits = compact_pass(context_, queues, samples);
     if (hits == 0) return;
-    if (bias_) bias_->keep_hits(backs_);
-    trace_side({backs_, true}, hits);
+    if (bias_) bias_->keep_hits(queues);
+    trace_side({queues, true}, hits);
   }
 
   void add_hits(const SliceParams& slice) {
     const HostView points = context_.view(queues_.points);
     const HostView hits = context_.view(queues_.sample_hits);
-    hit_sums_.add(slice, state_.round.groups[state_.round.group].work,
-                  points.values<SurfacePoint>(), hits.values<SampleHits>(), resolve_);
+    hit_sums_.add(slice, work_of_round(), points.values<SurfacePoint>(), hits.values<SampleHits>(),
+                  resolve_);
   }
 
   /// The points of one side of the surfaces.
@@ -354,8 +358,7 @@ class PictureTracer {
   CameraParams camera_;
   ResolveParams resolve_{};
   Queues queues_;
-  BackParams back_{};
-  Queues backs_;  ///< queues_ with points that are turned to the other side
+  std::optional<BackSlices> backs_;  ///< if the backs are traced
   FilmBuffers film_;
   std::optional<BiasTracer> bias_;             ///< if a bias is reported
   std::vector<std::vector<float>> variances_;  ///< of the finished film, if known

@@ -68,11 +68,14 @@ ResolveParams resolve_params(const View& view, const FilmLayout& layout, uint sp
   return params;
 }
 
-BackParams back_params(const View& view, const RenderOptions& options) {
+BackParams back_params(const View& view, const RenderOptions& options, const FilmLayout& layout,
+                       const ResolveParams& resolve) {
   const auto samples =
       static_cast<unsigned>(footprint_samples(options) * splitting_factor(options));
   const unsigned group = std::min(static_cast<unsigned>(options.back_every), samples);
   BackParams params{};
+  params.resolve = resolve;
+  params.resolve.plane = layout.back_samples;
   params.group_bits = static_cast<uint>(std::bit_width(group) - 1);  // rounded down
   params.seed = options.seed;
   params.width = static_cast<uint>(view.width);

@@ -24,7 +24,7 @@ constexpr std::uint32_t kMinSamplesOfEntry = 32;
 
 std::uint32_t entries_at_once(const WorkGroup& group, std::uint32_t slice_samples) {
   return std::min(slice_samples / samples_at_once(group, slice_samples),
-                  std::max(kMaxEntries, slice_samples / kMinSamplesOfEntry));
+                  max_entries(slice_samples));
 }
 
 void take_back(std::uint32_t& samples, std::uint32_t pending) {
@@ -35,6 +35,10 @@ void take_back(std::uint32_t& samples, std::uint32_t pending) {
 }
 
 }  // namespace
+
+std::uint32_t max_entries(std::uint32_t slice_samples) {
+  return std::max(kMaxEntries, slice_samples / kMinSamplesOfEntry);
+}
 
 SliceParams next_slice(const Round& round, std::uint32_t slice_samples) {
   const WorkGroup& group = round.groups[round.group];

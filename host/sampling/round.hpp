@@ -3,6 +3,7 @@
 // round is complete; renders can stop between slices.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,14 @@ struct Round {
 
   [[nodiscard]] bool is_done() const { return group >= groups.size(); }
 };
+
+/// Number of samples of a slice.
+inline std::size_t samples_of(const SliceParams& slice) {
+  return std::size_t{slice.pixel_count} * slice.sample_count;
+}
+
+/// Maximum number of pixels in a slice.
+std::uint32_t max_entries(std::uint32_t slice_samples);
 
 /// The next slice of a round that is not done, with at most `slice_samples` (a batch or more)
 /// samples. Depends on nothing else, so that a render can continue on another machine.

@@ -1,6 +1,7 @@
 /* The shading pass: adds shading normals and colours to the surface points of a slice. In: points
    that the camera pass stored with their triangles, after resolve_surface. Out: points moved to
-   where their rays start; sums of normals and albedo in the film. One work-item for each pixel. */
+   where their rays start; sums of normals and albedo in the film. One work-item for each pixel, or
+   for each record of samples where nothing is added to the film. */
 #include "camera/shading_normal.clh"
 #include "camera/surface_color.clh"
 #include "film/film.clh"

@@ -102,7 +102,8 @@
   STRUCT(BackParams)                                                                         \
   MEMBER(BackParams, resolve) MEMBER(BackParams, group_bits) MEMBER(BackParams, seed)        \
   MEMBER(BackParams, width) MEMBER(BackParams, crop_x) MEMBER(BackParams, crop_y)            \
-  MEMBER(BackParams, crop_width)                                                             \
+  MEMBER(BackParams, crop_width) MEMBER(BackParams, slots)                                   \
+  MEMBER(BackParams, first_packed)                                                           \
   STRUCT(ShadingParams)                                                                      \
   MEMBER(ShadingParams, resolve) MEMBER(ShadingParams, normals)                              \
   MEMBER(ShadingParams, albedo) MEMBER(ShadingParams, resolves)                              \

@@ -137,6 +137,8 @@ typedef struct BackParams {
   uint seed;
   uint width; /* of the whole picture, pixels */
   uint crop_x, crop_y, crop_width;
+  uint slots;        /* samples of a pixel in the packed slice of turned points */
+  uint first_packed; /* where the slice begins there, a multiple of DAPPLE_HIT_BITS */
 } BackParams;
 
 /* The shading pass. Its planes: shading normal (3) if there are normals, then albedo (3). */
