@@ -122,9 +122,19 @@ MUTATIONS = [
         r"^(BiasReport|Resume)\."),
     Mutation(
         "backs-of-the-first-sample-of-each-group", "kernels/film/backs.cl",
-        "((group + shift) & ((1u << params.group_bits) - 1u));",
-        "0u * shift;",
+        "((group + shift) & ((1u << params.group_bits) - 1u)) - of.first_sample;",
+        "0u * shift - of.first_sample;",
         r"^Back\."),
+    Mutation(
+        "backs-of-a-slice-over-those-that-wait", "host/render/back_slices.cpp",
+        "choice_.first_packed = static_cast<uint>(samples_of(packed_slice(choice_)));",
+        "choice_.first_packed = 0;",
+        r"^(Back|BackSlicesOfDevice)\."),
+    Mutation(
+        "backs-of-cut-groups-forgotten", "host/passes/back_pass.cpp",
+        "std::all_of(entries.begin(), entries.end(), begins_group) ? 0 : last;",
+        "std::all_of(entries.begin(), entries.end(), begins_group) ? 0 : 0 * last;",
+        r"^(BackSlices|BackSlicesOfDevice)\."),
     Mutation(
         "backs-divided-by-all-samples", "host/film/layers.cpp",
         "  return std::max(1.0, sums.at(layout.back_samples, pixel));",
