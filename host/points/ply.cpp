@@ -69,6 +69,17 @@ struct Header {
   std::vector<Type> types;
 };
 
+/// A vertex takes a byte at least, so the file's size limits their number.
+std::size_t vertex_count(const std::string& path, const std::string& text, std::size_t file_bytes) {
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error == std::errc::invalid_argument || end != text.data() + text.size())
+    fail_ply(path, fmt::format("its number of vertices is '{}'; it must be a whole number", text));
+  if (error != std::errc() || count > file_bytes)
+    fail_ply(path, fmt::format("ends before its {} vertices", text));
+  return count;
+}
+
 Header read_header(const std::string& path, const std::string& bytes, NumberTable& table) {
   const std::size_t end = bytes.find("end_header");
   if (bytes.compare(0, 3, "ply") != 0 || end == std::string::npos)
@@ -86,7 +97,7 @@ Header read_header(const std::string& path, const std::string& bytes, NumberTabl
         fail_ply(path, "is " + type + "; it must be ascii or binary_little_endian");
     } else if (word == "element") {
       if (element.empty() && type != "vertex") fail_ply(path, "vertex must be its first element");
-      if (element.empty()) header.rows = std::stoull("0" + name);
+      if (element.empty()) header.rows = vertex_count(path, name, bytes.size());
       element = type;
     } else if (word == "property" && element == "vertex") {
       const auto found = types().find(type);

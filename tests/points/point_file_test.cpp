@@ -134,6 +134,15 @@ TEST_F(PointFile, ErrorsOfInvalidFilesNameTheLineOrRow) {
                      "ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty float x\n"
                      "property float y\nproperty float z\nend_header\n12"),
                "9 vertices");
+  const auto of_count = [](const std::string& count) {
+    return "ply\nformat ascii 1.0\nelement vertex " + count +
+           "\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
+  };
+  expect_error(write("c.ply", of_count("three")), "'three'");
+  expect_error(write("d.ply", of_count("-1")), "'-1'");
+  for (const char* count : {"2000000000000000000000", "6148914691236517206", "9000"})
+    expect_error(write("e.ply", of_count(count)), std::string(count) + " vertices");
+  EXPECT_EQ(read_points(write("f.ply", of_count("1"))).points.size(), 1u);
   expect_error(write("a.txt", "1 2 3"), ".csv");
   expect_error(path("missing.csv"), "missing.csv");
 }
