@@ -32,6 +32,7 @@ const std::vector<Layer>& layers() {
        }},
       {"motion", [](RenderOptions& o) { o.motion = true; }},
       {"back", [](RenderOptions& o) { o.back = true; }},
+      {"normals", [](RenderOptions&) {}, [](RenderOptions& o) { o.normals = Normals::geometric; }},
       {"deep", [](RenderOptions& o) { o.deep = true; }},
   };
   return all;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <ctime>
 #include <thread>
 
 #include "device/driver_crash.hpp"
@@ -15,12 +16,17 @@ namespace {
 constexpr int kSignalled = 128;           ///< added to a signal's number, as shells do
 constexpr unsigned kSecondsOfSlice = 20;  ///< after a signal; more than any on a busy machine
 
+/// From the signal to the end of saving a checkpoint. What follows takes once and a half as long,
+/// on busy machines too, and all of it should take two seconds.
+constexpr double kLateSeconds = 0.8;
+
 // The only variables that a signal handler may access.
 volatile std::sig_atomic_t received = 0;
 volatile std::sig_atomic_t saving = 0;
 volatile std::sig_atomic_t noticed = 0;
 volatile std::sig_atomic_t has_temporary = 0;
-char temporary[4096];  // written only while has_temporary is 0
+timespec received_at{};  // written before `received`
+char temporary[4096];    // written only while has_temporary is 0
 
 // An unfinished file of a process that ends here has a temporary name; the next run removes it. A
 // second SIGTERM does not end the process at once: process managers send it twice.
@@ -29,7 +35,10 @@ extern "C" void on_interruption(int signal) {
     if (has_temporary) unlink(temporary);
     _exit(kSignalled + signal);
   }
-  if (!received) received = signal;
+  if (!received) {
+    clock_gettime(CLOCK_MONOTONIC, &received_at);
+    received = signal;
+  }
   if (!noticed) alarm(kSecondsOfSlice);
 }
 
@@ -82,6 +91,15 @@ void remove_when_interrupted(const std::string& path) {
   if (path.empty() || path.size() >= sizeof temporary) return;
   temporary[path.copy(temporary, path.size())] = '\0';
   has_temporary = 1;
+}
+
+bool is_late() {
+  if (received != SIGTERM && received != SIGXCPU) return false;
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec - received_at.tv_sec) +
+             1e-9 * static_cast<double>(now.tv_nsec - received_at.tv_nsec) >
+         kLateSeconds;
 }
 
 int interruption_code() { return received ? kSignalled + received : 0; }

@@ -22,6 +22,10 @@ Stop save_when_interrupted();
 /// bytes are not remembered.
 void remove_when_interrupted(const std::string& path);
 
+/// Whether SIGTERM or SIGXCPU came so long ago that little should be done but what is not done yet
+/// of saving: process managers kill what does not end soon. Nobody waits for SIGINT but a person.
+bool is_late();
+
 /// The exit code for the signal that came, or 0.
 int interruption_code();
 

@@ -36,8 +36,10 @@ double since(Clock::time_point start) {
 }
 
 RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
-  return {progress.callback(), save_when_interrupted(), a.checkpoint,
-          parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
+  RenderControl control{progress.callback(), save_when_interrupted(), a.checkpoint,
+                        parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
+  control.skip_film = is_late;
+  return control;
 }
 
 void write_pictures(const RenderResult& result, const Frame& frame, const ExrFormat& format,
@@ -99,6 +101,12 @@ void print_summary(const RenderStatistics& s, const Frame& frame, bool interrupt
   std::fflush(stdout);
 }
 
+/// Of a render that had no time for its picture.
+void tell_that_it_is_saved(const Frame& frame, const std::vector<std::string>& notes) {
+  NotePrinter().print(notes);
+  tell("note: {} is not written, to end soon: the checkpoint has all\n", frame.output);
+}
+
 std::optional<double> first_seconds(const RenderArguments& a, const Frame& frame) {
   if (!frame.seconds) return {};
   return shutter_seconds(a, *frame.seconds, 0);
@@ -157,6 +165,10 @@ void run_render(const RenderArguments& a) {
     // Interrupted before this frame began: the previous frame was the last.
     if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
 
+    if (result.film.planes.empty()) {
+      tell_that_it_is_saved(frame, statistics.notes);
+      break;
+    }
     const auto writing = Clock::now();
     // The frames of a sequence have the exposure and the sky of the first.
     if (!png.exposure && !frame.png.empty())

@@ -333,6 +333,8 @@ RenderOptions to_options(const RenderArguments& a) {
   if (!a.shard.empty()) o.shard = parse_shard(a.shard);
   if (!a.up.empty()) parse_vector("--up", a.up);
   check_png(a);
+  if (o.back_every != RenderOptions().back_every && !o.back)
+    throw Error(ErrorKind::usage, "--back-every needs the pass back: --passes ao,light,back");
   if (a.dome_rotation != 0 && a.dome.empty())
     throw Error(ErrorKind::usage, "--dome-rotation needs --dome");
   if (!std::isfinite(a.dome_rotation))

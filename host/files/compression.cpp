@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 
 #include "dapple/error.hpp"
 
@@ -50,6 +51,9 @@ std::vector<std::byte> compress(Section bytes) {
                                bytes.subspan(first, std::min(kFrame, bytes.size() - first)));
   });
   std::vector<std::byte> all;
+  all.reserve(
+      std::accumulate(frames.begin(), frames.end(), std::size_t{0},
+                      [](std::size_t sum, const auto& frame) { return sum + frame.size(); }));
   for (const std::vector<std::byte>& frame : frames)
     all.insert(all.end(), frame.begin(), frame.end());
   return all;

@@ -263,6 +263,12 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
   const auto& [scene, view, options, lights, names, layout, metadata] = content;
   RenderStatistics& statistics = result.statistics;
   add_trace_statistics(statistics, picture, layout);
+  result.interrupted = picture.interrupted;
+  if (result.interrupted && !control.checkpoint.empty() && result.checkpoint_failure.empty() &&
+      control.skip_film && control.skip_film()) {
+    statistics.notes.push_back(interruption_note(picture, options, control));
+    return;
+  }
   result.film = {view.width, view.height,
                  view.crop,  develop(picture, layout, options, lights, statistics),
                  metadata,   options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
@@ -274,7 +280,6 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
         "the bias is not reported: too few rays were traced exactly; --report-bias 100% takes all");
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   statistics.notes.insert(statistics.notes.end(), scene.warnings.begin(), scene.warnings.end());
-  result.interrupted = picture.interrupted;
   if (!result.interrupted) return;
   result.film.metadata.settings.emplace_back("interrupted", "yes");
   statistics.notes.push_back(interruption_note(picture, options, control));

@@ -97,6 +97,9 @@ struct RenderControl {
   std::string part = {};
   /// Further settings for the film's metadata.
   std::vector<std::pair<std::string, std::string>> settings = {};
+  /// Asked once when `stop` ended a render whose checkpoint is written. true: the film is left
+  /// without planes, so that the caller ends sooner.
+  std::function<bool()> skip_film = {};
 };
 
 /// Renders pictures one after the other, for example of a scene that moves. Keeps the device, its

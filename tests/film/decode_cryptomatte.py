@@ -3,8 +3,8 @@
 python3 decode_cryptomatte.py FILE TYPE [NAME ALONE]
 
 Checks that the manifest's ids are the hashes of its names and that coverages add up to alpha, and
-prints each name's mean coverage. With NAME and ALONE, another file: prints the largest difference
-between the coverage of NAME and the alpha of ALONE. Exit code 1: something is wrong.
+prints each name's mean coverage. With NAME and ALONE, another file: the coverage of NAME must be the
+alpha of ALONE to 1e-3. Exit code 1: something is wrong.
 
 Needs only Python. It reads scanlines, of one part or several, uncompressed or with ZIP or ZIPS:
 https://openexr.com/en/latest/OpenEXRFileLayout.html. Parts of other compressions are passed over.
@@ -187,6 +187,7 @@ def main(path, kind, name=None, alone=None):
         difference = largest_difference(coverage(channels, kind, float_id(name)),
                                         values(other, "A"))
         print(f"{name}: at most {difference:.2e} from its alpha alone")
+        assert difference < 1e-3
 
 
 if __name__ == "__main__":

@@ -225,17 +225,40 @@ TEST_F(CryptomatteProgram, TheNumberOfThreadsChangesNothing) {
   EXPECT_EQ(film_test::bytes_of(path("one.exr")), film_test::bytes_of(path("two.exr")));
 }
 
-// Decodes with a reader of EXR files and a hash of its own.
+/// A command that decodes a file with a reader of EXR files and a hash that are not dapple's.
+std::string decode(const std::string& arguments) {
+  return "python3 '" DAPPLE_SOURCE_FOLDER "/tests/film/decode_cryptomatte.py' " + arguments +
+         " >/dev/null 2>&1";
+}
+
+bool has_python() { return std::system("python3 -c 'import json, zlib' 2>/dev/null") == 0; }
+
 TEST_F(CryptomatteProgram, AnotherProgramDecodesTheMattes) {
-  if (std::system("python3 -c 'import json, zlib' 2>/dev/null") != 0)
-    GTEST_SKIP() << "needs python3";
+  if (!has_python()) GTEST_SKIP() << "needs python3";
   ASSERT_EQ(dapple(std::string(kForest) + "all.exr").code, 0);
   ASSERT_EQ(dapple(std::string(kForest) + "parts.exr --multipart --half all").code, 0);
   for (const char* file : {"all.exr", "parts.exr"}) {
-    const std::string command =
-        "python3 '" DAPPLE_SOURCE_FOLDER "/tests/film/decode_cryptomatte.py' '" + path(file) + "' ";
     for (const char* type : {"crypto_object", "crypto_material"})
-      EXPECT_EQ(std::system((command + type + " >/dev/null").c_str()), 0) << file << type;
+      EXPECT_EQ(std::system(decode(path(file) + " " + type).c_str()), 0) << file << type;
+  }
+}
+
+TEST_F(CryptomatteProgram, ToAnotherProgramEachObjectCoversWhatItsAlphaAloneIs) {
+  if (!has_python()) GTEST_SKIP() << "needs python3";
+  const Scene scene = garden();
+  const RenderOptions options = small_picture(1);
+  write_exr(dapple::render(scene, options).film, path("all.exr"));
+  const std::pair<int, std::string> names[] = {
+      {0, "left tree"}, {1, "right tree"}, {2, "glass"}, {4, "hair"}};
+  for (const auto& [node, name] : names) {
+    write_exr(alone(scene, node, options), path("alone.exr"));
+    const auto same = [&](const std::string& other) {
+      return std::system(
+                 decode(path("all.exr") + " crypto_object '" + other + "' " + path("alone.exr"))
+                     .c_str()) == 0;
+    };
+    EXPECT_TRUE(same(name)) << name;
+    EXPECT_FALSE(same("node_3")) << "not the wall";
   }
 }
 
