@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kSignalled = 128;           ///< added to a signal's number, as shells do
 constexpr unsigned kSecondsOfSlice = 20;  ///< after a signal; more than any on a busy machine
+/// The same after a process manager's signal, where the last checkpoint has nearly all.
+constexpr unsigned kSecondsWithCheckpoint = 2;
 
 /// From the signal to the end of saving a checkpoint. What follows takes once and a half as long,
 /// on busy machines too, and all of it should take two seconds.
@@ -24,6 +26,7 @@ constexpr double kLateSeconds = 0.8;
 volatile std::sig_atomic_t received = 0;
 volatile std::sig_atomic_t saving = 0;
 volatile std::sig_atomic_t noticed = 0;
+volatile std::sig_atomic_t has_checkpoint = 0;
 volatile std::sig_atomic_t has_temporary = 0;
 timespec received_at{};  // written before `received`
 char temporary[4096];    // written only while has_temporary is 0
@@ -39,7 +42,8 @@ extern "C" void on_interruption(int signal) {
     clock_gettime(CLOCK_MONOTONIC, &received_at);
     received = signal;
   }
-  if (!noticed) alarm(kSecondsOfSlice);
+  if (!noticed)
+    alarm(has_checkpoint && received != SIGINT ? kSecondsWithCheckpoint : kSecondsOfSlice);
 }
 
 /// A slice takes a fraction of a second. If it does not end, the driver hangs, or compiles.
@@ -77,7 +81,8 @@ void catch_interruptions() {
   keep_signal_handler(SIGQUIT);  // Ctrl-\ ends the process, as by default
 }
 
-Stop save_when_interrupted() {
+Stop save_when_interrupted(bool to_checkpoint) {
+  has_checkpoint = to_checkpoint ? 1 : 0;
   // Until the first slice is traced there is nothing to save, and its kernels may compile for long.
   return [slices = 0]() mutable {
     if (slices++ > 0) saving = 1;

@@ -14,9 +14,10 @@ namespace dapple {
 void catch_interruptions();
 
 /// Returns a function for RenderControl that tells whether a signal came. After its second call
-/// only a second SIGINT ends the process at once, and a signal that it does not notice within
-/// twenty seconds: a driver hangs.
-Stop save_when_interrupted();
+/// only a second SIGINT ends the process at once, and a signal that it does not notice for long: a
+/// driver hangs. That is twenty seconds, and two where SIGTERM or SIGXCPU comes and checkpoints are
+/// written (`to_checkpoint`): little is lost.
+Stop save_when_interrupted(bool to_checkpoint);
 
 /// The file is removed if a signal ends the process at once. Empty: none. Longer paths than 4,095
 /// bytes are not remembered.

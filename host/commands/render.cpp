@@ -36,8 +36,9 @@ double since(Clock::time_point start) {
 }
 
 RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
-  RenderControl control{progress.callback(), save_when_interrupted(), a.checkpoint,
-                        parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
+  RenderControl control{progress.callback(), save_when_interrupted(!a.checkpoint.empty()),
+                        a.checkpoint, parse_seconds("--checkpoint-every", a.checkpoint_every),
+                        a.resume};
   control.skip_film = is_late;
   return control;
 }

@@ -72,11 +72,11 @@ void require_one_picture(const std::vector<Part>& parts) {
       if (other) std::swap(other->before, other->now);
     }
     if (!other) continue;
-    refuse(other->is_opaque()
-               ? fmt::format("{}: was made with another {} than {}", part.path, other->name,
-                             parts.front().path)
-               : fmt::format("{}: was made with {} {}, {} with {} {}", part.path, other->name,
-                             other->now, parts.front().path, other->name, other->before));
+    refuse(
+        other->is_opaque()
+            ? fmt::format("{}: differs from {} in {}", part.path, parts.front().path, other->name)
+            : fmt::format("{}: was made with {} {}, {} with {} {}", part.path, other->name,
+                          other->now, parts.front().path, other->name, other->before));
   }
 }
 

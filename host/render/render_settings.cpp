@@ -162,7 +162,7 @@ void require_same(const std::string& path, const Settings& then, const Settings&
   if (!other) return;
   throw Error(ErrorKind::usage,
               other->is_opaque()
-                  ? fmt::format("--resume {}: was made with another {}", path, other->name)
+                  ? fmt::format("--resume {}: differs from this run in {}", path, other->name)
                   : fmt::format("--resume {}: was made with {} {}, this run has {} {}", path,
                                 other->name, other->before, other->name, other->now));
 }

@@ -77,6 +77,39 @@ TEST_F(Interruption, ASignalEndsWithItsCodeAPictureAndACheckpointThatGoesOn) {
   EXPECT_FALSE(again.has_ended()) << bytes_of(log());
 }
 
+/// A copy of the kernels in which slices of pixels that have 64 samples never end.
+void copy_kernels_that_hang(const std::filesystem::path& to) {
+  std::filesystem::copy(DAPPLE_SOURCE_FOLDER "/kernels", to,
+                        std::filesystem::copy_options::recursive);
+  const std::string file = to / "film/film.cl", first = "  long8 of_points = (long8)(0);\n";
+  std::string text = bytes_of(file);
+  text.insert(text.find(first),
+              "  if (work[params.slice.first_work].first_sample >= 64u)\n"
+              "    for (volatile uint i = 1u; i; i = 1u) {}\n");
+  write_bytes(file, text);
+}
+
+TEST_F(Interruption, AHangingDriverIsLeftTwoSecondsAfterSIGTERMWithTheLastCheckpoint) {
+  const std::filesystem::path kernels = folder_.string() + "_kernels";
+  copy_kernels_that_hang(kernels);
+  std::vector<std::string> arguments = with_checkpoint(kEndless, "0.02");
+  arguments.insert(arguments.end(), {"--kernel-dir", kernels.string()});
+  RunningProgram program(arguments, log());
+  ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLong)) << bytes_of(log());
+  std::this_thread::sleep_for(Milliseconds(1'000));
+  const auto sent = steady_clock::now();
+  program.send(SIGTERM);
+  EXPECT_EQ(program.wait(), 143) << bytes_of(log());
+  EXPECT_GE(steady_clock::now() - sent, Milliseconds(1'900)) << "it did not hang";
+  EXPECT_LT(steady_clock::now() - sent, Milliseconds(5'000))
+      << "the limit allows for a busy machine";
+  EXPECT_FALSE(is_there("out.exr"));
+  // The checkpoint is whole: nothing is wrong with it but that it was made with these kernels.
+  EXPECT_EQ(run(render(64, {"--resume", path("a.ckpt")})), 2);
+  EXPECT_TRUE(contains(bytes_of(log()), "differs from this run in kernels")) << bytes_of(log());
+  std::filesystem::remove_all(kernels);
+}
+
 // The program stands still for a second after the signal, as on a machine that is very busy. It may
 // have ended before; then the next try has a larger picture.
 TEST_F(Interruption, WhereSavingTakesLongThereIsACheckpointAndNoPicture) {
