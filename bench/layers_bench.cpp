@@ -1,6 +1,7 @@
 // What optional layers cost: pictures at the defaults of `dapple render`, with a layer and without,
 // in turn. In: a scene's recipe. Out: processor seconds of all threads, writing the EXR file
-// included, and their ratio to those without the layer.
+// included, and their ratio to those without the layer: `ratio` once the scene is loaded and its
+// BVH built, `render` with both.
 #include <unistd.h>
 
 #include <ctime>
@@ -47,26 +48,40 @@ double processor_seconds() {
 /// Renders and writes pictures of one scene. The first builds the BVH and compiles kernels.
 class LayerPictures {
  public:
-  explicit LayerPictures(const SceneRecipe& recipe) : scene_(load(recipe)) {
+  explicit LayerPictures(const SceneRecipe& recipe) : recipe_(recipe), scene_(load(recipe)) {
     std::filesystem::create_directories(folder_);
   }
   ~LayerPictures() { std::filesystem::remove_all(folder_); }
   LayerPictures(const LayerPictures&) = delete;
   LayerPictures& operator=(const LayerPictures&) = delete;
 
-  /// Processor seconds of one picture.
-  double take(const std::function<void(RenderOptions&)>& change) {
-    RenderOptions options;
-    change(options);
+  using Change = std::function<void(RenderOptions&)>;
+
+  /// Processor seconds of one picture of a scene whose BVH is built.
+  double take(const Change& change) {
     const double start = processor_seconds();
-    const auto scene_at = [&](int) { return scene_; };
-    const Film film = renderer_.render_shutter(scene_at, 1, options, {}, scene_at).film;
-    write_exr(film, (folder_ / "picture.exr").string());
-    if (options.deep) write_deep_exr(film, (folder_ / "deep.exr").string());
+    write_picture(change, scene_, renderer_);
+    return processor_seconds() - start;
+  }
+  /// The same with loading and building, as `dapple render` takes.
+  double take_from_the_start(const Change& change) {
+    const double start = processor_seconds();
+    const Scene scene = load(recipe_);
+    Renderer renderer;
+    write_picture(change, scene, renderer);
     return processor_seconds() - start;
   }
 
  private:
+  void write_picture(const Change& change, const Scene& scene, Renderer& renderer) const {
+    RenderOptions options;
+    change(options);
+    const auto scene_at = [&](int) { return scene; };
+    const Film film = renderer.render_shutter(scene_at, 1, options, {}, scene_at).film;
+    write_exr(film, (folder_ / "picture.exr").string());
+    if (options.deep) write_deep_exr(film, (folder_ / "deep.exr").string());
+  }
+
   static Scene load(const SceneRecipe& recipe) {
     SceneOptions options;
     options.colors = true;
@@ -77,6 +92,7 @@ class LayerPictures {
 
   std::filesystem::path folder_ =
       std::filesystem::temp_directory_path() / ("dapple_bench_" + std::to_string(getpid()));
+  SceneRecipe recipe_;
   Scene scene_;
   Renderer renderer_;
 };
@@ -88,6 +104,8 @@ void measure_layer(benchmark::State& state, LayerPictures& pictures, const Layer
     const double seconds = pictures.take(with);
     state.SetIterationTime(seconds);
     state.counters["ratio"] = seconds / before;
+    const double whole_before = pictures.take_from_the_start(layer.without);
+    state.counters["render"] = pictures.take_from_the_start(with) / whole_before;
   }
 }
 

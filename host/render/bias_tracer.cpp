@@ -68,20 +68,20 @@ BiasTracer::BiasTracer(DeviceContext& context, const DeviceBuffers& scene,
 }
 
 void BiasTracer::choose(const SliceParams& slice, std::span<const PixelWork> work) {
-  choose_among(slice, slice.sample_count, {0, splitting_bits_}, work);
+  choose_among(slice, {slice.sample_count, 0, splitting_bits_}, work);
 }
 
 void BiasTracer::choose_backs(const BackParams& choice, std::span<const PixelWork> work) {
-  choose_among(choice.resolve.slice, choice.slots, {choice.group_bits, 0}, work);
+  choose_among(choice.resolve.slice, {choice.slots, choice.group_bits, 0}, work);
 }
 
-void BiasTracer::choose_among(const SliceParams& slice, uint sample_count,
-                              const Numbering& numbering, std::span<const PixelWork> work) {
+void BiasTracer::choose_among(const SliceParams& slice, const EntrySamples& of_entry,
+                              std::span<const PixelWork> work) {
   const std::span<const PixelWork> of_slice = work.subspan(slice.first_work, slice.pixel_count);
   std::vector<std::vector<ChosenSample>> parts(ceil_div(slice.pixel_count, kEntriesOfThread));
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
     const auto begin = static_cast<std::uint32_t>(part) * kEntriesOfThread;
-    parts[part] = chosen_among(slice, sample_count, numbering, of_slice,
+    parts[part] = chosen_among(slice, of_entry, of_slice,
                                {begin, std::min(begin + kEntriesOfThread, slice.pixel_count)});
   });
   chosen_samples_.clear();
@@ -91,8 +91,7 @@ void BiasTracer::choose_among(const SliceParams& slice, uint sample_count,
 
 // Pixels of a row of a unit have the same samples chosen, usually none.
 std::vector<BiasTracer::ChosenSample> BiasTracer::chosen_among(const SliceParams& slice,
-                                                               uint sample_count,
-                                                               const Numbering& numbering,
+                                                               const EntrySamples& of_entry,
                                                                std::span<const PixelWork> of_slice,
                                                                const Entries& entries) const {
   const ExactSamples samples(share_);
@@ -106,11 +105,11 @@ std::vector<BiasTracer::ChosenSample> BiasTracer::chosen_among(const SliceParams
     const std::uint32_t y = first.pixel / width + static_cast<std::uint32_t>(crop_.y0);
     length = run_length(of_slice, entry, entries.end,
                         std::min(kBiasUnit - x % kBiasUnit, width - column));
-    const uint first_number = (first.first_sample + slice.first_sample) >> numbering.group_bits;
-    for (uint i = 0; i < sample_count; ++i) {
-      if (!samples.has(x, y, (first_number + i) >> numbering.ray_bits)) continue;
+    const uint first_number = (first.first_sample + slice.first_sample) >> of_entry.group_bits;
+    for (uint i = 0; i < of_entry.count; ++i) {
+      if (!samples.has(x, y, (first_number + i) >> of_entry.ray_bits)) continue;
       for (std::uint32_t k = 0; k < length; ++k)
-        chosen.push_back({(entry + k) * sample_count + i, first.pixel + k});
+        chosen.push_back({(entry + k) * of_entry.count + i, first.pixel + k});
     }
   }
   return chosen;

@@ -34,11 +34,11 @@ class BiasTracer {
   [[nodiscard]] const BiasSums& sums() const { return sums_; }
 
  private:
-  /// How samples of a pixel are numbered: sample i of a slice that begins at sample `first` of a
-  /// pixel is one of its camera ray, or for backs of its group,
+  /// Samples that a slice, or the packed slice of its backs, has of each entry. Where the slice
+  /// begins at sample `first` of a pixel, sample i belongs to the camera ray, or group of samples,
   /// ((first >> group_bits) + i) >> ray_bits.
-  struct Numbering {
-    uint group_bits, ray_bits;
+  struct EntrySamples {
+    uint count, group_bits, ray_bits;
   };
 
   struct ChosenSample {
@@ -60,10 +60,10 @@ class BiasTracer {
     std::uint32_t begin, end;
   };
 
-  void choose_among(const SliceParams& slice, uint sample_count, const Numbering& numbering,
+  void choose_among(const SliceParams& slice, const EntrySamples& of_entry,
                     std::span<const PixelWork> work);
-  [[nodiscard]] std::vector<ChosenSample> chosen_among(const SliceParams& slice, uint sample_count,
-                                                       const Numbering& numbering,
+  [[nodiscard]] std::vector<ChosenSample> chosen_among(const SliceParams& slice,
+                                                       const EntrySamples& of_entry,
                                                        std::span<const PixelWork> of_slice,
                                                        const Entries& entries) const;
   void trace(std::size_t layer);
