@@ -7,6 +7,7 @@
 #include <csignal>
 #include <ctime>
 #include <thread>
+#include <utility>
 
 #include "device/driver_crash.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr int kSignalled = 128;           ///< added to a signal's number, as shells do
 constexpr unsigned kSecondsOfSlice = 20;  ///< after a signal; more than any on a busy machine
-/// The same after a process manager's signal, where the last checkpoint has nearly all.
+/// The same of a process manager, where only what came after the last checkpoint is lost.
 constexpr unsigned kSecondsWithCheckpoint = 2;
 
 /// From the signal to the end of saving a checkpoint. What follows takes once and a half as long,
@@ -26,7 +27,8 @@ constexpr double kLateSeconds = 0.8;
 volatile std::sig_atomic_t received = 0;
 volatile std::sig_atomic_t saving = 0;
 volatile std::sig_atomic_t noticed = 0;
-volatile std::sig_atomic_t has_checkpoint = 0;
+volatile std::sig_atomic_t ends_early = 0;  // a slice after kSecondsWithCheckpoint
+volatile std::sig_atomic_t in_slice = 0;
 volatile std::sig_atomic_t has_temporary = 0;
 timespec received_at{};  // written before `received`
 char temporary[4096];    // written only while has_temporary is 0
@@ -38,17 +40,19 @@ extern "C" void on_interruption(int signal) {
     if (has_temporary) unlink(temporary);
     _exit(kSignalled + signal);
   }
-  if (!received) {
-    clock_gettime(CLOCK_MONOTONIC, &received_at);
-    received = signal;
-  }
-  if (!noticed)
-    alarm(has_checkpoint && received != SIGINT ? kSecondsWithCheckpoint : kSecondsOfSlice);
+  if (received) return;
+  clock_gettime(CLOCK_MONOTONIC, &received_at);
+  received = signal;
+  if (signal == SIGINT) ends_early = 0;
+  if (!noticed) alarm(ends_early ? kSecondsWithCheckpoint : kSecondsOfSlice);
 }
 
 /// A slice takes a fraction of a second. If it does not end, the driver hangs, or compiles.
 extern "C" void on_alarm(int) {
-  if (!noticed) _exit(kSignalled + received);
+  if (noticed) return;
+  if (!ends_early || in_slice) _exit(kSignalled + received);
+  ends_early = 0;  // it saves, or writes the picture
+  alarm(kSecondsOfSlice - kSecondsWithCheckpoint);
 }
 
 /// The kernel sends SIGXCPU at the soft limit of processor time, and SIGKILL at the hard one;
@@ -81,13 +85,21 @@ void catch_interruptions() {
   keep_signal_handler(SIGQUIT);  // Ctrl-\ ends the process, as by default
 }
 
-Stop save_when_interrupted(bool to_checkpoint) {
-  has_checkpoint = to_checkpoint ? 1 : 0;
+Stop save_when_interrupted() {
   // Until the first slice is traced there is nothing to save, and its kernels may compile for long.
   return [slices = 0]() mutable {
     if (slices++ > 0) saving = 1;
     noticed = received;
+    in_slice = received ? 0 : 1;
     return received != 0;
+  };
+}
+
+Progress end_hanging_slices_early(Progress progress) {
+  ends_early = 1;
+  return [progress = std::move(progress)](double fraction) {
+    in_slice = 0;
+    if (progress) progress(fraction);
   };
 }
 

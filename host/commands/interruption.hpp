@@ -15,9 +15,13 @@ void catch_interruptions();
 
 /// Returns a function for RenderControl that tells whether a signal came. After its second call
 /// only a second SIGINT ends the process at once, and a signal that it does not notice for long: a
-/// driver hangs. That is twenty seconds, and two where SIGTERM or SIGXCPU comes and checkpoints are
-/// written (`to_checkpoint`): little is lost.
-Stop save_when_interrupted(bool to_checkpoint);
+/// driver hangs. That is twenty seconds.
+Stop save_when_interrupted();
+
+/// For a render that writes checkpoints, so that little is lost: a slice ends two seconds after
+/// SIGTERM or SIGXCPU, if it has not before. Returns a function that is to be called after each
+/// slice, and calls `progress`.
+Progress end_hanging_slices_early(Progress progress);
 
 /// The file is removed if a signal ends the process at once. Empty: none. Longer paths than 4,095
 /// bytes are not remembered.

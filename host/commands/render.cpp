@@ -36,10 +36,10 @@ double since(Clock::time_point start) {
 }
 
 RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
-  RenderControl control{progress.callback(), save_when_interrupted(!a.checkpoint.empty()),
-                        a.checkpoint, parse_seconds("--checkpoint-every", a.checkpoint_every),
-                        a.resume};
+  RenderControl control{progress.callback(), save_when_interrupted(), a.checkpoint,
+                        parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
   control.skip_film = is_late;
+  if (!a.checkpoint.empty()) control.progress = end_hanging_slices_early(control.progress);
   return control;
 }
 
@@ -103,9 +103,11 @@ void print_summary(const RenderStatistics& s, const Frame& frame, bool interrupt
 }
 
 /// Of a render that had no time for its picture.
-void tell_that_it_is_saved(const Frame& frame, const std::vector<std::string>& notes) {
-  NotePrinter().print(notes);
-  tell("note: {} is not written, to end soon: the checkpoint has all\n", frame.output);
+void report_saved(RenderStatistics& s, const Frame& frame) {
+  if (!frame.stats_json.empty()) write_statistics(s, frame.stats_json);
+  if (is_part_path(frame.output)) return;
+  s.notes.push_back(
+      fmt::format("not written, to end soon: {}; the checkpoint has all", files_text(frame, true)));
 }
 
 std::optional<double> first_seconds(const RenderArguments& a, const Frame& frame) {
@@ -167,7 +169,10 @@ void run_render(const RenderArguments& a) {
     if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
 
     if (result.film.planes.empty()) {
-      tell_that_it_is_saved(frame, statistics.notes);
+      statistics.seconds.load = load_seconds;
+      statistics.seconds.total = since(start);
+      report_saved(statistics, frame);
+      if (!a.quiet) notes.print(statistics.notes);
       break;
     }
     const auto writing = Clock::now();

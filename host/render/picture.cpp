@@ -206,16 +206,17 @@ class PictureTracer {
     const double total = plan.is_adaptive() ? given / plan.fraction_done()
                                             : static_cast<double>(layout_.pixels) * plan.minimum();
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
-      if (control.stop && control.stop()) return false;
       if (control.save && traced_ > saved_samples_ &&
           Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
         save(plan, control);
+      if (control.stop && control.stop()) return false;
       const WorkGroup& group = round.groups[round.group];
       const SliceParams slice = next_slice(round, state_.slice_samples);
       if (backs_ && !backs_->fits(slice, group.work)) trace_backs();
       if (new_group)
         context_.write(queues_.work, group.work.data(), group.work.size() * sizeof(PixelWork));
       trace_slice(slice);
+      is_saved_ = false;
       traced_ += static_cast<double>(samples_of(slice));
       advance(round, state_.slice_samples);
       progress_ = std::max(progress_, traced_ / total);
@@ -231,13 +232,14 @@ class PictureTracer {
     release_sums();
     saved_ = Clock::now();
     saved_samples_ = traced_;
+    is_saved_ = true;
   }
 
   /// At the end: `finished` unless interrupted.
   void keep_state(const SamplePlan& plan, const TraceControl& control, bool finished) {
     if (!control.save && !control.finish) return;
     read_state(plan);
-    if (control.save) control.save(state_);
+    if (control.save && !is_saved_) control.save(state_);
     if (control.finish && finished) control.finish(state_);
     release_sums();
   }
@@ -367,6 +369,7 @@ class PictureTracer {
   HitSums hit_sums_;
   double traced_ = 0;         ///< number of samples of all pixels
   double saved_samples_ = 0;  ///< of them in the last checkpoint
+  bool is_saved_ = false;     ///< the last checkpoint has all samples
   double progress_ = 0;       ///< [0,1], estimated; never decreases
   std::map<std::string, double> earlier_seconds_;
   Clock::time_point saved_ = Clock::now();

@@ -103,7 +103,7 @@ TEST_F(BakeCheckpoints, OtherOptionsAndScenesAreRefused) {
             std::string::npos);
   Scene moved = tree;
   moved.meshes.at(0).positions.at(0).x += 1;
-  EXPECT_NE(refused(moved, {}).find("another scene"), std::string::npos);
+  EXPECT_NE(refused(moved, {}).find("in scene"), std::string::npos);
 }
 
 TEST_F(BakeCheckpoints, DamagedAndMissingFilesAreNamed) {

@@ -137,15 +137,16 @@ RenderOptions leaf_picture(int splitting, int back_every) {
 }
 
 // Samples that share a camera ray lie on surfaces one behind the other: each must have its turn.
-TEST(Back, OneSampleInEightHasTheMeansOfAllSamples) {
+TEST(Back, OneSampleInFourEightOrSixteenHasTheMeansOfAllSamples) {
   const Scene scene = thin_leaves();
   for (const int splitting : {1, 4}) {
     const Film all = render(scene, leaf_picture(splitting, 1)).film;
-    for (const int every : {4, 8}) {
+    for (const int every : {4, 8, 16}) {
       const Film few = render(scene, leaf_picture(splitting, every)).film;
-      // Standard deviations of the ratios are at most 0.03.
-      EXPECT_NEAR((1 - mean(few, "ao.back.R")) / (1 - mean(all, "ao.back.R")), 1, 0.08);
-      EXPECT_NEAR(mean(few, "light.sun.back.R") / mean(all, "light.sun.back.R"), 1, 0.08);
+      const double limit = every == 16 ? 0.11 : 0.08;
+      // Standard deviations of the ratios are at most 0.03, and 0.04 of sixteen.
+      EXPECT_NEAR((1 - mean(few, "ao.back.R")) / (1 - mean(all, "ao.back.R")), 1, limit);
+      EXPECT_NEAR(mean(few, "light.sun.back.R") / mean(all, "light.sun.back.R"), 1, limit);
       EXPECT_NE(all.find("ao.back.R")->pixels, few.find("ao.back.R")->pixels);
       EXPECT_EQ(all.find("ao.R")->pixels, few.find("ao.R")->pixels);
     }

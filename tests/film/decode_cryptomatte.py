@@ -183,6 +183,7 @@ def main(path, kind, name=None, alone=None):
     # A half of alpha has steps of 2^-11.
     assert difference < (1e-6 if channels["A"][1] == "f" else 5e-4)
     if name is not None:
+        assert name in manifest, name
         other, _ = read(alone)
         difference = largest_difference(coverage(channels, kind, float_id(name)),
                                         values(other, "A"))

@@ -127,7 +127,6 @@ TEST_F(BackSlicesOfDevice, CutGroupsHaveThePointsOfWholeOnes) {
     std::vector<std::pair<std::uint32_t, float>> found;  // pixel, sample
     for (const SliceParams& slice : slices) {
       place_points(slice, work);
-      if (!backs_->fits(slice, work)) backs_->clear();
       backs_->add(slice, work);
       for (const SurfacePoint& point : turned()) found.emplace_back(point.pixel, point.position[1]);
       backs_->clear();

@@ -239,7 +239,7 @@ TEST_F(CryptomatteProgram, AnotherProgramDecodesTheMattes) {
   ASSERT_EQ(dapple(std::string(kForest) + "parts.exr --multipart --half all").code, 0);
   for (const char* file : {"all.exr", "parts.exr"}) {
     for (const char* type : {"crypto_object", "crypto_material"})
-      EXPECT_EQ(std::system(decode(path(file) + " " + type).c_str()), 0) << file << type;
+      EXPECT_EQ(std::system(decode("'" + path(file) + "' " + type).c_str()), 0) << file << type;
   }
 }
 
@@ -253,9 +253,9 @@ TEST_F(CryptomatteProgram, ToAnotherProgramEachObjectCoversWhatItsAlphaAloneIs) 
   for (const auto& [node, name] : names) {
     write_exr(alone(scene, node, options), path("alone.exr"));
     const auto same = [&](const std::string& other) {
-      return std::system(
-                 decode(path("all.exr") + " crypto_object '" + other + "' " + path("alone.exr"))
-                     .c_str()) == 0;
+      return std::system(decode("'" + path("all.exr") + "' crypto_object '" + other + "' '" +
+                                path("alone.exr") + "'")
+                             .c_str()) == 0;
     };
     EXPECT_TRUE(same(name)) << name;
     EXPECT_FALSE(same("node_3")) << "not the wall";

@@ -204,16 +204,16 @@ TEST_F(MergeParts, PartsOfOtherPicturesAreRefusedAndTheDifferenceNamed) {
       {"--camera-splitting 4, ", [](auto& o) { o.camera_splitting = 4; }},
       {"--spp (footprints) 12, ", [](auto& o) { o.spp = 12; }},
       {"--ambient 3, ", [](auto& o) { o.ambient = 3.0f; }},
-      {"another scene",
+      {"in scene",
        [](auto& o) {
          o.opacity = {{"leaf", 0.5f}};
        }},
-      {"another scene",
+      {"in scene",
        [](auto& o) {  // from which another splitting factor follows
          o.opacity = {{"leaf", 0.1f}};
          o.camera_splitting = 0;
        }},
-      {"another camera",
+      {"in camera",
        [](auto& o) {
          o.look = LookAt{{9, 9, 9}};
        }},

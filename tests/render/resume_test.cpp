@@ -328,15 +328,15 @@ TEST_F(Resume, OtherSettingsAreRefusedAndNamed) {
       {"--light-rays 1, this", [](auto& o) { o.light_rays = 2; }},
       {"--ao-distance 0, this", [](auto& o) { o.ao_distance = 3; }},
       {"--target-error or --target-rmse", [](auto& o) { o.target_error = 0.1f; }},
-      {"another camera",
+      {"differs from this run in camera",
        [](auto& o) {
          o.look = LookAt{{9, 9, 9}};
        }},
-      {"another scene",
+      {"differs from this run in scene",
        [](auto& o) {
          o.opacity = {{"leaf", 0.5f}};
        }},
-      {"another scene", [](auto& o) { o.ground = true; }},
+      {"differs from this run in scene", [](auto& o) { o.ground = true; }},
       {"has 40 samples per pixel already, --spp 39", [](auto& o) { o.spp = 39; }},
       {"footprint_spp 40, this run has 20", [](auto& o) { o.footprint_spp = 20; }},
   };
@@ -352,7 +352,7 @@ TEST_F(Resume, OtherSettingsAreRefusedAndNamed) {
   const auto other_tree = [&] {
     render(make_procedural("scene:tree?leaves=1001"), small_picture(), control);
   };
-  EXPECT_TRUE(contains(error_of(other_tree).what(), "another scene"));
+  EXPECT_TRUE(contains(error_of(other_tree).what(), "differs from this run in scene"));
 }
 
 TEST_F(Resume, FrequentCheckpointsDoNotChangeThePicture) {
