@@ -103,7 +103,8 @@ void print_summary(const RenderStatistics& s, const Frame& frame, bool interrupt
 }
 
 /// Of a render that had no time for its picture.
-void report_saved(RenderStatistics& s, const Frame& frame) {
+void report_saved(RenderStatistics& s, const Frame& frame, double total_seconds) {
+  s.seconds.total = total_seconds;
   if (!frame.stats_json.empty()) write_statistics(s, frame.stats_json);
   if (is_part_path(frame.output)) return;
   s.notes.push_back(
@@ -165,13 +166,12 @@ void run_render(const RenderArguments& a) {
         render_frame(a, frame, shot, std::move(scene), renderer, options, control);
     progress.clear();
     RenderStatistics& statistics = result.statistics;
+    statistics.seconds.load = load_seconds;
     // Interrupted before this frame began: the previous frame was the last.
     if (result.interrupted && !frame.title.empty() && statistics.rays.camera == 0) break;
 
     if (result.film.planes.empty()) {
-      statistics.seconds.load = load_seconds;
-      statistics.seconds.total = since(start);
-      report_saved(statistics, frame);
+      report_saved(statistics, frame, since(start));
       if (!a.quiet) notes.print(statistics.notes);
       break;
     }
@@ -185,7 +185,6 @@ void run_render(const RenderArguments& a) {
     write_pictures(result, frame, format, png);
     for (const std::string& name : half_layers_without_planes(result.film, format))
       statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
-    statistics.seconds.load = load_seconds;
     statistics.seconds.write = since(writing);
     statistics.seconds.total = since(start);
     if (!frame.stats_json.empty()) write_statistics(statistics, frame.stats_json);
