@@ -16,11 +16,11 @@ namespace {
 
 constexpr int kSignalled = 128;           ///< added to a signal's number, as shells do
 constexpr unsigned kSecondsOfSlice = 20;  ///< after a signal; more than any on a busy machine
-/// The same of a process manager, where only what came after the last checkpoint is lost.
+/// The same after SIGTERM or SIGXCPU with checkpoints: only the work since the last one is lost.
 constexpr unsigned kSecondsWithCheckpoint = 2;
 
-/// From the signal to the end of saving a checkpoint. What follows takes once and a half as long,
-/// on busy machines too, and all of it should take two seconds.
+/// A render is late if its checkpoint is written later than this after the signal. The picture
+/// takes 1.5 times as long again, on busy machines too, and two seconds are the limit for both.
 constexpr double kLateSeconds = 0.8;
 
 // The only variables that a signal handler may access.

@@ -14,21 +14,22 @@ namespace dapple {
 void catch_interruptions();
 
 /// Returns a function for RenderControl that tells whether a signal came. After its second call
-/// only a second SIGINT ends the process at once, and a signal that it does not notice for long: a
-/// driver hangs. That is twenty seconds.
+/// only a second SIGINT ends the process at once. A signal that the function has not noticed after
+/// twenty seconds ends it too: a driver hangs.
 Stop save_when_interrupted();
 
-/// For a render that writes checkpoints, so that little is lost: a slice ends two seconds after
-/// SIGTERM or SIGXCPU, if it has not before. Returns a function that is to be called after each
-/// slice, and calls `progress`.
+/// For a render that writes checkpoints, so that little is lost: where a slice has not ended two
+/// seconds after SIGTERM or SIGXCPU, the process ends. Returns a function to be called after each
+/// slice; it calls `progress`.
 Progress end_hanging_slices_early(Progress progress);
 
 /// The file is removed if a signal ends the process at once. Empty: none. Longer paths than 4,095
 /// bytes are not remembered.
 void remove_when_interrupted(const std::string& path);
 
-/// Whether SIGTERM or SIGXCPU came so long ago that little should be done but what is not done yet
-/// of saving: process managers kill what does not end soon. Nobody waits for SIGINT but a person.
+/// Whether more than 0.8 s have passed since SIGTERM or SIGXCPU. Then the picture should be
+/// skipped, because process managers kill programs that do not end soon. Always false after SIGINT,
+/// which a person sends.
 bool is_late();
 
 /// The exit code for the signal that came, or 0.

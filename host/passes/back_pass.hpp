@@ -17,7 +17,7 @@ inline const KernelName kCountBacks{"count_backs", "queue_kernels", {}};
 uint groups_touched(const SliceParams& slice, std::span<const PixelWork> work, uint group_bits);
 
 /// The slice of the chosen samples of choice.resolve.slice alone, so that later passes find them
-/// without gaps. Its samples are groups.
+/// without gaps: one sample for each group that a pixel's samples belong to.
 SliceParams packed_slice(const BackParams& choice);
 
 /// Writes the points of the chosen samples, turned to the side that is not seen, to backs.points,

@@ -12,8 +12,8 @@ namespace dapple {
 
 class BackSlices {
  public:
-  /// `front`: the queues of slices, of `slice_samples` samples at most; without points and hits
-  /// those of the backs are the same. `choice`: without slice.
+  /// `front`: the queues of slices, of `slice_samples` samples at most. The backs share all of them
+  /// but points and hits. `choice`: without slice.
   BackSlices(DeviceContext& context, const Queues& front, std::uint32_t slice_samples,
              const BackParams& choice);
 

@@ -113,8 +113,8 @@ struct RenderOptions {
   bool albedo = true;  ///< make the layer of colours; SceneOptions::colors reads them
   bool back = false;   ///< make layers of what reaches the other side of surfaces
   /// With `back`: one in so many samples is traced on that side, too, a power of two in [1, 64].
-  /// With the default a picture takes 1.1 times as long, and layers of the other side have
-  /// 4 times the noise of those in front; with 1 up to 1.7 times, and the same noise.
+  /// With the default a render takes at most 1.1 times as long, and layers of the other side have
+  /// 4 times the noise of those in front, more at edges; with 1 up to 1.7 times, the same noise.
   int back_every = 16;
   bool visits = false;  ///< make layers of node visits and triangle tests
   /// Make layers of motion vectors. Only Renderer::render_shutter() can: it takes the next frame.
