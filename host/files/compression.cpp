@@ -25,8 +25,11 @@ constexpr std::size_t kMaxGrowth = std::size_t{1} << 16;
 /// One thread's context and output memory, reused for every frame: allocating memory for each takes
 /// longer than compressing it.
 struct FrameCompressor {
+  /// For frames of at most `most_bytes` before compression.
+  explicit FrameCompressor(std::size_t most_bytes) : capacity(ZSTD_compressBound(most_bytes)) {}
+
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
-  std::size_t capacity = ZSTD_compressBound(kFrame);
+  std::size_t capacity;
   std::unique_ptr<std::byte[]> frame = std::make_unique_for_overwrite<std::byte[]>(capacity);
 };
 
@@ -44,7 +47,7 @@ std::vector<std::byte> compress_frame(FrameCompressor& compressor, Section bytes
 
 std::vector<std::byte> compress(Section bytes) {
   std::vector<std::vector<std::byte>> frames((bytes.size() + kFrame - 1) / kFrame);
-  tbb::enumerable_thread_specific<FrameCompressor> compressors;
+  tbb::enumerable_thread_specific<FrameCompressor> compressors(std::min(kFrame, bytes.size()));
   tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
     const std::size_t first = i * kFrame;
     frames[i] = compress_frame(compressors.local(),
