@@ -60,6 +60,13 @@ void ProgressBar::show(double done) {
   drawn_ = true;
 }
 
+void ProgressBar::announce(const std::string& doing) {
+  if (quiet_ || !terminal_) return;
+  tell("\r\033[K{}{}{} ...", what_, what_.empty() ? "" : " ", doing);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
 void ProgressBar::begin(const std::string& what) {
   what_ = what;
   begun_ = -1;

@@ -18,6 +18,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(double done);
+  /// Says what is done before or between, such as "reading tree.glb", if that is on a terminal.
+  void announce(const std::string& doing);
   /// Starts the bar of the next of several renders; `what` is its title.
   void begin(const std::string& what);
   /// Erases the bar, so that other text can follow.

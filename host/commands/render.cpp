@@ -150,13 +150,17 @@ void run_render(const RenderArguments& a) {
   auto start = Clock::now();
   Renderer renderer;
   renderer.prepare(options);
+  progress.announce("reading " + a.scene);
   Shot shot(a, options);
   NotePrinter notes;
   PngOptions png = parse_png_options(a.exposure, a.background);
   for (const Frame& frame : frames) {
     progress.begin(frame.title);
     Scene scene = shot.frame(first_seconds(a, frame));
-    if (&frame == &frames.front()) check_files_spare(frames, a, scene.files);
+    if (&frame == &frames.front()) {
+      check_files_spare(frames, a, scene.files);
+      progress.announce("building the BVH");
+    }
     const double load_seconds = since(start);
     control.part = is_part_path(frame.output) ? frame.output : "";
     control.settings.clear();

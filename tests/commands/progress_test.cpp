@@ -1,0 +1,44 @@
+// What a person sees on a terminal before rays are traced: large files and BVHs take long.
+#include <gtest/gtest.h>
+
+#include "support/program_run.hpp"
+
+namespace dapple::program_test {
+namespace {
+
+constexpr const char* kLostFile = "render no_such_file.glb -o out.exr";
+
+class ProgressOnATerminal : public ProgramRun {
+ protected:
+  /// All that the program prints to a terminal. The program script (bsdutils) runs it in one.
+  [[nodiscard]] std::string shown(const std::string& arguments) const {
+    const std::string out = (logs() / "terminal").string();
+    const std::string command = "cd '" + folder_.string() + "' && script -qec \"" DAPPLE_PROGRAM
+                                " " + arguments + "\" /dev/null >'" + out + "' </dev/null";
+    EXPECT_NE(std::system(command.c_str()), -1);
+    return film_test::bytes_of(out);
+  }
+};
+
+TEST_F(ProgressOnATerminal, SaysWhatIsReadAndBuilt) {
+  const std::string text =
+      shown("render scene:cube?divisions=1 -o out.exr --width 8 --height 8 --spp 1");
+  const std::size_t reading = text.find("reading scene:cube?divisions=1 ..."),
+                    building = text.find("building the BVH ..."), wrote = text.find("wrote ");
+  EXPECT_LT(reading, building) << text;
+  EXPECT_LT(building, wrote) << text;
+  EXPECT_NE(wrote, std::string::npos) << text;
+}
+
+TEST_F(ProgressOnATerminal, IsErasedBeforeAnError) {
+  const std::string text = shown(kLostFile);
+  EXPECT_NE(text.find("\r\033[Kdapple: no_such_file.glb: no such file"), std::string::npos) << text;
+}
+
+TEST_F(ProgressOnATerminal, IsNotForFilesNorIfQuiet) {
+  EXPECT_EQ(dapple(kLostFile).err.find("reading"), std::string::npos);
+  EXPECT_EQ(shown(kLostFile + std::string(" -q")).find("reading"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dapple::program_test
