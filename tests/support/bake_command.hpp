@@ -1,5 +1,5 @@
 // Shared by the tests of the command dapple bake: files in a folder, their JSON, and a small file
-// with much that must be kept.
+// with much that must be kept. Every glTF file that a test leaves behind is checked.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "support/gltf_builder.hpp"
+#include "support/gltf_rules.hpp"
 #include "support/program_run.hpp"
 
 namespace dapple::program_test {
@@ -18,17 +19,21 @@ using test::GltfBuilder;
 
 class BakeCommand : public ProgramRun {
  protected:
+  void TearDown() override {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension == ".glb" || extension == ".gltf")
+        test::expect_valid_gltf(entry.path().string());
+    }
+  }
+
   void write(const std::string& name, const test::Bytes& bytes) const {
     std::ofstream(path(name), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
   }
   [[nodiscard]] json document(const std::string& name) const {
-    const std::string bytes = film_test::bytes_of(path(name));
-    if (bytes.substr(0, 4) != "glTF") return json::parse(bytes);
-    std::uint32_t length = 0;
-    std::memcpy(&length, bytes.data() + 12, 4);
-    return json::parse(bytes.substr(20, length));
+    return test::GltfData(path(name)).doc;
   }
 };
 
