@@ -62,14 +62,11 @@ class SceneFile {
   bool is_made_ = false;
 };
 
-/// A file beside the output: NAME`suffix``extension`.
-std::string beside(const std::string& output, const std::string& suffix,
-                   const std::string& extension) {
+/// NAME_baked.exr beside the output.
+std::string exr_path(const std::string& output) {
   const fs::path path(output);
-  return (path.parent_path() / (path.stem().string() + suffix + extension)).string();
+  return (path.parent_path() / (path.stem().string() + "_baked.exr")).string();
 }
-
-std::string exr_path(const std::string& output) { return beside(output, "_baked", ".exr"); }
 
 /// Whether there is more to write than a PNG holds.
 bool needs_exr(const BakeOptions& options) {
@@ -98,10 +95,10 @@ std::vector<OutputPath> named_outputs(const BakeArguments& a, const BakeOptions&
 std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArguments& a,
                                      const BakeOptions& options) {
   std::vector<OutputPath> sides;
-  for (const std::string& path : gltf::Editor(file, a.output).side_files_written())
-    sides.push_back({"--output", path});
+  const gltf::Editor editor(file, a.output);
+  for (const std::string& path : editor.side_files_written()) sides.push_back({"--output", path});
   if (options.texture && a.output.ends_with(".gltf"))
-    sides.push_back({"--output", beside(a.output, gltf::kOcclusionSuffix, ".png")});
+    sides.push_back({"--output", editor.image_path(gltf::kOcclusionSuffix)});
   return sides;
 }
 

@@ -158,6 +158,18 @@ void PendingFile::commit() {
   temporary_.clear();
 }
 
+void PendingFiles::add(const std::string& path, std::string_view bytes) {
+  PendingFile& file = files_.emplace_back(path);
+  file.write(bytes.data(), bytes.size());
+  file.close();
+  file.verify();
+}
+
+void PendingFiles::commit() {
+  for (PendingFile& file : files_) file.commit();
+  files_.clear();
+}
+
 void write_whole_file(const std::string& path, std::string_view bytes) {
   write_whole_file(path, std::span(&bytes, 1));
 }

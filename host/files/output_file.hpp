@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <string>
 #include <string_view>
@@ -66,6 +67,19 @@ class PendingFile {
   WrittenBlocks written_;
   int descriptor_ = -1;
   int lock_ = -1;  // duplicate that keeps the file locked after close()
+};
+
+/// Files that belong together. None gets its name before all are written, so that a full disk
+/// leaves neither some of them nor new ones beside old ones.
+class PendingFiles {
+ public:
+  /// Writes `bytes` for the file `path` and verifies them. Throws Error failed.
+  void add(const std::string& path, std::string_view bytes);
+  /// Gives all files their names, in the order of add(). Throws Error failed.
+  void commit();
+
+ private:
+  std::deque<PendingFile> files_;
 };
 
 /// Writes `bytes`, or the sections one after the other, as the file `path`, and verifies them by

@@ -175,6 +175,23 @@ TEST_F(OutputFile, WholeFilesHoldWhatWasGiven) {
   EXPECT_EQ(bytes_of(path("a.bin")), "");
 }
 
+TEST_F(OutputFile, OfFilesThatBelongTogetherNoneAppearsBeforeAllAreWritten) {
+  write_bytes(path("a"), "old");
+  {
+    PendingFiles files;
+    files.add(path("a"), "new");
+    EXPECT_THROW(files.add(path("missing/b"), "new"), Error);
+  }
+  EXPECT_EQ(bytes_of(path("a")), "old");
+  EXPECT_EQ(files_in_folder(), 1u);
+  PendingFiles files;
+  for (const char* name : {"a", "b"}) files.add(path(name), name);
+  EXPECT_EQ(bytes_of(path("a")), "old");
+  files.commit();
+  EXPECT_EQ(bytes_of(path("a")) + bytes_of(path("b")), "ab");
+  EXPECT_EQ(files_in_folder(), 2u);
+}
+
 TEST_F(OutputFile, OutputPathsThatCannotBecomeFilesAreRefused) {
   fs::create_directory(path("folder"));
   ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "files/output_file.hpp"
 #include "scene/glb_bytes.hpp"
@@ -57,9 +58,9 @@ std::size_t Editor::add_view(const std::string& bytes, std::size_t stride, int t
 std::size_t Editor::add_image(const std::string& png, const std::string& suffix) {
   if (is_glb_out())
     return push("images", {{"bufferView", add_view(png)}, {"mimeType", "image/png"}});
-  const fs::path name = fs::path(out_).stem().string() + suffix + ".png";
-  new_images_.emplace_back((fs::path(out_).parent_path() / name).string(), png);
-  return push("images", {{"uri", percent_encode(name.string())}});
+  const std::string path = image_path(suffix);
+  new_images_.emplace_back(path, png);
+  return push("images", {{"uri", percent_encode(fs::path(path).filename().string())}});
 }
 
 void Editor::write() {
@@ -74,11 +75,12 @@ void Editor::write() {
     write_glb_bytes(out_, text, {&binary, 1});
     return;
   }
+  PendingFiles files;
+  for (const auto& [path, bytes] : new_images_) files.add(path, bytes);
+  if (!bytes_.empty()) files.add((fs::path(out_).parent_path() / side_name()).string(), bytes_);
+  files.add(out_, text + "\n");
   copy_side_files();
-  for (const auto& [path, bytes] : new_images_) write_whole_file(path, bytes);
-  if (!bytes_.empty())
-    write_whole_file((fs::path(out_).parent_path() / side_name()).string(), bytes_);
-  write_whole_file(out_, text + "\n");
+  files.commit();
 }
 
 // It is the last one, and nothing refers to it.
@@ -104,8 +106,27 @@ bool Editor::has_no_buffer_files() const {
          std::none_of(json_["buffers"].begin(), json_["buffers"].end(), is_file);
 }
 
+std::string Editor::image_path(const std::string& suffix) const {
+  return (fs::path(out_).parent_path() / free_name(suffix, ".png")).string();
+}
+
 std::string Editor::side_name() const {
-  return fs::path(out_).stem().string() + (has_binary() ? ".bin" : "_baked.bin");
+  return has_binary() ? free_name("", ".bin") : free_name("_baked", ".bin");
+}
+
+// NAME`suffix``extension`, with a number if a file that the document names has it: an earlier
+// bake's may have.
+std::string Editor::free_name(const std::string& suffix, const std::string& extension) const {
+  std::set<std::string> taken;
+  for (const char* array : {"buffers", "images"})
+    for (const Json& entry : content().json.value(array, Json::array()))
+      if (const std::string uri = entry.value("uri", ""); !is_data_uri(uri))
+        taken.insert(percent_decode(uri));
+  const std::string stem = fs::path(out_).stem().string() + suffix;
+  std::string name = stem + extension;
+  for (int number = 2; taken.contains(name); ++number)
+    name = stem + "_" + std::to_string(number) + extension;
+  return name;
 }
 
 void Editor::start_from_binary() {

@@ -23,12 +23,15 @@ class Editor {
   std::size_t push(const char* array, Json entry);
   /// Adds a bufferView with these bytes. `stride` and `target` 0: none. Returns its index.
   std::size_t add_view(const std::string& bytes, std::size_t stride = 0, int target = 0);
-  /// Adds an image: in the buffer of a .glb, in the file NAME`suffix`.png beside a .gltf.
+  /// Adds an image: in the buffer of a .glb, in the file image_path(suffix) beside a .gltf.
   std::size_t add_image(const std::string& png, const std::string& suffix);
 
   /// Writes `out`. Data of a .gltf go to a file beside it, and buffers and images that the file
   /// names are copied there unless they are there already.
   void write();
+
+  /// NAME`suffix`.png beside `out`, or with a number if the source has an image of that name.
+  [[nodiscard]] std::string image_path(const std::string& suffix) const;
 
   /// Other files that write() may write, without images of add_image().
   [[nodiscard]] std::vector<std::string> side_files_written() const;
@@ -38,6 +41,8 @@ class Editor {
   [[nodiscard]] bool has_binary() const { return content().container.binary.has_value(); }
   [[nodiscard]] bool has_no_buffer_files() const;
   [[nodiscard]] std::string side_name() const;
+  [[nodiscard]] std::string free_name(const std::string& suffix,
+                                      const std::string& extension) const;
   void start_from_binary();
   void embed_buffers();
   void embed_images();
