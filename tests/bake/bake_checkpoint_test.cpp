@@ -22,11 +22,11 @@ class BakeCheckpoints : public film_test::FilmFile {
     return control;
   }
 
-  /// Bakes until the second question whether to stop.
+  /// Bakes until the third question whether to stop, after two batches of samples.
   [[nodiscard]] BakeResult begin(const Scene& scene, const BakeOptions& options) const {
     RenderControl control = saving();
     int questions = 0;
-    control.stop = [&] { return ++questions == 2; };
+    control.stop = [&] { return ++questions == 3; };
     return bake(scene, options, control);
   }
 
@@ -70,6 +70,16 @@ TEST_F(BakeCheckpoints, AResumedBakeHasTheBitsOfOneThatWasNotInterrupted) {
   EXPECT_EQ(resumed.statistics.squared_errors, whole.statistics.squared_errors);
   ASSERT_FALSE(resumed.statistics.notes.empty());
   EXPECT_NE(resumed.statistics.notes.back().find("went on from"), std::string::npos);
+}
+
+// Those of many rays take long: who counts the questions, as the program does, knows after the
+// second one that there is something to save.
+TEST_F(BakeCheckpoints, ItAsksWhetherToStopBeforeTheFirstSamples) {
+  RenderControl control = saving();
+  control.stop = [] { return true; };
+  const BakeResult stopped = bake(make_procedural("scene:tree?leaves=100"), {}, control);
+  EXPECT_TRUE(stopped.interrupted);
+  EXPECT_EQ(stopped.statistics.points, 0u);
 }
 
 TEST_F(BakeCheckpoints, AFinishedBakeIsReadWithoutTracing) {
