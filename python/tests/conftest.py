@@ -1,4 +1,7 @@
-"""Scenes that the tests share."""
+"""Scenes and the program, which the tests share."""
+
+import os
+import shutil
 
 import dapple
 import numpy as np
@@ -25,3 +28,12 @@ def tree() -> dapple.Scene:
 def ground() -> np.ndarray:
     x, z = np.meshgrid(np.linspace(-2, 2, 20), np.linspace(-2, 2, 20))
     return np.stack([x.ravel(), np.full(x.size, 0.01), z.ravel()], axis=1).astype(np.float32)
+
+
+@pytest.fixture(scope="session")
+def program() -> str:
+    """Path of the program dapple."""
+    found = os.environ.get("DAPPLE_PROGRAM") or shutil.which("dapple")
+    if not found:
+        pytest.skip("there is no program dapple in PATH or DAPPLE_PROGRAM")
+    return found

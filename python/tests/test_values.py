@@ -1,7 +1,5 @@
 """What calls return: closed forms, and the program's numbers."""
 
-import os
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -51,11 +49,8 @@ def test_skies_have_their_irradiance_on_open_ground(plate: dapple.Scene) -> None
 
 
 def test_measure_has_the_columns_of_the_program(
-    tree: dapple.Scene, ground: np.ndarray, tmp_path: Path
+    program: str, tree: dapple.Scene, ground: np.ndarray, tmp_path: Path
 ) -> None:
-    program = os.environ.get("DAPPLE_PROGRAM") or shutil.which("dapple")
-    if not program:
-        pytest.skip("there is no program dapple in PATH or DAPPLE_PROGRAM")
     points = tmp_path / "points.npy"
     out = tmp_path / "out.npy"
     np.save(points, ground)
