@@ -14,6 +14,7 @@
 #include "device/driver_needs.hpp"
 #include "device/environment_while.hpp"
 #include "device/programs/kernel_cache.hpp"
+#include "device/refused_drivers.hpp"
 
 namespace dapple {
 namespace {
@@ -97,6 +98,32 @@ std::string no_platform() {
          "; install a driver, for the CPU: apt install pocl-opencl-icd";
 }
 
+/// Devices that can compile kernels, and why others are not used.
+struct FoundDevices {
+  std::vector<cl::Device> usable;
+  std::vector<std::string> refusals;  ///< each once
+};
+
+void add_devices(const cl::Platform& platform, FoundDevices& found) {
+  std::vector<cl::Device> devices;
+  try {
+    platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+    for (const cl::Device& device : devices) {
+      if (!is_usable(device)) continue;
+      const std::string refusal = driver_refusal(trimmed(platform.getInfo<CL_PLATFORM_NAME>()),
+                                                 trimmed(device.getInfo<CL_DRIVER_VERSION>()));
+      if (refusal.empty()) {
+        found.usable.push_back(device);
+      } else if (std::find(found.refusals.begin(), found.refusals.end(), refusal) ==
+                 found.refusals.end()) {
+        found.refusals.push_back(refusal);
+      }
+    }
+  } catch (const cl::Error&) {
+    // A platform without devices reports an error, not an empty list.
+  }
+}
+
 std::string no_device(const std::vector<cl::Platform>& found, const KernelCache& cache) {
   std::string names;
   for (const cl::Platform& platform : found)
@@ -125,6 +152,31 @@ void check_file_limit(const cl::Device& device) {
                           limit.rlim_cur, kBytesNeeded));
 }
 
+/// Best first. Throws Error device where none is usable.
+FoundDevices find_devices() {
+  check_process_limits();
+  const DriverAtWork at_work("looking for devices");
+  const KernelCache& cache = KernelCache::of_process();
+  // PoCL reads these variables when its devices are first listed.
+  const EnvironmentWhile cache_folder("POCL_CACHE_DIR", cache.folder().string());
+  const EnvironmentWhile machine("HWLOC_SYNTHETIC", machine_for_hwloc());
+  const EnvironmentWhile affinity("POCL_AFFINITY", one_cpu_a_thread());
+  const auto all = platforms();
+  if (all.empty()) throw Error(ErrorKind::device, no_platform());
+  FoundDevices found;
+  for (const cl::Platform& platform : all) {
+    if (cache.folder().empty() && is_pocl(platform)) continue;  // its builds would fail or crash
+    add_devices(platform, found);
+  }
+  renew_crash_reports();
+  if (found.usable.empty())
+    throw Error(ErrorKind::device,
+                found.refusals.empty() ? no_device(all, cache) : found.refusals.front());
+  std::stable_sort(found.usable.begin(), found.usable.end(),
+                   [](const cl::Device& a, const cl::Device& b) { return rank(a) > rank(b); });
+  return found;
+}
+
 }  // namespace
 
 DeviceInfo describe(const cl::Device& device) {
@@ -145,38 +197,12 @@ DeviceInfo describe(const cl::Device& device) {
   });
 }
 
-std::vector<cl::Device> usable_devices() {
-  check_process_limits();
-  const DriverAtWork at_work("looking for devices");
-  const KernelCache& cache = KernelCache::of_process();
-  // PoCL reads these variables when its devices are first listed.
-  const EnvironmentWhile cache_folder("POCL_CACHE_DIR", cache.folder().string());
-  const EnvironmentWhile machine("HWLOC_SYNTHETIC", machine_for_hwloc());
-  const EnvironmentWhile affinity("POCL_AFFINITY", one_cpu_a_thread());
-  const auto found = platforms();
-  if (found.empty()) throw Error(ErrorKind::device, no_platform());
-  std::vector<cl::Device> usable;
-  for (const cl::Platform& platform : found) {
-    if (cache.folder().empty() && is_pocl(platform)) continue;  // its builds would fail or crash
-    std::vector<cl::Device> devices;
-    try {
-      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
-      std::copy_if(devices.begin(), devices.end(), std::back_inserter(usable), is_usable);
-    } catch (const cl::Error&) {
-      continue;  // a platform without devices reports an error, not an empty list
-    }
-  }
-  renew_crash_reports();
-  if (usable.empty()) throw Error(ErrorKind::device, no_device(found, cache));
-  std::stable_sort(usable.begin(), usable.end(),
-                   [](const cl::Device& a, const cl::Device& b) { return rank(a) > rank(b); });
-  return usable;
-}
+std::vector<cl::Device> usable_devices() { return find_devices().usable; }
 
 cl::Device choose_device(const std::string& name) {
-  const auto devices = usable_devices();
+  const FoundDevices devices = find_devices();
   std::string list;
-  for (const cl::Device& device : devices) {
+  for (const cl::Device& device : devices.usable) {
     const DeviceInfo info = describe(device);
     if (lower_case(info.name + "\n" + info.platform).find(lower_case(name)) != std::string::npos) {
       check_file_limit(device);
@@ -184,6 +210,7 @@ cl::Device choose_device(const std::string& name) {
     }
     list += (list.empty() ? "" : ", ") + ("'" + info.name + "' (" + info.platform + ")");
   }
+  for (const std::string& refusal : devices.refusals) list += "; " + refusal;
   throw Error(ErrorKind::device,
               "no OpenCL device matches --device '" + name + "'; there are: " + list);
 }

@@ -15,7 +15,7 @@ namespace dapple {
 DeviceInfo describe(const cl::Device& device);
 
 /// Devices that can compile kernels, best first: GPUs, then CPUs, then the rest, each by compute
-/// units; Mesa's CPUs last. Never empty. Throws Error device.
+/// units; Mesa's CPUs last. Without those of refused drivers. Never empty. Throws Error device.
 std::vector<cl::Device> usable_devices();
 
 /// The first usable device whose name or platform contains `name`, in upper or lower case. Throws

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <string>
 
 #include "device/opencl.hpp"
 
@@ -17,6 +18,7 @@ std::atomic<int> failing_call{0}, failing_allocation{0};
 std::atomic<const char*> failed{nullptr};
 std::atomic<std::size_t> pretended_global{0}, pretended_allocation{0}, written{0};
 std::atomic<bool> has_own_memory{false};
+std::string pretended_version;
 
 bool fails(const char* name, bool allocates = false) {
   const bool by_call = ++call_count == failing_call;
@@ -80,6 +82,8 @@ void pretend_memory(std::size_t global_bytes, std::size_t allocation_bytes) {
 
 void pretend_own_memory(bool own) { has_own_memory = own; }
 
+void pretend_driver_version(const std::string& version) { pretended_version = version; }
+
 std::size_t written_bytes() { return written; }
 
 }  // namespace dapple::opencl_test
@@ -90,6 +94,12 @@ extern "C" {
 
 cl_int clGetDeviceInfo(cl_device_id a, cl_device_info b, size_t c, void* d, size_t* e) {
   if (fails("clGetDeviceInfo")) return CL_OUT_OF_RESOURCES;
+  if (b == CL_DRIVER_VERSION && !pretended_version.empty()) {
+    const std::size_t bytes = pretended_version.size() + 1;
+    if (d != nullptr && c >= bytes) std::memcpy(d, pretended_version.c_str(), bytes);
+    if (e != nullptr) *e = bytes;
+    return CL_SUCCESS;
+  }
   const cl_int status = next(&clGetDeviceInfo, "clGetDeviceInfo")(a, b, c, d, e);
   cl_ulong pretended = 0;
   if (b == CL_DEVICE_GLOBAL_MEM_SIZE) pretended = pretended_global;

@@ -27,6 +27,9 @@ void pretend_memory(std::size_t global_bytes, std::size_t allocation_bytes);
 /// With true, devices report from now on that they share no memory with the host.
 void pretend_own_memory(bool own);
 
+/// From now on every device reports this version of its driver; empty: its real one.
+void pretend_driver_version(const std::string& version);
+
 /// Bytes that all clEnqueueWriteBuffer() calls wrote so far.
 std::size_t written_bytes();
 

@@ -1,0 +1,13 @@
+// Drivers that cannot compile dapple's kernels, by version. In: names that OpenCL tells. Out: why a
+// driver is not used.
+#pragma once
+
+#include <string>
+
+namespace dapple {
+
+/// What is wrong with the driver of these names (CL_PLATFORM_NAME, CL_DRIVER_VERSION), and what to
+/// install instead; empty where nothing is known to be.
+std::string driver_refusal(const std::string& platform, const std::string& version);
+
+}  // namespace dapple
