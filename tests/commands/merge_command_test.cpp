@@ -2,6 +2,8 @@
 // other numbers of threads, are the file of one render byte for byte; what they refuse, and say.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "support/program_run.hpp"
 
 namespace dapple {
@@ -37,6 +39,40 @@ TEST_F(MergeCommand, ShardsOfOtherProcessesAreTheFileOfOneRender) {
   expect_failure(dapple("merge a.dapple -o a.dapple"), 2,
                  "would overwrite a.dapple, which is read");
   EXPECT_FALSE(std::filesystem::exists(path("no.exr")));
+}
+
+/// A sky of random pixels, which lights a crop from another side than the whole image.
+Film noisy_sky() {
+  Film sky;
+  sky.width = 8;
+  sky.height = 4;
+  sky.data_window = {0, 0, 7, 3};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> radiance(0.0f, 3.0f);
+  for (const char* channel : {"R", "G", "B"}) {
+    sky.planes.push_back({channel, std::vector<float>(32)});
+    for (float& pixel : sky.planes.back().pixels) pixel = radiance(random);
+  }
+  return sky;
+}
+
+// The crops have other automatic ambients than the image has: that of the image is chosen anew.
+TEST_F(MergeCommand, TilesOfCropsAreTheFileOfOneRenderWithADomeToo) {
+  write_exr(noisy_sky(), path("sky.exr"));
+  for (const std::string& options : {kTree, kTree + "--dome sky.exr "}) {
+    SCOPED_TRACE(options);
+    ASSERT_EQ(dapple(options + "-o whole.exr").code, 0);
+    ASSERT_EQ(dapple(options + "--crop 0,0,18,35 -o left.dapple").code, 0);
+    ASSERT_EQ(dapple(options + "--crop 19,0,39,20 -o above.dapple").code, 0);
+    ASSERT_EQ(dapple(options + "--crop 19,21,39,35 -o below.dapple").code, 0);
+    const Outcome merge = dapple("merge below.dapple left.dapple above.dapple -o merged.exr");
+    EXPECT_EQ(merge.code, 0) << merge.err;
+    EXPECT_TRUE(bytes("merged.exr") == bytes("whole.exr"));
+    const Outcome two = dapple("merge below.dapple left.dapple -o two.exr");
+    EXPECT_EQ(two.code, 0) << two.err;
+    EXPECT_TRUE(contains(two.err, "parts are missing: 441 of 1440 pixels")) << two.err;
+    EXPECT_FALSE(bytes("two.exr") == bytes("whole.exr"));
+  }
 }
 
 TEST_F(MergeCommand, PartsAreRefusedWhereTheyCannotBe) {

@@ -1,9 +1,10 @@
 // Runs the program in a process that a test can send signals to. In: arguments and signals; out:
-// its exit code and a file with what it printed.
+// its exit code, what it used, and a file with what it printed.
 #pragma once
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,6 +18,9 @@
 namespace dapple::program_test {
 
 using Milliseconds = std::chrono::milliseconds;
+
+/// More than anything takes on the busiest machine.
+constexpr Milliseconds kLongest{600'000};
 
 /// Waits until `condition` is true, at most `limit`; returns whether it became true.
 inline bool wait_until(const std::function<bool()>& condition, Milliseconds limit) {
@@ -56,19 +60,27 @@ class RunningProgram {
   [[nodiscard]] pid_t process() const { return process_; }
   void send(int signal) const { kill(process_, signal); }
   [[nodiscard]] bool has_ended() {
-    if (!ended_) ended_ = waitpid(process_, &status_, WNOHANG) == process_;
+    if (!ended_) ended_ = wait4(process_, &status_, WNOHANG, &usage_) == process_;
     return ended_;
   }
   /// Waits for the end; returns the exit code, or 128 + signal if a signal ended it, as shells do.
-  int wait() {
-    if (!ended_) waitpid(process_, &status_, 0);
-    ended_ = true;
+  /// A program that does not end fails the test, and is killed.
+  int wait(Milliseconds limit = kLongest) {
+    if (!wait_until([this] { return has_ended(); }, limit)) {
+      ADD_FAILURE() << "the program has not ended in " << limit.count() << " ms";
+      send(SIGKILL);
+      wait4(process_, &status_, 0, &usage_);
+      ended_ = true;
+    }
     return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
   }
+  /// Of a program that has ended, with the processes that it waited for.
+  [[nodiscard]] const rusage& usage() const { return usage_; }
 
  private:
   pid_t process_ = 0;
   int status_ = 0;
+  rusage usage_{};
   bool ended_ = false;
 };
 
