@@ -20,8 +20,14 @@ class BakeProgress {
   bool add(std::size_t samples) {
     done_ += static_cast<double>(samples);
     shown_ = std::max(shown_, std::min(1.0, done_ / std::max(1.0, total_)));
-    if (control_.progress) control_.progress(shown_);
+    show();
     return !(control_.stop && control_.stop());
+  }
+
+  /// To be called where no samples are traced for a while: after the question whether to stop, the
+  /// caller takes the device to be at work until it is shown progress.
+  void show() const {
+    if (control_.progress) control_.progress(shown_);
   }
 
  private:

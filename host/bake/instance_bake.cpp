@@ -94,6 +94,7 @@ bool trace_instances(const Scene& scene, const BakeOptions& options, BakeTracing
     if (!tracing.progress.add(slice.samples.size())) return false;
     slice = {};
   }
+  tracing.progress.show();
   return true;
 }
 

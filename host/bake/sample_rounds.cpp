@@ -34,9 +34,12 @@ SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
       taken_(surface.size()) {}
 
 bool SampleRounds::run(const RoundOptions& options) {
-  if (options.target_error <= 0)
-    return take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays);
-  return take(options.first, options.rays) && refine(options.target_error, options.limit);
+  const bool done =
+      options.target_error <= 0
+          ? take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays)
+          : take(options.first, options.rays) && refine(options.target_error, options.limit);
+  tracing_.progress.show();
+  return done;
 }
 
 // `samples` of each element, both sides. False: stopped.

@@ -18,9 +18,10 @@ void catch_interruptions();
 /// twenty seconds ends it too: a driver hangs.
 Stop save_when_interrupted();
 
-/// For a render that writes checkpoints, so that little is lost: where a slice has not ended two
-/// seconds after SIGTERM or SIGXCPU, the process ends. Returns a function to be called after each
-/// slice; it calls `progress`.
+/// For a render or bake that writes checkpoints, so that little is lost: where a slice has not
+/// ended two seconds after SIGTERM or SIGXCPU, the process ends. Returns a function to be called
+/// after each slice, and again where another slice does not follow the question whether to stop; it
+/// calls `progress`.
 Progress end_hanging_slices_early(Progress progress);
 
 /// The file is removed if a signal ends the process at once. Empty: none. Longer paths than 4,095
