@@ -38,6 +38,11 @@ std::vector<std::string> files_below(const fs::path& folder) {
 /// The address space cannot be limited with a sanitizer, which maps terabytes.
 constexpr const char* kMemoryLimit = kSanitized ? "" : "ulimit -v 8388608; ";
 
+/// Soon is a matter of processor time, which other programs do not change. The program ends some 20
+/// seconds before this limit. Only what waits for ever reaches the other one.
+constexpr const char* kTimeLimit = kSanitized ? "" : "ulimit -t 40; ";
+constexpr const char* kWallLimit = "timeout -k 1 600 ";
+
 /// Runs `dapple render` in a shell, into out.exr. `limits` are shell commands that run before it.
 Run render(const SceneFiles& files, const fs::path& folder, const std::string& options,
            const std::string& limits) {
@@ -46,9 +51,10 @@ Run render(const SceneFiles& files, const fs::path& folder, const std::string& o
   write_files(files, inside);
   const auto before = files_below(inside);
   const fs::path log = folder / "log";
-  const std::string command =
-      "cd '" + inside.string() + "' && { " + limits + "timeout -k 1 20 " DAPPLE_PROGRAM " render " +
-      files.scene + " -o out.exr " + options + "; } >'" + log.string() + "' 2>&1 </dev/null";
+  const std::string command = "cd '" + inside.string() + "' && { " + limits + kTimeLimit +
+                              kWallLimit + DAPPLE_PROGRAM " render " + files.scene +
+                              " -o out.exr " + options + "; } >'" + log.string() +
+                              "' 2>&1 </dev/null";
   const int status = std::system(command.c_str());
   Run run{WIFEXITED(status) ? WEXITSTATUS(status) : -1, film_test::bytes_of(log.string()), {}};
   const auto after = files_below(inside);

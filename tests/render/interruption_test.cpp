@@ -9,6 +9,7 @@
 #include <random>
 
 #include "support/film_files.hpp"
+#include "support/processor_time.hpp"
 #include "support/running_program.hpp"
 #include "support/sanitizers.hpp"
 
@@ -18,8 +19,6 @@ namespace {
 using namespace film_test;
 using namespace program_test;
 using std::chrono::steady_clock;
-
-constexpr Milliseconds kLong{60'000};
 
 class Interruption : public FilmFile {
  protected:
@@ -57,13 +56,14 @@ TEST_F(Interruption, ASignalEndsWithItsCodeAPictureAndACheckpointThatGoesOn) {
     std::filesystem::remove(path("a.ckpt"));
     std::filesystem::remove(path("out.exr"));
     RunningProgram program(with_checkpoint(kEndless, "0.05"), log());
-    ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLong)) << bytes_of(log());
+    ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLongest)) << bytes_of(log());
     const auto sent = steady_clock::now();
     program.send(signal);
     EXPECT_EQ(program.wait(), code) << bytes_of(log());
-    // A small picture needs tenths of a second; the limit allows for a busy machine.
+    // A small picture needs tenths of a second; the limit allows for a busy machine. A program that
+    // did not stop would be ended after 20 s, without a picture.
     const auto took = steady_clock::now() - sent;
-    EXPECT_LT(took, Milliseconds(10'000));
+    EXPECT_LT(took, Milliseconds(15'000));
     const std::string said = bytes_of(log());
     EXPECT_TRUE(contains(said, "interrupted after ")) << said;
     EXPECT_TRUE(contains(said, "--resume " + path("a.ckpt") + " goes on")) << said;
@@ -102,14 +102,14 @@ TEST_F(Interruption, AHangingDriverIsLeftTwoSecondsAfterSIGTERMWithTheLastCheckp
   std::vector<std::string> arguments = with_checkpoint(kEndless, "0.02");
   arguments.insert(arguments.end(), {"--kernel-dir", kernels.string()});
   RunningProgram program(arguments, log());
-  ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLong)) << bytes_of(log());
+  ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLongest)) << bytes_of(log());
   std::this_thread::sleep_for(Milliseconds(3'000));
   const auto sent = steady_clock::now();
   program.send(SIGTERM);
   EXPECT_EQ(program.wait(), 143) << bytes_of(log());
   EXPECT_GE(steady_clock::now() - sent, Milliseconds(1'900)) << "it did not hang";
-  EXPECT_LT(steady_clock::now() - sent, Milliseconds(5'000))
-      << "the limit allows for a busy machine";
+  EXPECT_LT(steady_clock::now() - sent, Milliseconds(15'000))
+      << "without checkpoints it is 20 s; the limit allows for a busy machine";
   EXPECT_FALSE(is_there("out.exr"));
   // The checkpoint is whole: nothing is wrong with it but that it was made with these kernels.
   EXPECT_EQ(run(render(kEndless, {"--resume", path("a.ckpt")})), 2);
@@ -170,8 +170,9 @@ TEST_F(Interruption, BeforeThereAreSamplesItEndsAtOnceAndLeavesNothing) {
 }
 
 // With an empty cache a driver compiles for seconds, in other processes and then in this one. On a
-// fast machine it is done before the last signal: then there are samples, and they are kept. The
-// thread sanitizer hands signals on when the thread makes a call that it watches.
+// fast machine it is done before the last signal: then there are samples, and they are kept. What
+// counts is processor time, which a busy machine does not change; the clock's limit is for drivers
+// that wait. The thread sanitizer hands signals on when the thread makes a call that it watches.
 TEST_F(Interruption, WhileKernelsCompileItEndsWithinTwoSecondsAndLeavesNothing) {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   const std::string before = cache ? cache : "";
@@ -182,9 +183,12 @@ TEST_F(Interruption, WhileKernelsCompileItEndsWithinTwoSecondsAndLeavesNothing) 
     RunningProgram program(with_checkpoint(kEndless, "1h"), log());
     std::this_thread::sleep_for(Milliseconds(delay));
     const auto sent = steady_clock::now();
+    const double used = processor_seconds(program.process());
     program.send(SIGTERM);
     EXPECT_EQ(program.wait(), 143) << bytes_of(log());
-    EXPECT_LT(steady_clock::now() - sent, Milliseconds(kThreadSanitized ? 60'000 : 2'000))
+    EXPECT_LT(processor_seconds(program.usage()) - used, kThreadSanitized ? 60 : 2)
+        << "after " << delay << " ms";
+    EXPECT_LT(steady_clock::now() - sent, Milliseconds(kThreadSanitized ? 60'000 : 15'000))
         << "after " << delay << " ms";
     const bool has_samples = contains(bytes_of(log()), "interrupted after ");
     EXPECT_FALSE(has_samples && delay == 300) << bytes_of(log());
@@ -202,7 +206,7 @@ TEST_F(Interruption, WhileKernelsCompileItEndsWithinTwoSecondsAndLeavesNothing) 
 
 TEST_F(Interruption, ASecondInterruptEndsAtOnceAndTheNextRunCleansUp) {
   RunningProgram program(with_checkpoint(kEndless, "0.02"), log());
-  ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLong)) << bytes_of(log());
+  ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLongest)) << bytes_of(log());
   program.send(SIGINT);
   std::this_thread::sleep_for(Milliseconds(5));
   program.send(SIGINT);
@@ -215,7 +219,7 @@ TEST_F(Interruption, IgnoredSignalsStayIgnored) {
   std::signal(SIGINT, SIG_IGN);
   RunningProgram program(with_checkpoint(256, "0.02"), log());
   std::signal(SIGINT, SIG_DFL);
-  wait_until([&] { return is_there("a.ckpt") || program.has_ended(); }, kLong);
+  wait_until([&] { return is_there("a.ckpt") || program.has_ended(); }, kLongest);
   program.send(SIGINT);
   EXPECT_EQ(program.wait(), 0) << bytes_of(log());
 }
@@ -280,15 +284,20 @@ TEST_F(KilledRender, GoesOnFromTheLastWholeCheckpointToTheSameFile) {
   std::filesystem::remove(path("a.ckpt"));
   std::mt19937 random(7);
   int killed = 0;
+  unsigned longest = 600;  // ms; less where the machine is so fast that renders end before
   for (int attempt = 0; attempt < 20; ++attempt) {
     std::vector<std::string> arguments = render("0.01");
     if (is_there("a.ckpt")) arguments.insert(arguments.end(), {"--resume", path("a.ckpt")});
     RunningProgram program(arguments, log());
-    std::this_thread::sleep_for(Milliseconds(100 + random() % 600));
+    std::this_thread::sleep_for(Milliseconds(longest / 6 + random() % longest));
     program.send(SIGKILL);
     const int code = program.wait();
     EXPECT_TRUE(code == 0 || code == 128 + SIGKILL) << bytes_of(log());
     killed += code != 0;
+    if (code != 0) continue;
+    EXPECT_TRUE(bytes_of(path("out.exr")) == whole);
+    std::filesystem::remove(path("a.ckpt"));  // the next begins anew
+    longest = std::max(60u, longest * 2 / 3);
   }
   EXPECT_GT(killed, 4);
   std::vector<std::string> last = render("1h");

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <random>
 
 namespace dapple {
@@ -118,9 +118,11 @@ TEST(Reinsertion, OverlappingBoxesTakeLimitedTime) {
     const V3f corner(x, y, 1 / (x * y));
     boxes.push_back(primitive_box({-corner, corner}, i));
   }
-  const auto start = std::chrono::steady_clock::now();
+  // Processor time, of all threads: other programs disturb it little.
+  const std::clock_t start = std::clock();
   EXPECT_LE(part_left(boxes), 1);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  EXPECT_LT(seconds, 5);
 }
 
 TEST(Reinsertion, InfiniteAreasAreLeftAlone) {
