@@ -25,9 +25,9 @@ class SharedFiles : public FilmFile {
             "--png",
             path("out.png"),
             "--width",
-            "96",
+            "320",
             "--height",
-            "80",
+            "240",
             "--spp",
             std::to_string(spp),
             "--checkpoint",
@@ -70,7 +70,7 @@ class SharedFiles : public FilmFile {
 TEST_F(SharedFiles, OfTwoRendersAtOnceAreWholeAndThoseOfOneOfThem) {
   std::vector<std::string> alone_exr, alone_png;
   for (const int seed : {1, 2}) {
-    ASSERT_EQ(run(render(seed, 40)), 0) << bytes_of(log(1));
+    ASSERT_EQ(run(render(seed, 8)), 0) << bytes_of(log(1));
     alone_exr.push_back(bytes_of(path("out.exr")));
     alone_png.push_back(bytes_of(path("out.png")));
   }
@@ -78,7 +78,7 @@ TEST_F(SharedFiles, OfTwoRendersAtOnceAreWholeAndThoseOfOneOfThem) {
   ASSERT_FALSE(alone_png[0] == alone_png[1]);
   for (int repeat = 0; repeat < 3; ++repeat) {
     for (const char* name : {"out.exr", "out.png", "a.ckpt"}) std::filesystem::remove(path(name));
-    RunningProgram first(render(1, 40), log(1)), second(render(2, 40), log(2));
+    RunningProgram first(render(1, 8), log(1)), second(render(2, 8), log(2));
     EXPECT_EQ(first.wait(), 0) << bytes_of(log(1));
     EXPECT_EQ(second.wait(), 0) << bytes_of(log(2));
     const std::string exr = bytes_of(path("out.exr")), png = bytes_of(path("out.png"));
@@ -86,7 +86,7 @@ TEST_F(SharedFiles, OfTwoRendersAtOnceAreWholeAndThoseOfOneOfThem) {
     EXPECT_TRUE(png == alone_png[0] || png == alone_png[1]);
     EXPECT_EQ(files_in_folder(), 4U);
     // Finished, so there is no more to trace: the image is that of the checkpoint's render.
-    const int seed = seed_of_checkpoint(40);
+    const int seed = seed_of_checkpoint(8);
     EXPECT_TRUE(bytes_of(path("out.exr")) == alone_exr.at(static_cast<std::size_t>(seed) - 1));
   }
 }

@@ -6,9 +6,11 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <functional>
+#include <thread>
 
 #include "support/film_files.hpp"
 
@@ -91,6 +93,39 @@ TEST_F(OutputFile, AFailedWriteNamesTheReasonAndLeavesTheOldFileAlone) {
     EXPECT_EQ(bytes_of(path("a.exr")), "old");
     EXPECT_EQ(files_in_folder(), 1U);
   }
+}
+
+// As processes do: locks are of open files, and temporary names random.
+TEST_F(OutputFile, WritersOfOneFileAtOnceLeaveTheWholeFileOfOneOfThem) {
+  constexpr std::size_t kBytes = 300'000;
+  constexpr int kWriters = 4, kTimes = 40;
+  std::atomic<int> writing{kWriters};
+  std::vector<std::string> failures(kWriters);
+  std::vector<std::thread> writers;
+  for (int i = 0; i < kWriters; ++i) {
+    writers.emplace_back([&, i] {
+      const std::string bytes(kBytes, static_cast<char>('a' + i));
+      try {
+        for (int time = 0; time < kTimes; ++time) {
+          check_output_path(path("a.bin"));
+          write_whole_file(path("a.bin"), bytes);
+        }
+      } catch (const Error& error) {
+        failures[static_cast<std::size_t>(i)] = error.what();
+      }
+      --writing;
+    });
+  }
+  // A reader at any time finds one writer's bytes only.
+  while (writing > 0) {
+    const std::string bytes = bytes_of(path("a.bin"));
+    if (bytes.empty()) continue;  // not there yet
+    EXPECT_EQ(bytes.size(), kBytes);
+    EXPECT_EQ(bytes.find_first_not_of(bytes[0]), std::string::npos);
+  }
+  for (std::thread& writer : writers) writer.join();
+  for (const std::string& failure : failures) EXPECT_EQ(failure, "");
+  EXPECT_EQ(files_in_folder(), 1U);
 }
 
 TEST_F(OutputFile, AnUncommittedFileVanishes) {
