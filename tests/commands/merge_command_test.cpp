@@ -56,10 +56,13 @@ Film noisy_sky() {
   return sky;
 }
 
-// The crops have other automatic ambients than the image has: that of the image is chosen anew.
+// Of the lamp the crops have other automatic ambients than the image: a merge chooses that of all.
 TEST_F(MergeCommand, TilesOfCropsAreTheFileOfOneRenderWithADomeToo) {
   write_exr(noisy_sky(), path("sky.exr"));
-  for (const std::string& options : {kTree, kTree + "--dome sky.exr "}) {
+  write_bytes(path("lamp.json"), R"({"lights": [{"type": "disk", "name": "lamp", "radius": 0.3,
+      "position": [1, 2.5, 1.2], "normal": [-0.4, -1, -0.5], "radiance": [8, 8, 8]}]})");
+  for (const std::string& options :
+       {kTree, kTree + "--dome sky.exr ", kTree + "--lights lamp.json "}) {
     SCOPED_TRACE(options);
     ASSERT_EQ(dapple(options + "-o whole.exr").code, 0);
     ASSERT_EQ(dapple(options + "--crop 0,0,18,35 -o left.dapple").code, 0);
