@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "device/programs/kernel_source.hpp"
 #include "files/checksum.hpp"
 
 namespace dapple {
@@ -110,6 +111,7 @@ Settings bake_settings(const Scene& scene, const BakeOptions& o,
            add_light(stream, light);
        })},
       {"version of dapple", DAPPLE_VERSION},
+      {"kernels", kernel_checksum(o.kernel_dir)},
   };
 }
 

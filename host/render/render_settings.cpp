@@ -68,15 +68,6 @@ std::string light_checksum(const DeviceBuffers& scene) {
   return hex_text(stream.value());
 }
 
-std::string kernel_checksum(const RenderOptions& options) {
-  ChecksumStream stream;
-  for (const EmbeddedSource& source : embedded_sources()) {
-    if (source.name.ends_with(".cl"))
-      stream.add_range(expand_kernel(std::string(source.name), options.kernel_dir));
-  }
-  return hex_text(stream.value());
-}
-
 bool is_checksum(const std::string& value) {
   return value.size() == 32 && value.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
@@ -123,7 +114,7 @@ Settings content_settings(const RenderOptions& options, const View& view, const 
       {"camera", camera_checksum(view.camera)},
       {"lights", options.light ? light_checksum(scene) : "none"},
       {"version of dapple", DAPPLE_VERSION},
-      {"kernels", kernel_checksum(options)},
+      {"kernels", kernel_checksum(options.kernel_dir)},
   };
 }
 

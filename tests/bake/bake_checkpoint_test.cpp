@@ -30,6 +30,14 @@ class BakeCheckpoints : public film_test::FilmFile {
     return bake(scene, options, control);
   }
 
+  /// A folder with a kernel file that is longer by a comment.
+  [[nodiscard]] std::string other_kernels() const {
+    const std::filesystem::path ao = folder_ / "kernels/occlusion/ao.cl";
+    std::filesystem::create_directories(ao.parent_path());
+    std::filesystem::copy_file(DAPPLE_SOURCE_FOLDER "/kernels/occlusion/ao.cl", ao);
+    std::ofstream(ao, std::ios::app) << "/* another */\n";
+    return path("kernels");
+  }
   [[nodiscard]] BakeResult resume(const Scene& scene, const BakeOptions& options) const {
     RenderControl control = saving();
     control.resume = control.checkpoint;
@@ -114,6 +122,9 @@ TEST_F(BakeCheckpoints, OtherOptionsAndScenesAreRefused) {
   Scene moved = tree;
   moved.meshes.at(0).positions.at(0).x += 1;
   EXPECT_NE(refused(moved, {}).find("in scene"), std::string::npos);
+  other = {};
+  other.kernel_dir = other_kernels();
+  EXPECT_NE(refused(tree, other).find("in kernels"), std::string::npos);
 }
 
 TEST_F(BakeCheckpoints, DamagedAndMissingFilesAreNamed) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "dapple/error.hpp"
+#include "files/checksum.hpp"
 
 namespace dapple {
 namespace {
@@ -54,6 +55,15 @@ std::string expand_kernel(const std::string& file, const std::string& kernel_dir
   std::string out;
   expand(file, kernel_dir, seen, out);
   return out;
+}
+
+std::string kernel_checksum(const std::string& kernel_dir) {
+  ChecksumStream stream;
+  for (const EmbeddedSource& source : embedded_sources()) {
+    if (source.name.ends_with(".cl"))
+      stream.add_range(expand_kernel(std::string(source.name), kernel_dir));
+  }
+  return hex_text(stream.value());
 }
 
 }  // namespace dapple

@@ -24,4 +24,7 @@ std::span<const EmbeddedSource> embedded_sources();
 /// it is not empty and has them, else from the binary. Throws Error failed.
 std::string expand_kernel(const std::string& file, const std::string& kernel_dir = "");
 
+/// A checksum of all kernels' sources, as hexadecimal text.
+std::string kernel_checksum(const std::string& kernel_dir);
+
 }  // namespace dapple
