@@ -291,9 +291,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   const Stopwatch tracing;
   if (together && !alone) measure_bias(*together, pilot_meshes(scene, options), options, s);
   MeshOccluders mesh_occluders(scene, options, alone ? nullptr : &*together);
-  // As before each slice of a picture, so that whoever asks for the second time can save.
-  result.interrupted = !progress.add(0);
-  if (options.vertices && !result.interrupted)
+  if (options.vertices)
     result.interrupted = !bake_vertices(scene, options, mesh_occluders, records, result);
   if (options.texture && !result.interrupted)
     result.interrupted = !bake_texture(scene, options, mesh_occluders, records, result);

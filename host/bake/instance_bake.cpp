@@ -76,6 +76,7 @@ bool trace_instances(const Scene& scene, const BakeOptions& options, BakeTracing
       of_mesh[m] = samples_by_area(scene, scene.meshes[m], options);
   const int rays = lights ? options.light_rays : std::min(options.rays, kInstanceRays);
   const TraceSamples& trace = lights ? tracing.light : tracing.ao;
+  if (!tracing.progress.add(0)) return false;
   InstanceSlice slice;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     for (const SurfaceSample& sample : of_mesh[scene.instances[i].mesh]) {

@@ -9,8 +9,11 @@
 namespace dapple {
 namespace {
 
-/// Samples that are traced between two questions whether to stop: about half a second.
-constexpr std::size_t kSamplesAtOnce = 1u << 18;
+/// Rays that are traced between two questions whether to stop: a fraction of a second.
+constexpr std::size_t kRaysAtOnce = 1u << 21;
+
+/// A sample of fewer rays counts as of so many: it takes time of its own.
+constexpr int kFewestRays = 8;
 
 /// A round multiplies the samples of an element by this at most: early variances are uncertain.
 constexpr float kMaxGrowth = 4;
@@ -29,11 +32,11 @@ SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
       tracing_(tracing),
       trace_(lights ? tracing.light : tracing.ao),
       sums_(sums),
-      samples_at_once_(std::max<std::size_t>(
-          1, kSamplesAtOnce / (lights ? std::max<std::size_t>(1, tracing.lights) : 1))),
+      lights_(lights ? std::max<std::size_t>(1, tracing.lights) : 1),
       taken_(surface.size()) {}
 
 bool SampleRounds::run(const RoundOptions& options) {
+  if (!tracing_.progress.add(0)) return false;
   const bool done =
       options.target_error <= 0
           ? take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays)
@@ -45,6 +48,8 @@ bool SampleRounds::run(const RoundOptions& options) {
 // `samples` of each element, both sides. False: stopped.
 bool SampleRounds::take(std::uint32_t samples, int rays) {
   rays_ = rays;
+  const auto counted = static_cast<std::size_t>(std::max(rays, kFewestRays));
+  samples_at_once_ = std::max<std::size_t>(1, kRaysAtOnce / (counted * lights_));
   std::vector<std::uint32_t> wanted(taken_.size(), samples);
   return round(wanted);
 }
@@ -94,7 +99,8 @@ SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
   return sample;
 }
 
-// Starts tracing the samples of the list, and adds what the batch before found meanwhile.
+// Starts tracing the samples of the list, and adds what the batch before found meanwhile. Asks whether
+// to stop in between, when no batch is traced: a driver may hang in the next.
 bool SampleRounds::trace() {
   Batch batch;
   batch.samples.resize(next_.size());
@@ -112,8 +118,9 @@ bool SampleRounds::trace() {
   std::optional<TracedSamples> found;
   if (traced_.valid()) found = traced_.get();
   Batch before = std::move(batch_traced_);
+  const bool goes_on = !found || tracing_.progress.add(before.samples.size());
   batch_traced_ = std::move(batch);
-  if (!batch_traced_.samples.empty())
+  if (goes_on && !batch_traced_.samples.empty())
     traced_ = std::async(std::launch::async, [this] {
       return trace_(batch_traced_.samples, batch_traced_.placement, placements_, rays_,
                     batch_traced_.hash);
@@ -122,7 +129,7 @@ bool SampleRounds::trace() {
   sums_.add(before.samples, *found);
   tracing_.statistics.points += found->points;
   tracing_.statistics.rays += found->rays;
-  return tracing_.progress.add(before.samples.size());
+  return goes_on;
 }
 
 }  // namespace dapple

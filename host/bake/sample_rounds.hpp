@@ -61,7 +61,8 @@ class SampleRounds {
   BakeTracing& tracing_;
   const TraceSamples& trace_;
   ValueSums& sums_;
-  std::size_t samples_at_once_;
+  std::size_t lights_;               ///< rays to lights are that many times as many
+  std::size_t samples_at_once_ = 1;  ///< for take()'s rays
   int rays_ = kRaysPerSample;
   std::vector<std::uint32_t> taken_;  ///< samples of each element
   std::vector<SampleIndex> next_;     ///< to be traced

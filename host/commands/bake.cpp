@@ -201,7 +201,7 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   BakeSeconds seconds;
   ProgressBar progress(a.quiet, "baking");
   const RenderControl control = to_control(a, progress);
-  progress.announce("reading " + a.scene);
+  progress.announce("reading", a.scene);
   std::optional<SceneFile> input(std::in_place, a.scene, a.output);
   Scene scene = load_gltf(input->path(), a.scene_options);
   if (!input->lights().empty()) scene.lights = input->lights();
@@ -219,7 +219,7 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   if (options.texture) layout_note = choose_layout(file, scene, a.uv, options, uv_set);
   seconds.load = total.seconds();
 
-  progress.announce("building the BVH");
+  progress.announce("building", "the BVH");
   BakeResult result = bake(scene, options, control, occluders);
   progress.clear();
   if (result.interrupted) return report_interruption(result, a);

@@ -160,7 +160,7 @@ void run_points(const Arguments& a) {
   catch_interruptions();
   const Stopwatch total;
   ProgressBar progress(a.quiet, "measuring");
-  progress.announce("reading " + a.scene);
+  progress.announce("reading", a.scene);
   Scene scene = load_scene(a.scene, a.scene_options);
   std::vector<std::string> inputs = scene.files;
   for (const std::string& path : {a.at, a.suns, a.lights})
@@ -170,7 +170,7 @@ void run_points(const Arguments& a) {
   if (!a.suns.empty()) options.suns = read_suns(a.suns);
   set_lights(a, scene);
   const double load_seconds = total.seconds();
-  progress.announce("building the BVH");
+  progress.announce("building", "the BVH");
   RenderControl control;
   control.progress = progress.callback();
   PointResult result =

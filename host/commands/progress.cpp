@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -16,6 +17,7 @@ namespace {
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 constexpr auto kLineEvery = std::chrono::seconds(10);
 constexpr int kWidth = 32;
+constexpr std::size_t kMaxName = 50;
 
 std::string duration_text(double seconds) {
   const auto s = std::lround(seconds);
@@ -60,9 +62,10 @@ void ProgressBar::show(double done) {
   drawn_ = true;
 }
 
-void ProgressBar::announce(const std::string& doing) {
+void ProgressBar::announce(const std::string& doing, const std::string& path) {
   if (quiet_ || !terminal_) return;
-  tell("\r\033[K{}{}{} ...", what_, what_.empty() ? "" : " ", doing);
+  const std::string name = std::filesystem::path(path).filename().string().substr(0, kMaxName);
+  tell("\r\033[K{}{}{} {} ...", what_, what_.empty() ? "" : " ", doing, name);
   std::fflush(stderr);
   drawn_ = true;
 }

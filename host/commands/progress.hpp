@@ -18,8 +18,9 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(double done);
-  /// Says what is done before or between, such as "reading tree.glb", if that is on a terminal.
-  void announce(const std::string& doing);
+  /// Says what is done before or between, such as "reading" "tree.glb", if that is on a terminal.
+  /// Of a path only the name is said, so that it fits into a line.
+  void announce(const std::string& doing, const std::string& path);
   /// Starts the bar of the next of several renders; `what` is its title.
   void begin(const std::string& what);
   /// Erases the bar, so that other text can follow.

@@ -150,7 +150,7 @@ void run_render(const RenderArguments& a) {
   auto start = Clock::now();
   Renderer renderer;
   renderer.prepare(options);
-  progress.announce("reading " + a.scene);
+  progress.announce("reading", a.scene);
   Shot shot(a, options);
   NotePrinter notes;
   PngOptions png = parse_png_options(a.exposure, a.background);
@@ -159,7 +159,7 @@ void run_render(const RenderArguments& a) {
     Scene scene = shot.frame(first_seconds(a, frame));
     if (&frame == &frames.front()) {
       check_files_spare(frames, a, scene.files);
-      progress.announce("building the BVH");
+      progress.announce("building", "the BVH");
     }
     const double load_seconds = since(start);
     control.part = is_part_path(frame.output) ? frame.output : "";

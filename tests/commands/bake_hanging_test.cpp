@@ -51,10 +51,10 @@ TEST_F(HangingBake, IsLeftTwoSecondsAfterSIGTERMWithTheLastCheckpoint) {
     return program.has_ended() || std::filesystem::exists(path("b.ckpt"));
   };
   ASSERT_TRUE(wait_until(is_saved, kLongest)) << bytes_of(log());
-  // Until no checkpoint was written for three seconds.
+  // Until no checkpoint was written for ten seconds.
   const auto written = [&] { return std::filesystem::last_write_time(path("b.ckpt")); };
   for (auto last = written();; last = written()) {
-    std::this_thread::sleep_for(Milliseconds(3'000));
+    std::this_thread::sleep_for(Milliseconds(10'000));
     if (written() == last) break;
   }
   const auto sent = steady_clock::now();

@@ -14,7 +14,6 @@ namespace {
 using namespace film_test;
 using namespace program_test;
 
-constexpr Milliseconds kLong{60'000};
 
 class BakeInterruption : public BakeCommand {
  protected:
@@ -57,7 +56,7 @@ class BakeInterruption : public BakeCommand {
             if (is_there("a.ckpt")) sizes.insert(std::filesystem::file_size(path("a.ckpt")));
             return sizes.size() == 3 || program.has_ended();
           },
-          kLong))
+          kLongest))
           << bytes_of(log());
       program.send(signal);
       const int code = program.wait();
@@ -73,7 +72,7 @@ class BakeInterruption : public BakeCommand {
       auto program = std::make_unique<RunningProgram>(
           bake("scene:tree?leaves=" + std::to_string(leaves), more), log());
       const auto is_written = [&] { return is_there("out.glb.scene.glb"); };
-      EXPECT_TRUE(wait_until([&] { return is_written() || program->has_ended(); }, kLong));
+      EXPECT_TRUE(wait_until([&] { return is_written() || program->has_ended(); }, kLongest));
       if (is_written() || leaves > 1'000'000) return program;
       std::filesystem::remove(path("out.glb"));
       std::filesystem::remove(path("a.ckpt"));

@@ -121,7 +121,7 @@ std::string Editor::free_name(const std::string& suffix, const std::string& exte
   for (const char* array : {"buffers", "images"})
     for (const Json& entry : content().json.value(array, Json::array()))
       if (const std::string uri = entry.value("uri", ""); !is_data_uri(uri))
-        taken.insert(percent_decode(uri));
+        taken.insert(fs::path(percent_decode(uri)).lexically_normal().string());
   const std::string stem = fs::path(out_).stem().string() + suffix;
   std::string name = stem + extension;
   for (int number = 2; taken.contains(name); ++number)
