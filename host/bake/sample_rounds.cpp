@@ -99,8 +99,8 @@ SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
   return sample;
 }
 
-// Starts tracing the samples of the list, and adds what the batch before found meanwhile. Asks whether
-// to stop in between, when no batch is traced: a driver may hang in the next.
+// Starts tracing the samples of the list, and adds what the batch before found meanwhile. Asks
+// whether to stop in between, when no batch is traced: a driver may hang in the next.
 bool SampleRounds::trace() {
   Batch batch;
   batch.samples.resize(next_.size());

@@ -75,7 +75,8 @@ TEST_F(BakeBadInput, AFullDiskLeavesTheFilesOfAnEarlierBakeAsTheyWere) {
   for (const auto& [size, first_failure] : {std::pair{"16k", "out.bin"}, {"20k", "out.gltf"}}) {
     const std::string mount = std::string("mount -t tmpfs -o size=") + size + " none disk";
     const std::string run_and_list =
-        " sh -c 'cp old/* disk; \"$0\" \"$@\"; code=$?; cat disk/* >found; LC_ALL=C ls -A disk >>found; "
+        " sh -c 'cp old/* disk; \"$0\" \"$@\"; code=$?; cat disk/* >found; LC_ALL=C ls -A disk "
+        ">>found; "
         "exit $code'";
     const Outcome run = dapple("bake in.glb -o disk/out.gltf --to texture --size 64 --rays 8 -q",
                                in_namespace(mount) + run_and_list);

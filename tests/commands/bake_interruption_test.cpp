@@ -14,7 +14,6 @@ namespace {
 using namespace film_test;
 using namespace program_test;
 
-
 class BakeInterruption : public BakeCommand {
  protected:
   /// Triangles in meshes of their own, which are traced one after the other: many moments to stop

@@ -13,8 +13,9 @@ class ProgressOnATerminal : public ProgramRun {
   /// All that the program prints to a terminal. The program script (bsdutils) runs it in one.
   [[nodiscard]] std::string shown(const std::string& arguments) const {
     const std::string out = (logs() / "terminal").string();
-    const std::string command = "cd '" + folder_.string() + "' && SHELL=/bin/sh script -qec \"" DAPPLE_PROGRAM
-                                " " + arguments + "\" /dev/null >'" + out + "' </dev/null";
+    const std::string command = "cd '" + folder_.string() +
+                                "' && SHELL=/bin/sh script -qec \"" DAPPLE_PROGRAM " " + arguments +
+                                "\" /dev/null >'" + out + "' </dev/null";
     EXPECT_NE(std::system(command.c_str()), -1);
     return film_test::bytes_of(out);
   }

@@ -1,6 +1,7 @@
 // Reads any bytes as a scene, at rest and at a time, and merges its meshes. This gives a scene, or
-// an Error of kind input. Inputs with a whole number of seven digits or more are left out: a count of
-// some million instances is legal, and takes seconds. The corpus of tests/corpus has such counts.
+// an Error of kind input. Inputs with a whole number of seven digits or more are left out: a count
+// of some million instances is legal, and takes seconds. The corpus of tests/corpus has such
+// counts.
 #include <algorithm>
 #include <cctype>
 #include <optional>
