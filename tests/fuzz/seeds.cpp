@@ -1,5 +1,5 @@
 // Writes the scenes of the corpus, small images and point files as the first inputs of the fuzzers.
-// The command `seeds FOLDER` makes the folders FOLDER/gltf, FOLDER/image and FOLDER/points.
+// The command `seeds FOLDER` makes the folders FOLDER/gltf, image, radiance_hdr and points.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -50,6 +50,25 @@ void write_images(const std::filesystem::path& folder) {
   }
 }
 
+/// Images whose lines are encoded, as only lines of eight pixels or more are, and not.
+void write_radiance_images(const std::filesystem::path& folder) {
+  const auto image = [](const std::string& size, const Bytes& pixels) {
+    const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n";
+    Bytes bytes(header.begin(), header.end());
+    bytes.insert(bytes.end(), pixels.begin(), pixels.end());
+    return bytes;
+  };
+  // Of each channel a run of five (128 + 5), and three values.
+  Bytes line{2, 2, 0, 8};
+  for (const auto value :
+       {std::uint8_t{100}, std::uint8_t{90}, std::uint8_t{80}, std::uint8_t{129}})
+    line.insert(line.end(), {133, value, 3, value, 2, value});
+  Bytes lines = line;
+  lines.insert(lines.end(), line.begin(), line.end());
+  write_seed(folder / "encoded", image("-Y 2 +X 8", lines));
+  write_seed(folder / "plain", image("-Y 2 +X 1", {1, 2, 3, 128, 4, 5, 6, 130}));
+}
+
 /// A file of each format; its first byte tells points_fuzz.cpp the format.
 void write_points_and_suns(const std::filesystem::path& folder) {
   dapple::PointList list;
@@ -82,6 +101,7 @@ int main(int argc, char** argv) {
   for (const auto& one : dapple::test::tricky_corpus())
     write_scene(folder / "gltf", one.name, one.files);
   write_images(folder / "image");
+  write_radiance_images(folder / "radiance_hdr");
   write_points_and_suns(folder / "points");
   return 0;
 }

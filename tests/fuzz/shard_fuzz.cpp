@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "dapple/shared/ray.h"
 #include "files/compression.hpp"
@@ -17,6 +18,10 @@
 namespace {
 
 using namespace dapple;
+
+/// One of eight times, and not where no bytes are left: parts are merged only if nearly all of what
+/// they say is sound.
+bool is_odd(FuzzedDataProvider& data) { return data.ConsumeIntegralInRange(0, 7) == 7; }
 
 std::string path(int number) {
   return std::filesystem::temp_directory_path() /
@@ -43,7 +48,8 @@ PictureRecord any_picture(FuzzedDataProvider& data) {
   picture.width = data.ConsumeIntegralInRange(1, 6);
   picture.height = data.ConsumeIntegralInRange(1, 6);
   const auto corner = [&] { return data.ConsumeIntegralInRange(-1, 6); };
-  picture.crop = {corner(), corner(), corner(), corner()};
+  picture.crop = {0, 0, picture.width - 1, picture.height - 1};
+  if (is_odd(data)) picture.crop = {corner(), corner(), corner(), corner()};
   RenderOptions& options = picture.options;
   options.camera_splitting = data.ConsumeIntegralInRange(1, 4);
   options.ao = data.ConsumeBool();
@@ -74,21 +80,22 @@ void write_likely(FuzzedDataProvider& data, const std::string& file) {
   part.picture = any_picture(data);
   TraceState& state = part.state;
   state.slice_samples = data.ConsumeIntegralInRange<std::uint32_t>(0, 64);
-  state.first_sample = data.ConsumeIntegralInRange<std::uint32_t>(0, 16);
+  const std::uint32_t splitting = is_odd(data) ? 1 : splitting_factor(part.picture.options);
+  state.first_sample = splitting * data.ConsumeIntegralInRange<std::uint32_t>(0, 4);
   const PixelRect& crop = part.picture.crop;
   const bool sound = crop.x0 >= 0 && crop.y0 >= 0 && crop.x0 <= crop.x1 && crop.y0 <= crop.y1;
   const std::size_t pixels = sound ? part.picture.pixel_count() : 1;
   const std::size_t planes = sound ? part.picture.layout().plane_count : 1;
-  state.sums.resize(pixels * planes + data.ConsumeIntegralInRange<std::size_t>(0, 1));
+  state.sums.resize(pixels * planes + (is_odd(data) ? 1 : 0));
   for (std::int64_t& sum : state.sums)
     if (data.remaining_bytes() > 0) sum = data.ConsumeIntegral<std::int64_t>();
-  state.samples.assign(pixels, data.ConsumeIntegralInRange<std::uint32_t>(0, 16));
+  state.samples.assign(pixels, splitting * data.ConsumeIntegralInRange<std::uint32_t>(1, 4));
   if (part.picture.options.cryptomattes.any()) {
     state.mattes.assign(pixels, 0);
     if (data.ConsumeBool()) state.mattes[0] = data.ConsumeIntegral<std::uint32_t>();
   }
   if (part.picture.options.motion) state.motion = MotionSums(pixels);
-  for (int i = data.ConsumeIntegralInRange(0, 2); i > 0; --i) {
+  for (int i = is_odd(data) ? data.ConsumeIntegralInRange(1, 2) : 0; i > 0; --i) {
     const auto corner = [&] { return data.ConsumeIntegralInRange(-1, 6); };
     const auto ray = [&] { return data.ConsumeIntegralInRange<std::uint32_t>(0, 9); };
     part.pieces.push_back({{corner(), corner(), corner(), corner()}, {ray(), ray()}});
@@ -103,7 +110,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   std::vector<std::string> paths;
   for (int i = data.ConsumeIntegralInRange(1, 2); i > 0; --i) {
     paths.push_back(path(i));
-    if (data.ConsumeIntegralInRange(0, 7) == 0)
+    if (is_odd(data))
       write_any(data, paths.back());
     else
       write_likely(data, paths.back());
