@@ -238,6 +238,11 @@ void check_state(const std::string& name, const TraceState& state, const StateSh
       !fits(state.round, state.slice_samples, shape.pixels)) {
     refuse(name, "damaged: its list of work is not of this picture");
   }
+  // The first plane counts the samples that hit.
+  for (std::size_t p = 0; p < std::min(shape.pixels, shape.sums); ++p) {
+    if (state.sums[p] < 0 || state.sums[p] > state.samples[p])
+      refuse(name, "damaged: its samples that hit are not among those that it has");
+  }
   try {
     traced_samples(state.round, state.slice_samples, state.samples);
   } catch (const Error& error) {

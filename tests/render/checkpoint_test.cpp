@@ -81,6 +81,8 @@ TEST_F(CheckpointFile, StatesThatDoNotFitThePictureAreRefused) {
   using Change = std::function<void(TraceState&)>;
   const Change changes[] = {
       [](auto& s) { s.sums.pop_back(); },
+      [](auto& s) { s.sums[0] = 9; },
+      [](auto& s) { s.sums[1] = -1; },
       [](auto& s) { s.squares.clear(); },
       [](auto& s) { s.samples.push_back(1); },
       [](auto& s) { s.samples[0] = 3; },
