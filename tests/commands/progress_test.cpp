@@ -10,6 +10,11 @@ constexpr const char* kLostFile = "render no_such_file.glb -o out.exr";
 
 class ProgressOnATerminal : public ProgramRun {
  protected:
+  void SetUp() override {
+    ProgramRun::SetUp();
+    if (std::system("script -qec true /dev/null >/dev/null 2>&1 </dev/null") != 0)
+      GTEST_SKIP() << "script (bsdutils) cannot make a terminal: is /dev/pts mounted?";
+  }
   /// All that the program prints to a terminal. The program script (bsdutils) runs it in one.
   [[nodiscard]] std::string shown(const std::string& arguments) const {
     const std::string out = (logs() / "terminal").string();
