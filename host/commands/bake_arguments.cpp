@@ -118,7 +118,8 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
          "Around which rays are spread. shading: the normals of the meshes; geometric: those "
          "of the triangles")
       ->capture_default_str();
-  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias, o.max_bias);
+  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias);
+  add_max_bias_option(app, o.max_bias);
   app.add_option("--ao-distance", o.distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")
       ->capture_default_str();

@@ -66,7 +66,8 @@ double pixels_of(const RenderOptions& options) {
 RenderOptions trial_options(const RenderOptions& options, double rays) {
   RenderOptions trial = options;
   trial.shard = {};
-  trial.target_error = trial.target_rmse = trial.max_bias = 0;
+  trial.target_error = trial.target_rmse = 0;
+  trial.max_bias = 0.0f;
   trial.spp = std::min(options.spp, kTrialSamples);
   const double share = std::min(1.0, rays / (pixels_of(options) * trial.spp));
   const double side = std::sqrt(share);
@@ -247,8 +248,8 @@ void run_plan(RenderArguments a) {
   std::optional<double> seconds = a.frame;
   if (!a.frames.empty())
     seconds = static_cast<double>(parse_frames(a.frames).first) / frames_per_second(a);
-  if (options.max_bias > 0 && !a.quiet)
-    tell("note: the plan is for --footprint {}; --max-bias may choose a smaller one\n",
+  if ((options.max_bias > 0 || chooses_footprint(options)) && !a.quiet)
+    tell("note: the plan is for --footprint {}; a smaller one may be chosen (--max-bias)\n",
          options.footprint);
   Shot shot(a, options);
   const Plan plan = plan_of(a, options, [&] { return shot.frame(seconds); });

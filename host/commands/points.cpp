@@ -88,7 +88,8 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.add_option("--ao-distance", o.distance,
                  "Surfaces farther than this, in metres, do not count for AO; 0: no limit")
       ->capture_default_str();
-  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias, o.max_bias);
+  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias);
+  add_max_bias_option(app, o.max_bias);
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
       ->capture_default_str();
   add_outside_option(app, a.scene_options.allow_outside);

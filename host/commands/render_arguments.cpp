@@ -49,7 +49,14 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option("--light-rays", o.light_rays, "Rays per light and shaded surface")
       ->capture_default_str();
-  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias, o.max_bias);
+  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias)
+      ->each([&a](const std::string&) { a.footprint_given = true; });
+  app.add_option(
+         "--max-bias", o.max_bias,
+         "Choose the largest footprint, from --footprint down to 0, whose bias is below this in "
+         "each layer; 0: take --footprint. Without it, without --footprint and without a target: a "
+         "smaller footprint if a part of the rays shows that the bias is above 0.002")
+      ->type_name("FLOAT");
   app.add_option("--passes", a.passes,
                  "With commas between: ao, light, albedo (colours), back (AO and light of the side "
                  "that faces away from the camera), motion (image motion until the next frame, in "
@@ -315,6 +322,7 @@ RenderOptions to_options(const RenderArguments& a) {
   if (a.fov) o.fov_degrees = *a.fov;
   if (a.fov && *a.fov == 0)  // in RenderOptions it means the camera's own
     throw Error(ErrorKind::usage, "--fov is 0; it must be from 0.01 to 179");
+  if (a.footprint_given && !o.max_bias) o.max_bias = 0.0f;
   o.estimator = parse_estimator(a.estimator);
   o.normals = parse_normals(a.normals);
   o.report_bias = parse_share("--report-bias", a.report_bias);

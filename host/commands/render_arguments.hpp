@@ -16,6 +16,7 @@ namespace dapple {
 struct RenderArguments {
   std::string scene, output, png, stats_json, lights, dome;
   double dome_rotation = 0;
+  bool footprint_given = false;
   std::string estimator = "prefiltered", passes = "ao,light,albedo", packets = "auto";
   std::string normals = "shading", exposure = "auto", background = "sky";
   std::string cryptomatte, deep, half, compression = "zip";

@@ -2,25 +2,30 @@
 
 namespace dapple {
 
-void add_prefiltering_options(CLI::App& app, std::string& estimator, float& footprint,
-                              std::string& report_bias, float& max_bias) {
+CLI::Option* add_prefiltering_options(CLI::App& app, std::string& estimator, float& footprint,
+                                      std::string& report_bias) {
   app.add_option("--estimator", estimator,
                  "exact: composite every surface on a ray; prefiltered: stop at BVH nodes that the "
                  "ray's footprint covers")
       ->capture_default_str();
-  app.add_option(
-         "--footprint", footprint,
-         "Scale of ray footprints, the areas that rays represent: larger is faster and less "
-         "noisy, smaller is usually closer to exact, 0 is exact")
-      ->capture_default_str();
-  app.add_option("--max-bias", max_bias,
-                 "Choose the largest footprint, from --footprint down to 0, whose bias is below "
-                 "this in each layer; 0: take --footprint")
-      ->capture_default_str();
+  CLI::Option* scale =
+      app.add_option(
+             "--footprint", footprint,
+             "Scale of ray footprints, the areas that rays represent: larger is faster and less "
+             "noisy, smaller is usually closer to exact, 0 is exact")
+          ->capture_default_str();
   app.add_option("--report-bias", report_bias,
                  "Part of the prefiltered rays to trace exactly, too, to report the bias: a "
                  "percentage, as 2%, or a share below 1, as 0.02; fewer where exact rays are slow; "
                  "0: no report")
+      ->capture_default_str();
+  return scale;
+}
+
+void add_max_bias_option(CLI::App& app, float& max_bias) {
+  app.add_option("--max-bias", max_bias,
+                 "Choose the largest footprint, from --footprint down to 0, whose bias is below "
+                 "this in each layer; 0: take --footprint")
       ->capture_default_str();
 }
 

@@ -7,9 +7,12 @@
 
 namespace dapple {
 
-/// --estimator, --footprint, --max-bias and --report-bias
-void add_prefiltering_options(CLI::App& app, std::string& estimator, float& footprint,
-                              std::string& report_bias, float& max_bias);
+/// --estimator, --footprint and --report-bias; returns --footprint
+CLI::Option* add_prefiltering_options(CLI::App& app, std::string& estimator, float& footprint,
+                                      std::string& report_bias);
+
+/// --max-bias of commands that choose no footprint without it
+void add_max_bias_option(CLI::App& app, float& max_bias);
 
 /// --allow-outside
 void add_outside_option(CLI::App& app, bool& allow_outside);

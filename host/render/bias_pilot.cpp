@@ -52,7 +52,8 @@ BiasPilot::BiasPilot(DeviceContext& context, const DeviceBuffers& scene, const V
       grid_(view),
       order_(spread_units(grid_)),
       units_at_once_(std::min(kUnitsAtOnce, order_.size())),
-      rounds_(static_cast<std::size_t>(options.spp) / splitting_factor(options)),
+      most_units_(order_.size() * static_cast<std::size_t>(options.spp) /
+                  splitting_factor(options)),
       units_(grid_.empty_units()),
       layers_((options.ao ? 1 : 0) + layout.lights.size()) {
   camera_.keep_hits = layout.normals ? 1u : 0u;
@@ -68,6 +69,10 @@ std::size_t BiasPilot::rays() const {
   std::size_t least = layers_.front().rays.size();
   for (const Layer& layer : layers_) least = std::min(least, layer.rays.size());
   return least;
+}
+
+void BiasPilot::limit(double share) {
+  most_units_ = static_cast<std::size_t>(std::ceil(share * static_cast<double>(most_units_)));
 }
 
 double BiasPilot::seen() const {

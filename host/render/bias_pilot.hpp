@@ -22,7 +22,9 @@ class BiasPilot : public BiasSource {
   /// Takes camera rays of more units, well spread over the picture, at most options.spp samples of
   /// a pixel, and traces their rays exactly.
   void grow(std::size_t rays) override;
-  [[nodiscard]] bool is_complete() const override { return next_ >= order_.size() * rounds_; }
+  /// Takes at most this share of all camera rays, (0,1].
+  void limit(double share);
+  [[nodiscard]] bool is_complete() const override { return next_ >= most_units_; }
   /// Pixels that show geometry; for --target-error only these count.
   [[nodiscard]] double seen() const override;
   /// Layers are AO and the lights.
@@ -57,8 +59,8 @@ class BiasPilot : public BiasSource {
   UnitGrid grid_;
   std::vector<std::uint32_t> order_;  ///< units, those that were not chosen yet as spread as others
   std::size_t units_at_once_;
-  std::size_t next_ = 0;         ///< of order_, which is taken rounds_ times
-  std::size_t rounds_;           ///< camera rays of a pixel
+  std::size_t next_ = 0;         ///< of order_, which is taken many times
+  std::size_t most_units_;       ///< as often as there are camera rays of a pixel, or less
   std::vector<BiasUnit> units_;  ///< with counts of pixels that show geometry
   double seen_ = 0, tried_ = 0;
   std::vector<Layer> layers_;

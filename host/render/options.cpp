@@ -176,7 +176,7 @@ void validate(const RenderOptions& options) {
         fmt::format("--back-every is {}; it must be 1, 2, 4, 8, 16, 32 or 64", options.back_every));
   check_range("--footprint", options.footprint, 0, 1e6);
   check_range("--report-bias", options.report_bias, 0, 1);
-  check_range("--max-bias", options.max_bias, 0, 1);
+  check_range("--max-bias", options.max_bias.value_or(0), 0, 1);
   check_range("--ao-distance", options.ao_distance, 0, 1e30f);
   check_range("--ao-falloff", options.ao_falloff, 0, 100);
   if (options.ambient) check_range("--ambient", *options.ambient, 0, 1e30f);

@@ -21,8 +21,8 @@
 #include "film/film_memory.hpp"
 #include "film/layers.hpp"
 #include "passes/kernel_list.hpp"
-#include "render/bias_pilot.hpp"
 #include "render/bias_report.hpp"
+#include "render/footprint_pilot.hpp"
 #include "render/kept_scene.hpp"
 #include "render/picture.hpp"
 #include "render/resume.hpp"
@@ -69,7 +69,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   set("normals", name_of(options.normals));
   set("footprint", options.footprint);
   if (options.packets != Packets::automatic) set("packets", name_of(options.packets));
-  if (options.max_bias > 0) set("max_bias", options.max_bias);
+  if (options.max_bias > 0) set("max_bias", *options.max_bias);
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
@@ -168,17 +168,6 @@ std::unique_ptr<HitLookups> hit_lookups(const KeptScene& kept, const Shutter& sh
     lookups->motion.emplace(scene, view, kept.bvh->bvh(), std::move(next));
   }
   return lookups;
-}
-
-/// The scene must be on the device.
-FootprintChoice measure_bias(const KeptScene& kept, const View& view, const RenderOptions& options,
-                             const FilmLayout& layout, bool may_shrink) {
-  const RenderOptions sampled = by_sample(options);
-  CameraParams camera = camera_params(view, sampled, kept.on_device.buffers->bounds);
-  if (options.cryptomattes.any() || options.motion || options.deep) camera.medium_error = 0;
-  BiasPilot pilot(kept.device->context(), *kept.on_device.buffers, view, sampled, layout, camera);
-  return choose_footprint(pilot, {options.footprint, options.max_bias,
-                                  std::max(options.target_error, options.target_rmse), may_shrink});
 }
 
 /// Traces the first moment of the shutter, whose scene is on the device, and then the others: each
@@ -341,9 +330,10 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
                           !kept.on_device.buffers->corner_normals.empty());
   const Stopwatch trace_time;
   RenderOptions traced = options;
-  if (has_bias(options) && (options.max_bias > 0 || is_adaptive(options))) {
-    traced = with_measured_bias(measure_bias(kept, view, options, layout, !resumed), options,
-                                statistics);
+  if (needs_footprint_pilot(options, resumed.has_value())) {
+    traced = with_measured_bias(
+        footprint_pilot(kept, {view, options, bounds, lights}, resumed.has_value()), options,
+        statistics);
     statistics.pass_seconds["bias pilot"] = trace_time.seconds();
   }
   statistics.footprint = options.footprint;

@@ -35,7 +35,7 @@ void check_shutter(const Shutter& shutter, const RenderOptions& options,
   if (options.max_bias > 0 && !control.part.empty())
     refuse(
         "--max-bias does not go with --shard and -o FILE.dapple: parts would choose footprints by "
-        "their own pixels; give --footprint");
+        "their own pixels; give --footprint, or neither");
   if (shutter.times == 1) return;
   if (options.ground) refuse("with motion blur the ground must be part of the scenes");
   if (is_adaptive(options))

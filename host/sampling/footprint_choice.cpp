@@ -26,6 +26,11 @@ constexpr double kRaysOfTarget = 6.5;
 constexpr std::size_t kFirstPart = 4;
 constexpr std::size_t kFewestRaysOfTarget = 1u << 12, kMostRaysOfTarget = 1u << 18;
 
+/// Rays of a layer that the choice begins with if only what is clear counts, and the standard
+/// errors by which a bias must be above the limit to be clear.
+constexpr std::size_t kFirstIfClear = 1u << 14;
+constexpr double kClear = 1.5;
+
 /// What is known of a footprint's bias, of the layer in which it may be largest.
 struct Judgement {
   double least = 0, most = 0;  ///< |mean| two standard errors down and up
@@ -49,6 +54,41 @@ Judgement judge(BiasSource& source, float footprint, double most) {
     if (found.most <= most || found.least > most) return found;
     if (rays >= kMostRays || source.is_complete()) return found;
   }
+}
+
+/// Whether the bias is clearly above `most`. Sets `largest` to the bias of the layer that has most.
+bool is_clearly_above(BiasSource& source, float footprint, double most, double& largest) {
+  for (std::size_t rays = kFirstIfClear;; rays *= 4) {
+    source.grow(rays);
+    double found = 0, least = 0;
+    for (const Bias& bias : source.bias(footprint)) {
+      const double mean = std::fabs(bias.mean);
+      if (mean > found) largest = bias.mean;
+      found = std::max(found, mean);
+      least = std::max(least, mean - kClear * bias.error);
+    }
+    if (found <= most) return false;
+    if (least > most) return true;
+    if (rays >= kMostRays || source.is_complete()) return false;
+  }
+}
+
+FootprintChoice choose_if_clear(BiasSource& source, const FootprintDemand& demand) {
+  FootprintChoice choice{demand.footprint, 0, {}};
+  double largest = 0, of_demand = 0;
+  const double most = double{demand.max_bias};
+  while (choice.footprint > 0 && is_clearly_above(source, choice.footprint, most, largest)) {
+    if (choice.footprint == demand.footprint) of_demand = largest;
+    choice.footprint *= 0.5f;
+    if (choice.footprint < kSmallestPart * demand.footprint) choice.footprint = 0;
+  }
+  if (choice.footprint == demand.footprint) return choice;
+  choice.note = fmt::format(
+      "{} in place of footprint {}, whose bias is about {:+.4f}; --footprint {} keeps that",
+      choice.footprint > 0 ? fmt::format("footprint {}", choice.footprint)
+                           : std::string("exact rays (footprint 0)"),
+      demand.footprint, of_demand, demand.footprint);
+  return choice;
 }
 
 /// The bias that counts for a target. Takes rays until its square is known, or there are enough.
@@ -91,6 +131,7 @@ std::string note_of(const FootprintDemand& demand, float footprint, const Judgem
 }  // namespace
 
 FootprintChoice choose_footprint(BiasSource& source, const FootprintDemand& demand) {
+  if (demand.only_if_clear) return choose_if_clear(source, demand);
   FootprintChoice choice{demand.footprint, 0, {}};
   const double target = double{demand.target};
   Judgement last;

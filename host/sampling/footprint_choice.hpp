@@ -34,6 +34,8 @@ struct FootprintDemand {
   float max_bias = 0;   ///< 0: any
   float target = 0;     ///< error of the values, bias included; 0: none
   bool may_shrink = true;
+  /// Take a smaller scale only where the bias is clearly larger than max_bias.
+  bool only_if_clear = false;
 };
 
 struct FootprintChoice {
@@ -43,7 +45,8 @@ struct FootprintChoice {
 };
 
 /// The largest of the scale, a half of it, ... a sixteenth and 0 whose bias is small enough: for
-/// max_bias, in every layer |mean| + 2 standard errors; for a target, an RMSE of half of it.
+/// max_bias, in every layer |mean| + 2 standard errors; for a target, an RMSE of half of it. With
+/// only_if_clear: |mean| in every layer, or |mean| - 1.5 standard errors if there are no more rays.
 FootprintChoice choose_footprint(BiasSource& source, const FootprintDemand& demand);
 
 }  // namespace dapple

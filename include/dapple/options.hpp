@@ -105,8 +105,9 @@ struct RenderOptions {
   float report_bias = kDefaultReportBias;
   /// Take the largest of `footprint`, a half of it, a quarter and so on with which the bias of
   /// every layer, two standard errors included, is at most this, [0,1]; exact rays if none is; 0:
-  /// take `footprint`.
-  float max_bias = 0;
+  /// take `footprint`. None: kDefaultMaxBias in a picture of kMinPilotSamples samples and more,
+  /// where a small part of the rays is enough to tell that `footprint` has more.
+  std::optional<float> max_bias;
   Normals normals = Normals::shading;
   bool ao = true;      ///< make the AO pass
   bool light = true;   ///< make the light passes
@@ -159,10 +160,21 @@ struct RenderOptions {
          (options.ao || options.light);
 }
 
-/// Whether rays are traced exactly, too: for the report, for max_bias or for a target.
+/// The bias that a picture may have if RenderOptions::max_bias does not say.
+inline constexpr float kDefaultMaxBias = 0.002f;
+inline constexpr double kMinPilotSamples = 1 << 20;
+
+/// Whether the footprint is chosen without a limit of bias or a target being given.
+[[nodiscard]] inline bool chooses_footprint(const RenderOptions& options) {
+  return has_bias(options) && !options.max_bias && !is_adaptive(options) &&
+         double{1} * options.width * options.height * options.spp >= kMinPilotSamples;
+}
+
+/// Whether rays are traced exactly, too: for the report, for the choice of a footprint or for a
+/// target.
 [[nodiscard]] inline bool measures_bias(const RenderOptions& options) {
-  return has_bias(options) &&
-         (options.report_bias > 0 || options.max_bias > 0 || is_adaptive(options));
+  return has_bias(options) && (options.report_bias > 0 || options.max_bias > 0 ||
+                               is_adaptive(options) || chooses_footprint(options));
 }
 
 /// The RMSE of a picture for which footprints of footprint_samples() samples are meant, [0,1].

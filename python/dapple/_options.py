@@ -64,7 +64,7 @@ class RenderOptions(TypedDict, total=False):
     estimator: Estimator
     footprint: float
     report_bias: float
-    max_bias: float
+    max_bias: float | None
     ao: bool
     light: bool
     albedo: bool

@@ -1,0 +1,42 @@
+#include "render/footprint_pilot.hpp"
+
+#include <algorithm>
+
+#include "camera/camera_splitting.hpp"
+#include "render/bias_pilot.hpp"
+
+namespace dapple {
+namespace {
+
+/// Part of the camera rays that a choice may trace for which the user did not ask.
+constexpr double kPilotShare = 1.0 / 64;
+
+}  // namespace
+
+bool needs_footprint_pilot(const RenderOptions& options, bool resumed) {
+  return (has_bias(options) && (options.max_bias > 0 || is_adaptive(options))) ||
+         (chooses_footprint(options) && !resumed);
+}
+
+FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& picture, bool resumed) {
+  const RenderOptions sampled = by_sample(picture.options);
+  const bool unasked = chooses_footprint(picture.options);
+  View view = picture.view;
+  if (unasked) view.crop = {0, 0, view.width - 1, view.height - 1};
+  const DeviceBuffers& scene = *kept.on_device.buffers;
+  const FilmLayout layout(view, sampled, picture.bounds, picture.lights,
+                          !scene.corner_normals.empty());
+  CameraParams camera = camera_params(view, sampled, scene.bounds);
+  if (sampled.cryptomattes.any() || sampled.motion || sampled.deep) camera.medium_error = 0;
+  BiasPilot pilot(kept.device->context(), scene, view, sampled, layout, camera);
+  FootprintDemand demand{sampled.footprint, sampled.max_bias.value_or(0),
+                         std::max(sampled.target_error, sampled.target_rmse), !resumed};
+  if (unasked) {
+    pilot.limit(kPilotShare);
+    demand.max_bias = kDefaultMaxBias;
+    demand.only_if_clear = true;
+  }
+  return choose_footprint(pilot, demand);
+}
+
+}  // namespace dapple
