@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -56,7 +57,7 @@ Json material_json(const Material& material) {
   return json;
 }
 
-Json camera_json(const Camera& camera) {
+Json projection_json(const Camera& camera) {
   if (camera.kind == Camera::Kind::perspective) {
     return {{"name", camera.name},
             {"type", "perspective"},
@@ -69,6 +70,13 @@ Json camera_json(const Camera& camera) {
             {"ymag", camera.half_height},
             {"znear", kNear},
             {"zfar", kOrthographicFar}}}};
+}
+
+Json camera_json(const Camera& camera) {
+  Json json = projection_json(camera);
+  if (camera.lens_radius > 0) json["extras"]["dapple_aperture"] = camera.lens_radius;
+  if (camera.focus_distance > 0) json["extras"]["dapple_focus_distance"] = camera.focus_distance;
+  return json;
 }
 
 Box3f finite_bounds(std::span<const V3f> positions, const std::string& mesh) {
@@ -86,15 +94,21 @@ Box3f finite_bounds(std::span<const V3f> positions, const std::string& mesh) {
 template <typename Value>
 std::vector<Value> take(const std::vector<Value>& values, const std::vector<std::uint32_t>& at) {
   std::vector<Value> taken;
+  if (values.empty()) return taken;
   taken.reserve(at.size());
   for (const std::uint32_t i : at) taken.push_back(values[i]);
   return taken;
 }
 
-std::vector<float> white_with_alpha(const std::vector<float>& alpha) {
+/// Colours of the vertices, or white, with their alphas, or 1: four floats per vertex.
+std::vector<float> rgba_of(const std::vector<V3f>& colors, const std::vector<float>& alpha) {
+  const std::size_t count = std::max(colors.size(), alpha.size());
   std::vector<float> rgba;
-  rgba.reserve(4 * alpha.size());
-  for (const float a : alpha) rgba.insert(rgba.end(), {1, 1, 1, a});
+  rgba.reserve(4 * count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const V3f color = colors.empty() ? V3f(1, 1, 1) : colors[v];
+    rgba.insert(rgba.end(), {color.x, color.y, color.z, alpha.empty() ? 1.0f : alpha[v]});
+  }
   return rgba;
 }
 
@@ -154,12 +168,15 @@ class Describer {
         kElementArrayBuffer);
   }
 
-  std::size_t add_colours(const std::vector<float>& alpha) {
-    layout_.made_colours.push_back(white_with_alpha(alpha));
+  /// Adds COLOR_0 to `attributes` if there are colours or alphas.
+  void add_colours(const std::vector<V3f>& colors, const std::vector<float>& alpha,
+                   Json& attributes) {
+    if (colors.empty() && alpha.empty()) return;
+    layout_.made_colours.push_back(rgba_of(colors, alpha));
     const auto& kept = layout_.made_colours.back();
-    return add_accessor(std::as_bytes(std::span(kept)),
-                        {{"componentType", kFloat}, {"type", "VEC4"}, {"count", alpha.size()}},
-                        kArrayBuffer);
+    attributes["COLOR_0"] = add_accessor(
+        std::as_bytes(std::span(kept)),
+        {{"componentType", kFloat}, {"type", "VEC4"}, {"count", kept.size() / 4}}, kArrayBuffer);
   }
 
   // Leaves out empty meshes, which glTF does not allow; later meshes then get lower numbers.
@@ -172,16 +189,17 @@ class Describer {
                               mesh.name, scene_.source));
     }
     Json primitives = Json::array();
-    Json of_all_vertices;  // shared by the primitives without normals
+    std::array<Json, 2> of_all_vertices;  // shared by the primitives without normals
     for (GlbPrimitive& primitive : split_into_primitives(mesh, scene_.materials.size())) {
+      const bool with_alpha = scene_.materials[primitive.material].uses_vertex_alpha;
       Json attributes;
       if (primitive.has_normals()) {
-        attributes = add_smooth_vertices(mesh, primitive);
+        attributes = add_smooth_vertices(mesh, primitive, with_alpha);
       } else {
-        if (of_all_vertices.is_null()) of_all_vertices = add_all_vertices(mesh);
-        attributes = of_all_vertices;
+        Json& shared = of_all_vertices[with_alpha ? 1 : 0];
+        if (shared.is_null()) shared = add_all_vertices(mesh, with_alpha);
+        attributes = shared;
       }
-      if (!scene_.materials[primitive.material].uses_vertex_alpha) attributes.erase("COLOR_0");
       primitives.push_back({{"attributes", attributes},
                             {"indices", add_indices(std::move(primitive.indices))},
                             {"material", primitive.material}});
@@ -191,22 +209,21 @@ class Describer {
   }
 
   // Returns the attributes of a primitive without normals.
-  Json add_all_vertices(const Mesh& mesh) {
+  Json add_all_vertices(const Mesh& mesh, bool with_alpha) {
     Json attributes = {{"POSITION", add_positions(mesh.positions, mesh.name)}};
-    if (!mesh.vertex_alpha.empty()) attributes["COLOR_0"] = add_colours(mesh.vertex_alpha);
+    add_colours(mesh.colors, with_alpha ? mesh.vertex_alpha : std::vector<float>{}, attributes);
     return attributes;
   }
 
-  Json add_smooth_vertices(const Mesh& mesh, const GlbPrimitive& primitive) {
+  Json add_smooth_vertices(const Mesh& mesh, const GlbPrimitive& primitive, bool with_alpha) {
     const auto& used = primitive.vertices;
     Json attributes;
     attributes["POSITION"] = add_positions(keep(take(mesh.positions, used)), mesh.name);
     attributes["NORMAL"] = add_accessor(
         std::as_bytes(std::span(keep(take(mesh.normals, used)))),
         {{"componentType", kFloat}, {"type", "VEC3"}, {"count", used.size()}}, kArrayBuffer);
-    if (!mesh.vertex_alpha.empty()) {
-      attributes["COLOR_0"] = add_colours(take(mesh.vertex_alpha, used));
-    }
+    add_colours(take(mesh.colors, used),
+                with_alpha ? take(mesh.vertex_alpha, used) : std::vector<float>{}, attributes);
     return attributes;
   }
 

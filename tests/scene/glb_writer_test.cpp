@@ -209,6 +209,31 @@ TEST(GlbWriter, VertexAlphaBecomesColoursOnlyWhereTheMaterialUsesIt) {
   EXPECT_EQ(colours.at(2), Imath::V4f(1, 1, 1, 0.25f));
 }
 
+TEST(GlbWriter, ColoursOfVerticesAreReadBackWhetherTheMaterialUsesTheirAlphaOrNot) {
+  Scene scene = small_scene();
+  scene.meshes[0].colors = {{1, 0, 0}, {0, 0.5f, 0}, {0.1f, 0.2f, 0.3f}, {1, 1, 1}};
+  scene.meshes[0].vertex_alpha = {1, 0.5f, 0.25f, 0};
+  scene.materials[1].uses_vertex_alpha = false;
+  const Glb glb = write_and_take_apart(scene);
+  const float alphas[2] = {0.25f, 1};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json& attributes = glb.json["meshes"][0]["primitives"][i]["attributes"];
+    const auto colours = accessor_values<Imath::V4f>(glb, attributes["COLOR_0"].get<std::size_t>());
+    EXPECT_EQ(colours.at(2), Imath::V4f(0.1f, 0.2f, 0.3f, alphas[i]));
+  }
+}
+
+TEST(GlbWriter, ALensIsWrittenAsExtrasOfItsCamera) {
+  Scene scene = small_scene();
+  scene.cameras.assign(1, look_at({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 0.5f));
+  EXPECT_FALSE(write_and_take_apart(scene).json["cameras"][0].contains("extras"));
+  scene.cameras[0].lens_radius = 0.25f;
+  scene.cameras[0].focus_distance = 2.5f;
+  const Json extras = write_and_take_apart(scene).json["cameras"][0]["extras"];
+  EXPECT_EQ(extras["dapple_aperture"], 0.25);
+  EXPECT_EQ(extras["dapple_focus_distance"], 2.5);
+}
+
 TEST(GlbWriter, EmissionAboveOneNeedsTheStrengthExtension) {
   Scene scene = small_scene();
   scene.materials[0].emission = {2, 8, 4};

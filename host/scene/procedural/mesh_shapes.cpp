@@ -97,6 +97,37 @@ void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float>
   complete_normals(mesh);
 }
 
+void append_grid_triangles(Mesh& mesh, std::uint32_t first, int rows, int columns,
+                           std::uint32_t material) {
+  const auto pitch = static_cast<std::uint32_t>(columns + 1);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const std::uint32_t here =
+          first + static_cast<std::uint32_t>(row) * pitch + static_cast<std::uint32_t>(column);
+      append_triangle(mesh, here, here + 1, here + pitch + 1, material);
+      append_triangle(mesh, here, here + pitch + 1, here + pitch, material);
+    }
+  }
+}
+
+void smooth_normals(Mesh& mesh, std::size_t first_vertex, std::size_t first_triangle) {
+  mesh.normals.resize(mesh.positions.size(), V3f(0, 0, 0));
+  for (std::size_t v = first_vertex; v < mesh.normals.size(); ++v) mesh.normals[v] = V3f(0, 0, 0);
+  for (std::size_t t = first_triangle; t < mesh.materials.size(); ++t) {
+    const std::uint32_t* const corner = &mesh.indices[3 * t];
+    const V3f a = mesh.positions[corner[0]];
+    const V3f area = (mesh.positions[corner[1]] - a).cross(mesh.positions[corner[2]] - a);
+    for (int k = 0; k < 3; ++k) mesh.normals[corner[k]] += area;
+  }
+  for (std::size_t v = first_vertex; v < mesh.normals.size(); ++v)
+    mesh.normals[v] = mesh.normals[v].normalized();
+}
+
+V2f spiral_azimuth(int i, float offset) {
+  const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0)) + double{offset};
+  return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+}
+
 BladeRange::BladeRange(Mesh& mesh, std::size_t count, std::uint32_t material)
     : mesh_(mesh),
       first_vertex_(mesh.positions.size()),

@@ -3,6 +3,7 @@
 // and normals if it has any. Every triangle has an area.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "dapple/scene.hpp"
@@ -27,6 +28,25 @@ inline constexpr int kSmoothSides = 5;
 /// is not used. Tubes with kSmoothSides or more have normals, so that they look round.
 void append_tube(Mesh& mesh, std::span<const V3f> points, std::span<const float> radii, int sides,
                  std::uint32_t material);
+
+/// Appends the triangles of a grid of (rows + 1) * (columns + 1) vertices, row by row from vertex
+/// `first`. Their front side is where the direction of rows is to the left of that of columns.
+void append_grid_triangles(Mesh& mesh, std::uint32_t first, int rows, int columns,
+                           std::uint32_t material);
+
+/// Gives the vertices from `first_vertex` on the normals of the surface of the triangles from
+/// `first_triangle` on: means of their faces, weighted by area.
+void smooth_normals(Mesh& mesh, std::size_t first_vertex, std::size_t first_triangle);
+
+/// 0 up to x = 0, 1 from x = 1 on, and a cubic between, without kinks.
+inline float smooth_step(float x) {
+  if (x <= 0) return 0;
+  return x < 1 ? x * x * (3 - 2 * x) : 1;
+}
+
+/// Cosine and sine of the `i`-th azimuth of a spiral: turned by the golden angle each time, from
+/// `offset`, radians.
+V2f spiral_azimuth(int i, float offset);
 
 /// The width of a broad leaf over its length.
 inline constexpr float kBladeWidth = 0.55f;

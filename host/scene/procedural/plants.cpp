@@ -2,7 +2,6 @@
 // grass. In: checked parameters; out: a scene of blades on stems.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "scene/procedural/scenes.hpp"
 #include "scene/procedural/stems.hpp"
@@ -22,12 +21,6 @@ float blade_length(const ProceduralParameters& parameters, float usual, float us
   return usual * std::sqrt(usual_count / static_cast<float>(parameters.whole("leaves")));
 }
 
-/// Cosine and sine of the `i`-th azimuth of a spiral: turned by the golden angle each time.
-V2f azimuth(int i, float offset) {
-  const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0)) + double{offset};
-  return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
-}
-
 Scene scene_of_plant(const ProceduralParameters& parameters, Mesh mesh, const char* name) {
   Scene scene;
   scene.materials = {blend_material("leaf", parameters.real("opacity")), opaque_material("bark")};
@@ -42,7 +35,7 @@ std::vector<Stem> grow_fronds(V3f crown, float height, Pcg32& rng) {
   for (int i = 0; i < kFronds; ++i) {
     // Young fronds stand upright, old ones hang.
     const float age = (static_cast<float>(i) + 0.5f) / kFronds;
-    const V2f around = azimuth(i, rng.between(-0.2f, 0.2f));
+    const V2f around = spiral_azimuth(i, rng.between(-0.2f, 0.2f));
     const float rise = 1.2f - 1.9f * age + rng.between(-0.1f, 0.1f);
     const V3f direction = V3f(around.x, rise, around.y).normalized();
     const float length = height * 0.3f * rng.between(0.85f, 1.15f);
@@ -76,7 +69,7 @@ ConiferStems grow_whorls(float height, Pcg32& rng) {
   int around = 0;
   for (float t = 0.08f; t < 0.97f; t += 0.027f) {
     for (int i = 0; i < 6; ++i) {
-      const V2f turn = azimuth(around++, rng.between(-0.3f, 0.3f));
+      const V2f turn = spiral_azimuth(around++, rng.between(-0.3f, 0.3f));
       const float rise = -0.2f + 0.8f * t * t + rng.between(-0.06f, 0.06f);
       const V3f direction = V3f(turn.x, rise, turn.y).normalized();
       const float length = height * (0.015f + 0.25f * (1 - t)) * rng.between(0.8f, 1.1f);
@@ -110,7 +103,7 @@ Scene make_palm_scene(const ProceduralParameters& parameters) {
   const float height = parameters.real("height");
   const std::uint32_t seed = parameters.whole("seed");
   Pcg32 rng(seed, kStemStream);
-  const V2f lean = azimuth(0, rng.between(0, 6));
+  const V2f lean = spiral_azimuth(0, rng.between(0, 6));
   const Stem trunk = grow_stem({0, 0, 0}, V3f(lean.x * 0.3f, 1, lean.y * 0.3f).normalized(),
                                0.8f * height, 16, V3f(0, 0.03f, 0));
   const std::vector<Stem> fronds = grow_fronds(trunk.points.back(), height, rng);

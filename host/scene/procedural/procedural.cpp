@@ -99,6 +99,22 @@ std::vector<Recipe> habit_recipes() {
   };
 }
 
+Recipe flower_recipe() {
+  return {{"flower",
+           "a clump of daisies on a meadow in daylight, and a camera: materials \"petal\", "
+           "\"floret\", \"leaf\", \"stem\" and \"ground\"",
+           {{"blooms", 5, 1, 100, true, "number of flower heads"},
+            {"petals", 21, 3, 89, true, "petals of each head, in two whorls"},
+            {"florets", 200, 10, 1000, true, "florets of each head, of 30 triangles each"},
+            {"leaves", 16, 0, 200, true, "leaves at the foot of the clump"},
+            {"detail", 8, 2, 64, true, "squares across a petal"},
+            {"clumps", 16, 1, 1000, true, "clumps on the meadow: instances behind the first one"},
+            opacity_of("petal", 0.85),
+            seed(),
+            {"height", 0.35, 0.05, 10, false, "height in metres"}}},
+          make_flower_scene};
+}
+
 Recipe hair_recipe() {
   return {{"hair",
            "a head of curly hair looking along +Z: materials \"hair\" and \"skin\"",
@@ -149,6 +165,7 @@ std::vector<Recipe> sheet_and_solid_recipes() {
 std::vector<Recipe> make_recipes() {
   std::vector<Recipe> all = plant_recipes();
   for (Recipe& recipe : habit_recipes()) all.push_back(std::move(recipe));
+  all.push_back(flower_recipe());
   all.push_back(hair_recipe());
   for (Recipe& recipe : sheet_and_solid_recipes()) all.push_back(std::move(recipe));
   return all;

@@ -19,6 +19,9 @@ Scene make_conifer_scene(const ProceduralParameters& parameters);
 Scene make_willow_scene(const ProceduralParameters& parameters);
 Scene make_grass_scene(const ProceduralParameters& parameters);
 
+// Flowers (flower.cpp).
+Scene make_flower_scene(const ProceduralParameters& parameters);
+
 // Strands (hair.cpp).
 Scene make_hair_scene(const ProceduralParameters& parameters);
 

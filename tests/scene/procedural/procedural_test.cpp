@@ -25,6 +25,7 @@ std::uint64_t hash_of(const Scene& scene) {
     hash.add(mesh.materials);
     hash.add(mesh.radii);
     hash.add(mesh.normals);
+    hash.add(mesh.colors);
   }
   for (const Instance& instance : scene.instances) {
     hash.add_bytes(&instance.mesh, sizeof instance.mesh);
@@ -73,7 +74,7 @@ std::string complaint(const std::string& name) {
 TEST(Procedural, TheSameSeedGivesTheSameBitsAndAnotherSeedDoesNot) {
   for (const char* scene :
        {"tree?leaves=3000", "cloud?leaves=3000", "forest?leaves=100", "palm?leaves=100",
-        "conifer?leaves=100", "willow?leaves=100", "grass?leaves=100"}) {
+        "conifer?leaves=100", "willow?leaves=100", "grass?leaves=100", "flower?blooms=2"}) {
     const std::string name = std::string("scene:") + scene;
     const std::uint64_t once = hash_of(make_procedural(name + "&seed=5"));
     EXPECT_EQ(once, hash_of(make_procedural(name + "&seed=5"))) << scene;
@@ -326,7 +327,7 @@ TEST(Procedural, DefaultsAreThoseThatTheHelpShows) {
 TEST(Procedural, AnUnknownSceneOrKeyIsRefusedWithTheKnownOnes) {
   EXPECT_EQ(complaint("scene:oak"),
             "scene:oak: there is no such scene; there are: demo, tree, cloud, forest, palm, "
-            "conifer, willow, grass, hair, stack, disk, cube, greys, sieve");
+            "conifer, willow, grass, flower, hair, stack, disk, cube, greys, sieve");
   EXPECT_EQ(complaint("scene:cube?side=2"),
             "scene:cube: there is no parameter \"side\"; there are: divisions");
   EXPECT_EQ(complaint("scene:demo?leaves=3"),
