@@ -26,9 +26,9 @@ constexpr double kRaysOfTarget = 6.5;
 constexpr std::size_t kFirstPart = 4;
 constexpr std::size_t kFewestRaysOfTarget = 1u << 12, kMostRaysOfTarget = 1u << 18;
 
-/// Rays of a layer that the choice begins with if only what is clear counts, and the standard
-/// errors by which a bias must be above the limit to be clear.
-constexpr std::size_t kFirstIfClear = 1u << 14;
+/// If only what is clear counts: rays of a layer, at first and at most, and the standard errors by
+/// which a bias must be above the limit (experiment 556).
+constexpr std::size_t kFirstIfClear = 1u << 14, kMostIfClear = 1u << 16;
 constexpr double kClear = 1.5;
 
 /// What is known of a footprint's bias, of the layer in which it may be largest.
@@ -69,7 +69,7 @@ bool is_clearly_above(BiasSource& source, float footprint, double most, double& 
     }
     if (found <= most) return false;
     if (least > most) return true;
-    if (rays >= kMostRays || source.is_complete()) return false;
+    if (rays >= kMostIfClear || source.is_complete()) return false;
   }
 }
 

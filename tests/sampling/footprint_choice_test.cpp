@@ -87,7 +87,7 @@ TEST(FootprintChoice, ATargetTakesAFourthOfTheRaysWhereTheyTellTheBias) {
   EXPECT_EQ(large.rays(), 16250u);
 }
 
-// 2^20 rays tell the bias to 0.0002, 2^12 to 0.003.
+// It takes at most 2^16 rays, which tell the bias to 0.0008; 2^12 tell it to 0.003.
 TEST(FootprintChoice, IfOnlyWhatIsClearCountsFewRaysKeepTheScale) {
   const auto choose = [](std::size_t rays, float most) {
     MadeUpBias source(rays);
@@ -97,7 +97,7 @@ TEST(FootprintChoice, IfOnlyWhatIsClearCountsFewRaysKeepTheScale) {
   EXPECT_EQ(choose(1u << 20, 0.005f).note, "");
   EXPECT_EQ(choose(1u << 20, 0.0025f).footprint, 2);
   EXPECT_EQ(choose(1u << 12, 0.0025f).footprint, 4);
-  EXPECT_EQ(choose(1u << 20, 0.0f).footprint, 0.25f);
+  EXPECT_EQ(choose(1u << 20, 0.0f).footprint, 1);
   EXPECT_EQ(choose(1u << 20, 0.0025f).note,
             "footprint 2 in place of footprint 4, whose bias is about -0.0040; --footprint 4 keeps "
             "that");
