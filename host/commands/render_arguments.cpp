@@ -54,8 +54,9 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
          "--max-bias", o.max_bias,
          "Choose the largest footprint, from --footprint down to 0, whose bias is below this in "
-         "each layer; 0: take --footprint. Without it, without --footprint and without a target: a "
-         "smaller footprint if a part of the rays shows that the bias is above 0.002")
+         "each layer; 0: take --footprint. Without it, --footprint, --frame and a target: a "
+         "smaller "
+         "footprint if a part of the rays shows that the bias is above 0.002")
       ->type_name("FLOAT");
   app.add_option("--passes", a.passes,
                  "With commas between: ao, light, albedo (colours), back (AO and light of the side "
@@ -322,7 +323,8 @@ RenderOptions to_options(const RenderArguments& a) {
   if (a.fov) o.fov_degrees = *a.fov;
   if (a.fov && *a.fov == 0)  // in RenderOptions it means the camera's own
     throw Error(ErrorKind::usage, "--fov is 0; it must be from 0.01 to 179");
-  if (a.footprint_given && !o.max_bias) o.max_bias = 0.0f;
+  // Frames that are rendered one by one must be alike.
+  if ((a.footprint_given || a.frame) && !o.max_bias) o.max_bias = 0.0f;
   o.estimator = parse_estimator(a.estimator);
   o.normals = parse_normals(a.normals);
   o.report_bias = parse_share("--report-bias", a.report_bias);

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kUnitPixels = std::size_t{kBiasUnit} * kBiasUnit;
 
-/// Units whose camera rays are traced at once.
-constexpr std::size_t kUnitsAtOnce = 512;
+/// Units whose camera rays are traced at once, and about how many of their occlusion rays.
+constexpr std::size_t kUnitsAtOnce = 512, kRaysAtOnce = 1u << 20;
 
 /// Fewest units that are worth a launch, and how many times the units that seem to be missing are
 /// taken: experiment 545.
@@ -57,9 +57,12 @@ BiasPilot::BiasPilot(DeviceContext& context, const DeviceBuffers& scene, const V
       units_(grid_.empty_units()),
       layers_((options.ao ? 1 : 0) + layout.lights.size()) {
   camera_.keep_hits = layout.normals ? 1u : 0u;
-  const std::size_t samples = units_at_once_ * kUnitPixels * splitting_factor(options);
   const int rays =
       std::max(options.ao ? options.ao_rays : 1, layout.lights.empty() ? 1 : options.light_rays);
+  const std::size_t of_unit = kUnitPixels * splitting_factor(options);
+  const std::size_t most = kRaysAtOnce / (of_unit * static_cast<std::size_t>(rays));
+  units_at_once_ = std::clamp(most, std::size_t{1}, units_at_once_);
+  const std::size_t samples = units_at_once_ * of_unit;
   queues_ = make_queues(context, samples, static_cast<std::size_t>(rays));
   queues_.work = context.allocate(samples * sizeof(PixelWork));
   traced_ = make_queues(context, kQueryRays, 1);

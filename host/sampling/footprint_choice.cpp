@@ -84,10 +84,10 @@ FootprintChoice choose_if_clear(BiasSource& source, const FootprintDemand& deman
   }
   if (choice.footprint == demand.footprint) return choice;
   choice.note = fmt::format(
-      "{} in place of footprint {}, whose bias is about {:+.4f}; --footprint {} keeps that",
+      "{} in place of footprint {}, whose bias is about {:+.4f}; --max-bias 0 keeps that",
       choice.footprint > 0 ? fmt::format("footprint {}", choice.footprint)
                            : std::string("exact rays (footprint 0)"),
-      demand.footprint, of_demand, demand.footprint);
+      demand.footprint, of_demand);
   return choice;
 }
 

@@ -106,7 +106,8 @@ struct RenderOptions {
   /// Take the largest of `footprint`, a half of it, a quarter and so on with which the bias of
   /// every layer, two standard errors included, is at most this, [0,1]; exact rays if none is; 0:
   /// take `footprint`. None: kDefaultMaxBias in a picture of kMinPilotSamples samples and more,
-  /// where a small part of the rays is enough to tell that `footprint` has more.
+  /// where a small part of the rays is enough to tell that `footprint` has more. So give 0 to keep
+  /// `footprint`, as for frames that must be alike.
   std::optional<float> max_bias;
   Normals normals = Normals::shading;
   bool ao = true;      ///< make the AO pass
@@ -162,12 +163,14 @@ struct RenderOptions {
 
 /// The bias that a picture may have if RenderOptions::max_bias does not say.
 inline constexpr float kDefaultMaxBias = 0.002f;
-inline constexpr double kMinPilotSamples = 1 << 20;
+/// With fewer samples, or more pixels, the choice would take too large a part of the time.
+inline constexpr double kMinPilotSamples = 1 << 20, kMaxPilotPixels = 1 << 27;
 
 /// Whether the footprint is chosen without a limit of bias or a target being given.
 [[nodiscard]] inline bool chooses_footprint(const RenderOptions& options) {
+  const double pixels = double{1} * options.width * options.height;
   return has_bias(options) && !options.max_bias && !is_adaptive(options) &&
-         double{1} * options.width * options.height * options.spp >= kMinPilotSamples;
+         pixels * options.spp >= kMinPilotSamples && pixels <= kMaxPilotPixels;
 }
 
 /// Whether rays are traced exactly, too: for the report, for the choice of a footprint or for a

@@ -40,7 +40,7 @@ struct RenderStatistics {
   std::map<std::string, Bias> bias;
   /// `rmse` together with the bias, where both are known: the estimated distance from the truth.
   std::map<std::string, double> rmse_with_bias;
-  float footprint = 0;  ///< RenderOptions::footprint, or what max_bias or a target chose
+  float footprint = 0;  ///< RenderOptions::footprint, or a smaller one that was chosen
   std::size_t triangles = 0, segments = 0, nodes = 0;
   /// The BVH cache. Small objects are always built and count in neither number.
   struct {

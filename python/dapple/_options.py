@@ -124,6 +124,7 @@ _EXPECTED = {
     "look": "three vectors: (from, at, up)",
     "crop": "four integers: (x0, y0, x1, y1)",
     "opacity": "numbers by the materials' names",
+    "max_bias": "a number or None",
 }
 
 

@@ -310,6 +310,8 @@ class Scene:
         >>> picture["ao"].shape, picture["Z"].shape
         ((18, 32, 3), (18, 32))
         """
+        if "footprint" in options:
+            options.setdefault("max_bias", 0)  # as on the command line: it is taken as it is
         chosen = _options.apply("render", _native.RenderOptions(), options)
         progress = _arguments.progress_function(progress)
         return Picture(_native.render(self._native, chosen, progress))

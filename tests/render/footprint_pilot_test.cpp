@@ -56,6 +56,29 @@ TEST(FootprintPilot, ALimitOfZeroAndFewSamplesKeepTheFootprint) {
   EXPECT_EQ(footprint_of(options), kDefault);
 }
 
+TEST(FootprintPilot, ItIsForPicturesThatAreNeitherSmallNorHuge) {
+  RenderOptions options = part_of_picture(200);
+  EXPECT_TRUE(chooses_footprint(options));
+  options.width = 255;
+  EXPECT_FALSE(chooses_footprint(options));
+  options.width = options.height = 1 << 14;
+  EXPECT_FALSE(chooses_footprint(options));
+  options.height /= 2;
+  EXPECT_TRUE(chooses_footprint(options));
+  options.target_rmse = 0.01f;
+  EXPECT_FALSE(chooses_footprint(options));
+}
+
+// Its queues would be of 6 GB.
+TEST(FootprintPilot, ManyRaysOfASampleAreTracedInParts) {
+  RenderOptions options = part_of_picture(200);
+  options.crop = PixelRect{124, 200, 125, 201};
+  options.ao_rays = 4096;
+  options.camera_splitting = 1;
+  const RenderStatistics statistics = render(grass(), options).statistics;
+  EXPECT_GT(statistics.pass_seconds.at("bias pilot"), 0);
+}
+
 // The second crop shows little but sky.
 TEST(FootprintPilot, CropsAndShardsTakeWhatTheWholePictureTakes) {
   const RenderOptions options = part_of_picture(200);

@@ -98,9 +98,9 @@ TEST(FootprintChoice, IfOnlyWhatIsClearCountsFewRaysKeepTheScale) {
   EXPECT_EQ(choose(1u << 20, 0.0025f).footprint, 2);
   EXPECT_EQ(choose(1u << 12, 0.0025f).footprint, 4);
   EXPECT_EQ(choose(1u << 20, 0.0f).footprint, 1);
-  EXPECT_EQ(choose(1u << 20, 0.0025f).note,
-            "footprint 2 in place of footprint 4, whose bias is about -0.0040; --footprint 4 keeps "
-            "that");
+  EXPECT_EQ(
+      choose(1u << 20, 0.0025f).note,
+      "footprint 2 in place of footprint 4, whose bias is about -0.0040; --max-bias 0 keeps that");
 }
 
 }  // namespace
