@@ -9,7 +9,7 @@ namespace dapple {
 namespace {
 
 /// Part of the camera rays that a choice may trace for which the user did not ask.
-constexpr double kPilotShare = 1.0 / 64;
+constexpr double kPilotShare = 1.0 / 32;
 
 }  // namespace
 

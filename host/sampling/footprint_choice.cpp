@@ -28,8 +28,8 @@ constexpr std::size_t kFewestRaysOfTarget = 1u << 12, kMostRaysOfTarget = 1u << 
 
 /// If only what is clear counts: rays of a layer, at first and at most, and the standard errors by
 /// which a bias must be above the limit (experiment 556).
-constexpr std::size_t kFirstIfClear = 1u << 14, kMostIfClear = 1u << 16;
-constexpr double kClear = 1.5;
+constexpr std::size_t kFirstIfClear = 1u << 15, kMostIfClear = 1u << 16;
+constexpr double kClear = 2;
 
 /// What is known of a footprint's bias, of the layer in which it may be largest.
 struct Judgement {
@@ -58,7 +58,7 @@ Judgement judge(BiasSource& source, float footprint, double most) {
 
 /// Whether the bias is clearly above `most`. Sets `largest` to the bias of the layer that has most.
 bool is_clearly_above(BiasSource& source, float footprint, double most, double& largest) {
-  for (std::size_t rays = kFirstIfClear;; rays *= 4) {
+  for (std::size_t rays = kFirstIfClear;; rays *= 2) {
     source.grow(rays);
     double found = 0, least = 0;
     for (const Bias& bias : source.bias(footprint)) {

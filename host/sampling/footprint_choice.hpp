@@ -46,7 +46,7 @@ struct FootprintChoice {
 
 /// The largest of the scale, a half of it, ... a sixteenth and 0 whose bias is small enough: for
 /// max_bias, in every layer |mean| + 2 standard errors; for a target, an RMSE of half of it. With
-/// only_if_clear: |mean| in every layer, or |mean| - 1.5 standard errors if there are no more rays.
+/// only_if_clear: |mean| in every layer, or |mean| - 2 standard errors if there are no more rays.
 FootprintChoice choose_footprint(BiasSource& source, const FootprintDemand& demand);
 
 }  // namespace dapple
