@@ -12,6 +12,7 @@
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
 #include "scene/corner_normals.hpp"
+#include "scene/procedural/shown_scene.hpp"
 #include "support/fingerprint.hpp"
 namespace dapple {
 namespace {
@@ -295,18 +296,7 @@ TEST(Procedural, EveryTriangleOfEverySceneIsFiniteAndHasAnArea) {
 
 TEST(Procedural, TheDemoHasASunASkyAndACameraThatSeesTheTree) {
   const Scene scene = make_procedural("scene:demo");
-  ASSERT_EQ(scene.lights.size(), 2u);
-  EXPECT_EQ(scene.lights[0].kind, LightKind::sun);
-  EXPECT_EQ(scene.lights[1].kind, LightKind::dome);
-  ASSERT_EQ(scene.cameras.size(), 1u);
-  const M44f to_camera = scene.cameras[0].to_world.inverse();
-  const float tan_y = std::tan(scene.cameras[0].fov_y / 2);
-  for (const V3f& p : scene.meshes.at(0).positions) {
-    const V3f q = p * to_camera;
-    ASSERT_LT(q.z, 0);
-    ASSERT_LE(std::abs(q.y / q.z), tan_y);
-    ASSERT_LE(std::abs(q.x / q.z), tan_y * 960 / 540);
-  }
+  scene_test::expect_daylight_and_a_view_of(scene, scene.meshes.at(0).positions);
 }
 
 TEST(Procedural, DefaultsAreThoseThatTheHelpShows) {
