@@ -61,6 +61,8 @@ class DeviceRays {
         results_(rays.rays.size()) {
     queues_.rays = context_.allocate(rays.rays.size() * sizeof(Ray));
     queues_.occlusions = context_.allocate(results_.size() * sizeof(Occlusion));
+    if (traces_scalar(context_))
+      queues_.order = context_.allocate(results_.size() * sizeof(std::uint32_t));
     context_.write(queues_.rays, rays.rays.data(), rays.rays.size() * sizeof(Ray));
   }
 

@@ -115,7 +115,7 @@ struct DeviceContext::State {
 };
 
 std::string Variant::options() const {
-  return fmt::format("-cl-std=CL1.2 -DDAPPLE_PREFILTERED={} -DDAPPLE_SHARED_ORIGIN={}",
+  return fmt::format("-cl-std=CL1.2 -w -DDAPPLE_PREFILTERED={} -DDAPPLE_SHARED_ORIGIN={}",
                      prefiltered ? 1 : 0, shared_origin ? 1 : 0);
 }
 

@@ -12,10 +12,11 @@ namespace dapple {
 
 std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   std::vector<KernelShape> kernels{
-      {kClosestHit, kRayGroup},   {kCompactHits, kScanItems},   {kResolveDome, kRayGroup},
-      {kResolveAo, kRayGroup},    {kShadePoints, kRayGroup},    {kTurnPoints, kRayGroup},
-      {kResolveLight, kRayGroup}, {kResolveSurface, kRayGroup}, {kGatherRays, kRayGroup},
-      {kCountBacks, kRayGroup},
+      {kClosestHit, kRayGroup},     {kCompactHits, kScanItems},
+      {kResolveDome, kRayGroup},    {kResolveAo, kRayGroup},
+      {kResolveLight, kRayGroup},   {kTurnPoints, kRayGroup},
+      {kResolveSurface, kRayGroup}, {kGatherRays, kRayGroup},
+      {kCountBacks, kRayGroup},     {shading_kernel(context), kRayGroup},
   };
   const bool scalar = traces_scalar(context);
   const std::size_t generators = scalar ? kRayGroup : kRayGeneratorGroup;
@@ -23,6 +24,7 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   kernels.push_back({light_ray_kernel(context), generators});
   if (scalar) {
     kernels.push_back({kCountHits, kScanItems});
+    kernels.push_back({kOrderRays, kOrderGroup});
     kernels.push_back({camera_kernel(context, true), kRayGroup});
     for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered})
       kernels.push_back({occlusion_kernel(estimator, Packets::scalar), kRayGroup});
@@ -44,8 +46,8 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
                                         bool shaded) {
   std::vector<KernelName> kernels{camera_kernel(context, is_pinhole(camera)), kCompactHits,
                                   kResolveSurface};
-  if (traces_scalar(context)) kernels.push_back(kCountHits);
-  if (shaded) kernels.push_back(kShadePoints);
+  if (traces_scalar(context)) kernels.insert(kernels.end(), {kCountHits, kOrderRays});
+  if (shaded) kernels.push_back(shading_kernel(context));
   if (options.back) kernels.insert(kernels.end(), {kTurnPoints, kCountBacks});
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(
@@ -81,6 +83,7 @@ std::vector<KernelName> point_kernels(const DeviceContext& context, const PointQ
   add(query.estimator);
   if (query.measures_bias && query.estimator != Estimator::exact) add(Estimator::exact);
   if (query.light) kernels.push_back(light_ray_kernel(context));
+  if (traces_scalar(context)) kernels.push_back(kOrderRays);
   return kernels;
 }
 

@@ -64,15 +64,35 @@ void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBu
                       queues, scene, label, estimator, params);
 }
 
+namespace {
+
+/// Traces each ray in a work-item of its own, in an order in which neighbours are alike.
+void trace_scalar(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
+                  const std::string& label, Estimator estimator, const OcclusionParams& params) {
+  if (queues.order.memory())
+    context.launch(kOrderRays, "order",
+                   ceil_div<std::size_t>(params.ray_count, kOrderChunk) * kOrderGroup,
+                   {queues.rays, queues.order, params.ray_count}, kOrderGroup);
+  context.launch(
+      occlusion_kernel(estimator, Packets::scalar), label, params.ray_count,
+      {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,
+       scene.instances, queues.rays, queues.order, queues.occlusions, params},
+      kRayGroup);
+}
+
+}  // namespace
+
 void occlusion_pass_with(Packets with, DeviceContext& context, const Queues& queues,
                          const DeviceBuffers& scene, const std::string& label, Estimator estimator,
                          const OcclusionParams& params) {
+  if (with == Packets::scalar)
+    return trace_scalar(context, queues, scene, label, estimator, params);
   OcclusionParams launched = params;
   const KernelName kernel = occlusion_kernel(estimator, with);
   const std::vector<KernelArgument> arguments{
       scene.nodes,  scene.blocks,    scene.segments, scene.textured,    scene.materials,
       scene.texels, scene.instances, queues.rays,    queues.occlusions, launched};
-  if (with == Packets::none || with == Packets::scalar) {
+  if (with == Packets::none) {
     context.launch(kernel, label, params.ray_count, arguments, kRayGroup);
   } else {
     const uint ticket_count = with == Packets::pixel

@@ -2,6 +2,7 @@
 
 #include "dapple/shared/pass_params.h"
 #include "dapple/shared/ray.h"
+#include "passes/ray_packets.hpp"
 
 namespace dapple {
 
@@ -11,7 +12,7 @@ std::size_t hit_records(std::size_t samples) {
 
 std::size_t Queues::bytes() const {
   return work.bytes() + rays.bytes() + points.bytes() + sample_hits.bytes() + active.bytes() +
-         active_count.bytes() + group_hits.bytes() + occlusions.bytes();
+         active_count.bytes() + group_hits.bytes() + occlusions.bytes() + order.bytes();
 }
 
 Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays_per_sample) {
@@ -23,6 +24,8 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
   queues.active_count = context.allocate(sizeof(uint));
   queues.group_hits = context.allocate(ceil_div(hit_records(samples), kScanItems) * sizeof(uint));
   queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
+  if (traces_scalar(context))
+    queues.order = context.allocate(samples * rays_per_sample * sizeof(uint));
   return queues;
 }
 

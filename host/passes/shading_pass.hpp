@@ -7,7 +7,8 @@
 
 namespace dapple {
 
-inline const KernelName kShadePoints{"shade_points", "film/shading", {}};
+/// The kernel that shading_pass() and move_points_pass() run.
+KernelName shading_kernel(const DeviceContext& context);
 
 /// Comes after resolve_surface_pass(), because it moves points to where their rays start. `spp`:
 /// samples a pixel that footprints are computed for.

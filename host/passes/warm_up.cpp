@@ -62,6 +62,10 @@ void average_nothing(EmptyStage& s, const Variant& variant) {
   point_ao_pass(s.context, s.queues, s.scene, estimator_of(variant), {}, params);
 }
 
+void shade_nothing(EmptyStage& s, const Variant&) {
+  shading_pass(s.context, s.scene, s.queues, s.film, {}, 1);
+}
+
 using Pass = std::function<void(EmptyStage&, const Variant&)>;
 
 const std::map<std::string, Pass>& passes() {
@@ -82,6 +86,8 @@ const std::map<std::string, Pass>& passes() {
       {"occlusion", [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::none, v); }},
       {"occlusion_scalar",
        [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::scalar, v); }},
+      {"order_rays",
+       [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::scalar, v); }},
       {"packet",
        [](EmptyStage& s, const Variant& v) {
          occlude_nothing(s, v.shared_origin ? Packets::point : Packets::pixel, v);
@@ -99,10 +105,8 @@ const std::map<std::string, Pass>& passes() {
        [](EmptyStage& s, const Variant&) { turn_points_pass(s.context, s.queues, s.queues, {}); }},
       {"count_backs",
        [](EmptyStage& s, const Variant&) { count_backs_pass(s.context, s.queues, s.film, {}); }},
-      {"shade_points",
-       [](EmptyStage& s, const Variant&) {
-         shading_pass(s.context, s.scene, s.queues, s.film, {}, 1);
-       }},
+      {"shade_points", shade_nothing},
+      {"shade_points_scalar", shade_nothing},
       {"resolve_ao",
        [](EmptyStage& s, const Variant&) { resolve_ao_pass(s.context, s.queues, s.film, {}); }},
       {"resolve_light",

@@ -160,10 +160,14 @@ void BiasTracer::finish() {
 void BiasTracer::trace(std::size_t layer) {
   Waiting& waiting = waiting_[layer];
   const std::size_t bytes = waiting.count * sizeof(Occlusion);
-  if (exact_.bytes() < bytes) exact_ = context_.allocate(bytes);
+  if (exact_.bytes() < bytes) {
+    exact_ = context_.allocate(bytes);
+    if (traces_scalar(context_)) order_ = context_.allocate(waiting.count * sizeof(uint));
+  }
   Queues queues;
   queues.rays = waiting.queues.rays;
   queues.occlusions = exact_;
+  queues.order = order_;
   OcclusionParams params = waiting.params;
   params.ray_count = waiting.count;
   occlusion_pass(context_, queues, scene_, "bias report", Estimator::exact, params,

@@ -83,6 +83,7 @@ class BiasTracer {
   Buffer slots_;                                             ///< chosen_slots_ on the device
   std::vector<Waiting> waiting_;                             ///< by layer
   Buffer exact_;                                             ///< Occlusion of exact rays
+  Buffer order_;                                             ///< of these rays, as in Queues
 };
 
 }  // namespace dapple

@@ -78,7 +78,7 @@ class PictureTracer {
     if (plan.is_adaptive() && all_have_variances(picture.samples))
       picture.errors = standard_errors(picture.samples);
     picture.sums = context_.view(film_.sums);
-    if (bias_) picture.bias = bias_of(picture.samples, view);
+    if (bias_) picture.bias = bias_of(picture.sums, picture.samples, view);
     picture.mattes = std::move(hit_sums_.mattes);
     picture.motion = std::move(hit_sums_.motion);
     picture.deep = std::move(hit_sums_.deep);
@@ -132,11 +132,12 @@ class PictureTracer {
     state_.bias.earlier = traced_samples(state_.round, state_.slice_samples, state_.samples);
   }
 
-  std::vector<Bias> bias_of(const std::vector<std::uint32_t>& samples, const View& view) {
+  std::vector<Bias> bias_of(const HostView& sums, const std::vector<std::uint32_t>& samples,
+                            const View& view) {
     bias_->finish();
     // Without a target states have no squares, and those of earlier runs and moments are missing:
     // then the largest irradiance counts less of its noise.
-    const HostView sums = context_.view(film_.sums), squares = context_.view(film_.squares);
+    const HostView squares = context_.view(film_.squares);
     std::vector<double> divisors =
         FilmMoments(sums, squares, layout_, options_, samples, width_).largest_values();
     if (options_.back) {

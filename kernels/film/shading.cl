@@ -23,13 +23,6 @@ typedef struct HitGroup {
   uint located;  /* need barycentrics */
 } HitGroup;
 
-/* Of a triangle; zeros if it is flat. */
-inline CornerNormals normals_of(__global const CornerNormals* normals, uint triangle) {
-  const uint group = ((__global const uint*)normals)[triangle >> 3];
-  const CornerNormals flat = {{0u, 0u}};
-  return group ? normals[DAPPLE_NORMAL_GROUP * (ulong)group + (triangle & 7u)] : flat;
-}
-
 /* Takes the hits from the points in `lanes`, whose `t` and `visits` become 0. */
 inline void take_hits(Scene scene, const Shading* shading, uint lanes,
                       __global SurfacePoint* points, HitGroup* group) {
@@ -67,10 +60,9 @@ inline void take_hits(Scene scene, const Shading* shading, uint lanes,
 inline void place_in_media(uint in_media, __global const SurfacePoint* points, HitTriangles16* of) {
   for (uint left = in_media; left; left &= left - 1u) {
     const uint lane = lowest_bit(left);
-    const uint bits = hash_pair(points[lane].sample, points[lane].pixel);
-    const float a = unit_float(bits), b = unit_float(hash_uint(bits));
-    of->u.f[lane] = a + b > 1.0f ? 1.0f - a : a;
-    of->v.f[lane] = a + b > 1.0f ? 1.0f - b : b;
+    const float2 at = random_barycentrics(hash_pair(points[lane].sample, points[lane].pixel));
+    of->u.f[lane] = at.x;
+    of->v.f[lane] = at.y;
   }
 }
 

@@ -179,10 +179,17 @@ class ReferenceTraversal {
     if (prefiltered_ && is_opaque(walk)) return;
     if (!in_top) test_leaves(walk, space, node, open);
     if (is_opaque(walk)) return;
-    // Backwards, because the kernels' stack returns the last pushed child first.
+    for (const bool inner : {false, true}) visit_children(walk, space, node, open, inner, in_top);
+  }
+
+  /// Visits the open children that are inner nodes, or the instances. Backwards, because the
+  /// kernels' stack returns the last pushed child first; they push instances after nodes.
+  void visit_children(Walk& walk, const Space& space, const BvhNode& node,
+                      const std::array<bool, DAPPLE_BVH_WIDTH>& open, bool inner,
+                      bool in_top) const {
     for (unsigned slot = DAPPLE_BVH_WIDTH; slot-- > 0 && !walk.finished;) {
-      if (!open[slot]) continue;
-      if (node.inner_mask >> slot & 1) {
+      if (!open[slot] || (node.inner_mask >> slot & 1) != inner) continue;
+      if (inner) {
         uint child = node.child_base;
         for (unsigned before = 0; before < slot; ++before) child += node.inner_mask >> before & 1;
         visit(walk, space, child, in_top);
