@@ -11,6 +11,7 @@
 #include "commands/tell.hpp"
 #include "dapple/error.hpp"
 #include "dapple/render.hpp"
+#include "device/refused_drivers.hpp"
 
 namespace dapple {
 namespace {
@@ -63,6 +64,7 @@ void run_devices(const DevicesArguments& a) {
     }
     one_will_do = print_check(check) || one_will_do;
   }
+  for (const std::string& refusal : refused_drivers()) fmt::print("{}\n", refusal);
   if (!one_will_do)
     throw Error(ErrorKind::device, "no OpenCL device can run every kernel; the reasons are above");
 }

@@ -197,6 +197,8 @@ DeviceInfo describe(const cl::Device& device) {
   });
 }
 
+std::vector<std::string> refused_drivers() { return find_devices().refusals; }
+
 std::vector<cl::Device> usable_devices() { return find_devices().usable; }
 
 cl::Device choose_device(const std::string& name) {

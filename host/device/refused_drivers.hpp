@@ -3,11 +3,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace dapple {
 
 /// What is wrong with the driver of these names (CL_PLATFORM_NAME, CL_DRIVER_VERSION), and what to
 /// install instead; empty where nothing is known to be.
 std::string driver_refusal(const std::string& platform, const std::string& version);
+
+/// Why installed drivers are not used, each refusal once; platforms.cpp. Throws Error device where
+/// no device is left.
+std::vector<std::string> refused_drivers();
 
 }  // namespace dapple

@@ -316,7 +316,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   options.camera_splitting = choose_camera_splitting(options, scene, view);
   const Settings asked = option_settings(options, view);
   std::optional<Checkpoint> resumed;
-  if (!control.resume.empty()) resumed = resume(control.resume, asked, options);
+  if (!control.resume.empty()) resumed = resume(control.resume, asked, options, statistics.notes);
   const RenderOptions sampled = by_sample(options);
   // Moved out until the render succeeds: after an error nothing is kept.
   Kept kept = std::exchange(*kept_, {});

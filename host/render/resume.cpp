@@ -44,7 +44,8 @@ void require_one_piece(const std::string& path, const Checkpoint& checkpoint,
 
 }  // namespace
 
-Checkpoint resume(const std::string& path, const Settings& asked, RenderOptions& options) {
+Checkpoint resume(const std::string& path, const Settings& asked, RenderOptions& options,
+                  std::vector<std::string>& notes) {
   Checkpoint checkpoint = read_checkpoint(path);
   if (checkpoint.pieces.size() > 1) require_one_piece(path, checkpoint, options);
   require_same(path, checkpoint.options, asked);
@@ -56,6 +57,11 @@ Checkpoint resume(const std::string& path, const Settings& asked, RenderOptions&
                             checkpoint.footprint_spp, options.footprint_spp));
   }
   options.footprint_spp = checkpoint.footprint_spp;
+  // --max-bias 0 asks for --footprint, but is the same setting as none, which may choose a smaller
+  // one.
+  if (options.max_bias == 0.0f && options.footprint != checkpoint.footprint)
+    notes.push_back(fmt::format("{} goes on with the footprint that it began with, {:g}, not {:g}",
+                                path, checkpoint.footprint, options.footprint));
   options.footprint = checkpoint.footprint;
   return checkpoint;
 }

@@ -10,8 +10,10 @@ namespace dapple {
 
 /// Reads the checkpoint `path` and sets the footprints in `options`, whose option_settings() are
 /// `asked`, to those of the first run. Throws Error failed if it is damaged, Error usage if
-/// `options` differ from those of the checkpoint.
-Checkpoint resume(const std::string& path, const Settings& asked, RenderOptions& options);
+/// `options` differ from those of the checkpoint. A note says if the footprint is not what was
+/// asked for.
+Checkpoint resume(const std::string& path, const Settings& asked, RenderOptions& options,
+                  std::vector<std::string>& notes);
 
 /// Throws Error unless `resumed`, read from `path`, belongs to the picture that `now` describes.
 /// Adds a note about its origin to `notes`.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -104,6 +105,28 @@ TEST(FootprintPilot, AResumedPictureKeepsTheFootprint) {
   EXPECT_EQ(footprint_of(options, first), kDefault);
   options.spp = 16;
   EXPECT_EQ(footprint_of(options, second), kDefault);
+  std::filesystem::remove(path);
+}
+
+TEST(FootprintPilot, ARenderThatIsResumedWithAnotherFootprintSaysThatItKeepsTheFirst) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("dapple_pilot_note_" + std::to_string(getpid()));
+  RenderControl first, second;
+  first.checkpoint = second.resume = path.string();
+  RenderOptions options = part_of_picture(200);
+  const float chosen = footprint_of(options, first);
+  ASSERT_LT(chosen, kDefault);
+  const auto says_so = [&] {
+    const RenderStatistics statistics = render(grass(), options, second).statistics;
+    EXPECT_EQ(statistics.footprint, chosen);
+    return std::any_of(statistics.notes.begin(), statistics.notes.end(), [](const auto& note) {
+      return note.find(" goes on with the footprint that it began with, ") != std::string::npos &&
+             note.ends_with(", not 4");
+    });
+  };
+  EXPECT_FALSE(says_so());
+  options.max_bias = 0.0f;
+  EXPECT_TRUE(says_so());
   std::filesystem::remove(path);
 }
 
