@@ -127,7 +127,7 @@ MUTATIONS = [
         "(long)(count - traced) * (long)DAPPLE_AO_STEPS",
         r"^(ShadingNormal|SmoothBake|PointAo)\."),
     Mutation(
-        "shading-normal-as-a-direction", "kernels/camera/shading_normal.clh",
+        "shading-normal-as-a-direction", "kernels/camera/smooth_point.clh",
         "normal = transform_normal(at->to_object, normal);",
         "normal = transform_vector(at->to_world, normal);",
         r"^(ShadingNormal|GltfNormals)\."),
@@ -159,7 +159,7 @@ MUTATIONS = [
         "hit & (at->through.v <= threshold)",
         r"^(KBufferOnDevice|CameraSplitting|DeepAlpha)"),
     Mutation(
-        "vertex-colour-without-decoding", "kernels/camera/surface_color.clh",
+        "vertex-colour-without-decoding", "kernels/camera/color_entry.clh",
         "  return root * root;\n",
         "  return root;\n",
         r"^(Albedo|GltfColors)\."),
