@@ -30,11 +30,40 @@ using Imath::V2i;
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr std::size_t kMaxParts = 4096;
+constexpr std::size_t kMaxName = 255;     ///< of an attribute or its type
 constexpr std::uint32_t kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
 
 std::int64_t area(const Box2i& window) {
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   return width * (std::int64_t{window.max.y} - window.min.y + 1);
+}
+
+/// A text of a header, up to its zero, as OpenEXR limits it.
+std::string read_name(Imf::IStream& stream) {
+  std::string name;
+  for (char c = 0; stream.read(&c, 1), c != 0;) {
+    name += c;
+    if (name.size() > kMaxName) throw std::runtime_error("a name in its header is too long");
+  }
+  return name;
+}
+
+/// OpenEXR allocates memory of the size that an attribute claims, so this must be in the file.
+/// Leaves the stream at the beginning of the header, where it is.
+void check_attributes(Imf::IStream& stream, std::uint64_t file_bytes) {
+  const std::uint64_t begin = stream.tellg();
+  while (!read_name(stream).empty()) {
+    read_name(stream);  // its type
+    std::array<char, 4> bytes{};
+    stream.read(bytes.data(), static_cast<int>(bytes.size()));
+    std::uint64_t end = stream.tellg();
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+      end += std::uint64_t{static_cast<unsigned char>(bytes[i])} << (8 * i);
+    if (end > file_bytes)
+      throw std::runtime_error("damaged: an attribute of its header is larger than the file");
+    stream.seekg(end);
+  }
+  stream.seekg(begin);
 }
 
 // Reads only the headers, one for each part; OpenEXR does not yet allocate memory of the size that
@@ -48,8 +77,10 @@ std::vector<Imf::Header> peek_headers(const std::string& path) {
   for (std::size_t i = 4; i < 8; ++i) {
     version |= static_cast<unsigned char>(opening[i]) << (8 * (i - 4));
   }
+  const std::uint64_t file_bytes = std::filesystem::file_size(path);
   std::vector<Imf::Header> headers;
   do {
+    check_attributes(stream, file_bytes);
     headers.emplace_back();
     headers.back().readFrom(stream, version);
     if (headers.size() > kMaxParts) {

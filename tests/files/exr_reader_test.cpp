@@ -123,6 +123,20 @@ TEST_F(ExrReader, RefusesHugeWindowsBeforeItAllocatesThem) {
   expect_refused(path("c.exr"), "");
 }
 
+TEST_F(ExrReader, RefusesAttributesThatAreLargerThanTheFileBeforeItAllocatesThem) {
+  Film film = ramp_film(2, 2);
+  film.metadata = some_metadata();
+  write_exr(film, path("a.exr"));
+  std::string exr = bytes_of(path("a.exr"));
+  // The name, the type of a text, and its size, in four bytes.
+  const std::string type("\0string\0", 8);
+  const std::size_t at = exr.find(type);
+  ASSERT_NE(at, std::string::npos);
+  exr.replace(at + type.size(), 4, "\xff\xff\xff\x7f");
+  write_bytes(path("b.exr"), exr);
+  expect_refused(path("b.exr"), "an attribute of its header is larger than the file");
+}
+
 TEST_F(ExrReader, RefusesSubsampledChannels) {
   Imf::Header header(4, 4);
   header.channels().insert("BY", Imf::Channel(Imf::FLOAT, 2, 2));
