@@ -1,5 +1,5 @@
 // Writes the scenes of the corpus, small images and point files as the first inputs of the fuzzers.
-// The command `seeds FOLDER` makes the folders FOLDER/gltf, image, radiance_hdr and points.
+// The command `seeds FOLDER` makes the folders FOLDER/gltf, image, radiance_hdr, exr and points.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "corpus/corpus.hpp"
+#include "dapple/film.hpp"
 #include "points/point_file.hpp"
 #include "support/gltf_builder.hpp"
 
@@ -69,6 +70,30 @@ void write_radiance_images(const std::filesystem::path& folder) {
   write_seed(folder / "plain", image("-Y 2 +X 1", {1, 2, 3, 128, 4, 5, 6, 130}));
 }
 
+/// An EXR file of each compression, with 32 and with 16 bits.
+void write_exr_images(const std::filesystem::path& folder) {
+  using dapple::ExrCompression;
+  constexpr int kWidth = 5, kHeight = 18;  // more lines than a block of ZIP has
+  dapple::Film film;
+  film.width = kWidth;
+  film.height = kHeight;
+  film.data_window = {0, 0, kWidth - 1, kHeight - 1};
+  for (const char* channel : {"R", "G", "B"}) {
+    dapple::Plane plane{channel, {}};
+    for (int i = 0; i < kWidth * kHeight; ++i)
+      plane.pixels.push_back(0.01f * static_cast<float>(i % 7));
+    film.planes.push_back(plane);
+  }
+  std::filesystem::create_directories(folder);
+  for (const auto compression : {ExrCompression::none, ExrCompression::zips, ExrCompression::zip,
+                                 ExrCompression::piz, ExrCompression::dwaa}) {
+    const std::string name = fmt::format("{}", static_cast<int>(compression));
+    const bool multipart = compression == ExrCompression::dwaa;
+    dapple::write_exr(film, folder / (name + ".exr"), {compression, multipart, {}});
+    dapple::write_exr(film, folder / (name + "_half.exr"), {compression, true, {"all"}});
+  }
+}
+
 /// A file of each format; its first byte tells points_fuzz.cpp the format.
 void write_points_and_suns(const std::filesystem::path& folder) {
   dapple::PointList list;
@@ -102,6 +127,7 @@ int main(int argc, char** argv) {
     write_scene(folder / "gltf", one.name, one.files);
   write_images(folder / "image");
   write_radiance_images(folder / "radiance_hdr");
+  write_exr_images(folder / "exr");
   write_points_and_suns(folder / "points");
   return 0;
 }
