@@ -7,6 +7,7 @@
 #include "dapple/error.hpp"
 #include "passes/camera_pass.hpp"
 #include "passes/occlusion_pass.hpp"
+#include "passes/ray_packets.hpp"
 #include "sampling/sample_plan.hpp"
 
 namespace dapple::bench {
@@ -47,6 +48,7 @@ SceneRays make_rays(DeviceContext& context, const DeviceBuffers& scene, const Vi
   rays.ao = rays.camera;
   rays.ao.rays = context.allocate(rays.ao_count * sizeof(Ray));
   rays.ao.occlusions = context.allocate(rays.ao_count * sizeof(Occlusion));
+  if (traces_scalar(context)) rays.ao.order = context.allocate(rays.ao_count * sizeof(uint));
   AoParams params{};
   params.point_count = hits;
   params.rays = kRaysPerPoint;

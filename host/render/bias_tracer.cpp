@@ -7,6 +7,7 @@
 
 #include "camera/camera_splitting.hpp"
 #include "passes/occlusion_pass.hpp"
+#include "passes/ray_packets.hpp"
 
 namespace dapple {
 namespace {
