@@ -5,13 +5,7 @@
 #include "camera/shading_normal.clh"
 #include "camera/surface_color.clh"
 #include "film/film.clh"
-
-/* What the pass reads besides the scene that rays intersect. */
-typedef struct Shading {
-  __global const CornerNormals* normals;
-  ColorBuffers colors;
-  bool has_normals, has_colors;
-} Shading;
+#include "film/shading.clh"
 
 /* What a group of points hit, and lanes of it. */
 typedef struct HitGroup {

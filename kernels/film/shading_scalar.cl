@@ -1,6 +1,7 @@
 /* The shading pass for GPUs: each work-item shades every sixteenth sample of a pixel. In and out: as
    film/shading.cl. A work-group has four pixels, and adds up what its items found. */
 #include "film/film.clh"
+#include "film/shading.clh"
 #include "camera/medium_surface.clh"
 #include "scalar/smooth_triangle.clh"
 #include "scalar/surface_color.clh"
@@ -9,13 +10,6 @@
 #define DAPPLE_SHADING_PIXELS 4u /* of a work-group */
 #define DAPPLE_SHADING_GROUP (DAPPLE_SHADING_ITEMS * DAPPLE_SHADING_PIXELS)
 #define DAPPLE_SHADED_PLANES 6u  /* normal and albedo */
-
-/* What the pass reads besides the scene that rays intersect. */
-typedef struct Shading {
-  __global const CornerNormals* normals;
-  ColorBuffers colors;
-  bool has_normals, has_colors;
-} Shading;
 
 /* Gives a point that the camera pass stored its shading normal and origin of rays. Out: its albedo. */
 DAPPLE_INLINE float3 shade_hit(Scene scene, const Shading* shading, __global SurfacePoint* point) {

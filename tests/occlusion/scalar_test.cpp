@@ -2,6 +2,7 @@
 // pictures pixel by pixel.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -209,6 +210,36 @@ TEST(ScalarKernels, SampleEveryKindOfLightAsVectorKernelsDo) {
     EXPECT_GT(mean, 1e-4) << channel;
     EXPECT_LT(std::fabs(found.mean), 2e-3 * mean) << channel;
     EXPECT_LT(found.rmse, 0.03 * mean) << channel;
+  }
+}
+
+// Shading normals and colours: of corners, and of textures whose texels are small in a pixel.
+TEST(ScalarKernels, ShadeAsVectorKernelsDo) {
+  Scene cards = textured_cards();
+  ColorTexture colors;
+  colors.width = colors.height = 64;
+  for (int i = 0; i < 3 * 64 * 64; ++i)
+    colors.rgb.push_back(static_cast<std::uint8_t>(i * 37 % 251));
+  cards.color_textures = {colors};
+  for (Material& material : cards.materials) material.color_texture = 0;
+  for (const Scene& scene : {make_procedural("scene:flower"), std::move(cards)}) {
+    RenderOptions options;
+    options.width = options.height = 64;
+    options.spp = 16;
+    options.light = false;
+    options.packets = Packets::none;
+    const Film vector = render(scene, options).film;
+    options.packets = Packets::scalar;
+    const Film scalar = render(scene, options).film;
+    for (const char* channel : {"N.X", "N.Y", "N.Z", "albedo.R", "albedo.G", "albedo.B"}) {
+      const Deviation found = deviation_of(vector, scalar, channel);
+      const std::vector<float>& pixels = vector.find(channel)->pixels;
+      const auto [least, most] = std::minmax_element(pixels.begin(), pixels.end());
+      const bool upright_cards = scene.source == "cards" && std::string(channel) == "N.Y";
+      EXPECT_TRUE(upright_cards || *most - *least > 0.05f) << channel << " is the same all over";
+      EXPECT_LT(std::fabs(found.mean), 1e-4) << scene.source << " " << channel;
+      EXPECT_LT(found.rmse, 4e-3) << scene.source << " " << channel;
+    }
   }
 }
 
