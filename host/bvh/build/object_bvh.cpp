@@ -13,6 +13,7 @@
 #include "bvh/build/block_layout.hpp"
 #include "bvh/build/coincident_triangles.hpp"
 #include "bvh/build/quantize_boxes.hpp"
+#include "bvh/opacity/closed_surface.hpp"
 #include "bvh/opacity/wall.hpp"
 #include "bvh/storage/packed_strands.hpp"
 
@@ -222,8 +223,11 @@ void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
   fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
   std::vector<bool> closed, interior;
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
-                       [&] { closed = closed_triangles(mesh, opacities); },
-                       [&] { interior = interior_triangles(mesh, opacities); });
+                       [&] {
+                         const OpaqueTriangles opaque(mesh, opacities);
+                         tbb::parallel_invoke([&] { closed = closed_triangles(opaque); },
+                                              [&] { interior = interior_triangles(opaque); });
+                       });
   BlockLayout layout;
   tbb::parallel_invoke(
       [&] {

@@ -13,35 +13,29 @@ constexpr float kOpenShare = 0.1f;
 
 }  // namespace
 
-std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opacities) {
-  const auto opaque = [&](std::size_t t) { return opacities[t] == 1.0f; };
-  if (std::none_of(opacities.begin(), opacities.end(), [](float o) { return o == 1.0f; })) {
-    return {};
-  }
+std::vector<bool> closed_triangles(const OpaqueTriangles& opaque) {
   ConnectedVertices components = connect_triangles(
-      mesh.positions.size(), opacities.size(), opaque,
-      [&](std::size_t t, int k) { return mesh.indices[3 * t + static_cast<std::size_t>(k)]; });
+      opaque.positions().size(), opaque.count(), [](std::size_t) { return true; },
+      [&](std::size_t t, int k) { return opaque.vertex(t, k); });
   struct Sums {
     V3f vector{0, 0, 0};
     float area = 0;
   };
-  std::vector<Sums> sums(mesh.positions.size());
-  for (std::size_t t = 0; t < opacities.size(); ++t) {
-    if (!opaque(t)) continue;
-    const V3f vector = area_vector(mesh, t);
-    Sums& component = sums[components.root(mesh.indices[3 * t])];
+  std::vector<Sums> sums(opaque.positions().size());
+  for (std::size_t t = 0; t < opaque.count(); ++t) {
+    const V3f vector = opaque.area_vector(t);
+    Sums& component = sums[components.root(opaque.vertex(t, 0))];
     component.vector += vector;
     component.area += vector.length();
   }
-  std::vector<bool> closed(opacities.size());
+  std::vector<bool> closed(opaque.count());
   bool any = false;
-  for (std::size_t t = 0; t < opacities.size(); ++t) {
-    if (!opaque(t)) continue;
-    const Sums& component = sums[components.root(mesh.indices[3 * t])];
+  for (std::size_t t = 0; t < closed.size(); ++t) {
+    const Sums& component = sums[components.root(opaque.vertex(t, 0))];
     closed[t] = component.vector.length() < kOpenShare * component.area;
     any |= closed[t];
   }
-  return any ? closed : std::vector<bool>{};
+  return any ? opaque.flags_in_mesh(std::move(closed)) : std::vector<bool>{};
 }
 
 void SurfaceAreas::add(const V3f& area, float opacity, bool closed) {

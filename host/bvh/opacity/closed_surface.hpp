@@ -2,18 +2,17 @@
 // so the opacity of a node must not count both.
 #pragma once
 
-#include <span>
 #include <vector>
 
-#include "dapple/scene.hpp"
+#include "bvh/opacity/opaque_triangles.hpp"
 
 namespace dapple {
 
 /// Returns which triangles of the mesh belong to closed surfaces: connected components of opaque
-/// triangles (opacity 1 and shared vertex indices). The sum of the area vectors of a component must
-/// be shorter than a tenth of its area, so that twigs with open ends count. One entry a triangle;
+/// triangles (shared vertex indices). The sum of the area vectors of a component must be shorter
+/// than a tenth of its area, so that twigs with open ends count. One entry a triangle of the mesh;
 /// empty if there are no closed surfaces.
-std::vector<bool> closed_triangles(const Mesh& mesh, std::span<const float> opacities);
+std::vector<bool> closed_triangles(const OpaqueTriangles& opaque);
 
 /// Projected areas along x, y, z of the surfaces in a node, each times its opacity.
 struct SurfaceAreas {

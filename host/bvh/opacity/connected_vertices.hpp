@@ -8,8 +8,6 @@
 #include <numeric>
 #include <vector>
 
-#include "dapple/scene.hpp"
-
 namespace dapple {
 
 /// A union-find forest of vertices that triangles connect, with one root for each component.
@@ -47,13 +45,6 @@ ConnectedVertices connect_triangles(std::size_t vertices, std::size_t triangles,
     components.join(first, vertex(t, 2));
   }
   return components;
-}
-
-/// Normal of triangle t, as long as its area in square metres.
-inline V3f area_vector(const Mesh& mesh, std::size_t t) {
-  const std::uint32_t* index = &mesh.indices[3 * t];
-  const V3f& a = mesh.positions[index[0]];
-  return 0.5f * (mesh.positions[index[1]] - a).cross(mesh.positions[index[2]] - a);
 }
 
 }  // namespace dapple

@@ -23,9 +23,9 @@ constexpr float kFlat = 0.7f;
 constexpr float kGridSteps = 4194304.0f;
 
 /// Returns for each vertex a hash of its position; 0 only by chance.
-std::vector<std::uint32_t> position_hashes(const Mesh& mesh) {
+std::vector<std::uint32_t> position_hashes(std::span<const V3f> positions) {
   Box3f box;
-  for (const V3f& position : mesh.positions) box.extendBy(position);
+  for (const V3f& position : positions) box.extendBy(position);
   const V3f size = box.size();
   const float scale = kGridSteps / std::max({size.x, size.y, size.z, 1e-30f});
   const auto hash_of = [&](const V3f& position) {
@@ -37,8 +37,8 @@ std::vector<std::uint32_t> position_hashes(const Mesh& mesh) {
     }
     return static_cast<std::uint32_t>(hash >> 32);
   };
-  std::vector<std::uint32_t> hashes(mesh.positions.size());
-  std::transform(mesh.positions.begin(), mesh.positions.end(), hashes.begin(), hash_of);
+  std::vector<std::uint32_t> hashes(positions.size());
+  std::transform(positions.begin(), positions.end(), hashes.begin(), hash_of);
   return hashes;
 }
 
@@ -85,18 +85,18 @@ class Rings {
 /// rim of a wall, too, light would leak through its box. `belongs`: whether a triangle is in such a
 /// surface; `vertex`: a vertex at the position of a triangle's corner, the same for all there.
 template <class Belongs, class Vertex>
-void extend_to_rims(const Mesh& mesh, const Belongs& belongs, const Vertex& vertex,
+void extend_to_rims(const OpaqueTriangles& opaque, const Belongs& belongs, const Vertex& vertex,
                     std::vector<bool>& interior) {
   ConnectedVertices surfaces =
-      connect_triangles(mesh.positions.size(), interior.size(), belongs, vertex);
+      connect_triangles(opaque.positions().size(), interior.size(), belongs, vertex);
   struct Areas {
     float all = 0, interior = 0;
   };
-  std::vector<Areas> areas(mesh.positions.size());
+  std::vector<Areas> areas(opaque.positions().size());
   for (std::size_t t = 0; t < interior.size(); ++t) {
     if (!belongs(t)) continue;
     Areas& surface = areas[surfaces.root(vertex(t, 0))];
-    const float area = area_vector(mesh, t).length();
+    const float area = opaque.area_vector(t).length();
     surface.all += area;
     if (interior[t]) surface.interior += area;
   }
@@ -109,41 +109,32 @@ void extend_to_rims(const Mesh& mesh, const Belongs& belongs, const Vertex& vert
 
 }  // namespace
 
-std::vector<bool> interior_triangles(const Mesh& mesh, std::span<const float> opacities) {
-  const auto opaque = [&](std::size_t t) { return opacities[t] == 1.0f; };
-  if (std::none_of(opacities.begin(), opacities.end(), [](float o) { return o == 1.0f; })) {
-    return {};
-  }
-  const std::vector<std::uint32_t> hashes = position_hashes(mesh);
-  const auto corner = [&](std::size_t t, int k) { return hashes[mesh.indices[3 * t + k % 3]]; };
+std::vector<bool> interior_triangles(const OpaqueTriangles& opaque) {
+  const std::vector<std::uint32_t> hashes = position_hashes(opaque.positions());
+  const auto corner = [&](std::size_t t, int k) { return hashes[opaque.vertex(t, k % 3)]; };
   Rings rings(hashes.size());
-  for (std::size_t t = 0; t < opacities.size(); ++t) {
-    if (!opaque(t)) continue;
+  for (std::size_t t = 0; t < opaque.count(); ++t)
     for (int k = 0; k < 3; ++k) rings.add(corner(t, k), corner(t, k + 1), corner(t, k + 2));
-  }
-  std::vector<bool> interior(opacities.size()), is_near(mesh.positions.size());
+  std::vector<bool> interior(opaque.count()), is_near(hashes.size());
   bool any = false;
-  for (std::size_t t = 0; t < opacities.size(); ++t) {
-    if (!opaque(t)) continue;
+  for (std::size_t t = 0; t < opaque.count(); ++t) {
     int closed = 0;
     for (int k = 0; k < 3; ++k) closed += rings.is_closed(corner(t, k)) ? 1 : 0;
     interior[t] = closed == 3;
     any |= interior[t];
-    for (int k = 0; closed > 0 && k < 3; ++k) is_near[mesh.indices[3 * t + k]] = true;
+    for (int k = 0; closed > 0 && k < 3; ++k) is_near[opaque.vertex(t, k)] = true;
   }
   if (!any) return {};
   rings.forget();
   extend_to_rims(
-      mesh,
+      opaque,
       [&](std::size_t t) {
-        const std::uint32_t* index = &mesh.indices[3 * t];
-        return opaque(t) && (is_near[index[0]] || is_near[index[1]] || is_near[index[2]]);
+        return is_near[opaque.vertex(t, 0)] || is_near[opaque.vertex(t, 1)] ||
+               is_near[opaque.vertex(t, 2)];
       },
-      [&](std::size_t t, int k) {
-        return rings.first_vertex(corner(t, k), mesh.indices[3 * t + k]);
-      },
+      [&](std::size_t t, int k) { return rings.first_vertex(corner(t, k), opaque.vertex(t, k)); },
       interior);
-  return interior;
+  return opaque.flags_in_mesh(std::move(interior));
 }
 
 void WallAreas::add(const V3f& area, float opacity, bool is_interior) {

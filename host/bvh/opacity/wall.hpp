@@ -3,20 +3,19 @@
 // always opens such nodes.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "bvh/opacity/node_opacity.hpp"
-#include "dapple/scene.hpp"
+#include "bvh/opacity/opaque_triangles.hpp"
 
 namespace dapple {
 
-/// Returns which triangles of the mesh lie inside an opaque surface: they are opaque (opacity 1),
-/// and around each corner opaque triangles close a ring. Corners at equal positions count as one.
-/// A leaf has no such triangles, a wall, a trunk or the ground has few others; where these make up
-/// most of a connected surface, its rim counts, too. One entry a triangle; empty if there are none.
-/// Almost linear in the triangles.
-std::vector<bool> interior_triangles(const Mesh& mesh, std::span<const float> opacities);
+/// Returns which triangles of the mesh lie inside an opaque surface: around each corner opaque
+/// triangles close a ring. Corners at equal positions count as one. A leaf has no such triangles, a
+/// wall, a trunk or the ground has few others; where these make up most of a connected surface, its
+/// rim counts, too. One entry a triangle of the mesh; empty if there are none. Almost linear in the
+/// triangles.
+std::vector<bool> interior_triangles(const OpaqueTriangles& opaque);
 
 /// Sums over the triangles of a node, by which is_wall() decides.
 struct WallAreas {

@@ -65,7 +65,7 @@ TEST(ClosedSurface, APrismIsClosedEvenWithOpenEndsACardIsNot) {
   const std::size_t prism = mesh.primitive_count();
   add_card(mesh, {1, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0.05f});
   const std::vector<float> opacities(mesh.primitive_count(), 1.0f);
-  const std::vector<bool> closed = closed_triangles(mesh, opacities);
+  const std::vector<bool> closed = closed_triangles({mesh, opacities});
   ASSERT_EQ(closed.size(), mesh.primitive_count());
   for (std::size_t t = 0; t < closed.size(); ++t) EXPECT_EQ(closed[t], t < prism) << t;
 }
@@ -73,8 +73,8 @@ TEST(ClosedSurface, APrismIsClosedEvenWithOpenEndsACardIsNot) {
 TEST(ClosedSurface, TransparentSurfacesAreNotClosed) {
   Mesh mesh;
   add_prism(mesh, {0, 0, 0}, {0, 1, 0}, 0.02f, 6, 4);
-  EXPECT_TRUE(closed_triangles(mesh, std::vector<float>(mesh.primitive_count(), 0.9f)).empty());
-  EXPECT_TRUE(closed_triangles(mesh, std::vector<float>(mesh.primitive_count(), -1.0f)).empty());
+  EXPECT_TRUE(closed_triangles({mesh, std::vector<float>(mesh.primitive_count(), 0.9f)}).empty());
+  EXPECT_TRUE(closed_triangles({mesh, std::vector<float>(mesh.primitive_count(), -1.0f)}).empty());
 }
 
 TEST(ClosedSurface, AThinTwigOccludesItsSilhouetteOnce) {

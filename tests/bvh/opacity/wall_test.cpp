@@ -17,7 +17,7 @@ using namespace scene_test;
 
 std::ptrdiff_t count_interior(const Mesh& mesh, float opacity = 1.0f) {
   const std::vector<float> opacities(mesh.indices.size() / 3, opacity);
-  const std::vector<bool> interior = interior_triangles(mesh, opacities);
+  const std::vector<bool> interior = interior_triangles({mesh, opacities});
   return std::count(interior.begin(), interior.end(), true);
 }
 
