@@ -30,6 +30,8 @@ constexpr std::size_t kFewestRaysOfTarget = 1u << 12, kMostRaysOfTarget = 1u << 
 /// which a bias must be above the limit (experiment 556).
 constexpr std::size_t kFirstIfClear = 1u << 15, kMostIfClear = 1u << 16;
 constexpr double kClear = 2;
+/// The part of the limit that a smaller footprint shall reach, if the first is not kept.
+constexpr double kGoalPart = 0.5;
 
 /// What is known of a footprint's bias, of the layer in which it may be largest.
 struct Judgement {
@@ -56,33 +58,41 @@ Judgement judge(BiasSource& source, float footprint, double most) {
   }
 }
 
-/// Whether the bias is clearly above `most`. Sets `largest` to the bias of the layer that has most.
-bool is_clearly_above(BiasSource& source, float footprint, double most, double& largest) {
+/// The bias of the layer that has most.
+Bias largest_of(const std::vector<Bias>& layers) {
+  Bias largest;
+  for (const Bias& bias : layers)
+    if (std::fabs(bias.mean) > std::fabs(largest.mean)) largest = bias;
+  return largest;
+}
+
+/// Whether the bias of a layer is clearly above `most`. Takes rays until that is known, or there
+/// are enough.
+bool is_clearly_above(BiasSource& source, float footprint, double most) {
   for (std::size_t rays = kFirstIfClear;; rays *= 2) {
     source.grow(rays);
-    double found = 0, least = 0;
-    for (const Bias& bias : source.bias(footprint)) {
-      const double mean = std::fabs(bias.mean);
-      if (mean > found) largest = bias.mean;
-      found = std::max(found, mean);
-      least = std::max(least, mean - kClear * bias.error);
-    }
-    if (found <= most) return false;
-    if (least > most) return true;
+    const std::vector<Bias> layers = source.bias(footprint);
+    if (std::fabs(largest_of(layers).mean) <= most) return false;
+    if (std::any_of(layers.begin(), layers.end(), [&](const Bias& bias) {
+          return std::fabs(bias.mean) - kClear * bias.error > most;
+        }))
+      return true;
     if (rays >= kMostIfClear || source.is_complete()) return false;
   }
 }
 
 FootprintChoice choose_if_clear(BiasSource& source, const FootprintDemand& demand) {
   FootprintChoice choice{demand.footprint, 0, {}};
-  double largest = 0, of_demand = 0;
-  const double most = double{demand.max_bias};
-  while (choice.footprint > 0 && is_clearly_above(source, choice.footprint, most, largest)) {
-    if (choice.footprint == demand.footprint) of_demand = largest;
+  const double most = double{demand.max_bias}, goal = kGoalPart * most;
+  if (!is_clearly_above(source, choice.footprint, most)) return choice;
+  const double of_demand = largest_of(source.bias(choice.footprint)).mean;
+  const float smallest = kSmallestPart * demand.footprint;
+  do {
     choice.footprint *= 0.5f;
-    if (choice.footprint < kSmallestPart * demand.footprint) choice.footprint = 0;
-  }
-  if (choice.footprint == demand.footprint) return choice;
+  } while (choice.footprint > smallest &&
+           std::fabs(largest_of(source.bias(choice.footprint)).mean) > goal);
+  if (choice.footprint <= smallest && is_clearly_above(source, smallest, goal))
+    choice.footprint = 0;
   choice.note = fmt::format(
       "{} in place of footprint {}, whose bias is about {:+.4f}; --max-bias 0 keeps that",
       choice.footprint > 0 ? fmt::format("footprint {}", choice.footprint)

@@ -46,7 +46,8 @@ struct FootprintChoice {
 
 /// The largest of the scale, a half of it, ... a sixteenth and 0 whose bias is small enough: for
 /// max_bias, in every layer |mean| + 2 standard errors; for a target, an RMSE of half of it. With
-/// only_if_clear: |mean| in every layer, or |mean| - 2 standard errors if there are no more rays.
+/// only_if_clear: the scale stays unless a layer's |mean| - 2 standard errors is above max_bias;
+/// then |mean| becomes at most half of max_bias, or 0 with a sixteenth clearly above that.
 FootprintChoice choose_footprint(BiasSource& source, const FootprintDemand& demand);
 
 }  // namespace dapple
