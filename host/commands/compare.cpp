@@ -104,9 +104,10 @@ Run add_compare_command(CLI::App& app) {
   app.add_option(
       "--max-rmse", a->max_rmse,
       "Exit with 5 if a layer's RMSE is larger; Z, P and samples count only with --layer");
-  app.add_option("--scale", a->scale,
-                 "The last colour of heat maps is a difference of the layer's range divided by "
-                 "this. The range is 1 for ao and RGBA, the largest value in B for a light")
+  app.add_option(
+         "--scale", a->scale,
+         "The last colour of heat maps is a difference of the layer's range divided by "
+         "this. The range is 1 for ao, the largest value in B for a light; docs/guide.md has all")
       ->capture_default_str();
   app.add_flag("--json", a->json, "Print JSON");
   app.footer(

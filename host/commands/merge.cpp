@@ -35,6 +35,7 @@ void check(const MergeArguments& a) {
   if (!files.stats_json.empty()) outputs.push_back({"--stats-json", files.stats_json});
   check_outputs(outputs);
   check_outputs_spare(outputs, a.parts);
+  check_png(files);
 }
 
 void print(const Merge& merge, const MergeArguments& a) {

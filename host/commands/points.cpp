@@ -148,6 +148,8 @@ PointOptions options_of(const Arguments& a) {
   if (!(a.sky_irradiance >= 0 && a.sky_irradiance <= 1e30f))
     throw Error(ErrorKind::usage, fmt::format("--sky-irradiance is {}; it must be from 0 to 1e+30",
                                               a.sky_irradiance));
+  if (a.sky_irradiance != 1 && a.sky != "uniform" && a.sky != "overcast")
+    throw Error(ErrorKind::usage, "--sky-irradiance needs --sky uniform or overcast");
   validate(options);
   return options;
 }

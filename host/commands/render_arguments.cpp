@@ -168,16 +168,6 @@ void add_motion_options(CLI::App& app, RenderArguments& a) {
                  "Needs --frame or --frames");
 }
 
-void check_png(const RenderArguments& a) {
-  parse_png_options(a.exposure, a.background);
-  if (!a.png.empty()) return;
-  const RenderArguments defaults;
-  for (const char* flag : {a.exposure != defaults.exposure ? "--exposure" : "",
-                           a.background != defaults.background ? "--background" : ""})
-    if (*flag)
-      throw Error(ErrorKind::usage, fmt::format("{} needs --png: it changes no EXR", flag));
-}
-
 void check_animation(const RenderArguments& a) {
   if (!a.scene_options.animation.empty() && !a.frame && a.frames.empty())
     throw Error(ErrorKind::usage, "--animation needs --frame or --frames: which time to show");
@@ -240,6 +230,16 @@ void check_part(const RenderArguments& a, const RenderOptions& options) {
 }
 
 }  // namespace
+
+void check_png(const RenderArguments& a) {
+  parse_png_options(a.exposure, a.background);
+  if (!a.png.empty()) return;
+  const RenderArguments defaults;
+  for (const char* flag : {a.exposure != defaults.exposure ? "--exposure" : "",
+                           a.background != defaults.background ? "--background" : ""})
+    if (*flag)
+      throw Error(ErrorKind::usage, fmt::format("{} needs --png: it changes no EXR", flag));
+}
 
 bool is_part_path(const std::string& path) { return path.ends_with(".dapple"); }
 

@@ -42,6 +42,9 @@ void add_render_options(CLI::App& app, RenderArguments& arguments);
 /// Those of the files that are written beside the image, and of its format.
 void add_file_options(CLI::App& app, RenderArguments& arguments);
 
+/// Throws Error usage if options of the PNG are wrong, or there is none that they are for.
+void check_png(const RenderArguments& arguments);
+
 /// Whether the file is a part, FILE.dapple, and not an image.
 bool is_part_path(const std::string& path);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -67,14 +68,15 @@ void check_number(const std::string& path, const NumberTable& table, std::size_t
 }
 
 /// A name that every format can hold: without separators, quotes and control characters, and
-/// unlike the names before it.
+/// unlike the names before it and those of positions and normals.
 std::string column_name(const NumberTable& table, std::size_t column, const PointList& list) {
   std::string name = column < table.names.size() ? table.names[column] : "";
   for (char& letter : name)
     if (static_cast<unsigned char>(letter) <= ' ' ||
         std::string_view(",;\"'\\\x7f").find(letter) != std::string_view::npos)
       letter = '_';
-  const bool is_taken = std::ranges::count(list.extra, name, &ExtraColumn::name) > 0;
+  const bool is_taken = std::ranges::count(list.extra, name, &ExtraColumn::name) > 0 ||
+                        std::ranges::find(kPointNames, name) != std::end(kPointNames);
   return name.empty() || is_taken ? fmt::format("column_{}", column + 1) : name;
 }
 
@@ -95,6 +97,14 @@ void read_extra(const std::string& path, const NumberTable& table, const VectorC
       extra.values.push_back(table.values[i]);
     list.extra.push_back(std::move(extra));
   }
+}
+
+/// Throws if there are some of the columns of normals, not all.
+void check_normal_names(const std::string& path, const NumberTable& table) {
+  const auto named = std::ranges::count_if(std::span(kPointNames).subspan(3),
+                                           [&](const char* name) { return table.find(name) >= 0; });
+  if (named == 1 || named == 2)
+    throw Error(ErrorKind::input, path + ": normals need all of the columns nx, ny, nz");
 }
 
 void check_finite(const std::string& path, std::size_t row, const V3d& value) {
@@ -127,6 +137,7 @@ PointList read_points(const std::string& path) {
   if (table.rows() == 0) return list;
   if (!positions.exist())
     throw Error(ErrorKind::input, path + ": needs the columns x, y, z (and nx, ny, nz)");
+  check_normal_names(path, table);
   for (std::size_t c = 0; c < table.columns; ++c)
     if (positions.include(c) || normals.include(c)) check_number(path, table, c);
   read_extra(path, table, positions, normals, list);
@@ -166,6 +177,11 @@ std::vector<SunDirection> read_suns(const std::string& path) {
     const double* values = &table.values[row * table.columns];
     SunDirection sun;
     sun.irradiance = static_cast<float>(values[irradiance]);
+    if (angles && std::abs(values[elevation]) > 90)
+      throw Error(ErrorKind::input,
+                  fmt::format("{}: row {} has an elevation of {}; it must be from "
+                              "-90 to 90 degrees",
+                              path, row, values[elevation]));
     const V3d given =
         angles ? V3d(direction_of(values[azimuth], values[elevation])) : directions.at(row);
     check_finite(path, row, given);

@@ -1,5 +1,7 @@
 #include "render/motion_lookup.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -11,18 +13,41 @@ namespace {
 
 constexpr std::uint32_t kNoInstance = 0xffffffffu;  ///< DAPPLE_WORLD of the kernels
 
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorKind::input,
+              fmt::format("motion vectors: {} (what is scaled to zero or loses its area is not in "
+                          "a frame); without motion in --passes, frames can be rendered",
+                          what));
+}
+
+/// Names tell which placement became which: two meshes may be alike.
+void check_same_objects(const std::vector<std::string>& now, const std::vector<std::string>& next) {
+  const auto missing = [](const auto& names, const auto& others) {
+    return std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+      return std::find(others.begin(), others.end(), name) == others.end();
+    });
+  };
+  if (now == next) return;
+  if (const auto gone = missing(now, next); gone != now.end())
+    refuse(fmt::format("object '{}' is not in the next frame", *gone));
+  if (const auto added = missing(next, now); added != next.end())
+    refuse(fmt::format("object '{}' is in the next frame only", *added));
+  refuse("objects have another order in the next frame");
+}
+
 void check_same_topology(const Scene& now, const Scene& next) {
-  const bool same_meshes =
-      std::equal(now.meshes.begin(), now.meshes.end(), next.meshes.begin(), next.meshes.end(),
-                 [](const Mesh& a, const Mesh& b) {
-                   return a.indices == b.indices && a.positions.size() == b.positions.size();
-                 });
+  check_same_objects(now.objects, next.objects);
+  const bool same_meshes = std::equal(now.meshes.begin(), now.meshes.end(), next.meshes.begin(),
+                                      next.meshes.end(), [](const Mesh& a, const Mesh& b) {
+                                        return a.indices == b.indices &&
+                                               a.positions.size() == b.positions.size() &&
+                                               a.objects == b.objects;
+                                      });
   const bool same_instances = std::equal(
       now.instances.begin(), now.instances.end(), next.instances.begin(), next.instances.end(),
       [](const Instance& a, const Instance& b) { return a.mesh == b.mesh; });
   if (same_meshes && same_instances) return;
-  throw Error(ErrorKind::input,
-              "motion vectors: meshes or instances come or go until the next frame");
+  refuse("meshes or instances come or go until the next frame");
 }
 
 /// Barycentric weights of the point of the triangle's plane that is closest to `p`.

@@ -46,7 +46,7 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
   }
   check_film_memory(view, options.light ? scene.lights.size() : 0, options);
   if (options.ground) add_ground(scene);
-  if (options.cryptomattes.any()) name_objects(scene);
+  if (options.cryptomattes.any() || options.motion) name_objects(scene);
   merge_single_instances(scene);
   finalize_domes(scene);
   return view;

@@ -89,6 +89,7 @@ struct BvhUpdate {
   bool is_new = false;    ///< all arrays were replaced
   /// If not is_new: the ranges of nodes and triangle blocks that changed.
   std::vector<IndexRange> nodes, blocks;
+  bool textured = false;   ///< if not is_new: whether records of textured triangles changed
   bool placement = false;  ///< if not is_new: whether instances, root and bounds changed
 };
 

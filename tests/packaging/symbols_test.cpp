@@ -51,13 +51,15 @@ std::string public_headers() {
   return std::regex_replace(text, std::regex("//[^\n]*"), "");
 }
 
-/// Whether the headers declare a function of this name, in the class if it is in one.
+/// Whether the headers declare a function of this name, in the class or struct if it is in one.
 bool is_declared(const std::string& headers, const std::string& name) {
   const std::size_t colons = name.rfind("::");
   const std::string last = colons == std::string::npos ? name : name.substr(colons + 2);
   const std::string owner = colons == std::string::npos ? "" : name.substr(0, colons);
   const bool declares = std::regex_search(headers, std::regex("[ &]" + last + "\\("));
-  return declares && (owner.empty() || headers.find("class " + owner + " {") != std::string::npos);
+  const auto has = [&](const std::string& text) { return headers.find(text) != std::string::npos; };
+  return declares &&
+         (owner.empty() || has("class " + owner + " {") || has("struct " + owner + " {"));
 }
 
 TEST(SharedLibrary, ExportsOnlyWhatThePublicHeadersDeclare) {

@@ -98,6 +98,8 @@ TEST_F(PointFile, OtherColumnsOfNumbersAreWrittenAgainInAllThreeFormats) {
   ASSERT_EQ(plain.extra.size(), 1u);
   EXPECT_EQ(plain.extra[0].name, "column_4");
   EXPECT_EQ(plain.extra[0].values, std::vector<double>{7});
+  const PointList twice = read_points(write("x.csv", "x,y,z,x\n1,2,3,7\n"));
+  EXPECT_EQ(twice.extra.at(0).name, "column_4");
 }
 
 TEST_F(PointFile, ColumnsOfTextAreLeftOutWithANote) {
@@ -128,6 +130,7 @@ TEST_F(PointFile, ErrorsOfInvalidFilesNameTheLineOrRow) {
   expect_error(write("e.csv", "1,2,3,0,0,0\n"), "normal");
   expect_error(write("f.csv", "1,2,3\n1e300,2,3\n"), "row 1 is more than 1e+12 m");
   expect_error(write("g.csv", "\"\"\n1,2,3\n"), "line 1 has no columns");
+  expect_error(write("h.csv", "x,y,z,nx\n1,2,3,1\n"), "all of the columns nx, ny, nz");
   expect_error(write("a.npy", "no"), "not an NPY");
   expect_error(write("a.ply", "ply\nformat binary_big_endian 1.0\nend_header\n"), "big_endian");
   expect_error(write("b.ply",
@@ -216,6 +219,7 @@ TEST_F(PointFile, SunsAreDirectionsOrAngles) {
   EXPECT_LT((suns[2].direction - V3f(0, 1, 0)).length(), 1e-6f);
   EXPECT_EQ(suns[2].irradiance, 3);
   EXPECT_THROW(read_suns(write("w.csv", "1,2,3\n")), Error);
+  EXPECT_THROW(read_suns(write("e.csv", "azimuth,elevation,irradiance\n0,91,1\n")), Error);
 }
 
 TEST(PointSources, AGridHasItsLastRowAndColumnAndFacesUp) {

@@ -161,5 +161,29 @@ TEST(Motion, WithoutANextFrameOrWithOtherMeshesItIsRefused) {
       ErrorKind::input);
 }
 
+// Two placements of equal meshes, of which one is seen at a time: none of them moves.
+TEST(Motion, ObjectsThatSwapAreToldApartByName) {
+  const auto scene_with = [](int node) {
+    Scene scene = scene_of({});
+    scene.node_names = {"left", "right", "behind"};
+    scene.instances[0].node = node;
+    scene.instances[0].to_world[3][0] = static_cast<float>(node);
+    scene.instances[1].node = 2;
+    return scene;
+  };
+  for (const int now : {0, 1}) {
+    try {
+      Renderer().render_shutter([&](int) { return scene_with(now); }, 1, with_motion(), {},
+                                [&](int) { return scene_with(1 - now); });
+      ADD_FAILURE() << "was not refused";
+    } catch (const Error& error) {
+      const std::string name = now == 0 ? "'left'" : "'right'";
+      EXPECT_NE(std::string(error.what()).find("object " + name + " is not in the next frame"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dapple

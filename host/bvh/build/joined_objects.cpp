@@ -79,7 +79,6 @@ ConstArray<T> part_of(const ConstArray<T>& all, std::size_t first, std::size_t e
 void join_constant(SceneBvh& bvh, std::vector<FinishedObject>& objects,
                    const std::vector<ObjectOffsets>& offsets) {
   bvh.segments = joined<SegmentBlock>(arrays_of(objects, &FinishedObject::segments), offsets);
-  bvh.textured = joined<TexturedTriangle>(arrays_of(objects, &FinishedObject::textured), offsets);
   bvh.primitives = joined<std::uint32_t>(arrays_of(objects, &FinishedObject::primitives), offsets);
   bvh.objects = offsets;
 }
@@ -123,6 +122,7 @@ void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
   node_offsets.back() = {};  // the top level's indices are already absolute
   bvh.nodes = joined<BvhNode>(nodes, node_offsets);
   bvh.blocks = joined<TriangleBlock>(arrays_of(objects, &FinishedObject::blocks), offsets);
+  bvh.textured = joined<TexturedTriangle>(arrays_of(objects, &FinishedObject::textured), offsets);
   join_constant(bvh, objects, offsets);
 }
 
@@ -132,10 +132,13 @@ ChangeableArrays join_changeable(SceneBvh& bvh, std::vector<FinishedObject>& obj
       values_of<BvhNode>(arrays_of(objects, &FinishedObject::nodes), offsets, spare));
   const auto blocks = std::make_shared<std::vector<TriangleBlock>>(
       values_of<TriangleBlock>(arrays_of(objects, &FinishedObject::blocks), offsets, 0));
+  const auto textured = std::make_shared<std::vector<TexturedTriangle>>(
+      values_of<TexturedTriangle>(arrays_of(objects, &FinishedObject::textured), offsets, 0));
   bvh.nodes = {*nodes, nodes};
   bvh.blocks = {*blocks, blocks};
+  bvh.textured = {*textured, textured};
   join_constant(bvh, objects, offsets);
-  return {*nodes, *blocks};
+  return {*nodes, *blocks, *textured};
 }
 
 FinishedObject separate(const SceneBvh& bvh, const ObjectSummary& summary,

@@ -27,6 +27,7 @@ void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
 struct ChangeableArrays {
   std::span<BvhNode> nodes;
   std::span<TriangleBlock> blocks;
+  std::span<TexturedTriangle> textured;
 };
 
 /// As join(), but into arrays that may change later, with room for `spare` nodes at the end.

@@ -10,6 +10,7 @@
 #include "bvh/build/scene_objects.hpp"
 #include "bvh/build/top_level.hpp"
 #include "bvh/refit/refit_object.hpp"
+#include "bvh/refit/texel_sizes.hpp"
 #include "bvh/storage/object_key.hpp"
 #include "dapple/bvh.hpp"
 
@@ -63,6 +64,7 @@ struct UpdatableBvh::State {
   std::vector<std::size_t> sort_objects(const Scene& scene, const std::vector<MeshKey>& now,
                                         std::vector<bool>& is_kept) const;
   void refit(const Scene& scene, const std::vector<std::size_t>& moved);
+  bool resize_texels(const Scene& scene, std::size_t mesh);
   [[nodiscard]] std::vector<FinishedObject> separated(const std::vector<bool>& is_kept) const;
   [[nodiscard]] bool can_refit(const Scene& scene, std::size_t mesh) const;
   [[nodiscard]] ObjectArrays arrays_of(std::size_t mesh) const;
@@ -161,6 +163,16 @@ void UpdatableBvh::State::refit(const Scene& scene, const std::vector<std::size_
   });
 }
 
+/// Sets the sizes of texels on the mesh's triangles. Returns whether any changed.
+bool UpdatableBvh::State::resize_texels(const Scene& scene, std::size_t mesh) {
+  const ObjectOffsets &first = offsets[mesh], &end = offsets[mesh + 1];
+  if (first.textured == end.textured) return false;
+  const std::span<const std::uint32_t> lanes(bvh.primitives.begin(), bvh.primitives.size());
+  return set_texel_sizes(scene, scene.meshes[mesh],
+                         arrays.blocks.subspan(first.block, end.block - first.block),
+                         lanes.subspan(first.lane(), end.lane() - first.lane()), arrays.textured);
+}
+
 void UpdatableBvh::State::update(const Scene& scene, const std::vector<MeshKey>& now,
                                  BvhUpdate& update) {
   std::vector<bool> is_kept(now.size(), true);
@@ -171,6 +183,7 @@ void UpdatableBvh::State::update(const Scene& scene, const std::vector<MeshKey>&
     update.cost_ratio = std::max(update.cost_ratio, ratio);
     is_kept[m] = ratio <= kWorstCost;
     update.objects_refitted += is_kept[m];
+    update.textured |= is_kept[m] && resize_texels(scene, m);
     update.nodes.push_back({offsets[m].node, offsets[m + 1].node});
     update.blocks.push_back({offsets[m].block, offsets[m + 1].block});
   }

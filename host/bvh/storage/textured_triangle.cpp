@@ -93,6 +93,15 @@ TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap
   return triangle;
 }
 
+void set_texel_size(TexturedTriangle& triangle, float size) {
+  uint& word = triangle.corner[1][1];
+  if (DAPPLE_TEXEL_SIZE_CODE(word) == 0) return;
+  constexpr uint kLargest = DAPPLE_TEXEL_SIZE_CODES - 1;
+  const uint code =
+      size >= 1.0f && texel_size_code(size) == 0 ? kLargest : std::max(texel_size_code(size), 1u);
+  word = (word & ~(kLargest << 5)) | code << 5;
+}
+
 TexturedCorners unpack_textured(const TexturedTriangle& triangle) {
   TexturedCorners corners;
   const uint last = triangle.corner[2][1];

@@ -29,6 +29,10 @@ struct TexturedCorners {
 /// `corners.material` must be below DAPPLE_MAX_TEXTURED_MATERIALS.
 TexturedTriangle pack_textured(const TexturedCorners& corners, Wrap wrap_s, Wrap wrap_t);
 
+/// Changes TexturedCorners::texel_size of a packed triangle, unless it is not known. Here sizes
+/// outside the range become the nearest that can be stored.
+void set_texel_size(TexturedTriangle& triangle, float size);
+
 TexturedCorners unpack_textured(const TexturedTriangle& triangle);
 
 }  // namespace dapple

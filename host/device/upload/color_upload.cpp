@@ -334,14 +334,11 @@ Checksum color_key(const Scene& scene) {
   return key.value();
 }
 
-SurfaceColors pack_colors(const Scene& scene, const SceneBvh& bvh) {
-  SurfaceColors colors;
-  pack_materials(scene, colors);
+std::vector<uint> pack_color_words(const Scene& scene, const SceneBvh& bvh) {
   const std::size_t blocks = bvh.blocks.size() + bvh.segments.size();
   const std::size_t shared = 2 * scene.materials.size();
   if (blocks + shared > kMaxWords) refuse_size(scene, "triangles");
-  std::vector<uint>& words = colors.words;
-  words.resize(blocks + shared);
+  std::vector<uint> words(blocks + shared);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     words[blocks + 2 * m] = static_cast<uint>(m);
     words[blocks + 2 * m + 1] = static_cast<uint>(m) | DAPPLE_COLOR_OPACITY_UVS;
@@ -354,6 +351,13 @@ SurfaceColors pack_colors(const Scene& scene, const SceneBvh& bvh) {
     pack_mesh(scene, {scene, bvh, scene.meshes[m], first.lane(), first.block}, first_word,
               (end.lane() - first.lane()) / 8, blocks, words);
   }
+  return words;
+}
+
+SurfaceColors pack_colors(const Scene& scene, const SceneBvh& bvh) {
+  SurfaceColors colors;
+  pack_materials(scene, colors);
+  colors.words = pack_color_words(scene, bvh);
   return colors;
 }
 

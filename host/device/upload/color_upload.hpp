@@ -24,6 +24,9 @@ struct SurfaceColors {
 /// A checksum of all that colours depend on besides the BVH.
 Checksum color_key(const Scene& scene);
 
+/// SurfaceColors::words. They hold sizes of texels, so they change when vertices move.
+std::vector<uint> pack_color_words(const Scene& scene, const SceneBvh& bvh);
+
 /// Throws Error failed if there are more words or texels than indices can represent.
 SurfaceColors pack_colors(const Scene& scene, const SceneBvh& bvh);
 

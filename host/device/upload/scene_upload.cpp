@@ -126,7 +126,8 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
   BvhUpdate changes;
   {
     const std::shared_ptr<void> nodes = context.lend(buffers.nodes),
-                                blocks = context.lend(buffers.blocks);
+                                blocks = context.lend(buffers.blocks),
+                                textured = context.lend(buffers.textured);
     changes = bvh.update(moved);
   }
   const SceneBvh& now = bvh.bvh();
@@ -139,6 +140,8 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
   if (!context.shares_memory()) {
     write_ranges(context, buffers.nodes, now.nodes, changes.nodes);
     write_ranges(context, buffers.blocks, now.blocks, changes.blocks);
+    if (changes.textured)
+      write_ranges(context, buffers.textured, now.textured, {{0, now.textured.size()}});
   }
   buffers.bounds = now.bounds;
   if (changes.placement) share_placement(context, now, buffers);
@@ -146,6 +149,9 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
   if (options.normals) {
     share_if_new(context, pack_normals(moved, now, options.flat_normals), buffers.corner_normals,
                  buffers.normals);
+  }
+  if (options.colors && !changes.nodes.empty() && !moved.color_textures.empty()) {
+    share_if_new(context, pack_color_words(moved, now), buffers.colors.words, buffers.color_words);
   }
   context.finish();
   on_device.bytes = bytes_of_all(buffers);

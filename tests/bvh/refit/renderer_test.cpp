@@ -12,6 +12,7 @@
 #include "support/sanitizers.hpp"
 #include "support/scene_on_device.hpp"
 #include "support/swaying_tree.hpp"
+#include "support/traced_scenes.hpp"
 
 namespace dapple {
 namespace {
@@ -89,6 +90,38 @@ TEST(Renderer, WhatMovesAcrossThePictureIsSeenWhereItIs) {
       for (const char* channel : {"A", "P.X", "ao.R"})
         EXPECT_EQ(mean_of(seen, channel), mean_of(fresh, channel)) << name << ": " << channel;
     }
+  }
+}
+
+Scene coloured_cards(float size) {
+  Scene scene = scene_test::textured_cards();
+  ColorTexture colors;
+  colors.width = colors.height = 64;
+  for (int i = 0; i < 3 * 64 * 64; ++i)
+    colors.rgb.push_back(i / 3 % 64 / 8 % 2 == i / 3 / 64 / 8 % 2 ? 250 : 10);
+  scene.color_textures = {colors};
+  for (Material& material : scene.materials) material.color_texture = 0;
+  for (V3f& p : scene.meshes[0].positions) p *= size;
+  return scene;
+}
+
+// Textures are averaged over footprints by the size of their texels, which grows with the object.
+TEST(Renderer, TexturesOfWhatGrowsAreThoseOfFreshBvhs) {
+  RenderOptions options = small_picture(Estimator::prefiltered, 64, 16);
+  options.look = LookAt{V3f(0, 1, 4), V3f(0, 0.5f, 0), V3f(0, 1, 0)};
+  options.light = false;
+  Renderer renderer;
+  for (const float size : {0.02f, 0.021f}) renderer.render(coloured_cards(size), options);
+  const Scene grown = coloured_cards(1);
+  const RenderResult refitted = renderer.render(grown, options), fresh = render(grown, options);
+  EXPECT_EQ(refitted.statistics.refit.objects_refitted, 1u);
+  for (const char* channel : {"albedo.R", "A", "ao.R"}) {
+    const auto &found = refitted.film.find(channel)->pixels,
+               &expected = fresh.film.find(channel)->pixels;
+    double squares = 0;
+    for (std::size_t p = 0; p < found.size(); ++p)
+      squares += (found[p] - expected[p]) * (found[p] - expected[p]);
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(found.size())), 0.01) << channel;
   }
 }
 
