@@ -5,6 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "scene/gltf/extension_use.hpp"
+
 namespace dapple::gltf {
 namespace {
 
@@ -58,22 +60,23 @@ std::size_t add_accessor(Editor& editor, const NewAttribute& attribute, bool of_
 
 void add_attributes(Editor& editor, const SourceFile& source,
                     const std::vector<NewAttribute>& attributes) {
+  bool removed = false;
   std::map<std::tuple<VertexKey, std::uint32_t, std::string>, std::size_t> stored;
   for (const NewAttribute& attribute : attributes) {
     const VertexKey key = source.vertex_key(attribute.mesh, attribute.primitive, attribute.name);
     const auto [at, is_new] = stored.try_emplace({key, attribute.set, attribute.name}, 0);
     if (is_new) at->second = add_accessor(editor, attribute, true);
-    editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive]["attributes"]
-                 [attribute.name] = at->second;
+    Json& primitive = editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive];
+    primitive["attributes"][attribute.name] = at->second;
+    removed |= remove_extension(primitive, kDraco);  // it has the old values
   }
+  if (removed) unlist_unused_extension(editor.json(), kDraco);
 }
 
 void add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
   for (const NodeValues& values : nodes) {
     Json& node = editor.json()["nodes"][values.node];
-    const bool many =
-        node.contains("extensions") && node["extensions"].contains("EXT_mesh_gpu_instancing");
-    if (many) {
+    if (has_extension(node, kInstancing)) {
       NewAttribute attribute;
       attribute.values = values.values;
       attribute.components = values.components;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scene/gltf/accessor.hpp"
+#include "scene/gltf/extension_use.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -68,7 +69,8 @@ std::size_t add_indices(Editor& editor, const std::vector<std::uint32_t>& indice
                                    {"type", "SCALAR"}});
 }
 
-void replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
+/// Returns whether the old ones were also compressed.
+bool replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
   // A copy: push() may move the document's arrays.
   Json primitive = editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive];
   const auto copy_all = [&](Json& attributes) {
@@ -83,11 +85,9 @@ void replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
       add_uvs(editor, textured.uvs);
   primitive["indices"] = add_indices(editor, textured.indices, textured.source.size());
   primitive.erase("mode");  // triangles
-  if (primitive.contains("extensions")) {
-    primitive["extensions"].erase("KHR_draco_mesh_compression");
-    if (primitive["extensions"].empty()) primitive.erase("extensions");
-  }
+  const bool was_compressed = remove_extension(primitive, kDraco);
   editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive] = std::move(primitive);
+  return was_compressed;
 }
 
 constexpr int kNoMaterial = -1;
@@ -147,13 +147,15 @@ void add_occlusion_texture(Editor& editor, const std::vector<TexturedPrimitive>&
   const std::size_t texture = editor.push(
       "textures", {{"sampler", sampler}, {"source", editor.add_image(png, kOcclusionSuffix)}});
   OcclusionMaterials materials(editor, primitives, texture);
+  bool removed = false;
   for (const TexturedPrimitive& textured : primitives) {
-    if (!textured.source.empty()) replace_vertices(editor, textured);
+    if (!textured.source.empty()) removed |= replace_vertices(editor, textured);
     Json& primitive = editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive];
     const int before = material_of(primitive);
     const std::size_t material = materials.with_texture(before, textured.uv_set);
     editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive]["material"] = material;
   }
+  if (removed) unlist_unused_extension(editor.json(), kDraco);
 }
 
 }  // namespace dapple::gltf
