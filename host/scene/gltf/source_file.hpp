@@ -44,9 +44,9 @@ struct SourceFile {
   std::uint32_t copy_mesh(std::uint32_t node, std::uint32_t mesh);
   /// Whether a node has many instances, by EXT_mesh_gpu_instancing.
   [[nodiscard]] bool has_gpu_instances(std::uint32_t node) const;
-  /// Replaces them by child nodes with the same mesh. Returns the index of the first one; the
-  /// others follow in order.
-  std::uint32_t split_gpu_instances(std::uint32_t node);
+  /// Replaces them by child nodes with the same mesh. Returns the index of each one's node, in
+  /// order; -1 for an instance whose place is not finite, which gets none.
+  std::vector<int> split_gpu_instances(std::uint32_t node);
 
   struct Content;
   Content* content;
