@@ -102,22 +102,25 @@ std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArg
   return sides;
 }
 
-/// Writes the file with the baked values, and the EXR of a texture.
-void write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArguments& a,
-                 const BakeOptions& options, std::uint32_t uv_set, const BakeResult& result) {
+/// Writes the file with the baked values, and the EXR of a texture. Returns a note, or nothing.
+std::string write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArguments& a,
+                        const BakeOptions& options, std::uint32_t uv_set,
+                        const BakeResult& result) {
   gltf::Editor editor(file, a.output);
+  std::string note;
   if (options.vertices)
     gltf::add_attributes(
         editor, file,
         baked_attributes(file, scene, result,
                          {parse_channel(a.channel), a.blend == "multiply", a.bent_channel}));
-  if (options.instances) gltf::add_node_values(editor, baked_nodes(scene, result));
+  if (options.instances) note = gltf::add_node_values(editor, baked_nodes(scene, result));
   if (options.texture)
     gltf::add_occlusion_texture(editor,
                                 textured_primitives(file, scene, result.texture.layout, uv_set),
                                 occlusion_png(result.texture, a.bits));
   editor.write();
   if (needs_exr(options)) write_baked_exr(result, exr_path(a.output));
+  return note;
 }
 
 void write_preview(const Scene& scene, const BakeResult& result, const std::string& path) {
@@ -225,12 +228,13 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   if (result.interrupted) return report_interruption(result, a);
 
   const Stopwatch writing;
-  write_baked(file, scene, a, options, uv_set, result);
+  const std::string write_note = write_baked(file, scene, a, options, uv_set, result);
   if (!a.png.empty()) write_preview(scene, result, a.png);
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
   std::vector<std::string>& notes = result.statistics.notes;
-  if (!layout_note.empty()) notes.push_back(layout_note);
+  for (const std::string& note : {layout_note, write_note})
+    if (!note.empty()) notes.push_back(note);
   if (options.texture) notes.push_back(texture_note(result.texture));
   if (options.vertices && parse_channel(a.channel).components == "a")
     notes.push_back(

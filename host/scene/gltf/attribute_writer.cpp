@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "scene/gltf/extension_use.hpp"
+#include "scene/message.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -56,6 +57,17 @@ std::size_t add_accessor(Editor& editor, const NewAttribute& attribute, bool of_
   return editor.push("accessors", std::move(accessor));
 }
 
+/// Makes room for named values in a node's extras, which may be any JSON. Returns whether another
+/// value was there, which becomes extras.value.
+bool keep_other_extras(Json& node) {
+  if (!node.contains("extras") || node["extras"].is_object()) return false;
+  Json other = std::move(node["extras"]);
+  node["extras"] = Json::object();
+  if (other.is_null()) return false;
+  node["extras"]["value"] = std::move(other);
+  return true;
+}
+
 }  // namespace
 
 void add_attributes(Editor& editor, const SourceFile& source,
@@ -73,7 +85,9 @@ void add_attributes(Editor& editor, const SourceFile& source,
   if (removed) unlist_unused_extension(editor.json(), kDraco);
 }
 
-void add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
+std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
+  std::uint64_t kept = 0;
+  std::string first;
   for (const NodeValues& values : nodes) {
     Json& node = editor.json()["nodes"][values.node];
     if (has_extension(node, kInstancing)) {
@@ -81,14 +95,20 @@ void add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
       attribute.values = values.values;
       attribute.components = values.components;
       const std::size_t accessor = add_accessor(editor, attribute, false);
-      editor.json()["nodes"][values.node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]
-                   [values.attribute] = accessor;
-    } else if (!node.contains("extras") || node["extras"].is_object()) {
+      editor
+          .json()["nodes"][values.node]["extensions"][kInstancing]["attributes"][values.attribute] =
+          accessor;
+    } else {
+      if (keep_other_extras(node) && kept++ == 0)
+        first = element("node", values.node, node.value("name", ""));
       Json& extra = node["extras"][values.extra];
       extra = values.values;
       if (values.components == 1) extra = values.values.at(0);
     }
   }
+  if (kept == 0) return {};
+  return fmt::format("{}: its extras are not an object; they are kept as extras.value{}", first,
+                     kept > 1 ? fmt::format(" ({} of them)", grouped(kept)) : "");
 }
 
 }  // namespace dapple::gltf
