@@ -50,5 +50,13 @@ TEST_F(BakeExtensions, CompressedMeshesThatAreNotBakedStayCompressed) {
   EXPECT_EQ(after["extensionsUsed"], builder.doc["extensionsUsed"]);
 }
 
+TEST_F(BakeExtensions, EmbeddedImagesHaveTheirOwnMediaType) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["images"] = {{{"uri", "leaf.webp"}}};
+  write("in.glb", builder.glb());
+  write_bytes(path("leaf.webp"), "RIFF1234WEBPVP8L");
+  EXPECT_EQ(baked("")["images"][0]["mimeType"], "image/webp");
+}
+
 }  // namespace
 }  // namespace dapple

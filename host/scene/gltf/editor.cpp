@@ -7,6 +7,7 @@
 #include "files/output_file.hpp"
 #include "scene/glb_bytes.hpp"
 #include "scene/gltf/uri.hpp"
+#include "scene/images/media_type.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -170,8 +171,7 @@ void Editor::embed_images() {
     if (!fs::exists(path)) continue;  // dapple may not need it: the reference stays as it is
     const Bytes file = read_file(path, "image " + uri);
     image.erase("uri");
-    if (!image.contains("mimeType"))
-      image["mimeType"] = file.size() > 1 && file[0] == 0xff ? "image/jpeg" : "image/png";
+    if (!image.contains("mimeType")) image["mimeType"] = image_media_type(file, path.string());
     image["bufferView"] = add_view({file.begin(), file.end()});
   }
 }
