@@ -17,6 +17,7 @@
 #include "commands/option_text.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
+#include "commands/side_copies.hpp"
 #include "commands/tell.hpp"
 #include "commands/unique_meshes.hpp"
 #include "dapple/error.hpp"
@@ -91,11 +92,13 @@ std::vector<OutputPath> named_outputs(const BakeArguments& a, const BakeOptions&
   return outputs;
 }
 
-/// Files beside a .gltf that the command writes.
+/// Files beside a .gltf that the command writes. Throws Error usage for copies of the scene's files
+/// that cannot be made.
 std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArguments& a,
                                      const BakeOptions& options) {
   std::vector<OutputPath> sides;
   const gltf::Editor editor(file, a.output);
+  check_side_copies(a.output, editor.side_copies());
   for (const std::string& path : editor.side_files_written()) sides.push_back({"--output", path});
   if (options.texture && a.output.ends_with(".gltf"))
     sides.push_back({"--output", editor.image_path(gltf::kOcclusionSuffix)});

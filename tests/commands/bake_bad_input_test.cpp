@@ -25,6 +25,14 @@ class BakeBadInput : public BakeCommand {
     builder.add_mesh({{"attributes", attributes}});
     write(name, builder.glb());
   }
+  /// A triangle whose data are in a file beside it.
+  void write_text_file(const std::string& name, const std::string& buffer) const {
+    GltfBuilder builder;
+    builder.add_triangle();
+    builder.doc["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", buffer}}};
+    write_bytes(path(buffer), {builder.bin.begin(), builder.bin.end()});
+    std::ofstream(path(name)) << builder.doc.dump();
+  }
   [[nodiscard]] std::vector<float> ao_of(const std::string& name) const {
     const test::GltfData file(path(name));
     return file.floats(file.doc["meshes"][0]["primitives"][0]["attributes"]["_AO"]);
@@ -104,6 +112,29 @@ TEST_F(BakeBadInput, ATextFileThatWasBakedIsBakedAgainIntoFilesWithOtherNames) {
   ASSERT_EQ(dapple("bake picture.gltf -o other/picture.gltf" + texture).code, 0);
   EXPECT_EQ(document("other/picture.gltf")["images"][1]["uri"], "picture_ao_2.png");
   EXPECT_TRUE(bytes_of(path("other/picture_ao.png")) == bytes_of(path("picture_ao.png")));
+}
+
+TEST_F(BakeBadInput, CopiesOfSideFilesReplaceNoOtherFiles) {
+  write_text_file("in.gltf", "in.bin");
+  write_bytes(path("other/in.bin"), "another's");
+  expect_failure(dapple("bake in.gltf -o other/out.gltf"), 2,
+                 "--output other/out.gltf: in.bin is copied beside it, but other/in.bin is another "
+                 "file of that name; write to another folder, or a .glb, which embeds all");
+  EXPECT_TRUE(bytes_of(path("other/in.bin")) == "another's");
+  EXPECT_FALSE(std::filesystem::exists(path("other/out.gltf")));
+  EXPECT_EQ(dapple("bake in.gltf -o other/out.glb").code, 0);
+  write_bytes(path("other/in.bin"), bytes_of(path("in.bin")));
+  EXPECT_EQ(dapple("bake in.gltf -o other/out.gltf").code, 0) << "the same content";
+}
+
+TEST_F(BakeBadInput, AFileInTheWayOfAFolderForCopiesIsFoundBeforeAnyWork) {
+  write_text_file("in.gltf", "data/in.bin");
+  write_bytes(path("other/data"), "a file");
+  expect_failure(dapple("bake in.gltf -o other/out.gltf"), 2, "other/data is not a folder");
+  std::filesystem::remove(path("other/data"));
+  std::filesystem::create_directories(path("other/data/in.bin"));
+  expect_failure(dapple("bake in.gltf -o other/out.gltf"), 2, "it is a folder");
+  EXPECT_FALSE(std::filesystem::exists(path("other/out.gltf")));
 }
 
 TEST_F(BakeBadInput, CoordinatesThatOverlapAreSaidWithTheirShareAndReplaced) {

@@ -94,7 +94,7 @@ void Editor::remove_buffer() {
 std::vector<std::string> Editor::side_files_written() const {
   if (is_glb_out()) return {};
   std::vector<std::string> files{(fs::path(out_).parent_path() / side_name()).string()};
-  for (const auto& [from, to] : side_files()) files.push_back(to);
+  for (const auto& [from, to] : side_copies()) files.push_back(to);
   return files;
 }
 
@@ -178,7 +178,7 @@ void Editor::embed_images() {
 
 // Files that the document names, to the output's folder.
 void Editor::copy_side_files() const {
-  for (const auto& [from, to] : side_files()) {
+  for (const auto& [from, to] : side_copies()) {
     const Bytes bytes = read_file(from, from);
     if (!fs::path(to).parent_path().empty()) fs::create_directories(fs::path(to).parent_path());
     write_whole_file(to,
@@ -186,8 +186,8 @@ void Editor::copy_side_files() const {
   }
 }
 
-// From where to where; none that are in place.
-std::vector<std::pair<std::string, std::string>> Editor::side_files() const {
+std::vector<std::pair<std::string, std::string>> Editor::side_copies() const {
+  if (is_glb_out()) return {};
   const fs::path folder = fs::path(out_).parent_path();
   std::vector<std::pair<std::string, std::string>> files;
   for (const char* array : {"buffers", "images"}) {
