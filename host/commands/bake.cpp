@@ -243,7 +243,6 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
     notes.push_back(
         "COLOR_0.a is opacity in glTF: where AO is low, viewers show masked and blended "
         "materials more transparent");
-  notes.insert(notes.end(), scene.warnings.begin(), scene.warnings.end());
   if (!a.stats_json.empty()) write_statistics(result.statistics, seconds, a.stats_json);
   if (!a.quiet) print_summary(result.statistics, seconds, a.output);
   if (!result.checkpoint_failure.empty())

@@ -203,6 +203,22 @@ TEST_F(BakeBadInput, TrianglesWithoutAreaAreCountedAndTheirVerticesAreUnoccluded
   }
 }
 
+TEST_F(BakeBadInput, ANoteOfTheSceneIsSaidOnce) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  json points = builder.doc["meshes"][0]["primitives"][0];
+  points["mode"] = 0;
+  builder.doc["meshes"][0]["primitives"].push_back(points);
+  write("in.glb", builder.glb());
+  for (const char* options : {"", "--instances alone", "--instances unique", "--to instance"}) {
+    const Outcome run = dapple(std::string("bake in.glb -o out.glb ") + options);
+    ASSERT_EQ(run.code, 0) << run.err;
+    const std::size_t note = run.err.find("point primitives are ignored");
+    ASSERT_NE(note, std::string::npos) << options;
+    EXPECT_EQ(note, run.err.rfind("point primitives are ignored")) << options << run.err;
+  }
+}
+
 TEST_F(BakeBadInput, AFileOfNothingButTrianglesWithoutAreaIsRefused) {
   write_mesh("in.glb", {0, 0, 0, 1, 0, 0, 2, 0, 0});
   for (const char* to : {"vertex", "texture", "instance"}) {
