@@ -12,6 +12,7 @@ using namespace film_test;
 using namespace program_test;
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kVariants = "KHR_materials_variants";
 
 class BakeExtensions : public BakeCommand {
  protected:
@@ -19,6 +20,10 @@ class BakeExtensions : public BakeCommand {
     const Outcome run = dapple("bake in.glb -o out.glb " + arguments);
     EXPECT_EQ(run.code, 0) << run.err;
     return run.code == 0 ? document("out.glb") : json();
+  }
+  /// The occlusion texture of a material of the first primitive, an index of the document.
+  static json occlusion_of(const json& doc, const json& material) {
+    return doc["materials"][material.get<std::size_t>()].value("occlusionTexture", json());
   }
 };
 
@@ -48,6 +53,43 @@ TEST_F(BakeExtensions, CompressedMeshesThatAreNotBakedStayCompressed) {
   EXPECT_FALSE(after["meshes"][0]["primitives"][0].contains("extensions"));
   EXPECT_EQ(after["meshes"][1], builder.doc["meshes"][1]);
   EXPECT_EQ(after["extensionsUsed"], builder.doc["extensionsUsed"]);
+}
+
+GltfBuilder triangle_with_variants() {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["materials"] = {{{"name", "summer"}}, {{"name", "autumn"}}};
+  json& primitive = builder.doc["meshes"][0]["primitives"][0];
+  primitive["material"] = 0;
+  primitive["extensions"][kVariants]["mappings"] = {{{"material", 1}, {"variants", {0}}},
+                                                    {{"material", 0}, {"variants", {1}}}};
+  builder.doc["extensions"][kVariants]["variants"] = {{{"name", "autumn"}}, {{"name", "summer"}}};
+  builder.doc["extensionsUsed"].push_back(kVariants);
+  return builder;
+}
+
+TEST_F(BakeExtensions, MaterialsOfAllVariantsGetTheTexture) {
+  write("in.glb", triangle_with_variants().glb());
+  const json after = baked("--to texture --size 16");
+  EXPECT_EQ(after["materials"].size(), 2u);
+  for (int material : {0, 1}) EXPECT_EQ(occlusion_of(after, material)["index"], 0);
+  EXPECT_EQ(after["meshes"][0]["primitives"][0]["extensions"],
+            document("in.glb")["meshes"][0]["primitives"][0]["extensions"]);
+}
+
+TEST_F(BakeExtensions, VariantsNameTheCopiesOfMaterialsThatOtherMeshesUse) {
+  GltfBuilder builder = triangle_with_variants();
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);  // no node shows it
+  write("in.glb", builder.glb());
+  const json after = baked("--to texture --size 16");
+  ASSERT_EQ(after["materials"].size(), 4u);
+  for (int material : {0, 1}) EXPECT_TRUE(occlusion_of(after, material).is_null());
+  const json& primitive = after["meshes"][0]["primitives"][0];
+  const json& mappings = primitive["extensions"][kVariants]["mappings"];
+  EXPECT_EQ(mappings[1]["material"], primitive["material"]) << "summer is the default";
+  EXPECT_NE(mappings[0]["material"], primitive["material"]);
+  for (const json& mapping : mappings)
+    EXPECT_EQ(occlusion_of(after, mapping["material"])["index"], 0);
+  EXPECT_EQ(after["meshes"][1], builder.doc["meshes"][1]);
 }
 
 TEST_F(BakeExtensions, EmbeddedImagesHaveTheirOwnMediaType) {
