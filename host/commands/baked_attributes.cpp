@@ -214,6 +214,18 @@ std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::Nod
   return nodes;
 }
 
+void refuse_used_uvs(const SourceFile& file, const VertexSource& source, const BakeChannel& channel,
+                     std::uint32_t set) {
+  const std::string texture = file.texture_with_uvs(source.mesh, source.primitive, set);
+  if (texture.empty()) return;
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("--channel is {}.{}, but {}, of mesh {} primitive {}, uses {}; choose a set "
+                  "that no texture uses, or an attribute such as _AO",
+                  channel.attribute, channel.components, texture, source.mesh, source.primitive,
+                  channel.attribute));
+}
+
 }  // namespace
 
 void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel& channel) {
@@ -221,6 +233,7 @@ void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel
   if (!set) return;
   for (const Mesh& mesh : scene.meshes) {
     for (const VertexSource& source : mesh.sources) {
+      if (!mesh.has_strands()) refuse_used_uvs(file, source, channel, *set);
       const std::uint32_t sets = file.uv_sets(source.mesh, source.primitive);
       if (*set <= sets) continue;
       throw Error(ErrorKind::usage,

@@ -100,5 +100,28 @@ TEST_F(BakeExtensions, EmbeddedImagesHaveTheirOwnMediaType) {
   EXPECT_EQ(baked("")["images"][0]["mimeType"], "image/webp");
 }
 
+TEST_F(BakeExtensions, TextureCoordinatesThatATextureUsesAreNotReplaced) {
+  GltfBuilder builder = triangle_with_variants();
+  const int uvs = builder.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, test::kFloat, "VEC2");
+  json& attributes = builder.doc["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TEXCOORD_0"] = attributes["TEXCOORD_1"] = uvs;
+  const int image =
+      builder.add("images", {{"bufferView", builder.add_view(test::png::with_alpha(1, 1, {255}))},
+                             {"mimeType", "image/png"}});
+  builder.add("textures", {{"source", image}});
+  builder.doc["materials"][1]["extensions"]["KHR_materials_sheen"]["sheenColorTexture"] = {
+      {"index", 0},
+      {"texCoord", 1},
+      {"extensions", {{"KHR_texture_transform", {{"texCoord", 0}}}}}};
+  write("in.glb", builder.glb());
+  for (const char* channel : {"TEXCOORD_0.y", "TEXCOORD_1.x"}) {
+    const Outcome run = dapple(std::string("bake in.glb -o out.glb --channel ") + channel);
+    expect_failure(run, 2, "sheenColorTexture of material 1 (\"autumn\")");
+    EXPECT_EQ(files_in_folder(), 1u);
+  }
+  EXPECT_TRUE(baked("--channel TEXCOORD_2.x")["meshes"][0]["primitives"][0]["attributes"].contains(
+      "TEXCOORD_2"));
+}
+
 }  // namespace
 }  // namespace dapple

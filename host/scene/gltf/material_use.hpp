@@ -1,8 +1,10 @@
-// Which materials a primitive has, in the JSON of a glTF document.
+// Which materials a primitive has, and which texture coordinates these use, in the JSON of a glTF
+// document.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "scene/gltf/extension_use.hpp"
 
@@ -26,5 +28,9 @@ void for_each_variant(PrimitiveJson& primitive, std::size_t count, Visit visit) 
       visit(mapping);
   }
 }
+
+/// The key of the first texture of a material, or of its extensions, that uses TEXCOORD_`set`, such
+/// as "baseColorTexture"; empty if none does.
+std::string texture_with_uvs(const Json& material, std::uint32_t set);
 
 }  // namespace dapple::gltf

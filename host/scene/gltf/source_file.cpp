@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "scene/gltf/accessor.hpp"
-#include "scene/gltf/extension_use.hpp"
 #include "scene/gltf/instance.hpp"
+#include "scene/gltf/material_use.hpp"
 #include "scene/gltf/source_content.hpp"
 #include "scene/gltf/vertices.hpp"
 #include "scene/message.hpp"
@@ -134,6 +134,25 @@ std::vector<Imath::V2f> SourceFile::uvs(std::uint32_t mesh, std::uint32_t primit
   std::vector<Imath::V2f> uvs(reader.count());
   for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = reader.vec2(i);
   return uvs;
+}
+
+std::string SourceFile::texture_with_uvs(std::uint32_t mesh, std::uint32_t primitive,
+                                         std::uint32_t set) const {
+  const Json& json = content->json;
+  const Json& user = json["meshes"][mesh]["primitives"][primitive];
+  std::vector<std::size_t> materials;
+  if (const int own = material_of(user); own != kNoMaterial)
+    materials.push_back(static_cast<std::size_t>(own));
+  for_each_variant(user, content->document.model.materials.size(), [&](const Json& mapping) {
+    materials.push_back(mapping["material"].get<std::size_t>());
+  });
+  for (const std::size_t i : materials) {
+    const Json& material = json["materials"][i];
+    const std::string texture = gltf::texture_with_uvs(material, set);
+    if (!texture.empty())
+      return fmt::format("{} of {}", texture, element("material", i, material.value("name", "")));
+  }
+  return {};
 }
 
 std::uint32_t SourceFile::uv_sets(std::uint32_t mesh, std::uint32_t primitive) const {

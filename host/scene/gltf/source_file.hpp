@@ -37,6 +37,10 @@ struct SourceFile {
   /// TEXCOORD_`set` of a primitive, of all its vertices; empty if it has none.
   [[nodiscard]] std::vector<Imath::V2f> uvs(std::uint32_t mesh, std::uint32_t primitive,
                                             std::uint32_t set) const;
+  /// The first texture of a primitive's materials, those of its variants too, that reads
+  /// TEXCOORD_`set`: `baseColorTexture of material 2 ("bark")`. Empty if none does.
+  [[nodiscard]] std::string texture_with_uvs(std::uint32_t mesh, std::uint32_t primitive,
+                                             std::uint32_t set) const;
   /// The number of a primitive's TEXCOORD_n attributes.
   [[nodiscard]] std::uint32_t uv_sets(std::uint32_t mesh, std::uint32_t primitive) const;
 
