@@ -196,6 +196,14 @@ std::string choose_layout(const gltf::SourceFile& file, const Scene& scene, cons
   return chosen.note.empty() ? "" : chosen.note + ": the texture has coordinates of its own";
 }
 
+/// Throws Error usage for a channel that the file or a light needs for other values.
+void check_values_fit(const gltf::SourceFile& file, const Scene& scene, const BakeChannel& channel,
+                      const BakeOptions& options) {
+  check_channel(file, scene, channel);
+  if (options.light)
+    check_channel_spares_lights(channel, options.lights.empty() ? scene.lights : options.lights);
+}
+
 void run_bake(const CLI::App& app, const BakeArguments& a) {
   BakeOptions options = to_options(a);
   refuse_options_without_effect(app, options);
@@ -219,7 +227,7 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   if (a.instances == "unique") make_meshes_unique(file, scene);
   check_outputs_spare(side_outputs(file, a, options), inputs);
   if (options.light) choose_lights(a, scene, options);
-  if (options.vertices) check_channel(file, scene, parse_channel(a.channel));
+  if (options.vertices) check_values_fit(file, scene, parse_channel(a.channel), options);
   std::uint32_t uv_set = 0;
   std::string layout_note;
   if (options.texture) layout_note = choose_layout(file, scene, a.uv, options, uv_set);

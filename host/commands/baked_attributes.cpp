@@ -7,6 +7,7 @@
 
 #include "bake/vertex_groups.hpp"
 #include "dapple/error.hpp"
+#include "film/light_layers.hpp"
 
 namespace dapple {
 namespace {
@@ -157,6 +158,8 @@ NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
   return attribute;
 }
 
+std::string light_attribute_name(const std::string& light) { return "_LIGHT_" + light; }
+
 NewAttribute light_attribute(const VertexSums& sums, std::size_t light, const std::string& name) {
   NewAttribute attribute;
   attribute.name = name;
@@ -245,6 +248,15 @@ void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel
   }
 }
 
+void check_channel_spares_lights(const BakeChannel& channel, const std::vector<Light>& lights) {
+  for (const LightLayer& layer : light_layers(lights))
+    if (channel.attribute == light_attribute_name(layer.name))
+      throw Error(ErrorKind::usage,
+                  fmt::format("--channel is {}, which is the attribute of the light \"{}\"; choose "
+                              "another name, such as _AO",
+                              channel.attribute, layer.name));
+}
+
 std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& scene,
                                            const BakeResult& result, const BakeTargets& targets) {
   const BakeChannel& channel = targets.channel;
@@ -266,7 +278,7 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
     push(ao_attribute(file, primitive, of, targets));
     if (!of.bent.empty()) push(bent_attribute(of, targets.bent_channel));
     for (std::size_t l = 0; l < of.light.size(); ++l)
-      push(light_attribute(of, l, "_LIGHT_" + result.light_names[l]));
+      push(light_attribute(of, l, light_attribute_name(result.light_names[l])));
   }
   return attributes;
 }
@@ -278,7 +290,7 @@ std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const BakeResult& 
   for (std::size_t l = 0; l < result.instance_light.size(); ++l) {
     const std::string& name = result.light_names[l];
     for (gltf::NodeValues& values :
-         means_of_nodes(scene, {{}, "light_" + name, "_LIGHT_" + name, 3, {}},
+         means_of_nodes(scene, {{}, "light_" + name, light_attribute_name(name), 3, {}},
                         [&](std::size_t instance, std::size_t component) {
                           return result.instance_light[l][instance][static_cast<int>(component)];
                         }))
