@@ -281,6 +281,8 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
     s.seconds.upload = together->upload_seconds;
     s.device = together->device.info().name;
     s.notes = together->notes;
+  } else {
+    s.notes = scene.warnings;
   }
   BakeProgress progress(expected_samples(scene, options), control);
   Settings settings = bake_settings(scene, asked, occluders);

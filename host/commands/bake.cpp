@@ -17,6 +17,7 @@
 #include "commands/option_text.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
+#include "commands/side_copies.hpp"
 #include "commands/tell.hpp"
 #include "commands/unique_meshes.hpp"
 #include "dapple/error.hpp"
@@ -91,33 +92,38 @@ std::vector<OutputPath> named_outputs(const BakeArguments& a, const BakeOptions&
   return outputs;
 }
 
-/// Files beside a .gltf that the command writes.
+/// Files beside a .gltf that the command writes. Throws Error usage for copies of the scene's files
+/// that cannot be made.
 std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArguments& a,
                                      const BakeOptions& options) {
   std::vector<OutputPath> sides;
   const gltf::Editor editor(file, a.output);
+  check_side_copies(a.output, editor.side_copies());
   for (const std::string& path : editor.side_files_written()) sides.push_back({"--output", path});
   if (options.texture && a.output.ends_with(".gltf"))
     sides.push_back({"--output", editor.image_path(gltf::kOcclusionSuffix)});
   return sides;
 }
 
-/// Writes the file with the baked values, and the EXR of a texture.
-void write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArguments& a,
-                 const BakeOptions& options, std::uint32_t uv_set, const BakeResult& result) {
+/// Writes the file with the baked values, and the EXR of a texture. Returns a note, or nothing.
+std::string write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArguments& a,
+                        const BakeOptions& options, std::uint32_t uv_set,
+                        const BakeResult& result) {
   gltf::Editor editor(file, a.output);
+  std::string note;
   if (options.vertices)
     gltf::add_attributes(
         editor, file,
         baked_attributes(file, scene, result,
                          {parse_channel(a.channel), a.blend == "multiply", a.bent_channel}));
-  if (options.instances) gltf::add_node_values(editor, baked_nodes(scene, result));
+  if (options.instances) note = gltf::add_node_values(editor, baked_nodes(scene, result));
   if (options.texture)
     gltf::add_occlusion_texture(editor,
                                 textured_primitives(file, scene, result.texture.layout, uv_set),
                                 occlusion_png(result.texture, a.bits));
   editor.write();
   if (needs_exr(options)) write_baked_exr(result, exr_path(a.output));
+  return note;
 }
 
 void write_preview(const Scene& scene, const BakeResult& result, const std::string& path) {
@@ -190,6 +196,14 @@ std::string choose_layout(const gltf::SourceFile& file, const Scene& scene, cons
   return chosen.note.empty() ? "" : chosen.note + ": the texture has coordinates of its own";
 }
 
+/// Throws Error usage for a channel that the file or a light needs for other values.
+void check_values_fit(const gltf::SourceFile& file, const Scene& scene, const BakeChannel& channel,
+                      const BakeOptions& options) {
+  check_channel(file, scene, channel);
+  if (options.light)
+    check_channel_spares_lights(channel, options.lights.empty() ? scene.lights : options.lights);
+}
+
 void run_bake(const CLI::App& app, const BakeArguments& a) {
   BakeOptions options = to_options(a);
   refuse_options_without_effect(app, options);
@@ -213,7 +227,7 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   if (a.instances == "unique") make_meshes_unique(file, scene);
   check_outputs_spare(side_outputs(file, a, options), inputs);
   if (options.light) choose_lights(a, scene, options);
-  if (options.vertices) check_channel(file, scene, parse_channel(a.channel));
+  if (options.vertices) check_values_fit(file, scene, parse_channel(a.channel), options);
   std::uint32_t uv_set = 0;
   std::string layout_note;
   if (options.texture) layout_note = choose_layout(file, scene, a.uv, options, uv_set);
@@ -225,18 +239,18 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   if (result.interrupted) return report_interruption(result, a);
 
   const Stopwatch writing;
-  write_baked(file, scene, a, options, uv_set, result);
+  const std::string write_note = write_baked(file, scene, a, options, uv_set, result);
   if (!a.png.empty()) write_preview(scene, result, a.png);
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
   std::vector<std::string>& notes = result.statistics.notes;
-  if (!layout_note.empty()) notes.push_back(layout_note);
+  for (const std::string& note : {layout_note, write_note})
+    if (!note.empty()) notes.push_back(note);
   if (options.texture) notes.push_back(texture_note(result.texture));
   if (options.vertices && parse_channel(a.channel).components == "a")
     notes.push_back(
         "COLOR_0.a is opacity in glTF: where AO is low, viewers show masked and blended "
         "materials more transparent");
-  notes.insert(notes.end(), scene.warnings.begin(), scene.warnings.end());
   if (!a.stats_json.empty()) write_statistics(result.statistics, seconds, a.stats_json);
   if (!a.quiet) print_summary(result.statistics, seconds, a.output);
   if (!result.checkpoint_failure.empty())

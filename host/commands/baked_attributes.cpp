@@ -7,6 +7,7 @@
 
 #include "bake/vertex_groups.hpp"
 #include "dapple/error.hpp"
+#include "film/light_layers.hpp"
 
 namespace dapple {
 namespace {
@@ -157,6 +158,8 @@ NewAttribute bent_attribute(const VertexSums& sums, const std::string& name) {
   return attribute;
 }
 
+std::string light_attribute_name(const std::string& light) { return "_LIGHT_" + light; }
+
 NewAttribute light_attribute(const VertexSums& sums, std::size_t light, const std::string& name) {
   NewAttribute attribute;
   attribute.name = name;
@@ -214,6 +217,18 @@ std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::Nod
   return nodes;
 }
 
+void refuse_used_uvs(const SourceFile& file, const VertexSource& source, const BakeChannel& channel,
+                     std::uint32_t set) {
+  const std::string texture = file.texture_with_uvs(source.mesh, source.primitive, set);
+  if (texture.empty()) return;
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("--channel is {}.{}, but {}, of mesh {} primitive {}, uses {}; choose a set "
+                  "that no texture uses, or an attribute such as _AO",
+                  channel.attribute, channel.components, texture, source.mesh, source.primitive,
+                  channel.attribute));
+}
+
 }  // namespace
 
 void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel& channel) {
@@ -221,6 +236,7 @@ void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel
   if (!set) return;
   for (const Mesh& mesh : scene.meshes) {
     for (const VertexSource& source : mesh.sources) {
+      if (!mesh.has_strands()) refuse_used_uvs(file, source, channel, *set);
       const std::uint32_t sets = file.uv_sets(source.mesh, source.primitive);
       if (*set <= sets) continue;
       throw Error(ErrorKind::usage,
@@ -230,6 +246,15 @@ void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel
                               sets, sets));
     }
   }
+}
+
+void check_channel_spares_lights(const BakeChannel& channel, const std::vector<Light>& lights) {
+  for (const LightLayer& layer : light_layers(lights))
+    if (channel.attribute == light_attribute_name(layer.name))
+      throw Error(ErrorKind::usage,
+                  fmt::format("--channel is {}, which is the attribute of the light \"{}\"; choose "
+                              "another name, such as _AO",
+                              channel.attribute, layer.name));
 }
 
 std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& scene,
@@ -253,7 +278,7 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
     push(ao_attribute(file, primitive, of, targets));
     if (!of.bent.empty()) push(bent_attribute(of, targets.bent_channel));
     for (std::size_t l = 0; l < of.light.size(); ++l)
-      push(light_attribute(of, l, "_LIGHT_" + result.light_names[l]));
+      push(light_attribute(of, l, light_attribute_name(result.light_names[l])));
   }
   return attributes;
 }
@@ -265,7 +290,7 @@ std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const BakeResult& 
   for (std::size_t l = 0; l < result.instance_light.size(); ++l) {
     const std::string& name = result.light_names[l];
     for (gltf::NodeValues& values :
-         means_of_nodes(scene, {{}, "light_" + name, "_LIGHT_" + name, 3, {}},
+         means_of_nodes(scene, {{}, "light_" + name, light_attribute_name(name), 3, {}},
                         [&](std::size_t instance, std::size_t component) {
                           return result.instance_light[l][instance][static_cast<int>(component)];
                         }))

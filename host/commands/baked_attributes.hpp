@@ -17,8 +17,12 @@ struct BakeTargets {
   std::string bent_channel;  ///< "_BENT_NORMAL" or "NORMAL"
 };
 
-/// Throws Error usage for a TEXCOORD_n that a primitive cannot have, because it lacks those before.
+/// Throws Error usage for a TEXCOORD_n that a primitive cannot have, because it lacks those before,
+/// and for one that a texture uses.
 void check_channel(const gltf::SourceFile& file, const Scene& scene, const BakeChannel& channel);
+
+/// Throws Error usage for the attribute of a light.
+void check_channel_spares_lights(const BakeChannel& channel, const std::vector<Light>& lights);
 
 /// AO, and bent normals and lights where they were baked; of these _LIGHT_ and their names.
 std::vector<gltf::NewAttribute> baked_attributes(const gltf::SourceFile& file, const Scene& scene,

@@ -25,6 +25,14 @@ class BakeBadInput : public BakeCommand {
     builder.add_mesh({{"attributes", attributes}});
     write(name, builder.glb());
   }
+  /// A triangle whose data are in a file beside it.
+  void write_text_file(const std::string& name, const std::string& buffer) const {
+    GltfBuilder builder;
+    builder.add_triangle();
+    builder.doc["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", buffer}}};
+    write_bytes(path(buffer), {builder.bin.begin(), builder.bin.end()});
+    std::ofstream(path(name)) << builder.doc.dump();
+  }
   [[nodiscard]] std::vector<float> ao_of(const std::string& name) const {
     const test::GltfData file(path(name));
     return file.floats(file.doc["meshes"][0]["primitives"][0]["attributes"]["_AO"]);
@@ -106,6 +114,29 @@ TEST_F(BakeBadInput, ATextFileThatWasBakedIsBakedAgainIntoFilesWithOtherNames) {
   EXPECT_TRUE(bytes_of(path("other/picture_ao.png")) == bytes_of(path("picture_ao.png")));
 }
 
+TEST_F(BakeBadInput, CopiesOfSideFilesReplaceNoOtherFiles) {
+  write_text_file("in.gltf", "in.bin");
+  write_bytes(path("other/in.bin"), "another's");
+  expect_failure(dapple("bake in.gltf -o other/out.gltf"), 2,
+                 "--output other/out.gltf: in.bin is copied beside it, but other/in.bin is another "
+                 "file of that name; write to another folder, or a .glb, which embeds all");
+  EXPECT_TRUE(bytes_of(path("other/in.bin")) == "another's");
+  EXPECT_FALSE(std::filesystem::exists(path("other/out.gltf")));
+  EXPECT_EQ(dapple("bake in.gltf -o other/out.glb").code, 0);
+  write_bytes(path("other/in.bin"), bytes_of(path("in.bin")));
+  EXPECT_EQ(dapple("bake in.gltf -o other/out.gltf").code, 0) << "the same content";
+}
+
+TEST_F(BakeBadInput, AFileInTheWayOfAFolderForCopiesIsFoundBeforeAnyWork) {
+  write_text_file("in.gltf", "data/in.bin");
+  write_bytes(path("other/data"), "a file");
+  expect_failure(dapple("bake in.gltf -o other/out.gltf"), 2, "other/data is not a folder");
+  std::filesystem::remove(path("other/data"));
+  std::filesystem::create_directories(path("other/data/in.bin"));
+  expect_failure(dapple("bake in.gltf -o other/out.gltf"), 2, "it is a folder");
+  EXPECT_FALSE(std::filesystem::exists(path("other/out.gltf")));
+}
+
 TEST_F(BakeBadInput, CoordinatesThatOverlapAreSaidWithTheirShareAndReplaced) {
   const std::vector<float> full = {0, 0, 1, 0, 0, 1}, left = {0, 0, 0.5f, 0, 0, 0.5f},
                            outside = {0, 0, 2, 0, 0, 1};
@@ -169,6 +200,22 @@ TEST_F(BakeBadInput, TrianglesWithoutAreaAreCountedAndTheirVerticesAreUnoccluded
     ASSERT_EQ(ao.size(), 9u);
     EXPECT_LT(ao[0], 0.99f);
     for (std::size_t v = 6; v < 9; ++v) EXPECT_EQ(ao[v], 1) << v;
+  }
+}
+
+TEST_F(BakeBadInput, ANoteOfTheSceneIsSaidOnce) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  json points = builder.doc["meshes"][0]["primitives"][0];
+  points["mode"] = 0;
+  builder.doc["meshes"][0]["primitives"].push_back(points);
+  write("in.glb", builder.glb());
+  for (const char* options : {"", "--instances alone", "--instances unique", "--to instance"}) {
+    const Outcome run = dapple(std::string("bake in.glb -o out.glb ") + options);
+    ASSERT_EQ(run.code, 0) << run.err;
+    const std::size_t note = run.err.find("point primitives are ignored");
+    ASSERT_NE(note, std::string::npos) << options;
+    EXPECT_EQ(note, run.err.rfind("point primitives are ignored")) << options << run.err;
   }
 }
 

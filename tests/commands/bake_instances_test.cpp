@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 #include "dapple/scene.hpp"
 #include "support/bake_command.hpp"
@@ -80,6 +82,71 @@ TEST_F(BakeCommand, UniqueInstancesOfAnExtensionBecomeNodes) {
   const Scene before = load_gltf(path("in.glb")), scene = load_gltf(path("out.glb"));
   EXPECT_EQ(scene.instances.size(), before.instances.size());
   EXPECT_EQ(scene_bounds(scene), scene_bounds(before));
+}
+
+/// A triangle at three places of EXT_mesh_gpu_instancing; `more` are other attributes of them.
+GltfBuilder three_instances(const std::function<json(GltfBuilder&)>& more) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  json attributes = more(builder);
+  attributes["TRANSLATION"] =
+      builder.add_accessor(std::vector<float>{0, 0, 0, 10, 0, 0, 20, 0, 0}, test::kFloat, "VEC3");
+  builder.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+  builder.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  return builder;
+}
+
+TEST_F(BakeCommand, NodesOfInstancesHaveUnitRotations) {
+  const auto rotations = [](GltfBuilder& builder) {
+    return json{{"ROTATION", builder.add_accessor(
+                                 std::vector<std::int8_t>{0, 0, 0, 0, 0, 64, 0, 64, 0, 0, 0, 127},
+                                 test::kInt8, "VEC4", true)}};
+  };
+  write("in.glb", three_instances(rotations).glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --instances unique");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const json nodes = document("out.glb")["nodes"];
+  EXPECT_EQ(nodes[1]["rotation"], (json{0, 0, 0, 1}));
+  EXPECT_NEAR(nodes[2]["rotation"][1].get<double>(), std::sqrt(0.5), 1e-6);
+  EXPECT_EQ(scene_bounds(load_gltf(path("out.glb"))), scene_bounds(load_gltf(path("in.glb"))));
+}
+
+TEST_F(BakeCommand, InstancesThatAreNotFiniteGetNoNodes) {
+  const auto scales = [](GltfBuilder& builder) {
+    return json{{"SCALE", builder.add_accessor(std::vector<float>{1, 1, 1, 1, NAN, 1, 2, 2, 2},
+                                               test::kFloat, "VEC3")}};
+  };
+  write("in.glb", three_instances(scales).glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --instances unique");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "not finite are left out (1 of them)")) << run.err;
+  const json after = document("out.glb");
+  EXPECT_EQ(after["nodes"][0]["children"], (json{1, 2}));
+  EXPECT_EQ(after["nodes"][2]["scale"], (json{2, 2, 2}));
+  EXPECT_EQ(after["meshes"].size(), 2u);
+  EXPECT_EQ(load_gltf(path("out.glb")).instances.size(), 2u);
+  // The accessor that is not valid is in both.
+  for (const char* name : {"in.glb", "out.glb"}) std::filesystem::remove(path(name));
+}
+
+TEST_F(BakeCommand, ExtrasOfInstancesThatAreNotObjectsAreKept) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["nodes"][0]["extras"] = "tall";
+  for (const json& extras : {json{1, 2}, json(), json{{"kind", "fern"}}})
+    builder.doc["nodes"].push_back({{"mesh", 0}, {"extras", extras}});
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --to instance");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err,
+                       "note: node 0 (\"twig\"): its extras are not an object; they are kept as "
+                       "extras.value (2 of them)\n"))
+      << run.err;
+  const json nodes = document("out.glb")["nodes"];
+  for (const json& node : nodes) EXPECT_TRUE(node["extras"].contains("ao")) << node;
+  EXPECT_EQ(nodes[0]["extras"]["value"], "tall");
+  EXPECT_EQ(nodes[1]["extras"]["value"], (json{1, 2}));
+  EXPECT_EQ(nodes[2]["extras"].size(), 1u);
+  EXPECT_EQ(nodes[3]["extras"]["kind"], "fern");
 }
 
 TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {

@@ -66,5 +66,18 @@ TEST_F(BakeCommand, ADomeStandsBesideTheLightsOfTheScene) {
   EXPECT_TRUE(attributes.contains("_LIGHT_dome")) << attributes;
 }
 
+TEST_F(BakeCommand, AChannelIsNotTheAttributeOfALight) {
+  write("in.glb", rich_triangle().glb());
+  std::ofstream(path("sun.json"))
+      << R"({"lights": [{"type": "sun", "name": "AO", "direction": [0, 0, -1],
+      "irradiance": 1}]})";
+  const std::string lit = "bake in.glb -o out.glb --passes ao,light --lights sun.json --channel ";
+  expect_failure(dapple(lit + "_LIGHT_AO"), 2,
+                 "--channel is _LIGHT_AO, which is the attribute of the light \"AO\"");
+  EXPECT_FALSE(std::filesystem::exists(path("out.glb")));
+  EXPECT_EQ(dapple(lit + "_LIGHT").code, 0);
+  EXPECT_EQ(dapple("bake in.glb -o out.glb --channel _LIGHT_AO").code, 0);
+}
+
 }  // namespace
 }  // namespace dapple

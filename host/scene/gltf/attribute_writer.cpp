@@ -5,6 +5,9 @@
 #include <map>
 #include <tuple>
 
+#include "scene/gltf/extension_use.hpp"
+#include "scene/message.hpp"
+
 namespace dapple::gltf {
 namespace {
 
@@ -54,38 +57,58 @@ std::size_t add_accessor(Editor& editor, const NewAttribute& attribute, bool of_
   return editor.push("accessors", std::move(accessor));
 }
 
+/// Makes room for named values in a node's extras, which may be any JSON. Returns whether another
+/// value was there, which becomes extras.value.
+bool keep_other_extras(Json& node) {
+  if (!node.contains("extras") || node["extras"].is_object()) return false;
+  Json other = std::move(node["extras"]);
+  node["extras"] = Json::object();
+  if (other.is_null()) return false;
+  node["extras"]["value"] = std::move(other);
+  return true;
+}
+
 }  // namespace
 
 void add_attributes(Editor& editor, const SourceFile& source,
                     const std::vector<NewAttribute>& attributes) {
+  bool removed = false;
   std::map<std::tuple<VertexKey, std::uint32_t, std::string>, std::size_t> stored;
   for (const NewAttribute& attribute : attributes) {
     const VertexKey key = source.vertex_key(attribute.mesh, attribute.primitive, attribute.name);
     const auto [at, is_new] = stored.try_emplace({key, attribute.set, attribute.name}, 0);
     if (is_new) at->second = add_accessor(editor, attribute, true);
-    editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive]["attributes"]
-                 [attribute.name] = at->second;
+    Json& primitive = editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive];
+    primitive["attributes"][attribute.name] = at->second;
+    removed |= remove_extension(primitive, kDraco);  // it has the old values
   }
+  if (removed) unlist_unused_extension(editor.json(), kDraco);
 }
 
-void add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
+std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
+  std::uint64_t kept = 0;
+  std::string first;
   for (const NodeValues& values : nodes) {
     Json& node = editor.json()["nodes"][values.node];
-    const bool many =
-        node.contains("extensions") && node["extensions"].contains("EXT_mesh_gpu_instancing");
-    if (many) {
+    if (has_extension(node, kInstancing)) {
       NewAttribute attribute;
       attribute.values = values.values;
       attribute.components = values.components;
       const std::size_t accessor = add_accessor(editor, attribute, false);
-      editor.json()["nodes"][values.node]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]
-                   [values.attribute] = accessor;
-    } else if (!node.contains("extras") || node["extras"].is_object()) {
+      editor
+          .json()["nodes"][values.node]["extensions"][kInstancing]["attributes"][values.attribute] =
+          accessor;
+    } else {
+      if (keep_other_extras(node) && kept++ == 0)
+        first = element("node", values.node, node.value("name", ""));
       Json& extra = node["extras"][values.extra];
       extra = values.values;
       if (values.components == 1) extra = values.values.at(0);
     }
   }
+  if (kept == 0) return {};
+  return fmt::format("{}: its extras are not an object; they are kept as extras.value{}", first,
+                     kept > 1 ? fmt::format(" ({} of them)", grouped(kept)) : "");
 }
 
 }  // namespace dapple::gltf

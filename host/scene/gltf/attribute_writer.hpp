@@ -40,6 +40,7 @@ struct NodeValues {
 void add_attributes(Editor& editor, const SourceFile& source,
                     const std::vector<NewAttribute>& attributes);
 
-void add_node_values(Editor& editor, const std::vector<NodeValues>& nodes);
+/// Returns a note if extras of nodes were not objects, else nothing.
+std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes);
 
 }  // namespace dapple::gltf

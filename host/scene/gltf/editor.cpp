@@ -7,6 +7,7 @@
 #include "files/output_file.hpp"
 #include "scene/glb_bytes.hpp"
 #include "scene/gltf/uri.hpp"
+#include "scene/images/media_type.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -93,7 +94,7 @@ void Editor::remove_buffer() {
 std::vector<std::string> Editor::side_files_written() const {
   if (is_glb_out()) return {};
   std::vector<std::string> files{(fs::path(out_).parent_path() / side_name()).string()};
-  for (const auto& [from, to] : side_files()) files.push_back(to);
+  for (const auto& [from, to] : side_copies()) files.push_back(to);
   return files;
 }
 
@@ -170,15 +171,14 @@ void Editor::embed_images() {
     if (!fs::exists(path)) continue;  // dapple may not need it: the reference stays as it is
     const Bytes file = read_file(path, "image " + uri);
     image.erase("uri");
-    if (!image.contains("mimeType"))
-      image["mimeType"] = file.size() > 1 && file[0] == 0xff ? "image/jpeg" : "image/png";
+    if (!image.contains("mimeType")) image["mimeType"] = image_media_type(file, path.string());
     image["bufferView"] = add_view({file.begin(), file.end()});
   }
 }
 
 // Files that the document names, to the output's folder.
 void Editor::copy_side_files() const {
-  for (const auto& [from, to] : side_files()) {
+  for (const auto& [from, to] : side_copies()) {
     const Bytes bytes = read_file(from, from);
     if (!fs::path(to).parent_path().empty()) fs::create_directories(fs::path(to).parent_path());
     write_whole_file(to,
@@ -186,8 +186,8 @@ void Editor::copy_side_files() const {
   }
 }
 
-// From where to where; none that are in place.
-std::vector<std::pair<std::string, std::string>> Editor::side_files() const {
+std::vector<std::pair<std::string, std::string>> Editor::side_copies() const {
+  if (is_glb_out()) return {};
   const fs::path folder = fs::path(out_).parent_path();
   std::vector<std::pair<std::string, std::string>> files;
   for (const char* array : {"buffers", "images"}) {

@@ -33,6 +33,9 @@ class Editor {
   /// NAME`suffix`.png beside `out`, or with a number if the source has an image of that name.
   [[nodiscard]] std::string image_path(const std::string& suffix) const;
 
+  /// Files that write() copies beside a .gltf: from where to where. None that are in place.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> side_copies() const;
+
   /// Other files that write() may write, without images of add_image().
   [[nodiscard]] std::vector<std::string> side_files_written() const;
 
@@ -48,7 +51,6 @@ class Editor {
   void embed_images();
   void remove_buffer();
   void copy_side_files() const;
-  [[nodiscard]] std::vector<std::pair<std::string, std::string>> side_files() const;
 
   const SourceFile& source_;
   std::string out_;

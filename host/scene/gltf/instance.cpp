@@ -66,15 +66,6 @@ InstanceAttributes read_instance_attributes(const Document& document,
   return result;
 }
 
-V4d unit_rotation(const AccessorReader& rotations, std::uint64_t i) {
-  V4d rotation;
-  for (int c = 0; c < 4; ++c) {
-    rotation[c] = double{rotations.normalized(i, static_cast<std::uint64_t>(c))};
-  }
-  const double length = rotation.length();
-  return length > 0 ? rotation / length : V4d(0, 0, 0, 1);
-}
-
 M44d instance_matrix(const InstanceAttributes& instances, std::uint64_t i) {
   const V3d translation = instances.translation ? V3d(instances.translation->vec3(i)) : V3d(0.0);
   const V4d rotation = instances.rotation ? unit_rotation(*instances.rotation, i) : V4d(0, 0, 0, 1);
@@ -197,6 +188,15 @@ int inverse_of(const Document& document, const MeshUse& use) {
 }
 
 }  // namespace
+
+V4d unit_rotation(const AccessorReader& rotations, std::uint64_t i) {
+  V4d rotation;
+  for (int c = 0; c < 4; ++c) {
+    rotation[c] = double{rotations.normalized(i, static_cast<std::uint64_t>(c))};
+  }
+  const double length = rotation.length();
+  return length > 0 ? rotation / length : V4d(0, 0, 0, 1);
+}
 
 void add_instances(const Document& document, const std::vector<PlacedNode>& placed,
                    const MaterialSet& materials, const Pose& pose, const SceneOptions& options,

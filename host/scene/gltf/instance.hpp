@@ -3,14 +3,21 @@
 // out: Scene::meshes, instances, lights and warnings.
 #pragma once
 
+#include <Imath/ImathVec.h>
+
+#include <cstdint>
 #include <vector>
 
 #include "dapple/scene.hpp"
+#include "scene/gltf/accessor.hpp"
 #include "scene/gltf/document.hpp"
 #include "scene/gltf/hierarchy.hpp"
 #include "scene/gltf/material.hpp"
 
 namespace dapple::gltf {
+
+/// ROTATION of instance `i`, a unit quaternion; none (0,0,0,1) if it has no length.
+Imath::V4d unit_rotation(const AccessorReader& rotations, std::uint64_t i);
 
 /// Appends meshes (only those that a placed node uses), instances and mesh lights to the scene, and
 /// a warning for each kind of thing that is left out. Throws Error input, also when the scene has

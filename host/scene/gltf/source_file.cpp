@@ -1,11 +1,13 @@
 #include "scene/gltf/source_file.hpp"
 
-#include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include "scene/gltf/accessor.hpp"
+#include "scene/gltf/instance.hpp"
+#include "scene/gltf/material_use.hpp"
 #include "scene/gltf/source_content.hpp"
 #include "scene/gltf/vertices.hpp"
 #include "scene/message.hpp"
@@ -13,22 +15,36 @@
 namespace dapple::gltf {
 namespace {
 
-constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
-
 std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
 
-/// Removes kInstancing from a list of extensions if no node has it.
-void remove_unused(Json& json, const char* list) {
-  const bool used = std::any_of(json["nodes"].begin(), json["nodes"].end(), [](const Json& node) {
-    return node.contains("extensions") && node["extensions"].contains(kInstancing);
-  });
-  if (used || !json.contains(list)) return;
-  for (std::size_t i = json[list].size(); i-- > 0;)
-    if (json[list][i] == kInstancing) json[list].erase(i);
-  if (json[list].empty()) json.erase(list);
+using Readers = std::map<std::string, AccessorReader>;
+
+/// A node that stands for instance `i`, without a mesh.
+Json node_of_instance(const Readers& readers, std::size_t i) {
+  Json node = Json::object();
+  for (const auto& [name, reader] : readers) {
+    std::vector<float> values;
+    if (name == "ROTATION") {
+      const Imath::V4d unit = unit_rotation(reader, i);
+      for (int c = 0; c < 4; ++c) values.push_back(static_cast<float>(unit[c]));
+    } else {
+      for (std::uint64_t c = 0; c < reader.components(); ++c) values.push_back(reader.number(i, c));
+    }
+    const bool is_place = name == "ROTATION" || name == "TRANSLATION" || name == "SCALE";
+    (is_place ? node[lower_case(name)] : node["extras"][name]) = values;
+  }
+  return node;
+}
+
+bool has_finite_place(const Json& node) {
+  for (const char* key : {"translation", "rotation", "scale"})
+    if (node.contains(key))
+      for (const Json& value : node[key])
+        if (!std::isfinite(value.get<double>())) return false;
+  return true;
 }
 
 }  // namespace
@@ -66,44 +82,35 @@ std::uint32_t SourceFile::copy_mesh(std::uint32_t node, std::uint32_t mesh) {
 }
 
 bool SourceFile::has_gpu_instances(std::uint32_t node) const {
-  const Json& json = content->json["nodes"][node];
-  return json.contains("extensions") && json["extensions"].contains(kInstancing);
+  return has_extension(content->json["nodes"][node], kInstancing);
 }
 
-std::uint32_t SourceFile::split_gpu_instances(std::uint32_t node) {
+std::vector<int> SourceFile::split_gpu_instances(std::uint32_t node) {
   Json& nodes = content->json["nodes"];
   const Json attributes =
       nodes[node]["extensions"][kInstancing].value("attributes", Json::object());
-  const auto first = static_cast<std::uint32_t>(nodes.size());
   // All have one length; without any there is one instance.
   std::size_t count = 1;
-  std::map<std::string, AccessorReader> readers;
+  Readers readers;
   for (const auto& [name, accessor] : attributes.items()) {
     const AccessorReader& reader =
         readers.try_emplace(name, content->document, accessor.get<int>()).first->second;
     count = reader.count();
   }
+  std::vector<int> made(count, -1);
   for (std::size_t i = 0; i < count; ++i) {
-    Json child = Json::object();
+    Json child = node_of_instance(readers, i);
+    if (!has_finite_place(child)) continue;  // JSON has no number for it
     for (const char* key : {"mesh", "skin", "weights"})
       if (nodes[node].contains(key)) child[key] = nodes[node][key];
-    for (const auto& [name, reader] : readers) {
-      const bool is_rotation = name == "ROTATION";
-      std::vector<float> values;
-      for (std::uint64_t c = 0; c < reader.components(); ++c)
-        values.push_back(is_rotation ? reader.normalized(i, c) : reader.number(i, c));
-      const bool is_place = is_rotation || name == "TRANSLATION" || name == "SCALE";
-      (is_place ? child[lower_case(name)] : child["extras"][name]) = values;
-    }
+    made[i] = static_cast<int>(nodes.size());
     nodes[node]["children"].push_back(nodes.size());
     nodes.push_back(std::move(child));
   }
   for (const char* key : {"mesh", "skin", "weights"}) nodes[node].erase(key);
-  nodes[node]["extensions"].erase(kInstancing);
-  if (nodes[node]["extensions"].empty()) nodes[node].erase("extensions");
-  for (const char* list : {"extensionsUsed", "extensionsRequired"})
-    remove_unused(content->json, list);
-  return first;
+  remove_extension(nodes[node], kInstancing);
+  unlist_unused_extension(content->json, kInstancing);
+  return made;
 }
 
 PrimitiveColors SourceFile::colors(std::uint32_t mesh, std::uint32_t primitive) const {
@@ -127,6 +134,25 @@ std::vector<Imath::V2f> SourceFile::uvs(std::uint32_t mesh, std::uint32_t primit
   std::vector<Imath::V2f> uvs(reader.count());
   for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = reader.vec2(i);
   return uvs;
+}
+
+std::string SourceFile::texture_with_uvs(std::uint32_t mesh, std::uint32_t primitive,
+                                         std::uint32_t set) const {
+  const Json& json = content->json;
+  const Json& user = json["meshes"][mesh]["primitives"][primitive];
+  std::vector<std::size_t> materials;
+  if (const int own = material_of(user); own != kNoMaterial)
+    materials.push_back(static_cast<std::size_t>(own));
+  for_each_variant(user, content->document.model.materials.size(), [&](const Json& mapping) {
+    materials.push_back(mapping["material"].get<std::size_t>());
+  });
+  for (const std::size_t i : materials) {
+    const Json& material = json["materials"][i];
+    const std::string texture = gltf::texture_with_uvs(material, set);
+    if (!texture.empty())
+      return fmt::format("{} of {}", texture, element("material", i, material.value("name", "")));
+  }
+  return {};
 }
 
 std::uint32_t SourceFile::uv_sets(std::uint32_t mesh, std::uint32_t primitive) const {

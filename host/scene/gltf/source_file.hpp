@@ -37,6 +37,10 @@ struct SourceFile {
   /// TEXCOORD_`set` of a primitive, of all its vertices; empty if it has none.
   [[nodiscard]] std::vector<Imath::V2f> uvs(std::uint32_t mesh, std::uint32_t primitive,
                                             std::uint32_t set) const;
+  /// The first texture of a primitive's materials, those of its variants too, that reads
+  /// TEXCOORD_`set`: `baseColorTexture of material 2 ("bark")`. Empty if none does.
+  [[nodiscard]] std::string texture_with_uvs(std::uint32_t mesh, std::uint32_t primitive,
+                                             std::uint32_t set) const;
   /// The number of a primitive's TEXCOORD_n attributes.
   [[nodiscard]] std::uint32_t uv_sets(std::uint32_t mesh, std::uint32_t primitive) const;
 
@@ -44,9 +48,9 @@ struct SourceFile {
   std::uint32_t copy_mesh(std::uint32_t node, std::uint32_t mesh);
   /// Whether a node has many instances, by EXT_mesh_gpu_instancing.
   [[nodiscard]] bool has_gpu_instances(std::uint32_t node) const;
-  /// Replaces them by child nodes with the same mesh. Returns the index of the first one; the
-  /// others follow in order.
-  std::uint32_t split_gpu_instances(std::uint32_t node);
+  /// Replaces them by child nodes with the same mesh. Returns the index of each one's node, in
+  /// order; -1 for an instance whose place is not finite, which gets none.
+  std::vector<int> split_gpu_instances(std::uint32_t node);
 
   struct Content;
   Content* content;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scene/gltf/accessor.hpp"
+#include "scene/gltf/material_use.hpp"
 
 namespace dapple::gltf {
 namespace {
@@ -68,7 +69,8 @@ std::size_t add_indices(Editor& editor, const std::vector<std::uint32_t>& indice
                                    {"type", "SCALAR"}});
 }
 
-void replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
+/// Returns whether the old ones were also compressed.
+bool replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
   // A copy: push() may move the document's arrays.
   Json primitive = editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive];
   const auto copy_all = [&](Json& attributes) {
@@ -83,35 +85,51 @@ void replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
       add_uvs(editor, textured.uvs);
   primitive["indices"] = add_indices(editor, textured.indices, textured.source.size());
   primitive.erase("mode");  // triangles
-  if (primitive.contains("extensions")) {
-    primitive["extensions"].erase("KHR_draco_mesh_compression");
-    if (primitive["extensions"].empty()) primitive.erase("extensions");
-  }
+  const bool was_compressed = remove_extension(primitive, kDraco);
   editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive] = std::move(primitive);
+  return was_compressed;
 }
-
-constexpr int kNoMaterial = -1;
-
-int material_of(const Json& primitive) { return primitive.value("material", kNoMaterial); }
 
 using PrimitiveIndex = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Materials with the texture, one for each material and uv set of the file.
+/// Materials with the texture, one for each material and uv set of the file. Those of
+/// KHR_materials_variants are materials of their primitives too.
 class OcclusionMaterials {
  public:
   OcclusionMaterials(Editor& editor, const std::vector<TexturedPrimitive>& primitives,
                      std::size_t texture)
-      : editor_(editor), texture_(texture) {
+      : editor_(editor), texture_(texture), material_count_(0) {
+    if (editor.json().contains("materials")) material_count_ = editor.json()["materials"].size();
     std::map<PrimitiveIndex, std::uint32_t> uv_set;
     for (const TexturedPrimitive& p : primitives) uv_set[{p.mesh, p.primitive}] = p.uv_set;
     const Json& meshes = editor.json()["meshes"];
     for (std::uint32_t m = 0; m < meshes.size(); ++m) {
       for (std::uint32_t p = 0; p < meshes[m]["primitives"].size(); ++p) {
         const auto found = uv_set.find({m, p});
-        users_[material_of(meshes[m]["primitives"][p])].insert(
-            found == uv_set.end() ? -1 : static_cast<int>(found->second));
+        add_user(meshes[m]["primitives"][p],
+                 found == uv_set.end() ? -1 : static_cast<int>(found->second));
       }
     }
+  }
+
+  /// Gives all materials of a primitive, those of its variants too, the texture.
+  void add_texture(const TexturedPrimitive& textured) {
+    // A copy: push() may move the document's arrays.
+    Json primitive = editor_.json()["meshes"][textured.mesh]["primitives"][textured.primitive];
+    primitive["material"] = with_texture(material_of(primitive), textured.uv_set);
+    for_each_variant(primitive, material_count_, [&](Json& mapping) {
+      mapping["material"] = with_texture(mapping["material"].get<int>(), textured.uv_set);
+    });
+    editor_.json()["meshes"][textured.mesh]["primitives"][textured.primitive] =
+        std::move(primitive);
+  }
+
+ private:
+  void add_user(const Json& primitive, int uv_set) {
+    users_[material_of(primitive)].insert(uv_set);
+    for_each_variant(primitive, material_count_, [&](const Json& mapping) {
+      users_[mapping["material"].get<int>()].insert(uv_set);
+    });
   }
 
   std::size_t with_texture(int material, std::uint32_t uv_set) {
@@ -131,9 +149,9 @@ class OcclusionMaterials {
     return known->second;
   }
 
- private:
   Editor& editor_;
   std::size_t texture_;
+  std::size_t material_count_;          ///< of the file
   std::map<int, std::set<int>> users_;  ///< uv sets of a material's primitives; -1: not baked
   std::map<std::pair<int, std::uint32_t>, std::size_t> made_;
 };
@@ -147,13 +165,12 @@ void add_occlusion_texture(Editor& editor, const std::vector<TexturedPrimitive>&
   const std::size_t texture = editor.push(
       "textures", {{"sampler", sampler}, {"source", editor.add_image(png, kOcclusionSuffix)}});
   OcclusionMaterials materials(editor, primitives, texture);
+  bool removed = false;
   for (const TexturedPrimitive& textured : primitives) {
-    if (!textured.source.empty()) replace_vertices(editor, textured);
-    Json& primitive = editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive];
-    const int before = material_of(primitive);
-    const std::size_t material = materials.with_texture(before, textured.uv_set);
-    editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive]["material"] = material;
+    if (!textured.source.empty()) removed |= replace_vertices(editor, textured);
+    materials.add_texture(textured);
   }
+  if (removed) unlist_unused_extension(editor.json(), kDraco);
 }
 
 }  // namespace dapple::gltf

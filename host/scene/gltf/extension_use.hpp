@@ -1,0 +1,22 @@
+// Removes an extension from a glTF document. In: its JSON. Out: the JSON, whose lists name the
+// extensions that an element still has.
+#pragma once
+
+#include "scene/gltf/source_content.hpp"
+
+namespace dapple::gltf {
+
+inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
+/// Whether a primitive or node has the extension.
+bool has_extension(const Json& element, const char* name);
+
+/// Removes the extension from a primitive or node. Returns whether it had it.
+bool remove_extension(Json& element, const char* name);
+
+/// Removes an extension that no primitive and no node has from extensionsUsed and
+/// extensionsRequired.
+void unlist_unused_extension(Json& json, const char* name);
+
+}  // namespace dapple::gltf
