@@ -47,7 +47,7 @@ void check_side_copies(const std::string& output,
   const auto refuse = [&](const std::string& from, const std::string& why) {
     throw Error(ErrorKind::usage,
                 fmt::format("--output {}: {} is copied beside it, but {}; write to another folder, "
-                            "or a .glb, which embeds all",
+                            "or a .glb, which embeds all, or remove what is there",
                             output, from, why));
   };
   for (const auto& [from, to] : copies) {
