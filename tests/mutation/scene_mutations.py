@@ -26,6 +26,21 @@ MUTATIONS = [
         "",
         r"^(Renderer|Refit|SwayingTree)\."),
     Mutation(
+        "texels-of-refitted-triangles-keep-their-size", "host/bvh/refit/updatable_bvh.cpp",
+        "    update.textured |= is_kept[m] && resize_texels(scene, m);\n",
+        "",
+        r"^(Renderer|Refit)\."),
+    Mutation(
+        "colours-of-refitted-triangles-keep-their-texels", "host/device/upload/scene_upload.cpp",
+        "  if (options.colors && !changes.nodes.empty() && !moved.color_textures.empty()) {\n",
+        "  if (false) {\n",
+        r"^Renderer\."),
+    Mutation(
+        "opaque-triangles-with-vertices-of-the-mesh", "host/bvh/opacity/opaque_triangles.cpp",
+        "    const std::uint32_t lower = words_[vertex / 32] & ((1u << vertex % 32) - 1);\n",
+        "    const std::uint32_t lower = words_[vertex / 32];\n",
+        r"^OpaqueTriangles\."),
+    Mutation(
         "cache-key-without-opacity", "host/bvh/storage/object_key.cpp",
         "  key.add_value(material.alpha);\n",
         "",
