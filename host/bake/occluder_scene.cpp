@@ -63,7 +63,10 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
     scene.lights = options.light ? options.lights : std::vector<Light>{};
     for (Instance& instance : scene.instances) instance.light = -1;
   }
-  for (const Scene& other : others) append_scene(scene, other);
+  for (const Scene& other : others) {
+    append_scene(scene, other);
+    notes.insert(notes.end(), other.warnings.begin(), other.warnings.end());
+  }
   if (options.ground) add_ground(scene);
   merge_single_instances(scene);
   finalize_domes(scene);

@@ -1,54 +1,14 @@
 #include "render/motion_lookup.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 
-#include "dapple/error.hpp"
 #include "dapple/shared/bvh_node.h"
 
 namespace dapple {
 namespace {
 
 constexpr std::uint32_t kNoInstance = 0xffffffffu;  ///< DAPPLE_WORLD of the kernels
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw Error(ErrorKind::input,
-              fmt::format("motion vectors: {} (what is scaled to zero or loses its area is not in "
-                          "a frame); without motion in --passes, frames can be rendered",
-                          what));
-}
-
-/// Names tell which placement became which: two meshes may be alike.
-void check_same_objects(const std::vector<std::string>& now, const std::vector<std::string>& next) {
-  const auto missing = [](const auto& names, const auto& others) {
-    return std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-      return std::find(others.begin(), others.end(), name) == others.end();
-    });
-  };
-  if (now == next) return;
-  if (const auto gone = missing(now, next); gone != now.end())
-    refuse(fmt::format("object '{}' is not in the next frame", *gone));
-  if (const auto added = missing(next, now); added != next.end())
-    refuse(fmt::format("object '{}' is in the next frame only", *added));
-  refuse("objects have another order in the next frame");
-}
-
-void check_same_topology(const Scene& now, const Scene& next) {
-  check_same_objects(now.objects, next.objects);
-  const bool same_meshes = std::equal(now.meshes.begin(), now.meshes.end(), next.meshes.begin(),
-                                      next.meshes.end(), [](const Mesh& a, const Mesh& b) {
-                                        return a.indices == b.indices &&
-                                               a.positions.size() == b.positions.size() &&
-                                               a.objects == b.objects;
-                                      });
-  const bool same_instances = std::equal(
-      now.instances.begin(), now.instances.end(), next.instances.begin(), next.instances.end(),
-      [](const Instance& a, const Instance& b) { return a.mesh == b.mesh; });
-  if (same_meshes && same_instances) return;
-  refuse("meshes or instances come or go until the next frame");
-}
 
 /// Barycentric weights of the point of the triangle's plane that is closest to `p`.
 std::array<double, 3> weights_on_triangle(const V3d& a, const V3d& b, const V3d& c, const V3d& p) {
@@ -72,33 +32,45 @@ std::array<double, 2> weights_on_segment(const V3d& a, const V3d& b, const V3d& 
 MotionLookup::MotionLookup(const Scene& now, const View& view, const SceneBvh& bvh, FrameScene next)
     : now_(now),
       next_(std::move(next)),
+      match_(now_, next_.scene),
       triangles_(8 * bvh.blocks.size()),
       segments_(8 * bvh.segments.size()),
       project_now_(view),
       project_next_(next_.view) {
-  check_same_topology(now_, next_.scene);
+  std::vector<std::uint32_t> part_of;  // by primitive of a mesh
+  std::uint32_t part = 0;
   for (std::uint32_t m = 0; m < now_.meshes.size(); ++m) {
     const Mesh& mesh = now_.meshes[m];
-    deforms_.push_back(mesh.positions != next_.scene.meshes[m].positions);
+    part_of.clear();
+    for (; part < match_.parts.size() && match_.parts[part].mesh == m; ++part)
+      part_of.insert(part_of.end(), match_.parts[part].count, part);
     const ObjectOffsets &first = bvh.objects[m], &end = bvh.objects[m + 1];
-    MeshPrimitive* lanes = mesh.has_strands() ? segments_.data() + 8 * std::size_t{first.segments}
+    PartPrimitive* lanes = mesh.has_strands() ? segments_.data() + 8 * std::size_t{first.segments}
                                               : triangles_.data() + 8 * std::size_t{first.block};
-    for (std::size_t lane = first.lane(); lane < end.lane(); ++lane)
-      *lanes++ = {m, bvh.primitives[lane]};
+    for (std::size_t lane = first.lane(); lane < end.lane(); ++lane, ++lanes) {
+      const std::uint32_t primitive = bvh.primitives[lane];
+      if (primitive != kNoPrimitive) *lanes = {part_of[primitive], primitive};
+    }
   }
   for (const InstanceRecord& record : bvh.instances) {
-    const M44f &from = now_.instances[record.source].to_world,
-               &to = next_.scene.instances[record.source].to_world;
-    movements_.push_back({Imath::M44d(from).inverse(), Imath::M44d(to), from == to});
+    const int counterpart = match_.instances[record.source];
+    const M44f& from = now_.instances[record.source].to_world;
+    const M44f& to = counterpart < 0
+                         ? from
+                         : next_.scene.instances[static_cast<std::size_t>(counterpart)].to_world;
+    movements_.push_back(
+        {Imath::M44d(from).inverse(), Imath::M44d(to), from == to, counterpart >= 0});
   }
 }
 
-V3d MotionLookup::shift_in_object(const MeshPrimitive& of, const V3d& at_object) const {
+V3d MotionLookup::shift_in_object(const PartPrimitive& of, const V3d& at_object) const {
   V3d shift(0.0);
-  if (!deforms_[of.mesh]) return shift;
-  const Mesh &mesh = now_.meshes[of.mesh], &moved = next_.scene.meshes[of.mesh];
+  const MatchedPart& part = match_.parts[of.part];
+  if (!part.deforms) return shift;
+  const Mesh &mesh = now_.meshes[part.mesh], &moved = next_.scene.meshes[part.next_mesh];
   const auto add = [&](std::uint32_t vertex, double weight) {
-    shift += (V3d(moved.positions[vertex]) - V3d(mesh.positions[vertex])) * weight;
+    const auto next = static_cast<std::size_t>(std::int64_t{vertex} + part.vertex_shift);
+    shift += (V3d(moved.positions[next]) - V3d(mesh.positions[vertex])) * weight;
   };
   const auto position = [&](std::uint32_t vertex) { return V3d(mesh.positions[vertex]); };
   if (mesh.has_strands()) {
@@ -117,12 +89,13 @@ V3d MotionLookup::shift_in_object(const MeshPrimitive& of, const V3d& at_object)
 Imath::V2d MotionLookup::at(std::uint32_t instance, std::uint32_t primitive,
                             const V3f& position) const {
   const bool is_segment = (primitive & DAPPLE_SEGMENTS) != 0;
-  const MeshPrimitive& of =
+  const PartPrimitive& of =
       is_segment ? segments_[primitive & ~DAPPLE_SEGMENTS] : triangles_[primitive];
+  const MatchedPart& part = match_.parts[of.part];
   const Movement& movement = movements_[instance == kNoInstance ? 0 : instance];
   const V3d from(position);
   V3d to = from;
-  if (!movement.still || deforms_[of.mesh]) {
+  if (part.is_there && movement.is_there && (!movement.still || part.deforms)) {
     const V3d at_object = from * movement.now_to_object;
     to = (at_object + shift_in_object(of, at_object)) * movement.next_to_world;
   }

@@ -10,6 +10,7 @@
 #include "camera/view.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/scene.hpp"
+#include "render/frame_match.hpp"
 
 namespace dapple {
 
@@ -21,31 +22,32 @@ struct FrameScene {
 
 class MotionLookup {
  public:
-  /// `now` must live as long as this. Throws Error input if the scenes do not have the same meshes,
-  /// primitives and instances.
+  /// `now` must live as long as this. Both scenes must have been through name_objects().
   MotionLookup(const Scene& now, const View& view, const SceneBvh& bvh, FrameScene next);
 
   /// The motion of a hit at `position` (world space), pixels to the right and up. `instance` and
   /// `primitive` are those that the camera pass kept. (0, 0) for points behind the next camera.
+  /// What is not in the next frame counts as standing still.
   [[nodiscard]] Imath::V2d at(std::uint32_t instance, std::uint32_t primitive,
                               const V3f& position) const;
 
  private:
-  /// A lane of a block: a primitive of a mesh.
-  struct MeshPrimitive {
-    std::uint32_t mesh = 0, primitive = 0;
+  /// A lane of a block: the part that it is in, and the primitive of that part's mesh.
+  struct PartPrimitive {
+    std::uint32_t part = 0, primitive = 0;
   };
   struct Movement {
     Imath::M44d now_to_object, next_to_world;
-    bool still = false;  ///< the instance does not move
+    bool still = false;     ///< the instance does not move
+    bool is_there = false;  ///< in the next frame, too
   };
 
-  [[nodiscard]] V3d shift_in_object(const MeshPrimitive& of, const V3d& at_object) const;
+  [[nodiscard]] V3d shift_in_object(const PartPrimitive& of, const V3d& at_object) const;
 
   const Scene& now_;
   FrameScene next_;
-  std::vector<MeshPrimitive> triangles_, segments_;  ///< by lane
-  std::vector<bool> deforms_;                        ///< by mesh
+  FrameMatch match_;
+  std::vector<PartPrimitive> triangles_, segments_;  ///< by lane
   std::vector<Movement> movements_;                  ///< by InstanceRecord
   Projection project_now_, project_next_;
 };

@@ -189,7 +189,7 @@ TracedPicture trace(KeptScene& kept, const Shutter& shutter, const Scene& first,
     Scene moved = shutter.scene_at(time);
     const View moved_view = prepare_scene(moved, options, statistics.notes);
     if (options.light) check_same_lights(lights, moved.lights);
-    check_same_objects(first, moved);
+    if (options.cryptomattes.any()) check_same_objects(first, moved);
     const UploadOptions uploading = kept.on_device.buffers->uploaded;
     kept.update_scene(moved, uploading, options.cache, statistics);
     tracing.progress = part_of(progress, time + 1, shutter.times);

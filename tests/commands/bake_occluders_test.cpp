@@ -115,5 +115,15 @@ TEST_F(BakeOccluders, TheGroundTakesTheLowerHalfOfTheSkyFromAWall) {
   EXPECT_EQ(document("out.glb")["meshes"].size(), 1u);
 }
 
+TEST_F(BakeOccluders, NotesOfTheirFilesAreSaid) {
+  test::json points = roof_.doc["meshes"][0]["primitives"][0];
+  points["mode"] = 0;
+  roof_.doc["meshes"][0]["primitives"].push_back(points);
+  write("noted.glb", roof_.glb());
+  const Outcome run = dapple("bake floor.glb --occluders noted.glb --rays 16 -o out.glb");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "point primitives are ignored")) << run.err;
+}
+
 }  // namespace
 }  // namespace dapple
