@@ -1,14 +1,18 @@
 #include "commands/side_copies.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
+#include "scene/gltf/uri.hpp"
 
 namespace dapple {
 namespace {
@@ -40,6 +44,34 @@ fs::path nearest_parent(const fs::path& path) {
   return parent;
 }
 
+/// Files that a .gltf names as buffers and images: an earlier bake's output may be there, with its
+/// copies. None if the file is not there, or is something else.
+std::set<fs::path> files_of(const fs::path& output) {
+  std::set<fs::path> files;
+  std::ifstream stream(output, std::ios::binary);
+  const nlohmann::json document = nlohmann::json::parse(stream, nullptr, false);
+  if (!document.is_object()) return files;
+  for (const char* array : {"buffers", "images"}) {
+    const auto found = document.find(array);
+    if (found == document.end() || !found->is_array()) continue;
+    for (const nlohmann::json& element : *found) {
+      if (!element.is_object() || !element.contains("uri") || !element["uri"].is_string()) continue;
+      const std::string name = gltf::percent_decode(element["uri"].get<std::string>());
+      files.insert((output.parent_path() / name).lexically_normal());
+    }
+  }
+  return files;
+}
+
+/// Throws Error usage if the file cannot be written. Folders below `parent` are not there yet.
+void check_target(const fs::path& to, const fs::path& parent) {
+  std::error_code ignored;
+  if (fs::is_directory(fs::absolute(to, ignored).parent_path(), ignored))
+    check_output_path(to.string());
+  else if (access(parent.c_str(), W_OK | X_OK) != 0)
+    throw Error(ErrorKind::usage, parent.string() + " cannot be written to");
+}
+
 }  // namespace
 
 void check_side_copies(const std::string& output,
@@ -50,18 +82,18 @@ void check_side_copies(const std::string& output,
                             "or a .glb, which embeds all, or remove what is there",
                             output, from, why));
   };
+  const std::set<fs::path> earlier = copies.empty() ? std::set<fs::path>{} : files_of(output);
   for (const auto& [from, to] : copies) {
     std::error_code ignored;
     const fs::path parent = nearest_parent(to);
     if (!fs::is_directory(parent, ignored)) refuse(from, parent.string() + " is not a folder");
-    if (fs::is_directory(fs::path(to).parent_path(), ignored)) {
-      try {
-        check_output_path(to);
-      } catch (const Error& error) {
-        refuse(from, error.what());
-      }
+    try {
+      check_target(to, parent);
+    } catch (const Error& error) {
+      refuse(from, error.what());
     }
-    if (fs::exists(to, ignored) && !have_same_content(from, to))
+    if (fs::exists(to, ignored) && !earlier.contains(fs::path(to).lexically_normal()) &&
+        !have_same_content(from, to))
       refuse(from, to + " is another file of that name");
   }
 }

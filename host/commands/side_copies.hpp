@@ -8,8 +8,9 @@
 
 namespace dapple {
 
-/// Throws Error usage, naming --output, for a copy over a file with other content, and where a file
-/// is in the way of a folder, or a folder in the way of a file.
+/// Throws Error usage, naming --output, for a copy over a file with other content that an earlier
+/// output of that name does not have as its own, where a file is in the way of a folder, or a
+/// folder in the way of a file, and where nothing can be written.
 void check_side_copies(const std::string& output,
                        const std::vector<std::pair<std::string, std::string>>& copies);
 

@@ -75,9 +75,15 @@ std::string column_name(const NumberTable& table, std::size_t column, const Poin
     if (static_cast<unsigned char>(letter) <= ' ' ||
         std::string_view(",;\"'\\\x7f").find(letter) != std::string_view::npos)
       letter = '_';
-  const bool is_taken = std::ranges::count(list.extra, name, &ExtraColumn::name) > 0 ||
-                        std::ranges::find(kPointNames, name) != std::end(kPointNames);
-  return name.empty() || is_taken ? fmt::format("column_{}", column + 1) : name;
+  const auto is_taken = [&](const std::string& wanted) {
+    return std::ranges::count(list.extra, wanted, &ExtraColumn::name) > 0 ||
+           std::ranges::count(kPointNames, wanted) > 0;
+  };
+  if (!name.empty() && !is_taken(name)) return name;
+  for (std::size_t number = column + 1;; ++number) {
+    name = fmt::format("column_{}", number);
+    if (!is_taken(name) && std::ranges::count(table.names, name) == 0) return name;
+  }
 }
 
 /// Columns that are neither positions nor normals.

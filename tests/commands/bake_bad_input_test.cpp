@@ -125,6 +125,9 @@ TEST_F(BakeBadInput, CopiesOfSideFilesReplaceNoOtherFiles) {
   EXPECT_EQ(dapple("bake in.gltf -o other/out.glb").code, 0);
   write_bytes(path("other/in.bin"), bytes_of(path("in.bin")));
   EXPECT_EQ(dapple("bake in.gltf -o other/out.gltf").code, 0) << "the same content";
+  write_bytes(path("in.bin"), bytes_of(path("in.bin")) + "more");
+  EXPECT_EQ(dapple("bake in.gltf -o other/out.gltf").code, 0) << "the output's own copy";
+  EXPECT_TRUE(bytes_of(path("other/in.bin")) == bytes_of(path("in.bin")));
 }
 
 TEST_F(BakeBadInput, AFileInTheWayOfAFolderForCopiesIsFoundBeforeAnyWork) {
@@ -135,6 +138,9 @@ TEST_F(BakeBadInput, AFileInTheWayOfAFolderForCopiesIsFoundBeforeAnyWork) {
   std::filesystem::create_directories(path("other/data/in.bin"));
   expect_failure(dapple("bake in.gltf -o other/out.gltf"), 2, "it is a folder");
   EXPECT_FALSE(std::filesystem::exists(path("other/out.gltf")));
+  write_text_file("plain.gltf", "in.bin");
+  std::filesystem::create_directories(path("here/in.bin"));
+  expect_failure(dapple("bake ../plain.gltf -o out.gltf", "cd here &&"), 2, "it is a folder");
 }
 
 TEST_F(BakeBadInput, CoordinatesThatOverlapAreSaidWithTheirShareAndReplaced) {

@@ -27,12 +27,12 @@ MUTATIONS = [
         r"^(Renderer|Refit|SwayingTree)\."),
     Mutation(
         "texels-of-refitted-triangles-keep-their-size", "host/bvh/refit/updatable_bvh.cpp",
-        "    update.textured |= is_kept[m] && resize_texels(scene, m);\n",
+        "    if (is_kept[m] && resize_texels(scene, m)) update.textured = true;\n",
         "",
         r"^(Renderer|Refit)\."),
     Mutation(
         "colours-of-refitted-triangles-keep-their-texels", "host/device/upload/scene_upload.cpp",
-        "  if (options.colors && !changes.nodes.empty() && !moved.color_textures.empty()) {\n",
+        "  if (options.colors && changes.objects_refitted > 0 && !moved.color_textures.empty()) {\n",
         "  if (false) {\n",
         r"^Renderer\."),
     Mutation(
@@ -177,8 +177,8 @@ MUTATIONS = [
         r"^Motion\."),
     Mutation(
         "still-instances-do-not-deform", "host/render/motion_lookup.cpp",
-        "if (!movement.still || deforms_[of.mesh]) {",
-        "if (!movement.still) {",
+        "if (part.is_there && movement.is_there && (!movement.still || part.deforms)) {",
+        "if (part.is_there && movement.is_there && !movement.still) {",
         r"^Motion\."),
     Mutation(
         "shutter-without-its-last-moment", "host/render/shutter.cpp",

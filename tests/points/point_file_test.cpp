@@ -100,6 +100,10 @@ TEST_F(PointFile, OtherColumnsOfNumbersAreWrittenAgainInAllThreeFormats) {
   EXPECT_EQ(plain.extra[0].values, std::vector<double>{7});
   const PointList twice = read_points(write("x.csv", "x,y,z,x\n1,2,3,7\n"));
   EXPECT_EQ(twice.extra.at(0).name, "column_4");
+  const PointList thrice = read_points(write("t.csv", "x,y,z,column_5,x,x\n1,2,3,4,5,6\n"));
+  EXPECT_EQ(thrice.extra.at(0).name, "column_5");
+  EXPECT_EQ(thrice.extra.at(1).name, "column_6");
+  EXPECT_EQ(thrice.extra.at(2).name, "column_7");
 }
 
 TEST_F(PointFile, ColumnsOfTextAreLeftOutWithANote) {

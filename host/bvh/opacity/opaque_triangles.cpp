@@ -6,7 +6,7 @@
 namespace dapple {
 namespace {
 
-/// A set of vertices, numbered in order. Takes three bits for each vertex of the mesh.
+/// A set of vertices, numbered in order. Takes two bits for each vertex of the mesh.
 class VertexSet {
  public:
   explicit VertexSet(std::size_t vertices) : words_(vertices / 32 + 1), before_(words_.size()) {}

@@ -19,15 +19,19 @@ constexpr float kOneSided = 0.5f;
 /// surface has 1, a tube 1/2, a sphere 1/3.
 constexpr float kFlat = 0.7f;
 
-/// Positions are equal if they are on the same point of a grid of this many steps over the mesh.
+/// Positions are equal if they are on the same point of a grid of this many steps over the
+/// surfaces, or, if these are farther from the origin than they are wide, over that distance.
 constexpr float kGridSteps = 4194304.0f;
 
 /// Returns for each vertex a hash of its position; 0 only by chance.
 std::vector<std::uint32_t> position_hashes(std::span<const V3f> positions) {
   Box3f box;
   for (const V3f& position : positions) box.extendBy(position);
-  const V3f size = box.size();
-  const float scale = kGridSteps / std::max({size.x, size.y, size.z, 1e-30f});
+  float extent = 1e-30f;
+  for (int axis = 0; axis < 3 && !positions.empty(); ++axis)
+    extent = std::max({extent, box.max[axis] - box.min[axis], std::fabs(box.min[axis]),
+                       std::fabs(box.max[axis])});
+  const float scale = kGridSteps / extent;
   const auto hash_of = [&](const V3f& position) {
     std::uint64_t hash = 0;
     for (int axis = 0; axis < 3; ++axis) {

@@ -183,7 +183,7 @@ void UpdatableBvh::State::update(const Scene& scene, const std::vector<MeshKey>&
     update.cost_ratio = std::max(update.cost_ratio, ratio);
     is_kept[m] = ratio <= kWorstCost;
     update.objects_refitted += is_kept[m];
-    update.textured |= is_kept[m] && resize_texels(scene, m);
+    if (is_kept[m] && resize_texels(scene, m)) update.textured = true;
     update.nodes.push_back({offsets[m].node, offsets[m + 1].node});
     update.blocks.push_back({offsets[m].block, offsets[m + 1].block});
   }

@@ -150,7 +150,7 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
     share_if_new(context, pack_normals(moved, now, options.flat_normals), buffers.corner_normals,
                  buffers.normals);
   }
-  if (options.colors && !changes.nodes.empty() && !moved.color_textures.empty()) {
+  if (options.colors && changes.objects_refitted > 0 && !moved.color_textures.empty()) {
     share_if_new(context, pack_color_words(moved, now), buffers.colors.words, buffers.color_words);
   }
   context.finish();

@@ -101,6 +101,8 @@ Scene coloured_cards(float size) {
     colors.rgb.push_back(i / 3 % 64 / 8 % 2 == i / 3 / 64 / 8 % 2 ? 250 : 10);
   scene.color_textures = {colors};
   for (Material& material : scene.materials) material.color_texture = 0;
+  scene.materials[0].alpha_mode = AlphaMode::opaque;  // has texels of colours alone
+  scene.materials[0].alpha_texture = -1;
   for (V3f& p : scene.meshes[0].positions) p *= size;
   return scene;
 }
