@@ -1,5 +1,5 @@
 // The options of a picture, for the command line and for callers of the library. The defaults are
-// those of the command line.
+// those of the command line, except two that docs/library.md names.
 #pragma once
 
 #include <cstdint>
