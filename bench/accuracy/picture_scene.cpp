@@ -98,7 +98,9 @@ Picture PictureScene::render(const RenderOptions& asked) {
        picture_kernels(device_->context(), options, view_.camera, scene_.lights))
     device_->context().prepare(kernel);
   const std::vector<Light> lights = options.light ? scene_.lights : std::vector<Light>{};
-  const FilmLayout layout(view_, options, bvh_.bounds, lights);
+  const FilmLayout layout(view_.crop, options,
+                          film_scales(view_, bvh_.bounds, on_device_.buffers->light_records),
+                          lights);
   const auto start = std::chrono::steady_clock::now();
   const TracedPicture traced = trace_picture(*device_, on_device_, view_, options, layout, {});
   Picture picture;
@@ -116,7 +118,7 @@ Picture PictureScene::render(const RenderOptions& asked) {
     picture.largest.push_back(1.0);
   }
   for (std::size_t l = 0; l < lights.size(); ++l) {
-    const double scale = 1.0 / (double{layout.light_scale} * options.light_rays);
+    const double scale = 1.0 / (double{layout.lights[l].scale} * options.light_rays);
     const std::vector<double> unoccluded = sums.plane(layout.lights[l].unoccluded(), scale);
     const double largest = *std::max_element(unoccluded.begin(), unoccluded.end());
     picture.largest.push_back(largest);

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "dapple/error.hpp"
@@ -33,7 +34,8 @@ Number parse_number(const std::string& flag, const std::string& text) {
     throw Error(ErrorKind::usage, fmt::format("{}: '{}' is out of range", flag, text));
   if (is_whole_text && error == std::errc{} && std::isfinite(static_cast<double>(value)))
     return value;
-  throw Error(ErrorKind::usage, fmt::format("{}: '{}' is not a number", flag, text));
+  throw Error(ErrorKind::usage, fmt::format("{}: '{}' is not a {}number", flag, text,
+                                            std::is_integral_v<Number> ? "whole " : ""));
 }
 
 template <class Number>

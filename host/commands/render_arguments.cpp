@@ -200,7 +200,7 @@ void check_motion(const RenderArguments& a) {
 
 /// Outputs are EXR files or a part, whatever their names; these names would deceive.
 void check_output_name(const char* flag, const std::string& path) {
-  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr"})
+  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".json"})
     if (path.ends_with(other))
       throw Error(ErrorKind::usage,
                   fmt::format("{} is {}, but images are OpenEXR files (.exr); --png FILE "
@@ -233,6 +233,10 @@ void check_part(const RenderArguments& a, const RenderOptions& options) {
 
 void check_png(const RenderArguments& a) {
   parse_png_options(a.exposure, a.background);
+  for (const char* other : {".exr", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".json"})
+    if (a.png.ends_with(other))
+      throw Error(ErrorKind::usage,
+                  fmt::format("--png is {}, but previews are PNG files (.png)", a.png));
   if (!a.png.empty()) return;
   const RenderArguments defaults;
   for (const char* flag : {a.exposure != defaults.exposure ? "--exposure" : "",

@@ -3,10 +3,12 @@
 // kernels/film/film.cl. layers.hpp converts the sums into EXR layers.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "camera/view.hpp"
 #include "dapple/render.hpp"
+#include "dapple/shared/light_record.h"
 #include "device/context.hpp"
 
 namespace dapple {
@@ -25,19 +27,28 @@ inline constexpr std::uint32_t kCameraVisits = 8;
 struct LightPlaneRange {
   std::uint32_t first = 0;
   std::uint32_t channels = 1;
+  float scale = 0;  ///< for irradiance at radiance 1
   [[nodiscard]] std::uint32_t unoccluded() const { return first + channels; }
   [[nodiscard]] std::uint32_t visits() const { return first + 2 * channels; }
   [[nodiscard]] constexpr std::uint32_t count() const { return 2 * channels + 2; }
 };
 
-/// Powers of two that positions and depths are multiplied by.
+/// Powers of two that positions, depths and irradiances are multiplied by.
 struct FilmScales {
   float position = 0, depth = 0;
+  std::vector<float> lights;
 };
 
+/// Returns the scales for a scene in `bounds` and its lights. A light whose irradiance, at the
+/// point of `bounds` that is farthest from it, is small gets a scale for which that still has 12
+/// bits.
+FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights);
+
 /// The first plane of each pass, and the powers of two that values are multiplied by. The sum of
-/// 2^24 samples of the largest value fits 63 bits.
+/// 2^24 samples of the largest value fits 63 bits; irradiances that are larger than was expected
+/// stop at the largest number.
 struct FilmLayout {
+  std::uint32_t width = 0;  ///< of the crop, pixels
   std::uint32_t pixels = 0;
   std::uint32_t plane_count = 0;
   std::uint32_t ao = 0;       ///< first AO plane
@@ -51,15 +62,12 @@ struct FilmLayout {
   std::vector<std::uint32_t> back_lights;
   std::uint32_t squares = 0;  ///< number of planes of squares: two for AO, two for each light
   float unit_scale = 0;       ///< for values up to 1
-  float light_scale = 0;      ///< for irradiance at radiance 1, up to 1024 pi
   float position_scale = 0;
   float depth_scale = 0;
 
-  FilmLayout(const View& view, const RenderOptions& options, const Box3f& bounds,
+  /// `scales` has one for each of `lights`, or more.
+  FilmLayout(const PixelRect& crop, const RenderOptions& options, const FilmScales& scales,
              const std::vector<Light>& lights, bool has_normals = false);
-  /// For scales that another layout of the scene had.
-  FilmLayout(std::uint32_t pixels, const RenderOptions& options, FilmScales scales,
-             const std::vector<Light>& lights, bool has_normals);
   /// The first plane of the shading pass; 0: there is no such pass.
   [[nodiscard]] std::uint32_t shading() const { return normals ? normals : albedo; }
   [[nodiscard]] std::uint32_t ao_visits() const { return ao + 4; }

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "camera/camera_splitting.hpp"
+#include "film/back_sources.hpp"
 #include "film/film_sums.hpp"
 #include "film/light_layers.hpp"
 #include "film/traced_picture.hpp"
@@ -58,6 +59,20 @@ double back_sample_count(const Sums& sums, const FilmLayout& layout, std::uint32
   return std::max(1.0, sums.at(layout.back_samples, pixel));
 }
 
+/// The pixels whose sums of backs are used; empty: each pixel's own.
+std::vector<std::uint32_t> sources_of_backs(const Sums& sums, const TracedPicture& picture,
+                                            const FilmLayout& layout) {
+  const auto has_backs = [&](std::uint32_t p) { return sums.at(layout.back_samples, p) > 0; };
+  const auto lacks_backs = [&](std::uint32_t p) { return picture.samples[p] > 0 && !has_backs(p); };
+  std::vector<std::uint32_t> pixels(layout.pixels);
+  std::iota(pixels.begin(), pixels.end(), 0u);
+  if (!layout.back_samples || std::none_of(pixels.begin(), pixels.end(), lacks_backs)) return {};
+  const auto sources = back_sources(layout.pixels, layout.width, has_backs);
+  for (std::uint32_t& p : pixels)
+    if (lacks_backs(p)) p = sources[p];
+  return pixels;
+}
+
 /// Irradiance of the lights at a pixel, linear RGB: with occlusion, of all lights together or of
 /// one; and the largest without occlusion, of all lights together, over all pixels and channels.
 class LightPlanes {
@@ -68,7 +83,8 @@ class LightPlanes {
         picture_(picture),
         layout_(layout),
         lights_(lights),
-        inverse_(1.0 / (double{layout.light_scale} * options.light_rays)) {}
+        backs_(sources_of_backs(sums, picture, layout)),
+        inverse_rays_(1.0 / options.light_rays) {}
 
   [[nodiscard]] V3d shadowed(std::uint32_t pixel) const {
     V3d value(0.0);
@@ -85,11 +101,16 @@ class LightPlanes {
   }
   /// The same of the other side of the surfaces.
   [[nodiscard]] V3d back(const std::vector<std::size_t>& lights, std::uint32_t pixel) const {
+    const std::uint32_t source = back_source(pixel);
+    const double samples = back_sample_count(sums_, layout_, source);
     V3d value(0.0);
     for (const std::size_t l : lights)
-      value +=
-          of_planes(l, layout_.back_lights[l], pixel, back_sample_count(sums_, layout_, pixel));
+      value += of_planes(l, layout_.back_lights[l], source, samples);
     return value;
+  }
+  /// The pixel whose sums of backs are this one's.
+  [[nodiscard]] std::uint32_t back_source(std::uint32_t pixel) const {
+    return backs_.empty() ? pixel : backs_[pixel];
   }
   [[nodiscard]] double largest_unoccluded() const {
     double largest = 0;
@@ -109,14 +130,16 @@ class LightPlanes {
     const std::uint32_t last = layout_.lights[light].channels - 1;
     const V3d sum(sums_.at(first, pixel), sums_.at(first + std::min(1u, last), pixel),
                   sums_.at(first + last, pixel));
-    return V3d(lights_[light].radiance) * sum * (inverse_ / samples);
+    return V3d(lights_[light].radiance) * sum *
+           (inverse_rays_ / (layout_.lights[light].scale * samples));
   }
 
   const Sums& sums_;
   const TracedPicture& picture_;
   const FilmLayout& layout_;
   const std::vector<Light>& lights_;
-  double inverse_;
+  std::vector<std::uint32_t> backs_;
+  double inverse_rays_;
 };
 
 class Planes {
@@ -270,8 +293,9 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
     planes.add3("ao", "RGB", [&](std::uint32_t p) { return V3d(ao(p)); });
     if (options.back)
       planes.add3("ao.back", "RGB", [&](std::uint32_t p) {
-        return V3d(ao_of(layout.back_ao, p, sums.at(layout.back_samples + 1, p),
-                         back_sample_count(sums, layout, p)));
+        const std::uint32_t source = light.back_source(p);
+        return V3d(ao_of(layout.back_ao, source, sums.at(layout.back_samples + 1, source),
+                         back_sample_count(sums, layout, source)));
       });
     planes.add3("bent", "XYZ", [&](std::uint32_t p) {
       V3d bent(sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p), sums.at(layout.ao + 3, p));

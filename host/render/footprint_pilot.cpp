@@ -24,7 +24,8 @@ FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& pictu
   View view = picture.view;
   if (unasked) view.crop = {0, 0, view.width - 1, view.height - 1};
   const DeviceBuffers& scene = *kept.on_device.buffers;
-  const FilmLayout layout(view, sampled, picture.bounds, picture.lights,
+  const FilmLayout layout(view.crop, sampled,
+                          film_scales(view, picture.bounds, scene.light_records), picture.lights,
                           !scene.corner_normals.empty());
   CameraParams camera = camera_params(view, sampled, scene.bounds);
   if (sampled.cryptomattes.any() || sampled.motion || sampled.deep) camera.medium_error = 0;

@@ -185,7 +185,7 @@ void validate(const RenderOptions& options) {
   }
   if (options.fov_degrees != 0) check_range("--fov", options.fov_degrees, 0.01f, 179);
   if (options.aperture) check_range("--aperture", *options.aperture, 0, 1e6);
-  if (options.focus_distance) check_range("--focus-distance", *options.focus_distance, 1e-6, 1e12);
+  if (options.focus_distance) check_range("--focus-distance", *options.focus_distance, 1e-6f, 1e12);
   if (options.look) {
     check_point("--look-from", options.look->from);
     check_point("--look-at", options.look->at);

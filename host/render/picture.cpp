@@ -339,7 +339,7 @@ class PictureTracer {
     resolve_.plane = side.is_back ? layout_.back_lights[light] : layout_.lights[light].first;
     resolve_.squares = layout_.light_squares(light);
     resolve_.rays = params.rays_per_point;
-    resolve_.scale = layout_.light_scale;
+    resolve_.scale = layout_.lights[light].scale;
     if (layout_.lights[light].channels == 3)
       resolve_dome_pass(context_, scene_, side.queues, film_, resolve_, light);
     else

@@ -130,7 +130,10 @@ void check(const PictureRecord& record) {
   require(o.camera_splitting == 1 || o.camera_splitting == 2 || o.camera_splitting == 4,
           "camera splitting");
   require(!o.ambient || (*o.ambient >= 0 && std::isfinite(*o.ambient)), "ambient");
-  require(is_scale(record.scales.position) && is_scale(record.scales.depth), "scales");
+  require(is_scale(record.scales.position) && is_scale(record.scales.depth) &&
+              record.scales.lights.size() == record.lights.size() &&
+              std::all_of(record.scales.lights.begin(), record.scales.lights.end(), is_scale),
+          "scales");
   require(is_from(record.metadata.samples, 0, 1 << 20), "number of samples");
   require(record.lights.size() <= kMaxLights, "lights");
   for (const Light& light : record.lights)
@@ -148,10 +151,11 @@ PictureRecord record_of(const View& view, const RenderOptions& options, const Fi
                        options,
                        lights,
                        layout.normals != 0,
-                       {layout.position_scale, layout.depth_scale},
+                       {layout.position_scale, layout.depth_scale, {}},
                        std::move(names),
                        std::move(metadata)};
   for (Light& light : record.lights) light.environment.reset();
+  for (const LightPlaneRange& light : layout.lights) record.scales.lights.push_back(light.scale);
   return record;
 }
 
@@ -168,6 +172,7 @@ json to_json(const PictureRecord& record) {
           {"lights", lights_json(record.lights)},
           {"has_normals", record.has_normals},
           {"scales", {record.scales.position, record.scales.depth}},
+          {"light_scales", record.scales.lights},
           {"objects", record.names.objects},
           {"materials", record.names.materials},
           {"metadata", metadata_json(record.metadata)}};
@@ -183,7 +188,7 @@ PictureRecord picture_record(const json& about) {
                        options_of(about.at("options")),
                        lights_of(about.at("lights")),
                        about.at("has_normals").get<bool>(),
-                       {scales[0], scales[1]},
+                       {scales[0], scales[1], about.at("light_scales").get<std::vector<float>>()},
                        {about.at("objects").get<std::vector<std::string>>(),
                         about.at("materials").get<std::vector<std::string>>()},
                        metadata_of(about.at("metadata"))};

@@ -21,16 +21,11 @@ struct PictureRecord {
   RenderOptions options;
   std::vector<Light> lights;  ///< only name, group, kind and radiance
   bool has_normals = false;
-  FilmScales scales{1, 1};
+  FilmScales scales{1, 1, {}};
   MatteNames names;
   FilmMetadata metadata;  ///< without what is only known once the sums are: the sky of RGBA
 
-  [[nodiscard]] std::uint32_t pixel_count() const {
-    return static_cast<std::uint32_t>(crop.width()) * static_cast<std::uint32_t>(crop.height());
-  }
-  [[nodiscard]] FilmLayout layout() const {
-    return {pixel_count(), options, scales, lights, has_normals};
-  }
+  [[nodiscard]] FilmLayout layout() const { return {crop, options, scales, lights, has_normals}; }
 };
 
 /// `options` as by_sample() returns them; `metadata` as it is without the samples.

@@ -326,8 +326,9 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   Box3f bounds = kept.bvh->bvh().bounds;
   bounds.extendBy(moments.bounds);
   const MatteNames names = matte_names(scene, options);
-  const FilmLayout layout(view, sampled, bounds, lights,
-                          !kept.on_device.buffers->corner_normals.empty());
+  const DeviceBuffers& buffers = *kept.on_device.buffers;
+  const FilmLayout layout(view.crop, sampled, film_scales(view, bounds, buffers.light_records),
+                          lights, !buffers.corner_normals.empty());
   const Stopwatch trace_time;
   RenderOptions traced = options;
   if (needs_footprint_pilot(options, resumed.has_value())) {

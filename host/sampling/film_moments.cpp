@@ -51,8 +51,8 @@ std::vector<float> FilmMoments::ao_variances() const {
 }
 
 FilmMoments::LightPass FilmMoments::light_pass(std::size_t light) const {
-  return {layout_.lights[light], 1.0 / (double{layout_.light_scale} * options_.light_rays),
-          layout_.light_squares(light)};
+  const LightPlaneRange& planes = layout_.lights[light];
+  return {planes, 1.0 / (double{planes.scale} * options_.light_rays), layout_.light_squares(light)};
 }
 
 BatchMoments FilmMoments::light_moments(const LightPass& pass, std::size_t pixel) const {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dapple/error.hpp"
 
@@ -28,13 +29,27 @@ void check_point(const Scene& scene, const std::string& what, const V3f& point) 
   if (!(reach(point) <= kLargestCoordinate)) refuse(scene, what, reach(point));
 }
 
+/// Coordinates of a scene of 100 m differ by at least a millimetre where this is not reached.
+constexpr double kCoarseStep = 1e-5;
+
+void warn_of_coarse_steps(const Box3f& bounds, Scene& scene) {
+  const double far = std::max(reach(bounds.min), reach(bounds.max));
+  const double step = far * std::numeric_limits<float>::epsilon();
+  if (!(step > kCoarseStep * (bounds.max - bounds.min).length())) return;
+  scene.warnings.push_back(
+      fmt::format("the scene lies {:.3g} m from the origin, where coordinates have steps of {:.2g} "
+                  "m: move it to the origin, or smaller details and distances are lost",
+                  far, step));
+}
+
 }  // namespace
 
-void check_numeric_range(const Scene& scene) {
+void check_numeric_range(Scene& scene) {
   const Box3f bounds = scene_bounds(scene);
   if (!bounds.isEmpty()) {
     check_point(scene, "its geometry", bounds.min);
     check_point(scene, "its geometry", bounds.max);
+    warn_of_coarse_steps(bounds, scene);
   }
   for (const Light& light : scene.lights) {
     if (light.kind == LightKind::rect || light.kind == LightKind::disk ||

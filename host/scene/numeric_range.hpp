@@ -12,8 +12,9 @@ inline constexpr double kSmallestLength = 1e-9;     // metres, of a light; also 
 inline constexpr double kLargestRadiance = 1e30;    // W/(sr m^2)
 
 /// Throws Error input when a coordinate of the geometry, of a rect, disk or sphere light's position
-/// or of a camera's position is beyond kLargestCoordinate; the message names the object. Vertices
+/// or of a camera's position is beyond kLargestCoordinate; the message names the object. Adds a
+/// warning where the scene is so far from the origin that floats have coarse steps there. Vertices
 /// that are not finite must have been removed before.
-void check_numeric_range(const Scene& scene);
+void check_numeric_range(Scene& scene);
 
 }  // namespace dapple

@@ -41,7 +41,7 @@ void write_any(FuzzedDataProvider& data, const std::string& file) {
     packed.push_back(compress(data.ConsumeBytes<std::byte>(40)));
   std::vector<Section> sections{as_section(about)};
   for (const auto& bytes : packed) sections.emplace_back(bytes);
-  write_sealed_file(file, {"checkpoint", 3}, sections, Durable::no);
+  write_sealed_file(file, {"checkpoint", 4}, sections, Durable::no);
 }
 
 PictureRecord any_picture(FuzzedDataProvider& data) {
@@ -65,6 +65,7 @@ PictureRecord any_picture(FuzzedDataProvider& data) {
     light.group = data.ConsumeRandomLengthString(2);
     light.kind = static_cast<LightKind>(data.ConsumeIntegralInRange(0, 9));
     picture.lights.push_back(light);
+    picture.scales.lights.push_back(0x1p26f);
   }
   for (int i = data.ConsumeIntegralInRange(0, 2); i > 0; --i) {
     picture.names.objects.push_back(std::to_string(i));
@@ -85,7 +86,7 @@ void write_likely(FuzzedDataProvider& data, const std::string& file) {
   state.first_sample = splitting * data.ConsumeIntegralInRange<std::uint32_t>(0, 4);
   const PixelRect& crop = part.picture.crop;
   const bool sound = crop.x0 >= 0 && crop.y0 >= 0 && crop.x0 <= crop.x1 && crop.y0 <= crop.y1;
-  const std::size_t pixels = sound ? part.picture.pixel_count() : 1;
+  const std::size_t pixels = sound ? part.picture.layout().pixels : 1;
   const std::size_t planes = sound ? part.picture.layout().plane_count : 1;
   state.sums.resize(pixels * planes + (is_odd(data) ? 1 : 0));
   for (std::int64_t& sum : state.sums)

@@ -56,7 +56,7 @@ TEST(DiskLight, IrradianceOfADiskAboveAPointIsItsClosedForm) {
   const char* layers[] = {"above", "above_2", "above_3", "beside", "beside_2", "away"};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const std::string layer = std::string("light.") + layers[i];
-    const double error = kSampling * expected[i] + 2e-8;
+    const double error = kSampling * expected[i] + 1e-12;
     EXPECT_NEAR(value(film, layer + ".R"), expected[i], error) << layer;
     EXPECT_NEAR(value(film, layer + ".G"), 2 * expected[i], 2 * error) << layer;
     EXPECT_NEAR(value(film, layer + ".B"), expected[i] / 4, error / 4) << layer;

@@ -78,8 +78,7 @@ struct ExpectedLights {
     for (std::size_t i = 0; i < irradiance.size(); ++i) {
       const std::string layer = "light." + layer_name(scene.lights[i].name);
       SCOPED_TRACE(layer);
-      // The sampling error, and the film's fixed-point steps of 2^-26.
-      const double error = kSampling * irradiance[i] + 2e-8;
+      const double error = kSampling * irradiance[i] + 1e-12;
       EXPECT_NEAR(value(film, layer + ".R"), irradiance[i], error);
       EXPECT_NEAR(value(film, layer + ".G"), 2 * irradiance[i], 2 * error);
       EXPECT_NEAR(value(film, layer + ".B"), irradiance[i] / 4, error / 4);

@@ -34,7 +34,7 @@ class Pictures {
     options.estimator = footprint > 0 ? Estimator::prefiltered : Estimator::exact;
     options.footprint = footprint;
     options.seed = static_cast<std::uint32_t>(seed);
-    const FilmLayout layout(view_, options, scene_.bvh.bounds, {});
+    const FilmLayout layout(view_.crop, options, film_scales(view_, scene_.bvh.bounds, {}), {});
     const TracedPicture picture =
         trace_picture(device(), scene_.uploaded, view_, options, layout, {});
     // Misses add nothing to this plane, exact or prefiltered, so they cancel in differences.

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
 
 #include "render/checkpoint.hpp"
@@ -90,6 +91,26 @@ TEST_F(MergeParts, ShardsOfAnySizesInAnyOrderAreTheBitsOfOneRender) {
     EXPECT_TRUE(merge.result.statistics.notes.empty());
     expect_same(merge.result.film, whole);
   }
+}
+
+/// How much of what camera rays hit is hidden from behind.
+double hidden_from_behind(const Film& film) {
+  const auto total = [&](const char* channel) {
+    const auto& pixels = film.find(channel)->pixels;
+    return std::accumulate(pixels.begin(), pixels.end(), 0.0);
+  };
+  return (static_cast<double>(film.find("A")->pixels.size()) - total("ao.back.R")) / total("A");
+}
+
+TEST_F(MergeParts, PixelsWhoseBacksOtherShardsHaveTakeThoseOfTheirNeighbours) {
+  RenderOptions options = small_picture();
+  options.spp = options.back_every = 16;
+  options.back = true;
+  const double whole = hidden_from_behind(draw(options));
+  options.shard = {2, 4};
+  draw(options, path("backs.dapple"));
+  EXPECT_NEAR(hidden_from_behind(merge_parts({path("backs.dapple")}).result.film), whole,
+              0.1 * whole);
 }
 
 TEST_F(MergeParts, CropsStitchAndSoDoShardsOfCrops) {

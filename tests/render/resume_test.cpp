@@ -57,7 +57,9 @@ class Tracing {
       : tree_(tree),
         options_(options),
         view_(choose_view(tree.scene, options, notes_)),
-        layout_(view_, options, tree.bvh.bounds, tree.scene.lights) {}
+        layout_(view_.crop, options,
+                film_scales(view_, tree.bvh.bounds, tree.uploaded.buffers->light_records),
+                tree.scene.lights) {}
 
   [[nodiscard]] TracedPicture trace(const TraceControl& control = {}, TraceState from = {}) const {
     return trace_picture(device(), tree_.uploaded, view_, options_, layout_, control,

@@ -13,6 +13,7 @@ namespace dapple {
 namespace {
 
 constexpr int kSide = 8;
+constexpr float kLightScale = 0x1p26f;
 
 /// A picture with one light. Every sample hits something that is not lit; the batches' means have
 /// the variance `of_batch`.
@@ -21,7 +22,7 @@ class UnlitPicture {
   UnlitPicture(std::vector<std::uint32_t> samples, float of_batch)
       : of_batch_(of_batch),
         samples_(std::move(samples)),
-        layout_(view(), options_, box(), {Light{}}) {
+        layout_({0, 0, kSide - 1, kSide - 1}, options_, {1, 1, {kLightScale}}, {Light{}}) {
     sums_.resize(std::size_t{layout_.pixels} * layout_.plane_count);
     for (std::uint32_t p = 0; p < layout_.pixels; ++p) sums_[p] = samples_[p];
     add_squares(DAPPLE_SAMPLE_BATCH, of_batch_);
@@ -30,7 +31,7 @@ class UnlitPicture {
 
   void set_unoccluded(std::uint32_t pixel, double irradiance) {
     sums_[std::size_t{layout_.lights[0].unoccluded()} * layout_.pixels + pixel] =
-        std::llround(irradiance * samples_[pixel] * layout_.light_scale);
+        std::llround(irradiance * samples_[pixel] * layout_.lights[0].scale);
   }
 
   /// The irradiance by which FilmMoments divides the light's errors.
@@ -58,13 +59,6 @@ class UnlitPicture {
     options.ao = false;
     return options;
   }
-  static View view() {
-    View view;
-    view.width = view.height = kSide;
-    view.crop = {0, 0, kSide - 1, kSide - 1};
-    return view;
-  }
-  static Box3f box() { return {V3f(-1.0f), V3f(1.0f)}; }
 
   float of_batch_;
   RenderOptions options_ = unlit_options();
@@ -123,7 +117,7 @@ TEST(FilmMoments, KernelsSquareTheMeansOfBatchesAndOfPairs) {
   options.camera_splitting = 1;
   std::vector<std::string> notes;
   const View view = choose_view(cloud.scene, options, notes);
-  const FilmLayout layout(view, options, cloud.bvh.bounds, {});
+  const FilmLayout layout(view.crop, options, film_scales(view, cloud.bvh.bounds, {}), {});
   TraceState state;
   TraceControl control;
   control.save = [&](const TraceState& now) { state = now.copy(); };

@@ -95,7 +95,7 @@ class FrameTracer {
     options.footprint = footprint;
     options.seed = static_cast<std::uint32_t>(seed);
     const View view{camera, options.width, options.width, around(outline, options.width)};
-    const FilmLayout layout(view, options, bounds_, {});
+    const FilmLayout layout(view.crop, options, film_scales(view, bounds_, {}), {});
     const TracedPicture picture = trace_picture(device_, scene_, view, options, layout, {});
     std::size_t pixel = 0;
     for (int row = view.crop.y0; row <= view.crop.y1; ++row) {

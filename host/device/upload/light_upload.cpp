@@ -46,6 +46,7 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
   for (std::size_t i = 0; i < areas.size(); ++i) {
     emitters[first + i].cumulative = static_cast<float>(areas[i] / total);
   }
+  if (areas.empty()) emitters.push_back({});  // kernels expect a triangle; this one gives no light
   return total;
 }
 

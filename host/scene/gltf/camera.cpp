@@ -2,8 +2,10 @@
 #include "scene/gltf/camera.hpp"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "scene/message.hpp"
 
@@ -85,8 +87,24 @@ std::vector<Camera> read_lenses(const Document& document) {
   return lenses;
 }
 
+/// Names that cameras have, and how many of them asked for each. Later ones get _2, _3 and so on,
+/// so that --camera reaches them all.
+class CameraNames {
+ public:
+  std::string free_one(const std::string& name) {
+    std::string free = name;
+    while (!taken_.insert(free).second)
+      free = fmt::format("{}_{}", name, ++last_.try_emplace(name, 1).first->second);
+    return free;
+  }
+
+ private:
+  std::set<std::string> taken_;
+  std::map<std::string, int> last_;
+};
+
 void add_camera(const Document& document, const PlacedNode& placed,
-                const std::vector<Camera>& lenses, Scene& scene) {
+                const std::vector<Camera>& lenses, CameraNames& names, Scene& scene) {
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
   const auto& given = document.model.cameras[static_cast<std::size_t>(node.camera)];
   const std::string who = element("camera", static_cast<std::size_t>(node.camera), given.name);
@@ -101,6 +119,7 @@ void add_camera(const Document& document, const PlacedNode& placed,
     return;
   }
   camera.to_world = *to_world;
+  camera.name = names.free_one(camera.name);
   scene.cameras.push_back(std::move(camera));
 }
 
@@ -108,9 +127,10 @@ void add_camera(const Document& document, const PlacedNode& placed,
 
 void add_cameras(const Document& document, const std::vector<PlacedNode>& placed, Scene& scene) {
   const std::vector<Camera> lenses = read_lenses(document);
+  CameraNames names;
   for (const PlacedNode& at : placed) {
     if (document.model.nodes[static_cast<std::size_t>(at.node)].camera >= 0) {
-      add_camera(document, at, lenses, scene);
+      add_camera(document, at, lenses, names, scene);
     }
   }
 }

@@ -42,8 +42,10 @@ void check_cone(const tinygltf::SpotLight& spot, const std::string& who, const s
   const bool sound = spot.innerConeAngle >= 0 && spot.innerConeAngle <= spot.outerConeAngle &&
                      spot.outerConeAngle > 0 && spot.outerConeAngle <= std::numbers::pi / 2 + 1e-4;
   if (sound) return;
-  fail(file, "{} has cone angles {} and {}; inner must not exceed outer, nor outer pi/2", who,
-       spot.innerConeAngle, spot.outerConeAngle);
+  fail(file,
+       "{} has the inner cone angle {} and the outer {}; it must be 0 <= inner <= outer <= pi/2, "
+       "with an outer above 0",
+       who, spot.innerConeAngle, spot.outerConeAngle);
 }
 
 void make_cone(Light& light, const tinygltf::SpotLight& spot) {
@@ -67,6 +69,9 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
   const std::string who = element("light", static_cast<std::size_t>(index), given.name);
   const V3f intensity = intensity_of(given);
+  if (std::max({intensity.x, intensity.y, intensity.z}) >= static_cast<float>(kLargestIntensity))
+    scene.warnings.push_back(one_line(fmt::format("{}: {} is brighter than {:g}: it gets that",
+                                                  document.file, who, kLargestIntensity)));
   Light light;
   light.name = one_line(!given.name.empty()  ? given.name
                         : !node.name.empty() ? node.name
