@@ -5,6 +5,7 @@
 #include "device/programs/kernels_ahead.hpp"
 #include "passes/kernel_list.hpp"
 #include "render/stopwatch.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 
@@ -57,6 +58,8 @@ std::vector<KernelName> kernels_of(const DeviceContext& context, const BakeOptio
 OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
                              const std::vector<Scene>& others)
     : device(options.device, options.kernel_dir) {
+  check_scene(scene);
+  for (const Scene& other : others) check_scene(other);
   KernelsAhead kernels(device.context(), kernels_of(device.context(), options));
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   if (!options.light || !options.lights.empty()) {

@@ -320,6 +320,21 @@ ExrFormat to_format(const RenderArguments& a) {
   return format;
 }
 
+/// Options that would change nothing, as if they were misspelt.
+void check_effects(const RenderArguments& a, const RenderOptions& o) {
+  const RenderOptions defaults;
+  const auto need = [](bool given, const char* flag, bool has_effect, const char* what) {
+    if (given && !has_effect) throw Error(ErrorKind::usage, fmt::format("{} needs {}", flag, what));
+  };
+  need(o.back_every != defaults.back_every, "--back-every", o.back,
+       "the pass back: --passes ao,light,back");
+  need(o.light_rays != defaults.light_rays, "--light-rays", o.light, "the pass light");
+  need(o.ao_distance > 0, "--ao-distance", o.ao, "the pass ao");
+  need(o.max_spp != defaults.max_spp, "--max-spp", is_adaptive(o),
+       "--target-rmse or --target-error");
+  need(a.dome_rotation != 0, "--dome-rotation", !a.dome.empty(), "--dome");
+}
+
 RenderOptions to_options(const RenderArguments& a) {
   RenderOptions o = a.options;
   if (a.spp) o.spp = *a.spp;
@@ -347,10 +362,7 @@ RenderOptions to_options(const RenderArguments& a) {
   if (!a.shard.empty()) o.shard = parse_shard(a.shard);
   if (!a.up.empty()) parse_vector("--up", a.up);
   check_png(a);
-  if (o.back_every != RenderOptions().back_every && !o.back)
-    throw Error(ErrorKind::usage, "--back-every needs the pass back: --passes ao,light,back");
-  if (a.dome_rotation != 0 && a.dome.empty())
-    throw Error(ErrorKind::usage, "--dome-rotation needs --dome");
+  check_effects(a, o);
   if (!std::isfinite(a.dome_rotation))
     throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));

@@ -7,7 +7,7 @@
 namespace dapple {
 namespace {
 
-constexpr int kReach = 16;
+constexpr int kReach = 16;  // pixels
 
 struct Step {
   int x, y;
@@ -28,7 +28,7 @@ std::vector<Step> steps_by_length() {
 }  // namespace
 
 std::vector<std::uint32_t> back_sources(std::uint32_t pixels, std::uint32_t width,
-                                        const std::function<bool(std::uint32_t)>& has_backs) {
+                                        const PixelTest& needs, const PixelTest& has) {
   const std::vector<Step> steps = steps_by_length();
   const auto columns = static_cast<int>(width), rows = static_cast<int>(pixels / width);
   std::vector<std::uint32_t> sources(pixels);
@@ -36,11 +36,12 @@ std::vector<std::uint32_t> back_sources(std::uint32_t pixels, std::uint32_t widt
     for (int x = 0; x < columns; ++x) {
       const auto pixel = static_cast<std::uint32_t>(y) * width + static_cast<std::uint32_t>(x);
       sources[pixel] = pixel;
+      if (!needs(pixel)) continue;
       for (const Step& step : steps) {
         const int at_x = x + step.x, at_y = y + step.y;
         if (at_x < 0 || at_y < 0 || at_x >= columns || at_y >= rows) continue;
         const auto at = static_cast<std::uint32_t>(at_y) * width + static_cast<std::uint32_t>(at_x);
-        if (!has_backs(at)) continue;
+        if (!has(at)) continue;
         sources[pixel] = at;
         break;
       }

@@ -8,9 +8,13 @@
 
 namespace dapple {
 
-/// Returns for each pixel of an image of `width` the pixel whose back samples stand for its own:
-/// itself if `has_backs`, or the nearest one that has, at most 16 pixels away; else itself.
+/// Which pixels of an image have samples of their backs, and which need those of others.
+using PixelTest = std::function<bool(std::uint32_t)>;
+
+/// Returns for each of `pixels` of an image of `width` the pixel whose back samples stand for its
+/// own: where it `needs` others, the nearest one that `has` some, at most 16 pixels away; else
+/// itself.
 std::vector<std::uint32_t> back_sources(std::uint32_t pixels, std::uint32_t width,
-                                        const std::function<bool(std::uint32_t)>& has_backs);
+                                        const PixelTest& needs, const PixelTest& has);
 
 }  // namespace dapple

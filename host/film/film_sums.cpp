@@ -25,51 +25,64 @@ double largest_coordinate(const Box3f& box) {
   return largest;
 }
 
-/// Distance from the light's position to the farthest point of `bounds`.
-double farthest(const LightRecord& light, const Box3f& bounds) {
-  double square = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double at = light.position[axis];
-    const double far = std::max(std::fabs(at - bounds.min[axis]), std::fabs(at - bounds.max[axis]));
-    square += far * far;
-  }
-  return std::sqrt(square);
-}
-
-/// What a light of radiance 1 gives to a surface that faces it.
-struct Irradiance {
-  double smallest;  ///< at the farthest point of the scene
-  double largest;   ///< samples of flat lights, which are chosen by area, may exceed it
+/// Distances from the light's position to the nearest and to the farthest point of `bounds`.
+struct Distances {
+  double nearest, farthest;
 };
 
+Distances distances_from(const LightRecord& light, const Box3f& bounds) {
+  double near = 0, far = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = light.position[axis];
+    const double below = bounds.min[axis] - at, above = at - bounds.max[axis];
+    const double beside = std::max({below, above, 0.0});
+    near += beside * beside;
+    far += std::max(below * below, above * above);
+  }
+  return {std::sqrt(near), std::sqrt(far)};
+}
+
+/// What a light of radiance 1 gives to surfaces of the scene that face it, where it is small enough
+/// to need more steps than other lights.
+struct Irradiance {
+  double smallest, largest;
+};
+
+/// A sphere or a flat light of this area that is `distances` away.
+Irradiance irradiance_of(double area, const Distances& distances) {
+  constexpr double kNearest = 1e-3;  // metres
+  const double nearest =
+      std::max({distances.nearest, std::sqrt(area / std::numbers::pi), kNearest});
+  return {area / (distances.farthest * distances.farthest), area / (nearest * nearest)};
+}
+
 Irradiance irradiance_of(const LightRecord& light, const Box3f& bounds) {
-  constexpr double kPi = std::numbers::pi, kLargestFlat = 1024 * kPi;
+  constexpr double kPi = std::numbers::pi;
   switch (light.kind) {
     case DAPPLE_LIGHT_DOME:
-      return {1, kLargestFlat};
+      return {1, kPi};
     case DAPPLE_LIGHT_SUN:
       return {2 * kPi * light.one_minus_cos, 2 * kPi * light.one_minus_cos};
-    case DAPPLE_LIGHT_SPHERE: {
-      const double sine = light.radius / farthest(light, bounds);
-      return {kPi * sine * sine, 4 * kPi};
-    }
+    case DAPPLE_LIGHT_SPHERE:
+      return irradiance_of(kPi * light.radius * light.radius, distances_from(light, bounds));
     case DAPPLE_LIGHT_MESH:
-      return {light.area / double{(bounds.max - bounds.min).length2()}, kLargestFlat};
-    default: {
-      const double distance = farthest(light, bounds);
-      return {light.area / (distance * distance), kLargestFlat};
-    }
+      return irradiance_of(light.area, {0, (bounds.max - bounds.min).length()});
+    default:
+      return irradiance_of(light.area, distances_from(light, bounds));
   }
 }
 
+/// The smallest irradiance gets `kSmallestBits` bits, if 2^20 rays of the largest fit 63 bits.
 float light_scale(const LightRecord& light, const Box3f& bounds) {
-  constexpr int kSmallestBits = 12, kMaxExponent = 100;
+  constexpr int kSmallestBits = 12, kLargestBits = 43, kLeast = 26, kMost = 100;
   const Irradiance irradiance = irradiance_of(light, bounds);
-  const float for_largest = scale_for(irradiance.largest);
-  if (!std::isfinite(irradiance.smallest) || !(irradiance.smallest > 0)) return for_largest;
-  const int exponent = kSmallestBits - static_cast<int>(std::floor(std::log2(irradiance.smallest)));
-  return std::max(for_largest,
-                  static_cast<float>(std::ldexp(1.0, std::min(exponent, kMaxExponent))));
+  int exponent = kLeast;
+  if (irradiance.smallest > 0 && std::isfinite(irradiance.largest)) {
+    const int for_smallest = kSmallestBits - std::ilogb(irradiance.smallest);
+    const int for_largest = kLargestBits - std::ilogb(irradiance.largest);
+    exponent = std::clamp(std::min(for_smallest, for_largest), kLeast, kMost);
+  }
+  return static_cast<float>(std::ldexp(1.0, exponent));
 }
 
 }  // namespace

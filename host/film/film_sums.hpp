@@ -39,9 +39,9 @@ struct FilmScales {
   std::vector<float> lights;
 };
 
-/// Returns the scales for a scene in `bounds` and its lights. A light whose irradiance, at the
-/// point of `bounds` that is farthest from it, is small gets a scale for which that still has 12
-/// bits.
+/// Returns the scales for a scene in `bounds` and its lights. A light of radiance 1 whose
+/// irradiance at the farthest point of `bounds` is small gets a scale for which that still has 12
+/// bits, if what it gives the nearest point does not become too large; others get 2^26.
 FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights);
 
 /// The first plane of each pass, and the powers of two that values are multiplied by. The sum of

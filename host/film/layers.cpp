@@ -62,15 +62,12 @@ double back_sample_count(const Sums& sums, const FilmLayout& layout, std::uint32
 /// The pixels whose sums of backs are used; empty: each pixel's own.
 std::vector<std::uint32_t> sources_of_backs(const Sums& sums, const TracedPicture& picture,
                                             const FilmLayout& layout) {
-  const auto has_backs = [&](std::uint32_t p) { return sums.at(layout.back_samples, p) > 0; };
-  const auto lacks_backs = [&](std::uint32_t p) { return picture.samples[p] > 0 && !has_backs(p); };
-  std::vector<std::uint32_t> pixels(layout.pixels);
-  std::iota(pixels.begin(), pixels.end(), 0u);
-  if (!layout.back_samples || std::none_of(pixels.begin(), pixels.end(), lacks_backs)) return {};
-  const auto sources = back_sources(layout.pixels, layout.width, has_backs);
-  for (std::uint32_t& p : pixels)
-    if (lacks_backs(p)) p = sources[p];
-  return pixels;
+  if (!layout.back_samples) return {};
+  const auto has = [&](std::uint32_t p) { return sums.at(layout.back_samples, p) > 0; };
+  const auto needs = [&](std::uint32_t p) { return picture.samples[p] > 0 && !has(p); };
+  for (std::uint32_t p = 0; p < layout.pixels; ++p)
+    if (needs(p)) return back_sources(layout.pixels, layout.width, needs, has);
+  return {};
 }
 
 /// Irradiance of the lights at a pixel, linear RGB: with occlusion, of all lights together or of

@@ -11,12 +11,14 @@
 #include "passes/kernel_list.hpp"
 #include "points/periodic.hpp"
 #include "points/point_sets.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 
 struct SceneOfPoints {
   SceneOfPoints(Scene given, const PointOptions& options)
       : device(options.device, options.kernel_dir), scene(std::move(given)) {
+    check_scene(scene);
     for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
     finalize_domes(scene);
     KernelsAhead kernels(device.context(), kernels_of(device.context(), scene, options));

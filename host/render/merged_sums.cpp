@@ -82,7 +82,7 @@ void MergedSums::add(const std::string& path, Checkpoint part) {
   tbb::parallel_for(0u, layout_.plane_count, [&](std::uint32_t plane) {
     for (std::size_t p = 0; p < pixels; ++p) {
       std::int64_t& sum = state_.sums[plane * whole + at(p)];
-      sum = wrapped_sum(sum, state.sums[plane * pixels + p]);
+      sum = saturated_sum(sum, state.sums[plane * pixels + p]);
     }
   });
   for (std::size_t p = 0; p < pixels; ++p) state_.samples[at(p)] += state.samples[p];

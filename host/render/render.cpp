@@ -30,6 +30,7 @@
 #include "render/stopwatch.hpp"
 #include "sampling/bias_estimate.hpp"
 #include "sampling/shard.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -37,6 +38,7 @@ namespace {
 /// Applies overrides, chooses the view, and adds lights and ground, in this order: the camera
 /// frames the scene without the ground.
 View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
+  check_scene(scene);
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   View view = choose_view(scene, options, notes);
   if (options.light && scene.lights.empty()) {

@@ -10,6 +10,7 @@
 #include "dapple/error.hpp"
 #include "sampling/shard.hpp"
 #include "scene/corner_normals.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -55,6 +56,7 @@ ShutterScenes look_at_moments(const Shutter& shutter) {
   ShutterScenes scenes;
   for (int time = 0; shutter.times > 1 && time < shutter.times; ++time) {
     const Scene scene = shutter.scene_at(time);
+    check_scene(scene);
     scenes.bounds.extendBy(scene_bounds(scene));
     scenes.smooth = scenes.smooth || is_smooth(scene);
   }

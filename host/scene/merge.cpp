@@ -11,6 +11,7 @@
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
 #include "scene/numeric_range.hpp"
+#include "scene/scene_check.hpp"
 #include "scene/triangle_cleanup.hpp"
 
 namespace dapple {
@@ -252,6 +253,7 @@ std::string reasons(const Scene& scene) {
 }  // namespace
 
 void merge_single_instances(Scene& scene) {
+  check_scene(scene);
   drop_singular_instances(scene);
   put_out_strands(scene);
   merge_chosen(scene);

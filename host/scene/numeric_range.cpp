@@ -29,7 +29,7 @@ void check_point(const Scene& scene, const std::string& what, const V3f& point) 
   if (!(reach(point) <= kLargestCoordinate)) refuse(scene, what, reach(point));
 }
 
-/// Coordinates of a scene of 100 m differ by at least a millimetre where this is not reached.
+/// Steps of coordinates that are coarse, as a part of the scene's size: 1 mm of 100 m.
 constexpr double kCoarseStep = 1e-5;
 
 void warn_of_coarse_steps(const Box3f& bounds, Scene& scene) {

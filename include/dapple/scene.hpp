@@ -256,6 +256,7 @@ void name_objects(Scene& scene);
 /// Merges all meshes that are placed once, and tiny meshes that are placed several times, into one
 /// mesh in world space, so that overlapping meshes share one BVH. Mesh lights are not merged. Drops
 /// instances whose matrix cannot be inverted and triangles that are not finite, with a warning.
+/// Throws Error input if parts of the scene do not fit together, as an index beyond its array.
 void merge_single_instances(Scene& scene);
 
 }  // namespace dapple

@@ -106,8 +106,9 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
       const Occlusion found = occlusions[ray];
       const float weight = rays[ray].weight, light = weight * found.transmittance;
       value += light * inverse_rays;
-      sums += fixed_points((float8)(light * params.scale, weight * params.scale, nodes_of(found),
-                                    tests_of(found), 0.0f, 0.0f, 0.0f, 0.0f));
+      sums = add_sat(sums, fixed_points((float8)(light * params.scale, weight * params.scale,
+                                                 nodes_of(found), tests_of(found), 0.0f, 0.0f, 0.0f,
+                                                 0.0f)));
     }
     add_to_batch(&batches, s, value);
   }

@@ -56,7 +56,7 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
       const uint lane = (ray - first) % 16u;
       if (lane == 0u) find_texels(&dome, rays, ray, last, &texels);
       const float weight = rays[ray].weight;
-      sums += dome_sums(&dome, texels.u[lane], weight, occlusions[ray], params.scale);
+      sums = add_sat(sums, dome_sums(&dome, texels.u[lane], weight, occlusions[ray], params.scale));
       value += weight * occlusions[ray].transmittance * inverse_rays;
     }
     add_to_batch(&batches, s, value);

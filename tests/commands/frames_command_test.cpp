@@ -155,7 +155,7 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   refuses("--frames 1-2:0 -o o.#.exr", "--frames 1-2:0: expected numbers");
   refuses("--frames 1-9999999 -o o.#.exr", "at most 100000 frames");
   refuses("--frames 1-2-3 -o o.#.exr", "--frames 1-2-3: expected A-B");
-  refuses("--frames a -o o.#.exr", "'a' is not a number");
+  refuses("--frames a -o o.#.exr", "'a' is not a whole number");
   refuses("--frames -1-2 -o o.#.exr", "--frames");
   refuses("--frames 1-2 --fps 0 -o o.#.exr", "--fps must be a number above 0");
   refuses("--frame nan -o o.exr", "--frame");

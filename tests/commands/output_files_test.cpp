@@ -77,11 +77,13 @@ TEST_F(OutputFiles, OutputsThatAreOneFileAreRefusedByTheirFlags) {
   std::filesystem::create_symlink("folder", path("link"));
   write_bytes(path("old.exr"), "old");
   std::filesystem::create_hard_link(path("old.exr"), path("same.exr"));
-  expect_failure(render("--png out.exr"), 2, "--png out.exr: is the same file as --output");
-  expect_failure(render("--png ./out.exr"), 2, "--png");
+  expect_failure(render("--png out.exr"), 2, "--png is out.exr, but previews are PNG files");
+  std::filesystem::create_symlink("out.exr", path("out.png"));
+  expect_failure(render("--png ./out.png"), 2, "--png");
+  std::filesystem::remove(path("out.png"));
   expect_failure(render("--png a.png --stats-json a.png"), 2, "--stats-json");
   expect_failure(render("--png folder/a.png --stats-json link/a.png"), 2, "--stats-json");
-  expect_failure(render("--png old.exr --stats-json same.exr"), 2, "--stats-json");
+  expect_failure(render("--deep old.exr --stats-json same.exr"), 2, "--stats-json");
   expect_failure(render("--passes ao,visits --png a.png --stats-json a_visits.png"), 2,
                  "--stats-json");
   expect_failure(dapple("compare old.exr same.exr --png same.exr"), 2, "--png");

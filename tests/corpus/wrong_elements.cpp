@@ -319,7 +319,7 @@ const Damage kDamages[] = {
        d["extensions"]["KHR_lights_punctual"]["lights"] = {
            {{"type", "spot"}, {"spot", {{"innerConeAngle", 1.2}, {"outerConeAngle", 0.4}}}}};
      },
-     "light 0 has cone angles 1.2 and 0.4"},
+     "light 0 has the inner cone angle 1.2 and the outer 0.4"},
     {"LightOfNegativeRange",
      [](json& d) {
        d["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"range", -5}}};

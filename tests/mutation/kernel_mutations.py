@@ -4,6 +4,11 @@ from mutation import Mutation
 
 MUTATIONS = [
     Mutation(
+        "rays-start-above-the-largest-axis", "kernels/camera/surface_points16.clh",
+        "lift += fabs(normal[axis]) * terms[axis] +",
+        "lift += sqrt(dot_16(normal, normal)) * terms[axis] +",
+        r"^RayOrigin\."),
+    Mutation(
         "slab-sign", "kernels/occlusion/packet_node.clh",
         "const bool flip = in_order && rays->backward[axis];",
         "const bool flip = in_order && !rays->backward[axis];",

@@ -21,9 +21,19 @@ MUTATIONS = [
         r"^(OptionSettings|Resume)\."),
     Mutation(
         "radiance-of-lights-ignored", "host/film/layers.cpp",
-        "return V3d(lights_[light].radiance) * sum * (inverse_",
-        "return sum * (inverse_",
+        "return V3d(lights_[light].radiance) * sum *",
+        "return sum *",
         r"^(Light|LightLayers|Beauty)\."),
+    Mutation(
+        "far-lights-in-coarse-steps", "host/film/film_sums.cpp",
+        "constexpr int kSmallestBits = 12,",
+        "constexpr int kSmallestBits = 0,",
+        r"^SmallLights\."),
+    Mutation(
+        "backs-of-missing-shards-are-misses", "host/film/back_sources.cpp",
+        "      if (!needs(pixel)) continue;\n",
+        "      if (needs(pixel)) continue;\n",
+        r"^(MergeParts|BackSources)\."),
     Mutation(
         "misses-count-as-occluded", "host/film/layers.cpp",
         "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * samples) + 1.0 -\n"

@@ -35,10 +35,11 @@ std::set<std::string> symbols_of(const std::string& path, const std::string& opt
   return found;
 }
 
-/// "render" of "dapple::render(...)", "Device::info" of "dapple::Device::info() const"; empty for
-/// what is not a function of namespace dapple.
+/// "render" of "dapple::render(...)", "Device::info" of "dapple::Device::info() const", "name_of"
+/// of "dapple::name_of[abi:cxx11](...)"; empty for what is not a function of namespace dapple.
 std::string function_name(const std::string& symbol) {
-  static const std::regex pattern("dapple::((?:\\w+::)*(?:operator=|[~\\w]+))\\(.*");
+  static const std::regex pattern(
+      "dapple::((?:\\w+::)*(?:operator=|[~\\w]+))(?:\\[abi:\\w+\\])?\\(.*");
   std::smatch match;
   return std::regex_match(symbol, match, pattern) ? match[1].str() : "";
 }

@@ -19,17 +19,18 @@ TEST(RayOrigin, APlateAMillimetreAboveATriangleOfTwoKilometresHidesItsSky) {
   EXPECT_NEAR(value(render(scene, one_pixel()).film, "ao.R"), 0, 1e-5);
 }
 
-/// A ground of `side` metres around `at`, turned about `axis` by `angle`.
-Scene tilted_ground(float side, const V3f& at, const V3f& axis, float angle) {
+/// A ground of `side` metres around `at`, turned about `axis` by `angle`, of triangles that are
+/// `aspect` times as long as wide.
+Scene tilted_ground(float side, const V3f& at, const V3f& axis, float angle, float aspect = 1) {
   Scene scene;
   scene.materials.push_back(material_of(1));
   M44f turn;
   turn.setAxisAngle(axis.normalized(), angle);
   Mesh ground = square_mesh(side, 0, 8, 0);
-  for (V3f& p : ground.positions) p = p * turn + at;
+  for (V3f& p : ground.positions) p = V3f(p.x, p.y, p.z / aspect) * turn + at;
   place(scene, std::move(ground));
   const V3f up = V3f(0, 1, 0) * turn;
-  scene.cameras.push_back(look_at(at + up * side, at, V3f(1, 0, 0) * turn, 1));
+  scene.cameras.push_back(look_at(at + up * (side / aspect), at, V3f(1, 0, 0) * turn, 0.8f));
   return scene;
 }
 
@@ -50,6 +51,20 @@ TEST(RayOrigin, APlaneDoesNotHideItselfAtAnyTiltSizeOrPlace) {
               << side << ", " << at << ", " << angle;
         }
   }
+}
+
+TEST(RayOrigin, GentleSlopesOfNeedlesDoNotHideThemselves) {
+  RenderOptions options = one_pixel();
+  options.width = options.height = 24;
+  options.ao_rays = 64;
+  Renderer renderer;
+  for (const float angle : {0.01f, 0.1f, 0.8f})
+    for (const float aspect : {100.0f, 1000.0f}) {
+      Scene scene = tilted_ground(100, {0, 0, 20}, V3f(0.4f, 0, 1), angle, aspect);
+      const Film film = renderer.render(std::move(scene), options).film;
+      const auto& ao = film.find("ao.R")->pixels;
+      EXPECT_EQ(*std::min_element(ao.begin(), ao.end()), 1) << angle << ", " << aspect;
+    }
 }
 
 /// The ground, and above it a sheet that hides the middle of the sky: of directions by cosine those

@@ -3,10 +3,12 @@
 
 #include "bvh/build/scene_objects.hpp"
 #include "bvh/build/top_level.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 
 BuiltScene build_scene(const Scene& scene, const std::string& cache_folder) {
+  check_scene(scene);
   if (!cache_folder.empty()) prepare_bvh_cache(cache_folder);
   BuiltScene built;
   SceneBvh& bvh = built.bvh;

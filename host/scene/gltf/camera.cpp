@@ -109,9 +109,10 @@ void add_camera(const Document& document, const PlacedNode& placed,
   const auto& given = document.model.cameras[static_cast<std::size_t>(node.camera)];
   const std::string who = element("camera", static_cast<std::size_t>(node.camera), given.name);
   Camera camera = lenses[static_cast<std::size_t>(node.camera)];
-  camera.name = one_line(!given.name.empty()  ? given.name
-                         : !node.name.empty() ? node.name
-                                              : fmt::format("camera_{}", node.camera));
+  camera.name =
+      names.free_one(one_line(!given.name.empty()  ? given.name
+                              : !node.name.empty() ? node.name
+                                                   : fmt::format("camera_{}", node.camera)));
   const std::optional<M44f> to_world = rigid(placed.to_world);
   if (!to_world) {
     scene.warnings.push_back(one_line(
@@ -119,7 +120,6 @@ void add_camera(const Document& document, const PlacedNode& placed,
     return;
   }
   camera.to_world = *to_world;
-  camera.name = names.free_one(camera.name);
   scene.cameras.push_back(std::move(camera));
 }
 

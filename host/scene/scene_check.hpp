@@ -1,0 +1,13 @@
+// Whether the parts of a scene fit together. Readers make only such scenes; callers of the library
+// may make others. In: a scene; out: an error that names the first part that does not fit.
+#pragma once
+
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+/// Throws Error input if an index of a mesh, an instance or a material points at nothing, arrays of
+/// a mesh or an image have wrong lengths, or a light has numbers that no light has.
+void check_scene(const Scene& scene);
+
+}  // namespace dapple

@@ -1,0 +1,74 @@
+// Scenes that callers of the library made: what does not fit together is an error that names it, in
+// every function that takes a scene.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "dapple/bake.hpp"
+#include "dapple/error.hpp"
+#include "dapple/points.hpp"
+#include "dapple/render.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+Scene lit_square() {
+  Scene scene;
+  scene.materials.push_back(material_of(1));
+  place(scene, square_mesh(1, 0, 1, 0));
+  scene.lights = daylight(Camera{});
+  return scene;
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::pair<std::function<void(Scene&)>, std::string> cases[] = {
+      {[](Scene& s) { s.meshes[0].indices[4] = 4'000'000'000; },
+       "mesh 0 has the index 4000000000, but there are 4"},
+      {[](Scene& s) { s.meshes[0].indices.pop_back(); }, "mesh 0 has 5 indices and 2 materials"},
+      {[](Scene& s) { s.meshes[0].materials[1] = 1; }, "mesh 0 has the material 1"},
+      {[](Scene& s) { s.materials.clear(); }, "mesh 0 has the material 0, but there are 0"},
+      {[](Scene& s) { s.meshes[0].normals.resize(3); }, "mesh 0 has 3 normals"},
+      {[](Scene& s) { s.instances[0].mesh = 7; }, "instance 0 has no mesh 7"},
+      {[](Scene& s) { s.instances[0].light = 9; }, "instance 0 has no light 9"},
+      {[](Scene& s) { s.materials[0].alpha_texture = 0; }, "material 0 has no texture 0"},
+      {[](Scene& s) {
+         s.textures.push_back({"leaf", 2, 2, {1, 2, 3}});
+       },
+       "texture 0 \"leaf\" has 3 values for 2 x 2 texels"},
+      {[&](Scene& s) { s.lights[0].radiance.y = nan; }, "light 0 \"sun\" has a radiance"},
+      {[](Scene& s) { s.lights[0].radiance.x = -1; }, "light 0 \"sun\" has a radiance"},
+      {[](Scene& s) { s.lights[0].direction = V3f(0); }, "light 0 \"sun\" has a direction"},
+      {[](Scene& s) { s.lights[0].angular_radius = 0; },
+       "light 0 \"sun\" has the angular radius 0"},
+  };
+  for (const auto& [change, expected] : cases) {
+    Scene scene = lit_square();
+    change(scene);
+    RenderOptions picture;
+    picture.width = picture.height = picture.spp = 1;
+    for (const std::string& message :
+         {message_of([&] { (void)render(scene, picture); }), message_of([&] {
+            (void)measure_points(scene, {{{0, 1, 0}, {0, 1, 0}}}, {});
+          }),
+          message_of([&] { (void)bake(scene, {}); }), message_of([&] { (void)build_bvh(scene); })})
+      EXPECT_TRUE(message.starts_with(expected)) << message << " in place of " << expected;
+  }
+}
+
+}  // namespace
+}  // namespace dapple
