@@ -12,6 +12,7 @@
 #include "dapple/points.hpp"
 #include "film/light_layers.hpp"
 #include "points/bias_sample.hpp"
+#include "points/periodic.hpp"
 #include "points/ray_slices.hpp"
 #include "points/ring_rays.hpp"
 #include "points/set_sums.hpp"
@@ -308,6 +309,12 @@ PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<c
   check_points(points, normals);
   PointResult result;
   const Stopwatch building;
+  std::vector<V3f> in_period;
+  if (options.period_x > 0) {
+    in_period = points_in_period(scene, options.period_x, options.period_z, points);
+    points = in_period;
+    repeat(scene, options.period_x, options.period_z, points);
+  }
   const SceneOfPoints on(std::move(scene), options);
   result.build_seconds = building.seconds();
   result.device = on.device.info().name;

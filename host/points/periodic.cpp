@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "dapple/error.hpp"
@@ -13,19 +14,66 @@ namespace {
 constexpr double kReach = 11.43;
 constexpr double kMaxInstances = 4e6;
 
+/// The scene and its period along one axis.
+struct Interval {
+  Interval(const Box3f& scene, int axis, float metres)
+      : period(metres), middle((double{scene.min[axis]} + double{scene.max[axis]}) / 2) {
+    if (scene.isEmpty()) middle = 0;
+    half = std::max(metres, scene.size()[axis]) / 2.0;
+  }
+
+  [[nodiscard]] float inside(float x) const {
+    const double from_middle = double{x} - middle;
+    if (!(std::fabs(from_middle) > half)) return x;
+    return static_cast<float>(double{x} - period * std::round(from_middle / period));
+  }
+
+  /// To each side, for rays that go as far as `reach` from points in `points`.
+  [[nodiscard]] double copies(double reach, float points_min, float points_max) const {
+    const double farthest =
+        std::max({half, middle - double{points_min}, double{points_max} - middle});
+    return std::ceil((reach + farthest + half) / period);
+  }
+
+  double period, middle, half;
+};
+
+bool has_place(const Light& light) {
+  return light.kind != LightKind::sun && light.kind != LightKind::dome;
+}
+
 }  // namespace
 
-void repeat(Scene& scene, float period_x, float period_z) {
+std::vector<V3f> points_in_period(const Scene& scene, float period_x, float period_z,
+                                  std::span<const V3f> points) {
+  std::vector<V3f> moved(points.begin(), points.end());
+  if (std::any_of(scene.lights.begin(), scene.lights.end(), has_place)) return moved;
   const Box3f bounds = scene_bounds(scene);
-  const double reach = kReach * double{bounds.size().y};
-  const auto copies = [&](float period) { return std::ceil(reach / double{period}) + 1; };
-  const double x = copies(period_x), z = copies(period_z);
+  const Interval x(bounds, 0, period_x), z(bounds, 2, period_z);
+  for (V3f& point : moved) point = V3f(x.inside(point.x), point.y, z.inside(point.z));
+  return moved;
+}
+
+void repeat(Scene& scene, float period_x, float period_z, std::span<const V3f> points) {
+  const Box3f bounds = scene_bounds(scene);
+  if (bounds.isEmpty()) return;
+  Box3f around = bounds;
+  for (const V3f& point : points) around.extendBy(point);
+  const double reach = kReach * double{around.size().y};
+  const auto copies = [&](int axis, float period) {
+    return Interval(bounds, axis, period).copies(reach, around.min[axis], around.max[axis]);
+  };
+  const double x = copies(0, period_x), z = copies(2, period_z);
   const double all = (2 * x + 1) * (2 * z + 1) * static_cast<double>(scene.instances.size());
   if (!(all <= kMaxInstances))
-    throw Error(ErrorKind::usage,
-                fmt::format("--periodic is {},{}; for a scene {:.3g} m high that takes {:.3g} "
-                            "instances (at most {:.3g}); repeat a larger part of it",
-                            period_x, period_z, bounds.size().y, all, kMaxInstances));
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("--periodic is {},{}; scene and points are {:.3g} m high and {:.3g} by "
+                    "{:.3g} m wide, which takes {:.3g} instances (at most {:.3g}); repeat a "
+                    "larger part of the scene, as one mesh, or measure high or far points "
+                    "apart",
+                    period_x, period_z, around.size().y, around.size().x, around.size().z, all,
+                    kMaxInstances));
   const std::vector<Instance> once = scene.instances;
   const int last_x = static_cast<int>(x), last_z = static_cast<int>(z);
   for (int i = -last_x; i <= last_x; ++i) {

@@ -1,13 +1,22 @@
-// A scene that repeats itself in the plane, as copies of its instances. In and out: a scene.
+// A scene that repeats itself in the plane, as copies of its instances. In: a scene, and the points
+// to measure at. Out: the scene with its copies, and points inside it.
 #pragma once
+
+#include <span>
+#include <vector>
 
 #include "dapple/scene.hpp"
 
 namespace dapple {
 
-/// Adds copies of all instances at multiples of the periods, so far that rays from between them
-/// leave the scene's height before they leave the copies, but for those within five degrees of the
-/// horizon. Throws Error usage if that takes too many copies.
-void repeat(Scene& scene, float period_x, float period_z);
+/// Moves points that lie beyond the scene, and beyond one period around its middle, into that
+/// period. Returns them as they are if a light has a place: copies do not emit.
+std::vector<V3f> points_in_period(const Scene& scene, float period_x, float period_z,
+                                  std::span<const V3f> points);
+
+/// Adds copies of all instances at multiples of the periods, so far that rays from the points leave
+/// the height of scene and points before they leave the copies, but for those within five degrees
+/// of the horizon. Throws Error usage if that takes too many copies.
+void repeat(Scene& scene, float period_x, float period_z, std::span<const V3f> points);
 
 }  // namespace dapple

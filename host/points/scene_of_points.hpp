@@ -1,5 +1,5 @@
-// The scene of measure_points(), on the device. In: a scene and options. Out: the scene with
-// opacities, copies (--periodic) and ground applied, its BVH, and the uploaded scene.
+// The scene of measure_points(), on the device. In: a scene, with its copies (--periodic), and
+// options. Out: the scene with opacities and ground applied, its BVH, and the uploaded scene.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include "dapple/points.hpp"
 #include "device/programs/kernels_ahead.hpp"
 #include "passes/kernel_list.hpp"
-#include "points/periodic.hpp"
 #include "points/point_sets.hpp"
 #include "scene/scene_check.hpp"
 
@@ -22,7 +21,6 @@ struct SceneOfPoints {
     for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
     finalize_domes(scene);
     KernelsAhead kernels(device.context(), kernels_of(device.context(), scene, options));
-    if (options.period_x > 0) repeat(scene, options.period_x, options.period_z);
     if (options.ground) add_ground(scene);
     merge_single_instances(scene);
     bvh = build_bvh(scene, options.cache);

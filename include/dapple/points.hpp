@@ -37,7 +37,8 @@ struct PointOptions {
   float report_bias = kDefaultReportBias;  ///< 0: PointResult::bias stays empty
   float max_bias = 0;                      ///< as RenderOptions::max_bias, before the correction
   float distance = 0;                      ///< of AO, as RenderOptions::ao_distance
-  /// The scene repeats itself with these periods along X and Z, metres; 0: it does not.
+  /// The scene repeats itself with these periods along X and Z, metres; 0: it does not. Its lights
+  /// do not.
   float period_x = 0, period_z = 0;
   std::uint32_t seed = 0;
   std::vector<std::pair<std::string, float>> opacity;  ///< of materials by name, [0,1]

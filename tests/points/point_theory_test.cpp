@@ -108,6 +108,41 @@ TEST(PointTheory, TheSkyViewFactorUnderARandomCanopyIsThatOfTheory) {
   }
 }
 
+/// Horizontal leaves, leaf area index 1, in a thin layer that repeats itself: a gap fraction of
+/// exp(-1) in all directions.
+Scene thin_canopy() {
+  std::mt19937 bits(3);
+  std::uniform_real_distribution<float> along(0, kPeriod), up(2, 2.2f);
+  Mesh mesh;
+  const int leaves = static_cast<int>(kPeriod * kPeriod / (kLeaf * kLeaf) + 0.5f);
+  for (int i = 0; i < leaves; ++i) {
+    const float x = along(bits), z = along(bits), y = up(bits);
+    append_grid(mesh, {x, y, z}, {kLeaf, 0, 0}, {0, 0, kLeaf}, 1, 0);
+  }
+  return scene_of(std::move(mesh), 1);
+}
+
+// Copies that reach only as far as the layer's own height needs give an AO of 0.39. The ninth ring
+// ends at the horizon, where rays may leave the copies.
+TEST(PointTheory, AThinCanopyFarAboveThePointsHasItsGapFractionInAllRings) {
+  PointOptions options = periodic(Estimator::exact);
+  options.rings = 9;
+  const PointResult found = measure(thin_canopy(), ground_points(32), options);
+  for (const char* name : {"ao", "sky_view_factor", "gap_1", "gap_4", "gap_7", "gap_8"})
+    EXPECT_NEAR(mean_of(found, name), std::exp(-1.0), 0.006) << name;
+}
+
+TEST(PointTheory, PointsBelowCopiesOfACanopyHaveTheValuesBelowIt) {
+  const Scene scene = canopy(2, 1);
+  std::vector<V3f> points = ground_points(8);
+  const PointOptions options = periodic(Estimator::prefiltered);
+  const PointResult inside = measure(scene, points, options);
+  for (V3f& point : points) point += V3f(25 * kPeriod, 0, -25 * kPeriod);
+  const PointResult outside = measure(scene, points, options);
+  for (const char* name : {"ao", "sky_view_factor"})
+    EXPECT_NEAR(mean_of(outside, name), mean_of(inside, name), 1e-4) << name;
+}
+
 // The mean of exp(-L / (2 cos)) over a ring, uniform by solid angle: by cos. Rings see fewer leaves
 // of the one canopy than the whole sky does: exact values of the innermost one err by 0.0034.
 TEST(PointTheory, GapFractionsUnderARandomCanopyAreThoseOfTheory) {
