@@ -112,17 +112,24 @@ Placements placements_of(const Scene& scene, std::uint32_t mesh, BakeInstances k
 }
 
 double expected_samples(const Scene& scene, const BakeOptions& options) {
-  const double of_triangle = options.target_error > 0
-                                 ? kExpectedSamples
-                                 : double{1.0 * sample_counts(options.rays).samples};
+  const auto of_element = [&](std::size_t placements, bool at_vertex) {
+    return options.target_error > 0
+               ? kExpectedSamples
+               : double{1.0 * sample_counts(options.rays, placements, at_vertex).samples};
+  };
   double samples = 0;
-  for (const Mesh& mesh : scene.meshes) {
-    if (!options.vertices || mesh.has_strands()) continue;
-    samples += options.at_vertices ? static_cast<double>(mesh.positions.size())
-                                   : static_cast<double>(mesh.primitive_count()) * of_triangle;
+  for (std::uint32_t m = 0; m < scene.meshes.size() && options.vertices; ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    if (mesh.has_strands()) continue;
+    const std::size_t elements =
+        options.at_vertices ? mesh.positions.size() : mesh.primitive_count();
+    samples +=
+        static_cast<double>(elements) *
+        of_element(placements_of(scene, m, options.placement).to_world.size(), options.at_vertices);
   }
   if (options.texture)
-    samples += kExpectedCoverage * of_triangle * options.texture_size * options.texture_size;
+    samples +=
+        kExpectedCoverage * of_element(1, false) * options.texture_size * options.texture_size;
   if (options.instances) samples += static_cast<double>(scene.instances.size()) * kInstanceSamples;
   return options.light ? 2 * samples : samples;
 }

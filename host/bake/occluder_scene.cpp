@@ -42,7 +42,7 @@ std::vector<KernelName> kernels_of(const DeviceContext& context, const BakeOptio
   query.bent = options.bent;
   query.rays = kRaysPerSample;
   if (options.target_error <= 0)
-    query.rays = options.at_vertices ? options.rays : sample_counts(options.rays).rays;
+    query.rays = sample_counts(options.rays, 1, options.at_vertices).rays;
   std::vector<KernelName> kernels = point_kernels(context, query);
   if (options.light) {
     query.ao = query.bent = false;

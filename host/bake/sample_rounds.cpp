@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "bake/placement_choice.hpp"
+
 namespace dapple {
 namespace {
 
@@ -37,10 +39,12 @@ SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
 
 bool SampleRounds::run(const RoundOptions& options) {
   if (!tracing_.progress.add(0)) return false;
+  is_fixed_ = options.target_error <= 0;
+  is_in_all_placements_ = is_fixed_ && static_cast<std::size_t>(options.fixed.samples) >=
+                                           kPointsOfPlacement * placements();
   const bool done =
-      options.target_error <= 0
-          ? take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays)
-          : take(options.first, options.rays) && refine(options.target_error, options.limit);
+      is_fixed_ ? take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays)
+                : take(options.first, options.rays) && refine(options.target_error, options.limit);
   tracing_.progress.show();
   return done;
 }
@@ -88,7 +92,8 @@ bool SampleRounds::round(const std::vector<std::uint32_t>& wanted) {
 
 // A sample, without the sides that count for no value.
 SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
-  SurfaceSample sample = surface_.sample(index.element, index.number);
+  SurfaceSample sample = surface_.sample(
+      index.element, is_in_all_placements_ ? index.number / placements() : index.number);
   bool front = false, back = false;
   for (const std::uint32_t place : surface_.places(index.element)) {
     front = front || sums_.counts(place, false);
@@ -104,17 +109,17 @@ SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
 bool SampleRounds::trace() {
   Batch batch;
   batch.samples.resize(next_.size());
-  tbb::parallel_for(std::size_t{0}, next_.size(),
-                    [&](std::size_t i) { batch.samples[i] = sample(next_[i]); });
+  batch.placement.resize(next_.size());
+  batch.hash = hash_of(hash_, batch_);
+  tbb::parallel_for(std::size_t{0}, next_.size(), [&](std::size_t i) {
+    const SampleIndex& index = next_[i];
+    batch.samples[i] = sample(index);
+    batch.placement[i] =
+        is_fixed_ ? placement_of_sample(index.number, placements(), hash_of(~hash_, index.element))
+                  : hash_of(batch.hash, static_cast<std::uint32_t>(i)) % placements();
+  });
+  if (!next_.empty()) ++batch_;
   next_.clear();
-  if (!batch.samples.empty()) {
-    const std::uint32_t hash = hash_of(hash_, batch_++);
-    batch.placement.resize(batch.samples.size());
-    const auto count = static_cast<std::uint32_t>(placements_.to_world.size());
-    for (std::uint32_t i = 0; i < batch.placement.size() && count > 1; ++i)
-      batch.placement[i] = hash_of(hash, i) % count;
-    batch.hash = hash;
-  }
   std::optional<TracedSamples> found;
   if (traced_.valid()) found = traced_.get();
   Batch before = std::move(batch_traced_);

@@ -52,6 +52,9 @@ class SampleRounds {
   bool take(std::uint32_t samples, int rays);
   bool refine(float target, std::uint32_t max_samples);
   bool round(const std::vector<std::uint32_t>& wanted);
+  [[nodiscard]] std::uint32_t placements() const {
+    return static_cast<std::uint32_t>(placements_.to_world.size());
+  }
   [[nodiscard]] SurfaceSample sample(const SampleIndex& index) const;
   bool trace();
 
@@ -64,8 +67,10 @@ class SampleRounds {
   std::size_t lights_;               ///< rays to lights are that many times as many
   std::size_t samples_at_once_ = 1;  ///< for take()'s rays
   int rays_ = kRaysPerSample;
-  std::vector<std::uint32_t> taken_;  ///< samples of each element
-  std::vector<SampleIndex> next_;     ///< to be traced
+  bool is_fixed_ = false;              ///< the number of samples is: they take placements in turn
+  bool is_in_all_placements_ = false;  ///< each point of an element is a sample in all placements
+  std::vector<std::uint32_t> taken_;   ///< samples of each element
+  std::vector<SampleIndex> next_;      ///< to be traced
   Batch batch_traced_;
   std::future<TracedSamples> traced_;  ///< last: its destructor waits for the thread
 };

@@ -9,12 +9,16 @@
 namespace dapple {
 namespace {
 
-constexpr int kMaxSamples = 64;  ///< of a triangle, when the number of rays is given
+/// Of a triangle in few placements, when the number of rays is given.
+constexpr int kMaxSamples = 64;
 
 }  // namespace
 
-SampleCounts sample_counts(int rays) {
-  const int samples = std::clamp(rays / kRaysPerSample, 1, kMaxSamples);
+SampleCounts sample_counts(int rays, std::size_t placements, bool at_vertex) {
+  const int enough = std::max(1, rays / kRaysPerSample);
+  const int each = std::max(1, static_cast<int>(std::min<std::size_t>(placements, enough)));
+  const int most = at_vertex ? each : std::max(kMaxSamples, kPointsOfPlacement * each);
+  const int samples = std::min(enough, most) / each * each;
   return {samples, rays / samples};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,8 +33,13 @@ struct SampleCounts {
   int rays = kRaysPerSample;
 };
 
-/// Divides the rays of a triangle's side over 64 samples at most, of kRaysPerSample rays at least.
-SampleCounts sample_counts(int rays);
+/// Points of a triangle that are samples in all its placements, if there are enough rays.
+inline constexpr int kPointsOfPlacement = 16;
+
+/// Divides the rays of a triangle's side over samples of kRaysPerSample rays at least: up to 64, or
+/// kPointsOfPlacement for each placement if these are more; of a vertex one for each placement.
+/// Placements have equally many samples if there are enough.
+SampleCounts sample_counts(int rays, std::size_t placements, bool at_vertex = false);
 
 /// Whether values of a triangle with this material describe both sides.
 bool is_two_sided(const Material& material, BakeSides sides);

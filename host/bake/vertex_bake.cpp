@@ -120,12 +120,13 @@ SmallParts small_parts(const Mesh& mesh, const VertexGroups& groups) {
   return parts;
 }
 
-RoundOptions round_options(const BakeOptions& options, std::uint32_t first, bool lights) {
+RoundOptions round_options(const BakeOptions& options, std::uint32_t first,
+                           const Placements& placements, bool lights) {
   RoundOptions rounds;
   rounds.target_error = options.target_error;
   rounds.first = first;
   rounds.limit = static_cast<std::uint32_t>(options.rays / kRaysPerSample);
-  rounds.fixed = sample_counts(options.rays);
+  rounds.fixed = sample_counts(options.rays, placements.to_world.size());
   if (lights) rounds.rays = rounds.fixed.rays = options.light_rays;
   return rounds;
 }
@@ -141,8 +142,9 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
   const std::uint32_t first = options.at_vertices ? 2 : 1;
   ValueSums sums(small_parts(mesh, groups), options.sides);
   SampleRounds rounds(sampled, hash, placements, tracing, sums, false);
-  RoundOptions how = round_options(options, first, false);
-  if (options.at_vertices) how.fixed = {1, options.rays};
+  RoundOptions how = round_options(options, first, placements, false);
+  if (options.at_vertices)
+    how.fixed = sample_counts(options.rays, placements.to_world.size(), true);
   if (!rounds.run(how)) return {};
   sums.choose_sides(true);
   BakeStatistics& statistics = tracing.statistics;
@@ -152,7 +154,7 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
   if (tracing.light) {
     ValueSums light(small_parts(mesh, groups), options.sides, tracing.lights);
     SampleRounds light_rounds(sampled, ~hash, placements, tracing, light, true);
-    if (!light_rounds.run(round_options(options, first, true))) return {};
+    if (!light_rounds.run(round_options(options, first, placements, true))) return {};
     light.choose_sides(true);
     add_errors(groups, light, statistics.squared_light_errors);
     for (std::size_t l = 0; l < tracing.lights; ++l) values.light.push_back(light.light_values(l));

@@ -22,7 +22,9 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
                                    std::uint32_t index, const Placements& placements,
                                    const BakeOptions& options, BakeTracing& tracing);
 
-/// `first` samples of each element, then as many as the options say; of lights if `lights`.
-RoundOptions round_options(const BakeOptions& options, std::uint32_t first, bool lights);
+/// `first` samples of each element, then as many as the options say for so many placements; of
+/// lights if `lights`.
+RoundOptions round_options(const BakeOptions& options, std::uint32_t first,
+                           const Placements& placements, bool lights);
 
 }  // namespace dapple

@@ -42,7 +42,8 @@ struct BakeOptions {
   /// together, relative to the largest unoccluded one; 0: `rays` for every value.
   float target_error = 0.04f;
   /// Of each triangle (at_vertices: vertex; texture: texel) and side, [8, 65536]; with a target, at
-  /// most. Eight are a sample, up to 512 of them; lights have as many samples of `light_rays`.
+  /// most. Without one, they are divided over samples of eight or more: up to 64, or 16 for each
+  /// placement if these are more. Lights have as many samples of `light_rays`.
   int rays = 1024;
   Estimator estimator = Estimator::prefiltered;
   /// As RenderOptions::footprint, for the rays of one point.

@@ -92,6 +92,37 @@ TEST(Bake, MeshesOfFewTrianglesReachTheirTargetToo) {
   EXPECT_LT(std::sqrt(squares), 0.09);
 }
 
+/// The largest error of AO at the vertices of two triangles with `placements`, of which one is
+/// under a disk that covers 0.8 of its hemisphere.
+float error_in_placements(std::size_t placements, bool at_vertices) {
+  const Scene disk = make_procedural("scene:disk?radius=2&height=1&opacity=1");
+  Scene plane;
+  plane.materials = {opaque(false)};
+  plane.meshes = {grid(0.02f, 0, 1)};
+  plane.instances.resize(placements);
+  for (std::size_t i = 1; i < placements; ++i)
+    plane.instances[i].to_world.translate(V3f(1000.0f * static_cast<float>(i), 0, 0));
+  BakeOptions options;
+  options.target_error = options.report_bias = 0;
+  options.rays = 16384;
+  options.at_vertices = at_vertices;
+  options.estimator = Estimator::exact;
+  float largest = 0;
+  const BakeResult baked = bake(plane, options, {}, {disk});
+  for (const float ao : baked.meshes.at(0).ao)
+    largest = std::max(largest, std::fabs(ao - (1 - 0.8f / static_cast<float>(placements))));
+  return largest;
+}
+
+// Of placements at random, 64 samples of a triangle would err by 0.04 with two, of one sample at a
+// vertex by 0.4.
+TEST(Bake, AllPlacementsCountEquallyIfTheNumberOfRaysIsGiven) {
+  for (const bool at_vertices : {false, true})
+    for (const std::size_t placements : {2, 5, 100})
+      EXPECT_LT(error_in_placements(placements, at_vertices), 0.004f)
+          << placements << (at_vertices ? " at vertices" : "");
+}
+
 TEST(Bake, AnOpenPlaneSeesTheWholeSkyAndItsBentNormalIsItsOwn) {
   Scene plane;
   plane.materials = {opaque(false)};

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "bake/placement_choice.hpp"
 #include "bake/surface_samples.hpp"
 
 namespace dapple {
@@ -110,9 +111,56 @@ TEST(SurfaceSamples, DegenerateTrianglesHaveNoArea) {
 TEST(SurfaceSamples, RaysAreDividedOverSixtyFourSamplesAtMost) {
   for (const auto& [rays, samples] :
        {std::pair{8, 1}, {15, 1}, {16, 2}, {512, 64}, {1024, 64}, {65536, 64}}) {
-    const SampleCounts counts = sample_counts(rays);
+    const SampleCounts counts = sample_counts(rays, 1);
     EXPECT_EQ(counts.samples, samples) << rays;
     EXPECT_EQ(counts.rays, rays / samples) << rays;
+  }
+}
+
+TEST(SurfaceSamples, PlacementsHaveEquallyManySamplesIfThereAreEnough) {
+  struct Case {
+    int rays;
+    std::size_t placements;
+    bool at_vertex;
+    int samples;
+  };
+  for (const Case& c : {Case{64, 100, false, 8},
+                        {512, 5, false, 60},
+                        {65536, 5, false, 80},
+                        {65536, 100, false, 1600},
+                        {1024, 1000, false, 128},
+                        {4096, 1, true, 1},
+                        {4096, 5, true, 5}}) {
+    const SampleCounts counts = sample_counts(c.rays, c.placements, c.at_vertex);
+    EXPECT_EQ(counts.samples, c.samples) << c.rays << ", " << c.placements;
+    EXPECT_EQ(counts.rays, c.rays / c.samples);
+  }
+}
+
+TEST(PlacementChoice, SamplesInTurnTakeAllPlacements) {
+  for (const std::uint32_t placements : {1u, 2u, 3u, 8u, 100u, 1000u}) {
+    for (const std::uint32_t random : {0u, 1u, 77u, 0xdeadbeefu}) {
+      std::vector<int> taken(placements);
+      for (std::uint32_t i = 0; i < 3 * placements; ++i)
+        ++taken.at(placement_of_sample(i, placements, random));
+      for (const int count : taken) EXPECT_EQ(count, 3);
+    }
+  }
+}
+
+// Sample k of a triangle lies in a part of it that k says. 40,000 triangles: a share of 1 / n has a
+// standard error of 0.5 / 200 at most.
+TEST(PlacementChoice, EachSampleTakesAnyPlacementEquallyOften) {
+  constexpr std::uint32_t kTriangles = 40000;
+  for (const std::uint32_t placements : {2u, 3u, 4u, 7u, 20u}) {
+    for (std::uint32_t sample = 0; sample < 2 * placements; ++sample) {
+      std::vector<int> taken(placements);
+      for (std::uint32_t t = 0; t < kTriangles; ++t)
+        ++taken.at(placement_of_sample(sample, placements, hash_of(7, t)));
+      for (const int count : taken)
+        EXPECT_NEAR(static_cast<double>(count) / kTriangles, 1.0 / placements, 0.0125)
+            << sample << " of " << placements;
+    }
   }
 }
 

@@ -145,13 +145,13 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTra
   constexpr std::uint32_t kFirst = 2;
   ValueSums sums(parts, options_.sides);
   SampleRounds rounds(texels, hash, placements, tracing, sums, false);
-  if (!rounds.run(round_options(options_, kFirst, false))) return false;
+  if (!rounds.run(round_options(options_, kFirst, placements, false))) return false;
   sums.choose_sides(true);
   std::vector<std::vector<V3f>> light;
   if (tracing.light) {
     ValueSums light_sums(parts, options_.sides, tracing.lights);
     SampleRounds light_rounds(texels, ~hash, placements, tracing, light_sums, true);
-    if (!light_rounds.run(round_options(options_, kFirst, true))) return false;
+    if (!light_rounds.run(round_options(options_, kFirst, placements, true))) return false;
     light_sums.choose_sides(true);
     for (const float square : light_sums.squared_errors())
       tracing.statistics.squared_light_errors += double{square};
