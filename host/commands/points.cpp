@@ -145,6 +145,7 @@ PointOptions options_of(const Arguments& a) {
       throw Error(ErrorKind::usage, "--periodic needs two periods above 0");
   }
   if (!std::isfinite(a.height)) throw Error(ErrorKind::usage, "--height must be a finite number");
+  if (a.height != 0 && a.grid.empty()) throw Error(ErrorKind::usage, "--height needs --grid");
   if (!(a.sky_irradiance >= 0 && a.sky_irradiance <= 1e30f))
     throw Error(ErrorKind::usage, fmt::format("--sky-irradiance is {}; it must be from 0 to 1e+30",
                                               a.sky_irradiance));

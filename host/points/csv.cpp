@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "dapple/error.hpp"
 #include "points/number_table.hpp"
@@ -29,6 +30,20 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   }
 }
 
+/// Throws if columns are separated in two ways, as those of numbers with decimal commas may seem.
+void check_separators(const std::string& path, std::size_t number, std::string_view line) {
+  std::string found;
+  for (const auto& [separator, name] :
+       {std::pair{',', "commas"}, {';', "semicolons"}, {'\t', "tabs"}})
+    if (line.find(separator) != std::string_view::npos)
+      found += found.empty() ? name : fmt::format(" and {}", name);
+  if (found.find(' ') != std::string::npos)
+    throw Error(ErrorKind::input,
+                fmt::format("{}: line {} has {}; columns need one separator, and numbers a decimal "
+                            "point",
+                            path, number, found));
+}
+
 bool parse(std::string_view cell, double& value) {
   if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -41,12 +56,15 @@ NumberTable read_csv(const std::string& path) {
   const auto bytes = gltf::read_file(path, path);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark
+  // Files of old Macs end lines with carriage returns alone.
+  const char line_end = text.find('\n') == std::string_view::npos ? '\r' : '\n';
   NumberTable table;
   for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::size_t end = std::min(text.find(line_end), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.find_first_not_of(" \t\r") == std::string_view::npos || line.front() == '#') continue;
+    check_separators(path, number, line);
     const std::vector<std::string_view> cells = cells_of(line);
     if (cells.empty())
       throw Error(ErrorKind::input, fmt::format("{}: line {} has no columns", path, number));
@@ -68,6 +86,7 @@ NumberTable read_csv(const std::string& path) {
         table.text.try_emplace(c, TextCell{fmt::format("line {}", number), std::string(cells[c])});
     }
   }
+  if (table.columns == 0) throw Error(ErrorKind::input, path + ": there are no rows");
   return table;
 }
 

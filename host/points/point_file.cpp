@@ -178,6 +178,7 @@ std::vector<SunDirection> read_suns(const std::string& path) {
     if (std::cmp_equal(c, irradiance) || is_angle || (!angles && directions.include(c)))
       check_number(path, table, c);
   }
+  if (table.rows() == 0) throw Error(ErrorKind::input, path + ": there are no rows");
   std::vector<SunDirection> suns;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double* values = &table.values[row * table.columns];

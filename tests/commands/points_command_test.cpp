@@ -43,6 +43,13 @@ TEST_F(PointsCommand, KeepsALimitOfTheBiasAndSaysWithWhichFootprint) {
   EXPECT_EQ(bytes_of(path("a.csv")), bytes_of(path("b.csv")));
 }
 
+TEST_F(PointsCommand, RefusesAHeightWithoutAGrid) {
+  const program_test::Outcome run =
+      dapple("points 'scene:tree?leaves=3000' --per-triangle --height 1 -o a.csv");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_TRUE(contains(run.err, "--height needs --grid")) << run.err;
+}
+
 TEST_F(PointsCommand, SumsSunsWithAStandardErrorOrWritesEach) {
   std::ofstream suns(path("suns.csv"));
   suns << "azimuth,elevation,irradiance\n";

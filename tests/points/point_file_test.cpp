@@ -72,7 +72,6 @@ TEST_F(PointFile, CsvMayHaveNamesCommentsAndAnySeparator) {
   const PointList plain = read_points(write("p.csv", "1 2 3 0 0 -2\n"));
   EXPECT_EQ(plain.points.at(0), V3f(1, 2, 3));
   EXPECT_EQ(plain.normals.at(0), V3f(0, 0, -1));
-  EXPECT_TRUE(read_points(write("e.csv", "")).points.empty());
 }
 
 TEST_F(PointFile, OtherColumnsOfNumbersAreWrittenAgainInAllThreeFormats) {
@@ -170,6 +169,34 @@ std::string bytes_of_all(T... values) {
   std::string bytes;
   (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
   return bytes;
+}
+
+TEST_F(PointFile, LinesMayEndAsOnOldMacs) {
+  const PointList list = read_points(write("mac.csv", "x,y,z\r0,0,0\r1,2,3\r"));
+  ASSERT_EQ(list.points.size(), 2u);
+  EXPECT_EQ(list.points[1], V3f(1, 2, 3));
+  expect_error(write("short.csv", "x,y,z\r0,0,0\r1,2\r"), "line 3 has 2 columns");
+}
+
+TEST_F(PointFile, TwoSeparatorsInALineAreAnError) {
+  expect_error(write("a.csv", "x;y;z\n0,5;0,25;0,1\n"),
+               "line 2 has commas and semicolons; columns need one separator");
+  expect_error(write("b.csv", "0,5;0;0\n"), "line 1 has commas and semicolons");
+  expect_error(write("c.csv", "1\t2,3\n"), "line 1 has commas and tabs");
+}
+
+TEST_F(PointFile, FilesWithoutRowsAreErrors) {
+  for (const char* bytes : {"", "\n", "# x,y,z\n"})
+    expect_error(write("empty.csv", bytes), "empty.csv: there are no rows");
+  for (const char* bytes : {"", "azimuth,elevation,irradiance\n"}) {
+    try {
+      read_suns(write("suns.csv", bytes));
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("suns.csv: there are no rows"), std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 TEST_F(PointFile, ArraysOfFloatsAndWholeNumbersAreRead) {
