@@ -17,6 +17,7 @@
 #include "points/ring_rays.hpp"
 #include "points/set_sums.hpp"
 #include "points/sun_irradiance.hpp"
+#include "render/point_checks.hpp"
 #include "render/point_occlusion.hpp"
 #include "render/stopwatch.hpp"
 
@@ -269,17 +270,17 @@ class Measurement {
   double steps_ = 0, done_ = 0;
 };
 
-void check_points(std::span<const V3f> points, std::span<const V3f> normals) {
-  if (points.size() != normals.size())
-    throw Error(ErrorKind::usage,
-                fmt::format("{} points but {} normals", points.size(), normals.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (!std::isfinite(points[i][axis]))
-        throw Error(ErrorKind::usage,
-                    fmt::format("point {} has a coordinate that is not finite", i));
-    if (!(std::fabs(normals[i].length() - 1) < 1e-3f))
-      throw Error(ErrorKind::usage, fmt::format("the normal of point {} is not a unit vector", i));
+void check_suns(const std::vector<SunDirection>& suns) {
+  for (std::size_t i = 0; i < suns.size(); ++i) {
+    const auto& [direction, irradiance] = suns[i];
+    if (!(std::fabs(direction.length() - 1) < 1e-3f))
+      throw Error(ErrorKind::usage,
+                  fmt::format("the direction of sun {} is not a unit vector: ({}, {}, {})", i,
+                              direction.x, direction.y, direction.z));
+    if (!(irradiance >= 0 && std::isfinite(irradiance)))
+      throw Error(ErrorKind::usage, fmt::format("the irradiance of sun {} is {}; it must be finite "
+                                                "and not negative",
+                                                i, irradiance));
   }
 }
 
@@ -306,7 +307,8 @@ void validate(const PointOptions& options) {
 PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<const V3f> normals,
                            const PointOptions& options, const RenderControl& control) {
   validate(options);
-  check_points(points, normals);
+  check_points("measure_points", points, normals);
+  check_suns(options.suns);
   PointResult result;
   const Stopwatch building;
   std::vector<V3f> in_period;

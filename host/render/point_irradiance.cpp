@@ -14,6 +14,7 @@
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
+#include "render/point_checks.hpp"
 #include "scene/images/dome_image.hpp"
 
 namespace dapple {
@@ -161,6 +162,7 @@ std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene&
                                         std::span<const V3f> normals,
                                         const IrradianceOptions& options,
                                         const RenderControl& control) {
+  check_points("irradiance", points, normals);
   return point_irradiance(device, scene, lights, {points, normals}, options, control);
 }
 

@@ -15,6 +15,7 @@
 #include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
 #include "passes/queues.hpp"
+#include "render/point_checks.hpp"
 #include "render/shared_points.hpp"
 
 namespace dapple {
@@ -97,6 +98,19 @@ void occlusion_in_passes(DeviceContext& context, const Queues& queues, const Dev
   }
 }
 
+void check(const OcclusionOptions& options) {
+  const auto check = [](const char* name, float value, float high) {
+    if (value >= 0 && value <= high) return;
+    throw Error(ErrorKind::usage,
+                fmt::format("occlusion: {} is {}; it must be from 0 to {:g}", name, value, high));
+  };
+  check("footprint", options.footprint, 1e6f);
+  check("distance", options.distance, 1e30f);
+  check("falloff", options.falloff, 100);
+  if (options.falloff > 0 && !(options.distance > 0))
+    throw Error(ErrorKind::usage, "occlusion: falloff needs a distance");
+}
+
 }  // namespace
 
 PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
@@ -143,6 +157,8 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
 std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
                              std::span<const V3f> points, std::span<const V3f> normals,
                              const OcclusionOptions& options, const RenderControl& control) {
+  check_points("occlusion", points, normals);
+  check(options);
   return point_occlusion(device, scene, {points, normals}, options, false, control).ao;
 }
 

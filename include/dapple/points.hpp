@@ -61,8 +61,8 @@ struct PointResult {
   /// standard error; bent_ and sun_N have none, and that of sun is 0 if each sun had a ray.
   std::vector<PointColumn> columns;
   /// The bias before it was corrected, by quantity: "ao", "sky_view_factor", lights by name, and
-  /// "sun", their sum where suns were chosen; lights and suns are relative to the unoccluded irradiance. The RMSE over tiles (of neighbouring points) is what
-  /// the correction leaves.
+  /// "sun", their sum where suns were chosen; lights and suns are relative to the unoccluded
+  /// irradiance. The RMSE over tiles (of neighbouring points) is what the correction leaves.
   std::map<std::string, Bias> bias;
   float footprint = 0;  ///< PointOptions::footprint, or what max_bias chose
   std::vector<std::string> notes;
@@ -73,7 +73,8 @@ struct PointResult {
 
 /// Measures at `points`, whose unit `normals` say where the surface faces. Rays start off the
 /// points along the normals by more than rounding errors. The same arguments give the same bits.
-/// Throws Error usage (also if sizes differ, or a number is not finite), input, device or failed.
+/// Throws Error usage (also if sizes differ, a number is not finite, the length of a normal or of
+/// a sun's direction is not 1 within 0.001, or an irradiance is negative), input, device or failed.
 PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<const V3f> normals,
                            const PointOptions& options = {}, const RenderControl& control = {});
 

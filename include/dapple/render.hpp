@@ -150,16 +150,17 @@ DeviceCheck check_device(const Device& device);
 struct OcclusionOptions {
   int rays = 64;  ///< for each point, [1, 2^20]
   Estimator estimator = Estimator::prefiltered;
-  float footprint = kDefaultFootprint;
-  float distance = 0.0f;  ///< metres; 0: no limit
-  float falloff = 0.0f;
+  float footprint = kDefaultFootprint;  ///< [0, 10^6]
+  float distance = 0.0f;                ///< metres, [0, 10^30]; 0: no limit
+  float falloff = 0.0f;                 ///< [0, 100]; above 0 only with a distance
   std::uint32_t seed = 0;
 };
 
 /// Returns the ambient occlusion at points, for baking: [0,1], 1 = unoccluded. `normals` are unit
 /// vectors. Rays start off the points along the normals, by more than the rounding error of the
 /// coordinates. Uses only progress and stop of `control`. Throws Error usage if the sizes differ,
-/// failed if `stop` returned true.
+/// a point is not finite, the length of a normal is not 1 within 0.001, or an option is out of
+/// range; failed if `stop` returned true.
 std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
                              std::span<const V3f> points, std::span<const V3f> normals,
                              const OcclusionOptions& options = {},
