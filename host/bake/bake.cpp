@@ -276,6 +276,9 @@ void validate(const BakeOptions& options) {
 BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderControl& control,
                 const std::vector<Scene>& occluders) {
   validate(asked);
+  if (asked.light && asked.lights.empty() && scene.lights.empty())
+    throw Error(ErrorKind::usage,
+                "--passes light: the scene has no lights; --lights or --dome brings some");
   BakeOptions options = asked;
   const Stopwatch total;
   BakeResult result;

@@ -213,6 +213,22 @@ TEST(BakeLight, AGroupIsTheSumOfItsLights) {
   expect_sums(together.instance_light, apart.instance_light);
 }
 
+TEST(BakeLight, ASceneWithoutLightsIsAnErrorAsOnTheCommandLine) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.meshes = {square_mesh(1, 0, 1, 0)};
+  scene.instances.resize(1);
+  BakeOptions options;
+  options.light = true;
+  try {
+    bake(scene, options);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_NE(std::string(error.what()).find("the scene has no lights"), std::string::npos);
+  }
+}
+
 TEST(BakeLight, AMeshAloneIsNotLit) {
   BakeOptions options = lit_by({noon()});
   options.placement = BakeInstances::alone;
