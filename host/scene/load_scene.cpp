@@ -29,6 +29,7 @@ void validate(const SceneOptions& options) {
 
 Scene load_scene(const std::string& spec, const SceneOptions& options) {
   validate(options);
+  if (spec.empty()) throw Error(ErrorKind::input, "the path of the scene is empty");
   if (spec.starts_with("scene:")) return make_procedural(spec, options.time);
   return is_hair_name(spec) ? load_hair(spec) : load_gltf(spec, options);
 }

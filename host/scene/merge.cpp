@@ -262,7 +262,7 @@ void merge_single_instances(Scene& scene) {
   if (scene.instances.empty()) {
     throw Error(ErrorKind::input,
                 fmt::format("{}: there is nothing to render: no triangle or strand is left{}",
-                            scene.source, reasons(scene)));
+                            scene.source.empty() ? "the scene" : scene.source, reasons(scene)));
   }
   check_numeric_range(scene);
 }

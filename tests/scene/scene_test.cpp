@@ -10,6 +10,7 @@
 #include <limits>
 #include <string>
 
+#include "dapple/bvh.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -288,8 +289,17 @@ TEST(Merge, ASceneOfWhichNothingIsLeftIsRefused) {
             "test.glb: there is nothing to render: no triangle or strand is left (dropped 1 "
             "triangle without "
             "an area)");
+}
+
+TEST(Merge, ASceneWithoutANameIsTheSceneInMessages) {
   Scene empty;
-  EXPECT_THROW(merge_single_instances(empty), Error);
+  EXPECT_TRUE(complaint(ErrorKind::input, [&] {
+                merge_single_instances(empty);
+              }).starts_with("the scene: there is nothing to render"));
+  EXPECT_TRUE(complaint(ErrorKind::input, [&] {
+                build_bvh(empty);
+              }).starts_with("the scene: nothing to hit"));
+  EXPECT_EQ(complaint(ErrorKind::input, [] { load_scene(""); }), "the path of the scene is empty");
 }
 
 TEST(Merge, AProceduralForestKeepsItsTriangles) {

@@ -223,15 +223,16 @@ std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
         object.triangles;
     object_stack = std::max(object_stack, object.stack);
   }
+  const std::string source = scene.source.empty() ? "the scene" : scene.source;
   if (sources.empty()) {
-    throw Error(ErrorKind::input,
-                fmt::format("{}: nothing to hit: every triangle and segment is fully transparent",
-                            scene.source));
+    throw Error(
+        ErrorKind::input,
+        fmt::format("{}: nothing to hit: every triangle and segment is fully transparent", source));
   }
   if (sources.size() >= DAPPLE_MAX_BLOCKS) {  // higher bits of prim_base are not theirs
     throw Error(ErrorKind::failed,
-                fmt::format("{}: {} instances, fewer than {} are possible; merge some",
-                            scene.source, sources.size(), DAPPLE_MAX_BLOCKS));
+                fmt::format("{}: {} instances, fewer than {} are possible; merge some", source,
+                            sources.size(), DAPPLE_MAX_BLOCKS));
   }
   std::vector<PlacedInstance> placed(sources.size());
   tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
