@@ -26,7 +26,8 @@ def _numbers(name: str, values: npt.ArrayLike, kinds: str) -> npt.NDArray[Any]:
     except ValueError as error:
         raise UsageError(f"{name} is not an array of numbers: {error}") from None
     if array.size and array.dtype.kind not in kinds:
-        raise UsageError(f"{name} has the type {array.dtype}; it must be of numbers")
+        wanted = "numbers" if "f" in kinds else "whole numbers"
+        raise UsageError(f"{name} has the type {array.dtype}; it must be of {wanted}")
     return array
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import numbers
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Sequence, Tuple, TypedDict, TypeVar
 
@@ -120,6 +121,7 @@ class BakeOptions(TypedDict, total=False):
 Options = TypeVar("Options")
 
 _NON_NEGATIVE = ("footprint", "distance", "falloff")
+_OF_PERIODIC = ("period_x", "period_z")  # the argument periodic sets both
 _EXPECTED = {
     "look": "three vectors: (from, at, up)",
     "crop": "four integers: (x0, y0, x1, y1)",
@@ -128,13 +130,28 @@ _EXPECTED = {
 }
 
 
-def apply(call: str, options: Options, values: Mapping[str, Any]) -> Options:
-    """Sets the fields of `options`; raises UsageError for unknown names and wrong types."""
-    known = [name.removeprefix("set_") for name in dir(options) if not name.startswith("_")]
+def _wanted(name: str, current: object, value: object) -> str:
+    """What a value of the wrong type, or beyond the range of the engine's integers, must be."""
+    if type(current) is int and isinstance(value, numbers.Integral) and not isinstance(value, bool):
+        low, high = (0, 2**32 - 1) if name == "seed" else (-(2**31), 2**31 - 1)
+        return f"from {low} to {high}"
+    return _EXPECTED.get(name) or type(current).__name__
+
+
+def apply(
+    call: str, options: Options, values: Mapping[str, Any], arguments: Sequence[str] = ()
+) -> Options:
+    """Sets the fields of `options`; raises UsageError for unknown names and wrong types.
+
+    arguments: names that the call has beside the options.
+    """
+    fields = [name.removeprefix("set_") for name in dir(options) if not name.startswith("_")]
+    known = [name for name in fields if name not in _OF_PERIODIC]
     for name, value in values.items():
         if name not in known:
-            close = difflib.get_close_matches(name, known, 1)
-            hint = f"; did you mean {close[0]}?" if close else f"; known are {', '.join(known)}"
+            all_names = sorted([*known, *arguments])
+            close = difflib.get_close_matches(name, all_names, 1)
+            hint = f"; did you mean {close[0]}?" if close else f"; known are {', '.join(all_names)}"
             raise UsageError(f"{call}() has no argument {name}{hint}")
         if name in _NON_NEGATIVE and isinstance(value, (int, float)):
             non_negative(f"{call}(): {name}", value)
@@ -146,6 +163,6 @@ def apply(call: str, options: Options, values: Mapping[str, Any]) -> Options:
             else:
                 setattr(options, name, value)
         except TypeError:
-            wanted = _EXPECTED.get(name) or type(getattr(options, name)).__name__
+            wanted = _wanted(name, getattr(options, name, None), value)
             raise UsageError(f"{call}(): {name} is {value!r}; it must be {wanted}") from None
     return options

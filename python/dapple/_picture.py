@@ -53,6 +53,8 @@ class Picture(Mapping[str, FloatArray]):
             self._layers["RGBA"] = colours
 
     def __getitem__(self, name: str) -> FloatArray:
+        if not isinstance(name, str):
+            raise KeyError(name)
         if name in self._layers:
             return np.stack([self[c] for c in self._layers[name]], axis=-1)
         array: FloatArray = self._native.pixels(name)

@@ -291,7 +291,8 @@ class Scene:
         towards = _arrays.vectors("suns", suns)
         towards = _arrays.unit_vectors("suns", towards, len(towards))
         across = _arrays.irradiances("sun_irradiance", sun_irradiance, len(towards))
-        chosen = _options.apply("measure", _native.PointOptions(), options)
+        arguments = ("suns", "sun_irradiance", "periodic", "progress")
+        chosen = _options.apply("measure", _native.PointOptions(), options, arguments)
         if periodic is not None:
             chosen.period_x, chosen.period_z = _arguments.several("periodic", periodic, 2)
         progress = _arguments.progress_function(progress)

@@ -77,7 +77,9 @@ def test_wrong_scenes_are_named(tmp_path: Any) -> None:
     )
     assert "index -1" in error_of(lambda: dapple.Scene.from_arrays(corners, [[0, 1, -1]]))
     assert "it must be (m, 3)" in error_of(lambda: dapple.Scene.from_arrays(corners, [0, 1, 2]))
-    assert "of numbers" in error_of(lambda: dapple.Scene.from_arrays(corners, [[0.5, 1, 2]]))
+    assert "of whole numbers" in error_of(
+        lambda: dapple.Scene.from_arrays(corners, [[0.5, 1, 2]])
+    )
     assert "outside of [0, 1]" in error_of(
         lambda: dapple.Scene.from_arrays(corners, [[0, 1, 2]], opacity=2)
     )

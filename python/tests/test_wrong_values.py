@@ -60,6 +60,9 @@ WRONG: dict[str, Call] = {
     "triangles has the index 9223": lambda s: from_arrays(
         CORNERS, np.array([[0, 1, 1 << 63]], np.uint64)
     ),
+    "triangles has the type float64; it must be of whole numbers": lambda s: from_arrays(
+        CORNERS, [[0.0, 1.0, 2.0]]
+    ),
     "triangles has the shape (1, 4)": lambda s: from_arrays(CORNERS, [[0, 1, 2, 3]]),
     "opacity has the shape (1, 2)": lambda s: from_arrays(CORNERS, TRIANGLES, [[1, 1]]),
     "opacity has the type": lambda s: from_arrays(CORNERS, TRIANGLES, "half"),
@@ -86,7 +89,14 @@ WRONG: dict[str, Call] = {
     "footprint is -1": lambda s: s.irradiance(AT, UP, footprint=-1),
     "distance is nan": lambda s: s.occlusion(AT, UP, distance=NAN),
     "falloff is nan": lambda s: s.occlusion(AT, UP, distance=1, falloff=NAN),
-    "seed is -1": lambda s: s.occlusion(AT, UP, seed=-1),
+    "seed is 4294967296; it must be from 0 to 4294967295": lambda s: s.occlusion(
+        AT, UP, seed=2**32
+    ),
+    "rays is 1099511627776; it must be from": lambda s: s.measure(AT, rays=2**40),
+    "known are ao, bent, cache": lambda s: s.measure(AT, zzz=1),  # type: ignore[call-arg]
+    "did you mean periodic?": lambda s: s.measure(AT, period_x=1),  # type: ignore[call-arg]
+    "the scene has no lights": lambda s: s.bake(light=True),
+    "seed is -1; it must be from 0": lambda s: s.occlusion(AT, UP, seed=-1),
     "rays is None": lambda s: s.occlusion([], UP, rays=None),  # type: ignore[typeddict-item]
     "there is no layer zzz": lambda s: s.render(**SMALL).save("/tmp/a.png", layer="zzz"),
     "saved as .exr or .png": lambda s: s.render(**SMALL).save("/tmp/a.jpg"),
@@ -145,3 +155,10 @@ def test_arrays_of_scenes_are_copies() -> None:
     scene = from_arrays(corners, TRIANGLES)
     corners[:] = NAN
     assert np.isfinite(scene.bounds).all() and np.isfinite(scene.occlusion(AT, UP)).all()
+
+
+def test_pictures_have_no_layers_of_other_types() -> None:
+    picture = plate_scene().render(**SMALL)
+    assert 5 not in picture
+    with pytest.raises(KeyError):
+        picture[0]  # type: ignore[index]
