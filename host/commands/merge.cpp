@@ -34,6 +34,7 @@ void check(const MergeArguments& a) {
   if (!files.png.empty()) outputs.push_back({"--png", files.png});
   if (!files.stats_json.empty()) outputs.push_back({"--stats-json", files.stats_json});
   check_outputs(outputs);
+  check_output_name("--output", files.output);
   check_outputs_spare(outputs, a.parts);
   check_png(files);
 }

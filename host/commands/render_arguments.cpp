@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "commands/option_text.hpp"
 #include "commands/shared_options.hpp"
@@ -198,14 +199,11 @@ void check_motion(const RenderArguments& a) {
   check_animation(a);
 }
 
-/// Outputs are EXR files or a part, whatever their names; these names would deceive.
-void check_output_name(const char* flag, const std::string& path) {
-  for (const char* other : {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".json"})
-    if (path.ends_with(other))
-      throw Error(ErrorKind::usage,
-                  fmt::format("{} is {}, but images are OpenEXR files (.exr); --png FILE "
-                              "writes a preview beside it",
-                              flag, path));
+/// Outputs have the right format, whatever their names; the names of these formats would deceive.
+bool is_named_as(const std::string& path, const char* format) {
+  const auto ends = [&](const char* suffix) { return path.ends_with(suffix); };
+  constexpr const char* kOthers[] = {".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".json"};
+  return ends(format) || std::any_of(std::begin(kOthers), std::end(kOthers), ends);
 }
 
 /// A part is for dapple merge, which makes the image.
@@ -231,12 +229,19 @@ void check_part(const RenderArguments& a, const RenderOptions& options) {
 
 }  // namespace
 
+void check_output_name(const char* flag, const std::string& path) {
+  if (is_named_as(path, ".png"))
+    throw Error(ErrorKind::usage,
+                fmt::format("{} is {}, but images are OpenEXR files (.exr); --png FILE "
+                            "writes a preview beside it",
+                            flag, path));
+}
+
 void check_png(const RenderArguments& a) {
   parse_png_options(a.exposure, a.background);
-  for (const char* other : {".exr", ".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".json"})
-    if (a.png.ends_with(other))
-      throw Error(ErrorKind::usage,
-                  fmt::format("--png is {}, but previews are PNG files (.png)", a.png));
+  if (is_named_as(a.png, ".exr"))
+    throw Error(ErrorKind::usage,
+                fmt::format("--png is {}, but previews are PNG files (.png)", a.png));
   if (!a.png.empty()) return;
   const RenderArguments defaults;
   for (const char* flag : {a.exposure != defaults.exposure ? "--exposure" : "",

@@ -96,6 +96,23 @@ TEST(GltfCamera, KeepsItsPlaceAndLosesTheScaleOfItsNode) {
   EXPECT_TRUE(camera.to_world.equalWithAbsError(expected, kRounding)) << camera.to_world;
 }
 
+TEST(GltfCamera, ThoseOfOneNameGetNumbersAlsoWhereOneIsScaledToNothing) {
+  for (const float first : {1.0f, 0.0f}) {
+    GltfBuilder builder;
+    builder.add_triangle();
+    builder.add(
+        "cameras",
+        {{"name", "eye"}, {"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}});
+    builder.add("nodes", {{"camera", 0}, {"scale", {first, first, first}}});
+    builder.add("nodes", {{"camera", 0}, {"translation", {1, 0, 0}}});
+    const std::vector<Camera> cameras = builder.load().cameras;
+    ASSERT_EQ(cameras.size(), first > 0 ? 2u : 1u);
+    EXPECT_EQ(cameras.front().name, first > 0 ? "eye" : "eye_2");
+    EXPECT_EQ(cameras.back().name, "eye_2");
+    EXPECT_EQ(cameras.back().to_world[3][0], 1);
+  }
+}
+
 TEST(GltfCamera, OrthographicOnesKeepTheirHeight) {
   GltfBuilder builder;
   builder.add_triangle();
