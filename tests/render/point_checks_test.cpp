@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "dapple/error.hpp"
 #include "dapple/points.hpp"
@@ -71,7 +72,7 @@ TEST(PointChecks, OptionsOfOcclusionHaveRanges) {
       {{.falloff = 1}, "falloff needs a distance"}};
   for (const auto& [options, message] : wrong)
     expect_usage_error(std::string("occlusion: ") + message, [&] {
-      scene.occlusion_at({0, 0, 0}, {0, 1, 0}, options);
+      std::ignore = scene.occlusion_at({0, 0, 0}, {0, 1, 0}, options);
     });
 }
 
