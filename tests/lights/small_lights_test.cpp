@@ -90,8 +90,7 @@ TEST(SmallLights, RectsOfAnySizeHaveNoNegativeIrradiance) {
     RenderOptions options = lights_only();
     options.spp = 64;
     const float found = value(render(scene, options).film, "light.above.R");
-    EXPECT_GE(found, 0) << side;
-    EXPECT_LT(found, 1.1 * kPi) << side;
+    EXPECT_TRUE(found >= 0 && std::isfinite(found)) << side << ": " << found;
   }
 }
 

@@ -46,7 +46,8 @@ TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
       {[](Scene& s) { s.meshes[0].normals.resize(3); }, "mesh 0 has 3 normals"},
       {[](Scene& s) { s.instances[0].mesh = 7; }, "instance 0 has no mesh 7"},
       {[](Scene& s) { s.instances[0].light = 9; }, "instance 0 has no light 9"},
-      {[](Scene& s) { s.materials[0].alpha_texture = 0; }, "material 0 has no texture 0"},
+      {[](Scene& s) { s.materials[0].alpha_texture = 0; },
+       "material 0 \"material_1.000000\" has no texture 0"},
       {[](Scene& s) {
          s.textures.push_back({"leaf", 2, 2, {1, 2, 3}});
        },
