@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "bake/bake_bias.hpp"
@@ -111,7 +112,17 @@ Placements placements_of(const Scene& scene, std::uint32_t mesh, BakeInstances k
   return placements;
 }
 
+/// The number of placements of each mesh that are baked.
+std::vector<std::size_t> placement_counts(const Scene& scene, BakeInstances kind) {
+  const bool alone = kind == BakeInstances::alone;
+  std::vector<std::size_t> counts(scene.meshes.size(), alone ? 1 : 0);
+  for (const Instance& instance : scene.instances)
+    if (!alone) ++counts[instance.mesh];
+  return counts;
+}
+
 double expected_samples(const Scene& scene, const BakeOptions& options) {
+  const std::vector<std::size_t> counts = placement_counts(scene, options.placement);
   const auto of_element = [&](std::size_t placements, bool at_vertex) {
     return options.target_error > 0
                ? kExpectedSamples
@@ -123,13 +134,13 @@ double expected_samples(const Scene& scene, const BakeOptions& options) {
     if (mesh.has_strands()) continue;
     const std::size_t elements =
         options.at_vertices ? mesh.positions.size() : mesh.primitive_count();
-    samples +=
-        static_cast<double>(elements) *
-        of_element(placements_of(scene, m, options.placement).to_world.size(), options.at_vertices);
+    samples += static_cast<double>(elements) * of_element(counts[m], options.at_vertices);
   }
-  if (options.texture)
+  if (options.texture && !counts.empty()) {
+    const std::size_t most = *std::max_element(counts.begin(), counts.end());
     samples +=
-        kExpectedCoverage * of_element(1, false) * options.texture_size * options.texture_size;
+        kExpectedCoverage * of_element(most, false) * options.texture_size * options.texture_size;
+  }
   if (options.instances) samples += static_cast<double>(scene.instances.size()) * kInstanceSamples;
   return options.light ? 2 * samples : samples;
 }

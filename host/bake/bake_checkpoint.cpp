@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr SealedKind kKind{"bake", 1};
+constexpr SealedKind kKind{"bake", 2};
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
   throw Error(ErrorKind::failed,

@@ -127,7 +127,12 @@ RoundOptions round_options(const BakeOptions& options, std::uint32_t first,
   rounds.first = first;
   rounds.limit = static_cast<std::uint32_t>(options.rays / kRaysPerSample);
   rounds.fixed = sample_counts(options.rays, placements.to_world.size());
-  if (lights) rounds.rays = rounds.fixed.rays = options.light_rays;
+  if (lights) {
+    constexpr std::size_t kMaxLightSamples = 64;  // or one for each placement
+    rounds.rays = rounds.fixed.rays = options.light_rays;
+    rounds.fixed.samples = static_cast<std::uint32_t>(std::min<std::size_t>(
+        rounds.fixed.samples, std::max(kMaxLightSamples, placements.to_world.size())));
+  }
   return rounds;
 }
 

@@ -20,6 +20,7 @@
 #include "render/point_checks.hpp"
 #include "render/point_occlusion.hpp"
 #include "render/stopwatch.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -313,8 +314,11 @@ PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<c
   const Stopwatch building;
   std::vector<V3f> in_period;
   if (options.period_x > 0) {
-    in_period = points_in_period(scene, options.period_x, options.period_z, points);
-    points = in_period;
+    check_scene(scene);
+    if (!options.lights || !has_placed_light(scene)) {
+      in_period = points_in_period(scene, options.period_x, options.period_z, points);
+      points = in_period;
+    }
     repeat(scene, options.period_x, options.period_z, points);
   }
   const SceneOfPoints on(std::move(scene), options);

@@ -19,7 +19,7 @@ struct Interval {
   Interval(const Box3f& scene, int axis, float metres)
       : period(metres), middle((double{scene.min[axis]} + double{scene.max[axis]}) / 2) {
     if (scene.isEmpty()) middle = 0;
-    half = std::max(metres, scene.size()[axis]) / 2.0;
+    half = std::max(period, double{scene.max[axis]} - double{scene.min[axis]}) / 2.0;
   }
 
   [[nodiscard]] float inside(float x) const {
@@ -38,16 +38,17 @@ struct Interval {
   double period, middle, half;
 };
 
-bool has_place(const Light& light) {
-  return light.kind != LightKind::sun && light.kind != LightKind::dome;
-}
-
 }  // namespace
+
+bool has_placed_light(const Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+    return light.kind != LightKind::sun && light.kind != LightKind::dome;
+  });
+}
 
 std::vector<V3f> points_in_period(const Scene& scene, float period_x, float period_z,
                                   std::span<const V3f> points) {
   std::vector<V3f> moved(points.begin(), points.end());
-  if (std::any_of(scene.lights.begin(), scene.lights.end(), has_place)) return moved;
   const Box3f bounds = scene_bounds(scene);
   const Interval x(bounds, 0, period_x), z(bounds, 2, period_z);
   for (V3f& point : moved) point = V3f(x.inside(point.x), point.y, z.inside(point.z));
@@ -68,12 +69,12 @@ void repeat(Scene& scene, float period_x, float period_z, std::span<const V3f> p
   if (!(all <= kMaxInstances))
     throw Error(
         ErrorKind::usage,
-        fmt::format("--periodic is {},{}; scene and points are {:.3g} m high and {:.3g} by "
-                    "{:.3g} m wide, which takes {:.3g} instances (at most {:.3g}); repeat a "
-                    "larger part of the scene, as one mesh, or measure high or far points "
-                    "apart",
-                    period_x, period_z, around.size().y, around.size().x, around.size().z, all,
-                    kMaxInstances));
+        fmt::format("--periodic is {},{}; scene and points are {:.3g} m high (the scene from y = "
+                    "{:.4g} to {:.4g}, all from {:.4g} to {:.4g}) and {:.3g} by {:.3g} m wide, "
+                    "which takes {:.3g} instances (at most {:.3g}); repeat a larger part of the "
+                    "scene, as one mesh, or measure high or far points apart",
+                    period_x, period_z, around.size().y, bounds.min.y, bounds.max.y, around.min.y,
+                    around.max.y, around.size().x, around.size().z, all, kMaxInstances));
   const std::vector<Instance> once = scene.instances;
   const int last_x = static_cast<int>(x), last_z = static_cast<int>(z);
   for (int i = -last_x; i <= last_x; ++i) {

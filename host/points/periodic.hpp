@@ -9,8 +9,12 @@
 
 namespace dapple {
 
+/// Whether a light is neither a sun nor a dome. Copies do not emit, so points below other copies of
+/// such scenes are not alike.
+bool has_placed_light(const Scene& scene);
+
 /// Moves points that lie beyond the scene, and beyond one period around its middle, into that
-/// period. Returns them as they are if a light has a place: copies do not emit.
+/// period.
 std::vector<V3f> points_in_period(const Scene& scene, float period_x, float period_z,
                                   std::span<const V3f> points);
 

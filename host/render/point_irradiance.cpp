@@ -163,6 +163,10 @@ std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene&
                                         const IrradianceOptions& options,
                                         const RenderControl& control) {
   check_points("irradiance", points, normals);
+  if (!(options.footprint >= 0 && options.footprint <= 1e6f))
+    throw Error(ErrorKind::usage,
+                fmt::format("irradiance: footprint is {:g}; it must be from 0 to 1e+06",
+                            options.footprint));
   return point_irradiance(device, scene, lights, {points, normals}, options, control);
 }
 

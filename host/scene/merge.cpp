@@ -124,7 +124,7 @@ Totals measure(const Scene& scene, const std::vector<Instance>& instances) {
   if (totals.vertices > kMaxVertices || totals.triangles > kMaxVertices / 3) {
     throw Error(ErrorKind::input,
                 fmt::format("{}: {} vertices and {} triangles are more than one mesh can hold",
-                            scene.source, totals.vertices, totals.triangles));
+                            source_name(scene), totals.vertices, totals.triangles));
   }
   return totals;
 }
@@ -262,7 +262,7 @@ void merge_single_instances(Scene& scene) {
   if (scene.instances.empty()) {
     throw Error(ErrorKind::input,
                 fmt::format("{}: there is nothing to render: no triangle or strand is left{}",
-                            scene.source.empty() ? "the scene" : scene.source, reasons(scene)));
+                            source_name(scene), reasons(scene)));
   }
   check_numeric_range(scene);
 }

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "dapple/error.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -16,7 +17,7 @@ namespace {
   throw Error(ErrorKind::input,
               fmt::format("{}: {} reaches {:g} m from the origin; dapple renders up to {:g} m: "
                           "scale the scene down or move it to the origin",
-                          scene.source, what, value, kLargestCoordinate));
+                          source_name(scene), what, value, kLargestCoordinate));
 }
 
 double reach(const V3f& point) {

@@ -8,6 +8,7 @@
 #include "dapple/scene.hpp"
 #include "scene/ground.hpp"
 #include "scene/procedural/mesh_shapes.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -38,7 +39,7 @@ void override_opacity(Scene& scene, const std::string& name, float value) {
   }
   if (!found) {
     throw Error(ErrorKind::usage, fmt::format("{}: there is no material \"{}\"; there are: {}",
-                                              scene.source, name, list_materials(scene)));
+                                              source_name(scene), name, list_materials(scene)));
   }
 }
 
@@ -47,7 +48,7 @@ void add_ground(Scene& scene) { add_ground(scene, scene_bounds(scene)); }
 void add_ground(Scene& scene, const Box3f& bounds) {
   if (bounds.isEmpty()) {
     throw Error(ErrorKind::input,
-                fmt::format("{}: there is nothing to put a ground under", scene.source));
+                fmt::format("{}: there is nothing to put a ground under", source_name(scene)));
   }
   const V3f size = bounds.size();
   float width = std::max(size.x, size.z);

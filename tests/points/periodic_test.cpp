@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "dapple/error.hpp"
+#include "dapple/points.hpp"
 #include "support/scene_on_device.hpp"
 
 namespace dapple {
@@ -77,7 +78,9 @@ TEST(Periodic, TooManyCopiesAreAnErrorThatSaysWhatTakesThem) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::usage);
-    EXPECT_NE(std::string(error.what()).find("scene and points are 501 m high"), std::string::npos)
+    EXPECT_NE(
+        std::string(error.what()).find("scene and points are 501 m high (the scene from y = "),
+        std::string::npos)
         << error.what();
   }
 }
@@ -90,14 +93,30 @@ TEST(Periodic, PointsBeyondThePeriodAreMovedIntoIt) {
   EXPECT_EQ(moved[2], V3f(3.5f, 5, 0.5f));
 }
 
-// Copies do not emit: a point below another copy is as far from a lamp as it is.
-TEST(Periodic, PointsKeepTheirPlaceIfALightHasOne) {
+// Copies do not emit: a point below another copy is as far from a lamp as it is, if lamps count.
+TEST(Periodic, PointsKeepTheirPlaceIfALightThatIsMeasuredHasOne) {
   Scene scene = post();
-  scene.lights.emplace_back().kind = LightKind::dome;
-  const std::vector<V3f> points{V3f(5, 5, 8.5f)};
-  EXPECT_NE(points_in_period(scene, 8, 16, points), points);
-  scene.lights.emplace_back().kind = LightKind::sphere;
-  EXPECT_EQ(points_in_period(scene, 8, 16, points), points);
+  Light lamp;
+  lamp.kind = LightKind::sphere;
+  lamp.position = V3f(0, 5, 0);
+  scene.lights = {lamp};
+  EXPECT_TRUE(has_placed_light(scene));
+  scene.lights[0].name = "lamp";
+  const std::vector<V3f> below{V3f(0.5f, 0, 0.3f)}, beside{V3f(80.5f, 0, 0.3f)};
+  const std::vector<V3f> up{V3f(0, 1, 0)};
+  PointOptions options;
+  options.period_x = 8;
+  options.period_z = 16;
+  options.estimator = Estimator::exact;
+  const auto measured = [&](const std::vector<V3f>& points, const std::string& name) {
+    for (const PointColumn& column : measure_points(scene, points, up, options).columns)
+      if (column.name == name) return column.values.at(0);
+    return -1.0f;
+  };
+  EXPECT_LT(measured(beside, "lamp_r"), 0.1f * measured(below, "lamp_r"));
+  options.lights = false;
+  EXPECT_EQ(measured(beside, "ao"), measured(below, "ao"));
+  EXPECT_GT(measured(below, "ao"), 0.1f);
 }
 
 }  // namespace

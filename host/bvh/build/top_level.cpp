@@ -10,6 +10,7 @@
 
 #include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/error.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -223,7 +224,7 @@ std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
         object.triangles;
     object_stack = std::max(object_stack, object.stack);
   }
-  const std::string source = scene.source.empty() ? "the scene" : scene.source;
+  const std::string source = source_name(scene);
   if (sources.empty()) {
     throw Error(
         ErrorKind::input,
@@ -253,7 +254,7 @@ std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
     bvh.root = offsets[first.mesh].node;
   }
   for (int axis = 0; axis < 3; ++axis) statistics.root_opacity[axis] = top.root_opacity[axis];
-  check_stack(top.stack + object_stack, scene.source);
+  check_stack(top.stack + object_stack, source);
   bvh.instances = std::move(top.instances);
   statistics.instance_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
