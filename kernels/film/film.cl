@@ -106,9 +106,11 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
       const Occlusion found = occlusions[ray];
       const float weight = rays[ray].weight, light = weight * found.transmittance;
       value += light * inverse_rays;
-      sums = add_sat(sums, fixed_points((float8)(light * params.scale, weight * params.scale,
-                                                 nodes_of(found), tests_of(found), 0.0f, 0.0f, 0.0f,
-                                                 0.0f)));
+      /* Neither a value nor the sum exceeds 2^61: fewer instructions than add_sat(). */
+      const float most = 0x1p61f;
+      sums += fixed_points((float8)(fmin(light * params.scale, most), fmin(weight * params.scale, most),
+                                    nodes_of(found), tests_of(found), 0.0f, 0.0f, 0.0f, 0.0f));
+      sums = min(sums, (long8)(1L << 61));
     }
     add_to_batch(&batches, s, value);
   }
