@@ -42,8 +42,8 @@ Distances distances_from(const LightRecord& light, const Box3f& bounds) {
   return {std::sqrt(near), std::sqrt(far)};
 }
 
-/// What a light of radiance 1 gives to surfaces of the scene that face it, where it is small enough
-/// to need more steps than other lights.
+/// The irradiance, at radiance 1, of surfaces that face a light at the farthest and at the nearest
+/// point of the scene. Right to a factor of two; samples of large flat lights may exceed `largest`.
 struct Irradiance {
   double smallest, largest;
 };
@@ -72,7 +72,8 @@ Irradiance irradiance_of(const LightRecord& light, const Box3f& bounds) {
   }
 }
 
-/// The smallest irradiance gets `kSmallestBits` bits, if 2^20 rays of the largest fit 63 bits.
+/// A power of two for which the smallest irradiance has `kSmallestBits` bits, and the largest
+/// `kLargestBits` at most, so that the sum of 2^19 rays fits 63 bits.
 float light_scale(const LightRecord& light, const Box3f& bounds) {
   constexpr int kSmallestBits = 12, kLargestBits = 43, kLeast = 26, kMost = 100;
   const Irradiance irradiance = irradiance_of(light, bounds);
