@@ -45,8 +45,8 @@ struct FilmScales {
 FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights);
 
 /// The first plane of each pass, and the powers of two that values are multiplied by. The sum of
-/// 2^24 samples of the largest value fits 63 bits. Irradiances have no largest value: their sums stop
-/// at 2^61 in a slice and at the largest number in all.
+/// 2^24 samples of the largest value fits 63 bits. Irradiances have no largest value: their sums
+/// stop at 2^61 in a slice and at the largest number in all.
 struct FilmLayout {
   std::uint32_t width = 0;  ///< of the crop, pixels
   std::uint32_t pixels = 0;
