@@ -22,12 +22,29 @@ V3f cone_direction(const V3f& axis, float one_minus_cos, float x, float y) {
       .normalized();
 }
 
-LightSample sample_rect(const Light& light, const V3f& origin, float x, float y) {
-  const V3f way = light.position + light.edge_u * (x - 0.5f) + light.edge_v * (y - 0.5f) - origin;
-  const float square = std::max(way.dot(way), 1e-20f), distance = std::sqrt(square);
-  const V3f direction = way * (1 / distance);
-  const float area = light.edge_u.cross(light.edge_v).length();
-  return {direction, distance, area * std::max(0.0f, -direction.dot(light.direction)) / square};
+/// rect_point() of kernels/lights/rect_sample.clh, in doubles.
+LightSample sample_rect(const Light& light, const V3f& origin, float u, float v) {
+  const bool u_is_shorter = light.edge_u.length2() <= light.edge_v.length2();
+  const V3d x_edge(u_is_shorter ? light.edge_u : light.edge_v);
+  const V3d y_edge(u_is_shorter ? light.edge_v : light.edge_u);
+  const double width = x_edge.length(), length = y_edge.length();
+  const V3d x_axis = x_edge / width, y_axis = y_edge / length, facing(light.direction);
+  const V3d corner = V3d(light.position) - V3d(origin) - (x_edge + y_edge) * 0.5;
+  const double left = corner.dot(x_axis), low = corner.dot(y_axis), high = low + length;
+  const double height = -corner.dot(facing), beside = std::max({low, -high, 0.0});
+  const double near_square = height * height + beside * beside + 1e-34;
+  const double near = std::sqrt(near_square), from = std::atan2(left, near);
+  const double angle = std::atan2(left + width, near) - from;
+  const double x = near * std::tan(from + u * angle), line_square = height * height + x * x + 1e-34;
+  const double first = low / std::sqrt(line_square + low * low);
+  const double range = high / std::sqrt(line_square + high * high) - first;
+  const double across = first + v * range;
+  const double y = across * std::sqrt(line_square / std::max(1 - across * across, 1e-12));
+  const V3d way = x_axis * x + y_axis * y - facing * height;
+  const double distance = std::max(way.length(), 1e-10);
+  const double weight =
+      std::max(height, 0.0) * angle * range * (near_square + x * x) / (near * line_square);
+  return {V3f(way / distance), static_cast<float>(distance), static_cast<float>(weight)};
 }
 
 /// The falloff of KHR_lights_punctual between the cones of a spot.

@@ -1,6 +1,6 @@
 // Samples of lights for Embree's shadow rays. In: a light, a point and a position in the unit
 // square. Out: direction, distance and weight. The densities are those of
-// kernels/lights/light_samples.clh, so that the noise is the same.
+// kernels/lights, so that the noise is the same.
 #pragma once
 
 #include "dapple/scene.hpp"

@@ -33,12 +33,19 @@ struct Arguments {
   std::vector<std::string> scenes, opacity;
   std::string protocol = "all", pass = "all", cache = default_cache_folder(), json, svg;
   int size = 256, repeats = 5, reference_spp = 4096, most_spp = 256;
+  double least_rmse = kImageTargets.back();
   std::size_t points = 1000, max_rays = 1024, ray_points = kRayPoints;
   bool quick = false;
   RenderOptions render;
 
   [[nodiscard]] bool measures(const std::string& name) const {
     return protocol == "all" || protocol == name;
+  }
+
+  [[nodiscard]] std::vector<double> image_targets() const {
+    std::vector<double> targets = kImageTargets;
+    std::erase_if(targets, [this](double target) { return target < least_rmse; });
+    return targets;
   }
 };
 
@@ -64,6 +71,9 @@ void add_options(CLI::App& app, Arguments& a) {
   app.add_option("--pass", a.pass, "Of pictures: which pass")
       ->capture_default_str()
       ->check(CLI::IsMember({"ao", "light", "all"}));
+  app.add_option("--least-rmse", a.least_rmse, "Of pictures: contestants stop below this RMSE")
+      ->capture_default_str()
+      ->check(CLI::Range(kImageTargets.back(), kImageTargets.front()));
   app.add_option("--camera-splitting", a.render.camera_splitting,
                  "Of dapple's pictures: samples that share a camera ray; 0: as the scene suits");
   app.add_option("--footprint", a.render.footprint,
@@ -187,8 +197,8 @@ class SceneRun {
     const auto contestants = study.contestants();
     const std::string title =
         fmt::format("{} pictures, {}x{}", name, scene_.view.width, scene_.view.height);
-    report(hold_contest(contestants, truth, {a_.repeats, kImageTargets.back(), show_progress}),
-           kImageTargets, name,
+    report(hold_contest(contestants, truth, {a_.repeats, a_.least_rmse, show_progress}),
+           a_.image_targets(), name,
            fmt::format("{} (Embree's camera rays: {})", title, study.methods()[0].camera.name()),
            "samples a pixel");
   }

@@ -48,6 +48,11 @@ MUTATIONS = [
         "samples->solid_angle.v = M_PI_F * one_minus_cos;",
         r"^(Light|LightSampling|SpotLight)\."),
     Mutation(
+        "rects-without-the-distance-of-the-line", "kernels/lights/rect_sample.clh",
+        "* range * (near_square + at * at) / line_square;",
+        "* range;",
+        r"^RectSampling\."),
+    Mutation(
         "sampler-without-pixel", "kernels/sampling/random.clh",
         "const uint key = hash_pair(hash_pair(pixel, pair), seed);",
         "const uint key = hash_pair(hash_uint(pair), seed);",

@@ -172,7 +172,10 @@ TEST(ScalarKernels, SampleEveryKindOfLightAsVectorKernelsDo) {
     scene.lights.push_back(light);
     return scene.lights.back();
   };
-  add("rect", LightKind::rect);
+  add("parallelogram", LightKind::rect);
+  Light& rect = add("rect", LightKind::rect);
+  rect.edge_u = V3f(0, 0, 1).cross(rect.direction);
+  rect.edge_v = rect.direction.cross(rect.edge_u) * 2;
   add("disk", LightKind::disk);
   add("sphere", LightKind::sphere);
   Light& spot = add("spot", LightKind::sphere);

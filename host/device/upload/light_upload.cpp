@@ -50,6 +50,22 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
   return total;
 }
 
+/// The edges of a rect, the shorter one first, as its kernels take them, and its area.
+void store_rect(const Light& light, LightRecord& record) {
+  const V3f &u = light.edge_u, &v = light.edge_v, &facing = light.direction;
+  const auto are_perpendicular = [](const V3f& a, const V3f& b) {
+    constexpr float kTolerance = 1e-5f;  // a hundred roundings
+    return std::fabs(a.dot(b)) < kTolerance * a.length() * b.length();
+  };
+  const bool is_rectangle =
+      are_perpendicular(u, v) && are_perpendicular(u, facing) && are_perpendicular(v, facing);
+  if (!is_rectangle) record.kind = DAPPLE_LIGHT_PARALLELOGRAM;
+  const bool u_is_shorter = u.length2() <= v.length2();
+  store(u_is_shorter ? u : v, record.edge_u);
+  store(u_is_shorter ? v : u, record.edge_v);
+  record.area = u.cross(v).length();
+}
+
 /// The axes of a disk, as long as its radius, and its area.
 void store_disk(const Light& light, LightRecord& record) {
   const RectAxes axes = rect_axes(light.direction);
@@ -72,15 +88,13 @@ void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
     record.sequence = static_cast<uint>(sequence);
     store(light.position, record.position);
     store(light.direction, record.direction);
-    store(light.edge_u, record.edge_u);
-    store(light.edge_v, record.edge_v);
     record.radius = light.radius;
     const double half = std::sin(0.5 * light.angular_radius);
     record.one_minus_cos = static_cast<float>(2.0 * half * half);
     record.cos_inner = light.cos_inner;
     record.cos_outer = light.cos_outer;
     record.two_sided = light.double_sided ? 1u : 0u;
-    record.area = light.edge_u.cross(light.edge_v).length();
+    if (light.kind == LightKind::rect) store_rect(light, record);
     if (light.kind == LightKind::disk) store_disk(light, record);
     if (light.kind == LightKind::mesh) {
       record.id = static_cast<uint>(index + 1);

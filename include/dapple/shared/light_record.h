@@ -15,13 +15,14 @@ namespace dapple {
 #define DAPPLE_LIGHT_MESH 3u
 #define DAPPLE_LIGHT_DOME 4u
 #define DAPPLE_LIGHT_DISK 5u
+#define DAPPLE_LIGHT_PARALLELOGRAM 6u /* a rect whose edges or direction are not perpendicular */
 
 typedef struct LightRecord {
   float position[3];
   float radius;        /* sphere, metres */
   float direction[3];  /* rect, disk: emitting side; sun, spot: the way light travels */
   float one_minus_cos; /* sun: 1 - cosine of its angular radius */
-  float edge_u[3]; /* rect: full edge; disk: radius along an axis */
+  float edge_u[3]; /* rect: the shorter full edge; disk: radius along an axis */
   float area;      /* rect, mesh, disk: square metres */
   float edge_v[3];
   float cos_inner; /* spot cone; cos_outer = -1: none */
