@@ -177,6 +177,7 @@ TEST(ScalarKernels, SampleEveryKindOfLightAsVectorKernelsDo) {
   rect.edge_u = V3f(0, 0, 1).cross(rect.direction);
   rect.edge_v = rect.direction.cross(rect.edge_u) * 2;
   add("disk", LightKind::disk);
+  add("ceiling", LightKind::disk).radius = 30;
   add("sphere", LightKind::sphere);
   Light& spot = add("spot", LightKind::sphere);
   spot.cos_inner = 0.99f;

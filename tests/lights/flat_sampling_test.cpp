@@ -1,4 +1,5 @@
-// Samples of rects: by solid angle at any distance, whatever the receiver's place.
+// Samples of rects and disks: by solid angle where they are near, whatever the place of the
+// receiver.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -115,6 +116,34 @@ TEST(RectSampling, ParallelogramsKeepTheirFormFactor) {
   EXPECT_NEAR(straight, expected, kIntegrationError * expected);
   const double slanted = light_samples(rect_scene(at, u, v, {0, -1, 0.5f})).irradiance();
   EXPECT_NEAR(slanted, expected / std::sqrt(1.25), 0.1 * expected);
+}
+
+// Up to one radius away they are sampled by solid angle, too.
+TEST(DiskSampling, NearDisksHaveTheSolidAngleOfTheirConeWithLittleNoise) {
+  const struct {
+    float height, noise;  // standard deviation of weights over their mean, at most
+  } heights[] = {{1e-3f, 0.01f}, {0.1f, 0.15f}, {0.9f, 0.4f}, {1.5f, 0.3f}};
+  for (const auto& [height, noise] : heights) {
+    Scene scene;
+    Light light;
+    light.kind = LightKind::disk;
+    light.radius = 500;
+    light.position = V3f(0, height * light.radius, 0);
+    scene.lights = {light};
+    const Samples samples = light_samples(scene);
+    double sum = 0, squares = 0;
+    for (const float weight : samples.solid_angles) {
+      sum += weight;
+      squares += double(weight) * weight;
+    }
+    const double mean = sum / kLightSamples, cosine = height / std::hypot(height, 1.0);
+    const double expected = 2 * std::numbers::pi * (1 - cosine);
+    EXPECT_NEAR(mean, expected, 3e-3 * expected) << height;
+    EXPECT_LT(std::sqrt(std::max(0.0, squares / kLightSamples - mean * mean)), noise * mean)
+        << height;
+    const double irradiance = std::numbers::pi * (1 - cosine * cosine);
+    EXPECT_NEAR(samples.irradiance(), irradiance, 5e-3 * irradiance) << height;
+  }
 }
 
 }  // namespace
