@@ -104,13 +104,12 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
     const uint end = ray + (sample_hit(sample_hits, begin + s) ? params.rays : 0u);
     for (; ray < end; ++ray) {
       const Occlusion found = occlusions[ray];
-      const float weight = rays[ray].weight, light = weight * found.transmittance;
-      value += light * inverse_rays;
-      /* Neither a value nor the sum exceeds 2^61: fewer instructions than add_sat(). */
-      const float most = 0x1p61f;
-      sums += fixed_points((float8)(fmin(light * params.scale, most), fmin(weight * params.scale, most),
-                                    nodes_of(found), tests_of(found), 0.0f, 0.0f, 0.0f, 0.0f));
-      sums = min(sums, (long8)(1L << 61));
+      const float weight = rays[ray].weight;
+      value += weight * found.transmittance * inverse_rays;
+      const float open = fmin(weight * params.scale, DAPPLE_MOST_VALUE);
+      sums += fixed_points((float8)(open * found.transmittance, open, nodes_of(found), tests_of(found), 0.0f, 0.0f,
+                                    0.0f, 0.0f));
+      if (open > DAPPLE_SMALL_VALUE) sums = stop_at_most(sums);
     }
     add_to_batch(&batches, s, value);
   }

@@ -22,7 +22,7 @@ inline void find_texels(const Dome* dome, __global const Ray* rays, uint first, 
 
 /* Contribution of one ray: irradiance with and without occlusion, visits, tests. */
 inline long8 dome_sums(const Dome* dome, uint texel, float weight, Occlusion found, float scale) {
-  const float3 light = fmin(weight * texel_colour(dome, texel) * scale, 0x1p61f);
+  const float3 light = fmin(weight * texel_colour(dome, texel) * scale, DAPPLE_MOST_VALUE);
   const float3 seen = light * found.transmittance;
   return fixed_points((float8)(seen.x, seen.y, seen.z, light.x, light.y, light.z,
                                nodes_of(found), tests_of(found)));
@@ -57,7 +57,7 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
       if (lane == 0u) find_texels(&dome, rays, ray, last, &texels);
       const float weight = rays[ray].weight;
       sums += dome_sums(&dome, texels.u[lane], weight, occlusions[ray], params.scale);
-      sums = min(sums, (long8)(1L << 61)); /* as in resolve_light() */
+      if (weight * params.scale > DAPPLE_SMALL_VALUE) sums = stop_at_most(sums);
       value += weight * occlusions[ray].transmittance * inverse_rays;
     }
     add_to_batch(&batches, s, value);
