@@ -52,7 +52,7 @@ float spot_share(const Light& light, const V3f& axis) {
   if (light.cos_outer <= -1) return 1;
   const float inside = -axis.dot(light.direction) - light.cos_outer;
   const float edge =
-      std::clamp(inside / std::max(0.001f, light.cos_inner - light.cos_outer), 0.0f, 1.0f);
+      std::clamp(inside / std::max(1e-7f, light.cos_inner - light.cos_outer), 0.0f, 1.0f);
   return edge * edge;
 }
 

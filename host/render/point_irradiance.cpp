@@ -147,7 +147,7 @@ std::vector<PointIrradiance> point_irradiance(const Device& device, const Device
   for (std::size_t begin = 0; begin < count; begin += slice) {
     report_slice(control, "irradiance", begin, count);
     const auto chosen = std::span(order).subspan(begin, std::min(slice, count - begin));
-    const SharedPoints batch(context, points, chosen);
+    const SharedPoints batch(context, points, chosen, scene.buffers->params);
     queues.points = batch.buffer();
     LightTracer tracer(context, queues, *scene.buffers, options, !points.geometric.empty());
     for (uint l = 0; l < lights.size(); ++l) tracer.trace(l, lights[l], chosen, result[l]);

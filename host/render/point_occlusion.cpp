@@ -137,7 +137,7 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
   for (std::size_t begin = 0; begin < count; begin += slice) {
     report_slice(control, "occlusion", begin, count);
     const auto chosen = std::span(order).subspan(begin, std::min(slice, count - begin));
-    const SharedPoints batch(context, points, chosen);
+    const SharedPoints batch(context, points, chosen, scene.buffers->params);
     queues.points = batch.buffer();
     found.ao.resize(chosen.size());
     found.bent.resize(bent ? chosen.size() : 0);

@@ -12,16 +12,22 @@
 namespace dapple {
 namespace {
 
-/// The offset along the normal exceeds the rounding error of float coordinates.
-SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t index) {
+/// In roundings of float: of coordinates along the normal, 64, since callers rounded theirs; of the
+/// largest coordinate where matrices carry rays into instances, 16 as of camera hits
+/// (surface_point.clh).
+constexpr float kAlongNormal = 3.8e-6f, kInInstances = 9.5e-7f;
+
+SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t index,
+                           bool has_instances) {
   SurfacePoint point{};
-  float largest = 0;
+  float along = 0, largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     point.position[axis] = position[axis];
     point.normal[axis] = normal[axis];
+    along += std::fabs(position[axis] * normal[axis]);
     largest = std::max(largest, std::fabs(position[axis]));
   }
-  point.offset = largest * 4e-6f;
+  point.offset = along * kAlongNormal + (has_instances ? largest * kInInstances : 0.0f);
   point.pixel = static_cast<uint>(index);
   return point;
 }
@@ -39,11 +45,11 @@ void smooth(const V3f& geometric, const V3f& shift, SurfacePoint& point) {
 }  // namespace
 
 SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,
-                           std::span<const std::uint32_t> chosen)
+                           std::span<const std::uint32_t> chosen, const SceneParams& scene)
     : context_(context) {
   points_.reserve(chosen.size());
   for (const std::uint32_t i : chosen) {
-    points_.push_back(surface_point(points.positions[i], points.normals[i], i));
+    points_.push_back(surface_point(points.positions[i], points.normals[i], i, scene.has_top != 0));
     if (!points.geometric.empty() && points.geometric[i].length2() > 0)
       smooth(points.geometric[i], points.shifts[i], points_.back());
   }

@@ -7,6 +7,7 @@
 
 #include "dapple/render.hpp"
 #include "dapple/scene.hpp"
+#include "dapple/shared/pass_params.h"
 #include "dapple/shared/ray.h"
 #include "device/context.hpp"
 
@@ -25,9 +26,10 @@ struct QueryPoints {
 /// Points in host memory that the device reads in place. The destructor waits for the device.
 class SharedPoints {
  public:
-  /// The points with the indices `chosen`, which also seed their random numbers.
+  /// The points with the indices `chosen`, which also seed their random numbers. Rays in `scene`
+  /// start above them by a bound on roundings.
   SharedPoints(DeviceContext& context, const QueryPoints& points,
-               std::span<const std::uint32_t> chosen);
+               std::span<const std::uint32_t> chosen, const SceneParams& scene);
   ~SharedPoints() { context_.wait(); }
   SharedPoints(const SharedPoints&) = delete;
   SharedPoints& operator=(const SharedPoints&) = delete;

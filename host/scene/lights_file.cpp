@@ -27,7 +27,8 @@ constexpr std::size_t kMaxDepth = 16;  // the format needs 4
 constexpr std::size_t kMaxLights = 4096;
 constexpr double kSunDegrees = 0.533;  // angular diameter of the real sun
 constexpr double kMaxStops = 100;
-constexpr double kOuterDegrees = 45;  // of a spot's cone, as in KHR_lights_punctual
+constexpr double kOuterDegrees = 45;        // of a spot's cone, as in KHR_lights_punctual
+constexpr double kLeastOuterDegrees = 0.2;  // cosines of less are too coarse as floats
 
 std::string read_text(const std::string& path) {
   const auto bytes = read_side_file(path, "lights file", kMaxFileBytes);
@@ -94,8 +95,9 @@ Light read_spot(const LightFields& fields) {
   light.position = fields.point("position");
   light.direction = fields.direction_or_target("direction", light.position);
   light.radius = fields.length("radius");
-  const double outer =
-      fields.has("outer_degrees") ? fields.in_range("outer_degrees", 1e-3, 90) : kOuterDegrees;
+  const double outer = fields.has("outer_degrees")
+                           ? fields.in_range("outer_degrees", kLeastOuterDegrees, 90)
+                           : kOuterDegrees;
   const double inner =
       fields.has("inner_degrees") ? fields.in_range("inner_degrees", 0, outer) : 0.0;
   light.cos_outer = cosine_of_degrees(outer);

@@ -48,7 +48,7 @@
   STRUCT(LightRecord)                                                                        \
   MEMBER(LightRecord, position) MEMBER(LightRecord, radius) MEMBER(LightRecord, direction)   \
   MEMBER(LightRecord, one_minus_cos) MEMBER(LightRecord, edge_u) MEMBER(LightRecord, area)   \
-  MEMBER(LightRecord, edge_v) MEMBER(LightRecord, cos_inner) MEMBER(LightRecord, cos_outer)  \
+  MEMBER(LightRecord, edge_v) MEMBER(LightRecord, inner_cone) MEMBER(LightRecord, outer_cone) \
   MEMBER(LightRecord, kind) MEMBER(LightRecord, first_triangle)                              \
   MEMBER(LightRecord, triangle_count) MEMBER(LightRecord, two_sided)                         \
   MEMBER(LightRecord, id) MEMBER(LightRecord, environment_first)                             \

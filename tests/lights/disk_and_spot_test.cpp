@@ -136,5 +136,14 @@ TEST(SpotLight, ItsConeFallsSmoothlyAsKhrLightsPunctualSays) {
   EXPECT_EQ(through_cone(31, 30, 30), 0);
 }
 
+TEST(SpotLight, NarrowConesHaveTheirFullLightInside) {
+  for (const double outer : {5.0, 1.0, 0.2}) {
+    EXPECT_NEAR(through_cone(0, 0, outer), 1, 1e-3) << outer;
+    EXPECT_NEAR(through_cone(0.45 * outer, 0.5 * outer, outer), 1, 1e-3) << outer;
+    EXPECT_NEAR(through_cone(0.5 * outer, 0, outer), 0.75 * 0.75, 0.02) << outer;
+    EXPECT_EQ(through_cone(1.05 * outer, 0, outer), 0) << outer;
+  }
+}
+
 }  // namespace
 }  // namespace dapple

@@ -91,8 +91,8 @@ void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
     record.radius = light.radius;
     const double half = std::sin(0.5 * light.angular_radius);
     record.one_minus_cos = static_cast<float>(2.0 * half * half);
-    record.cos_inner = light.cos_inner;
-    record.cos_outer = light.cos_outer;
+    record.inner_cone = 1.0f - light.cos_inner;
+    record.outer_cone = 1.0f - light.cos_outer;
     record.two_sided = light.double_sided ? 1u : 0u;
     if (light.kind == LightKind::rect) store_rect(light, record);
     if (light.kind == LightKind::disk) store_disk(light, record);

@@ -48,9 +48,13 @@ void check_cone(const tinygltf::SpotLight& spot, const std::string& who, const s
        who, spot.innerConeAngle, spot.outerConeAngle);
 }
 
+/// Cosines of smaller angles are too coarse as floats.
+constexpr double kLeastOuterAngle = 0.2 * std::numbers::pi / 180;
+
 void make_cone(Light& light, const tinygltf::SpotLight& spot) {
+  const double outer = std::max(spot.outerConeAngle, kLeastOuterAngle);
   light.cos_inner = static_cast<float>(std::cos(spot.innerConeAngle));
-  light.cos_outer = static_cast<float>(std::max(std::cos(spot.outerConeAngle), 0.0));
+  light.cos_outer = static_cast<float>(std::max(std::cos(outer), 0.0));
 }
 
 /// Takes position and direction from the node; its scale changes neither radius nor intensity.
@@ -81,6 +85,9 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
         fmt::format("{}: {} is ignored: its node is scaled to nothing", document.file, who)));
     return;
   }
+  if (given.type == "spot" && given.spot.outerConeAngle < kLeastOuterAngle)
+    scene.warnings.push_back(one_line(fmt::format(
+        "{}: {} has an outer cone angle below 0.2 degrees: it gets that", document.file, who)));
   if (given.type == "directional") {
     make_sun(light, intensity);
   } else {

@@ -25,8 +25,8 @@ typedef struct LightRecord {
   float edge_u[3]; /* rect: the shorter full edge; disk: radius along an axis */
   float area;      /* rect, mesh, disk: square metres */
   float edge_v[3];
-  float cos_inner; /* spot cone; cos_outer = -1: none */
-  float cos_outer;
+  float inner_cone; /* spot: 1 - cosine of its cones; no cone: outer_cone is 2 */
+  float outer_cone;
   uint kind;
   uint first_triangle; /* mesh: in the emitter triangle buffer */
   uint triangle_count;
