@@ -61,6 +61,22 @@ TEST(Pieces, WhatIsMissingIsSaidInSamplesAndPixels) {
   EXPECT_EQ(missing_text({{{0, 0, 4, 2}, {0, 8}}, {{5, 3, 9, 5}, {0, 8}}}, 8), "30 of 60 pixels");
 }
 
+// Pieces join differently from sample to sample: every pixel counts by what it lacks itself.
+TEST(Pieces, WhatIsMissingIsSaidForCropsThatDifferFromShardToShard) {
+  const PixelRect left{0, 0, 4, 5}, right{5, 0, 9, 5};
+  EXPECT_EQ(missing_text({{left, {0, 4}}, {left, {4, 8}}, {right, {0, 4}}}, 8),
+            "samples 5 to 8 of 8 of the pixels 5,0 to 9,5");
+  EXPECT_EQ(missing_text({{kWhole, {0, 4}}, {{0, 0, 9, 4}, {4, 8}}}, 8),
+            "samples 5 to 8 of 8 of the pixels 0,5 to 9,5");
+  EXPECT_EQ(missing_text({{left, {0, 8}}, {{5, 0, 9, 2}, {0, 4}}, {{5, 3, 9, 4}, {0, 8}}}, 8),
+            "samples 5 to 8 of 8 of the pixels 5,0 to 9,2; 5 of 60 pixels");
+  const std::vector<Piece> pinwheel{{{0, 0, 5, 1}, {0, 4}}, {{6, 0, 9, 3}, {0, 4}},
+                                    {{3, 4, 9, 5}, {0, 4}}, {{0, 2, 2, 5}, {0, 4}},
+                                    {{3, 2, 5, 3}, {0, 4}}, {kWhole, {4, 8}}};
+  EXPECT_EQ(missing_text(pinwheel, 8), "");
+  EXPECT_EQ(joined(pinwheel), (std::vector<Piece>{{kWhole, {0, 8}}})) << "it can be resumed";
+}
+
 TEST(Pieces, OutsideOfTheCropOrEmptyAreNone) {
   EXPECT_TRUE(is_piece_of(kWhole, {kWhole, {0, 1}}));
   for (const Piece& piece :
