@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -136,6 +137,18 @@ RenderResult render_frame(const RenderArguments& a, const Frame& frame, Shot& sh
   return result;
 }
 
+/// Whether there are lights, of which none reaches a pixel.
+bool has_dark_lights(const Film& film) {
+  bool has_lights = false;
+  for (const Plane& plane : film.planes) {
+    if (!plane.channel.starts_with("light.")) continue;
+    has_lights = true;
+    if (std::any_of(plane.pixels.begin(), plane.pixels.end(), [](float v) { return v > 0; }))
+      return false;
+  }
+  return has_lights;
+}
+
 void run_render(const RenderArguments& a) {
   RenderOptions options = to_options(a);
   const ExrFormat format = to_format(a);
@@ -180,10 +193,11 @@ void run_render(const RenderArguments& a) {
       break;
     }
     const auto writing = Clock::now();
-    // The frames of a sequence have the exposure and the sky of the first.
-    if (!png.exposure && !frame.png.empty())
+    // The frames of a sequence have the exposure and the sky of the first one that is lit.
+    const bool is_lit = !has_dark_lights(result.film);
+    if (is_lit && !png.exposure && !frame.png.empty())
       png.exposure = std::log2(automatic_exposure(result.film));
-    if (!options.ambient) options.ambient = static_cast<float>(statistics.ambient);
+    if (is_lit && !options.ambient) options.ambient = static_cast<float>(statistics.ambient);
     options.footprint = statistics.footprint;  // a sequence has the footprint of its first frame
     options.max_bias = 0;
     write_pictures(result, frame, format, png);

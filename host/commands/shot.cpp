@@ -1,11 +1,14 @@
 // The scene of each frame: see shot.hpp.
 #include "commands/shot.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "camera/view.hpp"
+#include "dapple/error.hpp"
 #include "scene/ground.hpp"
 
 namespace dapple {
@@ -69,7 +72,12 @@ Shot::Defaults Shot::choose_defaults(const Scene& first) const {
 }
 
 void Shot::add_defaults(Scene& scene) const {
-  if (defaults_->camera) scene.cameras.push_back(*defaults_->camera);
+  // A camera that is scaled to nothing at some moments is not in the scene then.
+  if (defaults_->camera) scene.cameras = {*defaults_->camera};
+  if (!options_.look && scene.cameras.empty())
+    throw Error(ErrorKind::input,
+                fmt::format("{}: its camera is scaled to nothing at some moments: give --look",
+                            arguments_.scene));
   scene.lights.insert(scene.lights.end(), defaults_->lights.begin(), defaults_->lights.end());
   if (defaults_->ground_under) add_ground(scene, *defaults_->ground_under);
   scene.warnings.insert(scene.warnings.end(), defaults_->notes.begin(), defaults_->notes.end());

@@ -154,23 +154,17 @@ std::vector<std::uint32_t> keep_wanted(std::vector<Item>& items, const std::vect
   return new_numbers;
 }
 
-void drop_dark_mesh_lights(Scene& scene) {
-  std::vector<bool> wanted(scene.lights.size(), false);
+/// They stay, so that a sequence has the same layers in all its frames.
+void warn_dark_mesh_lights(Scene& scene) {
+  std::vector<bool> dark(scene.lights.size());
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    dark[i] = scene.lights[i].kind == LightKind::mesh;
+  for (const Instance& instance : scene.instances)
+    if (instance.light >= 0) dark[static_cast<std::size_t>(instance.light)] = false;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    wanted[i] = scene.lights[i].kind != LightKind::mesh;
-  }
-  for (const Instance& instance : scene.instances) {
-    if (instance.light >= 0) wanted[static_cast<std::size_t>(instance.light)] = true;
-  }
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    if (wanted[i]) continue;
+    if (!dark[i]) continue;
     scene.warnings.push_back(
-        fmt::format("dropped light \"{}\", which has no triangle", scene.lights[i].name));
-  }
-  const std::vector<std::uint32_t> new_numbers = keep_wanted(scene.lights, wanted);
-  for (Instance& instance : scene.instances) {
-    if (instance.light < 0) continue;
-    instance.light = static_cast<int>(new_numbers[static_cast<std::size_t>(instance.light)]);
+        fmt::format("light \"{}\" is dark: it has no triangle", scene.lights[i].name));
   }
 }
 
@@ -201,7 +195,7 @@ void drop_unused(Scene& scene) {
   });
   const std::vector<std::uint32_t> new_numbers = keep_wanted(scene.meshes, find_placed(scene));
   for (Instance& instance : scene.instances) instance.mesh = new_numbers[instance.mesh];
-  drop_dark_mesh_lights(scene);
+  warn_dark_mesh_lights(scene);
 }
 
 }  // namespace dapple

@@ -1,5 +1,6 @@
 // The options --frame and --frames of dapple render: one file for each frame, named by its number;
 // what stays the same in all frames; and arguments that are refused before anything is rendered.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -28,6 +29,30 @@ class FramesCommand : public ProgramRun {
            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
     const auto bytes = b.glb();
     std::ofstream(path("climb.glb"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  }
+  /// Writes blink.glb, a triangle with a lamp and a camera that are scaled to nothing at 0 s and at
+  /// 2 s.
+  void write_blink() const {
+    test::GltfBuilder b = test::one_triangle();
+    b.doc["extensions"]["KHR_lights_punctual"]["lights"] =
+        test::json::array({{{"type", "point"}, {"name", "lamp"}, {"intensity", 100}}});
+    b.doc["extensionsUsed"] = {"KHR_lights_punctual"};
+    b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
+    const auto lamp = b.doc["nodes"].size();
+    b.add("nodes",
+          {{"translation", {0, 0, 5}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    b.add("nodes", {{"translation", {0, 0, 3}}, {"camera", 0}});
+    const int times = b.add_accessor(std::vector<float>{0, 1, 2}, test::kFloat, "SCALAR");
+    const int values = b.add_positions({0, 0, 0, 1, 1, 1, 0, 0, 0});
+    test::json channels = test::json::array();
+    for (const auto node : {lamp, lamp + 1})
+      channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "scale"}}}});
+    b.add("animations",
+          {{"samplers", {{{"input", times}, {"output", values}}}}, {"channels", channels}});
+    const auto bytes = b.glb();
+    std::ofstream(path("blink.glb"), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
   }
@@ -106,6 +131,31 @@ TEST_F(FramesCommand, CameraLightAndGroundOfASequenceStandStill) {
        ++at)
     ++notes;
   EXPECT_EQ(notes, 1u) << run.err;
+}
+
+TEST_F(FramesCommand, WhatIsScaledToNothingAtFirstChangesNeitherLightsNorCameraLater) {
+  write_blink();
+  const std::string render = "render blink.glb --width 16 --height 16 --spp 4 ";
+  const Outcome run = dapple(render + "--frames 0-2 --fps 1 -o a.#.exr");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "(\"lamp\") is dark: its node is scaled to nothing")) << run.err;
+  Film films[3];
+  for (int i = 0; i < 3; ++i) {
+    films[i] = read_exr(path(fmt::format("a.{}.exr", i).c_str()));
+    EXPECT_NE(films[i].find("light.lamp.R"), nullptr) << i;
+    EXPECT_EQ(films[i].find("light.sun.R"), nullptr) << "the file has a light";
+    EXPECT_EQ(films[i].metadata.world_to_camera, films[0].metadata.world_to_camera) << i;
+  }
+  const auto brightest = [&](int i) {
+    const auto& values = films[i].find("R")->pixels;
+    return *std::max_element(values.begin(), values.end());
+  };
+  EXPECT_LT(brightest(2), 0.5f * brightest(1)) << "the sky is that of the first frame that is lit";
+  const Outcome shutter = dapple(render + "--frame 1 --fps 1 --shutter=-1,1 -o b.exr");
+  EXPECT_EQ(shutter.code, 0) << shutter.err;
+  const Outcome lost = dapple(render + "--frames 1-2 --fps 1 -o c.#.exr");
+  EXPECT_EQ(lost.code, 3);
+  EXPECT_TRUE(contains(lost.err, "its camera is scaled to nothing at some moments")) << lost.err;
 }
 
 TEST_F(FramesCommand, InfoListsAnimationsWithTheirLengths) {

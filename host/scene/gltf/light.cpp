@@ -57,12 +57,12 @@ void make_cone(Light& light, const tinygltf::SpotLight& spot) {
   light.cos_outer = static_cast<float>(std::max(std::cos(outer), 0.0));
 }
 
-/// Takes position and direction from the node; its scale changes neither radius nor intensity.
-/// Returns false when a scale of zero leaves no direction.
+/// Takes position and direction from the node; its scale changes neither radius nor intensity, but
+/// one of zero, which leaves no direction, makes the light dark: returns false.
 bool place(Light& light, const Imath::M44d& to_world) {
+  light.position = V3f(Imath::V3d(to_world[3][0], to_world[3][1], to_world[3][2]));
   const Imath::V3d minus_z(-to_world[2][0], -to_world[2][1], -to_world[2][2]);
   if (minus_z.length() == 0) return false;
-  light.position = V3f(Imath::V3d(to_world[3][0], to_world[3][1], to_world[3][2]));
   light.direction = V3f(minus_z.normalized());
   return true;
 }
@@ -80,11 +80,6 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
   light.name = one_line(!given.name.empty()  ? given.name
                         : !node.name.empty() ? node.name
                                              : fmt::format("light_{}", index));
-  if (!place(light, placed.to_world)) {
-    scene.warnings.push_back(one_line(
-        fmt::format("{}: {} is ignored: its node is scaled to nothing", document.file, who)));
-    return;
-  }
   if (given.type == "spot" && given.spot.outerConeAngle < kLeastOuterAngle)
     scene.warnings.push_back(one_line(fmt::format(
         "{}: {} has an outer cone angle below 0.2 degrees: it gets that", document.file, who)));
@@ -93,6 +88,11 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
   } else {
     make_sphere(light, intensity, options.light_radius);
     if (given.type == "spot") make_cone(light, given.spot);
+  }
+  if (!place(light, placed.to_world)) {
+    light.radiance = V3f(0, 0, 0);
+    scene.warnings.push_back(one_line(
+        fmt::format("{}: {} is dark: its node is scaled to nothing", document.file, who)));
   }
   scene.lights.push_back(std::move(light));
 }
