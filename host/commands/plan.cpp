@@ -244,6 +244,8 @@ void run_plan(RenderArguments a) {
                 "motion");
   if (options.deep)
     throw Error(ErrorKind::usage, "dapple plan knows no deep files: leave --deep out");
+  if (!a.resume.empty())
+    throw Error(ErrorKind::usage, "dapple plan plans whole renders: leave --resume out");
   catch_interruptions();
   std::optional<double> seconds = a.frame;
   if (!a.frames.empty())

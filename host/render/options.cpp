@@ -36,6 +36,11 @@ void check_crop(const RenderOptions& options) {
   if (c.x0 >= 0 && c.y0 >= 0 && c.x0 <= c.x1 && c.y0 <= c.y1 && c.x1 < options.width &&
       c.y1 < options.height)
     return;
+  if (c.x0 > c.x1 || c.y0 > c.y1)
+    throw Error(ErrorKind::usage,
+                fmt::format("--crop {},{},{},{} has no pixels: X0,Y0,X1,Y1 begins at the upper "
+                            "left, both ends are included",
+                            c.x0, c.y0, c.x1, c.y1));
   throw Error(
       ErrorKind::usage,
       fmt::format(

@@ -142,6 +142,8 @@ TEST_F(MergeCommand, APlanIsOfTheRightSizeAndWritesNothing) {
   EXPECT_GT(number_after(json, "memory_bytes"), 3e7);
   EXPECT_GT(number_after(json, "seconds_of_rays"), 0);
   expect_failure(dapple("plan scene:cube --target-rmse 0.1"), 2, "dapple plan needs --spp");
+  expect_failure(dapple("plan scene:cube --resume a.ckpt"), 2, "leave --resume out");
+  expect_failure(dapple("plan scene:cube --crop 9,9,4,4"), 2, "has no pixels");
 }
 
 }  // namespace
