@@ -23,6 +23,15 @@ constexpr float kMaxGrowth = 4;
 /// A round that would take fewer samples of an element in the mean does not pay: it visits all.
 constexpr double kMinRound = 0.005;
 
+/// Samples of a place before its first error is known, where each is in one of several placements:
+/// a few are often in like ones by chance, and then tell nothing of the others.
+constexpr double kSamplesInPlacements = 16;
+
+/// Places of an element, three or one.
+double place_count(const std::array<std::uint32_t, 3>& places) {
+  return places[0] == places[1] && places[1] == places[2] ? 1 : 3;
+}
+
 }  // namespace
 
 SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
@@ -35,18 +44,32 @@ SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
       trace_(lights ? tracing.light : tracing.ao),
       sums_(sums),
       lights_(lights ? std::max<std::size_t>(1, tracing.lights) : 1),
+      variance_(surface.size(), this->placements()),
       taken_(surface.size()) {}
 
 bool SampleRounds::run(const RoundOptions& options) {
   if (!tracing_.progress.add(0)) return false;
-  is_fixed_ = options.target_error <= 0;
-  is_in_all_placements_ = is_fixed_ && static_cast<std::size_t>(options.fixed.samples) >=
-                                           kPointsOfPlacement * placements();
+  const bool is_fixed = options.target_error <= 0;
+  is_in_all_placements_ = is_fixed && static_cast<std::size_t>(options.fixed.samples) >=
+                                          kPointsOfPlacement * placements();
+  sums_.set_sampling(is_fixed ? options.fixed.rays : options.rays, placements() > 1);
   const bool done =
-      is_fixed_ ? take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays)
-                : take(options.first, options.rays) && refine(options.target_error, options.limit);
+      is_fixed ? take(static_cast<std::uint32_t>(options.fixed.samples), options.fixed.rays)
+               : take(std::min(first_samples(options.first), options.limit), options.rays) &&
+                     refine(options.target_error, options.limit);
+  set_variance_factors();
   tracing_.progress.show();
   return done;
+}
+
+// In several placements, all of them if they are few.
+std::uint32_t SampleRounds::first_samples(std::uint32_t least) const {
+  if (placements() < 2) return least;
+  double uses = 0;  // of places by elements
+  for (std::size_t i = 0; i < surface_.size(); ++i) uses += place_count(surface_.places(i));
+  const double of_place = std::max(1.0, uses / static_cast<double>(sums_.size()));
+  const auto enough = static_cast<std::uint32_t>(std::ceil(kSamplesInPlacements / of_place));
+  return std::max(least, std::min(placements(), enough));
 }
 
 // `samples` of each element, both sides. False: stopped.
@@ -64,6 +87,7 @@ bool SampleRounds::refine(float target, std::uint32_t max_samples) {
   std::vector<std::uint32_t> wanted(taken_.size());
   for (;;) {
     sums_.choose_sides(true);
+    set_variance_factors();
     const std::vector<float> factors = sums_.missing_samples(target);
     double more = 0;
     for (std::size_t i = 0; i < taken_.size(); ++i) {
@@ -115,10 +139,10 @@ bool SampleRounds::trace() {
     const SampleIndex& index = next_[i];
     batch.samples[i] = sample(index);
     batch.placement[i] =
-        is_fixed_ ? placement_of_sample(index.number, placements(), hash_of(~hash_, index.element))
-                  : hash_of(batch.hash, static_cast<std::uint32_t>(i)) % placements();
+        placement_of_sample(index.number, placements(), hash_of(~hash_, index.element));
   });
   if (!next_.empty()) ++batch_;
+  batch.indices = std::move(next_);
   next_.clear();
   std::optional<TracedSamples> found;
   if (traced_.valid()) found = traced_.get();
@@ -131,10 +155,33 @@ bool SampleRounds::trace() {
                     batch_traced_.hash);
     });
   if (!found) return true;
-  sums_.add(before.samples, *found);
-  tracing_.statistics.points += found->points;
-  tracing_.statistics.rays += found->rays;
+  add_traced(before, *found);
   return goes_on;
+}
+
+void SampleRounds::add_traced(const Batch& batch, const TracedSamples& found) {
+  sums_.add(batch.samples, found);
+  tracing_.statistics.points += found.points;
+  tracing_.statistics.rays += found.rays;
+  for (std::size_t i = 0; i < batch.samples.size() && placements() > 1; ++i)
+    variance_.add(batch.indices[i].element, batch.placement[i], batch.samples[i],
+                  found.front[i].scalar, found.back[i].scalar);
+}
+
+// Of the elements around a place, that whose samples are the least balanced counts.
+void SampleRounds::set_variance_factors() {
+  if (placements() < 2) return;
+  const float share = variance_.share_within();
+  std::vector<float> factors(sums_.size());
+  for (std::size_t i = 0; i < surface_.size(); ++i) {
+    if (!surface_.can_be_sampled(i)) continue;
+    const std::array<std::uint32_t, 3> places = surface_.places(i);
+    const bool is_balanced = is_in_all_placements_ || place_count(places) == 1;
+    const float factor =
+        variance_factor(taken_[i], placements(), share, is_balanced ? 1 : kBalanceOfCorners);
+    for (const std::uint32_t place : places) factors[place] = std::max(factors[place], factor);
+  }
+  sums_.set_variance_factors(std::move(factors));
 }
 
 }  // namespace dapple

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "bake/bake_progress.hpp"
+#include "bake/placement_variance.hpp"
 #include "bake/sampled_surface.hpp"
 #include "bake/value_sums.hpp"
 
@@ -23,7 +24,7 @@ struct BakeTracing {
 /// How many samples and rays to take.
 struct RoundOptions {
   float target_error = 0;     ///< 0: `fixed` samples of each element
-  std::uint32_t first = 1;    ///< samples of each element before the first error is known
+  std::uint32_t first = 1;    ///< samples of each element before the first error is known, or more
   std::uint32_t limit = 128;  ///< samples of an element, with a target
   int rays = kRaysPerSample;  ///< of a sample, with a target
   SampleCounts fixed = {};
@@ -44,11 +45,13 @@ class SampleRounds {
     std::uint32_t element, number;
   };
   struct Batch {
+    std::vector<SampleIndex> indices;
     std::vector<SurfaceSample> samples;
     std::vector<std::uint32_t> placement;
     std::uint32_t hash = 0;
   };
 
+  [[nodiscard]] std::uint32_t first_samples(std::uint32_t least) const;
   bool take(std::uint32_t samples, int rays);
   bool refine(float target, std::uint32_t max_samples);
   bool round(const std::vector<std::uint32_t>& wanted);
@@ -57,6 +60,8 @@ class SampleRounds {
   }
   [[nodiscard]] SurfaceSample sample(const SampleIndex& index) const;
   bool trace();
+  void add_traced(const Batch& batch, const TracedSamples& found);
+  void set_variance_factors();
 
   const SampledSurface& surface_;
   std::uint32_t hash_, batch_ = 0;
@@ -67,10 +72,10 @@ class SampleRounds {
   std::size_t lights_;               ///< rays to lights are that many times as many
   std::size_t samples_at_once_ = 1;  ///< for take()'s rays
   int rays_ = kRaysPerSample;
-  bool is_fixed_ = false;              ///< the number of samples is: they take placements in turn
   bool is_in_all_placements_ = false;  ///< each point of an element is a sample in all placements
-  std::vector<std::uint32_t> taken_;   ///< samples of each element
-  std::vector<SampleIndex> next_;      ///< to be traced
+  PlacementVariance variance_;
+  std::vector<std::uint32_t> taken_;  ///< samples of each element
+  std::vector<SampleIndex> next_;     ///< to be traced
   Batch batch_traced_;
   std::future<TracedSamples> traced_;  ///< last: its destructor waits for the thread
 };

@@ -17,7 +17,7 @@ constexpr int kMaxSamples = 64;
 SampleCounts sample_counts(int rays, std::size_t placements, bool at_vertex) {
   const int enough = std::max(1, rays / kRaysPerSample);
   const int each = std::max(1, static_cast<int>(std::min<std::size_t>(placements, enough)));
-  const int most = at_vertex ? each : std::max(kMaxSamples, kPointsOfPlacement * each);
+  const int most = at_vertex ? 2 * each : std::max(kMaxSamples, kPointsOfPlacement * each);
   const int samples = std::min(enough, most) / each * each;
   return {samples, rays / samples};
 }

@@ -37,8 +37,8 @@ struct SampleCounts {
 inline constexpr int kPointsOfPlacement = 16;
 
 /// Divides the rays of a triangle's side over samples of kRaysPerSample rays at least: up to 64, or
-/// kPointsOfPlacement for each placement if these are more; of a vertex one for each placement.
-/// Placements have equally many samples if there are enough.
+/// kPointsOfPlacement for each placement if these are more; of a vertex two for each placement,
+/// which tell the error. Placements have equally many samples if there are enough.
 SampleCounts sample_counts(int rays, std::size_t placements, bool at_vertex = false);
 
 /// Whether values of a triangle with this material describe both sides.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace dapple {
 namespace {
@@ -50,12 +51,22 @@ float ValueSums::Side::squared_deviations() const {
   return weight > 0 ? std::max(0.0f, sum_squares / weight - mean() * mean()) * count() : 0.0f;
 }
 
+/// Relative variance of AO of 1/2 from `rays` rays that each find everything or nothing, over 1/4.
+/// With many rays per sample these are stratified: the variance falls as rays^-1.5 (Mitchell,
+/// "Consequences of Stratified Sampling in Graphics", 1996).
+double variance_of_rays(int rays) {
+  const double n = std::max(1, rays), few = kRaysPerSample;
+  return n <= few ? 1 / n : std::sqrt(few / n) / n;
+}
+
 /// The variance of samples as a function of the value that they belong to: that of a few samples of
-/// one place says little.
+/// one place says little. Of samples in several placements it is the same for all values: where a
+/// few samples happen to be in like placements, the value is wrong and its variance small.
 class ValueSums::PooledVariance {
  public:
   /// Values are from 0 to `scale`.
-  explicit PooledVariance(float scale) : scale_(scale) {}
+  PooledVariance(float scale, int rays, bool several_placements)
+      : scale_(scale), of_rays_(variance_of_rays(rays)), several_placements_(several_placements) {}
 
   void add(const Side& side) {
     const float freedom = side.count() - 1;
@@ -97,15 +108,18 @@ class ValueSums::PooledVariance {
     // A few samples may be equal by chance. So the variance of rays that each find everything or
     // nothing counts as much as some samples. The value is as uncertain: hence the clamp.
     const double part = std::clamp(double{value / scale_}, 0.1, 0.9);
-    const double of_rays = double{scale_ * scale_} * part * (1 - part) / kRaysPerSample;
+    const double of_rays = double{scale_ * scale_} * part * (1 - part) * of_rays_;
     const double all =
         (all_.squares + double{kRayFreedom} * of_rays) / (all_.freedom + double{kRayFreedom});
+    if (several_placements_) return static_cast<float>(all);
     const Pool& pool = of_interval_[interval(value)];
     return static_cast<float>((pool.squares + double{kPooledFreedom} * all) /
                               (pool.freedom + double{kPooledFreedom}));
   }
 
   float scale_;
+  double of_rays_;
+  bool several_placements_;
   std::array<Pool, kIntervals> of_interval_;
   Pool all_;
 };
@@ -119,6 +133,11 @@ ValueSums::ValueSums(SmallParts parts, BakeSides sides, std::size_t lights)
       lights_(lights),
       front_light_(of_place_.size() * lights, V3f(0, 0, 0)),
       back_light_(front_light_) {}
+
+void ValueSums::set_sampling(int rays, bool several_placements) {
+  rays_ = rays;
+  several_placements_ = several_placements;
+}
 
 void ValueSums::add(std::span<const SurfaceSample> samples, const TracedSamples& found) {
   largest_ = std::max(largest_, found.largest);
@@ -154,8 +173,9 @@ ValueSums::PooledVariance ValueSums::pooled_variance() const {
     return sum;
   };
   return tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce), PooledVariance(scale()),
-      add_range, [](PooledVariance a, const PooledVariance& b) { return a += b; });
+      tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce),
+      PooledVariance(scale(), rays_, several_placements_), add_range,
+      [](PooledVariance a, const PooledVariance& b) { return a += b; });
 }
 
 // By sums over a small part: means of single vertices are noisy, and the larger of two is biased.
@@ -190,7 +210,7 @@ std::vector<float> ValueSums::squared_errors() const {
         squares[i] = std::max(squares[i], variance.of(side) / side.count());
     }
     if (sides_ == BakeSides::mean && place.back.weight > 0) squares[i] *= 0.5f;  // of two of them
-    squares[i] /= scale() * scale();
+    squares[i] *= (factors_.empty() ? 1 : factors_[i]) / (scale() * scale());
   });
   return squares;
 }

@@ -30,6 +30,15 @@ class ValueSums {
   /// `lights`: 0 for AO; else the scalar of a sample is the brightness of so many lights.
   ValueSums(SmallParts parts, BakeSides sides, std::size_t lights = 0);
 
+  /// Number of places.
+  [[nodiscard]] std::size_t size() const { return of_place_.size(); }
+
+  /// How samples are taken: `rays` of each, and whether each is in one of several placements.
+  void set_sampling(int rays, bool several_placements);
+
+  /// For each place variance_factor() of its samples; without them, all 1.
+  void set_variance_factors(std::vector<float> factors) { factors_ = std::move(factors); }
+
   /// Adds what was found at samples on the sides that were traced.
   void add(std::span<const SurfaceSample> samples, const TracedSamples& found);
 
@@ -84,7 +93,10 @@ class ValueSums {
   std::vector<BothSides> of_place_;
   std::vector<BothSides> of_part_;
   std::vector<Chosen> chosen_;  ///< by place
-  float largest_ = 0;           ///< the largest TracedSamples::largest
+  std::vector<float> factors_;  ///< by place, of the variance of means; empty: 1
+  int rays_ = kRaysPerSample;   ///< of a sample
+  bool several_placements_ = false;
+  float largest_ = 0;  ///< the largest TracedSamples::largest
   std::size_t lights_;
   std::vector<V3f> front_light_, back_light_;  ///< weighted sums, the lights of a place together
 };

@@ -129,8 +129,9 @@ TEST(SurfaceSamples, PlacementsHaveEquallyManySamplesIfThereAreEnough) {
                         {65536, 5, false, 80},
                         {65536, 100, false, 1600},
                         {1024, 1000, false, 128},
-                        {4096, 1, true, 1},
-                        {4096, 5, true, 5}}) {
+                        {4096, 1, true, 2},
+                        {4096, 5, true, 10},
+                        {32, 5, true, 4}}) {
     const SampleCounts counts = sample_counts(c.rays, c.placements, c.at_vertex);
     EXPECT_EQ(counts.samples, c.samples) << c.rays << ", " << c.placements;
     EXPECT_EQ(counts.rays, c.rays / c.samples);
