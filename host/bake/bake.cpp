@@ -26,6 +26,9 @@ namespace {
 /// Samples of a triangle that a target needs in the mean, for the first guess of the time left.
 constexpr double kExpectedSamples = 4;
 
+/// The share of the surface without area in given texture coordinates from which on a note says so.
+constexpr double kToldShare = 0.0005;
+
 /// Share of a texture that triangles cover, for the same guess.
 constexpr double kExpectedCoverage = 0.5;
 
@@ -235,9 +238,13 @@ bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders
 
 bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,
                   const BakeRecords& records, BakeResult& result) {
-  TextureBake texture(
-      scene, options,
-      options.texture_uvs.empty() ? make_layout(scene, options) : given_layout(scene, options));
+  const std::vector<std::vector<V2f>>& uvs = options.texture_uvs;
+  TextureBake texture(scene, options,
+                      uvs.empty() ? make_layout(scene, options) : given_layout(scene, options));
+  const double lost = uvs.empty() ? 0.0 : share_without_texels(scene, uvs, options.texture_size);
+  if (lost >= kToldShare)
+    records.statistics.notes.push_back(fmt::format(
+        "{:.1f} % of the surface has no area in the texture, and no values there", 100 * lost));
   const bool done =
       for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
         BakeTracing tracing = occluders.tracing(m, records);

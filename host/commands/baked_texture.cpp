@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "bake/texture/texture_layout.hpp"
 #include "dapple/film.hpp"
 #include "film/png.hpp"
 
@@ -14,6 +15,22 @@ namespace {
 
 /// Overlaps up to this share are roundings at the borders of neighbouring triangles.
 constexpr double kMaxOverlap = 1e-3;
+
+/// Of a larger share of the surface without area in the texture, the values would be lost.
+constexpr double kMaxWithoutTexels = 0.01;
+
+/// Why texture coordinates cannot be used; empty: they can.
+std::string fault_of(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
+                     std::uint32_t size) {
+  const double overlap = uv_overlap(scene, uvs, size);
+  if (std::isinf(overlap)) return "leaves the texture";
+  if (overlap > kMaxOverlap)
+    return fmt::format("overlaps itself in {:.1f} % of its texels", 100 * overlap);
+  const double without = share_without_texels(scene, uvs, size);
+  if (without > kMaxWithoutTexels)
+    return fmt::format("has no area in the texture for {:.1f} % of the surface", 100 * without);
+  return {};
+}
 
 /// TEXCOORD_`set` for each mesh and vertex; empty if a primitive has none.
 std::vector<std::vector<V2f>> uvs_of_set(const gltf::SourceFile& file, const Scene& scene,
@@ -61,13 +78,10 @@ FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, std::uint32
   for (const std::uint32_t set : {1u, 0u}) {
     std::vector<std::vector<V2f>> uvs = uvs_of_set(file, scene, set);
     if (uvs.empty()) continue;
-    const double overlap = uv_overlap(scene, uvs, size);
-    if (overlap <= kMaxOverlap) return {std::move(uvs), set, {}};
+    const std::string fault = fault_of(scene, uvs, size);
+    if (fault.empty()) return {std::move(uvs), set, {}};
     if (!chosen.note.empty()) chosen.note += "; ";
-    chosen.note += std::isinf(overlap)
-                       ? fmt::format("TEXCOORD_{} leaves the texture", set)
-                       : fmt::format("TEXCOORD_{} overlaps itself in {:.1f} % of its texels", set,
-                                     100 * overlap);
+    chosen.note += fmt::format("TEXCOORD_{} {}", set, fault);
   }
   return chosen;
 }

@@ -18,7 +18,8 @@ struct FileUvs {
   std::string note;                   ///< why others cannot be used; empty: there are none
 };
 
-/// TEXCOORD_1, else TEXCOORD_0, if all primitives have it, inside of [0,1] and without overlaps.
+/// TEXCOORD_1, else TEXCOORD_0, if all primitives have it, inside of [0,1], without overlaps, and
+/// with an area for nearly all triangles.
 FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, std::uint32_t size);
 
 /// The primitives that the texture is on. `set`: of FileUvs, for a layout that came from there.

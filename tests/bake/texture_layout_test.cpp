@@ -244,6 +244,51 @@ TEST(TextureLayout, OverlapsAreFoundWithTheirShare) {
   EXPECT_NEAR(uv_overlap(both, uvs, 64), 0.5, 0.03);
 }
 
+TEST(TextureLayout, TheShareOfTheSurfaceWithoutTexelsIsThatOfTheWorld) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.meshes.resize(2);
+  for (Mesh& mesh : scene.meshes) append_grid(mesh, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 4, 0);
+  scene.instances.resize(2);
+  scene.instances[1].mesh = 1;
+  scene.instances[1].to_world.scale(V3f(3, 1, 1));  // three quarters of the surface
+  const auto share = [&](const auto& uv_of_second) {
+    std::vector<std::vector<V2f>> uvs(2);
+    for (const V3f& p : scene.meshes[0].positions) {
+      uvs[0].emplace_back(p.x, p.z);
+      uvs[1].push_back(uv_of_second(p));
+    }
+    return share_without_texels(scene, uvs, 64);
+  };
+  EXPECT_EQ(share([](const V3f& p) { return V2f(p.x, p.z); }), 0);
+  EXPECT_NEAR(share([](const V3f&) { return V2f(0.3f, 0.7f); }), 0.75, 1e-6) << "a point";
+  EXPECT_NEAR(share([](const V3f& p) { return V2f(p.x, 0.1f); }), 0.75, 1e-6) << "a line";
+  EXPECT_NEAR(share([](const V3f& p) { return V2f(0.7f * p.x + 0.1f, 0.3f * p.x + 0.2f); }), 0.75,
+              1e-6)
+      << "a line that rounding makes crooked";
+  EXPECT_NEAR(share([](const V3f& p) { return V2f(std::min(p.x, 0.5f), p.z); }), 0.375, 1e-6);
+}
+
+TEST(TextureLayout, GivenCoordinatesWithoutAreaAreTold) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.meshes.resize(1);
+  append_grid(scene.meshes[0], {0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 4, 0);
+  scene.instances.resize(1);
+  BakeOptions options;
+  options.vertices = false;
+  options.texture = true;
+  options.texture_size = 16;
+  options.texture_uvs.resize(1);
+  for (const V3f& p : scene.meshes[0].positions)
+    options.texture_uvs[0].emplace_back(std::min(p.x, 0.5f), p.z);
+  const std::vector<std::string> notes = bake(scene, options).statistics.notes;
+  const auto tells = [](const std::string& note) {
+    return note == "50.0 % of the surface has no area in the texture, and no values there";
+  };
+  EXPECT_EQ(std::count_if(notes.begin(), notes.end(), tells), 1);
+}
+
 TEST(Seams, LookupsFromBothSidesAgreeAndOtherTexelsStay) {
   // A tube of 24 sides: its charts meet along smooth edges.
   Mesh tube;

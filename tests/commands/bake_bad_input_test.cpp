@@ -143,6 +143,22 @@ TEST_F(BakeBadInput, AFileInTheWayOfAFolderForCopiesIsFoundBeforeAnyWork) {
   expect_failure(dapple("bake ../plain.gltf -o out.gltf", "cd here &&"), 2, "it is a folder");
 }
 
+// Points of a palette, for one: no texel was covered, and AO was 1 everywhere.
+TEST_F(BakeBadInput, CoordinatesWithoutAreaAreSaidWithTheirShareAndReplaced) {
+  const std::string reason = "TEXCOORD_0 has no area in the texture for ";
+  const std::string replaced = " % of the surface: the texture has coordinates of its own\n";
+  for (const auto& [second, share] :
+       {std::pair{std::vector<float>{0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f}, "50.0"},
+        {std::vector<float>{0.6f, 0.9f, 0.7f, 0.9f, 0.8f, 0.9f}, "50.0"}}) {
+    std::vector<float> uvs = {0, 0, 0.4f, 0, 0, 0.4f};
+    uvs.insert(uvs.end(), second.begin(), second.end());
+    write_mesh("in.glb", stack_of(2), uvs);
+    const Outcome run = dapple("bake in.glb -o out.glb --to texture --size 64");
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_TRUE(contains(run.err, reason + share + replaced)) << run.err;
+  }
+}
+
 TEST_F(BakeBadInput, CoordinatesThatOverlapAreSaidWithTheirShareAndReplaced) {
   const std::vector<float> full = {0, 0, 1, 0, 0, 1}, left = {0, 0, 0.5f, 0, 0, 0.5f},
                            outside = {0, 0, 2, 0, 0, 1};

@@ -9,6 +9,9 @@ namespace {
 /// Parts of a texel that are smaller are rounding errors.
 constexpr float kMinArea = 1e-6f;
 
+/// Of texture coordinates up to 1.
+constexpr float kRounding = 1e-7f;
+
 /// Keeps the part of the polygon where sign * (p[axis] - limit) >= 0 (Sutherland and Hodgman,
 /// "Reentrant Polygon Clipping", 1974).
 TexelPolygon cut(const TexelPolygon& polygon, int axis, float limit, float sign) {
@@ -62,6 +65,15 @@ TexelPolygon clip_to_texel(const V2f* uv, std::uint32_t size, std::uint32_t x, s
   polygon = cut(polygon, 0, left + 1, -1);
   polygon = cut(polygon, 1, top, 1);
   return cut(polygon, 1, top + 1, -1);
+}
+
+// Corners on one line are off it by their rounding, so that a triangle of them has an area.
+bool has_texel_area(const V2f* uv, std::uint32_t size) {
+  const V2f a = uv[1] - uv[0], b = uv[2] - uv[0];
+  const float longest = std::max({a.length2(), b.length2(), (b - a).length2()});
+  const float scale = static_cast<float>(size) * static_cast<float>(size);
+  const float area = 0.5f * std::fabs(a.cross(b));
+  return area * scale > kMinArea && area > kRounding * std::sqrt(longest);
 }
 
 TexelCover cover_texels(std::span<const V2f> corners, std::uint32_t size) {

@@ -23,6 +23,9 @@ struct TexelPolygon {
 /// `size` x `size` texture.
 TexelPolygon clip_to_texel(const V2f* uv, std::uint32_t size, std::uint32_t x, std::uint32_t y);
 
+/// Whether a triangle is large enough in the texture to cover texels.
+bool has_texel_area(const V2f* uv, std::uint32_t size);
+
 /// Covered texels of a mesh.
 struct TexelCover {
   std::vector<std::uint32_t> texel;  ///< y * size + x, increasing

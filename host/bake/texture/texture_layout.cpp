@@ -10,6 +10,7 @@
 
 #include "bake/texture/charts.hpp"
 #include "bake/texture/packing.hpp"
+#include "bake/texture/texel_cover.hpp"
 #include "dapple/error.hpp"
 
 namespace dapple {
@@ -19,12 +20,27 @@ namespace {
 constexpr double kGapShare = 0.05;
 constexpr std::uint32_t kMinGap = 2;
 
+/// Of a mesh; the identity if it has none.
+M44f first_placement(const Scene& scene, std::uint32_t mesh) {
+  for (const Instance& instance : scene.instances)
+    if (instance.mesh == mesh) return instance.to_world;
+  return {};
+}
+
 /// Lengths in the world over lengths of a mesh, at its first placement.
 float scale_of(const Scene& scene, std::uint32_t mesh) {
-  for (const Instance& instance : scene.instances)
-    if (instance.mesh == mesh)
-      return static_cast<float>(std::cbrt(std::fabs(double{instance.to_world.determinant()})));
-  return 1;
+  return static_cast<float>(
+      std::cbrt(std::fabs(double{first_placement(scene, mesh).determinant()})));
+}
+
+/// Twice the area of a triangle in the world; 0 where it is not finite.
+double world_area(const Mesh& mesh, std::size_t triangle, const M44f& to_world) {
+  const std::uint32_t* corner = &mesh.indices[3 * triangle];
+  V3f a, b;
+  to_world.multDirMatrix(mesh.positions[corner[1]] - mesh.positions[corner[0]], a);
+  to_world.multDirMatrix(mesh.positions[corner[2]] - mesh.positions[corner[0]], b);
+  const double area = double{a.cross(b).length()};
+  return std::isfinite(area) ? area : 0;
 }
 
 /// A chart of a mesh.
@@ -189,6 +205,25 @@ double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
     }
   }
   return covered > 0 ? static_cast<double>(several) / static_cast<double>(covered) : 0.0;
+}
+
+double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
+                            std::uint32_t size) {
+  const std::vector<bool> textured = textured_meshes(scene);
+  double all = 0, without = 0;
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    if (!textured[m]) continue;
+    const M44f to_world = first_placement(scene, m);
+    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
+      V2f uv[3];
+      for (std::size_t k = 0; k < 3; ++k) uv[k] = uvs.at(m).at(mesh.indices[3 * t + k]);
+      const double area = world_area(mesh, t, to_world);
+      all += area;
+      if (!has_texel_area(uv, size)) without += area;
+    }
+  }
+  return all > 0 ? without / all : 0.0;
 }
 
 }  // namespace dapple

@@ -20,4 +20,10 @@ TextureLayout make_layout(const Scene& scene, const BakeOptions& options);
 /// The layout that options.texture_uvs give.
 TextureLayout given_layout(const Scene& scene, const BakeOptions& options);
 
+/// The share of the surface of textured meshes, each as large as at its first placement, whose
+/// triangles have no area in a `size` x `size` texture, [0,1]; for texture coordinates as
+/// BakeOptions::texture_uvs. Values of such triangles cannot be stored.
+double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
+                            std::uint32_t size);
+
 }  // namespace dapple
