@@ -12,6 +12,7 @@
 #include "bake/bake_settings.hpp"
 #include "bake/instance_bake.hpp"
 #include "bake/light_tracer.hpp"
+#include "bake/mesh_placements.hpp"
 #include "bake/occluder_scene.hpp"
 #include "bake/texture/texture_bake.hpp"
 #include "bake/texture/texture_layout.hpp"
@@ -102,26 +103,6 @@ void measure_bias(const OccluderScene& occluders, const std::vector<PilotMesh>& 
   if (options.target_error > 0)
     options.target_error = noise_target(options.target_error, choice.bias_rmse);
   if (!choice.note.empty()) statistics.notes.push_back(choice.note);
-}
-
-Placements placements_of(const Scene& scene, std::uint32_t mesh, BakeInstances kind) {
-  Placements placements;
-  if (kind == BakeInstances::alone) {
-    placements.add(M44f());
-    return placements;
-  }
-  for (const Instance& instance : scene.instances)
-    if (instance.mesh == mesh) placements.add(instance.to_world);
-  return placements;
-}
-
-/// The number of placements of each mesh that are baked.
-std::vector<std::size_t> placement_counts(const Scene& scene, BakeInstances kind) {
-  const bool alone = kind == BakeInstances::alone;
-  std::vector<std::size_t> counts(scene.meshes.size(), alone ? 1 : 0);
-  for (const Instance& instance : scene.instances)
-    if (!alone) ++counts[instance.mesh];
-  return counts;
 }
 
 double expected_samples(const Scene& scene, const BakeOptions& options) {
@@ -312,6 +293,11 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   } else {
     s.notes = scene.warnings;
   }
+  const std::size_t vanished = alone || options.instances ? 0 : count_vanished_meshes(scene);
+  if (vanished > 0)
+    s.notes.push_back(
+        fmt::format("{} mesh{} without an instance whose matrix can be inverted: not baked",
+                    vanished, vanished == 1 ? "" : "es"));
   BakeProgress progress(expected_samples(scene, options), control);
   Settings settings = bake_settings(scene, asked, occluders);
   if (together) settings.emplace_back("device", s.device);

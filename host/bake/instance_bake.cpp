@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bake/vertex_bake.hpp"
+#include "scene/invertible.hpp"
 
 namespace dapple {
 namespace {
@@ -79,7 +80,9 @@ bool trace_instances(const Scene& scene, const BakeOptions& options, BakeTracing
   if (!tracing.progress.add(0)) return false;
   InstanceSlice slice;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const bool is_placed = is_invertible(scene.instances[i].to_world);
     for (const SurfaceSample& sample : of_mesh[scene.instances[i].mesh]) {
+      if (!is_placed) break;
       slice.samples.push_back(sample);
       slice.placement.push_back(static_cast<std::uint32_t>(slice.placements.to_world.size()));
       slice.instance.push_back(i);
@@ -107,7 +110,9 @@ std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptio
   InstanceSums ao(count, 0), light(count, tracing.lights);
   if (!trace_instances(scene, options, tracing, false, ao)) return {};
   if (tracing.light && !trace_instances(scene, options, tracing, true, light)) return {};
-  tracing.statistics.instances = count;
+  tracing.statistics.instances = static_cast<std::size_t>(
+      std::count_if(scene.instances.begin(), scene.instances.end(),
+                    [](const Instance& instance) { return is_invertible(instance.to_world); }));
   for (const Mesh& mesh : scene.meshes)
     if (!mesh.has_strands()) tracing.statistics.triangles += mesh.primitive_count();
   InstanceValues values{std::vector<float>(count, 1.0f), std::move(light.light)};

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "bake/vertex_groups.hpp"
 #include "dapple/error.hpp"
 #include "film/light_layers.hpp"
+#include "scene/invertible.hpp"
 
 namespace dapple {
 namespace {
@@ -186,16 +188,19 @@ NewAttribute ao_attribute(const SourceFile& file, const Primitive& at, const Ver
   return attribute;
 }
 
-/// Values like `kind`, one or more components of value(instance, component) each.
+/// Values like `kind`, one or more components of value(instance, component) each. Nodes whose
+/// instances are all scaled to zero have none.
 template <class Value>
 std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::NodeValues& kind,
                                              Value value) {
   std::map<int, gltf::NodeValues> sums;
   std::map<int, std::vector<float>> counts;
   std::map<std::pair<int, std::uint32_t>, std::size_t> placements;  // of a node and mesh so far
+  std::set<int> placed;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     if (instance.node < 0 || scene.meshes[instance.mesh].has_strands()) continue;
+    if (is_invertible(instance.to_world)) placed.insert(instance.node);
     gltf::NodeValues& sum = sums.try_emplace(instance.node, kind).first->second;
     sum.node = static_cast<std::uint32_t>(instance.node);
     std::vector<float>& count = counts[instance.node];
@@ -210,6 +215,7 @@ std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::Nod
   }
   std::vector<gltf::NodeValues> nodes;
   for (auto& [node, sum] : sums) {
+    if (!placed.contains(node)) continue;
     for (std::size_t i = 0; i < sum.values.size(); ++i)
       sum.values[i] /= std::max(1.0f, counts[node][i / kind.components]);
     nodes.push_back(std::move(sum));

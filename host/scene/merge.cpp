@@ -10,6 +10,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/invertible.hpp"
 #include "scene/numeric_range.hpp"
 #include "scene/scene_check.hpp"
 #include "scene/triangle_cleanup.hpp"
@@ -21,23 +22,6 @@ constexpr std::size_t kTinyTriangles = 256;        // a mesh with at most so man
 constexpr std::size_t kMaxTinyPlaced = 4'000'000;  // triangles of all copies of tiny meshes
 constexpr float kEqualScales = 1e-4f;              // relative tolerance of squared scales
 constexpr std::size_t kMaxVertices = std::numeric_limits<std::uint32_t>::max();
-
-bool is_finite(const M44f& matrix) {
-  for (int i = 0; i < 4; ++i) {
-    for (int k = 0; k < 4; ++k) {
-      if (!std::isfinite(matrix[i][k])) return false;
-    }
-  }
-  return true;
-}
-
-// Uses Imath's inverse(), which also transforms the rays later. It returns the identity for a
-// matrix without an inverse.
-bool is_invertible(const M44f& matrix) {
-  if (!is_finite(matrix)) return false;
-  const M44f inverse = matrix.inverse();
-  return is_finite(inverse) && (inverse != M44f{} || matrix == M44f{});
-}
 
 void drop_singular_instances(Scene& scene) {
   const std::size_t dropped = std::erase_if(

@@ -172,6 +172,21 @@ TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {
   EXPECT_EQ(load_gltf(path("out.glb")).instances.size(), 4u);
 }
 
+TEST_F(BakeCommand, NodesThatAreScaledToZeroGetNoValues) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["nodes"].push_back({{"mesh", 0}, {"scale", {0, 0, 0}}});
+  builder.doc["nodes"].push_back({{"mesh", 0}});
+  builder.doc["scenes"][0]["nodes"] = {0, 1, 2};
+  write("in.glb", builder.glb());
+  const Outcome run = dapple("bake in.glb -o out.glb --to instance");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "dropped 1 instance whose matrix cannot be inverted")) << run.err;
+  const json nodes = document("out.glb")["nodes"];
+  EXPECT_TRUE(nodes[0]["extras"].contains("ao"));
+  EXPECT_FALSE(nodes[1].contains("extras"));
+  EXPECT_TRUE(nodes[2]["extras"].contains("ao"));
+}
+
 TEST_F(BakeCommand, InstancesHaveLightsAsExtras) {
   write("in.glb", rich_triangle().glb());
   std::ofstream(path("sun.json")) << R"({"lights": [{"type": "sun", "name": "noon",

@@ -8,10 +8,12 @@
 #include <set>
 #include <utility>
 
+#include "bake/mesh_placements.hpp"
 #include "bake/texture/charts.hpp"
 #include "bake/texture/packing.hpp"
 #include "bake/texture/texel_cover.hpp"
 #include "dapple/error.hpp"
+#include "scene/invertible.hpp"
 
 namespace dapple {
 namespace {
@@ -20,10 +22,10 @@ namespace {
 constexpr double kGapShare = 0.05;
 constexpr std::uint32_t kMinGap = 2;
 
-/// Of a mesh; the identity if it has none.
+/// Of a mesh, the first that is not scaled to zero; the identity if it has none.
 M44f first_placement(const Scene& scene, std::uint32_t mesh) {
   for (const Instance& instance : scene.instances)
-    if (instance.mesh == mesh) return instance.to_world;
+    if (instance.mesh == mesh && is_invertible(instance.to_world)) return instance.to_world;
   return {};
 }
 
@@ -116,21 +118,23 @@ void visit_centres(const V2f* uv, std::uint32_t size, Visit visit) {
 
 }  // namespace
 
-std::vector<bool> textured_meshes(const Scene& scene) {
+std::vector<bool> textured_meshes(const Scene& scene, BakeInstances kind) {
+  const std::vector<std::size_t> placements = placement_counts(scene, kind);
   std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
   std::vector<bool> textured;
-  for (const Mesh& mesh : scene.meshes) {
-    bool is_new = !mesh.has_strands();
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const Mesh& mesh = scene.meshes[m];
+    const bool is_baked = !mesh.has_strands() && placements[m] > 0;
+    bool is_new = is_baked;
     for (const VertexSource& source : mesh.sources)
-      if (!mesh.has_strands())
-        is_new = seen.insert({source.mesh, source.primitive}).second && is_new;
+      if (is_baked) is_new = seen.insert({source.mesh, source.primitive}).second && is_new;
     textured.push_back(is_new);
   }
   return textured;
 }
 
 TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
-  const std::vector<bool> textured = textured_meshes(scene);
+  const std::vector<bool> textured = textured_meshes(scene, options.placement);
   PlacedCharts charts = charts_of_scene(scene, textured);
   Packing packing = pack_charts(charts, options);
   const std::uint32_t size = options.texture_size;
@@ -171,7 +175,7 @@ TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
 }
 
 TextureLayout given_layout(const Scene& scene, const BakeOptions& options) {
-  const std::vector<bool> textured = textured_meshes(scene);
+  const std::vector<bool> textured = textured_meshes(scene, options.placement);
   TextureLayout layout;
   layout.corners.resize(scene.meshes.size());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m)
@@ -185,7 +189,7 @@ double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
                   std::uint32_t size) {
   std::vector<std::uint8_t> count(std::size_t{size} * size);
   std::size_t covered = 0, several = 0;
-  const std::vector<bool> textured = textured_meshes(scene);
+  const std::vector<bool> textured = textured_meshes(scene, BakeInstances::together);
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     if (!textured[m]) continue;
@@ -209,7 +213,7 @@ double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
 
 double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
                             std::uint32_t size) {
-  const std::vector<bool> textured = textured_meshes(scene);
+  const std::vector<bool> textured = textured_meshes(scene, BakeInstances::together);
   double all = 0, without = 0;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];

@@ -9,9 +9,9 @@
 
 namespace dapple {
 
-/// Whether each mesh is in the texture: no strands, and of meshes that are one mesh of a file in
-/// several poses only the first one.
-std::vector<bool> textured_meshes(const Scene& scene);
+/// Whether each mesh is in the texture: no strands, none without a placement, and of meshes that
+/// are one mesh of a file in several poses only the first one.
+std::vector<bool> textured_meshes(const Scene& scene, BakeInstances kind);
 
 /// Makes a layout of its own for all textured meshes: make_charts() of each, packed by size. Throws
 /// Error usage, with the size that it takes, if they don't fit in options.texture_size.
@@ -20,7 +20,7 @@ TextureLayout make_layout(const Scene& scene, const BakeOptions& options);
 /// The layout that options.texture_uvs give.
 TextureLayout given_layout(const Scene& scene, const BakeOptions& options);
 
-/// The share of the surface of textured meshes, each as large as at its first placement, whose
+/// The share of the surface of placed meshes, each as large as at its first placement, whose
 /// triangles have no area in a `size` x `size` texture, [0,1]; for texture coordinates as
 /// BakeOptions::texture_uvs. Values of such triangles cannot be stored.
 double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
