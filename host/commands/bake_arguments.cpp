@@ -175,6 +175,7 @@ void refuse_options_without_effect(const CLI::App& app, const BakeOptions& optio
         throw Error(ErrorKind::usage, fmt::format("{} needs {}", flag, needed));
   };
   need(options.vertices, "--to vertex", {"--channel", "--bent-channel", "--blend", "--at"});
+  need(!options.instances, "--to vertex or texture", {"--instances"});
   need(options.texture, "--to texture", {"--size", "--bits", "--margin", "--uv"});
   need(options.bent, "--passes ao,bent", {"--bent-channel"});
   need(options.light, "--passes ao,light", {"--lights", "--dome", "--light-rays"});

@@ -277,6 +277,7 @@ TEST_F(BakeCommand, ErrorsSayWhatCanBeDoneAndLeaveNothingBehind) {
       {"in.glb -o out.glb --bent-channel NORMAL", "--bent-channel needs --passes ao,bent"},
       {"in.glb -o out.glb --light-rays 4", "--light-rays needs --passes ao,light"},
       {"in.glb -o out.glb --to instance --passes ao,bent", "--passes bent"},
+      {"in.glb -o out.glb --to instance --instances alone", "--instances needs --to vertex or"},
       {"in.glb -o out.obj", ".gltf"},
       {"in.glb -o in.glb", "in.glb"},
       {"head.hair -o out.glb", "strands"},
