@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -20,17 +21,43 @@ using gltf::SourceFile;
 /// A primitive of the file, by its mesh and its number there.
 using Primitive = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Bent normals of what is brighter from behind, mirrored to the front of their triangles: NORMAL
-/// is turned round where the back is seen.
-BakedMesh facing_front(const Mesh& mesh, BakedMesh baked) {
+/// Scales that differ by less are one scale and its rounding.
+constexpr float kEqualScales = 1e-4f;
+
+/// L L^T of the linear part L of the matrices of a mesh's placements, the mean of all, each
+/// relative to its trace: directions v become normals v L L^T. It does not depend on rotations. The
+/// identity where all scales are equal.
+Imath::M33f metric_of(const Scene& scene, std::size_t mesh) {
+  Imath::M33f sum(0.0f);
+  for (const Instance& instance : scene.instances) {
+    if (instance.mesh != mesh || !is_invertible(instance.to_world)) continue;
+    Imath::M33f linear;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) linear[i][k] = instance.to_world[i][k];
+    const Imath::M33f metric = linear * linear.transposed();
+    sum += metric * (3 / (metric[0][0] + metric[1][1] + metric[2][2]));
+  }
+  const float mean = (sum[0][0] + sum[1][1] + sum[2][2]) / 3;
+  if (!(mean > 0) || !std::isfinite(mean)) return {};
+  sum /= mean;
+  return sum.equalWithAbsError(Imath::M33f(), kEqualScales) ? Imath::M33f() : sum;
+}
+
+/// Bent normals as NORMAL has them, which viewers transform with the inverse transpose of matrices,
+/// not as directions. Those of what is brighter from behind are mirrored, in the world, to the
+/// front of their triangles: NORMAL is turned round where the back is seen.
+BakedMesh as_normals(const Mesh& mesh, BakedMesh baked, const Imath::M33f& metric) {
   if (baked.bent.empty()) return baked;
   std::vector<V3f> normals(mesh.positions.size(), V3f(0, 0, 0));
   for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
     for (std::size_t k = 0; k < 3; ++k) normals[mesh.indices[3 * t + k]] += area_vector(mesh, t);
+  const Imath::M33f inverse = metric.inverse();
   for (std::size_t v = 0; v < baked.bent.size(); ++v) {
-    const V3f front = normals[v].normalized();
-    const float along = baked.bent[v].dot(front);
-    if (along < 0) baked.bent[v] -= front * (2 * along);
+    const V3f front = normals[v].normalized(), bent = baked.bent[v];
+    const float along = bent.dot(front);
+    baked.bent[v] = bent * metric;
+    if (along < 0) baked.bent[v] -= front * (2 * along / (front * inverse).dot(front));
+    if (metric != Imath::M33f()) baked.bent[v].normalize();
   }
   return baked;
 }
@@ -269,7 +296,7 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
   const bool to_normal = targets.bent_channel == "NORMAL";
   std::vector<BakedMesh> turned;
   for (std::size_t m = 0; to_normal && m < result.meshes.size(); ++m)
-    turned.push_back(facing_front(scene.meshes[m], result.meshes[m]));
+    turned.push_back(as_normals(scene.meshes[m], result.meshes[m], metric_of(scene, m)));
   const FileSums sums(file, scene, to_normal ? turned : result.meshes, channel.attribute);
   std::vector<NewAttribute> attributes;
   for (const auto& [primitive, from] : sums.primitives) {

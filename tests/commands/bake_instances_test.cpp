@@ -172,6 +172,36 @@ TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {
   EXPECT_EQ(load_gltf(path("out.glb")).instances.size(), 4u);
 }
 
+// Viewers transform normals with the inverse transpose: a direction b of a mesh that is scaled by S
+// is shown where the normal S^2 b is. A wall hides a part of the sky.
+TEST_F(BakeCommand, BentNormalsInNormalShowTheirDirectionUnderAnyScale) {
+  GltfBuilder builder = rich_triangle();
+  builder.doc["nodes"][0].update({{"scale", {4, 1, 1}}, {"rotation", {0, 0, 0.5, 0.8660254}}});
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  const double half = std::sqrt(0.5);
+  builder.doc["nodes"].push_back({{"mesh", 1},
+                                  {"scale", {50, 50, 50}},
+                                  {"rotation", {0, -half, 0, half}},
+                                  {"translation", {5, -10, -10}}});
+  builder.doc["scenes"][0]["nodes"] = {0, 1};
+  write("in.glb", builder.glb());
+  std::vector<V3f> found;
+  for (const std::string channel : {"_BENT_NORMAL", "NORMAL"}) {
+    const Outcome run = dapple(
+        "bake in.glb -o out.glb --channel _AO --sides front --passes ao,bent --rays 1024 "
+        "--bent-channel " +
+        channel);
+    ASSERT_EQ(run.code, 0) << run.err;
+    const test::GltfData file(path("out.glb"));
+    const std::vector<float> bent =
+        file.floats(file.doc["meshes"][0]["primitives"][0]["attributes"][channel]);
+    found.emplace_back(bent[0], bent[1], bent[2]);
+  }
+  EXPECT_GT(std::fabs(found[0].x), 0.02f) << "the wall hides nothing";
+  const V3f expected = V3f(16 * found[0].x, found[0].y, found[0].z).normalized();
+  EXPECT_LT((found[1] - expected).length(), 1e-4f) << found[1] << ", not " << expected;
+}
+
 TEST_F(BakeCommand, NodesThatAreScaledToZeroGetNoValues) {
   GltfBuilder builder = rich_triangle();
   builder.doc["nodes"].push_back({{"mesh", 0}, {"scale", {0, 0, 0}}});
