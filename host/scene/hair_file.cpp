@@ -312,6 +312,10 @@ Scene decode_hair(std::span<const std::uint8_t> bytes, const std::string& path) 
   return scene_of(header, find_arrays(header, bytes, path), path);
 }
 
+void add_time_warning(const std::string& path, std::optional<double> seconds, Scene& scene) {
+  if (seconds) scene.warnings.push_back(one_line(path + ": hair has no animations, and stays"));
+}
+
 Scene load_hair(const std::string& path) {
   try {
     return decode_hair(read_side_file(path, "HAIR file", kMaxFileBytes), path);

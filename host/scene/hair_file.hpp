@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -22,6 +23,9 @@ bool is_hair_name(const std::string& path);
 /// Returns one mesh of strands with one material "hair". Throws Error input, and Error failed when
 /// there is not enough memory.
 Scene load_hair(const std::string& path);
+
+/// Warns that the hair of a file does not move, if a time is given.
+void add_time_warning(const std::string& path, std::optional<double> seconds, Scene& scene);
 
 /// Like load_hair(), but from memory; messages begin with `path`. Throws Error input.
 Scene decode_hair(std::span<const std::uint8_t> bytes, const std::string& path);

@@ -31,7 +31,10 @@ Scene load_scene(const std::string& spec, const SceneOptions& options) {
   validate(options);
   if (spec.empty()) throw Error(ErrorKind::input, "the path of the scene is empty");
   if (spec.starts_with("scene:")) return make_procedural(spec, options.time);
-  return is_hair_name(spec) ? load_hair(spec) : load_gltf(spec, options);
+  if (!is_hair_name(spec)) return load_gltf(spec, options);
+  Scene hair = load_hair(spec);
+  add_time_warning(spec, options.time, hair);
+  return hair;
 }
 
 }  // namespace dapple

@@ -1,4 +1,4 @@
-// The sources of moving scenes: glTF files, procedural scenes, and scenes that do not move. In: a
+// The sources of moving scenes: glTF files, procedural scenes, and hair, which does not move. In: a
 // scene's name and a time in seconds; out: the scene at that time.
 #include "dapple/moving_scene.hpp"
 
@@ -39,19 +39,24 @@ class ProceduralSource : public MovingScene::Source {
   std::string name_;
 };
 
-class FixedSource : public MovingScene::Source {
+class HairSource : public MovingScene::Source {
  public:
-  explicit FixedSource(Scene scene) : scene_(std::move(scene)) {}
-  [[nodiscard]] Scene at(std::optional<double> /*seconds*/) const override { return scene_; }
+  explicit HairSource(const std::string& path) : path_(path), scene_(load_hair(path)) {}
+  [[nodiscard]] Scene at(std::optional<double> seconds) const override {
+    Scene scene = scene_;
+    add_time_warning(path_, seconds, scene);
+    return scene;
+  }
 
  private:
+  std::string path_;
   Scene scene_;
 };
 
 std::unique_ptr<const MovingScene::Source> open(const std::string& spec,
                                                 const SceneOptions& options) {
   if (spec.starts_with("scene:")) return std::make_unique<ProceduralSource>(spec);
-  if (is_hair_name(spec)) return std::make_unique<FixedSource>(load_hair(spec));
+  if (is_hair_name(spec)) return std::make_unique<HairSource>(spec);
   return std::make_unique<GltfSource>(spec, options);
 }
 

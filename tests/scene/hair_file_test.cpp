@@ -6,8 +6,10 @@
 #include <sys/stat.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 
+#include "dapple/moving_scene.hpp"
 #include "support/hair_builder.hpp"
 
 namespace dapple::test {
@@ -191,6 +193,23 @@ TEST(HairFile, OnlyRegularFilesAreRead) {
   const std::string fifo = folder.path("pipe.hair");
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   expect_says(refusal_of(fifo), "pipe.hair: is not a regular file");
+}
+
+TEST(HairFile, ATimeIsAnsweredByAWarning) {
+  const TempFolder folder;
+  const std::string path = folder.path("a.hair");
+  const auto bytes = two_strands().bytes();
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  SceneOptions options;
+  EXPECT_TRUE(load_scene(path, options).warnings.empty());
+  EXPECT_TRUE(MovingScene(path).at({}).warnings.empty());
+  options.time = 2;
+  for (const Scene& scene : {load_scene(path, options), MovingScene(path).at(2)}) {
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    expect_says(scene.warnings[0], "a.hair: hair has no animations, and stays");
+  }
 }
 
 TEST(HairFile, RealHairIsUprightAndLosesOnlyDegenerateStrands) {
