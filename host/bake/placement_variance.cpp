@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostValues = 1u << 20;
 
 /// The assumption that placements do not differ counts as much as so many pairs of samples.
-constexpr double kPairsOfPrior = 4;
+constexpr double kPairsOfPrior = 1;
 
 }  // namespace
 

@@ -65,7 +65,8 @@ TEST(PlacementVariance, PairsInOnePlacementTellTheShareWithin) {
         variance.add(element, n % kPlacements, {}, value, 0);
       }
     }
-    EXPECT_NEAR(variance.share_within(), 0.2, 0.01) << elements;
+    // Of 40 samples, 4 times 9 degrees of freedom are between placements.
+    EXPECT_NEAR(variance.share_within(), 1 / (1 + 4 * 36.0 / 39), 0.012) << elements;
   }
 }
 
@@ -130,7 +131,7 @@ TEST(PlacementVariance, PlacementsThatAreAllTakenAddNoError) {
     const Errors errors = errors_of_placements(8, 2, options);
     EXPECT_LT(errors.real, 0.01);
     EXPECT_LT(errors.real, 1.5 * errors.reported) << at_vertices;
-    EXPECT_LT(errors.reported, 4 * errors.real) << at_vertices;
+    EXPECT_LT(errors.reported, 0.01) << at_vertices << ": with what differs, it was 0.06";
   }
 }
 
