@@ -222,7 +222,8 @@ bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders&
   const std::vector<std::vector<V2f>>& uvs = options.texture_uvs;
   TextureBake texture(scene, options,
                       uvs.empty() ? make_layout(scene, options) : given_layout(scene, options));
-  const double lost = uvs.empty() ? 0.0 : share_without_texels(scene, uvs, options.texture_size);
+  const double lost =
+      uvs.empty() ? 0.0 : share_without_texels(scene, uvs, options.texture_size, options.placement);
   if (lost >= kToldShare)
     records.statistics.notes.push_back(fmt::format(
         "{:.1f} % of the surface has no area in the texture, and no values there", 100 * lost));

@@ -45,6 +45,8 @@ WorldPoints::WorldPoints(std::span<const SurfaceSample> samples,
   const bool is_smooth = std::any_of(samples.begin(), samples.end(), [](const SurfaceSample& at) {
     return at.geometric.length2() > 0;
   });
+  has_planes_ = std::all_of(samples.begin(), samples.end(),
+                            [](const SurfaceSample& at) { return at.is_on_plane; });
   geometric_.resize(is_smooth ? sample.size() : 0, V3f(0, 0, 0));
   shifts_ = geometric_;
   tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {

@@ -50,11 +50,14 @@ class WorldPoints {
   WorldPoints(std::span<const SurfaceSample> samples, std::span<const std::uint32_t> placement,
               const Placements& placements, bool back);
   std::vector<std::uint32_t> sample;
-  [[nodiscard]] QueryPoints query() const { return {positions_, normals_, geometric_, shifts_}; }
+  [[nodiscard]] QueryPoints query() const {
+    return {positions_, normals_, geometric_, shifts_, has_planes_};
+  }
 
  private:
   std::vector<V3f> positions_, normals_;
   std::vector<V3f> geometric_, shifts_;  ///< empty: all samples are flat
+  bool has_planes_ = true;
 };
 
 /// AO and, with bake.bent, bent normals. `bake` must outlive the function.

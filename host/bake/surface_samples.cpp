@@ -122,6 +122,7 @@ std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
     if (!(length > 0) || !std::isfinite(length)) continue;
     sample.normal /= length;
     sample.weight[0] = 1;
+    sample.is_on_plane = false;
     if (!is_smooth[group] || !(shading[group].length2() > 0)) continue;
     sample.geometric = sample.normal;
     sample.normal = shading[group].normalized();

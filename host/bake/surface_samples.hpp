@@ -22,6 +22,7 @@ struct SurfaceSample {
   V3f normal{0, 0, 0};                   ///< unit length, on the front side; shading or geometric
   V3f geometric{0, 0, 0};                ///< of smooth surfaces, as QueryPoints has it; or zero
   V3f shift{0, 0, 0};                    ///< the same
+  bool is_on_plane = true;               ///< `normal`, or `geometric`, is that of a triangle
   bool front = true, back = false;       ///< sides that are traced
   std::array<std::uint32_t, 3> place{};  ///< vertex groups, or texels, whose value it is part of
   std::array<float, 3> weight{};         ///< in these values; 0: none

@@ -189,7 +189,7 @@ void report_interruption(const BakeResult& result, const BakeArguments& a) {
 std::string choose_layout(const gltf::SourceFile& file, const Scene& scene, const std::string& uv,
                           BakeOptions& options, std::uint32_t& set) {
   if (uv == "own") return {};
-  FileUvs chosen = choose_uvs(file, scene, options.texture_size);
+  FileUvs chosen = choose_uvs(file, scene, options);
   set = chosen.set;
   options.texture_uvs = std::move(chosen.uvs);
   if (!options.texture_uvs.empty()) return fmt::format("the texture uses TEXCOORD_{}", set);

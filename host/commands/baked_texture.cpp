@@ -21,12 +21,12 @@ constexpr double kMaxWithoutTexels = 0.01;
 
 /// Why texture coordinates cannot be used; empty: they can.
 std::string fault_of(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                     std::uint32_t size) {
-  const double overlap = uv_overlap(scene, uvs, size);
+                     const BakeOptions& options) {
+  const double overlap = uv_overlap(scene, uvs, options.texture_size, options.placement);
   if (std::isinf(overlap)) return "leaves the texture";
   if (overlap > kMaxOverlap)
     return fmt::format("overlaps itself in {:.1f} % of its texels", 100 * overlap);
-  const double without = share_without_texels(scene, uvs, size);
+  const double without = share_without_texels(scene, uvs, options.texture_size, options.placement);
   if (without > kMaxWithoutTexels)
     return fmt::format("has no area in the texture for {:.1f} % of the surface", 100 * without);
   return {};
@@ -73,12 +73,12 @@ class VertexCopies {
 
 }  // namespace
 
-FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, std::uint32_t size) {
+FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeOptions& options) {
   FileUvs chosen;
   for (const std::uint32_t set : {1u, 0u}) {
     std::vector<std::vector<V2f>> uvs = uvs_of_set(file, scene, set);
     if (uvs.empty()) continue;
-    const std::string fault = fault_of(scene, uvs, size);
+    const std::string fault = fault_of(scene, uvs, options);
     if (fault.empty()) return {std::move(uvs), set, {}};
     if (!chosen.note.empty()) chosen.note += "; ";
     chosen.note += fmt::format("TEXCOORD_{} {}", set, fault);

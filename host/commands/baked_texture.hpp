@@ -20,7 +20,7 @@ struct FileUvs {
 
 /// TEXCOORD_1, else TEXCOORD_0, if all primitives have it, inside of [0,1], without overlaps, and
 /// with an area for nearly all triangles.
-FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, std::uint32_t size);
+FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeOptions& options);
 
 /// The primitives that the texture is on. `set`: of FileUvs, for a layout that came from there.
 std::vector<gltf::TexturedPrimitive> textured_primitives(const gltf::SourceFile& file,

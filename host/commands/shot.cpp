@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -66,18 +67,32 @@ Shot::Defaults Shot::choose_defaults(const Scene& first) const {
   Defaults chosen;
   const Camera camera = choose_view(first, options_, chosen.notes).camera;
   if (!options_.look && first.cameras.empty()) chosen.camera = camera;
+  if (!options_.look) chosen.camera_name = camera.name;
   if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);
   if (options_.ground) chosen.ground_under = scene_bounds(first);
   return chosen;
 }
 
-void Shot::add_defaults(Scene& scene) const {
-  // A camera that is scaled to nothing at some moments is not in the scene then.
-  if (defaults_->camera) scene.cameras = {*defaults_->camera};
-  if (!options_.look && scene.cameras.empty())
+// A camera that is scaled to nothing at some moments is not in the scene then.
+void Shot::keep_camera(Scene& scene) const {
+  if (options_.look) return;
+  if (defaults_->camera) {
+    scene.cameras = {*defaults_->camera};
+    return;
+  }
+  const auto kept =
+      std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                   [&](const Camera& camera) { return camera.name == defaults_->camera_name; });
+  if (kept == scene.cameras.end())
     throw Error(ErrorKind::input,
-                fmt::format("{}: its camera is scaled to nothing at some moments: give --look",
-                            arguments_.scene));
+                fmt::format("{}: camera {} is scaled to nothing at some moments; --look-from and "
+                            "--look-at choose another",
+                            arguments_.scene, defaults_->camera_name));
+  std::iter_swap(scene.cameras.begin(), kept);
+}
+
+void Shot::add_defaults(Scene& scene) const {
+  keep_camera(scene);
   scene.lights.insert(scene.lights.end(), defaults_->lights.begin(), defaults_->lights.end());
   if (defaults_->ground_under) add_ground(scene, *defaults_->ground_under);
   scene.warnings.insert(scene.warnings.end(), defaults_->notes.begin(), defaults_->notes.end());

@@ -26,13 +26,15 @@ class Shot {
  private:
   /// Chooses camera, lights and ground from the first frame.
   struct Defaults {
-    std::optional<Camera> camera;
+    std::optional<Camera> camera;  ///< where the scene has none
+    std::string camera_name;       ///< of the scene's camera that the first frame shows
     std::vector<Light> lights;
     std::optional<Box3f> ground_under;
     std::vector<std::string> notes;
   };
 
   [[nodiscard]] Defaults choose_defaults(const Scene& first) const;
+  void keep_camera(Scene& scene) const;
   void add_defaults(Scene& scene) const;
 
   const RenderArguments& arguments_;

@@ -216,9 +216,9 @@ void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
   planes.add("visits.triangles", [&](std::uint32_t p) { return total(p, 1); });
 }
 
-/// The radiance of the sky that AO lets through: the option's; else 1 without lights that shine, 0
-/// beside a dome, which is a sky itself, and beside other lights a tenth of what they reflect from
-/// a white surface.
+/// The radiance of the sky that AO lets through: the option's; else 1 without lights, 0 beside a
+/// dome, which is a sky itself, and beside other lights a tenth of what they reflect from a white
+/// surface.
 double ambient_of(const RenderOptions& options, const std::vector<Light>& lights,
                   const LightPlanes& light) {
   constexpr double kShare = 0.1;
@@ -226,9 +226,7 @@ double ambient_of(const RenderOptions& options, const std::vector<Light>& lights
   if (lights.empty()) return 1;
   const bool dome = std::any_of(lights.begin(), lights.end(),
                                 [](const Light& l) { return l.kind == LightKind::dome; });
-  if (dome) return 0;
-  const double largest = light.largest_unoccluded();
-  return largest > 0 ? kShare * largest / std::numbers::pi : 1;
+  return dome ? 0 : kShare * light.largest_unoccluded() / std::numbers::pi;
 }
 
 }  // namespace

@@ -12,22 +12,22 @@
 namespace dapple {
 namespace {
 
-/// In roundings of float: of coordinates along the normal, 64, since callers rounded theirs; of the
-/// largest coordinate where matrices carry rays into instances, 16 as of camera hits
-/// (surface_point.clh).
-constexpr float kAlongNormal = 3.8e-6f, kInInstances = 9.5e-7f;
+/// Rays start above a plane by 64 roundings of the coordinates along its normal, since callers
+/// rounded theirs; and by 16 of the largest coordinate, as above camera hits (surface_point.clh),
+/// where the plane is not known or matrices carry rays into instances.
+constexpr float kAlongNormal = 3.8e-6f, kInAllDirections = 9.5e-7f;
 
-SurfacePoint surface_point(const V3f& position, const V3f& normal, std::size_t index,
-                           bool has_instances) {
+SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& plane,
+                           std::size_t index, bool is_bounded) {
   SurfacePoint point{};
   float along = 0, largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     point.position[axis] = position[axis];
     point.normal[axis] = normal[axis];
-    along += std::fabs(position[axis] * normal[axis]);
+    along += std::fabs(position[axis] * plane[axis]);
     largest = std::max(largest, std::fabs(position[axis]));
   }
-  point.offset = along * kAlongNormal + (has_instances ? largest * kInInstances : 0.0f);
+  point.offset = along * kAlongNormal + (is_bounded ? 0.0f : largest * kInAllDirections);
   point.pixel = static_cast<uint>(index);
   return point;
 }
@@ -49,9 +49,11 @@ SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,
     : context_(context) {
   points_.reserve(chosen.size());
   for (const std::uint32_t i : chosen) {
-    points_.push_back(surface_point(points.positions[i], points.normals[i], i, scene.has_top != 0));
-    if (!points.geometric.empty() && points.geometric[i].length2() > 0)
-      smooth(points.geometric[i], points.shifts[i], points_.back());
+    const bool is_smooth = !points.geometric.empty() && points.geometric[i].length2() > 0;
+    points_.push_back(surface_point(points.positions[i], points.normals[i],
+                                    is_smooth ? points.geometric[i] : points.normals[i], i,
+                                    points.has_planes && scene.has_top == 0));
+    if (is_smooth) smooth(points.geometric[i], points.shifts[i], points_.back());
   }
 }
 

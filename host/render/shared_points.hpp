@@ -21,6 +21,8 @@ struct QueryPoints {
   /// Directions below the triangle are hidden, unless the point moves by `shifts` to the smooth
   /// surface above.
   std::span<const V3f> geometric = {}, shifts = {};
+  /// Whether `geometric`, and `normals` where it is zero, are those of the surfaces' planes.
+  bool has_planes = false;
 };
 
 /// Points in host memory that the device reads in place. The destructor waits for the device.

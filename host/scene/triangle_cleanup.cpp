@@ -154,17 +154,28 @@ std::vector<std::uint32_t> keep_wanted(std::vector<Item>& items, const std::vect
   return new_numbers;
 }
 
-/// They stay, so that a sequence has the same layers in all its frames.
-void warn_dark_mesh_lights(Scene& scene) {
-  std::vector<bool> dark(scene.lights.size());
-  for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    dark[i] = scene.lights[i].kind == LightKind::mesh;
-  for (const Instance& instance : scene.instances)
-    if (instance.light >= 0) dark[static_cast<std::size_t>(instance.light)] = false;
+/// Those of scenes that move stay dark, so that all frames of a sequence have the same layers.
+void drop_dark_mesh_lights(Scene& scene) {
+  std::vector<bool> wanted(scene.lights.size(), false);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    if (!dark[i]) continue;
+    wanted[i] = scene.lights[i].kind != LightKind::mesh;
+  }
+  for (const Instance& instance : scene.instances) {
+    if (instance.light >= 0) wanted[static_cast<std::size_t>(instance.light)] = true;
+  }
+  const bool moves = !scene.animations.empty();
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    if (wanted[i]) continue;
+    const std::string& name = scene.lights[i].name;
     scene.warnings.push_back(
-        fmt::format("light \"{}\" is dark: it has no triangle", scene.lights[i].name));
+        moves ? fmt::format("light \"{}\" is dark: it has no triangle", name)
+              : fmt::format("dropped light \"{}\", which has no triangle", name));
+  }
+  if (moves) return;
+  const std::vector<std::uint32_t> new_numbers = keep_wanted(scene.lights, wanted);
+  for (Instance& instance : scene.instances) {
+    if (instance.light < 0) continue;
+    instance.light = static_cast<int>(new_numbers[static_cast<std::size_t>(instance.light)]);
   }
 }
 
@@ -195,7 +206,7 @@ void drop_unused(Scene& scene) {
   });
   const std::vector<std::uint32_t> new_numbers = keep_wanted(scene.meshes, find_placed(scene));
   for (Instance& instance : scene.instances) instance.mesh = new_numbers[instance.mesh];
-  warn_dark_mesh_lights(scene);
+  drop_dark_mesh_lights(scene);
 }
 
 }  // namespace dapple

@@ -143,7 +143,8 @@ BakeResult bake(const Scene& scene, const BakeOptions& options = {},
 
 /// The share of the covered texels of a `size` x `size` texture that lie in several triangles at
 /// their centre, [0,1], for texture coordinates as BakeOptions::texture_uvs; infinity if some are
-/// outside of [0,1].
-double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size);
+/// outside of [0,1]. Of the meshes that a bake with `placement` bakes.
+double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
+                  BakeInstances placement = BakeInstances::together);
 
 }  // namespace dapple

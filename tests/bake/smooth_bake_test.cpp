@@ -252,5 +252,35 @@ TEST(SmoothBake, FlatMeshesAreTheSameBitForBit) {
   }
 }
 
+// Cards of grass often have the normals of the ground. They stand on y = 0, where the coordinates
+// along these normals are small and those along their own are not.
+TEST(SmoothBake, LeaningCardsWithNormalsUpAreNotHiddenByThemselvesAnywhere) {
+  double at_origin = 0;
+  for (const float offset : {0.0f, 30.0f, 3000.0f}) {
+    Mesh card;
+    constexpr int kParts = 6;
+    for (int row = 0; row <= kParts; ++row)
+      for (int column = 0; column <= kParts; ++column) {
+        const float a = static_cast<float>(column) / kParts - 0.5f;
+        const float b = 0.5f * static_cast<float>(row) / kParts;
+        card.positions.emplace_back(0.765f * a - 0.19f * b + offset, 0.955f * b,
+                                    0.644f * a + 0.226f * b + 0.7f * offset);
+      }
+    card.normals.assign(card.positions.size(), V3f(0, 1, 0));
+    for (std::uint32_t row = 0; row < kParts; ++row)
+      for (std::uint32_t column = 0; column < kParts; ++column) {
+        const std::uint32_t a = row * (kParts + 1) + column, c = a + kParts + 1;
+        card.indices.insert(card.indices.end(), {a, a + 1, c, a + 1, c + 1, c});
+      }
+    BakeOptions options = exactly(1024);
+    options.sides = BakeSides::max;
+    const std::vector<float> ao = bake(scene_of(std::move(card)), options).meshes.at(0).ao;
+    const double mean = std::accumulate(ao.begin(), ao.end(), 0.0) / static_cast<double>(ao.size());
+    if (offset == 0) at_origin = mean;
+    EXPECT_NEAR(mean, at_origin, 0.01) << offset;
+    EXPECT_GT(mean, 0.5) << offset;
+  }
+}
+
 }  // namespace
 }  // namespace dapple

@@ -258,7 +258,7 @@ TEST(TextureLayout, TheShareOfTheSurfaceWithoutTexelsIsThatOfTheWorld) {
       uvs[0].emplace_back(p.x, p.z);
       uvs[1].push_back(uv_of_second(p));
     }
-    return share_without_texels(scene, uvs, 64);
+    return share_without_texels(scene, uvs, 64, BakeInstances::together);
   };
   EXPECT_EQ(share([](const V3f& p) { return V2f(p.x, p.z); }), 0);
   EXPECT_NEAR(share([](const V3f&) { return V2f(0.3f, 0.7f); }), 0.75, 1e-6) << "a point";

@@ -155,7 +155,8 @@ TEST_F(FramesCommand, WhatIsScaledToNothingAtFirstChangesNeitherLightsNorCameraL
   EXPECT_EQ(shutter.code, 0) << shutter.err;
   const Outcome lost = dapple(render + "--frames 1-2 --fps 1 -o c.#.exr");
   EXPECT_EQ(lost.code, 3);
-  EXPECT_TRUE(contains(lost.err, "its camera is scaled to nothing at some moments")) << lost.err;
+  EXPECT_TRUE(contains(lost.err, "camera_0 is scaled to nothing at some moments; --look-from"))
+      << lost.err;
 }
 
 TEST_F(FramesCommand, InfoListsAnimationsWithTheirLengths) {

@@ -99,6 +99,16 @@ TEST(RectSampling, SmallRectsFarAwayLoseNoDigits) {
   }
 }
 
+TEST(RectSampling, ATiltedPlainOverheadIsAsFarAsItsPlane) {
+  for (const float height : {0.1f, 10.0f}) {
+    const V3f facing(-0.6f, -0.8f, 0), edge(0.8e5f, -0.6e5f, 0);
+    const Samples samples = light_samples(rect_scene(facing * -height, edge, {0, 0, 1e5f}, facing));
+    double sum = 0;
+    for (const float weight : samples.solid_angles) sum += weight;
+    EXPECT_NEAR(sum / kLightSamples, 2 * std::numbers::pi, 5e-3) << height;
+  }
+}
+
 TEST(RectSampling, NothingReachesItsPlaneOrItsBack) {
   for (const float height : {0.0f, -1e-6f, -2.0f}) {
     const Samples samples = light_samples(scene_of({-1, -1, 2, 2, height}));

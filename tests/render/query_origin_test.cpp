@@ -2,6 +2,7 @@
 // also far from the origin.
 #include <gtest/gtest.h>
 
+#include "render/point_occlusion.hpp"
 #include "support/scene_on_device.hpp"
 
 namespace dapple {
@@ -10,8 +11,9 @@ namespace {
 using namespace scene_test;
 
 /// The mean AO of points on a ground around `at`, below a sheet that hides the middle of their sky.
-/// `placed`: another object makes both objects of a top level.
-double ao_below_a_sheet(const V3f& at, bool placed) {
+/// `placed`: beside an object that is placed twice, so that there is a top level. `has_planes`: as
+/// QueryPoints has it.
+double ao_below_a_sheet(const V3f& at, bool placed, bool has_planes) {
   Scene scene;
   scene.materials.push_back(material_of(1));
   M44f far;
@@ -32,17 +34,21 @@ double ao_below_a_sheet(const V3f& at, bool placed) {
   options.rays = 4096;
   options.estimator = Estimator::exact;
   options.distance = 1;
-  return traced.occlusion_at(at, {0, 1, 0}, options);
+  const std::vector<V3f> points{at}, normals{{0, 1, 0}};
+  const QueryPoints query{points, normals, {}, {}, has_planes};
+  return point_occlusion(device(), traced.uploaded, query, options, false, {}).ao.at(0);
 }
 
 TEST(QueryOrigin, AoOfAGroundFarAlongAnAxisIsThatAtTheOrigin) {
   for (const float x : {0.0f, 3e3f, 1e5f, 4.5e6f})
-    EXPECT_NEAR(ao_below_a_sheet({x, 0, 0}, false), 0.25, 0.01) << x;
+    EXPECT_NEAR(ao_below_a_sheet({x, 0, 0}, false, true), 0.25, 0.01) << x;
 }
 
-TEST(QueryOrigin, BesideInstancesRaysStartByRoundingsOfTheLargestCoordinate) {
-  for (const float x : {0.0f, 3e3f, 2e4f})
-    EXPECT_NEAR(ao_below_a_sheet({x, 0, 0}, true), 0.25, 0.02) << x;
+TEST(QueryOrigin, OfOtherPointsAndBesideInstancesRaysStartByRoundingsOfTheLargestCoordinate) {
+  for (const float x : {0.0f, 3e3f, 1e4f}) {
+    EXPECT_NEAR(ao_below_a_sheet({x, 0, 0}, true, true), 0.25, 0.02) << x;
+    EXPECT_NEAR(ao_below_a_sheet({x, 0, 0}, false, false), 0.25, 0.02) << x;
+  }
 }
 
 TEST(QueryOrigin, PointsOfATiltedGroundAreNotHiddenByItAtAnyPlace) {
@@ -72,10 +78,39 @@ TEST(QueryOrigin, PointsOfATiltedGroundAreNotHiddenByItAtAnyPlace) {
         OcclusionOptions options;
         options.rays = 64;
         options.estimator = Estimator::exact;
-        const std::vector<float> ao =
-            occlusion(device(), traced.uploaded, points, normals, options);
-        EXPECT_EQ(*std::min_element(ao.begin(), ao.end()), 1) << side << ' ' << at << ' ' << angle;
+        for (const bool has_planes : {true, false}) {
+          const QueryPoints query{points, normals, {}, {}, has_planes};
+          const std::vector<float> ao =
+              point_occlusion(device(), traced.uploaded, query, options, false, {}).ao;
+          EXPECT_EQ(*std::min_element(ao.begin(), ao.end()), 1)
+              << side << ' ' << at << ' ' << angle;
+        }
       }
+}
+
+/// On a slope of 1 in 2: points, and what part of the hemisphere about +Y lies above it.
+TEST(QueryOrigin, PointsWithOtherNormalsThanTheirSurfaceAreNotHiddenByIt) {
+  constexpr double kOpen = 0.5 + 0.5 * 0.894427;  // (1 + cos of the slope) / 2
+  for (const float x : {0.0f, 100.0f, 1e4f}) {
+    Scene scene;
+    scene.materials.push_back(material_of(1));
+    Mesh ground = square_mesh(20, 0, 8, 0);
+    for (V3f& p : ground.positions) p = V3f(p.x + x, 0.5f * p.x, p.z);
+    place(scene, std::move(ground));
+    const SceneOnDevice traced(std::move(scene));
+    Points random(5);
+    std::vector<V3f> points;
+    for (int i = 0; i < 400; ++i) {
+      const float along = 18 * random.unit() - 9;
+      points.emplace_back(along + x, 0.5f * ((along + x) - x), 18 * random.unit() - 9);
+    }
+    OcclusionOptions options;
+    options.rays = 256;
+    options.estimator = Estimator::exact;
+    const std::vector<float> ao = occlusion(device(), traced.uploaded, points,
+                                            std::vector(points.size(), V3f(0, 1, 0)), options);
+    for (const float value : ao) EXPECT_NEAR(value, kOpen, 0.02) << x;
+  }
 }
 
 }  // namespace

@@ -269,18 +269,24 @@ TEST(Merge, UnusedMeshesAndSingularInstancesAreDropped) {
             std::vector<std::string>{"dropped 2 instances whose matrix cannot be inverted"});
 }
 
-TEST(Merge, AMeshLightWithoutATriangleStaysDarkAndTheOthersKeepTheirInstances) {
+TEST(Merge, AMeshLightWithoutATriangleIsDroppedOrDarkAndTheOthersKeepTheirInstances) {
   Scene scene = scene_of({unit_triangle(), unit_triangle()},
                          {placed(0, scaling({0, 0, 0}), 1), placed(1, M44f{}, 2)});
   scene.lights.resize(3);
   scene.lights[1].kind = scene.lights[2].kind = LightKind::mesh;
   scene.lights[1].name = "dark";
   scene.lights[2].name = "lamp";
+  Scene moving = scene;
+  moving.animations.resize(1);
   merge_single_instances(scene);
-  EXPECT_EQ(scene.lights.size(), 3u);
+  ASSERT_EQ(scene.lights.size(), 2u);
   ASSERT_EQ(scene.instances.size(), 1u);
   EXPECT_EQ(scene.lights.at(static_cast<std::size_t>(scene.instances[0].light)).name, "lamp");
-  EXPECT_EQ(scene.warnings.back(), "light \"dark\" is dark: it has no triangle");
+  EXPECT_EQ(scene.warnings.back(), "dropped light \"dark\", which has no triangle");
+  merge_single_instances(moving);
+  ASSERT_EQ(moving.lights.size(), 3u);
+  EXPECT_EQ(moving.lights.at(static_cast<std::size_t>(moving.instances.at(0).light)).name, "lamp");
+  EXPECT_EQ(moving.warnings.back(), "light \"dark\" is dark: it has no triangle");
 }
 
 TEST(Merge, ASceneOfWhichNothingIsLeftIsRefused) {

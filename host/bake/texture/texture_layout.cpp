@@ -185,11 +185,11 @@ TextureLayout given_layout(const Scene& scene, const BakeOptions& options) {
   return layout;
 }
 
-double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                  std::uint32_t size) {
+double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
+                  BakeInstances placement) {
   std::vector<std::uint8_t> count(std::size_t{size} * size);
   std::size_t covered = 0, several = 0;
-  const std::vector<bool> textured = textured_meshes(scene, BakeInstances::together);
+  const std::vector<bool> textured = textured_meshes(scene, placement);
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     if (!textured[m]) continue;
@@ -212,8 +212,8 @@ double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
 }
 
 double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                            std::uint32_t size) {
-  const std::vector<bool> textured = textured_meshes(scene, BakeInstances::together);
+                            std::uint32_t size, BakeInstances placement) {
+  const std::vector<bool> textured = textured_meshes(scene, placement);
   double all = 0, without = 0;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];

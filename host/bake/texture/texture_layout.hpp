@@ -24,6 +24,6 @@ TextureLayout given_layout(const Scene& scene, const BakeOptions& options);
 /// triangles have no area in a `size` x `size` texture, [0,1]; for texture coordinates as
 /// BakeOptions::texture_uvs. Values of such triangles cannot be stored.
 double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                            std::uint32_t size);
+                            std::uint32_t size, BakeInstances placement);
 
 }  // namespace dapple

@@ -90,9 +90,12 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
     if (given.type == "spot") make_cone(light, given.spot);
   }
   if (!place(light, placed.to_world)) {
+    // In a file that moves it stays, so that all frames of a sequence have the same layers.
+    const bool moves = !document.motion.clips.empty();
+    scene.warnings.push_back(one_line(fmt::format("{}: {} is {}: its node is scaled to nothing",
+                                                  document.file, who, moves ? "dark" : "ignored")));
+    if (!moves) return;
     light.radiance = V3f(0, 0, 0);
-    scene.warnings.push_back(one_line(
-        fmt::format("{}: {} is dark: its node is scaled to nothing", document.file, who)));
   }
   scene.lights.push_back(std::move(light));
 }

@@ -12,8 +12,8 @@ namespace dapple::gltf {
 
 /// Appends the punctual lights of placed nodes to Scene::lights. A directional light becomes a sun
 /// of the same irradiance; a point or spot light becomes a sphere of radius options.light_radius
-/// (metres) with the same intensity. A light whose node has a scale of zero is dark, with a
-/// warning. Throws Error input.
+/// (metres) with the same intensity. A light whose node has a scale of zero is left out, or
+/// dark if the file has animations, with a warning. Throws Error input.
 void add_punctual_lights(const Document& document, const std::vector<PlacedNode>& placed,
                          const SceneOptions& options, Scene& scene);
 
