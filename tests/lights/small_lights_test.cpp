@@ -83,14 +83,16 @@ TEST(SmallLights, AnEmissiveMeshWhoseTrianglesCollapseFarAwayGivesNoLight) {
   EXPECT_EQ(irradiance(scene), 0);
 }
 
-TEST(SmallLights, RectsOfAnySizeHaveNoNegativeIrradiance) {
-  for (const float side : {1e4f, 1e9f, 1e12f}) {
-    Scene scene = point_on_ground();
-    scene.lights = {above(LightKind::rect, 2, side)};
-    RenderOptions options = lights_only();
-    options.spp = 64;
-    const float found = value(render(scene, options).film, "light.above.R");
-    EXPECT_TRUE(found >= 0 && std::isfinite(found)) << side << ": " << found;
+TEST(SmallLights, BelowRectsAndDisksOfAnySizeIrradianceIsThatOfTheHemisphere) {
+  for (const LightKind kind : {LightKind::rect, LightKind::disk}) {
+    for (const float side : {1e4f, 1e9f, 1e12f}) {
+      Scene scene = point_on_ground();
+      scene.lights = {above(kind, 2, side)};
+      RenderOptions options = lights_only();
+      options.spp = 64;
+      const float found = value(render(scene, options).film, "light.above.R");
+      EXPECT_NEAR(found, std::numbers::pi, 0.01) << side;
+    }
   }
 }
 
