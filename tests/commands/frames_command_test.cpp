@@ -33,8 +33,8 @@ class FramesCommand : public ProgramRun {
                static_cast<std::streamsize>(bytes.size()));
   }
   /// Writes blink.glb, a triangle with a lamp and a camera that are scaled to nothing at 0 s and at
-  /// 2 s.
-  void write_blink() const {
+  /// 2 s. `steady`: another camera is not.
+  void write_blink(bool steady = false) const {
     test::GltfBuilder b = test::one_triangle();
     b.doc["extensions"]["KHR_lights_punctual"]["lights"] =
         test::json::array({{{"type", "point"}, {"name", "lamp"}, {"intensity", 100}}});
@@ -44,6 +44,7 @@ class FramesCommand : public ProgramRun {
     b.add("nodes",
           {{"translation", {0, 0, 5}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     b.add("nodes", {{"translation", {0, 0, 3}}, {"camera", 0}});
+    if (steady) b.add("nodes", {{"translation", {0, 0, 4}}, {"camera", 0}, {"name", "steady"}});
     const int times = b.add_accessor(std::vector<float>{0, 1, 2}, test::kFloat, "SCALAR");
     const int values = b.add_positions({0, 0, 0, 1, 1, 1, 0, 0, 0});
     test::json channels = test::json::array();
@@ -157,6 +158,18 @@ TEST_F(FramesCommand, WhatIsScaledToNothingAtFirstChangesNeitherLightsNorCameraL
   EXPECT_EQ(lost.code, 3);
   EXPECT_TRUE(contains(lost.err, "camera_0 is scaled to nothing at some moments; --look-from"))
       << lost.err;
+}
+
+TEST_F(FramesCommand, ASequenceKeepsTheCameraOfItsFirstFrame) {
+  write_blink(true);
+  const Outcome run =
+      dapple("render blink.glb --width 16 --height 16 --spp 1 --frames 0-2 --fps 1 -o a.#.exr");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const Film first = read_exr(path("a.0.exr")), second = read_exr(path("a.1.exr"));
+  EXPECT_EQ(first.metadata.world_to_camera, second.metadata.world_to_camera);
+  const Outcome lost =
+      dapple("render blink.glb --width 16 --height 16 --spp 1 --frames 1-2 --fps 1 -o b.#.exr");
+  EXPECT_EQ(lost.code, 3) << "the first camera, which the first frame shows, is gone";
 }
 
 TEST_F(FramesCommand, InfoListsAnimationsWithTheirLengths) {
