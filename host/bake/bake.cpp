@@ -27,11 +27,11 @@ namespace {
 /// Samples of a triangle that a target needs in the mean, for the first guess of the time left.
 constexpr double kExpectedSamples = 4;
 
-/// The share of the surface without area in given texture coordinates from which on a note says so.
-constexpr double kToldShare = 0.0005;
-
 /// Share of a texture that triangles cover, for the same guess.
 constexpr double kExpectedCoverage = 0.5;
+
+/// The share of the surface without area in given texture coordinates from which on a note says so.
+constexpr double kToldShare = 0.0005;
 
 TracePoints trace_against(const OccluderScene& occluders) {
   return [&occluders](const QueryPoints& points, const OcclusionOptions& options, bool bent) {

@@ -43,7 +43,7 @@ Distances distances_from(const LightRecord& light, const Box3f& bounds) {
 }
 
 /// The irradiance, at radiance 1, of surfaces that face a light at the farthest and at the nearest
-/// point of the scene. Right to a factor of two; samples of large flat lights may exceed `largest`.
+/// point of the scene. Right to a factor of two; samples near mesh lights may exceed `largest`.
 struct Irradiance {
   double smallest, largest;
 };

@@ -242,6 +242,9 @@ TEST(TextureLayout, OverlapsAreFoundWithTheirShare) {
   uvs.push_back(uvs_of(1)[0]);
   for (V2f& uv : uvs[1]) uv.x *= 0.5f;
   EXPECT_NEAR(uv_overlap(both, uvs, 64), 0.5, 0.03);
+  for (Instance& instance : both.instances) instance.to_world = M44f().setScale(0);
+  EXPECT_EQ(uv_overlap(both, uvs, 64), 0) << "nothing is baked";
+  EXPECT_NEAR(uv_overlap(both, uvs, 64, BakeInstances::alone), 0.5, 0.03);
 }
 
 TEST(TextureLayout, TheShareOfTheSurfaceWithoutTexelsIsThatOfTheWorld) {

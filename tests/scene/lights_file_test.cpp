@@ -84,6 +84,8 @@ TEST(LightsFile, ASpotIsASphereWithTheConeOfKhrLightsPunctual) {
   EXPECT_NEAR(load_one(spot + R"(, "outer_degrees": 90)").at(0).cos_outer, 0, 1e-7);
   EXPECT_EQ(complaint_about(spot + R"(, "inner_degrees": 50)"),
             "light 1: inner_degrees must be from 0 to 45, and is 50");
+  EXPECT_EQ(complaint_about(spot + R"(, "outer_degrees": 0.1)"),
+            "light 1: outer_degrees must be from 0.2 to 90, and is 0.1");
 }
 
 TEST(LightsFile, ATargetTakesThePlaceOfANormal) {

@@ -202,6 +202,10 @@ TEST(GltfLight, ASpotIsASphereWithACone) {
   const Light standard = load_light({{"type", "spot"}, {"spot", json::object()}});
   EXPECT_FLOAT_EQ(standard.cos_inner, 1.0f);
   EXPECT_FLOAT_EQ(standard.cos_outer, std::cos(std::numbers::pi_v<float> / 4));
+  const Light narrow =
+      load_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0}, {"outerConeAngle", 1e-4}}}});
+  EXPECT_FLOAT_EQ(narrow.cos_outer, std::cos(0.2f * std::numbers::pi_v<float> / 180))
+      << "the least";
 }
 
 }  // namespace
