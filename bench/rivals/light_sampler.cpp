@@ -80,7 +80,10 @@ LightSample sample_sun(const Light& light, float x, float y) {
 
 }  // namespace
 
-bool can_sample(const Light& light) { return light.kind <= LightKind::sun; }
+bool can_sample(const Light& light) {
+  return light.kind == LightKind::rect || light.kind == LightKind::sphere ||
+         light.kind == LightKind::sun;
+}
 
 LightSample sample_light(const Light& light, const V3f& origin, float x, float y) {
   switch (light.kind) {

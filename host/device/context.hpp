@@ -74,7 +74,7 @@ struct KernelName {
   std::string name;
   std::string file;
   Variant variant;
-  /// Path below kernels/: "packet.cl".
+  /// Path below kernels/: "occlusion/packet.cl".
   [[nodiscard]] std::string source_file() const { return (file.empty() ? name : file) + ".cl"; }
   auto operator<=>(const KernelName&) const = default;
 };

@@ -14,7 +14,6 @@ constexpr std::size_t kLightChannels = 4;     // light.NAME and error.light.NAME
 constexpr std::size_t kMatteChannels = 12;    // of crypto_object or crypto_material
 constexpr std::size_t kMatteSlotBytes = 80;   // MatteSums, two slots
 constexpr std::size_t kDeepBytes = 200;       // DeepSums and DeepAlpha, eight depths
-constexpr std::size_t kLightPlanes = LightPlaneRange{0, 3}.count();  // as if all were domes
 
 double machine_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -25,8 +24,8 @@ double machine_bytes() {
 /// All values count twice. Sums are on the device and, unless it shares the host's memory, in the
 /// host's copy; channels are in the film and in the file that is being written.
 std::size_t film_bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
-  std::size_t sums =
-      kSurfacePlanes + kAoPlanes + kNormalPlanes + kAlbedoPlanes + kLightPlanes * lights;
+  std::size_t sums = DAPPLE_SURFACE_PLANES + DAPPLE_AO_PLANES + kNormalPlanes + kAlbedoPlanes +
+                     DAPPLE_DOME_PLANES * lights;  // as if all were domes
   std::size_t channels = kSurfaceChannels + kLightChannels * lights;
   if (options.back) {
     sums += 3 + 3 * lights;  // samples, hits and AO; lights as if all were domes

@@ -103,15 +103,15 @@ FilmLayout::FilmLayout(const PixelRect& crop, const RenderOptions& options,
                        bool has_normals)
     : width(static_cast<std::uint32_t>(crop.width())),
       pixels(width * static_cast<std::uint32_t>(crop.height())),
-      plane_count(kSurfacePlanes) {
+      plane_count(DAPPLE_SURFACE_PLANES) {
   if (options.ao) {
     ao = plane_count;
-    plane_count += kAoPlanes;
+    plane_count += DAPPLE_AO_PLANES;
     squares += 2;
   }
   for (const Light& light : scene_lights) {
-    lights.push_back(
-        {plane_count, light.kind == LightKind::dome ? 3u : 1u, scales.lights.at(lights.size())});
+    lights.push_back({plane_count, light.kind == LightKind::dome ? DAPPLE_DOME_CHANNELS : 1u,
+                      scales.lights.at(lights.size())});
     plane_count += lights.back().count();
     squares += 2;
   }

@@ -1,6 +1,6 @@
 // The layout of an image's running sums on the device, planes of 64-bit fixed point. In: view,
 // options and lights. Out: the position of each plane and its scale. The order of planes is that of
-// kernels/film/film.cl. layers.hpp converts the sums into EXR layers.
+// film_planes.h. layers.hpp converts the sums into EXR layers.
 #pragma once
 
 #include <span>
@@ -8,19 +8,14 @@
 
 #include "camera/view.hpp"
 #include "dapple/render.hpp"
+#include "dapple/shared/film_planes.h"
 #include "dapple/shared/light_record.h"
 #include "device/context.hpp"
 
 namespace dapple {
 
-inline constexpr std::uint32_t kSurfacePlanes = 10;
-inline constexpr std::uint32_t kAoPlanes = 6;
 inline constexpr std::uint32_t kNormalPlanes = 3;
 inline constexpr std::uint32_t kAlbedoPlanes = 3;
-
-/// The plane of node visits of camera rays. Triangle tests are in the plane after it, as for all
-/// other rays.
-inline constexpr std::uint32_t kCameraVisits = 8;
 
 /// A light's planes: irradiance with occlusion, then without, each of 1 channel (3 for a dome);
 /// then node visits and triangle tests.
@@ -70,7 +65,7 @@ struct FilmLayout {
              const std::vector<Light>& lights, bool has_normals = false);
   /// The first plane of the shading pass; 0: there is no such pass.
   [[nodiscard]] std::uint32_t shading() const { return normals ? normals : albedo; }
-  [[nodiscard]] std::uint32_t ao_visits() const { return ao + 4; }
+  [[nodiscard]] std::uint32_t ao_visits() const { return ao + DAPPLE_PLANE_AO_VISITS; }
   /// The plane of a light's squared means of sample batches. The next plane is for pairs of
   /// batches. AO's planes are 0 and 1.
   [[nodiscard]] std::uint32_t light_squares(std::size_t light) const {

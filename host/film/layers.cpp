@@ -181,12 +181,12 @@ double root_mean_square(const std::vector<float>& values) {
 
 void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
                   const RenderOptions& options, std::size_t lights, RenderStatistics& s) {
-  const double hits = sums.total(0);
+  const double hits = sums.total(DAPPLE_PLANE_HITS);
   s.rays.camera =
       std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0}) /
       splitting_factor(options);
-  s.camera = {per_ray(sums.total(kCameraVisits) / DAPPLE_ITEM_RAYS, s.rays.camera),
-              per_ray(sums.total(kCameraVisits + 1) / DAPPLE_ITEM_RAYS, s.rays.camera)};
+  s.camera = {per_ray(sums.total(DAPPLE_PLANE_CAMERA_VISITS) / DAPPLE_ITEM_RAYS, s.rays.camera),
+              per_ray(sums.total(DAPPLE_PLANE_CAMERA_TESTS) / DAPPLE_ITEM_RAYS, s.rays.camera)};
   if (options.ao) {
     s.rays.ao = static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.ao_rays);
     s.ao = {per_ray(sums.total(layout.ao_visits()), s.rays.ao),
@@ -207,7 +207,7 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
 void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
                 const FilmLayout& layout, const RenderOptions& options) {
   const auto total = [&](std::uint32_t p, std::uint32_t which) {
-    double sum = sums.at(kCameraVisits + which, p) / DAPPLE_ITEM_RAYS;
+    double sum = sums.at(DAPPLE_PLANE_CAMERA_VISITS + which, p) / DAPPLE_ITEM_RAYS;
     if (options.ao) sum += sums.at(layout.ao_visits() + which, p);
     for (const LightPlaneRange& light : layout.lights) sum += sums.at(light.visits() + which, p);
     return sum * splitting_factor(options) / sample_count(picture, p);
@@ -257,7 +257,7 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
                            RenderStatistics& statistics) {
   const Sums sums(picture.sums.values<std::int64_t>(), layout.pixels);
   const auto spp = [&](std::uint32_t p) { return sample_count(picture, p); };
-  const auto hits = [&](std::uint32_t p) { return sums.at(0, p); };
+  const auto hits = [&](std::uint32_t p) { return sums.at(DAPPLE_PLANE_HITS, p); };
   const auto ao_of = [&](std::uint32_t plane, std::uint32_t p, double hit, double samples) {
     return sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * samples) + 1.0 -
            hit / samples;
@@ -295,7 +295,8 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
                          back_sample_count(sums, layout, source)));
       });
     planes.add3("bent", "XYZ", [&](std::uint32_t p) {
-      V3d bent(sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p), sums.at(layout.ao + 3, p));
+      const std::uint32_t plane = layout.ao + DAPPLE_PLANE_AO_BENT;
+      V3d bent(sums.at(plane, p), sums.at(plane + 1, p), sums.at(plane + 2, p));
       return bent.length2() > 0 ? bent.normalized() : V3d(0.0);
     });
   }
@@ -310,11 +311,12 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
   }
   if (layout.albedo) planes.add3("albedo", "RGB", albedo);
   // Geometric normals are a layer of their own where the shading pass made others.
-  planes.add3("N", "XYZ", mean3(layout.normals ? layout.normals : 1, layout.unit_scale));
-  if (layout.normals) planes.add3("Ng", "XYZ", mean3(1, layout.unit_scale));
-  planes.add3("P", "XYZ", mean3(4, layout.position_scale));
+  planes.add3("N", "XYZ",
+              mean3(layout.normals ? layout.normals : DAPPLE_PLANE_NORMAL, layout.unit_scale));
+  if (layout.normals) planes.add3("Ng", "XYZ", mean3(DAPPLE_PLANE_NORMAL, layout.unit_scale));
+  planes.add3("P", "XYZ", mean3(DAPPLE_PLANE_POSITION, layout.position_scale));
   planes.add("Z", [&](std::uint32_t p) {
-    return hits(p) > 0 ? sums.at(7, p) / (double{layout.depth_scale} * hits(p))
+    return hits(p) > 0 ? sums.at(DAPPLE_PLANE_DEPTH, p) / (double{layout.depth_scale} * hits(p))
                        : std::numeric_limits<double>::infinity();
   });
   for (std::size_t axis = 0; axis < 2 && !picture.motion.empty(); ++axis) {

@@ -43,26 +43,26 @@ Estimator estimator_of(const Variant& variant) {
   return variant.prefiltered ? Estimator::prefiltered : Estimator::exact;
 }
 
-void occlude_nothing(EmptyStage& s, Packets with, const Variant& variant) {
+void warm_up_occlusion(EmptyStage& s, Packets with, const Variant& variant) {
   OcclusionParams params{};
   params.rays_per_point = 1;
   occlusion_pass_with(with, s.context, s.queues, s.scene, "occlusion", estimator_of(variant),
                       params);
 }
 
-void find_nothing(EmptyStage& s, const Variant& variant) {
+void warm_up_camera(EmptyStage& s, const Variant& variant) {
   CameraParams params{};
   params.orthographic = !variant.shared_origin;
   camera_pass(s.context, s.scene, s.queues, params);
 }
 
-void average_nothing(EmptyStage& s, const Variant& variant) {
+void warm_up_points(EmptyStage& s, const Variant& variant) {
   OcclusionParams params{};
   params.rays_per_point = 1;
   point_ao_pass(s.context, s.queues, s.scene, estimator_of(variant), {}, params);
 }
 
-void shade_nothing(EmptyStage& s, const Variant&) {
+void warm_up_shading(EmptyStage& s, const Variant&) {
   shading_pass(s.context, s.scene, s.queues, s.film, {}, 1);
 }
 
@@ -70,8 +70,8 @@ using Pass = std::function<void(EmptyStage&, const Variant&)>;
 
 const std::map<std::string, Pass>& passes() {
   static const std::map<std::string, Pass> kOfKernel{
-      {"camera_hits", find_nothing},
-      {"camera_hits_scalar", find_nothing},
+      {"camera_hits", warm_up_camera},
+      {"camera_hits_scalar", warm_up_camera},
       {"closest_hit",
        [](EmptyStage& s, const Variant&) { closest_hit_pass(s.context, s.scene, s.queues, 0); }},
       {"count_hits", [](EmptyStage& s, const Variant&) { compact_pass(s.context, s.queues, 0); }},
@@ -83,20 +83,21 @@ const std::map<std::string, Pass>& passes() {
       {"ao_rays", [](EmptyStage& s, const Variant&) { ao_ray_pass(s.context, s.queues, {}); }},
       {"light_rays",
        [](EmptyStage& s, const Variant&) { light_ray_pass(s.context, s.scene, s.queues, {}); }},
-      {"occlusion", [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::none, v); }},
+      {"occlusion",
+       [](EmptyStage& s, const Variant& v) { warm_up_occlusion(s, Packets::none, v); }},
       {"occlusion_scalar",
-       [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::scalar, v); }},
+       [](EmptyStage& s, const Variant& v) { warm_up_occlusion(s, Packets::scalar, v); }},
       {"order_rays",
-       [](EmptyStage& s, const Variant& v) { occlude_nothing(s, Packets::scalar, v); }},
+       [](EmptyStage& s, const Variant& v) { warm_up_occlusion(s, Packets::scalar, v); }},
       {"packet",
        [](EmptyStage& s, const Variant& v) {
-         occlude_nothing(s, v.shared_origin ? Packets::point : Packets::pixel, v);
+         warm_up_occlusion(s, v.shared_origin ? Packets::point : Packets::pixel, v);
        }},
       {"gather_rays",
        [](EmptyStage& s, const Variant&) {
          gather_pass(s.context, s.queues, s.slots, s.gathered, 0, 1, 0);
        }},
-      {"point_ao", average_nothing},
+      {"point_ao", warm_up_points},
       {"resolve_surface",
        [](EmptyStage& s, const Variant&) {
          resolve_surface_pass(s.context, s.queues, s.film, {});
@@ -105,8 +106,8 @@ const std::map<std::string, Pass>& passes() {
        [](EmptyStage& s, const Variant&) { turn_points_pass(s.context, s.queues, s.queues, {}); }},
       {"count_backs",
        [](EmptyStage& s, const Variant&) { count_backs_pass(s.context, s.queues, s.film, {}); }},
-      {"shade_points", shade_nothing},
-      {"shade_points_scalar", shade_nothing},
+      {"shade_points", warm_up_shading},
+      {"shade_points_scalar", warm_up_shading},
       {"resolve_ao",
        [](EmptyStage& s, const Variant&) { resolve_ao_pass(s.context, s.queues, s.film, {}); }},
       {"resolve_light",

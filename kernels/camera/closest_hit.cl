@@ -4,7 +4,7 @@
 #include "dapple/shared/pass_params.h"
 #include "camera/surface_point.clh"
 
-/* The threshold depends on the ray's index too, so that rays with equal keys have unrelated thresholds. */
+/* Origin and direction count too, so that rays with equal keys have unrelated thresholds. */
 inline float threshold_of(__global const Ray* ray) {
   uint bits = ray->key;
   for (uint axis = 0; axis < 3u; ++axis) {
@@ -26,16 +26,16 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
   const Ray ray = rays[item];
   const Span span = make_span(load3(rays[item].origin), load3(rays[item].direction), ray.t_max);
   ClosestHits16 closest; /* only the first ray's is used */
-  SingleRay lone;
+  SingleRay single;
   const TexelArea covers = {0.0f, 0.0f};
   start_k_buffer((float16)(threshold_of(rays + item)), &closest.k_buffer);
   closest.visits = closest.tests = 0u;
   do {
     closest.t.v = (float16)(ray.t_max);
     closest.primitive.v = closest.instance.v = (int16)(-1);
-    start_single(span, covers, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &lone);
-    prefetch_entry(scene, params.scene.root, 0.0f, &lone);
-    while (go_down(scene, &lone, &closest)) {
+    start_single(span, covers, 0u, DAPPLE_WORLD, params.scene.has_top != 0u, &single);
+    prefetch_entry(scene, params.scene.root, 0.0f, &single);
+    while (go_down(scene, &single, &closest)) {
     }
   } while (advance_k_buffer(&closest.k_buffer).s0);
   __global SurfacePoint* point = points + item;

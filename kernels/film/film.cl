@@ -1,5 +1,5 @@
 /* The resolve kernels: add camera samples, AO and lights to the film. In: the queues of a slice. Out: film
-   sums and squares, see film.clh. */
+   sums, in the planes of film_planes.h, and squares, see film.clh. */
 #include "film/film.clh"
 #include "vectors/lanes.clh"
 #include "geometry/scene.clh"
@@ -20,8 +20,7 @@ inline long8 in_order_of_planes(long8 s) {
   return (long8)(s.s7, s.s4, s.s5, s.s6, s.s0, s.s1, s.s2, s.s3);
 }
 
-/* Planes: hits, N (3), P (3), Z, camera visits, camera tests. Each ray is charged
-   the visits and tests of its whole work-item. */
+/* Each ray is charged the visits and tests of its whole work-item. */
 __kernel void resolve_surface(__global const PixelWork* work, __global const SurfacePoint* points,
                               __global const SampleHits* sample_hits, __global long* film,
                               ResolveParams params) {
@@ -44,15 +43,15 @@ __kernel void resolve_surface(__global const PixelWork* work, __global const Sur
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   if (visits | tests) {
-    add_to_plane(film, params, 8, pixel, visits);
-    add_to_plane(film, params, 9, pixel, tests);
+    add_to_plane(film, params, DAPPLE_PLANE_CAMERA_VISITS, pixel, visits);
+    add_to_plane(film, params, DAPPLE_PLANE_CAMERA_TESTS, pixel, tests);
   }
   if (!of_points.s7) return;
-  add_to_planes(film, params, 8u, pixel, in_order_of_planes(of_points));
+  add_to_planes(film, params, DAPPLE_PLANE_CAMERA_VISITS, pixel, in_order_of_planes(of_points));
 }
 
-/* Planes: transmittance over hits, bent normal (3), visits, tests. Squares: of occlusion, which
-   is 0 where samples missed. A ray of weight 0 is hidden, any other has weight 1. */
+/* Squares: of occlusion, which is 0 where samples missed. A ray of weight 0 is hidden, any other has
+   weight 1. */
 __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHits* sample_hits,
                          __global const Ray* rays,
                          __global const Occlusion* occlusions, __global long* film,
@@ -83,10 +82,10 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
-  add_to_planes(film, params, params.backs ? 1u : 6u, pixel, sums);
+  add_to_planes(film, params, params.backs ? 1u : DAPPLE_AO_PLANES, pixel, sums);
 }
 
-/* Planes: irradiance at radiance 1, the same unoccluded, visits, tests. */
+/* Irradiances are those at radiance 1. */
 __kernel void resolve_light(__global const PixelWork* work, __global const SampleHits* sample_hits,
                             __global const Ray* rays,
                             __global const Occlusion* occlusions, __global long* film,
@@ -115,5 +114,5 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
-  add_to_planes(film, params, params.backs ? 1u : 4u, pixel, sums);
+  add_to_planes(film, params, params.backs ? 1u : DAPPLE_LIGHT_PLANES, pixel, sums);
 }

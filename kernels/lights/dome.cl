@@ -64,5 +64,5 @@ __kernel void resolve_dome(__global const PixelWork* work, __global const Sample
   }
   const uint pixel = pixel_of(work, params, local_pixel);
   add_squares(squares, params, pixel, &batches);
-  add_to_planes(film, params, params.backs ? 3u : 8u, pixel, sums);
+  add_to_planes(film, params, params.backs ? DAPPLE_DOME_CHANNELS : DAPPLE_DOME_PLANES, pixel, sums);
 }

@@ -47,8 +47,8 @@ MUTATIONS = [
         r"^(PictureChannels|Albedo|ShadingNormal)\."),
     Mutation(
         "bent-normal-begins-a-plane-early", "host/film/layers.cpp",
-        "V3d bent(sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p), sums.at(layout.ao + 3, p));",
-        "V3d bent(sums.at(layout.ao, p), sums.at(layout.ao + 1, p), sums.at(layout.ao + 2, p));",
+        "const std::uint32_t plane = layout.ao + DAPPLE_PLANE_AO_BENT;",
+        "const std::uint32_t plane = layout.ao;",
         r"^PictureChannels\."),
     Mutation(
         "cryptomatte-ranks-ascend", "host/film/cryptomatte.cpp",

@@ -74,6 +74,14 @@ void store_disk(const Light& light, LightRecord& record) {
   record.area = std::numbers::pi_v<float> * light.radius * light.radius;
 }
 
+// LightRecord::kind of a light is its LightKind, but for parallelograms.
+static_assert(static_cast<uint>(LightKind::rect) == DAPPLE_LIGHT_RECT);
+static_assert(static_cast<uint>(LightKind::sphere) == DAPPLE_LIGHT_SPHERE);
+static_assert(static_cast<uint>(LightKind::sun) == DAPPLE_LIGHT_SUN);
+static_assert(static_cast<uint>(LightKind::mesh) == DAPPLE_LIGHT_MESH);
+static_assert(static_cast<uint>(LightKind::dome) == DAPPLE_LIGHT_DOME);
+static_assert(static_cast<uint>(LightKind::disk) == DAPPLE_LIGHT_DISK);
+
 }  // namespace
 
 void pack_lights(const Scene& scene, std::vector<LightRecord>& records,

@@ -19,7 +19,7 @@ namespace dapple {
 
 typedef struct LightRecord {
   float position[3];
-  float radius;        /* sphere, metres */
+  float radius;        /* sphere, disk: metres */
   float direction[3];  /* rect, disk: emitting side; sun, spot: the way light travels */
   float one_minus_cos; /* sun: 1 - cosine of its angular radius */
   float edge_u[3]; /* rect: the shorter full edge; disk: radius along an axis */

@@ -1,0 +1,28 @@
+/* The order of planes in the film's sums, which the kernels of kernels/film and kernels/lights write and
+   host/film reads: planes of the surface, which every picture has at its beginning, and those of a pass,
+   from its first one on. */
+#ifndef DAPPLE_SHARED_FILM_PLANES_H
+#define DAPPLE_SHARED_FILM_PLANES_H
+
+/* Of the surface: samples that hit, their geometric normals (3), positions (3) and depth. The shading normal
+   has planes of its own. */
+#define DAPPLE_PLANE_HITS 0u
+#define DAPPLE_PLANE_NORMAL 1u
+#define DAPPLE_PLANE_POSITION 4u
+#define DAPPLE_PLANE_DEPTH 7u
+#define DAPPLE_PLANE_CAMERA_VISITS 8u /* of nodes */
+#define DAPPLE_PLANE_CAMERA_TESTS 9u  /* of triangles and segments */
+#define DAPPLE_SURFACE_PLANES 10u
+
+/* Of AO: transmittance, unoccluded directions (3). Backs have the first one alone. */
+#define DAPPLE_PLANE_AO_BENT 1u
+#define DAPPLE_PLANE_AO_VISITS 4u /* and tests */
+#define DAPPLE_AO_PLANES 6u
+
+/* Of a light: irradiance, the same without occlusion, visits, tests; irradiances of a dome have 3 channels.
+   Backs have the first irradiance alone. */
+#define DAPPLE_LIGHT_PLANES 4u
+#define DAPPLE_DOME_PLANES 8u
+#define DAPPLE_DOME_CHANNELS 3u
+
+#endif
