@@ -103,12 +103,14 @@ void require_no_overlap(const std::vector<PieceOfFile>& pieces) {
       const Piece& b = pieces[k].piece;
       if (!overlap(a, b)) continue;
       const RayRange both{b.rays.first, std::min(a.rays.end, b.rays.end)};
+      const PixelRect shared{std::max(a.rect.x0, b.rect.x0), std::max(a.rect.y0, b.rect.y0),
+                             std::min(a.rect.x1, b.rect.x1), std::min(a.rect.y1, b.rect.y1)};
       const std::string names =
           pieces[i].part->path == pieces[k].part->path
               ? pieces[i].part->path + " is named twice: its "
               : fmt::format("{} and {} overlap: ", pieces[i].part->path, pieces[k].part->path);
       refuse(fmt::format("{}{} of the pixels {} would count twice", names, rays_text(both),
-                         rect_text(a.rect)));
+                         rect_text(shared)));
     }
   }
 }
@@ -129,6 +131,19 @@ std::vector<Part> describe_all(const std::vector<std::string>& paths) {
   return parts;
 }
 
+/// Adds the devices of a part to those of the sum, each once.
+void add_devices(std::string of_part, std::string& of_sum) {
+  constexpr std::string_view kAnd = " and ";
+  while (!of_part.empty()) {
+    const std::size_t end = std::min(of_part.find(kAnd), of_part.size());
+    const std::string name = of_part.substr(0, end);
+    const std::string known = fmt::format("{0}{1}{0}", kAnd, of_sum);
+    if (known.find(fmt::format("{0}{1}{0}", kAnd, name)) == std::string::npos)
+      of_sum += std::string(kAnd) + name;
+    of_part.erase(0, end + (end < of_part.size() ? kAnd.size() : 0));
+  }
+}
+
 /// The description of the sum. Options are those of a render without --shard, if it is whole.
 Checkpoint describe_sum(const std::vector<Part>& parts) {
   Checkpoint sum = parts.front().about;
@@ -138,8 +153,7 @@ Checkpoint describe_sum(const std::vector<Part>& parts) {
     sum.pieces.insert(sum.pieces.end(), part.about.pieces.begin(), part.about.pieces.end());
     sum.picture.options.visits = sum.picture.options.visits || picture.options.visits;
     sum.picture.metadata.samples = std::max(sum.picture.metadata.samples, picture.metadata.samples);
-    if (sum.device.find(part.about.device) == std::string::npos)
-      sum.device += " and " + part.about.device;
+    add_devices(part.about.device, sum.device);
   }
   sum.pieces = joined(std::move(sum.pieces));
   const PixelRect& crop = sum.picture.crop = box_of(sum.pieces);
@@ -150,13 +164,21 @@ Checkpoint describe_sum(const std::vector<Part>& parts) {
   return sum;
 }
 
-void add_notes(const Checkpoint& sum, const Merge& merge, RenderStatistics& statistics) {
+/// `has_tiles`: the parts are of several rectangles.
+void add_notes(const Checkpoint& sum, const Merge& merge, bool has_tiles,
+               RenderStatistics& statistics) {
   const std::string& first = sum.picture.metadata.device;
   if (sum.device != first) {
     statistics.notes.push_back(fmt::format(
         "parts were traced on {}: the picture's bits are not those of one device", sum.device));
   }
   if (!merge.missing.empty()) statistics.notes.push_back("parts are missing: " + merge.missing);
+  const PixelRect &crop = sum.picture.crop,
+                  whole{0, 0, sum.picture.width - 1, sum.picture.height - 1};
+  if (has_tiles && crop != whole)
+    statistics.notes.push_back(
+        fmt::format("no part has pixels outside of {}; the picture is {} x {}", rect_text(crop),
+                    sum.picture.width, sum.picture.height));
 }
 
 RenderResult film_of(const PictureRecord& picture, MergedSums&& sums) {
@@ -195,7 +217,11 @@ Merge merge_parts(const std::vector<std::string>& paths, const std::string& outp
   merge.result = film_of(picture, std::move(sums));
   if (!merge.missing.empty())
     merge.result.film.metadata.settings.emplace_back("missing", merge.missing);
-  add_notes(sum, merge, merge.result.statistics);
+  const std::vector<PieceOfFile> pieces = pieces_of(parts);
+  const bool has_tiles = std::any_of(pieces.begin(), pieces.end(), [&](const PieceOfFile& of) {
+    return !(of.piece.rect == pieces.front().piece.rect);
+  });
+  add_notes(sum, merge, has_tiles, merge.result.statistics);
   merge.result.statistics.device = sum.device;
   merge.result.statistics.footprint = sum.footprint;
   merge.result.statistics.seconds.total = total.seconds();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "dapple/error.hpp"
 #include "device/programs/kernel_source.hpp"
@@ -138,10 +139,13 @@ std::string pose_checksum(const Scene& scene) {
 bool Difference::is_opaque() const { return is_checksum(before) || is_checksum(now); }
 
 std::optional<Difference> first_difference(const Settings& then, const Settings& now) {
+  std::map<std::string, int> seen;  // settings of one name so far
   for (const auto& asked : now) {
     const std::string &name = asked.first, &value = asked.second;  // clang 14 captures no bindings
-    const auto found = std::find_if(then.begin(), then.end(),
-                                    [&](const auto& setting) { return setting.first == name; });
+    int number = seen[name]++;
+    const auto found = std::find_if(then.begin(), then.end(), [&](const auto& setting) {
+      return setting.first == name && number-- == 0;
+    });
     const std::string before = found == then.end() ? "none" : found->second;
     if (before != value) return Difference{name, before, value};
   }

@@ -21,12 +21,14 @@ class SlurmTask : public film_test::FilmFile {
     std::filesystem::permissions(path("srun"), std::filesystem::perms::owner_all);
   }
 
-  /// Runs a frame of a sequence as task 3. Returns the exit code.
-  [[nodiscard]] int frame(int restarts, const std::string& options = "") const {
+  /// Runs frame 3 of a sequence, which begins with frame `first`. Returns the exit code.
+  [[nodiscard]] int frame(int restarts, const std::string& options = "", int first = 1) const {
     const std::string command =
         "cd '" + folder_.string() + "' && PATH=\"$PWD:$PATH\" " +
-        "SLURM_ARRAY_TASK_ID=3 SLURM_RESTART_COUNT=" + std::to_string(restarts) +
-        " bash '" DAPPLE_SOURCE_FOLDER "/farm/slurm/task' frame 24 f_%04d.exr tree.glb " + options;
+        "SLURM_ARRAY_TASK_ID=" + std::to_string(3 - first) +
+        " SLURM_CPUS_PER_TASK=8 SLURM_RESTART_COUNT=" + std::to_string(restarts) +
+        " bash '" DAPPLE_SOURCE_FOLDER "/farm/slurm/task' frame " + std::to_string(first) +
+        "/24 f_%04d.exr tree.glb " + options;
     return WEXITSTATUS(std::system(command.c_str()));
   }
   [[nodiscard]] bool ran() const { return std::filesystem::exists(path("arguments")); }
@@ -41,6 +43,9 @@ TEST_F(SlurmTask, AFirstStartRemovesWhatAnEarlierJobLeft) {
   EXPECT_TRUE(contains(arguments, "--frame 0.125 -o f_0003.exr")) << arguments;
   EXPECT_TRUE(contains(arguments, "--checkpoint f_0003.exr.ckpt")) << arguments;
   EXPECT_FALSE(contains(arguments, "--resume")) << arguments;
+  EXPECT_TRUE(contains(arguments, "--ntasks=1 --cpus-per-task=8 ")) << arguments;
+  EXPECT_EQ(frame(0, "", 3), 0);
+  EXPECT_EQ(bytes_of(path("arguments")), arguments);
 }
 
 TEST_F(SlurmTask, ARestartGoesOnOrKnowsThatItWasDone) {

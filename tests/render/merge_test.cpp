@@ -206,6 +206,35 @@ TEST_F(MergeParts, MotionVectorsAddUp) {
   expect_same(merged, whole);
 }
 
+// Two values of a material are settings of one name.
+TEST_F(MergeParts, OpacitiesOfOneNameAreComparedInOrder) {
+  RenderOptions options = small_picture();
+  options.opacity = {{"leaf", 0.5f}, {"leaf", 0.85f}};
+  const auto draw_half = [&](int half) {
+    options.shard = {half, 2};
+    const std::string name = path(std::to_string(half) + ".half.dapple");
+    draw(options, name);
+    return name;
+  };
+  const std::vector<std::string> halves{draw_half(1), draw_half(2)};
+  EXPECT_EQ(merge_parts(halves).missing, "");
+  options.opacity[0].second = 0.6f;
+  draw_half(2);
+  expect_refused(halves, "opacity_leaf 0.6");
+}
+
+TEST_F(MergeParts, ATileThatIsMissingAtTheBorderIsSaid) {
+  const PixelRect left{0, 0, 18, 35}, middle{19, 0, 30, 35}, right{31, 0, 39, 35};
+  const std::vector<std::string> tiles{part(1, 1, left), part(1, 1, middle), part(1, 1, right)};
+  EXPECT_TRUE(merge_parts(tiles).result.statistics.notes.empty());
+  const auto notes_of = [](const Merge& merge) { return merge.result.statistics.notes; };
+  const std::vector<std::string> notes = notes_of(merge_parts({tiles[0], tiles[1]}));
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], "no part has pixels outside of 0,0 to 30,35; the picture is 40 x 36");
+  EXPECT_TRUE(notes_of(merge_parts({tiles[0]})).empty()) << "a crop that was asked for";
+  expect_refused({tiles[0], part(1, 1, PixelRect{10, 5, 25, 7})}, "of the pixels 10,5 to 18,7");
+}
+
 TEST_F(MergeParts, OverlapsAreRefusedWithTheirSamples) {
   const std::string half = part(1, 2), quarter = part(2, 4);
   expect_refused({half, quarter}, "0.dapple and ");
