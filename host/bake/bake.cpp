@@ -19,6 +19,7 @@
 #include "bake/vertex_bake.hpp"
 #include "dapple/error.hpp"
 #include "film/light_layers.hpp"
+#include "render/option_check.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -125,7 +126,10 @@ double expected_samples(const Scene& scene, const BakeOptions& options) {
     samples +=
         kExpectedCoverage * of_element(most, false) * options.texture_size * options.texture_size;
   }
-  if (options.instances) samples += static_cast<double>(scene.instances.size()) * kInstanceSamples;
+  if (options.instances)
+    samples += static_cast<double>(scene.instances.size()) *
+               (options.target_error > 0 ? 1.0 * kExpectedRounds * kInstanceRound
+                                         : 1.0 * options.rays / kRaysPerSample);
   return options.light ? 2 * samples : samples;
 }
 
@@ -251,21 +255,16 @@ bool bake_all_instances(const Scene& scene, const BakeOptions& options,
 }  // namespace
 
 void validate(const BakeOptions& options) {
-  const auto check = [](const char* flag, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    throw Error(ErrorKind::usage,
-                fmt::format("{} is {}; it must be from {} to {}", flag, value, low, high));
-  };
-  check("--rays", options.rays, kRaysPerSample, 65536);
-  check("--light-rays", options.light_rays, 1, 4096);
-  check("--size", double{1.0 * options.texture_size}, 1, 16384);
-  check("--margin", options.margin, 0, 1024);
-  check("--target-error", double{options.target_error}, 0, 1);
-  check("--footprint", double{options.footprint}, 0, 1e6);
-  check("--report-bias", double{options.report_bias}, 0, 1);
-  check("--max-bias", double{options.max_bias}, 0, 1);
-  check("--ao-distance", double{options.distance}, 0, 1e30);
-  check("--ao-falloff", double{options.falloff}, 0, 100);
+  check_range("--rays", options.rays, kRaysPerSample, 65536);
+  check_range("--light-rays", options.light_rays, 1, 4096);
+  check_range("--size", double{1.0 * options.texture_size}, 1, 16384);
+  check_range("--margin", options.margin, 0, 1024);
+  check_range("--target-error", double{options.target_error}, 0, 1);
+  check_range("--footprint", double{options.footprint}, 0, 1e6);
+  check_range("--report-bias", double{options.report_bias}, 0, 1);
+  check_range("--max-bias", double{options.max_bias}, 0, 1);
+  check_range("--ao-distance", double{options.distance}, 0, 1e30);
+  check_range("--ao-falloff", double{options.falloff}, 0, 100);
   if (options.falloff > 0 && !(options.distance > 0))
     throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
   if (options.light && options.placement == BakeInstances::alone)
@@ -276,9 +275,11 @@ void validate(const BakeOptions& options) {
 BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderControl& control,
                 const std::vector<Scene>& occluders) {
   validate(asked);
-  if (asked.light && asked.lights.empty() && scene.lights.empty())
+  const std::vector<Light>& lights = asked.lights ? *asked.lights : scene.lights;
+  if (asked.light && lights.empty())
     throw Error(ErrorKind::usage,
-                "--passes light: the scene has no lights; --lights or --dome brings some");
+                fmt::format("--passes light: {}; --lights or --dome brings some",
+                            asked.lights ? "there are no lights" : "the scene has no lights"));
   BakeOptions options = asked;
   const Stopwatch total;
   BakeResult result;
@@ -314,8 +315,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
     result.interrupted = !bake_texture(scene, options, mesh_occluders, records, result);
   if (options.instances && !result.interrupted)
     result.interrupted = !bake_all_instances(scene, options, *together, records, result);
-  if (options.light && !result.interrupted)
-    add_up_groups(options.lights.empty() ? scene.lights : options.lights, result);
+  if (options.light && !result.interrupted) add_up_groups(lights, result);
   s.bias = bias.report();
   s.footprint = options.footprint;
   checkpoint.save(true);

@@ -107,8 +107,7 @@ Settings bake_settings(const Scene& scene, const BakeOptions& o,
        })},
       {"lights", checksum_of([&](ChecksumStream& stream) {
          if (!o.light) return;
-         for (const Light& light : o.lights.empty() ? scene.lights : o.lights)
-           add_light(stream, light);
+         for (const Light& light : o.lights ? *o.lights : scene.lights) add_light(stream, light);
        })},
       {"version of dapple", DAPPLE_VERSION},
       {"kernels", kernel_checksum(o.kernel_dir)},

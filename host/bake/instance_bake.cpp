@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "bake/vertex_bake.hpp"
 #include "scene/invertible.hpp"
@@ -12,27 +13,56 @@ namespace {
 /// Samples that are traced between two questions whether to stop.
 constexpr std::size_t kSamplesAtOnce = 1u << 16;
 
-/// The centres of triangles of a mesh, each triangle as often as its share of the area says.
-std::vector<SurfaceSample> samples_by_area(const Scene& scene, const Mesh& mesh,
-                                           const BakeOptions& options) {
-  const std::vector<bool> two_sided = two_sided_triangles(scene, mesh, options.sides);
-  std::vector<double> sums(mesh.primitive_count());
-  double area = 0;
-  for (std::size_t t = 0; t < sums.size(); ++t) {
-    const double part = double{area_vector(mesh, t).length()};
-    sums[t] = area += std::isfinite(part) ? part : 0.0;
-  }
-  std::vector<SurfaceSample> samples;
-  const VertexGroups none{std::vector<std::uint32_t>(mesh.positions.size()), 0};
-  const SampledTriangles triangles{mesh, none, two_sided, options.normals};
-  for (int i = 0; i < kInstanceSamples && area > 0; ++i) {
-    const double at = (i + 0.5) / kInstanceSamples * area;
-    const auto t =
-        static_cast<std::size_t>(std::lower_bound(sums.begin(), sums.end(), at) - sums.begin());
-    if (has_area(mesh, t)) samples.push_back(sample_triangle(triangles, t, 0));
-  }
-  return samples;
+/// Rays of a sample of which the brighter side counts, which few rays would not tell.
+constexpr int kRaysForSides = 32;
+
+/// Binary digits of `index` mirrored behind the point: the sequence of van der Corput.
+double mirrored_digits(std::uint32_t index) {
+  double value = 0;
+  for (double digit = 0.5; index > 0; index >>= 1, digit /= 2) value += digit * (index & 1);
+  return value;
 }
+
+/// Points of a mesh, triangles by their area: a sequence whose beginnings are spread evenly over
+/// the sum of areas. All instances of the mesh have the same ones, so that their values differ by
+/// their surroundings alone. Strands have none.
+class PointsOfMesh {
+ public:
+  PointsOfMesh(const Scene& scene, std::uint32_t index, const BakeOptions& options)
+      : mesh_(scene.meshes[index]),
+        normals_(options.normals),
+        two_sided_(two_sided_triangles(scene, mesh_, options.sides)),
+        sums_(mesh_.has_strands() ? 0 : mesh_.primitive_count()),
+        shift_(hash_of(options.seed, index) * 0x1p-32) {
+    double area = 0;
+    for (std::size_t t = 0; t < sums_.size(); ++t)
+      sums_[t] = area += has_area(mesh_, t) ? double{area_vector(mesh_, t).length()} : 0.0;
+  }
+
+  /// The next `count` points; none if the mesh has no area. `groups`: for as many vertices.
+  std::vector<SurfaceSample> next(std::uint32_t count, const VertexGroups& groups) {
+    std::vector<SurfaceSample> samples;
+    if (sums_.empty() || !(sums_.back() > 0)) return samples;
+    const SampledTriangles triangles{mesh_, groups, two_sided_, normals_};
+    for (const std::uint32_t end = taken_ + count; taken_ < end; ++taken_) {
+      const double share = mirrored_digits(taken_) + shift_;
+      const double at = (share < 1 ? share : share - 1) * sums_.back();
+      const auto t = static_cast<std::size_t>(std::upper_bound(sums_.begin(), sums_.end(), at) -
+                                              sums_.begin());
+      samples.push_back(sample_triangle(triangles, t, of_triangle_[t]++));
+    }
+    return samples;
+  }
+
+ private:
+  const Mesh& mesh_;
+  Normals normals_;
+  std::vector<bool> two_sided_;
+  std::vector<double> sums_;  ///< areas of all triangles up to one
+  double shift_;              ///< of the sequence, [0,1)
+  std::uint32_t taken_ = 0;
+  std::map<std::size_t, std::uint32_t> of_triangle_;  ///< points taken of a triangle
+};
 
 /// A flat list of samples of consecutive instances.
 struct InstanceSlice {
@@ -42,85 +72,218 @@ struct InstanceSlice {
 };
 
 /// Sums over the samples of each instance.
-struct InstanceSums {
-  std::vector<double> scalar, count;
-  std::vector<std::vector<V3f>> light;
-
+class InstanceSums {
+ public:
   InstanceSums(std::size_t instances, std::size_t lights)
-      : scalar(instances), count(instances), light(lights, std::vector<V3f>(instances, V3f(0))) {}
+      : of_instance_(instances), light_(lights, std::vector<V3f>(instances, V3f(0))) {}
 
-  /// Of a two-sided sample the brighter side, or the mean.
-  void add(const InstanceSlice& slice, const TracedSamples& found, BakeSides sides) {
+  /// Of a two-sided sample the mean of both sides.
+  void add(const InstanceSlice& slice, const TracedSamples& found) {
+    largest_ = std::max(largest_, found.largest);
+    for (std::size_t s = 0; s < slice.samples.size(); ++s)
+      add(slice.instance[s], part_of(found, s, slice.samples[s].back ? 0.5f : 0.0f));
+  }
+
+  /// Of a two-sided sample the brighter side. Each of two traces tells which side of the other one
+  /// counts: the larger of two values would be too large by their noise.
+  void add(const InstanceSlice& slice, const TracedSamples& one, const TracedSamples& other) {
+    largest_ = std::max({largest_, one.largest, other.largest});
     for (std::size_t s = 0; s < slice.samples.size(); ++s) {
-      float front = 1, back = 0;
-      if (slice.samples[s].back) {
+      const auto back_of = [&](const TracedSamples& found) {
         const bool behind = found.back[s].scalar > found.front[s].scalar;
-        back = sides == BakeSides::mean ? 0.5f : behind ? 1.0f : 0.0f;
-        front = 1 - back;
-      }
-      const std::uint32_t i = slice.instance[s];
-      scalar[i] += double{front * found.front[s].scalar + back * found.back[s].scalar};
-      ++count[i];
-      for (std::size_t l = 0; l < light.size(); ++l)
-        light[l][i] += found.front_light[s * light.size() + l] * front +
-                       found.back_light[s * light.size() + l] * back;
+        return slice.samples[s].back && behind ? 1.0f : 0.0f;
+      };
+      Part value = part_of(one, s, back_of(other));
+      const Part second = part_of(other, s, back_of(one));
+      value.scalar = 0.5f * (value.scalar + second.scalar);
+      for (std::size_t l = 0; l < light_.size(); ++l)
+        value.light[l] = (value.light[l] + second.light[l]) * 0.5f;
+      add(slice.instance[s], value);
     }
   }
+
+  [[nodiscard]] std::uint32_t count(std::uint32_t instance) const {
+    return of_instance_[instance].count;
+  }
+  /// Of an instance with samples.
+  [[nodiscard]] double mean(std::uint32_t instance) const {
+    return of_instance_[instance].sum / of_instance_[instance].count;
+  }
+  [[nodiscard]] V3f mean_light(std::size_t light, std::uint32_t instance) const {
+    return light_[light][instance] / static_cast<float>(of_instance_[instance].count);
+  }
+  /// The squared standard error of a mean of independent samples, relative to the largest
+  /// unoccluded value so far (of AO: 1). That samples are spread evenly makes it smaller.
+  [[nodiscard]] double squared_error(std::uint32_t instance) const {
+    const Sums& of = of_instance_[instance];
+    if (of.count == 0 || !(largest_ > 0)) return 0;
+    const double n = of.count, deviations = of.sum_squares - of.sum * of.sum / n;
+    if (of.count == 1) {  // no more than of values that are all 0 or the largest
+      const double value = std::min(of.sum / double{largest_}, 1.0);
+      return value * (1 - value);
+    }
+    return std::max(deviations, 0.0) / (n * (n - 1)) / (double{largest_} * double{largest_});
+  }
+
+ private:
+  struct Sums {
+    double sum = 0, sum_squares = 0;
+    std::uint32_t count = 0;
+  };
+  /// The value of a sample.
+  struct Part {
+    float scalar = 0;
+    std::vector<V3f> light;
+  };
+
+  /// `back`: how much the back counts, [0,1].
+  [[nodiscard]] Part part_of(const TracedSamples& found, std::size_t sample, float back) const {
+    Part part{(1 - back) * found.front[sample].scalar + back * found.back[sample].scalar, {}};
+    for (std::size_t l = 0; l < light_.size(); ++l)
+      part.light.push_back(found.front_light[sample * light_.size() + l] * (1 - back) +
+                           found.back_light[sample * light_.size() + l] * back);
+    return part;
+  }
+  void add(std::uint32_t instance, const Part& part) {
+    Sums& of = of_instance_[instance];
+    of.sum += double{part.scalar};
+    of.sum_squares += double{part.scalar} * double{part.scalar};
+    ++of.count;
+    for (std::size_t l = 0; l < light_.size(); ++l) light_[l][instance] += part.light[l];
+  }
+
+  std::vector<Sums> of_instance_;
+  std::vector<std::vector<V3f>> light_;  ///< by light and instance
+  float largest_ = 0;
 };
 
-/// The means of AO, or of lights. False: stopped.
-bool trace_instances(const Scene& scene, const BakeOptions& options, BakeTracing& tracing,
-                     bool lights, InstanceSums& sums) {
-  std::vector<std::vector<SurfaceSample>> of_mesh(scene.meshes.size());
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-    if (!scene.meshes[m].has_strands())
-      of_mesh[m] = samples_by_area(scene, scene.meshes[m], options);
-  const int rays = lights ? options.light_rays : std::min(options.rays, kInstanceRays);
-  const TraceSamples& trace = lights ? tracing.light : tracing.ao;
-  if (!tracing.progress.add(0)) return false;
-  InstanceSlice slice;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    const bool is_placed = is_invertible(scene.instances[i].to_world);
-    for (const SurfaceSample& sample : of_mesh[scene.instances[i].mesh]) {
-      if (!is_placed) break;
-      slice.samples.push_back(sample);
-      slice.placement.push_back(static_cast<std::uint32_t>(slice.placements.to_world.size()));
-      slice.instance.push_back(i);
+/// Samples of all instances, in rounds.
+class InstanceRounds {
+ public:
+  InstanceRounds(const Scene& scene, const BakeOptions& options, BakeTracing& tracing, bool lights)
+      : scene_(scene),
+        options_(options),
+        tracing_(tracing),
+        lights_(lights),
+        sums_(scene.instances.size(), lights ? tracing.lights : 0) {
+    for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
+      points_.emplace_back(scene, m, options);
+      if (one_group_.of_vertex.size() < scene.meshes[m].positions.size())
+        one_group_.of_vertex.resize(scene.meshes[m].positions.size());
     }
-    slice.placements.add(scene.instances[i].to_world);
-    const bool last = i + 1 == scene.instances.size();
-    if ((slice.samples.size() < kSamplesAtOnce && !last) || slice.samples.empty()) continue;
-    const TracedSamples found = trace(slice.samples, slice.placement, slice.placements, rays,
-                                      hash_of(options.seed, lights ? i ^ 0x55555555u : ~i));
-    sums.add(slice, found, options.sides);
-    tracing.statistics.points += found.points;
-    tracing.statistics.rays += found.rays;
-    if (!tracing.progress.add(slice.samples.size())) return false;
-    slice = {};
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
+      if (is_invertible(scene.instances[i].to_world) &&
+          !scene.meshes[scene.instances[i].mesh].has_strands())
+        unfinished_.push_back(i);
   }
-  tracing.progress.show();
-  return true;
-}
+
+  /// False: stopped.
+  bool run() {
+    const auto most = static_cast<std::uint32_t>(options_.rays / kRaysPerSample);
+    if (!tracing_.progress.add(0)) return false;
+    for (std::uint32_t taken = 0; taken < most && !unfinished_.empty();) {
+      const std::uint32_t count = std::min(kInstanceRound, most - taken);
+      if (options_.target_error > 0 && taken >= kExpectedRounds * kInstanceRound)
+        tracing_.progress.expect(1.0 * count * static_cast<double>(unfinished_.size()));
+      if (!trace_round(count)) return false;
+      taken += count;
+      drop_finished();
+    }
+    tracing_.progress.show();
+    return true;
+  }
+
+  [[nodiscard]] const InstanceSums& sums() const { return sums_; }
+
+ private:
+  bool trace_round(std::uint32_t count) {
+    std::map<std::uint32_t, std::vector<SurfaceSample>> of_mesh;
+    InstanceSlice slice;
+    for (const std::uint32_t i : unfinished_) {
+      const std::uint32_t mesh = scene_.instances[i].mesh;
+      const auto [found, is_new] = of_mesh.try_emplace(mesh);
+      if (is_new) found->second = points_[mesh].next(count, one_group_);
+      for (const SurfaceSample& sample : found->second) {
+        slice.samples.push_back(sample);
+        slice.placement.push_back(static_cast<std::uint32_t>(slice.placements.to_world.size()));
+        slice.instance.push_back(i);
+      }
+      slice.placements.add(scene_.instances[i].to_world);
+      if (slice.samples.size() < kSamplesAtOnce) continue;
+      if (!trace(slice)) return false;
+      slice = {};
+    }
+    return slice.samples.empty() || trace(slice);
+  }
+
+  bool trace(const InstanceSlice& slice) {
+    const bool choose = options_.sides != BakeSides::mean &&
+                        std::any_of(slice.samples.begin(), slice.samples.end(),
+                                    [](const SurfaceSample& sample) { return sample.back; });
+    const int rays = lights_ ? options_.light_rays : choose ? kRaysForSides : kRaysPerSample;
+    const TracedSamples one = traced(slice, rays);
+    if (choose)
+      sums_.add(slice, one, traced(slice, rays));
+    else
+      sums_.add(slice, one);
+    return tracing_.progress.add(slice.samples.size());
+  }
+
+  TracedSamples traced(const InstanceSlice& slice, int rays) {
+    const TraceSamples& trace = lights_ ? tracing_.light : tracing_.ao;
+    TracedSamples found = trace(slice.samples, slice.placement, slice.placements, rays,
+                                hash_of(lights_ ? 0x55555555u : 0u, traces_++));
+    tracing_.statistics.points += found.points;
+    tracing_.statistics.rays += found.rays;
+    return found;
+  }
+
+  /// Those with an error below the target, and those without an area.
+  void drop_finished() {
+    const double target = double{options_.target_error} * double{options_.target_error};
+    std::erase_if(unfinished_, [&](std::uint32_t i) {
+      return sums_.count(i) == 0 || (target > 0 && sums_.squared_error(i) <= target);
+    });
+  }
+
+  const Scene& scene_;
+  const BakeOptions& options_;
+  BakeTracing& tracing_;
+  bool lights_;
+  InstanceSums sums_;
+  std::vector<PointsOfMesh> points_;  ///< by mesh
+  VertexGroups one_group_;            ///< all vertices: samples have no weights for single ones
+  std::vector<std::uint32_t> unfinished_;
+  std::uint32_t traces_ = 0;
+};
 
 }  // namespace
 
 std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptions& options,
                                              BakeTracing& tracing) {
-  const std::size_t count = scene.instances.size();
-  InstanceSums ao(count, 0), light(count, tracing.lights);
-  if (!trace_instances(scene, options, tracing, false, ao)) return {};
-  if (tracing.light && !trace_instances(scene, options, tracing, true, light)) return {};
+  const auto count = static_cast<std::uint32_t>(scene.instances.size());
+  InstanceValues values{std::vector<float>(count, 1.0f),
+                        std::vector(tracing.lights, std::vector<V3f>(count, V3f(0)))};
+  InstanceRounds ao(scene, options, tracing, false);
+  if (!ao.run()) return {};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (ao.sums().count(i) > 0) values.ao[i] = static_cast<float>(ao.sums().mean(i));
+    tracing.statistics.squared_errors += ao.sums().squared_error(i);
+  }
+  if (tracing.light) {
+    InstanceRounds light(scene, options, tracing, true);
+    if (!light.run()) return {};
+    for (std::uint32_t i = 0; i < count; ++i) {
+      tracing.statistics.squared_light_errors += light.sums().squared_error(i);
+      for (std::size_t l = 0; l < values.light.size() && light.sums().count(i) > 0; ++l)
+        values.light[l][i] = light.sums().mean_light(l, i);
+    }
+  }
   tracing.statistics.instances = static_cast<std::size_t>(
       std::count_if(scene.instances.begin(), scene.instances.end(),
                     [](const Instance& instance) { return is_invertible(instance.to_world); }));
   for (const Mesh& mesh : scene.meshes)
     if (!mesh.has_strands()) tracing.statistics.triangles += mesh.primitive_count();
-  InstanceValues values{std::vector<float>(count, 1.0f), std::move(light.light)};
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!(ao.count[i] > 0)) continue;
-    values.ao[i] = static_cast<float>(ao.scalar[i] / ao.count[i]);
-    for (std::vector<V3f>& of_light : values.light) of_light[i] /= static_cast<float>(ao.count[i]);
-  }
   return values;
 }
 

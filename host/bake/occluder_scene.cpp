@@ -62,8 +62,8 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
   for (const Scene& other : others) check_scene(other);
   KernelsAhead kernels(device.context(), kernels_of(device.context(), options));
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
-  if (!options.light || !options.lights.empty()) {
-    scene.lights = options.light ? options.lights : std::vector<Light>{};
+  if (!options.light || options.lights) {
+    scene.lights = options.light ? *options.lights : std::vector<Light>{};
     for (Instance& instance : scene.instances) instance.light = -1;
   }
   for (const Scene& other : others) {

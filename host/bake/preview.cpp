@@ -11,6 +11,9 @@ namespace {
 /// Samples of a pixel along each axis.
 constexpr int kSubpixels = 3;
 
+/// Parts of a triangle that are closer than this share of its largest depth are not drawn.
+constexpr float kNearShare = 1e-3f;
+
 /// Linear grey where nothing is drawn.
 constexpr float kBackground = 0.1f;
 
@@ -49,6 +52,32 @@ struct ScreenCorner {
   float x = 0, y = 0, z = 0;
 };
 
+/// A corner of a part of a triangle: its place before the camera, and in the triangle.
+struct PartCorner {
+  V3f point;
+  std::array<float, 3> weights{};
+};
+
+/// The part of a triangle whose depths, -z, are at least `near`: a convex polygon, or nothing
+/// (Sutherland and Hodgman, "Reentrant Polygon Clipping", 1974).
+std::vector<PartCorner> clip_to_depth(const std::array<V3f, 3>& points, float near) {
+  std::vector<PartCorner> part;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const float depth = -points[k].z, next_depth = -points[next].z;
+    PartCorner corner{points[k], {}};
+    corner.weights[k] = 1;
+    if (depth >= near) part.push_back(corner);
+    if ((depth >= near) == (next_depth >= near)) continue;
+    const float along = (near - depth) / (next_depth - depth);
+    corner.point = points[k] + (points[next] - points[k]) * along;
+    corner.weights[k] = 1 - along;
+    corner.weights[next] = along;
+    part.push_back(corner);
+  }
+  return part;
+}
+
 class Screen {
  public:
   Screen(const Camera& camera, int width, int height)
@@ -60,41 +89,28 @@ class Screen {
                std::numeric_limits<float>::infinity()),
         ao_(depth_.size(), kBackground) {}
 
-  /// z <= 0: behind the camera.
-  [[nodiscard]] ScreenCorner project(const V3f& world) const {
-    const V3f p = world * to_camera_;
-    const float half = camera_.kind == Camera::Kind::perspective
-                           ? -p.z * std::tan(camera_.fov_y / 2)
-                           : camera_.half_height;
-    const float scale = 0.5f * static_cast<float>(height_) / half;
-    return {0.5f * static_cast<float>(width_) + p.x * scale,
-            0.5f * static_cast<float>(height_) - p.y * scale, -p.z};
-  }
+  /// Camera space: behind the camera z is positive.
+  [[nodiscard]] V3f before_camera(const V3f& world) const { return world * to_camera_; }
 
-  /// Calls value(weights), barycentric in space, at visible samples of a triangle. It returns AO,
-  /// or a negative number where the triangle is cut out.
+  /// Calls value(weights), barycentric in space, at visible samples of a triangle in camera space.
+  /// It returns AO, or a negative number where the triangle is cut out.
   template <class Value>
-  void draw(const std::array<ScreenCorner, 3>& c, Value value) {
-    const float area =
-        (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
-    if (area == 0 || !(c[0].z > 0 && c[1].z > 0 && c[2].z > 0)) return;
-    const int x0 = first(std::min({c[0].x, c[1].x, c[2].x}));
-    const int x1 = last(std::max({c[0].x, c[1].x, c[2].x}), width_);
-    const int y0 = first(std::min({c[0].y, c[1].y, c[2].y}));
-    const int y1 = last(std::max({c[0].y, c[1].y, c[2].y}), height_);
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
-        std::array<float, 3> w{};
-        for (std::size_t k = 0; k < 3; ++k) {
-          const ScreenCorner &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
-          w[k] = ((a.x - px) * (b.y - py) - (b.x - px) * (a.y - py)) / area;
-        }
-        if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue;
-        draw_sample(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                        static_cast<std::size_t>(x),
-                    c, w, value);
-      }
+  void draw(const std::array<V3f, 3>& points, Value value) {
+    const float nearest = -std::max({points[0].z, points[1].z, points[2].z});
+    const float near = -kNearShare * std::min({points[0].z, points[1].z, points[2].z});
+    if (!(near > 0)) return;
+    if (nearest >= near)
+      return draw_part({project(points[0]), project(points[1]), project(points[2])}, value);
+    const std::vector<PartCorner> part = clip_to_depth(points, near);
+    for (std::size_t k = 2; k < part.size(); ++k) {
+      const std::array<const PartCorner*, 3> fan{&part[0], &part[k - 1], &part[k]};
+      draw_part({project(fan[0]->point), project(fan[1]->point), project(fan[2]->point)},
+                [&](const std::array<float, 3>& w) {
+                  std::array<float, 3> weights{};
+                  for (std::size_t i = 0; i < 3; ++i)
+                    for (std::size_t j = 0; j < 3; ++j) weights[i] += w[j] * fan[j]->weights[i];
+                  return value(weights);
+                });
     }
   }
 
@@ -116,7 +132,42 @@ class Screen {
   }
 
  private:
-  static int first(float x) { return std::max(0, static_cast<int>(std::max(x - 0.5f, 0.0f))); }
+  [[nodiscard]] ScreenCorner project(const V3f& p) const {
+    const float half = camera_.kind == Camera::Kind::perspective
+                           ? -p.z * std::tan(camera_.fov_y / 2)
+                           : camera_.half_height;
+    const float scale = 0.5f * static_cast<float>(height_) / half;
+    return {0.5f * static_cast<float>(width_) + p.x * scale,
+            0.5f * static_cast<float>(height_) - p.y * scale, -p.z};
+  }
+
+  /// All of `c` are in front of the camera.
+  template <class Value>
+  void draw_part(const std::array<ScreenCorner, 3>& c, Value value) {
+    const float area =
+        (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
+    if (area == 0 || !std::isfinite(area)) return;
+    const int x0 = first(std::min({c[0].x, c[1].x, c[2].x}));
+    const int x1 = last(std::max({c[0].x, c[1].x, c[2].x}), width_);
+    const int y0 = first(std::min({c[0].y, c[1].y, c[2].y}));
+    const int y1 = last(std::max({c[0].y, c[1].y, c[2].y}), height_);
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
+        std::array<float, 3> w{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const ScreenCorner &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
+          w[k] = ((a.x - px) * (b.y - py) - (b.x - px) * (a.y - py)) / area;
+        }
+        if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue;
+        draw_sample(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                        static_cast<std::size_t>(x),
+                    c, w, value);
+      }
+    }
+  }
+
+  static int first(float x) { return static_cast<int>(std::clamp(x - 0.5f, 0.0f, 1e6f)); }
   static int last(float x, int size) {
     return static_cast<int>(std::clamp(x + 0.5f, -1.0f, static_cast<float>(size - 1)));
   }
@@ -199,9 +250,9 @@ ByteImage draw_preview(const Scene& scene, const BakeResult& result, const Camer
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.has_strands()) continue;
     const ShadedMesh shaded(scene, instance.mesh, result);
-    std::vector<ScreenCorner> corners(mesh.positions.size());
+    std::vector<V3f> corners(mesh.positions.size());
     for (std::size_t v = 0; v < corners.size(); ++v)
-      corners[v] = screen.project(mesh.positions[v] * instance.to_world);
+      corners[v] = screen.before_camera(mesh.positions[v] * instance.to_world);
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       const std::uint32_t* corner = &mesh.indices[3 * t];
       screen.draw({corners[corner[0]], corners[corner[1]], corners[corner[2]]},

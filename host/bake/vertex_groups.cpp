@@ -38,12 +38,13 @@ struct PlacedVertex {
   auto operator<=>(const PlacedVertex&) const = default;
 };
 
-/// Orders positions by their bits, equal ones by vertex.
+/// Orders positions by their bits, of which equal numbers have the same: -0 becomes 0. Equal ones
+/// are in the order of vertices.
 std::vector<PlacedVertex> order_by_position(const std::vector<V3f>& positions) {
   std::vector<PlacedVertex> order(positions.size());
   tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
-    order[i] = {std::bit_cast<std::array<std::uint32_t, 3>>(
-                    std::array<float, 3>{positions[i].x, positions[i].y, positions[i].z}),
+    order[i] = {std::bit_cast<std::array<std::uint32_t, 3>>(std::array<float, 3>{
+                    positions[i].x + 0.0f, positions[i].y + 0.0f, positions[i].z + 0.0f}),
                 static_cast<std::uint32_t>(i)};
   });
   tbb::parallel_sort(order.begin(), order.end());

@@ -2,8 +2,13 @@
 // instances.
 #include "dapple/bake.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,11 +22,13 @@
 #include "commands/option_text.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
+#include "commands/shared_options.hpp"
 #include "commands/side_copies.hpp"
 #include "commands/tell.hpp"
 #include "commands/unique_meshes.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
+#include "files/temporary_file.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -32,24 +39,18 @@ namespace fs = std::filesystem;
 /// Width and height of previews.
 constexpr int kPreviewSize = 1024;
 
-/// The file to bake. A procedural scene is written as a GLB file beside the output, and removed
-/// once it is read.
+/// The file to bake. A procedural scene is written as a temporary GLB file beside the output, and
+/// removed once it is read.
 class SceneFile {
  public:
   SceneFile(const std::string& spec, const std::string& output) : path_(spec) {
     if (!spec.starts_with("scene:")) return;
-    path_ = output + ".scene.glb";
-    is_made_ = true;
-    remove_when_interrupted(path_);
     const Scene scene = make_procedural(spec);
     lights_ = scene.lights;
-    write_glb(scene, path_);
+    write(scene, fs::path(output).parent_path());
   }
   ~SceneFile() {
-    std::error_code ignored;
-    if (!is_made_) return;
-    fs::remove(path_, ignored);
-    remove_when_interrupted("");
+    if (is_made_) remove();
   }
   SceneFile(const SceneFile&) = delete;
   SceneFile& operator=(const SceneFile&) = delete;
@@ -58,9 +59,39 @@ class SceneFile {
   [[nodiscard]] const std::vector<Light>& lights() const { return lights_; }
 
  private:
+  /// The name is reserved by an empty file, whose lock the finished one takes over: without a lock
+  /// the file would be one of a run that was killed.
+  void write(const Scene& scene, const fs::path& folder) {
+    const TemporaryFile reserved = create_temporary_file(folder.empty() ? "." : folder.string());
+    if (reserved.descriptor < 0)
+      throw Error(ErrorKind::failed,
+                  fmt::format("folder {}: {}", folder.empty() ? "." : folder.string(),
+                              std::strerror(errno)));
+    path_ = reserved.path;
+    is_made_ = true;
+    lock_ = reserved.descriptor;
+    remove_when_interrupted(path_);
+    try {
+      write_glb(scene, path_);
+    } catch (...) {
+      remove();
+      throw;
+    }
+    lock_ = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+    flock(lock_, LOCK_EX | LOCK_NB);
+    close(reserved.descriptor);
+  }
+  void remove() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    remove_when_interrupted("");
+    if (lock_ >= 0) close(lock_);
+  }
+
   std::string path_;
   std::vector<Light> lights_;
   bool is_made_ = false;
+  int lock_ = -1;  ///< descriptor of the file that was made
 };
 
 /// NAME_baked.exr beside the output.
@@ -134,17 +165,16 @@ void write_preview(const Scene& scene, const BakeResult& result, const std::stri
 
 /// Chooses the lights to bake: those of --lights or else the scene's, and --dome beside them.
 /// Throws Error usage if there are none at all.
-void choose_lights(const BakeArguments& a, Scene& scene, BakeOptions& options) {
-  if (!a.lights.empty()) options.lights = load_lights(a.lights);
-  if (a.dome.empty() && options.lights.empty() && scene.lights.empty())
+void choose_lights(const BakeArguments& a, Scene& scene) {
+  if (!a.lights.empty()) use_lights(scene, load_lights(a.lights));
+  if (!a.dome.empty()) {
+    scene.lights.push_back(dome_light("dome", a.dome));
+    scene.lights.back().rotation = dome_rotation("--dome-rotation", a.dome_rotation);
+  }
+  if (scene.lights.empty())
     throw Error(ErrorKind::usage,
-                "--passes light: the scene has no lights; --lights or --dome brings some");
-  if (a.dome.empty()) return;
-  Light dome;
-  dome.name = "dome";
-  dome.kind = LightKind::dome;
-  dome.environment = load_environment(a.dome);
-  (a.lights.empty() ? scene.lights : options.lights).push_back(std::move(dome));
+                fmt::format("--passes light: {} has no lights; --lights or --dome brings some",
+                            a.lights.empty() ? "the scene" : a.lights));
 }
 
 std::vector<Scene> load_occluders(const BakeArguments& a) {
@@ -200,8 +230,7 @@ std::string choose_layout(const gltf::SourceFile& file, const Scene& scene, cons
 void check_values_fit(const gltf::SourceFile& file, const Scene& scene, const BakeChannel& channel,
                       const BakeOptions& options) {
   check_channel(file, scene, channel);
-  if (options.light)
-    check_channel_spares_lights(channel, options.lights.empty() ? scene.lights : options.lights);
+  if (options.light) check_channel_spares_lights(channel, scene.lights);
 }
 
 void run_bake(const CLI::App& app, const BakeArguments& a) {
@@ -218,15 +247,16 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   progress.announce("reading", a.scene);
   std::optional<SceneFile> input(std::in_place, a.scene, a.output);
   Scene scene = load_gltf(input->path(), a.scene_options);
+  scene.source = a.scene;
   if (!input->lights().empty()) scene.lights = input->lights();
   const std::vector<Scene> occluders = load_occluders(a);
+  if (options.light) choose_lights(a, scene);
   const std::vector<std::string> inputs = files_read(a, scene, occluders);
   check_outputs_spare(outputs, inputs);
   gltf::SourceFile file(input->path(), a.scene_options.allow_outside);
   input.reset();  // all of it is in memory
   if (a.instances == "unique") make_meshes_unique(file, scene);
   check_outputs_spare(side_outputs(file, a, options), inputs);
-  if (options.light) choose_lights(a, scene, options);
   if (options.vertices) check_values_fit(file, scene, parse_channel(a.channel), options);
   std::uint32_t uv_set = 0;
   std::string layout_note;
@@ -251,7 +281,7 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
     notes.push_back(
         "COLOR_0.a is opacity in glTF: where AO is low, viewers show masked and blended "
         "materials more transparent");
-  if (!a.stats_json.empty()) write_statistics(result.statistics, seconds, a.stats_json);
+  if (!a.stats_json.empty()) write_statistics(result, seconds, a.stats_json);
   if (!a.quiet) print_summary(result.statistics, seconds, a.output);
   if (!result.checkpoint_failure.empty())
     throw Error(ErrorKind::failed, result.checkpoint_failure + "; the baked file is written");

@@ -54,6 +54,8 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   app.add_option("--dome", a.dome,
                  "Environment map (.exr, .hdr) as a light, in addition to the others");
+  add_rotation_option(app, "--dome-rotation", a.dome_rotation);
+  add_light_radius_option(app, a.scene_options.light_radius);
   app.add_option(
          "--light-rays", o.light_rays,
          "Rays per light from each sample point and side. AO decides how many sample points "
@@ -120,13 +122,7 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
       ->capture_default_str();
   add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias);
   add_max_bias_option(app, o.max_bias);
-  app.add_option("--ao-distance", o.distance,
-                 "Surfaces farther than this, in metres, don't occlude; 0: no limit")
-      ->capture_default_str();
-  app.add_option("--ao-falloff", o.falloff,
-                 "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
-                 "0: a cutoff")
-      ->capture_default_str();
+  add_ao_range_options(app, o.distance, o.falloff);
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
       ->capture_default_str();
 }
@@ -178,7 +174,9 @@ void refuse_options_without_effect(const CLI::App& app, const BakeOptions& optio
   need(!options.instances, "--to vertex or texture", {"--instances"});
   need(options.texture, "--to texture", {"--size", "--bits", "--margin", "--uv"});
   need(options.bent, "--passes ao,bent", {"--bent-channel"});
-  need(options.light, "--passes ao,light", {"--lights", "--dome", "--light-rays"});
+  need(options.light, "--passes ao,light",
+       {"--lights", "--dome", "--light-rays", "--light-radius"});
+  need(app.count("--dome") > 0, "--dome", {"--dome-rotation"});
 }
 
 BakeOptions to_options(const BakeArguments& a) {
@@ -190,6 +188,7 @@ BakeOptions to_options(const BakeArguments& a) {
   o.texture = to == To::texture;
   o.instances = to == To::instance;
   parse_bake_passes(a.passes, o);
+  dome_rotation("--dome-rotation", a.dome_rotation);
   o.at_vertices = choice<bool>("--at", a.at, {{"triangles", false}, {"vertices", true}});
   o.sides = choice<BakeSides>("--sides", a.sides,
                               {{"auto", BakeSides::automatic},

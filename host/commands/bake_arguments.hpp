@@ -28,7 +28,8 @@ struct BakeArguments {
   SceneOptions scene_options;
   std::optional<int> rays;
   std::optional<float> target_error;
-  int bits = 8;  ///< of a texel of the occlusion texture
+  int bits = 8;              ///< of a texel of the occlusion texture
+  double dome_rotation = 0;  ///< degrees
   BakeOptions options;
   bool quiet = false;
 };

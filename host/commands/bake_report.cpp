@@ -12,10 +12,9 @@
 namespace dapple {
 namespace {
 
-/// Root mean square of the standard errors of the values at vertices or texels. `squares`: their
-/// sum.
+/// Root mean square of the standard errors of all values. `squares`: their sum.
 double standard_error(const BakeStatistics& s, double squares) {
-  const std::size_t values = s.vertices + s.texels;
+  const std::size_t values = s.vertices + s.texels + s.instances;
   return values > 0 ? std::sqrt(squares / static_cast<double>(values)) : 0.0;
 }
 
@@ -36,9 +35,10 @@ std::string texture_note(const BakedTexture& texture) {
                      texture.size, texture.size);
 }
 
-void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds,
+void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
                       const std::string& path) {
-  const nlohmann::ordered_json json = {
+  const BakeStatistics& s = result.statistics;
+  nlohmann::ordered_json json = {
       {"seconds",
        {{"load", seconds.load},
         {"build", s.seconds.build},
@@ -60,6 +60,10 @@ void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds,
       {"hidden_texels", s.hidden_texels},
       {"device", s.device},
       {"notes", s.notes}};
+  if (result.texture.size > 0)
+    json["texture"] = {{"size", result.texture.size},
+                       {"charts", result.texture.layout.charts},
+                       {"coverage", result.texture.coverage}};
   write_whole_file(path, json.dump(2) + "\n");
 }
 
@@ -71,7 +75,7 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
       s.triangles, values_text(s), s.rays, s.points,
       s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
       seconds.load, s.seconds.build, s.seconds.trace, seconds.write, seconds.total);
-  if (s.vertices + s.texels > 0)
+  if (s.vertices + s.texels + s.instances > 0)
     fmt::print("standard error of an AO value {:.3f}{} (root mean square)\n",
                standard_error(s, s.squared_errors),
                s.squared_light_errors > 0

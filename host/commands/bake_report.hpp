@@ -15,7 +15,8 @@ struct BakeSeconds {
 /// A line on a texture's charts and coverage.
 std::string texture_note(const BakedTexture& texture);
 
-void write_statistics(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& path);
+void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
+                      const std::string& path);
 
 void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& output);
 

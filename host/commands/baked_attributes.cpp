@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
-#include "bake/vertex_groups.hpp"
+#include "bake/surface_samples.hpp"
 #include "dapple/error.hpp"
 #include "film/light_layers.hpp"
 #include "scene/invertible.hpp"
@@ -215,37 +216,54 @@ NewAttribute ao_attribute(const SourceFile& file, const Primitive& at, const Ver
   return attribute;
 }
 
-/// Values like `kind`, one or more components of value(instance, component) each. Nodes whose
-/// instances are all scaled to zero have none.
+/// Twice the areas of the meshes of a scene, in object space; 0 of strands.
+std::vector<double> areas_of_meshes(const Scene& scene) {
+  std::vector<double> areas;
+  for (const Mesh& mesh : scene.meshes) {
+    double area = 0;
+    for (std::size_t t = 0; t < mesh.primitive_count() && !mesh.has_strands(); ++t)
+      if (has_area(mesh, t)) area += double{area_vector(mesh, t).length()};
+    areas.push_back(area);
+  }
+  return areas;
+}
+
+/// Values like `kind`, one or more components of value(instance, component) each. The meshes that a
+/// node places together, such as its primitives that emit and those that do not, count by their
+/// areas. Nodes whose instances are all scaled to zero have none.
 template <class Value>
 std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::NodeValues& kind,
                                              Value value) {
-  std::map<int, gltf::NodeValues> sums;
-  std::map<int, std::vector<float>> counts;
+  const std::vector<double> areas = areas_of_meshes(scene);
+  struct NodeSums {
+    std::vector<double> weights, values;  // by placement; by placement and component
+  };
+  std::map<int, NodeSums> sums;
   std::map<std::pair<int, std::uint32_t>, std::size_t> placements;  // of a node and mesh so far
   std::set<int> placed;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     if (instance.node < 0 || scene.meshes[instance.mesh].has_strands()) continue;
     if (is_invertible(instance.to_world)) placed.insert(instance.node);
-    gltf::NodeValues& sum = sums.try_emplace(instance.node, kind).first->second;
-    sum.node = static_cast<std::uint32_t>(instance.node);
-    std::vector<float>& count = counts[instance.node];
+    NodeSums& sum = sums[instance.node];
     const std::size_t placement = placements[{instance.node, instance.mesh}]++;
-    if (count.size() <= placement) {
-      count.resize(placement + 1);
-      sum.values.resize(count.size() * kind.components);
+    if (sum.weights.size() <= placement) {
+      sum.weights.resize(placement + 1);
+      sum.values.resize(sum.weights.size() * kind.components);
     }
-    ++count[placement];
+    const double area = std::max(areas[instance.mesh], std::numeric_limits<double>::min());
+    sum.weights[placement] += area;
     for (std::size_t c = 0; c < kind.components; ++c)
-      sum.values[placement * kind.components + c] += value(i, c);
+      sum.values[placement * kind.components + c] += area * double{value(i, c)};
   }
   std::vector<gltf::NodeValues> nodes;
-  for (auto& [node, sum] : sums) {
+  for (const auto& [node, sum] : sums) {
     if (!placed.contains(node)) continue;
+    nodes.push_back(kind);
+    nodes.back().node = static_cast<std::uint32_t>(node);
     for (std::size_t i = 0; i < sum.values.size(); ++i)
-      sum.values[i] /= std::max(1.0f, counts[node][i / kind.components]);
-    nodes.push_back(std::move(sum));
+      nodes.back().values.push_back(
+          static_cast<float>(sum.values[i] / sum.weights[i / kind.components]));
   }
   return nodes;
 }

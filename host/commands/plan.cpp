@@ -246,6 +246,7 @@ void run_plan(RenderArguments a) {
     throw Error(ErrorKind::usage, "dapple plan knows no deep files: leave --deep out");
   if (!a.resume.empty())
     throw Error(ErrorKind::usage, "dapple plan plans whole renders: leave --resume out");
+  to_format(a);  // checks it before anything is traced
   catch_interruptions();
   std::optional<double> seconds = a.frame;
   if (!a.frames.empty())

@@ -30,7 +30,7 @@ struct Arguments {
   std::string scene, output, at, suns, sky, lights, estimator = "prefiltered", stats_json;
   std::string report_bias = "2%";
   std::vector<double> grid, periodic;
-  double height = 0;
+  double height = 0, sky_rotation = 0;
   float sky_irradiance = 1;
   bool per_triangle = false, quiet = false;
   std::vector<std::string> opacity;
@@ -77,7 +77,9 @@ void add_point_options(CLI::App& app, Arguments& a) {
                  "image keeps "
                  "its own")
       ->capture_default_str();
+  add_rotation_option(app, "--sky-rotation", a.sky_rotation);
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
+  add_light_radius_option(app, a.scene_options.light_radius);
   app.add_option("--periodic", a.periodic,
                  "X,Z: the scene repeats itself with these periods, metres")
       ->delimiter(',')
@@ -85,9 +87,7 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.add_option("--opacity", a.opacity,
                  "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene, which occludes it");
-  app.add_option("--ao-distance", o.distance,
-                 "Surfaces farther than this, in metres, do not count for AO; 0: no limit")
-      ->capture_default_str();
+  add_ao_range_options(app, o.distance, o.falloff);
   add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias);
   add_max_bias_option(app, o.max_bias);
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
@@ -104,6 +104,11 @@ void add_point_options(CLI::App& app, Arguments& a) {
       "  dapple points plot.glb --per-triangle --periodic 10,10 -o leaves.npy");
 }
 
+/// Whether --sky is an image, not one of the skies by name.
+bool names_image(const std::string& sky) {
+  return !sky.empty() && sky != "uniform" && sky != "overcast";
+}
+
 PointList points_of(const Arguments& a, const Scene& scene) {
   const int sources = (a.at.empty() ? 0 : 1) + (a.grid.empty() ? 0 : 1) + (a.per_triangle ? 1 : 0);
   if (sources != 1)
@@ -115,22 +120,29 @@ PointList points_of(const Arguments& a, const Scene& scene) {
 }
 
 void set_lights(const Arguments& a, Scene& scene) {
-  if (!a.lights.empty()) scene.lights = load_lights(a.lights);
+  if (!a.lights.empty()) use_lights(scene, load_lights(a.lights));
   if (a.sky.empty()) return;
-  Light sky;
-  if (a.sky == "uniform" || a.sky == "overcast") {
-    sky = a.sky == "uniform" ? uniform_sky() : overcast_sky();
+  if (!names_image(a.sky)) {
+    Light sky = a.sky == "uniform" ? uniform_sky() : overcast_sky();
     sky.radiance *= a.sky_irradiance;
-  } else {
-    sky.name = "sky";
-    sky.kind = LightKind::dome;
-    if (!std::filesystem::exists(a.sky))
-      throw Error(ErrorKind::usage, fmt::format("--sky is {}; it must be uniform, overcast or an "
-                                                "image file (.exr, .hdr)",
-                                                a.sky));
-    sky.environment = load_environment(a.sky);
+    scene.lights.push_back(std::move(sky));
+    return;
   }
-  scene.lights.push_back(std::move(sky));
+  if (!std::filesystem::exists(a.sky))
+    throw Error(ErrorKind::usage, fmt::format("--sky is {}; it must be uniform, overcast or an "
+                                              "image file (.exr, .hdr)",
+                                              a.sky));
+  scene.lights.push_back(dome_light("sky", a.sky));
+  scene.lights.back().rotation = dome_rotation("--sky-rotation", a.sky_rotation);
+}
+
+/// All input files, which no output may replace.
+std::vector<std::string> files_read(const Arguments& a, const Scene& scene) {
+  std::vector<std::string> files = scene.files;
+  for (const std::string& path : {a.at, a.suns, a.lights})
+    if (!path.empty()) files.push_back(path);
+  if (names_image(a.sky)) files.push_back(a.sky);
+  return files;
 }
 
 PointOptions options_of(const Arguments& a) {
@@ -149,8 +161,11 @@ PointOptions options_of(const Arguments& a) {
   if (!(a.sky_irradiance >= 0 && a.sky_irradiance <= 1e30f))
     throw Error(ErrorKind::usage, fmt::format("--sky-irradiance is {}; it must be from 0 to 1e+30",
                                               a.sky_irradiance));
-  if (a.sky_irradiance != 1 && a.sky != "uniform" && a.sky != "overcast")
+  if (a.sky_irradiance != 1 && (a.sky.empty() || names_image(a.sky)))
     throw Error(ErrorKind::usage, "--sky-irradiance needs --sky uniform or overcast");
+  dome_rotation("--sky-rotation", a.sky_rotation);
+  if (a.sky_rotation != 0 && !names_image(a.sky))
+    throw Error(ErrorKind::usage, "--sky-rotation needs --sky with an image");
   validate(options);
   return options;
 }
@@ -166,13 +181,10 @@ void run_points(const Arguments& a) {
   ProgressBar progress(a.quiet, "measuring");
   progress.announce("reading", a.scene);
   Scene scene = load_scene(a.scene, a.scene_options);
-  std::vector<std::string> inputs = scene.files;
-  for (const std::string& path : {a.at, a.suns, a.lights})
-    if (!path.empty()) inputs.push_back(path);
-  check_outputs_spare(outputs, inputs);
+  set_lights(a, scene);
+  check_outputs_spare(outputs, files_read(a, scene));
   const PointList list = points_of(a, scene);
   if (!a.suns.empty()) options.suns = read_suns(a.suns);
-  set_lights(a, scene);
   const double load_seconds = total.seconds();
   progress.announce("building", "the BVH");
   RenderControl control;

@@ -163,8 +163,9 @@ void run_render(const RenderArguments& a) {
   auto start = Clock::now();
   Renderer renderer;
   renderer.prepare(options);
-  progress.announce("reading", a.scene);
+  progress.announce("reading", a.dome.empty() ? a.scene : a.dome);
   Shot shot(a, options);
+  progress.announce("reading", a.scene);
   NotePrinter notes;
   PngOptions png = parse_png_options(a.exposure, a.background);
   for (const Frame& frame : frames) {

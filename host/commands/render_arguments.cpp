@@ -79,13 +79,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       ->capture_default_str();
   app.add_option("--cryptomatte", a.cryptomatte,
                  "Also make Cryptomattes: object, material, or both with a comma between");
-  app.add_option("--ao-distance", o.ao_distance,
-                 "Surfaces farther than this, in metres, don't occlude; 0: no limit")
-      ->capture_default_str();
-  app.add_option("--ao-falloff", o.ao_falloff,
-                 "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
-                 "0: cutoff at D")
-      ->capture_default_str();
+  add_ao_range_options(app, o.ao_distance, o.ao_falloff);
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
       ->capture_default_str();
 }
@@ -113,12 +107,8 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
       "--dome", a.dome,
       "Latitude-longitude image, OpenEXR or Radiance HDR, that lights the scene from all "
       "around, in addition to the other lights");
-  app.add_option("--dome-rotation", a.dome_rotation,
-                 "Rotation of the dome about +Y, degrees, from +Z towards +X")
-      ->capture_default_str();
-  app.add_option("--light-radius", a.scene_options.light_radius,
-                 "Radius that glTF point lights get, metres")
-      ->capture_default_str();
+  add_rotation_option(app, "--dome-rotation", a.dome_rotation);
+  add_light_radius_option(app, a.scene_options.light_radius);
   app.add_option("--line-radius", a.scene_options.line_radius,
                  "Turn a glTF file's lines into strands of this radius, metres; 0: ignore them")
       ->capture_default_str();
@@ -368,8 +358,7 @@ RenderOptions to_options(const RenderArguments& a) {
   if (!a.up.empty()) parse_vector("--up", a.up);
   check_png(a);
   check_effects(a, o);
-  if (!std::isfinite(a.dome_rotation))
-    throw Error(ErrorKind::usage, "--dome-rotation must be a finite number of degrees");
+  dome_rotation("--dome-rotation", a.dome_rotation);
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
   check_output_name("--output", a.output);

@@ -1,5 +1,10 @@
 #include "commands/shared_options.hpp"
 
+#include <cmath>
+#include <numbers>
+
+#include "dapple/error.hpp"
+
 namespace dapple {
 
 CLI::Option* add_prefiltering_options(CLI::App& app, std::string& estimator, float& footprint,
@@ -26,6 +31,32 @@ void add_max_bias_option(CLI::App& app, float& max_bias) {
   app.add_option("--max-bias", max_bias,
                  "Choose the largest footprint, from --footprint down to 0, whose bias is below "
                  "this in each layer; 0: take --footprint")
+      ->capture_default_str();
+}
+
+void add_ao_range_options(CLI::App& app, float& distance, float& falloff) {
+  app.add_option("--ao-distance", distance,
+                 "Surfaces farther than this, in metres, don't occlude; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--ao-falloff", falloff,
+                 "Exponent p: a surface at distance t has weight (1 - t/D)^p, D = --ao-distance; "
+                 "0: cutoff at D")
+      ->capture_default_str();
+}
+
+void add_rotation_option(CLI::App& app, const std::string& flag, double& degrees) {
+  app.add_option(flag, degrees, "Rotation of the dome about +Y, degrees, from +Z towards +X")
+      ->capture_default_str();
+}
+
+float dome_rotation(const std::string& flag, double degrees) {
+  if (!std::isfinite(degrees))
+    throw Error(ErrorKind::usage, flag + " must be a finite number of degrees");
+  return static_cast<float>(std::remainder(degrees, 360.0) * std::numbers::pi / 180);
+}
+
+void add_light_radius_option(CLI::App& app, float& radius) {
+  app.add_option("--light-radius", radius, "Radius that glTF point lights get, metres")
       ->capture_default_str();
 }
 

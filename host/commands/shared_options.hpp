@@ -14,6 +14,18 @@ CLI::Option* add_prefiltering_options(CLI::App& app, std::string& estimator, flo
 /// --max-bias of commands that choose no footprint without it
 void add_max_bias_option(CLI::App& app, float& max_bias);
 
+/// --ao-distance and --ao-falloff
+void add_ao_range_options(CLI::App& app, float& distance, float& falloff);
+
+/// `flag`, such as --dome-rotation: degrees
+void add_rotation_option(CLI::App& app, const std::string& flag, double& degrees);
+
+/// Light::rotation for so many degrees; throws Error usage, naming `flag`, if they are not finite.
+float dome_rotation(const std::string& flag, double degrees);
+
+/// --light-radius
+void add_light_radius_option(CLI::App& app, float& radius);
+
 /// --allow-outside
 void add_outside_option(CLI::App& app, bool& allow_outside);
 

@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "camera/view.hpp"
+#include "commands/shared_options.hpp"
 #include "dapple/error.hpp"
 #include "scene/ground.hpp"
 
@@ -16,12 +15,8 @@ namespace dapple {
 namespace {
 
 Light read_dome(const RenderArguments& a) {
-  Light dome;
-  dome.name = "dome";
-  dome.kind = LightKind::dome;
-  dome.environment = load_environment(a.dome);
-  dome.rotation =
-      static_cast<float>(std::remainder(a.dome_rotation, 360.0) * std::numbers::pi / 180);
+  Light dome = dome_light("dome", a.dome);
+  dome.rotation = dome_rotation("--dome-rotation", a.dome_rotation);
   return dome;
 }
 
@@ -33,13 +28,6 @@ SceneOptions scene_options_of(const RenderArguments& a, const RenderOptions& opt
 }
 
 }  // namespace
-
-void use_lights(Scene& scene, const std::vector<Light>& lights) {
-  for (Instance& instance : scene.instances) instance.light = -1;
-  scene.lights = lights;
-  for (const Light& light : lights)
-    if (light.environment) scene.files.push_back(light.environment->file);
-}
 
 Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), options_(options) {
   if (!a.lights.empty()) lights_ = load_lights(a.lights);

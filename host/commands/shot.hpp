@@ -11,9 +11,6 @@
 
 namespace dapple {
 
-/// Replaces the scene's lights by `lights`.
-void use_lights(Scene& scene, const std::vector<Light>& lights);
-
 class Shot {
  public:
   /// Reads the files. In a sequence, and with a shutter, the ground is added here and

@@ -79,9 +79,10 @@ std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& 
 }
 
 BiasCorrection BiasSample::of_occlusion(const std::string& name, const std::vector<V3f>& normals,
-                                        float distance) {
+                                        float distance, float falloff) {
   return compare({name}, [&](OcclusionOptions options) {
     options.distance = distance;
+    options.falloff = falloff;
     const auto found = occlusion(on_.device, on_.uploaded, points_, normals, options);
     std::vector<Values> of_one(1);
     for (std::uint32_t i = 0; i < found.size(); ++i) {
@@ -93,7 +94,7 @@ BiasCorrection BiasSample::of_occlusion(const std::string& name, const std::vect
 }
 
 BiasCorrection BiasSample::of_sky_view_factor() {
-  return of_occlusion("sky_view_factor", std::vector<V3f>(points_.size(), V3f(0, 1, 0)), 0);
+  return of_occlusion("sky_view_factor", std::vector<V3f>(points_.size(), V3f(0, 1, 0)), 0, 0);
 }
 
 std::vector<BiasCorrection> BiasSample::of_lights(const std::vector<LightLayer>& layers) {

@@ -40,7 +40,9 @@ class BiasSample : public BiasSource {
   /// For the measurements from now on.
   void use_footprint(float footprint) { options_.footprint = footprint; }
 
-  BiasCorrection of_ao() { return of_occlusion("ao", normals_, options_.distance); }
+  BiasCorrection of_ao() {
+    return of_occlusion("ao", normals_, options_.distance, options_.falloff);
+  }
   BiasCorrection of_sky_view_factor();
   std::vector<BiasCorrection> of_lights(const std::vector<LightLayer>& layers);
   std::vector<BiasCorrection> of_rings(const std::vector<ZenithRing>& rings);
@@ -58,7 +60,7 @@ class BiasSample : public BiasSource {
   using Find = std::function<std::vector<Values>(const OcclusionOptions&)>;
 
   BiasCorrection of_occlusion(const std::string& name, const std::vector<V3f>& normals,
-                              float distance);
+                              float distance, float falloff);
   std::vector<BiasCorrection> compare(const std::vector<std::string>& names, const Find& find);
 
   const SceneOfPoints& on_;

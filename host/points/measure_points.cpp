@@ -17,6 +17,7 @@
 #include "points/ring_rays.hpp"
 #include "points/set_sums.hpp"
 #include "points/sun_irradiance.hpp"
+#include "render/option_check.hpp"
 #include "render/point_checks.hpp"
 #include "render/point_occlusion.hpp"
 #include "render/stopwatch.hpp"
@@ -123,6 +124,7 @@ class Measurement {
     for (int set = 0; set < kPointSets; ++set) {
       OcclusionOptions options = occlusion_options(set);
       options.distance = options_.distance;
+      options.falloff = options_.falloff;
       const PointOcclusion found = point_occlusion(on_.device, on_.uploaded, {points_, normals_},
                                                    options, options_.bent, stopping());
       sums.add([&](std::size_t i) { return double{found.ao[i]}; });
@@ -288,19 +290,17 @@ void check_suns(const std::vector<SunDirection>& suns) {
 }  // namespace
 
 void validate(const PointOptions& options) {
-  const auto check = [](const char* flag, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    throw Error(ErrorKind::usage,
-                fmt::format("{} is {}; it must be from {} to {}", flag, value, low, high));
-  };
-  check("--rays", options.rays, kPointSets, 1 << 20);
-  check("--rings", options.rings, 0, 90);
-  check("--footprint", double{options.footprint}, 0, 1e6);
-  check("--report-bias", double{options.report_bias}, 0, 1);
-  check("--max-bias", double{options.max_bias}, 0, 1);
-  check("--ao-distance", double{options.distance}, 0, 1e30);
-  check("--periodic", double{options.period_x}, 0, 1e30);
-  check("--periodic", double{options.period_z}, 0, 1e30);
+  check_range("--rays", options.rays, kPointSets, 1 << 20);
+  check_range("--rings", options.rings, 0, 90);
+  check_range("--footprint", double{options.footprint}, 0, 1e6);
+  check_range("--report-bias", double{options.report_bias}, 0, 1);
+  check_range("--max-bias", double{options.max_bias}, 0, 1);
+  check_range("--ao-distance", double{options.distance}, 0, 1e30);
+  check_range("--ao-falloff", double{options.falloff}, 0, 100);
+  if (options.falloff > 0 && !(options.distance > 0))
+    throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
+  check_range("--periodic", double{options.period_x}, 0, 1e30);
+  check_range("--periodic", double{options.period_z}, 0, 1e30);
   if ((options.period_x > 0) != (options.period_z > 0))
     throw Error(ErrorKind::usage, "--periodic needs two periods above 0");
 }

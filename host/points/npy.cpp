@@ -193,7 +193,9 @@ NumberTable read_npy(const std::string& path) {
                          "fields",
                          shape.size(), shape.size() == 1 ? "" : "s"));
   constexpr std::size_t kMaxColumns = 1u << 20;
-  if (table.names.empty()) types.assign(std::min(shape[1], kMaxColumns), types[0]);
+  if (table.names.empty() && shape[1] > kMaxColumns)
+    fail_npy(path, fmt::format("has {} columns; there may be {}", shape[1], kMaxColumns));
+  if (table.names.empty()) types.assign(shape[1], types[0]);
   table.columns = types.size();
   read_rows(path, std::string_view(bytes).substr(header.end), shape[0], types, table);
   return table;

@@ -10,15 +10,10 @@
 #include <cmath>
 
 #include "dapple/error.hpp"
+#include "render/option_check.hpp"
 
 namespace dapple {
 namespace {
-
-void check_range(const char* flag, double value, double low, double high) {
-  if (value >= low && value <= high) return;  // false for NaN
-  throw Error(ErrorKind::usage, fmt::format("{} is {:.7g}; it must be from {:.7g} to {:.7g}", flag,
-                                            value, low, high));
-}
 
 void check_point(const char* flag, const V3f& v) {
   constexpr float kLargest = 1e12f;  // metres, as of scenes

@@ -14,6 +14,7 @@
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
+#include "render/option_check.hpp"
 #include "render/point_checks.hpp"
 #include "scene/images/dome_image.hpp"
 
@@ -118,9 +119,7 @@ void check(std::size_t points, std::size_t normals, std::size_t lights, std::siz
   if (lights != records)
     throw Error(ErrorKind::usage,
                 fmt::format("irradiance: {} lights, but {} were uploaded", lights, records));
-  if (rays < 1 || rays > 1 << 20)
-    throw Error(ErrorKind::usage,
-                fmt::format("irradiance: rays is {}; it must be from 1 to {}", rays, 1 << 20));
+  check_range("irradiance: rays", rays, 1, 1 << 20);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
 #include "passes/queues.hpp"
+#include "render/option_check.hpp"
 #include "render/point_checks.hpp"
 #include "render/shared_points.hpp"
 
@@ -99,14 +100,10 @@ void occlusion_in_passes(DeviceContext& context, const Queues& queues, const Dev
 }
 
 void check(const OcclusionOptions& options) {
-  const auto check = [](const char* name, float value, float high) {
-    if (value >= 0 && value <= high) return;
-    throw Error(ErrorKind::usage,
-                fmt::format("occlusion: {} is {}; it must be from 0 to {:g}", name, value, high));
-  };
-  check("footprint", options.footprint, 1e6f);
-  check("distance", options.distance, 1e30f);
-  check("falloff", options.falloff, 100);
+  check_range("occlusion: rays", options.rays, 1, 1 << 20);
+  check_range("occlusion: footprint", double{options.footprint}, 0, 1e6);
+  check_range("occlusion: distance", double{options.distance}, 0, 1e30);
+  check_range("occlusion: falloff", double{options.falloff}, 0, 100);
   if (options.falloff > 0 && !(options.distance > 0))
     throw Error(ErrorKind::usage, "occlusion: falloff needs a distance");
 }
@@ -120,10 +117,6 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
   if (count != points.normals.size()) {
     throw Error(ErrorKind::usage,
                 fmt::format("occlusion: {} points but {} normals", count, points.normals.size()));
-  }
-  if (options.rays < 1 || options.rays > 1 << 20) {
-    throw Error(ErrorKind::usage, fmt::format("occlusion: rays is {}; it must be from 1 to {}",
-                                              options.rays, 1 << 20));
   }
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);

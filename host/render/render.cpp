@@ -368,10 +368,4 @@ RenderResult render(Scene scene, const RenderOptions& options, const RenderContr
   return Renderer().render(std::move(scene), options, control);
 }
 
-RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress) {
-  RenderControl control;
-  control.progress = progress;
-  return render(std::move(scene), options, control);
-}
-
 }  // namespace dapple

@@ -1,5 +1,5 @@
-// Changes of a scene after it was loaded: the opacity of a material, and a ground under the scene. In
-// and out: a scene.
+// Changes of a scene after it was loaded: the opacity of a material, other lights, and a ground under
+// the scene. In and out: a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -41,6 +41,13 @@ void override_opacity(Scene& scene, const std::string& name, float value) {
     throw Error(ErrorKind::usage, fmt::format("{}: there is no material \"{}\"; there are: {}",
                                               source_name(scene), name, list_materials(scene)));
   }
+}
+
+void use_lights(Scene& scene, const std::vector<Light>& lights) {
+  for (Instance& instance : scene.instances) instance.light = -1;
+  scene.lights = lights;
+  for (const Light& light : lights)
+    if (light.environment) scene.files.push_back(light.environment->file);
 }
 
 void add_ground(Scene& scene) { add_ground(scene, scene_bounds(scene)); }

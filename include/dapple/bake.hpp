@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,25 +32,28 @@ enum class BakeInstances : std::uint8_t {
 };
 
 struct BakeOptions {
-  bool vertices = true;       ///< bake values at vertices
-  bool instances = false;     ///< bake a value for each instance
-  bool texture = false;       ///< bake a texture that all meshes share
-  bool bent = false;          ///< bent normals too, at vertices and in the texture
-  bool light = false;         ///< irradiance of each light too
-  std::vector<Light> lights;  ///< in place of the scene's; empty: those
-  int light_rays = 8;         ///< per light, for each sample and side, [1, 4096]
+  bool vertices = true;                      ///< bake values at vertices
+  bool instances = false;                    ///< bake a value for each instance
+  bool texture = false;                      ///< bake a texture that all meshes share
+  bool bent = false;                         ///< bent normals too, at vertices and in the texture
+  bool light = false;                        ///< irradiance of each light too
+  std::optional<std::vector<Light>> lights;  ///< in place of the scene's; none: those
+  int light_rays = 8;                        ///< per light, for each sample and side, [1, 4096]
   /// Standard error of each AO value to aim at, [0,1], and of the brightness of all lights
   /// together, relative to the largest unoccluded one; 0: `rays` for every value.
   float target_error = 0.04f;
-  /// Of each triangle (at_vertices: vertex; texture: texel) and side, [8, 65536]; with a target, at
-  /// most. Without one, they are divided over samples of eight or more: up to 64, or 16 for each
-  /// placement if these are more. Lights have as many samples of `light_rays`.
+  /// Of each triangle (at_vertices: vertex; texture: texel; instances: instance) and side, [8,
+  /// 65536]; with a target, at most. Without one, they are divided over samples of eight or more:
+  /// up to 64, or 16 for each placement if these are more. Lights have as many samples of
+  /// `light_rays`.
   int rays = 1024;
   Estimator estimator = Estimator::prefiltered;
   /// As RenderOptions::footprint, for the rays of one point.
   float footprint = 1.5f;
   float report_bias = kDefaultReportBias;  ///< as RenderOptions::report_bias
-  float max_bias = 0;                      ///< as RenderOptions::max_bias
+  /// The footprint is the largest of `footprint`, a half of it, a quarter and so on with which the
+  /// bias is at most this, [0,1]; exact rays if none is; 0: `footprint`.
+  float max_bias = 0;
   float distance = 0;  ///< metres; surfaces farther away do not occlude; 0: no limit
   float falloff = 0;   ///< as RenderOptions::ao_falloff
   Normals normals = Normals::shading;
@@ -107,7 +111,7 @@ struct BakeStatistics {
   } seconds;
   std::size_t triangles = 0, vertices = 0, texels = 0, instances = 0, points = 0;
   std::uint64_t rays = 0;
-  double squared_errors = 0;        ///< of AO, estimated; the sum over vertices and texels
+  double squared_errors = 0;        ///< of AO, estimated; the sum over all values
   double squared_light_errors = 0;  ///< of all lights together, relative as target_error
   /// Of the prefiltered samples: the bias of "ao", and of "light", all lights together, relative to
   /// the largest unoccluded one. Empty if it is not reported.
@@ -142,8 +146,9 @@ BakeResult bake(const Scene& scene, const BakeOptions& options = {},
                 const RenderControl& control = {}, const std::vector<Scene>& occluders = {});
 
 /// The share of the covered texels of a `size` x `size` texture that lie in several triangles at
-/// their centre, [0,1], for texture coordinates as BakeOptions::texture_uvs; infinity if some are
-/// outside of [0,1]. Of the meshes that a bake with `placement` bakes.
+/// their centre, or in small triangles whose areas add up to more than the texel, [0,1], for
+/// texture coordinates as BakeOptions::texture_uvs; infinity if some are outside of [0,1]. Of the
+/// meshes that a bake with `placement` bakes.
 double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
                   BakeInstances placement = BakeInstances::together);
 

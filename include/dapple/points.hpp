@@ -35,8 +35,11 @@ struct PointOptions {
   Estimator estimator = Estimator::prefiltered;
   float footprint = 1.0f;                  ///< of the rays of one set
   float report_bias = kDefaultReportBias;  ///< 0: PointResult::bias stays empty
-  float max_bias = 0;                      ///< as RenderOptions::max_bias, before the correction
-  float distance = 0;                      ///< of AO, as RenderOptions::ao_distance
+  /// The footprint is the largest of `footprint`, a half of it, a quarter and so on with which the
+  /// bias, before it is corrected, is at most this, [0,1]; 0: `footprint`.
+  float max_bias = 0;
+  float distance = 0;  ///< of AO, as RenderOptions::ao_distance
+  float falloff = 0;   ///< of AO, as RenderOptions::ao_falloff
   /// The scene repeats itself with these periods along X and Z, metres; 0: it does not. Its lights
   /// do not.
   float period_x = 0, period_z = 0;
@@ -68,11 +71,12 @@ struct PointResult {
   std::vector<std::string> notes;
   double build_seconds = 0, trace_seconds = 0;
   std::string device;
-  bool interrupted = false;
+  bool interrupted = false;  ///< stopped: quantities that were not finished have no columns
 };
 
 /// Measures at `points`, whose unit `normals` say where the surface faces. Rays start off the
 /// points along the normals by more than rounding errors. The same arguments give the same bits.
+/// Uses only progress and stop of `control`.
 /// Throws Error usage (also if sizes differ, a number is not finite, the length of a normal or of
 /// a sun's direction is not 1 within 0.001, or an irradiance is negative), input, device or failed.
 PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<const V3f> normals,

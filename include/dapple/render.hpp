@@ -112,8 +112,8 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Opens the device and begins to load the kernels that pictures with these options probably need,
-  /// on another thread, while the caller reads a scene. Errors are left to render().
+  /// Opens the device and begins to load the kernels that pictures with these options probably
+  /// need, on another thread, while the caller reads a scene. Errors are left to render().
   void prepare(const RenderOptions& options);
 
   /// Renders `scene` with `options`: applies overrides, ground, lights and camera; builds or refits
@@ -123,10 +123,11 @@ class Renderer {
 
   /// Motion blur: the mean of the pictures at `times` moments of an open shutter, each with an
   /// equal part of `options.spp`, at least one. `scene_at(k)`, k in [0, times), returns the scene
-  /// at the k-th moment; it is called twice for each. All scenes have the same meshes, instances
-  /// and lights, in other poses. They include their ground (`options.ground` is refused); the
-  /// metadata are those of the first. `next_at(k)`: the scene one frame after scene_at(k), for
-  /// motion vectors. Throws as render(), and Error usage for targets and checkpoints.
+  /// at the k-th moment; it is called twice for each, once if `times` is 1. All scenes have the
+  /// same meshes, instances and lights, in other poses. They include their ground (`options.ground`
+  /// is refused); the metadata are those of the first. `next_at(k)`: the scene one frame after
+  /// scene_at(k), for motion vectors. Throws as render(), and Error usage for targets and
+  /// checkpoints.
   RenderResult render_shutter(const std::function<Scene(int)>& scene_at, int times,
                               RenderOptions options, const RenderControl& control = {},
                               const std::function<Scene(int)>& next_at = {});
@@ -137,8 +138,7 @@ class Renderer {
 };
 
 /// The same with a Renderer that is used once.
-RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control);
-RenderResult render(Scene scene, const RenderOptions& options, const Progress& progress = {});
+RenderResult render(Scene scene, const RenderOptions& options, const RenderControl& control = {});
 
 /// Whether a device can run dapple. check_device() compiles every kernel to find out.
 struct DeviceCheck {
@@ -189,9 +189,11 @@ std::vector<PointIrradiance> irradiance(const Device& device, const DeviceScene&
                                         const IrradianceOptions& options = {},
                                         const RenderControl& control = {});
 
-/// Returns the transmittance along each ray. The prefiltered estimator with `footprint` 0 is exact.
-/// Every `rays_per_point` consecutive rays must have one origin and one light; they may be traced
-/// as point packets. Throws Error usage if they differ.
+/// Returns the transmittance along each ray, of which it reads all but `weight`. Begin with `Ray
+/// ray{}`; exact rays need an origin, a unit direction and t_max, prefiltered ones also first_area
+/// and solid_angle, and a `key` of random bits. The prefiltered estimator with `footprint` 0 is
+/// exact. Every `rays_per_point` consecutive rays must have one origin and one light; they may be
+/// traced as point packets. Throws Error usage if they differ.
 std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              std::span<const Ray> rays, Estimator estimator,
                              float footprint = kDefaultFootprint, std::size_t rays_per_point = 1);

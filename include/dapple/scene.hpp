@@ -126,7 +126,7 @@ struct Light {
   V3f direction{0, -1, 0};
   V3f edge_u{1, 0, 0};              ///< rect: full first edge
   V3f edge_v{0, 0, 1};              ///< rect: full second edge
-  float radius = 0.1f;              ///< sphere and disk, metres
+  float radius = 0.1f;              ///< sphere, disk: metres
   float angular_radius = 0.00465f;  ///< sun, radians (the real sun: 0.2665 degrees)
   /// sphere: cosines of a spot's cone as in KHR_lights_punctual; -1, -1 for none.
   float cos_inner = -1.0f;
@@ -153,7 +153,7 @@ struct Camera {
   /// Thin lens (Cook, Porter and Carpenter, "Distributed Ray Tracing", 1984): points at the focus
   /// distance are sharp.
   float lens_radius = 0;     ///< metres; 0: a pinhole, everything is sharp
-  float focus_distance = 0;  ///< metres along the view direction; 0: choose_view() chooses
+  float focus_distance = 0;  ///< metres along the view direction; 0: the middle of the scene
 };
 
 /// Whether all rays of the camera start from one point.
@@ -215,11 +215,15 @@ std::vector<Light> load_lights(const std::string& path);
 /// HDR. Negative values become 0. Throws Error: input.
 std::shared_ptr<const Environment> load_environment(const std::string& path);
 
+/// A dome with the image at `path`, as load_environment() reads it. Throws Error: input.
+Light dome_light(const std::string& name, const std::string& path);
+
 /// Prepares dome images for sampling: reduces images of more than 2048 x 1024 pixels by averaging,
 /// divides each by its mean luminance, and multiplies the light's radiance by that luminance.
 void finalize_domes(Scene& scene);
 
-/// Writes meshes, instances, materials (no textures), cameras as one GLB file. Throws Error.
+/// Writes meshes, instances, materials (no textures), cameras as one GLB file, whole or not at all.
+/// Throws Error failed.
 void write_glb(const Scene& scene, const std::string& path);
 
 /// Bounds of all instances after `transform` of world space, which is affine; an empty box for an
@@ -230,6 +234,10 @@ Box3f scene_bounds(const Scene& scene, const M44f& transform = {});
 /// Throws Error usage if there is no such material or `value` is outside [0,1].
 void override_opacity(Scene& scene, const std::string& name, float value);
 
+/// Puts `lights` in place of the scene's. What its mesh lights shine from stays, as a surface that
+/// does not.
+void use_lights(Scene& scene, const std::vector<Light>& lights);
+
 /// Adds an opaque square under the scene's lowest point, 20 times as wide as the scene.
 void add_ground(Scene& scene);
 
@@ -238,7 +246,8 @@ void add_ground(Scene& scene);
 /// wide. `aspect` is width / height; `fov_y` in radians.
 Camera frame_scene(const Scene& scene, float aspect, float fov_y = 0.7f);
 
-/// A camera at `from` that looks at `at`. Throws Error usage if the three are degenerate.
+/// A camera at `from` that looks at `at`; `fov_y` in radians. Throws Error usage if the three are
+/// degenerate.
 Camera look_at(V3f from, V3f at, V3f up, float fov_y);
 
 /// The lights that a scene without lights gets: `sun`, up, left and in front of `camera`, and

@@ -44,6 +44,7 @@ class MeasureOptions(QueryOptions, total=False):
     lights: bool
     per_sun: bool
     distance: float
+    falloff: float
     opacity: Mapping[str, float]
     ground: bool
     device: str
@@ -79,8 +80,9 @@ class RenderOptions(TypedDict, total=False):
     camera: str
     look: Sequence[Sequence[float]]
     fov_degrees: float
-    aperture: float
-    focus_distance: float
+    ambient: float | None
+    aperture: float | None
+    focus_distance: float | None
     crop: Tuple[int, int, int, int]
     seed: int
     normals: Literal["shading", "geometric"]
@@ -127,6 +129,9 @@ _EXPECTED = {
     "crop": "four integers: (x0, y0, x1, y1)",
     "opacity": "numbers by the materials' names",
     "max_bias": "a number or None",
+    "ambient": "a number or None",
+    "aperture": "a number or None",
+    "focus_distance": "a number or None",
 }
 
 

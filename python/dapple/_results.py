@@ -56,3 +56,7 @@ class Bake:
     meshes: list[dict[str, FloatArray]] = field(default_factory=list)
     #: Mean ambient occlusion of each instance in the file's order, (k,); empty if not baked.
     instance_ao: FloatArray = field(default_factory=lambda: np.zeros(0, np.float32))
+    #: Mean irradiance of each instance by light, W/m^2, (k, 3) each, if baked.
+    instance_light: dict[str, FloatArray] = field(default_factory=dict)
+    #: Lines for the user, such as the footprint that max_bias chose.
+    notes: list[str] = field(default_factory=list)

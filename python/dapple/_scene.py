@@ -332,8 +332,8 @@ class Scene:
         placement ("together", "alone"), seed, ground, opacity (by material), device, cache.
 
         Each mesh has "ao" (n,) in [0, 1]. bent, light and instances add values beside AO: unit
-        vectors (n, 3), W/m^2 (n, 3), and AO (k,) of the instances. occluders occlude but are not
-        baked. The command can also write glTF files and textures.
+        vectors (n, 3), W/m^2 (n, 3), and means over the surface of each instance. occluders occlude
+        but are not baked. The command can also write glTF files and textures.
 
         >>> tree = dapple.load("scene:tree?leaves=100")
         >>> baked = tree.bake(rays=64)
@@ -343,8 +343,8 @@ class Scene:
         chosen = _options.apply("bake", _native.BakeOptions(), options)
         others = _natives("occluders", occluders)
         progress = _arguments.progress_function(progress)
-        meshes, instance_ao = _native.bake(self._native, chosen, others, progress)
-        return Bake([dict(arrays) for arrays in meshes], instance_ao)
+        meshes, instance_ao, lights, notes = _native.bake(self._native, chosen, others, progress)
+        return Bake([dict(arrays) for arrays in meshes], instance_ao, dict(lights), notes)
 
 
 def _points(points: npt.ArrayLike, normals: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:

@@ -1,5 +1,6 @@
 // Bakes: values at vertices and of instances, as arrays.
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -9,14 +10,18 @@
 #include "engine_call.hpp"
 #include "nanobind/stl/pair.h"
 #include "nanobind/stl/string.h"
+#include "nanobind/stl/tuple.h"
 #include "nanobind/stl/vector.h"
 #include "scene_on_device.hpp"
 
 namespace dapple::python {
 namespace {
 
-/// For each mesh its arrays by name, and the AO of the instances.
-using Baked = std::pair<std::vector<std::vector<std::pair<std::string, FloatsOut>>>, FloatsOut>;
+using NamedArrays = std::vector<std::pair<std::string, FloatsOut>>;
+
+/// For each mesh its arrays, the AO of the instances, their irradiance by light, and notes.
+using Baked =
+    std::tuple<std::vector<NamedArrays>, FloatsOut, NamedArrays, std::vector<std::string>>;
 
 Baked bake_scene(const SceneOnDevice& scene, const BakeOptions& options,
                  const std::vector<const SceneOnDevice*>& occluders, const nb::object& progress) {
@@ -26,16 +31,19 @@ Baked bake_scene(const SceneOnDevice& scene, const BakeOptions& options,
   BakeResult found = call_engine(progress, [&](const RenderControl& control) {
     return bake(*kept, options, control, others);
   });
-  Baked result;
+  std::vector<NamedArrays> meshes;
   for (BakedMesh& mesh : found.meshes) {
-    auto& named = result.first.emplace_back();
+    NamedArrays& named = meshes.emplace_back();
     if (!mesh.ao.empty()) named.emplace_back("ao", array_of(std::move(mesh.ao)));
     if (!mesh.bent.empty()) named.emplace_back("bent", array_of(std::move(mesh.bent)));
     for (std::size_t i = 0; i < mesh.light.size(); ++i)
       named.emplace_back("light." + found.light_names[i], array_of(std::move(mesh.light[i])));
   }
-  result.second = array_of(std::move(found.instance_ao));
-  return result;
+  NamedArrays instance_light;
+  for (std::size_t i = 0; i < found.instance_light.size(); ++i)
+    instance_light.emplace_back(found.light_names[i], array_of(std::move(found.instance_light[i])));
+  return {std::move(meshes), array_of(std::move(found.instance_ao)), std::move(instance_light),
+          std::move(found.statistics.notes)};
 }
 
 }  // namespace

@@ -116,9 +116,7 @@ void add_sky(Scene& scene, const std::string& kind, float irradiance) {
   if (kind == "uniform" || kind == "overcast") {
     sky = kind == "uniform" ? uniform_sky() : overcast_sky();
   } else {
-    sky.name = "sky";
-    sky.kind = LightKind::dome;
-    sky.environment = load_environment(kind);
+    sky = dome_light("sky", kind);
   }
   sky.radiance *= irradiance;
   scene.lights.push_back(sky);
@@ -185,7 +183,7 @@ void bind_scene(nb::module_& module) {
           },
           nb::arg("material"), nb::arg("value"))
       .def("add_ground", [](SceneOnDevice& s) { add_ground(s.change()); })
-      .def("clear_lights", [](SceneOnDevice& s) { s.change().lights.clear(); })
+      .def("clear_lights", [](SceneOnDevice& s) { use_lights(s.change(), {}); })
       .def(
           "add_lights",
           [](SceneOnDevice& s, const std::string& path) {

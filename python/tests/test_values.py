@@ -109,6 +109,24 @@ def test_bakes_have_a_value_for_each_vertex(tree: dapple.Scene) -> None:
         assert arrays["bent"].shape == (len(mesh.positions), 3)
         assert 0 <= arrays["ao"].min() and arrays["ao"].max() <= 1
     assert baked.instance_ao.shape == (1,)
+    assert baked.instance_light == {}
+
+
+def test_instances_have_the_light_of_their_surface() -> None:
+    square = plate_scene(half=0.5, height=0)
+    square.clear_lights()
+    square.add_sun((0, 1, 0), irradiance=2, name="noon")
+    baked = square.bake(vertices=False, instances=True, light=True, sides="max")
+    np.testing.assert_allclose(baked.instance_light["noon"], [[2, 2, 2]], rtol=1e-3)
+
+
+def test_ambient_is_the_sky_of_the_picture(plate: dapple.Scene) -> None:
+    def mean(ambient: float) -> float:
+        picture = plate.render(width=8, height=8, spp=4, light=False, ambient=ambient)
+        return float(picture["RGBA"][..., :3].mean())
+
+    assert mean(0) == 0
+    assert mean(2) == pytest.approx(2 * mean(1), rel=1e-5)
 
 
 def test_bakes_are_darker_below_an_occluder(plate: dapple.Scene) -> None:

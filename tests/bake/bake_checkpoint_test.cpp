@@ -49,8 +49,8 @@ BakeOptions all_passes() {
   BakeOptions options;
   options.bent = true;
   options.light = true;
-  options.lights.resize(1);
-  options.lights[0].kind = LightKind::sun;
+  options.lights.emplace(1);
+  options.lights->front().kind = LightKind::sun;
   options.texture = true;
   options.texture_size = 128;
   options.instances = true;

@@ -192,7 +192,7 @@ TEST(BakeLight, AGroupIsTheSumOfItsLights) {
   options.texture_size = 16;
   const BakeResult together = bake(floor, options, {}, {leaf_above()});
   ASSERT_EQ(together.light_names, (std::vector<std::string>{"day", "alone"}));
-  for (Light& light : options.lights) light.group.clear();
+  for (Light& light : *options.lights) light.group.clear();
   const BakeResult apart = bake(floor, options, {}, {leaf_above()});
   ASSERT_EQ(apart.light_names.size(), 3u);
   const auto expect_sums = [](const std::vector<std::vector<V3f>>& sums,
@@ -220,13 +220,20 @@ TEST(BakeLight, ASceneWithoutLightsIsAnErrorAsOnTheCommandLine) {
   scene.instances.resize(1);
   BakeOptions options;
   options.light = true;
-  try {
-    bake(scene, options);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    EXPECT_NE(std::string(error.what()).find("the scene has no lights"), std::string::npos);
-  }
+  const auto message_of = [&] {
+    try {
+      bake(scene, options);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message_of().find("the scene has no lights"), std::string::npos) << message_of();
+  scene.lights = {noon()};
+  EXPECT_EQ(message_of(), "");
+  options.lights.emplace();  // none in place of the scene's
+  EXPECT_NE(message_of().find("there are no lights"), std::string::npos) << message_of();
 }
 
 TEST(BakeLight, AMeshAloneIsNotLit) {

@@ -59,6 +59,24 @@ TEST(BakePreview, ATransparentSurfaceIsNotDrawn) {
   EXPECT_EQ(image.bytes[32 * 64 + 32], 255);
 }
 
+TEST(BakePreview, AGroundUnderTheCameraIsDrawnInFrontOfIt) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.meshes = {square_mesh(100, 0, 1, 0)};  // two triangles, also behind the camera
+  scene.instances.resize(1);
+  BakeResult result;
+  result.meshes.resize(1);
+  for (const V3f& p : scene.meshes[0].positions) result.meshes[0].ao.push_back(p.x < 0 ? 0 : 1);
+  Camera camera;
+  camera.to_world.setTranslation(V3f(0, 1, 0));
+  const ByteImage image = draw_preview(scene, result, camera, 64, 64);
+  EXPECT_EQ(image.bytes[0], image.bytes[63]) << "above the horizon";
+  // AO rises along X, from 0 to 1 over 100 m: near the camera it is a half, sRGB 188.
+  for (int x = 0; x < 64; ++x) EXPECT_NEAR(image.bytes[63 * 64 + x], 188, 3) << x;
+  const int far_left = image.bytes[34 * 64], far_right = image.bytes[34 * 64 + 63];
+  EXPECT_LT(far_left + 10, far_right);
+}
+
 TEST(BakePreview, InstancesShowTheirOwnValue) {
   const Scene scene = two_squares();
   BakeResult result;

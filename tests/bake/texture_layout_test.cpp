@@ -202,6 +202,21 @@ TEST(Dilation, BetweenTwoValidTexelsEachTexelTakesTheCloserOne) {
   EXPECT_GE(reached, 21 * 21);
 }
 
+TEST(Dilation, TheSearchStaysInItsTexels) {
+  constexpr std::uint32_t kSize = 16;
+  std::vector<bool> valid(kSize * kSize), within(kSize * kSize);
+  const auto at = [](std::uint32_t x, std::uint32_t y) { return y * kSize + x; };
+  // Two columns with an empty one between them; the values are at the ends far from each other.
+  for (std::uint32_t y = 0; y < kSize; ++y) within[at(4, y)] = within[at(6, y)] = true;
+  valid[at(4, 0)] = valid[at(6, 15)] = true;
+  const std::vector<std::uint32_t> nearest = nearest_valid(valid, kSize, 16, within);
+  for (std::uint32_t y = 0; y < kSize; ++y) {
+    EXPECT_EQ(nearest[at(4, y)], at(4, 0)) << y;
+    EXPECT_EQ(nearest[at(6, y)], at(6, 15)) << y;
+    EXPECT_EQ(nearest[at(5, y)], kNoTexel) << y;
+  }
+}
+
 TEST(TextureLayout, TooManyChartsForTheSizeAreAnErrorThatNamesTheSizeThatFits) {
   const Scene scene = make_procedural("scene:cloud?leaves=2000");
   BakeOptions options;
@@ -245,6 +260,31 @@ TEST(TextureLayout, OverlapsAreFoundWithTheirShare) {
   for (Instance& instance : both.instances) instance.to_world = M44f().setScale(0);
   EXPECT_EQ(uv_overlap(both, uvs, 64), 0) << "nothing is baked";
   EXPECT_NEAR(uv_overlap(both, uvs, 64, BakeInstances::alone), 0.5, 0.03);
+}
+
+TEST(TextureLayout, SmallTrianglesOnOneTexelOverlapIfTheyDoNotFitSideBySide) {
+  const std::uint32_t size = 64;
+  const auto overlap_of = [&](int count, float side) {  // triangles of a palette's colour
+    Scene scene;
+    scene.materials.resize(1);
+    scene.instances.resize(1);
+    scene.meshes.resize(1);
+    Mesh& mesh = scene.meshes[0];
+    std::vector<V2f> uvs;
+    for (int i = 0; i < count; ++i) {
+      const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+      for (const V2f& corner : {V2f(0, 0), V2f(side, 0), V2f(0, side)}) {
+        mesh.positions.emplace_back(corner.x, static_cast<float>(i), corner.y);
+        uvs.push_back((V2f(10.05f, 20.05f) + corner) / static_cast<float>(size));
+      }
+      mesh.indices.insert(mesh.indices.end(), {first, first + 1, first + 2});
+      mesh.materials.push_back(0);
+    }
+    return uv_overlap(scene, {uvs}, size);
+  };
+  EXPECT_EQ(overlap_of(1000, 0.3f), 1);
+  EXPECT_EQ(overlap_of(20, 0.3f), 0) << "0.9 of the texel";
+  EXPECT_EQ(overlap_of(24, 0.3f), 1) << "1.08 of it";
 }
 
 TEST(TextureLayout, TheShareOfTheSurfaceWithoutTexelsIsThatOfTheWorld) {

@@ -39,6 +39,12 @@ TEST(VertexGroups, ASmoothSeamIsOneGroupAndAHardEdgeIsTwo) {
   EXPECT_EQ(group_vertices(folded_square(90), false).count, 6u);
 }
 
+TEST(VertexGroups, MinusZeroIsZero) {
+  Mesh mesh = folded_square(0);
+  mesh.positions[3] = V3f(-0.0f, 0, -0.0f);  // as the first corner
+  EXPECT_EQ(group_vertices(mesh, false).count, 4u);
+}
+
 TEST(VertexGroups, OppositeNormalsAreSimilarOnlyOfTwoSidedSheets) {
   Mesh mesh = folded_square(0);
   std::swap(mesh.indices[4], mesh.indices[5]);  // the second triangle's other side

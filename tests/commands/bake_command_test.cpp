@@ -239,6 +239,17 @@ TEST_F(BakeCommand, ATextureIsInAMaterialOfItsOwnAndTheMeshKeepsItsShape) {
   EXPECT_EQ(document("again.gltf")["images"].back()["uri"], "again_ao.png");
 }
 
+TEST_F(BakeCommand, AProceduralSceneLeavesFilesBesideTheOutputAlone) {
+  write("in.glb", rich_triangle().glb());
+  std::filesystem::rename(path("in.glb"), path("out.glb.scene.glb"));
+  const std::string before = bytes_of(path("out.glb.scene.glb"));
+  const Outcome run = dapple("bake scene:cube -o out.glb");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(bytes_of(path("out.glb.scene.glb")), before);
+  expect_failure(dapple("bake scene:nothing -o out.glb"), 2, "nothing");
+  EXPECT_EQ(files_in_folder(), 2u) << "nothing else is left";
+}
+
 TEST_F(BakeCommand, AProceduralSceneIsBakedAndItsStatisticsAreWritten) {
   const Outcome run =
       dapple("bake 'scene:tree?leaves=500' -o out.glb --rays 16 --stats-json s.json");

@@ -70,12 +70,22 @@ class BakeInterruption : public BakeCommand {
     for (int leaves = 40'000;; leaves *= 2) {
       auto program = std::make_unique<RunningProgram>(
           bake("scene:tree?leaves=" + std::to_string(leaves), more), log());
-      const auto is_written = [&] { return is_there("out.glb.scene.glb"); };
+      const auto is_written = [&] { return temporary_files() == std::vector<bool>{true}; };
       EXPECT_TRUE(wait_until([&] { return is_written() || program->has_ended(); }, kLongest));
       if (is_written() || leaves > 1'000'000) return program;
       std::filesystem::remove(path("out.glb"));
       std::filesystem::remove(path("a.ckpt"));
     }
+  }
+
+  /// For each temporary file beside the output whether it has content.
+  [[nodiscard]] std::vector<bool> temporary_files() const {
+    std::vector<bool> found;
+    std::error_code gone;
+    for (const auto& file : std::filesystem::directory_iterator(folder_))
+      if (file.path().filename().string().starts_with(".dapple-"))
+        found.push_back(file.file_size(gone) > 0 && !gone);
+    return found;
   }
 
   [[nodiscard]] std::string log() const { return (logs() / "log").string(); }

@@ -43,6 +43,9 @@ TEST_F(BakeCommand, TexturesHoldSixteenBitsAndTheirLightsAreInAnExr) {
     ASSERT_NE(film.find(channel), nullptr) << channel;
   EXPECT_NEAR(film.find("light.noon.G")->pixels.at(16 * 15), 0.5, 1e-3);
   expect_failure(dapple("bake in.glb -o no.glb --to texture --bits 12"), 2, "--bits");
+  ASSERT_EQ(dapple("bake in.glb -o out.glb --to texture --size 16 --stats-json s.json").code, 0);
+  const json statistics = json::parse(bytes_of(path("s.json")));
+  EXPECT_GT(statistics["texture"]["coverage"].get<double>(), 0.3);
 }
 
 TEST_F(BakeCommand, ADomeStandsBesideTheLightsOfTheScene) {
@@ -64,6 +67,57 @@ TEST_F(BakeCommand, ADomeStandsBesideTheLightsOfTheScene) {
   const json attributes = document("out.glb")["meshes"][0]["primitives"][0]["attributes"];
   EXPECT_TRUE(attributes.contains("_LIGHT_lamp")) << attributes;
   EXPECT_TRUE(attributes.contains("_LIGHT_dome")) << attributes;
+}
+
+/// An image that is bright towards +Z.
+void write_sky(const std::string& path) {
+  Film sky;
+  sky.width = 8;
+  sky.height = 4;
+  sky.data_window = {0, 0, 7, 3};
+  std::vector<float> pixels(32, 0.01f);
+  for (const std::size_t i : {11u, 12u, 19u, 20u}) pixels[i] = 10;
+  for (const char* channel : {"R", "G", "B"}) sky.planes.push_back({channel, pixels});
+  write_exr(sky, path);
+}
+
+TEST_F(BakeCommand, ADomeMayBeTurned) {
+  write("in.glb", rich_triangle().glb());  // faces +Z
+  write_sky(path("sky.exr"));
+  const auto irradiance = [&](const std::string& rotation) {
+    const std::string lit =
+        "bake in.glb -o out.glb --passes ao,light --dome sky.exr --sides front ";
+    const Outcome run = dapple(lit + rotation);
+    EXPECT_EQ(run.code, 0) << run.err;
+    const test::GltfData file(path("out.glb"));
+    return file.floats(file.doc["meshes"][0]["primitives"][0]["attributes"]["_LIGHT_dome"]).at(0);
+  };
+  const float facing = irradiance("");
+  EXPECT_GT(facing, 5.0f);
+  EXPECT_NEAR(irradiance("--dome-rotation 360"), facing, 0.02f * facing);
+  EXPECT_LT(irradiance("--dome-rotation 180"), 0.1f);
+  expect_failure(dapple("bake in.glb -o no.glb --passes ao,light --dome-rotation 3"), 2,
+                 "--dome-rotation needs --dome");
+}
+
+TEST_F(BakeCommand, AFileWithoutLightsStandsInPlaceOfTheScenes) {
+  std::ofstream(path("none.json")) << R"({"lights": []})";
+  expect_failure(dapple("bake 'scene:demo' -o out.glb --passes ao,light --lights none.json"), 2,
+                 "none.json has no lights");
+  EXPECT_FALSE(std::filesystem::exists(path("out.glb")));
+}
+
+TEST_F(BakeCommand, ImagesThatALightsFileNamesAreNotOverwritten) {
+  write("in.glb", rich_triangle().glb());
+  write_sky(path("sky.exr"));
+  std::ofstream(path("dome.json"))
+      << R"({"lights": [{"type": "dome", "name": "sky", "image": "sky.exr"}]})";
+  const std::string before = bytes_of(path("sky.exr"));
+  const Outcome run =
+      dapple("bake in.glb -o out.glb --passes ao,light --lights dome.json --stats-json sky.exr");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_TRUE(contains(run.err, "sky.exr")) << run.err;
+  EXPECT_EQ(bytes_of(path("sky.exr")), before);
 }
 
 TEST_F(BakeCommand, AChannelIsNotTheAttributeOfALight) {

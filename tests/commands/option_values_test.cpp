@@ -49,6 +49,8 @@ const std::vector<std::pair<std::string, std::string>> kCommands = {
     {"compare", "no.exr none.exr"},
     {"info", "scene:cube"},
     {"scene", "cube -o o.glb"},
+    {"merge", "no.dapple -o o.exr"},
+    {"plan", "scene:cube --spp 1"},
 };
 
 /// Options that take any text, most of them paths.
@@ -89,8 +91,10 @@ TEST_F(OptionValues, AreNumbersWhereNumbersAreExpectedAndNeverNaN) {
 
 TEST_F(OptionValues, OutOfRangeAreNamedAsTyped) {
   const std::pair<const char*, const char*> cases[] = {
-      {"--spp 99999999999999999999", "--spp 99999999999999999999: expected a smaller number"},
-      {"--spp -99999999999999999999", "--spp -99999999999999999999: expected a larger number"},
+      {"--spp 99999999999999999999",
+       "--spp 99999999999999999999: expected a whole number from -2147483648 to"},
+      {"--spp -99999999999999999999",
+       "--spp -99999999999999999999: expected a whole number from -2147483648"},
       {"--shard 1/99999999999", "--shard: '99999999999' is out of range"},
       {"--report-bias 200%", "--report-bias 200%: expected 0% to 100%"},
       {"--report-bias -1", "--report-bias -1: expected 0% to 100%"},

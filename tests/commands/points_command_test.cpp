@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <sstream>
 #include <string>
 
+#include "dapple/film.hpp"
 #include "support/program_run.hpp"
 
 namespace dapple {
@@ -20,6 +22,21 @@ class PointsCommand : public program_test::ProgramRun {
         dapple("points 'scene:tree?leaves=3000' --grid=-2,-2,2,2,0.4 --rays 64 " + arguments);
     EXPECT_EQ(run.code, 0) << run.err;
     return run;
+  }
+
+  /// In the first row of a CSV file.
+  double value_of(const std::string& name, const std::string& column) {
+    std::ifstream in(path(name));
+    std::string names, values;
+    std::getline(in, names);
+    std::getline(in, values);
+    std::istringstream of_names(names), of_values(values);
+    for (std::string one, value; std::getline(of_names, one, ',');) {
+      std::getline(of_values, value, ',');
+      if (one == column) return std::stod(value);
+    }
+    ADD_FAILURE() << "no column " << column;
+    return 0;
   }
 
   std::string first_line(const std::string& name) {
@@ -41,6 +58,33 @@ TEST_F(PointsCommand, KeepsALimitOfTheBiasAndSaysWithWhichFootprint) {
   EXPECT_TRUE(contains(run.err, "exact rays (footprint 0)")) << run.err;
   measured("-o b.csv --footprint 0");
   EXPECT_EQ(bytes_of(path("a.csv")), bytes_of(path("b.csv")));
+}
+
+TEST_F(PointsCommand, TurnsAnImageOfTheSkyAndDoesNotOverwriteIt) {
+  Film sky;
+  sky.width = 8;
+  sky.height = 4;
+  sky.data_window = {0, 0, 7, 3};
+  std::vector<float> pixels(32, 0.01f);
+  pixels[11] = pixels[12] = pixels[19] = pixels[20] = 10;  // towards +Z
+  for (const char* channel : {"R", "G", "B"}) sky.planes.push_back({channel, pixels});
+  write_exr(sky, path("sky.exr"));
+  std::ofstream(path("at.csv")) << "x,y,z,nx,ny,nz\n0,50,0,0,0,1\n";
+  const std::string lit = "points 'scene:tree?leaves=10' --at at.csv --sky sky.exr -o ";
+  const auto red = [&](const std::string& options) {
+    const program_test::Outcome run = dapple(lit + "out.csv " + options);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return value_of("out.csv", "sky_r");
+  };
+  EXPECT_GT(red(""), 5.0);
+  EXPECT_LT(red("--sky-rotation 180"), 0.5);
+  EXPECT_EQ(dapple(lit + "no.csv --sky-rotation nan").code, 2);
+  const program_test::Outcome needs =
+      dapple("points scene:tree --at at.csv --sky uniform --sky-rotation 3 -o no.csv");
+  EXPECT_TRUE(contains(needs.err, "--sky-rotation needs --sky with an image")) << needs.err;
+  const std::string before = bytes_of(path("sky.exr"));
+  EXPECT_EQ(dapple(lit + "out.csv --stats-json sky.exr").code, 2);
+  EXPECT_EQ(bytes_of(path("sky.exr")), before);
 }
 
 TEST_F(PointsCommand, RefusesAHeightWithoutAGrid) {

@@ -51,13 +51,13 @@ TEST_F(DomeRange, TheBrightestDomeMakesAFinitePicture) {
   RenderOptions options;
   options.width = options.height = 16;
   options.spp = 4;
-  const RenderResult result = render(scene, options, Progress());
+  const RenderResult result = render(scene, options);
   for (const Plane& plane : result.film.planes) {
     if (plane.channel == "Z") continue;
     for (const float pixel : plane.pixels) EXPECT_TRUE(std::isfinite(pixel)) << plane.channel;
   }
   scene.lights[0].radiance = V3f(100);
-  EXPECT_TRUE(contains(error_of([&] { render(scene, options, Progress()); }).what(),
+  EXPECT_TRUE(contains(error_of([&] { render(scene, options); }).what(),
                        "a.exr: the dome's mean radiance is "));
 }
 

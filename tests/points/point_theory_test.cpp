@@ -266,6 +266,21 @@ TEST(PointTheory, APointBeforeALongWallSeesWhatIsAboveIt) {
   }
 }
 
+// A ceiling at height h counts (1 - h / (D cos)) of each direction: AO is 1 - (1 - h / D)^2.
+TEST(PointTheory, AFalloffUnderACeilingIsItsIntegral) {
+  const Scene scene = scene_of(square_mesh(1000, 1, 1, 0), 1);
+  PointOptions options;
+  options.rays = 4096;
+  options.distance = 2;
+  EXPECT_NEAR(mean_of(measure(scene, {V3f(0)}, options), "ao"), 1 - 0.75, 0.01) << "a cutoff";
+  options.falloff = 1;
+  const PointResult result = measure(scene, {V3f(0)}, options);
+  EXPECT_NEAR(mean_of(result, "ao"), 0.75, 0.01);
+  EXPECT_LT(mean_of(result, "sky_view_factor"), 0.01) << "without a distance";
+  options.distance = 0;
+  EXPECT_THROW(validate(options), Error);
+}
+
 TEST(PointTheory, GapFractionsOfTheRingsAreThoseOfARandomCanopy) {
   const Scene scene = canopy(2, 1);
   PointOptions options = periodic(Estimator::exact);

@@ -5,7 +5,7 @@
 namespace dapple {
 
 std::vector<std::uint32_t> nearest_valid(const std::vector<bool>& valid, std::uint32_t size,
-                                         int margin) {
+                                         int margin, const std::vector<bool>& within) {
   std::vector<std::uint32_t> nearest(valid.size(), kNoTexel);
   std::vector<std::uint32_t> border;
   for (std::uint32_t i = 0; i < valid.size(); ++i) {
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> nearest_valid(const std::vector<bool>& valid, std::ui
       for (int v = std::max(0, y - 1); v <= std::min(side - 1, y + 1); ++v) {
         for (int u = std::max(0, x - 1); u <= std::min(side - 1, x + 1); ++u) {
           const auto to = static_cast<std::uint32_t>(v * side + u);
-          if (valid[to]) continue;
+          if (valid[to] || (!within.empty() && !within[to])) continue;
           if (nearest[to] == kNoTexel) next.push_back(to);
           if (nearest[to] == kNoTexel || square(source, u, v) < square(nearest[to], u, v))
             nearest[to] = source;

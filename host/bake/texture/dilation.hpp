@@ -1,5 +1,5 @@
 // Extends the values of a texture over the texels beside them, so that lookups across a chart's
-// border find no empty texel. In: a texture and which texels have a value. Out: more of them have.
+// border find no empty texel. In: which texels have a value. Out: the one that each takes.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@ namespace dapple {
 /// For each texel of a `size` x `size` texture the nearest valid one, itself if it is valid, at
 /// most `margin` texels away in each direction; kNoTexel without one. The distance is Euclidean, to
 /// the accuracy of a search from neighbour to neighbour (Danielsson, "Euclidean Distance Mapping",
-/// 1980).
+/// 1980). `within`: texels that the search passes through, by texel; empty: all.
 std::vector<std::uint32_t> nearest_valid(const std::vector<bool>& valid, std::uint32_t size,
-                                         int margin);
+                                         int margin, const std::vector<bool>& within = {});
 
 inline constexpr std::uint32_t kNoTexel = ~0u;
 

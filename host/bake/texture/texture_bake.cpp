@@ -135,6 +135,7 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTra
   const std::vector<bool> two_sided = two_sided_triangles(scene_, mesh, options_.sides);
   const std::uint32_t hash = hash_of(options_.seed, index);
   std::vector<V2f> corners = texture_.layout.corners[index];
+  if (corners.empty()) return true;
   for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
     if (!has_area(mesh, t))
       std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, V2f(0));
@@ -207,6 +208,23 @@ void TextureBake::join_all_seams() {
   for (V3f& bent : texture_.bent) bent.normalize();
 }
 
+void TextureBake::take_nearest(const std::vector<std::uint32_t>& nearest, bool only_covered) {
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (known_[i] || nearest[i] == kNoTexel || (only_covered && !covered_[i])) continue;
+    texture_.ao[i] = texture_.ao[nearest[i]];
+    if (options_.bent) texture_.bent[i] = texture_.bent[nearest[i]];
+    for (std::vector<V3f>& light : texture_.light) light[i] = light[nearest[i]];
+    known_[i] = true;
+  }
+}
+
+void TextureBake::fill_hidden_texels() {
+  const int all = static_cast<int>(texture_.size);
+  if (known_ == covered_) return;
+  take_nearest(nearest_valid(known_, texture_.size, all, covered_), true);
+  if (known_ != covered_) take_nearest(nearest_valid(known_, texture_.size, all), true);
+}
+
 BakedTexture TextureBake::finish() {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     if (!known_[i]) continue;
@@ -214,15 +232,10 @@ BakedTexture TextureBake::finish() {
     if (options_.bent) texture_.bent[i].normalize();
     for (std::vector<V3f>& light : texture_.light) light[i] /= weight_[i];
   }
-  const std::vector<std::uint32_t> nearest = nearest_valid(known_, texture_.size, options_.margin);
-  for (std::size_t i = 0; i < known_.size(); ++i) {
-    if (known_[i]) continue;
-    // Nothing is seen from texels in a closed part; all others are empty.
-    texture_.ao[i] = nearest[i] != kNoTexel ? texture_.ao[nearest[i]] : covered_[i] ? 0.0f : 1.0f;
-    if (nearest[i] == kNoTexel) continue;
-    if (options_.bent) texture_.bent[i] = texture_.bent[nearest[i]];
-    for (std::vector<V3f>& light : texture_.light) light[i] = light[nearest[i]];
-  }
+  fill_hidden_texels();
+  take_nearest(nearest_valid(known_, texture_.size, options_.margin), false);
+  for (std::size_t i = 0; i < known_.size(); ++i)
+    if (!known_[i] && !covered_[i]) texture_.ao[i] = 1;
   join_all_seams();
   const auto covered = std::count(covered_.begin(), covered_.end(), true);
   texture_.coverage = static_cast<double>(covered) / static_cast<double>(covered_.size());

@@ -14,13 +14,19 @@ class TextureBake {
 
   [[nodiscard]] const TextureLayout& layout() const { return texture_.layout; }
 
-  /// The values of mesh number `index`. False: stopped.
+  /// The values of mesh number `index`, if the texture has it. False: stopped.
   bool add(std::uint32_t index, const Placements& placements, BakeTracing& tracing);
 
   /// The texture, with its margin.
   BakedTexture finish();
 
  private:
+  /// Texels without a value take that of the one that `nearest` names; `only_covered`: if triangles
+  /// cover them.
+  void take_nearest(const std::vector<std::uint32_t>& nearest, bool only_covered);
+  /// Texels from which nothing is seen, in closed parts, take the nearest value of their charts, or
+  /// of the texture where a chart has none.
+  void fill_hidden_texels();
   void join_all_seams();
   void add_values(const SampledTexels& texels, const ValueSums& sums,
                   const std::vector<std::vector<V3f>>& light, BakeStatistics& statistics);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -94,28 +93,6 @@ Packing pack_charts(const PlacedCharts& charts, const BakeOptions& options) {
   return pack(sizes, options.texture_size, gap);
 }
 
-/// Each texel of a size x size texture whose centre lies in a triangle, once for each triangle.
-template <class Visit>
-void visit_centres(const V2f* uv, std::uint32_t size, Visit visit) {
-  const auto scale = static_cast<float>(size);
-  const V2f a = uv[0] * scale, b = uv[1] * scale, c = uv[2] * scale;
-  const float turn = (b - a).cross(c - a) < 0 ? -1.0f : 1.0f;
-  const auto first = [](float x) { return static_cast<std::uint32_t>(std::max(0.0f, x - 0.5f)); };
-  const auto last = [&](float x) {
-    return static_cast<std::uint32_t>(std::clamp(x + 0.5f, 0.0f, scale - 1));
-  };
-  for (std::uint32_t y = first(std::min({a.y, b.y, c.y})); y <= last(std::max({a.y, b.y, c.y}));
-       ++y) {
-    for (std::uint32_t x = first(std::min({a.x, b.x, c.x})); x <= last(std::max({a.x, b.x, c.x}));
-         ++x) {
-      const V2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-      const bool inside = turn * (b - a).cross(p - a) > 0 && turn * (c - b).cross(p - b) > 0 &&
-                          turn * (a - c).cross(p - c) > 0;
-      if (inside) visit(x, y);
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<bool> textured_meshes(const Scene& scene, BakeInstances kind) {
@@ -183,32 +160,6 @@ TextureLayout given_layout(const Scene& scene, const BakeOptions& options) {
       for (const std::uint32_t vertex : scene.meshes[m].indices)
         layout.corners[m].push_back(options.texture_uvs.at(m).at(vertex));
   return layout;
-}
-
-double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
-                  BakeInstances placement) {
-  std::vector<std::uint8_t> count(std::size_t{size} * size);
-  std::size_t covered = 0, several = 0;
-  const std::vector<bool> textured = textured_meshes(scene, placement);
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const Mesh& mesh = scene.meshes[m];
-    if (!textured[m]) continue;
-    for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
-      V2f uv[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        uv[k] = uvs.at(m).at(mesh.indices[3 * t + k]);
-        const bool inside = uv[k].x >= 0 && uv[k].x <= 1 && uv[k].y >= 0 && uv[k].y <= 1;
-        if (!inside) return std::numeric_limits<double>::infinity();
-      }
-      visit_centres(uv, size, [&](std::uint32_t x, std::uint32_t y) {
-        std::uint8_t& of_texel = count[std::size_t{y} * size + x];
-        if (of_texel == 0) ++covered;
-        if (of_texel == 1) ++several;
-        of_texel = static_cast<std::uint8_t>(std::min(2, of_texel + 1));
-      });
-    }
-  }
-  return covered > 0 ? static_cast<double>(several) / static_cast<double>(covered) : 0.0;
 }
 
 double share_without_texels(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,

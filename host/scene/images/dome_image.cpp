@@ -130,6 +130,14 @@ std::shared_ptr<const Environment> load_environment(const std::string& path) {
   return std::make_shared<const Environment>(std::move(environment));
 }
 
+Light dome_light(const std::string& name, const std::string& path) {
+  Light dome;
+  dome.name = name;
+  dome.kind = LightKind::dome;
+  dome.environment = load_environment(path);
+  return dome;
+}
+
 void finalize_domes(Scene& scene) {
   for (Light& light : scene.lights) {
     if (light.kind != LightKind::dome || !light.environment) continue;

@@ -1,0 +1,76 @@
+// bake() into a texture: texels from which nothing is seen, and meshes in several poses.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "dapple/bake.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+Scene scene_of(Mesh mesh) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.meshes = {std::move(mesh)};
+  scene.instances.resize(1);
+  return scene;
+}
+
+BakeOptions into_texture(std::uint32_t size) {
+  BakeOptions options;
+  options.vertices = false;
+  options.texture = true;
+  options.texture_size = size;
+  return options;
+}
+
+TEST(BakeTexture, TexelsInsideClosedGeometryHaveTheNearestValueWhateverTheMargin) {
+  const Scene cube = make_procedural("scene:cube?divisions=1");
+  const Box3f bounds = scene_bounds(cube);
+  const V3f size = bounds.size(), middle = bounds.center();
+  // A floor through the middle of the cube, three times as wide.
+  Mesh floor;
+  append_grid(floor, middle - V3f(1.5f * size.x, 0, 1.5f * size.z), {0, 0, 3 * size.z},
+              {3 * size.x, 0, 0}, 1, 0);
+  BakeOptions options = into_texture(64);
+  options.margin = 0;
+  const BakeResult result = bake(scene_of(floor), options, {}, {cube});
+  EXPECT_GT(result.statistics.hidden_texels, 200u) << "a ninth of the texels";
+  const std::vector<V2f>& corners = result.texture.layout.corners.at(0);
+  V2f low(1), high(0);
+  for (const V2f& corner : corners) {
+    for (int i = 0; i < 2; ++i) {
+      low[i] = std::min(low[i], corner[i]);
+      high[i] = std::max(high[i], corner[i]);
+    }
+  }
+  for (std::uint32_t y = 0; y < 64; ++y) {
+    for (std::uint32_t x = 0; x < 64; ++x) {
+      const V2f at((static_cast<float>(x) + 0.5f) / 64, (static_cast<float>(y) + 0.5f) / 64);
+      const bool covered = at.x > low.x && at.x < high.x && at.y > low.y && at.y < high.y;
+      if (!covered) continue;
+      EXPECT_GT(result.texture.ao[y * 64 + x], 0.02f) << x << ", " << y;
+    }
+  }
+}
+
+TEST(BakeTexture, OfSeveralPosesTheFirstOneIsBaked) {
+  Mesh mesh = square_mesh(1, 0, 1, 0);
+  mesh.sources = {{0, 0, 0, static_cast<std::uint32_t>(mesh.positions.size()), {}}};
+  Scene scene = scene_of(mesh);
+  Mesh pose = mesh;  // of the same primitive, with a triangle that has no area any more
+  pose.positions[pose.indices[0]] = pose.positions[pose.indices[1]];
+  place(scene, pose, M44f().setTranslation(V3f(5, 0, 0)));
+  BakeOptions options = into_texture(16);
+  options.estimator = Estimator::exact;
+  const BakeResult result = bake(scene, options);
+  EXPECT_FALSE(result.texture.layout.corners.at(0).empty());
+  EXPECT_TRUE(result.texture.layout.corners.at(1).empty());
+  EXPECT_EQ(*std::min_element(result.texture.ao.begin(), result.texture.ao.end()), 1.0f);
+}
+
+}  // namespace
+}  // namespace dapple
