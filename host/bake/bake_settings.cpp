@@ -32,7 +32,9 @@ void add_light(ChecksumStream& stream, const Light& light) {
        {light.radius, light.angular_radius, light.cos_inner, light.cos_outer, light.rotation})
     stream.add_value(value);
   stream.add_value(light.double_sided);
-  if (light.environment) stream.add_range(light.environment->radiance);
+  if (!light.environment) return;
+  stream.add_value(light.environment->width);
+  stream.add_range(light.environment->radiance);
 }
 
 void add_scene(ChecksumStream& stream, const Scene& scene) {
@@ -54,6 +56,9 @@ void add_scene(ChecksumStream& stream, const Scene& scene) {
   for (const Material& material : scene.materials) add_material(stream, material);
   for (const Texture& texture : scene.textures) {
     stream.add_value(texture.width);
+    stream.add_value(texture.wrap_s);
+    stream.add_value(texture.wrap_t);
+    stream.add_value(texture.nearest);
     stream.add_range(texture.alpha);
   }
 }

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace dapple {
 namespace {
@@ -28,6 +29,17 @@ std::vector<SideValue> trace_side(const TracePoints& trace, const BakeOptions& b
   return values;
 }
 
+/// The largest terms of the sums that are the coordinates of a triangle's points in the world: what
+/// these are rounded to, also where the sums are small.
+V3f reach_in_world(const V3f& reach, const M44f& to_world) {
+  V3f sum(0, 0, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int row = 0; row < 3; ++row) sum[axis] += reach[row] * std::fabs(to_world[row][axis]);
+    sum[axis] += std::fabs(to_world[3][axis]);
+  }
+  return sum;
+}
+
 }  // namespace
 
 void Placements::add(const M44f& matrix) {
@@ -49,11 +61,13 @@ WorldPoints::WorldPoints(std::span<const SurfaceSample> samples,
                             [](const SurfaceSample& at) { return at.is_on_plane; });
   geometric_.resize(is_smooth ? sample.size() : 0, V3f(0, 0, 0));
   shifts_ = geometric_;
+  reaches_.resize(sample.size());
   tbb::parallel_for(std::size_t{0}, sample.size(), [&](std::size_t k) {
     const SurfaceSample& at = samples[sample[k]];
     const std::size_t place = placement[sample[k]];
     const M44f &to_world = placements.to_world[place], &to_object = placements.to_object[place];
     positions_[k] = at.position * to_world;
+    reaches_[k] = reach_in_world(at.reach, to_world);
     const V3f normal = unit_normal(at.normal, to_object);
     normals_[k] = back ? -normal : normal;
     if (!(at.geometric.length2() > 0)) return;

@@ -51,12 +51,13 @@ class WorldPoints {
               const Placements& placements, bool back);
   std::vector<std::uint32_t> sample;
   [[nodiscard]] QueryPoints query() const {
-    return {positions_, normals_, geometric_, shifts_, has_planes_};
+    return {positions_, normals_, geometric_, shifts_, has_planes_, reaches_};
   }
 
  private:
   std::vector<V3f> positions_, normals_;
   std::vector<V3f> geometric_, shifts_;  ///< empty: all samples are flat
+  std::vector<V3f> reaches_;
   bool has_planes_ = true;
 };
 

@@ -60,6 +60,16 @@ bool has_area(const Mesh& mesh, std::size_t triangle) {
   return twice_area > 0 && std::isfinite(twice_area);
 }
 
+V3f reach_of(const Mesh& mesh, std::size_t triangle) {
+  V3f reach(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V3f& corner = mesh.positions[mesh.indices[3 * triangle + k]];
+    for (int axis = 0; axis < 3; ++axis)
+      reach[axis] = std::max(reach[axis], std::fabs(corner[axis]));
+  }
+  return reach;
+}
+
 SurfaceSample sample_triangle(const SampledTriangles& of, std::size_t triangle,
                               std::uint32_t index) {
   const Mesh& mesh = of.mesh;
@@ -70,6 +80,7 @@ SurfaceSample sample_triangle(const SampledTriangles& of, std::size_t triangle,
   SurfaceSample sample;
   sample.normal = cross / twice_area;
   sample.back = of.two_sided[triangle];
+  sample.reach = reach_of(mesh, triangle);
   for (std::size_t k = 0; k < 3; ++k) {
     sample.position += mesh.positions[corner[k]] * barycentric[k];
     sample.place[k] = of.groups.of_vertex[corner[k]];
@@ -112,6 +123,7 @@ std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
       shading[group] += (normals ? (*normals)[k] * area.length() : area) * side;
       is_smooth[group] = is_smooth[group] || normals;
       sample.position = of.mesh.positions[vertex];
+      for (int axis = 0; axis < 3; ++axis) sample.reach[axis] = std::fabs(sample.position[axis]);
       sample.back = sample.back || of.two_sided[t];
       sample.place[0] = group;
     }

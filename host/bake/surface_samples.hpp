@@ -22,6 +22,7 @@ struct SurfaceSample {
   V3f normal{0, 0, 0};                   ///< unit length, on the front side; shading or geometric
   V3f geometric{0, 0, 0};                ///< of smooth surfaces, as QueryPoints has it; or zero
   V3f shift{0, 0, 0};                    ///< the same
+  V3f reach{0, 0, 0};                    ///< largest coordinates of its triangle, not negative
   bool is_on_plane = true;               ///< `normal`, or `geometric`, is that of a triangle
   bool front = true, back = false;       ///< sides that are traced
   std::array<std::uint32_t, 3> place{};  ///< vertex groups, or texels, whose value it is part of
@@ -44,6 +45,9 @@ SampleCounts sample_counts(int rays, std::size_t placements, bool at_vertex = fa
 
 /// Whether values of a triangle with this material describe both sides.
 bool is_two_sided(const Material& material, BakeSides sides);
+
+/// The largest coordinates of a triangle's corners, without their signs.
+V3f reach_of(const Mesh& mesh, std::size_t triangle);
 
 /// Barycentric coordinates of point `index` of the triangular van der Corput sequence, whose first
 /// 4^k points lie in different ones of 4^k equal parts (Basu and Owen, "Low Discrepancy

@@ -132,6 +132,10 @@ RoundOptions round_options(const BakeOptions& options, std::uint32_t first,
     rounds.rays = rounds.fixed.rays = options.light_rays;
     rounds.fixed.samples = static_cast<std::uint32_t>(std::min<std::size_t>(
         rounds.fixed.samples, std::max(kMaxLightSamples, placements.to_world.size())));
+    // As many in each placement, as those of AO.
+    const auto equal = static_cast<int>(
+        std::min(placements.to_world.size(), static_cast<std::size_t>(rounds.limit)));
+    rounds.fixed.samples -= rounds.fixed.samples % std::max(equal, 1);
   }
   return rounds;
 }

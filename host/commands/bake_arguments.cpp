@@ -130,8 +130,7 @@ void add_ray_options(CLI::App& app, BakeArguments& a) {
 /// The scene's changes, the device, and files beside the output.
 void add_run_options(CLI::App& app, BakeArguments& a) {
   BakeOptions& o = a.options;
-  app.add_option("--opacity", a.opacity,
-                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
+  add_opacity_option(app, a.opacity);
   app.add_option("--occluders", a.occluders,
                  "glTF files that occlude and are not baked; may be repeated");
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene, which occludes it");

@@ -64,7 +64,7 @@ void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
     json["texture"] = {{"size", result.texture.size},
                        {"charts", result.texture.layout.charts},
                        {"coverage", result.texture.coverage}};
-  write_whole_file(path, json.dump(2) + "\n");
+  write_whole_file(path, json_text(json));
 }
 
 void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const std::string& output) {

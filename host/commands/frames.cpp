@@ -12,13 +12,6 @@
 namespace dapple {
 namespace {
 
-/// Path of the heat map beside a preview: tree_visits.png for tree.png.
-std::string visits_path(const std::string& png) {
-  const std::filesystem::path path(png);
-  return (path.parent_path() / (path.stem().string() + "_visits" + path.extension().string()))
-      .string();
-}
-
 /// The output files as the user typed them.
 Frame typed_files(const RenderArguments& a) {
   RenderOptions passes;
@@ -75,6 +68,12 @@ void check_resumed_spare(std::vector<OutputPath> outputs, const std::string& res
 
 }  // namespace
 
+std::string visits_path(const std::string& png) {
+  const std::filesystem::path path(png);
+  return (path.parent_path() / (path.stem().string() + "_visits" + path.extension().string()))
+      .string();
+}
+
 std::vector<Frame> list_frames(const RenderArguments& a) {
   const Frame typed = typed_files(a);
   if (a.frames.empty()) {
@@ -99,7 +98,9 @@ void check_files(const std::vector<Frame>& frames, const RenderArguments& a) {
   if (!a.scene.starts_with("scene:")) inputs.push_back(a.scene);
   if (!a.lights.empty()) inputs.push_back(a.lights);
   if (!a.dome.empty()) inputs.push_back(a.dome);
-  for (const Frame& frame : frames) check_outputs(outputs_of(frame, a));
+  // Folders have many files, and frames one folder: it is tidied once.
+  for (const Frame& frame : frames)
+    check_outputs(outputs_of(frame, a), &frame == &frames.front() ? Folders::tidy : Folders::leave);
   check_files_spare(frames, a, inputs);
   if (!a.resume.empty()) check_resumed_spare(outputs_of(frames[0], a), a.resume);
 }

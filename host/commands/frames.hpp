@@ -19,6 +19,9 @@ struct Frame {
 /// checkpoints of a sequence.
 std::vector<Frame> list_frames(const RenderArguments& arguments);
 
+/// Path of the heat map beside a preview: tree_visits.png for tree.png.
+std::string visits_path(const std::string& png);
+
 /// Checks, before anything is read, that every output can be written and that none is an input.
 /// Throws Error usage.
 void check_files(const std::vector<Frame>& frames, const RenderArguments& arguments);

@@ -7,6 +7,7 @@
 #include "bvh/opacity/opacity_mip_levels.hpp"
 #include "commands/command.hpp"
 #include "commands/option_text.hpp"
+#include "commands/shared_options.hpp"
 #include "commands/shot.hpp"
 #include "commands/statistics_text.hpp"
 #include "dapple/bvh.hpp"
@@ -165,7 +166,7 @@ void run_info(const InfoArguments& a) {
   if (!a.lights.empty()) use_lights(scene, load_lights(a.lights));
   merge_single_instances(scene);
   const auto json = report(scene, build_bvh(scene, a.cache));
-  fmt::print("{}", a.json ? json.dump(2) + "\n" : report_text(json));
+  fmt::print("{}", a.json ? json_text(json) : report_text(json));
 }
 
 }  // namespace
@@ -173,8 +174,7 @@ void run_info(const InfoArguments& a) {
 Run add_info_command(CLI::App& app) {
   auto a = std::make_shared<InfoArguments>();
   app.add_option("SCENE", a->scene, "glTF file, .hair file or procedural scene")->required();
-  app.add_option("--opacity", a->opacity,
-                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
+  add_opacity_option(app, a->opacity);
   app.add_option("--lights", a->lights, "JSON file of lights, in place of the scene's own");
   app.add_option("--frame", a->scene_options.time,
                  "Time to show, in seconds (not a frame number); default: the rest pose");

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "commands/command.hpp"
+#include "commands/frames.hpp"
 #include "commands/interruption.hpp"
 #include "commands/option_text.hpp"
 #include "commands/output_paths.hpp"
@@ -33,10 +34,26 @@ void check(const MergeArguments& a) {
   std::vector<OutputPath> outputs{{"--output", files.output}};
   if (!files.png.empty()) outputs.push_back({"--png", files.png});
   if (!files.stats_json.empty()) outputs.push_back({"--stats-json", files.stats_json});
+  const RenderArguments defaults;
+  if (is_part_path(files.output) &&
+      (!files.half.empty() || files.multipart || files.compression != defaults.compression))
+    throw Error(ErrorKind::usage,
+                fmt::format("-o {}: --half, --multipart and --compression are for an image (.exr)",
+                            files.output));
   check_outputs(outputs);
   check_output_name("--output", files.output);
   check_outputs_spare(outputs, a.parts);
   check_png(files);
+}
+
+/// Where the heat map of visits goes, as in a render; empty: nowhere. Only the parts know whether
+/// there is one.
+std::string heat_map_of(const Film& film, const MergeArguments& a) {
+  if (a.files.png.empty() || !film.find("visits.nodes")) return {};
+  const std::string path = visits_path(a.files.png);
+  check_outputs({{"--png", path}});
+  check_outputs_spare({{"--png", path}}, a.parts);
+  return path;
 }
 
 void print(const Merge& merge, const MergeArguments& a) {
@@ -71,11 +88,13 @@ void run_merge(const MergeArguments& a) {
   RenderResult& result = merge.result;
   for (const std::string& name : half_layers_without_planes(result.film, format))
     result.statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
+  const std::string visits = heat_map_of(result.film, a);
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
   if (!is_part_path(files.output)) write_exr(result.film, files.output, format);
   if (!files.png.empty()) write_png(result.film, files.png, "", png);
+  if (!visits.empty()) write_heat_map(result.film, visits, "visits.nodes");
   if (!files.stats_json.empty())
-    write_whole_file(files.stats_json, merge_json(merge, a.parts.size()).dump(2) + "\n");
+    write_whole_file(files.stats_json, json_text(merge_json(merge, a.parts.size())));
   if (!files.quiet) print(merge, a);
 }
 

@@ -43,10 +43,11 @@ std::string frame_path(const std::string& pattern, std::int64_t number) {
                      pattern.substr(last + 1));
 }
 
-void check_outputs(const std::vector<OutputPath>& outputs) {
+void check_outputs(const std::vector<OutputPath>& outputs, Folders folders) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     try {
       check_output_path(outputs[i].path);
+      if (folders == Folders::tidy) remove_abandoned_beside(outputs[i].path);
     } catch (const Error& error) {
       throw Error(error.kind(), fmt::format("{}: {}", outputs[i].flag, error.what()));
     }

@@ -23,7 +23,9 @@ std::string frame_path(const std::string& pattern, std::int64_t number);
 
 /// Throws Error usage, naming the flag, for a path that cannot be written (not a regular file,
 /// read-only, in a folder that is missing) and for two outputs that are one file.
-void check_outputs(const std::vector<OutputPath>& outputs);
+/// Folders::tidy: also removes what runs that were killed left in the outputs' folders.
+enum class Folders { tidy, leave };
+void check_outputs(const std::vector<OutputPath>& outputs, Folders folders = Folders::tidy);
 
 /// Throws Error usage, naming the flag, when an output is one of `inputs`.
 void check_outputs_spare(const std::vector<OutputPath>& outputs,

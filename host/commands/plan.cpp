@@ -18,6 +18,7 @@
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
 #include "commands/option_text.hpp"
+#include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
 #include "commands/render_arguments.hpp"
 #include "commands/shot.hpp"
@@ -232,6 +233,12 @@ std::string plan_text(const Plan& p) {
   return text;
 }
 
+/// A plan writes statistics alone.
+std::vector<OutputPath> outputs_of(const RenderArguments& a) {
+  if (a.stats_json.empty()) return {};
+  return {{"--stats-json", a.stats_json}};
+}
+
 void run_plan(RenderArguments a) {
   if (a.output.empty()) a.output = a.shard.empty() ? "image.exr" : "part.dapple";
   RenderOptions options = to_options(a);
@@ -247,6 +254,12 @@ void run_plan(RenderArguments a) {
   if (!a.resume.empty())
     throw Error(ErrorKind::usage, "dapple plan plans whole renders: leave --resume out");
   to_format(a);  // checks it before anything is traced
+  const std::vector<OutputPath> outputs = outputs_of(a);
+  check_outputs(outputs);
+  std::vector<std::string> inputs;
+  for (const std::string& path : {a.scene, a.lights, a.dome})
+    if (!path.empty() && !path.starts_with("scene:")) inputs.push_back(path);
+  check_outputs_spare(outputs, inputs);
   catch_interruptions();
   std::optional<double> seconds = a.frame;
   if (!a.frames.empty())
@@ -255,8 +268,12 @@ void run_plan(RenderArguments a) {
     tell("note: the plan is for --footprint {}; a smaller one may be chosen (--max-bias)\n",
          options.footprint);
   Shot shot(a, options);
-  const Plan plan = plan_of(a, options, [&] { return shot.frame(seconds); });
-  if (!a.stats_json.empty()) write_whole_file(a.stats_json, plan_json(plan).dump(2) + "\n");
+  const Plan plan = plan_of(a, options, [&] {
+    Scene scene = shot.frame(seconds);
+    check_outputs_spare(outputs, scene.files);
+    return scene;
+  });
+  if (!a.stats_json.empty()) write_whole_file(a.stats_json, json_text(plan_json(plan)));
   if (!a.quiet) fmt::print("{}", plan_text(plan));
 }
 

@@ -50,7 +50,8 @@ void add_point_options(CLI::App& app, Arguments& a) {
       "one of --at, --grid and --per-triangle");
   app.add_option("--grid", a.grid, "X0,Z0,X1,Z1,STEP: points on a horizontal grid, metres")
       ->delimiter(',')
-      ->expected(5);
+      ->expected(5)
+      ->allow_extra_args(false);
   app.add_option("--height", a.height, "Height of the grid, metres")->capture_default_str();
   app.add_flag("--per-triangle", a.per_triangle,
                "Two points at the centre of each triangle of the scene: its front, then its back");
@@ -83,9 +84,9 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.add_option("--periodic", a.periodic,
                  "X,Z: the scene repeats itself with these periods, metres")
       ->delimiter(',')
-      ->expected(2);
-  app.add_option("--opacity", a.opacity,
-                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
+      ->expected(2)
+      ->allow_extra_args(false);
+  add_opacity_option(app, a.opacity);
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene, which occludes it");
   add_ao_range_options(app, o.distance, o.falloff);
   add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias);
@@ -157,6 +158,7 @@ PointOptions options_of(const Arguments& a) {
       throw Error(ErrorKind::usage, "--periodic needs two periods above 0");
   }
   if (!std::isfinite(a.height)) throw Error(ErrorKind::usage, "--height must be a finite number");
+  if (options.per_sun && a.suns.empty()) throw Error(ErrorKind::usage, "--per-sun needs --suns");
   if (a.height != 0 && a.grid.empty()) throw Error(ErrorKind::usage, "--height needs --grid");
   if (!(a.sky_irradiance >= 0 && a.sky_irradiance <= 1e30f))
     throw Error(ErrorKind::usage, fmt::format("--sky-irradiance is {}; it must be from 0 to 1e+30",
@@ -206,7 +208,7 @@ void run_points(const Arguments& a) {
                                          {"bias", bias_json(result.bias)},
                                          {"device", result.device},
                                          {"notes", result.notes}};
-    write_whole_file(a.stats_json, json.dump(2) + "\n");
+    write_whole_file(a.stats_json, json_text(json));
   }
   if (a.quiet) return;
   for (const std::string& note : result.notes) tell("note: {}\n", note);

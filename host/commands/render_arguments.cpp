@@ -113,8 +113,7 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
                  "Turn a glTF file's lines into strands of this radius, metres; 0: ignore them")
       ->capture_default_str();
   add_outside_option(app, a.scene_options.allow_outside);
-  app.add_option("--opacity", a.opacity,
-                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated");
+  add_opacity_option(app, a.opacity);
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene");
 }
 
@@ -211,10 +210,14 @@ void check_part(const RenderArguments& a, const RenderOptions& options) {
   if (!a.half.empty() || a.multipart || a.compression != RenderArguments().compression)
     refuse("-o " + a.output +
            ": --half, --multipart and --compression are for the image: give them to dapple merge");
-  if (options.shard.count > 1 && !a.frames.empty() && options.light && !options.ambient)
-    refuse(
-        "--shard with --frames needs --ambient: without it the sky of all frames is chosen from "
-        "the samples of the first, and shards would choose differently");
+  const bool is_part_of_frames = options.shard.count > 1 || options.crop;
+  if (is_part_of_frames && !a.frames.empty() && options.light && !options.ambient)
+    refuse(fmt::format(
+        "{} with --frames needs --ambient: without it the sky of all frames is chosen from the {} "
+        "of the first, and {} would choose differently",
+        options.shard.count > 1 ? "--shard" : "-o FILE.dapple and --crop",
+        options.shard.count > 1 ? "samples" : "pixels",
+        options.shard.count > 1 ? "shards" : "crops"));
 }
 
 }  // namespace

@@ -34,6 +34,12 @@ void add_max_bias_option(CLI::App& app, float& max_bias) {
       ->capture_default_str();
 }
 
+void add_opacity_option(CLI::App& app, std::vector<std::string>& opacity) {
+  app.add_option("--opacity", opacity,
+                 "MATERIAL=VALUE: gives a material this opacity, 0 to 1; may be repeated")
+      ->allow_extra_args(false);  // SCENE may be the next word
+}
+
 void add_ao_range_options(CLI::App& app, float& distance, float& falloff) {
   app.add_option("--ao-distance", distance,
                  "Surfaces farther than this, in metres, don't occlude; 0: no limit")

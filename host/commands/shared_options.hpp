@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace dapple {
 
@@ -13,6 +14,9 @@ CLI::Option* add_prefiltering_options(CLI::App& app, std::string& estimator, flo
 
 /// --max-bias of commands that choose no footprint without it
 void add_max_bias_option(CLI::App& app, float& max_bias);
+
+/// --opacity, once for each material
+void add_opacity_option(CLI::App& app, std::vector<std::string>& opacity);
 
 /// --ao-distance and --ao-falloff
 void add_ao_range_options(CLI::App& app, float& distance, float& falloff);

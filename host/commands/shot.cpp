@@ -33,7 +33,7 @@ Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), op
   if (!a.lights.empty()) lights_ = load_lights(a.lights);
   if (!a.dome.empty()) dome_ = read_dome(a);
   if (lights_ && lights_->empty() && !dome_)
-    options.light = false;  // else default lights would be added
+    options.light = options_.light = false;  // else default lights would be added
   if (a.frames.empty() && a.shutter.empty() && !options.motion) return;
   moving_.emplace(a.scene, scene_options_of(a, options));
   options.ground = false;
@@ -56,6 +56,7 @@ Shot::Defaults Shot::choose_defaults(const Scene& first) const {
   const Camera camera = choose_view(first, options_, chosen.notes).camera;
   if (!options_.look && first.cameras.empty()) chosen.camera = camera;
   if (!options_.look) chosen.camera_name = camera.name;
+  if (!options_.look && camera.lens_radius > 0) chosen.focus_distance = camera.focus_distance;
   if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);
   if (options_.ground) chosen.ground_under = scene_bounds(first);
   return chosen;
@@ -77,6 +78,8 @@ void Shot::keep_camera(Scene& scene) const {
                             "--look-at choose another",
                             arguments_.scene, defaults_->camera_name));
   std::iter_swap(scene.cameras.begin(), kept);
+  Camera& camera = scene.cameras.front();
+  if (!(camera.focus_distance > 0)) camera.focus_distance = defaults_->focus_distance;
 }
 
 void Shot::add_defaults(Scene& scene) const {

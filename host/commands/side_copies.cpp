@@ -66,10 +66,12 @@ std::set<fs::path> files_of(const fs::path& output) {
 /// Throws Error usage if the file cannot be written. Folders below `parent` are not there yet.
 void check_target(const fs::path& to, const fs::path& parent) {
   std::error_code ignored;
-  if (fs::is_directory(fs::absolute(to, ignored).parent_path(), ignored))
+  if (fs::is_directory(fs::absolute(to, ignored).parent_path(), ignored)) {
     check_output_path(to.string());
-  else if (access(parent.c_str(), W_OK | X_OK) != 0)
+    remove_abandoned_beside(to.string());
+  } else if (access(parent.c_str(), W_OK | X_OK) != 0) {
     throw Error(ErrorKind::usage, parent.string() + " cannot be written to");
+  }
 }
 
 }  // namespace

@@ -98,6 +98,10 @@ nlohmann::ordered_json bias_json(const std::map<std::string, Bias>& layers) {
   return json;
 }
 
+std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 std::string bytes_text(double bytes) {
   if (bytes >= 1e9) return fmt::format("{:.2f} GB", bytes * 1e-9);
   if (bytes >= 1e6) return fmt::format("{:.1f} MB", bytes * 1e-6);
@@ -154,7 +158,7 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
 }
 
 void write_statistics(const RenderStatistics& statistics, const std::string& path) {
-  write_whole_file(path, statistics_json(statistics).dump(2) + "\n");
+  write_whole_file(path, json_text(statistics_json(statistics)));
 }
 
 std::string statistics_text(const RenderStatistics& s) {

@@ -76,6 +76,9 @@ void copy_permissions(const std::string& from, int to) {
 void check_output_path(const std::string& path) {
   const std::string reason = refusal(follow_links(path));
   if (!reason.empty()) throw Error(ErrorKind::usage, cannot_write(path, reason));
+}
+
+void remove_abandoned_beside(const std::string& path) {
   remove_abandoned_files(folder_of(follow_links(path)));
 }
 

@@ -16,9 +16,11 @@
 namespace dapple {
 
 /// Refuses a path that cannot be written, before any work is done: not a regular file, read-only,
-/// or in a folder that is missing or not writable. Removes temporary files of killed runs from the
-/// folder. Throws Error usage.
+/// or in a folder that is missing or not writable. Throws Error usage.
 void check_output_path(const std::string& path);
+
+/// Removes temporary files of killed runs from the folder of `path`.
+void remove_abandoned_beside(const std::string& path);
 
 /// Whether to wait until the disk has the file. Files that can be made again need not wait: their
 /// checksum shows damage after a power failure.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -67,12 +68,26 @@ void check_number(const std::string& path, const NumberTable& table, std::size_t
                                               found->second.place, found->second.text));
 }
 
-/// A name that every format can hold: without separators, quotes and control characters, and
-/// unlike the names before it and those of positions and normals.
+/// Whether all bytes belong to characters of UTF-8 (RFC 3629, without its rules for single values).
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto first = static_cast<unsigned char>(text[i]);
+    const int more = first < 0x80 ? 0 : std::countl_one(first) - 1;
+    if (first >= 0x80 && (more < 1 || more > 3)) return false;
+    for (int k = 0; k < more; ++k)
+      if (++i == text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
+  }
+  return true;
+}
+
+/// A name that every format can hold: without separators, quotes and control characters, in UTF-8,
+/// and unlike the names before it and those of positions and normals.
 std::string column_name(const NumberTable& table, std::size_t column, const PointList& list) {
   std::string name = column < table.names.size() ? table.names[column] : "";
+  const bool is_text = is_utf8(name);
   for (char& letter : name)
     if (static_cast<unsigned char>(letter) <= ' ' ||
+        (!is_text && static_cast<unsigned char>(letter) >= 0x80) ||
         std::string_view(",;\"'\\\x7f").find(letter) != std::string_view::npos)
       letter = '_';
   const auto is_taken = [&](const std::string& wanted) {

@@ -52,15 +52,20 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
   const bool one_light = std::all_of(rays.begin(), rays.end(),
                                      [&](const Ray& ray) { return ray.light == rays[0].light; });
   if (!one_light) rays_per_point = 1;
+  const bool single = !one_light && context.packets() == Packets::pixel;
   const std::size_t slice = std::max<std::size_t>(1, kQueryRays / rays_per_point) * rays_per_point;
   const Queues queues = make_queues(context, std::min(slice, rays.size()), 1);
   std::vector<Occlusion> results(rays.size());
   for (std::size_t begin = 0; begin < rays.size(); begin += slice) {
     const std::size_t count = std::min(slice, rays.size() - begin);
     context.write(queues.rays, &rays[begin], count * sizeof(Ray));
-    occlusion_pass(
-        context, queues, *scene.buffers, "occlusion", estimator,
-        occlusion_params(*scene.buffers, count / rays_per_point, rays_per_point, footprint));
+    const OcclusionParams params =
+        occlusion_params(*scene.buffers, count / rays_per_point, rays_per_point, footprint);
+    if (single)
+      occlusion_pass_with(Packets::none, context, queues, *scene.buffers, "occlusion", estimator,
+                          params);
+    else
+      occlusion_pass(context, queues, *scene.buffers, "occlusion", estimator, params);
     context.read(queues.occlusions, &results[begin], count * sizeof(Occlusion));
   }
   context.finish();

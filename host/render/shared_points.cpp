@@ -13,19 +13,21 @@ namespace dapple {
 namespace {
 
 /// Rays start above a plane by 64 roundings of the coordinates along its normal, since callers
-/// rounded theirs; and by 16 of the largest coordinate, as above camera hits (surface_point.clh),
-/// where the plane is not known or matrices carry rays into instances.
+/// rounded theirs, or of the larger terms that these are the sums of; and by 16 of the largest
+/// coordinate, as above camera hits (surface_point.clh), where the plane is not known or matrices
+/// carry rays into instances.
 constexpr float kAlongNormal = 3.8e-6f, kInAllDirections = 9.5e-7f;
 
 SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& plane,
-                           std::size_t index, bool is_bounded) {
+                           const V3f& reach, std::size_t index, bool is_bounded) {
   SurfacePoint point{};
   float along = 0, largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     point.position[axis] = position[axis];
     point.normal[axis] = normal[axis];
-    along += std::fabs(position[axis] * plane[axis]);
-    largest = std::max(largest, std::fabs(position[axis]));
+    const float term = std::max(std::fabs(position[axis]), reach[axis]);
+    along += term * std::fabs(plane[axis]);
+    largest = std::max(largest, term);
   }
   point.offset = along * kAlongNormal + (is_bounded ? 0.0f : largest * kInAllDirections);
   point.pixel = static_cast<uint>(index);
@@ -51,7 +53,8 @@ SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,
   for (const std::uint32_t i : chosen) {
     const bool is_smooth = !points.geometric.empty() && points.geometric[i].length2() > 0;
     points_.push_back(surface_point(points.positions[i], points.normals[i],
-                                    is_smooth ? points.geometric[i] : points.normals[i], i,
+                                    is_smooth ? points.geometric[i] : points.normals[i],
+                                    points.reaches.empty() ? V3f(0, 0, 0) : points.reaches[i], i,
                                     points.has_planes && scene.has_top == 0));
     if (is_smooth) smooth(points.geometric[i], points.shifts[i], points_.back());
   }

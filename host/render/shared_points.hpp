@@ -23,6 +23,8 @@ struct QueryPoints {
   std::span<const V3f> geometric = {}, shifts = {};
   /// Whether `geometric`, and `normals` where it is zero, are those of the surfaces' planes.
   bool has_planes = false;
+  /// The largest terms of the sums that were rounded to `positions`, not negative; or empty.
+  std::span<const V3f> reaches = {};
 };
 
 /// Points in host memory that the device reads in place. The destructor waits for the device.

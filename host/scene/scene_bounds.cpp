@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "dapple/scene.hpp"
+#include "scene/invertible.hpp"
 
 namespace dapple {
 namespace {
@@ -52,11 +53,13 @@ Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
 
 Box3f scene_bounds(const Scene& scene, const M44f& transform) {
   std::vector<std::uint32_t> instance_counts(scene.meshes.size(), 0);
-  for (const Instance& instance : scene.instances) ++instance_counts[instance.mesh];
+  for (const Instance& instance : scene.instances)
+    if (is_invertible(instance.to_world)) ++instance_counts[instance.mesh];
 
   std::vector<Box3f> object_bounds(scene.meshes.size());
   Box3f bounds;
   for (const Instance& instance : scene.instances) {
+    if (!is_invertible(instance.to_world)) continue;
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (instance_counts[instance.mesh] == 1) {
       bounds.extendBy(mesh_bounds(mesh, instance.to_world * transform));

@@ -226,8 +226,8 @@ void finalize_domes(Scene& scene);
 /// Throws Error failed.
 void write_glb(const Scene& scene, const std::string& path);
 
-/// Bounds of all instances after `transform` of world space, which is affine; an empty box for an
-/// empty scene.
+/// Bounds of all instances whose matrix can be inverted, after `transform` of world space, which is
+/// affine; an empty box for an empty scene.
 Box3f scene_bounds(const Scene& scene, const M44f& transform = {});
 
 /// Gives material `name` the opacity `value` in place of texture, factor and mode.

@@ -141,6 +141,8 @@ TEST(Packing, WhatDoesNotFitSaysSoAndTheSmallestSizeFits) {
   const std::uint32_t size = smallest_size(1000, 2);
   EXPECT_EQ(size, 128u);
   EXPECT_EQ(pack(sizes, size, 2).rects.size(), 1000u);
+  EXPECT_TRUE(pack(std::vector<V2f>(300, V2f(1, 1)), 64, 2).rects.empty())
+      << "there is room for 484 points";
 }
 
 TEST(TexelCover, PartsOfATriangleAddUpToItsArea) {

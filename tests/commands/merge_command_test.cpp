@@ -117,6 +117,18 @@ TEST_F(MergeCommand, StatisticsTellWhatPartsKnow) {
     EXPECT_FALSE(contains(json, unknown)) << unknown;
 }
 
+TEST_F(MergeCommand, PreviewsHaveTheHeatMapOfARender) {
+  const std::string visits =
+      "render 'scene:tree?leaves=1000' --width 40 --height 36 --spp 6 --passes ao,visits -q ";
+  ASSERT_EQ(dapple(visits + "-o whole.exr --png whole.png").code, 0);
+  for (const char* shard : {"1", "2"})
+    ASSERT_EQ(dapple(visits + "--shard " + shard + "/2 -o " + shard + ".dapple").code, 0);
+  ASSERT_EQ(dapple("merge 1.dapple 2.dapple -o m.exr --png m.png").code, 0);
+  EXPECT_EQ(bytes("m_visits.png"), bytes("whole_visits.png"));
+  expect_failure(dapple("merge 1.dapple 2.dapple -o sum.dapple --half all"), 2, "--half");
+  EXPECT_FALSE(std::filesystem::exists(path("sum.dapple")));
+}
+
 double number_after(const std::string& json, const std::string& key) {
   const std::size_t at = json.find("\"" + key + "\": ");
   return at == std::string::npos ? -1 : std::stod(json.substr(at + key.size() + 4));
@@ -143,6 +155,8 @@ TEST_F(MergeCommand, APlanIsOfTheRightSizeAndWritesNothing) {
   EXPECT_GT(number_after(json, "seconds_of_rays"), 0);
   expect_failure(dapple("plan scene:cube --target-rmse 0.1"), 2, "dapple plan needs --spp");
   expect_failure(dapple("plan scene:cube --resume a.ckpt"), 2, "leave --resume out");
+  expect_failure(dapple("plan scene:cube --stats-json no/p.json"), 2, "there is no folder");
+  expect_failure(dapple("plan part.dapple --stats-json part.dapple"), 2, "would overwrite");
   expect_failure(dapple("plan scene:cube --crop 9,9,4,4"), 2, "has no pixels");
 }
 

@@ -87,6 +87,17 @@ TEST_F(PointsCommand, TurnsAnImageOfTheSkyAndDoesNotOverwriteIt) {
   EXPECT_EQ(bytes_of(path("sky.exr")), before);
 }
 
+TEST_F(PointsCommand, TheSceneMayComeAfterListsOfNumbers) {
+  const program_test::Outcome run = dapple(
+      "points --grid=-1,-1,1,1,1 --periodic 4,4 --opacity leaf=0.5 'scene:tree?leaves=100' "
+      "-o a.csv --rays 8");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(dapple("points --grid 0,0,1,1,1 'scene:tree?leaves=100' -o a.csv --rays 8").code, 0);
+  const program_test::Outcome suns =
+      dapple("points 'scene:tree?leaves=100' --grid 0,0,1,1,1 -o b.csv --per-sun");
+  EXPECT_TRUE(contains(suns.err, "--per-sun needs --suns")) << suns.err;
+}
+
 TEST_F(PointsCommand, RefusesAHeightWithoutAGrid) {
   const program_test::Outcome run =
       dapple("points 'scene:tree?leaves=3000' --per-triangle --height 1 -o a.csv");

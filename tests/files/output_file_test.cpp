@@ -107,7 +107,7 @@ TEST_F(OutputFile, WritersOfOneFileAtOnceLeaveTheWholeFileOfOneOfThem) {
       const std::string bytes(kBytes, static_cast<char>('a' + i));
       try {
         for (int time = 0; time < kTimes; ++time) {
-          check_output_path(path("a.bin"));
+          remove_abandoned_beside(path("a.bin"));
           write_whole_file(path("a.bin"), bytes);
         }
       } catch (const Error& error) {

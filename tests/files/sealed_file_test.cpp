@@ -171,7 +171,7 @@ TEST(KilledWriter, LeavesTheOldFileOrTheNewAndTheNextRunCleansUp) {
     EXPECT_EQ(std::count(numbers.begin(), numbers.end(), numbers[0]),
               static_cast<std::ptrdiff_t>(numbers.size()));
     left_behind += std::distance(fs::directory_iterator(folder), fs::directory_iterator()) > 1;
-    check_output_path(path);
+    remove_abandoned_beside(path);
     ASSERT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
   }
   EXPECT_EQ(left_behind, 40);

@@ -119,6 +119,14 @@ TEST_F(PointFile, ColumnsOfTextAreLeftOutWithANote) {
   EXPECT_THROW(read_suns(write("t.csv", "azimuth,elevation,irradiance\n180,63,high\n")), Error);
 }
 
+TEST_F(PointFile, NamesThatAreNotUtf8GetOtherLetters) {
+  std::ofstream(path("latin.csv")) << "x,y,z,H\xf6he,\xc3\xb6\n1,2,3,4,5\n";
+  const PointList list = read_points(path("latin.csv"));
+  ASSERT_EQ(list.extra.size(), 2u);
+  EXPECT_EQ(list.extra[0].name, "H_he");
+  EXPECT_EQ(list.extra[1].name, "\xc3\xb6");
+}
+
 TEST_F(PointFile, NormalsOfAnyLengthBecomeUnit) {
   const PointList list = read_points(write("n.csv", "0,0,0,0,1e300,0\n0,0,0,1e-300,0,0\n"));
   EXPECT_EQ(list.normals.at(0), V3f(0, 1, 0));

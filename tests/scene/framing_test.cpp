@@ -83,6 +83,16 @@ TEST(FrameScene, InstancesAreFramedWhereTheyAre) {
   expect_framed(frame_scene(scene, 1.5f), 1.5f, points);
 }
 
+TEST(FrameScene, WhatIsScaledToNothingIsNotFramed) {
+  Scene scene = triangle_at({0, 0, 0}, {1, 1, 1});
+  const std::vector<V3f> points = scene.meshes[0].positions;
+  const Box3f bounds = scene_bounds(scene);
+  scene.instances.push_back(scene.instances[0]);
+  scene.instances[1].to_world = M44f().setScale(0.0f) * M44f().setTranslation(V3f(0, -100, 0));
+  EXPECT_EQ(scene_bounds(scene), bounds);
+  expect_framed(frame_scene(scene, 1.5f), 1.5f, points);
+}
+
 TEST(FrameScene, ALongSceneIsSeenFromItsSide) {
   const auto back = [](const V3f& size) {
     const Camera camera = frame_scene(triangle_at({0, 0, 0}, size), 1.5f);

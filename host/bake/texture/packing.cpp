@@ -49,6 +49,7 @@ Packing pack(const std::vector<V2f>& sizes, std::uint32_t size, std::uint32_t ga
     const float middle = 0.5f * (low + high);
     (shelve(sizes, order, middle, size, gap, nullptr) ? low : high) = middle;
   }
+  if (!(low > 0)) return {};  // there is room for points only
   Packing packing{low, std::vector<TexelRect>(sizes.size())};
   shelve(sizes, order, low, size, gap, &packing.rects);
   return packing;
@@ -57,7 +58,7 @@ Packing pack(const std::vector<V2f>& sizes, std::uint32_t size, std::uint32_t ga
 std::uint32_t smallest_size(std::size_t rects, std::uint32_t gap) {
   std::uint32_t size = 2;
   const auto fits = [&] {
-    const std::size_t row = (size + gap) / (1 + gap);
+    const std::size_t row = (size + gap) / (2 + gap);  // a side of any length touches two texels
     return row * row >= rects;
   };
   while (!fits()) size *= 2;

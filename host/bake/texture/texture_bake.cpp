@@ -86,6 +86,7 @@ class SampledTexels : public SampledSurface {
     SurfaceSample sample;
     sample.normal = area_vector(mesh_, t).normalized();
     sample.back = two_sided_[t];
+    sample.reach = reach_of(mesh_, t);
     sample.place[0] = place;
     sample.weight[0] = 1;
     for (std::size_t k = 0; k < 3; ++k)

@@ -10,6 +10,12 @@ namespace {
 
 constexpr float kSize = kMapSize;
 
+/// 0 where a side is so short that the number would overflow: it counts as having no length.
+DAPPLE_ALWAYS_INLINE float cells_per_metre(const Box3f& parent, int axis) {
+  const float side = parent.max[axis] - parent.min[axis];
+  return side > 1e-30f ? kSize / side : 0.0f;
+}
+
 /// Resampling of a map of a child to the cells of its parent along one axis. For each cell of the
 /// child: the first parent cell that it overlaps, and the overlap with this cell (`here`) and with
 /// the next one, in widths of a parent cell.
@@ -19,7 +25,7 @@ struct AxisResampling {
   int first, last;  ///< parent cells touched
 
   DAPPLE_ALWAYS_INLINE AxisResampling(const Box3f& parent, const Box3f& child, int axis) {
-    const float to_cells = kSize / (parent.max[axis] - parent.min[axis]);
+    const float to_cells = cells_per_metre(parent, axis);
     const float start = std::clamp((child.min[axis] - parent.min[axis]) * to_cells, 0.0f, kSize);
     const float width =
         std::min((child.max[axis] - child.min[axis]) * to_cells, kSize - start) / kSize;
@@ -50,7 +56,7 @@ DAPPLE_ALWAYS_INLINE float row_share(const CellRange& range, int row) {
 }
 
 CellRange cell_range(const Box3f& parent, const Box3f& box, int axis) {
-  const float to_cells = kSize / (parent.max[axis] - parent.min[axis]);
+  const float to_cells = cells_per_metre(parent, axis);
   return {(box.min[axis] - parent.min[axis]) * to_cells,
           (box.max[axis] - parent.min[axis]) * to_cells};
 }

@@ -134,13 +134,13 @@ class ChannelSampler {
 KeyframePosition find_key(const std::vector<float>& times, double seconds) {
   const auto after =
       std::upper_bound(times.begin(), times.end(), seconds,
-                       [](double value, float time) { return value < double{time}; });
+                       [](double value, float time) { return static_cast<float>(value) < time; });
   if (after == times.begin()) return {};
   KeyframePosition position;
   position.key = static_cast<std::size_t>(after - times.begin()) - 1;
   if (after == times.end()) return position;
   position.interval = double{*after} - double{times[position.key]};
-  position.fraction = (seconds - double{times[position.key]}) / position.interval;
+  position.fraction = std::max(0.0, (seconds - double{times[position.key]}) / position.interval);
   return position;
 }
 

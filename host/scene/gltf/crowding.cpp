@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "scene/invertible.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -31,6 +32,7 @@ void check_crowding(const Scene& scene) {
   std::unordered_map<std::uint64_t, std::uint32_t> counts;
   counts.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
+    if (!is_invertible(instance.to_world)) continue;  // scaled to nothing: not placed
     if (++counts[hash(instance)] <= kMaxAtOnePosition) continue;
     fail(scene.source, "mesh \"{}\" has more than {} instances at one position",
          excerpt(scene.meshes[instance.mesh].name), grouped(kMaxAtOnePosition));

@@ -144,9 +144,11 @@ ShownMaterials shown_materials(const Document& document, const std::vector<Place
                                bool with_lines) {
   const auto& model = document.model;
   ShownMaterials shown{std::vector<bool>(model.materials.size(), false), false};
+  std::vector<bool> seen(model.meshes.size(), false);
   for (const PlacedNode& at : placed) {
     const int mesh = model.nodes[static_cast<std::size_t>(at.node)].mesh;
-    if (mesh < 0) continue;
+    if (mesh < 0 || seen[static_cast<std::size_t>(mesh)]) continue;
+    seen[static_cast<std::size_t>(mesh)] = true;
     for (const auto& primitive : model.meshes[static_cast<std::size_t>(mesh)].primitives) {
       const bool triangles = primitive.mode >= TINYGLTF_MODE_TRIANGLES;
       if (!triangles && !(with_lines && is_of_lines(primitive))) continue;

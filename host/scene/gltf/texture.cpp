@@ -109,11 +109,17 @@ void TextureReader::count_texels(std::uint64_t texels, const std::string& what) 
 }
 
 const ColorImage& TextureReader::decoded(int image, const std::string& what) {
-  if (image != last_image_) {
-    last_ = decode_color(read_image(document_, image, what).bytes, what);
-    last_image_ = image;
-  }
+  if (image == last_image_) return last_;
+  require_readable(image, what);
+  unreadable_.insert(image);  // unless what follows succeeds
+  last_ = decode_color(read_image(document_, image, what).bytes, what);
+  unreadable_.erase(image);
+  last_image_ = image;
   return last_;
+}
+
+void TextureReader::require_readable(int image, const std::string& what) const {
+  if (unreadable_.contains(image)) fail(what, "cannot be read, as was said before");
 }
 
 int TextureReader::color_texture(int texture, const std::string& user) {
@@ -133,10 +139,16 @@ int TextureReader::color_texture(int texture, const std::string& user) {
   return index;
 }
 
-V3f TextureReader::mean_color(int texture, const std::string& user) const {
+V3f TextureReader::mean_color(int texture, const std::string& user) {
   const int image = image_of(document_, texture, user);
+  if (const auto known = means_.find(image); known != means_.end()) return known->second;
   const std::string what = describe(document_, image, user);
-  return mean_linear_color(read_image(document_, image, what).bytes, what);
+  require_readable(image, what);
+  unreadable_.insert(image);  // unless what follows succeeds
+  const V3f mean = mean_linear_color(read_image(document_, image, what).bytes, what);
+  unreadable_.erase(image);
+  means_.emplace(image, mean);
+  return mean;
 }
 
 }  // namespace dapple::gltf

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 
@@ -27,19 +28,23 @@ class TextureReader {
   int color_texture(int texture, const std::string& user);
 
   /// Returns the mean linear colour of a glTF texture. Throws like alpha_texture().
-  [[nodiscard]] V3f mean_color(int texture, const std::string& user) const;
+  [[nodiscard]] V3f mean_color(int texture, const std::string& user);
 
  private:
   using Key = std::tuple<int, Wrap, Wrap, bool>;  // image, wrap_s, wrap_t, nearest
 
   /// Decodes an image, or returns it if it was the last one: a material needs alpha and colour.
   [[nodiscard]] const ColorImage& decoded(int image, const std::string& what);
+  /// Throws if an earlier attempt to read the image failed: it may be large.
+  void require_readable(int image, const std::string& what) const;
   void count_texels(std::uint64_t texels, const std::string& what);
 
   const Document& document_;
   Scene& scene_;
   bool with_colors_;
   std::map<Key, int> loaded_, loaded_colors_;
+  std::map<int, V3f> means_;  ///< by image
+  std::set<int> unreadable_;  ///< images
   std::uint64_t texels_ = 0;  ///< of all textures in the scene
   int last_image_ = -1;       ///< whose content is `last_`
   ColorImage last_;

@@ -95,6 +95,35 @@ TEST(GltfAnimation, StepsHoldAKeyframeUntilTheNext) {
 
 // Hermite basis at a quarter of the interval: h00 = 27/32, h10 = 9/64, h01 = 5/32, h11 = -3/64.
 // Tangents are multiplied by the two seconds between the keyframes.
+// Times are floats in files, and n / 24 is a double on the command line.
+TEST(GltfAnimation, TheFrameOfAKeyframeShowsIt) {
+  std::vector<float> times, values;
+  for (int n = 0; n < 24; ++n) {
+    times.push_back(static_cast<float>(n) / 24);
+    values.insert(values.end(), {static_cast<float>(n), 0, 0});
+  }
+  for (const char* interpolation : {"STEP", "LINEAR"}) {
+    const GltfBuilder b = moved(times, values, interpolation);
+    for (int n = 0; n < 24; ++n)
+      EXPECT_NEAR(position_at(b, n / 24.0).x, n, 1e-5) << interpolation << " " << n;
+  }
+}
+
+TEST(GltfAnimation, HiddenCopiesOfAMeshAreNotACrowd) {
+  GltfBuilder b = one_triangle();
+  b.doc["nodes"] = json::array({{{"scale", {0, 0, 0}}, {"children", json::array()}}});
+  for (int i = 1; i <= 1500; ++i) {
+    b.doc["nodes"].push_back({{"mesh", 0}, {"translation", {i, 0, 0}}});
+    b.doc["nodes"][0]["children"].push_back(i);
+  }
+  b.doc["scenes"] = {{{"nodes", {0}}}};
+  EXPECT_EQ(b.load({}).instances.size(), 1500u);
+  b.doc["nodes"][0]["scale"] = {1, 1, 1};
+  for (int i = 1; i <= 1500; ++i) b.doc["nodes"][i]["translation"] = {0, 0, 0};
+  EXPECT_TRUE(input_error([&] { static_cast<void>(b.load({})); }).find("at one position") !=
+              std::string::npos);
+}
+
 TEST(GltfAnimation, CubicSplinesPassTheirKeyframesWithTheirTangents) {
   const GltfBuilder b = moved({1, 3},
                               {9, 9, 9, 0, 0, 32, 8, 0, 0,  // in-tangent, value, out-tangent
