@@ -18,7 +18,8 @@ bool needs_footprint_pilot(const RenderOptions& options, bool resumed) {
          (chooses_footprint(options) && !resumed);
 }
 
-FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& picture, bool resumed) {
+FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& picture,
+                                std::optional<float> first_footprint) {
   const RenderOptions sampled = by_sample(picture.options);
   const bool unasked = chooses_footprint(picture.options);
   View view = picture.view;
@@ -31,11 +32,20 @@ FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& pictu
   if (sampled.cryptomattes.any() || sampled.motion || sampled.deep) camera.medium_error = 0;
   BiasPilot pilot(kept.device->context(), scene, view, sampled, layout, camera);
   FootprintDemand demand{sampled.footprint, sampled.max_bias.value_or(0),
-                         std::max(sampled.target_error, sampled.target_rmse), !resumed};
+                         std::max(sampled.target_error, sampled.target_rmse), !first_footprint};
   if (unasked) {
     pilot.limit(kPilotShare);
     demand.max_bias = kDefaultMaxBias;
     demand.only_if_clear = true;
+  }
+  if (first_footprint && *first_footprint != demand.footprint && demand.target > 0) {
+    // The rays of the first choice, so that the target leaves as much for the noise.
+    FootprintDemand first = demand;
+    first.footprint = *first_footprint;
+    first.may_shrink = true;
+    FootprintChoice choice = choose_footprint(pilot, first);
+    choice.note.clear();
+    if (choice.footprint == demand.footprint) return choice;
   }
   return choose_footprint(pilot, demand);
 }

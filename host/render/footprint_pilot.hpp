@@ -2,6 +2,8 @@
 // the scene on its device and the options. Out: a footprint, and the bias that a target must count.
 #pragma once
 
+#include <optional>
+
 #include "film/film_sums.hpp"
 #include "render/kept_scene.hpp"
 #include "sampling/footprint_choice.hpp"
@@ -20,9 +22,10 @@ struct PilotPicture {
 /// samples, with a footprint.
 bool needs_footprint_pilot(const RenderOptions& options, bool resumed);
 
-/// Of resumed pictures the footprint stays. If dapple chooses without a limit or a target being
-/// given, it chooses the same for all crops and shards of a picture: the pilot has the whole
-/// picture's rays.
-FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& picture, bool resumed);
+/// `first_footprint`: of a resumed picture, what its first run began with. The footprint stays. If
+/// dapple chooses without a limit or a target being given, it chooses the same for all crops and
+/// shards of a picture: the pilot has the whole picture's rays.
+FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& picture,
+                                std::optional<float> first_footprint);
 
 }  // namespace dapple

@@ -317,6 +317,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const View view = prepare_scene(scene, options, statistics.notes);
   options.camera_splitting = choose_camera_splitting(options, scene, view);
   const Settings asked = option_settings(options, view);
+  const float asked_footprint = options.footprint;
   std::optional<Checkpoint> resumed;
   if (!control.resume.empty()) resumed = resume(control.resume, asked, options, statistics.notes);
   const RenderOptions sampled = by_sample(options);
@@ -334,9 +335,10 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const Stopwatch trace_time;
   RenderOptions traced = options;
   if (needs_footprint_pilot(options, resumed.has_value())) {
-    traced = with_measured_bias(
-        footprint_pilot(kept, {view, options, bounds, lights}, resumed.has_value()), options,
-        statistics);
+    traced =
+        with_measured_bias(footprint_pilot(kept, {view, options, bounds, lights},
+                                           resumed ? std::optional(asked_footprint) : std::nullopt),
+                           options, statistics);
     statistics.pass_seconds["bias pilot"] = trace_time.seconds();
   }
   statistics.footprint = options.footprint;
