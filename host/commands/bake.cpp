@@ -250,8 +250,9 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   scene.source = a.scene;
   if (!input->lights().empty()) scene.lights = input->lights();
   const std::vector<Scene> occluders = load_occluders(a);
+  check_outputs_spare(outputs, files_read(a, scene, occluders));
   if (options.light) choose_lights(a, scene);
-  const std::vector<std::string> inputs = files_read(a, scene, occluders);
+  const std::vector<std::string> inputs = files_read(a, scene, occluders);  // and images of lights
   check_outputs_spare(outputs, inputs);
   gltf::SourceFile file(input->path(), a.scene_options.allow_outside);
   input.reset();  // all of it is in memory

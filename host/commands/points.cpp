@@ -183,8 +183,9 @@ void run_points(const Arguments& a) {
   ProgressBar progress(a.quiet, "measuring");
   progress.announce("reading", a.scene);
   Scene scene = load_scene(a.scene, a.scene_options);
-  set_lights(a, scene);
   check_outputs_spare(outputs, files_read(a, scene));
+  set_lights(a, scene);
+  check_outputs_spare(outputs, files_read(a, scene));  // and images of lights
   const PointList list = points_of(a, scene);
   if (!a.suns.empty()) options.suns = read_suns(a.suns);
   const double load_seconds = total.seconds();
