@@ -123,7 +123,9 @@ std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
       shading[group] += (normals ? (*normals)[k] * area.length() : area) * side;
       is_smooth[group] = is_smooth[group] || normals;
       sample.position = of.mesh.positions[vertex];
-      for (int axis = 0; axis < 3; ++axis) sample.reach[axis] = std::fabs(sample.position[axis]);
+      const V3f reach = reach_of(of.mesh, t);
+      for (int axis = 0; axis < 3; ++axis)
+        sample.reach[axis] = std::max(sample.reach[axis], reach[axis]);
       sample.back = sample.back || of.two_sided[t];
       sample.place[0] = group;
     }

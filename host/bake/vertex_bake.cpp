@@ -128,14 +128,12 @@ RoundOptions round_options(const BakeOptions& options, std::uint32_t first,
   rounds.limit = static_cast<std::uint32_t>(options.rays / kRaysPerSample);
   rounds.fixed = sample_counts(options.rays, placements.to_world.size());
   if (lights) {
-    constexpr std::size_t kMaxLightSamples = 64;  // or one for each placement
     rounds.rays = rounds.fixed.rays = options.light_rays;
-    rounds.fixed.samples = static_cast<std::uint32_t>(std::min<std::size_t>(
-        rounds.fixed.samples, std::max(kMaxLightSamples, placements.to_world.size())));
-    // As many in each placement, as those of AO.
-    const auto equal = static_cast<int>(
-        std::min(placements.to_world.size(), static_cast<std::size_t>(rounds.limit)));
-    rounds.fixed.samples -= rounds.fixed.samples % std::max(equal, 1);
+    // As AO has, up to 64 or a few more: as many in each placement.
+    constexpr int kMaxLightSamples = 64;
+    const int each = std::max(1, static_cast<int>(placements.to_world.size()));
+    rounds.fixed.samples =
+        std::min(rounds.fixed.samples, (kMaxLightSamples + each - 1) / each * each);
   }
   return rounds;
 }

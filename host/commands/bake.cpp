@@ -78,7 +78,7 @@ class SceneFile {
       throw;
     }
     lock_ = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-    flock(lock_, LOCK_EX | LOCK_NB);
+    if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
     close(reserved.descriptor);
   }
   void remove() {

@@ -33,6 +33,7 @@ void check(const MergeArguments& a) {
   const RenderArguments& files = a.files;
   std::vector<OutputPath> outputs{{"--output", files.output}};
   if (!files.png.empty()) outputs.push_back({"--png", files.png});
+  if (!files.png.empty()) outputs.push_back({"--png", visits_path(files.png)});  // if parts have it
   if (!files.stats_json.empty()) outputs.push_back({"--stats-json", files.stats_json});
   const RenderArguments defaults;
   if (is_part_path(files.output) &&
@@ -46,21 +47,16 @@ void check(const MergeArguments& a) {
   check_png(files);
 }
 
-/// Where the heat map of visits goes, as in a render; empty: nowhere. Only the parts know whether
-/// there is one.
-std::string heat_map_of(const Film& film, const MergeArguments& a) {
-  if (a.files.png.empty() || !film.find("visits.nodes")) return {};
-  const std::string path = visits_path(a.files.png);
-  check_outputs({{"--png", path}});
-  check_outputs_spare({{"--png", path}}, a.parts);
-  return path;
+bool has_heat_map(const Merge& merge, const RenderArguments& files) {
+  return !files.png.empty() && merge.result.film.find("visits.nodes");
 }
 
 void print(const Merge& merge, const MergeArguments& a) {
   for (const std::string& note : merge.result.statistics.notes) tell("note: {}\n", note);
-  fmt::print("merged {} part{}, {} of {} samples per pixel; wrote {}{}\n", a.parts.size(),
+  fmt::print("merged {} part{}, {} of {} samples per pixel; wrote {}{}{}\n", a.parts.size(),
              a.parts.size() == 1 ? "" : "s", merge.missing.empty() ? "all" : "not all", merge.spp,
-             a.files.output, a.files.png.empty() ? "" : " and " + a.files.png);
+             a.files.output, a.files.png.empty() ? "" : " and " + a.files.png,
+             has_heat_map(merge, a.files) ? " and " + visits_path(a.files.png) : "");
 }
 
 /// The statistics of a render. Parts do not know the scene, nor the seconds of their renders: these
@@ -88,11 +84,11 @@ void run_merge(const MergeArguments& a) {
   RenderResult& result = merge.result;
   for (const std::string& name : half_layers_without_planes(result.film, format))
     result.statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));
-  const std::string visits = heat_map_of(result.film, a);
   use_exr_threads(static_cast<int>(std::thread::hardware_concurrency()));
   if (!is_part_path(files.output)) write_exr(result.film, files.output, format);
   if (!files.png.empty()) write_png(result.film, files.png, "", png);
-  if (!visits.empty()) write_heat_map(result.film, visits, "visits.nodes");
+  if (has_heat_map(merge, files))
+    write_heat_map(result.film, visits_path(files.png), "visits.nodes");
   if (!files.stats_json.empty())
     write_whole_file(files.stats_json, json_text(merge_json(merge, a.parts.size())));
   if (!files.quiet) print(merge, a);

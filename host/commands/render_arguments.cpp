@@ -210,7 +210,7 @@ void check_part(const RenderArguments& a, const RenderOptions& options) {
   if (!a.half.empty() || a.multipart || a.compression != RenderArguments().compression)
     refuse("-o " + a.output +
            ": --half, --multipart and --compression are for the image: give them to dapple merge");
-  const bool is_part_of_frames = options.shard.count > 1 || options.crop;
+  const bool is_part_of_frames = options.shard.count > 1 || (options.crop && a.dome.empty());
   if (is_part_of_frames && !a.frames.empty() && options.light && !options.ambient)
     refuse(fmt::format(
         "{} with --frames needs --ambient: without it the sky of all frames is chosen from the {} "

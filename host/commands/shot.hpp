@@ -25,7 +25,6 @@ class Shot {
   struct Defaults {
     std::optional<Camera> camera;  ///< where the scene has none
     std::string camera_name;       ///< of the scene's camera that the first frame shows
-    float focus_distance = 0;      ///< of a lens in the first frame; 0: there is none
     std::vector<Light> lights;
     std::optional<Box3f> ground_under;
     std::vector<std::string> notes;

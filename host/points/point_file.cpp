@@ -68,12 +68,12 @@ void check_number(const std::string& path, const NumberTable& table, std::size_t
                                               found->second.place, found->second.text));
 }
 
-/// Whether all bytes belong to characters of UTF-8 (RFC 3629, without its rules for single values).
+/// Whether all bytes belong to characters of UTF-8 (RFC 3629; surrogates are not looked for).
 bool is_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto first = static_cast<unsigned char>(text[i]);
     const int more = first < 0x80 ? 0 : std::countl_one(first) - 1;
-    if (first >= 0x80 && (more < 1 || more > 3)) return false;
+    if (first >= 0x80 && (first < 0xc2 || first > 0xf4)) return false;
     for (int k = 0; k < more; ++k)
       if (++i == text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
   }

@@ -20,7 +20,8 @@ bool needs_footprint_pilot(const RenderOptions& options, bool resumed) {
 
 FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& picture,
                                 std::optional<float> first_footprint) {
-  const RenderOptions sampled = by_sample(picture.options);
+  RenderOptions sampled = by_sample(picture.options);
+  if (first_footprint) sampled.footprint = *first_footprint;
   const bool unasked = chooses_footprint(picture.options);
   View view = picture.view;
   if (unasked) view.crop = {0, 0, view.width - 1, view.height - 1};
@@ -31,14 +32,15 @@ FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& pictu
   CameraParams camera = camera_params(view, sampled, scene.bounds);
   if (sampled.cryptomattes.any() || sampled.motion || sampled.deep) camera.medium_error = 0;
   BiasPilot pilot(kept.device->context(), scene, view, sampled, layout, camera);
-  FootprintDemand demand{sampled.footprint, sampled.max_bias.value_or(0),
+  FootprintDemand demand{picture.options.footprint, sampled.max_bias.value_or(0),
                          std::max(sampled.target_error, sampled.target_rmse), !first_footprint};
   if (unasked) {
     pilot.limit(kPilotShare);
     demand.max_bias = kDefaultMaxBias;
     demand.only_if_clear = true;
   }
-  if (first_footprint && *first_footprint != demand.footprint && demand.target > 0) {
+  if (first_footprint && demand.target > 0 &&
+      (*first_footprint != demand.footprint || demand.max_bias > 0)) {
     // The rays of the first choice, so that the target leaves as much for the noise.
     FootprintDemand first = demand;
     first.footprint = *first_footprint;

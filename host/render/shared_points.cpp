@@ -13,10 +13,10 @@ namespace dapple {
 namespace {
 
 /// Rays start above a plane by 64 roundings of the coordinates along its normal, since callers
-/// rounded theirs, or of the larger terms that these are the sums of; and by 16 of the largest
-/// coordinate, as above camera hits (surface_point.clh), where the plane is not known or matrices
-/// carry rays into instances.
-constexpr float kAlongNormal = 3.8e-6f, kInAllDirections = 9.5e-7f;
+/// rounded theirs, or by 8 of the terms that these are the sums of, which may be larger; and by 16
+/// of the largest coordinate, as above camera hits (surface_point.clh), where the plane is not
+/// known or matrices carry rays into instances.
+constexpr float kAlongNormal = 3.8e-6f, kInAllDirections = 9.5e-7f, kTerms = 1.0f / 8;
 
 SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& plane,
                            const V3f& reach, std::size_t index, bool is_bounded) {
@@ -25,7 +25,7 @@ SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& pl
   for (int axis = 0; axis < 3; ++axis) {
     point.position[axis] = position[axis];
     point.normal[axis] = normal[axis];
-    const float term = std::max(std::fabs(position[axis]), reach[axis]);
+    const float term = std::max(std::fabs(position[axis]), kTerms * reach[axis]);
     along += term * std::fabs(plane[axis]);
     largest = std::max(largest, term);
   }

@@ -49,17 +49,22 @@ Box3f mesh_bounds(const Mesh& mesh, const M44f& transform) {
   return bounds;
 }
 
+/// Whether it is not scaled to nothing. Most determinants tell that at once.
+bool is_placed(const Instance& instance) {
+  return instance.to_world.determinant() != 0 || is_invertible(instance.to_world);
+}
+
 }  // namespace
 
 Box3f scene_bounds(const Scene& scene, const M44f& transform) {
   std::vector<std::uint32_t> instance_counts(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances)
-    if (is_invertible(instance.to_world)) ++instance_counts[instance.mesh];
+    if (is_placed(instance)) ++instance_counts[instance.mesh];
 
   std::vector<Box3f> object_bounds(scene.meshes.size());
   Box3f bounds;
   for (const Instance& instance : scene.instances) {
-    if (!is_invertible(instance.to_world)) continue;
+    if (!is_placed(instance)) continue;
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (instance_counts[instance.mesh] == 1) {
       bounds.extendBy(mesh_bounds(mesh, instance.to_world * transform));

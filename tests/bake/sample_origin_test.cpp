@@ -21,13 +21,16 @@ float darkest(const Mesh& mesh, const M44f& to_world) {
   options.estimator = Estimator::exact;
   options.texture = true;
   options.texture_size = 64;
-  const BakeResult result = bake(scene, options);
+  BakeResult result = bake(scene, options);
   EXPECT_EQ(result.statistics.hidden_vertices, 0u);
   EXPECT_EQ(result.statistics.hidden_texels, 0u);
-  const std::vector<float>& vertices = result.meshes.at(0).ao;
-  const std::vector<float>& texels = result.texture.ao;
-  return std::min(*std::min_element(vertices.begin(), vertices.end()),
-                  *std::min_element(texels.begin(), texels.end()));
+  std::vector<float> values = result.meshes.at(0).ao;
+  values.insert(values.end(), result.texture.ao.begin(), result.texture.ao.end());
+  options.texture = false;
+  options.at_vertices = true;
+  result = bake(scene, options);
+  values.insert(values.end(), result.meshes.at(0).ao.begin(), result.meshes.at(0).ao.end());
+  return *std::min_element(values.begin(), values.end());
 }
 
 // The vertices are at 0 in the world, and points of the triangles at the rounding of 0.1 - 0.1.
@@ -37,10 +40,23 @@ TEST(BakeSampleOrigin, ATopThatANodeMovesToZeroSeesTheSky) {
         << height;
 }
 
+// A square in map coordinates that a node moves home, before a wall 1 m away.
+TEST(BakeSampleOrigin, OccludersNearAMeshInMapCoordinatesCount) {
+  Scene scene;
+  scene.materials.resize(1);
+  Mesh floor = square_mesh(0.5f, 500'000, 1, 0);
+  const std::size_t at = place(scene, floor, M44f().setTranslation(V3f(0, -500'000, 0)));
+  place(scene, square_mesh(100, 1, 1, 0));
+  BakeOptions options;
+  options.estimator = Estimator::exact;
+  for (const float ao : bake(scene, options).meshes.at(scene.instances[at].mesh).ao)
+    EXPECT_LT(ao, 0.1f);
+}
+
 TEST(BakeSampleOrigin, ALargeTiltedSheetSeesTheSkyNearTheOrigin) {
   M44f tilted;
   tilted.rotate(V3f(0.3f, 0.2f, 0.7f));
-  Mesh mesh = square_mesh(2000, 0, 1, 0);
+  Mesh mesh = square_mesh(2000, 0, 2, 0);  // a vertex is at the origin
   for (V3f& p : mesh.positions) p = p * tilted;
   EXPECT_EQ(darkest(mesh, {}), 1);
 }

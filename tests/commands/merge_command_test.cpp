@@ -120,12 +120,12 @@ TEST_F(MergeCommand, StatisticsTellWhatPartsKnow) {
 TEST_F(MergeCommand, PreviewsHaveTheHeatMapOfARender) {
   const std::string visits =
       "render 'scene:tree?leaves=1000' --width 40 --height 36 --spp 6 --passes ao,visits -q ";
-  ASSERT_EQ(dapple(visits + "-o whole.exr --png whole.png").code, 0);
   for (const char* shard : {"1", "2"})
     ASSERT_EQ(dapple(visits + "--shard " + shard + "/2 -o " + shard + ".dapple").code, 0);
   ASSERT_EQ(dapple("merge 1.dapple 2.dapple -o m.exr --png m.png").code, 0);
-  // How many nodes a packet visits depends on the rays that it has.
-  EXPECT_EQ(bytes("m_visits.png").substr(0, 24), bytes("whole_visits.png").substr(0, 24));
+  // Not the render's: how many nodes a packet visits depends on the rays that it has.
+  write_heat_map(read_exr(path("m.exr")), path("same.png"), "visits.nodes");
+  EXPECT_EQ(bytes("m_visits.png"), bytes("same.png"));
   expect_failure(dapple("merge 1.dapple 2.dapple -o sum.dapple --half all"), 2, "--half");
   EXPECT_FALSE(std::filesystem::exists(path("sum.dapple")));
 }

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "dapple/error.hpp"
 #include "scene/gltf/uri.hpp"
 #include "scene/images/image.hpp"
 #include "scene/message.hpp"
@@ -109,17 +110,25 @@ void TextureReader::count_texels(std::uint64_t texels, const std::string& what) 
 }
 
 const ColorImage& TextureReader::decoded(int image, const std::string& what) {
-  if (image == last_image_) return last_;
-  require_readable(image, what);
-  unreadable_.insert(image);  // unless what follows succeeds
-  last_ = decode_color(read_image(document_, image, what).bytes, what);
-  unreadable_.erase(image);
-  last_image_ = image;
+  if (image != last_image_) {
+    read_once(image, what,
+              [&] { last_ = decode_color(read_image(document_, image, what).bytes, what); });
+    last_image_ = image;
+  }
   return last_;
 }
 
-void TextureReader::require_readable(int image, const std::string& what) const {
-  if (unreadable_.contains(image)) fail(what, "cannot be read, as was said before");
+template <class Read>
+void TextureReader::read_once(int image, const std::string& what, const Read& read) {
+  if (const auto known = refused_.find(image); known != refused_.end())
+    throw Error(ErrorKind::input, what + known->second);
+  try {
+    read();
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    refused_.emplace(image, text.starts_with(what) ? text.substr(what.size()) : ": " + text);
+    throw;
+  }
 }
 
 int TextureReader::color_texture(int texture, const std::string& user) {
@@ -143,10 +152,9 @@ V3f TextureReader::mean_color(int texture, const std::string& user) {
   const int image = image_of(document_, texture, user);
   if (const auto known = means_.find(image); known != means_.end()) return known->second;
   const std::string what = describe(document_, image, user);
-  require_readable(image, what);
-  unreadable_.insert(image);  // unless what follows succeeds
-  const V3f mean = mean_linear_color(read_image(document_, image, what).bytes, what);
-  unreadable_.erase(image);
+  V3f mean(0, 0, 0);
+  read_once(image, what,
+            [&] { mean = mean_linear_color(read_image(document_, image, what).bytes, what); });
   means_.emplace(image, mean);
   return mean;
 }

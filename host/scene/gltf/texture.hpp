@@ -4,7 +4,6 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <string>
 #include <tuple>
 
@@ -35,18 +34,19 @@ class TextureReader {
 
   /// Decodes an image, or returns it if it was the last one: a material needs alpha and colour.
   [[nodiscard]] const ColorImage& decoded(int image, const std::string& what);
-  /// Throws if an earlier attempt to read the image failed: it may be large.
-  void require_readable(int image, const std::string& what) const;
+  /// Calls read(), or throws the Error that it threw before, of `what`: the image may be large.
+  template <class Read>
+  void read_once(int image, const std::string& what, const Read& read);
   void count_texels(std::uint64_t texels, const std::string& what);
 
   const Document& document_;
   Scene& scene_;
   bool with_colors_;
   std::map<Key, int> loaded_, loaded_colors_;
-  std::map<int, V3f> means_;  ///< by image
-  std::set<int> unreadable_;  ///< images
-  std::uint64_t texels_ = 0;  ///< of all textures in the scene
-  int last_image_ = -1;       ///< whose content is `last_`
+  std::map<int, V3f> means_;            ///< by image
+  std::map<int, std::string> refused_;  ///< images that cannot be read, and why
+  std::uint64_t texels_ = 0;            ///< of all textures in the scene
+  int last_image_ = -1;                 ///< whose content is `last_`
   ColorImage last_;
 };
 

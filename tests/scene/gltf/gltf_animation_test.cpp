@@ -93,8 +93,6 @@ TEST(GltfAnimation, StepsHoldAKeyframeUntilTheNext) {
   EXPECT_EQ(position_at(b, 1.999), V3f(2, 0, 0));
 }
 
-// Hermite basis at a quarter of the interval: h00 = 27/32, h10 = 9/64, h01 = 5/32, h11 = -3/64.
-// Tangents are multiplied by the two seconds between the keyframes.
 // Times are floats in files, and n / 24 is a double on the command line.
 TEST(GltfAnimation, TheFrameOfAKeyframeShowsIt) {
   std::vector<float> times, values;
@@ -124,6 +122,8 @@ TEST(GltfAnimation, HiddenCopiesOfAMeshAreNotACrowd) {
               std::string::npos);
 }
 
+// Hermite basis at a quarter of the interval: h00 = 27/32, h10 = 9/64, h01 = 5/32, h11 = -3/64.
+// Tangents are multiplied by the two seconds between the keyframes.
 TEST(GltfAnimation, CubicSplinesPassTheirKeyframesWithTheirTangents) {
   const GltfBuilder b = moved({1, 3},
                               {9, 9, 9, 0, 0, 32, 8, 0, 0,  // in-tangent, value, out-tangent
