@@ -199,6 +199,7 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   refuses("--frames 1-2 -o o.#.exr --checkpoint c", "--checkpoint is for one image");
   refuses("--frames 1-2 -o o.#.exr --resume c", "--resume is for one image");
   refuses("--frames 1-2 --frame 1 -o o.#.exr", "--frame");
+  refuses("--frames 1-2 --crop 0,0,3,3 -o o.#.dapple", "--crop with --frames needs --ambient");
   refuses("--fps 24 -o o.exr", "--frames");
   refuses("--passes motion -o o.exr", "--passes motion needs --frame or --frames");
   refuses("--shutter 0,1 -o o.exr", "--shutter needs --frame or --frames");

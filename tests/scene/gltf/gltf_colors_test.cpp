@@ -62,6 +62,24 @@ TEST(GltfColors, AnImageThatCannotBeReadLeavesTheFactorWithANote) {
   expect_says(scene.warnings[0], "its colour goes untextured");
 }
 
+// The image is read once; each material that has it says what is wrong.
+TEST(GltfColors, AnImageThatCannotBeReadIsNamedByEachOfItsMaterials) {
+  GltfBuilder b = colored({0.5, 0.5, 0.5, 1}, {1, 2, 3, 4});
+  b.doc["materials"].push_back(b.doc["materials"][0]);
+  b.doc["meshes"][0]["primitives"].push_back(b.doc["meshes"][0]["primitives"][0]);
+  b.doc["meshes"][0]["primitives"][1]["material"] = 1;
+  const Scene scene = b.load(with_colors());
+  ASSERT_EQ(scene.warnings.size(), 2u);
+  const std::string &first = scene.warnings[0], &second = scene.warnings[1];
+  expect_says(first, "material 0");
+  expect_says(second, "material 1");
+  EXPECT_EQ(first.substr(first.rfind(": ")), second.substr(second.rfind(": ")));
+  b.doc["materials"][1]["alphaMode"] = "MASK";
+  const std::string refused = input_error([&] { static_cast<void>(b.load(with_colors())); });
+  expect_says(refused, "material 1");
+  expect_says(refused + "; its colour goes untextured", first.substr(first.rfind(": ")));
+}
+
 TEST(GltfColors, APrimitiveWithoutTextureCoordinatesIsNamedInANote) {
   for (const char* mode : {"OPAQUE", "BLEND"}) {
     GltfBuilder b = colored({1, 1, 1, 1}, one_texel());
