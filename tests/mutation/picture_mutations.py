@@ -207,6 +207,16 @@ MUTATIONS = [
         "square(source, u, v) > square(nearest[to], u, v)",
         r"^Dilation\."),
     Mutation(
+        "hidden-texels-stay-black", "host/bake/texture/texture_bake.cpp",
+        "  fill_hidden_texels();\n",
+        "",
+        r"^BakeTexture\."),
+    Mutation(
+        "rays-of-bakes-forget-the-terms-of-sums", "host/render/shared_points.cpp",
+        "kTerms = 1.0f / 8;",
+        "kTerms = 0.0f;",
+        r"^BakeSampleOrigin\."),
+    Mutation(
         "seams-do-not-turn-edges", "host/bake/texture/seams.cpp",
         "  if (edge.swapped) return {second, first};\n  return {first, second};",
         "  return {first, second};",
