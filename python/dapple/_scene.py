@@ -277,8 +277,8 @@ class Scene:
         and sun or sun_N; with "_error" their standard errors. suns: (s, 3) directions towards
         suns; sun_irradiance: W/m^2 across them, one or (s,). periodic: the scene repeats itself
         with these periods along X and Z, metres. Options: ao, sky_view_factor, bent, rings, lights,
-        per_sun, rays (256), estimator, footprint, distance, opacity by material, ground, seed,
-        device, cache.
+        per_sun, rays (256), estimator, footprint, distance, falloff, opacity by material, ground,
+        seed, device, cache.
 
         >>> tree = dapple.load("scene:tree?leaves=1000")
         >>> columns = tree.measure([[0, 0.01, 0.5]], rings=2)
@@ -304,8 +304,8 @@ class Scene:
 
         width (960), height (540), spp (16), target_rmse, target_error, ao, light, ao_distance,
         estimator, footprint, camera by name, look=(from, at, up) with fov_degrees,
-        crop=(x0, y0, x1, y1) inclusive, opacity={"leaf": 0.85}, ground, seed and others. Lengths
-        are in metres, width, height and crop in pixels.
+        crop=(x0, y0, x1, y1) inclusive, opacity={"leaf": 0.85}, ambient (radiance of a uniform sky
+        in RGBA; None: chosen), ground, seed and others. Lengths are in metres, width, height and crop in pixels.
 
         >>> picture = dapple.load("scene:demo").render(width=32, height=18, spp=4)
         >>> picture["ao"].shape, picture["Z"].shape
