@@ -103,7 +103,8 @@ Run add_compare_command(CLI::App& app) {
   app.add_option("--html", a->html, "Write a page with the images, heat maps and figures");
   app.add_option(
       "--max-rmse", a->max_rmse,
-      "Exit with 5 if a layer's RMSE is larger; Z, P and samples count only with --layer");
+      "Exit with 5 if a layer's RMSE is larger; Z, P, samples and Cryptomattes count only with "
+      "--layer");
   app.add_option(
          "--scale", a->scale,
          "The last colour of heat maps is a difference of the layer's range divided by "
