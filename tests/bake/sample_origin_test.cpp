@@ -49,8 +49,8 @@ TEST(BakeSampleOrigin, OccludersNearAMeshInMapCoordinatesCount) {
   place(scene, square_mesh(100, 1, 1, 0));
   BakeOptions options;
   options.estimator = Estimator::exact;
-  for (const float ao : bake(scene, options).meshes.at(scene.instances[at].mesh).ao)
-    EXPECT_LT(ao, 0.1f);
+  const BakeResult result = bake(scene, options);
+  for (const float ao : result.meshes.at(scene.instances[at].mesh).ao) EXPECT_LT(ao, 0.1f);
 }
 
 TEST(BakeSampleOrigin, ALargeTiltedSheetSeesTheSkyNearTheOrigin) {
