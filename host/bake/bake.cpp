@@ -260,13 +260,7 @@ void validate(const BakeOptions& options) {
   check_range("--size", double{1.0 * options.texture_size}, 1, 16384);
   check_range("--margin", options.margin, 0, 1024);
   check_range("--target-error", double{options.target_error}, 0, 1);
-  check_range("--footprint", double{options.footprint}, 0, 1e6);
-  check_range("--report-bias", double{options.report_bias}, 0, 1);
-  check_range("--max-bias", double{options.max_bias}, 0, 1);
-  check_range("--ao-distance", double{options.distance}, 0, 1e30);
-  check_range("--ao-falloff", double{options.falloff}, 0, 100);
-  if (options.falloff > 0 && !(options.distance > 0))
-    throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
+  check_ray_options(options);
   if (options.light && options.placement == BakeInstances::alone)
     throw Error(ErrorKind::usage,
                 "--passes light needs --instances together or unique: a mesh alone is not lit");

@@ -13,11 +13,11 @@ namespace {
 /// Samples that are traced between two questions whether to stop.
 constexpr std::size_t kSamplesAtOnce = 1u << 16;
 
-/// Rays of a sample of which the brighter side counts, which few rays would not tell.
+/// Rays of a sample whose brighter side counts: from fewer it is too often not known which that is.
 constexpr int kRaysForSides = 32;
 
-/// Binary digits of `index` mirrored behind the point: the sequence of van der Corput.
-double mirrored_digits(std::uint32_t index) {
+/// The radical inverse in base 2: van der Corput's sequence.
+double radical_inverse(std::uint32_t index) {
   double value = 0;
   for (double digit = 0.5; index > 0; index >>= 1, digit /= 2) value += digit * (index & 1);
   return value;
@@ -45,7 +45,7 @@ class PointsOfMesh {
     if (sums_.empty() || !(sums_.back() > 0)) return samples;
     const SampledTriangles triangles{mesh_, groups, two_sided_, normals_};
     for (const std::uint32_t end = taken_ + count; taken_ < end; ++taken_) {
-      const double share = mirrored_digits(taken_) + shift_;
+      const double share = radical_inverse(taken_) + shift_;
       const double at = (share < 1 ? share : share - 1) * sums_.back();
       const auto t = static_cast<std::size_t>(std::upper_bound(sums_.begin(), sums_.end(), at) -
                                               sums_.begin());

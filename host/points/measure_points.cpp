@@ -292,13 +292,7 @@ void check_suns(const std::vector<SunDirection>& suns) {
 void validate(const PointOptions& options) {
   check_range("--rays", options.rays, kPointSets, 1 << 20);
   check_range("--rings", options.rings, 0, 90);
-  check_range("--footprint", double{options.footprint}, 0, 1e6);
-  check_range("--report-bias", double{options.report_bias}, 0, 1);
-  check_range("--max-bias", double{options.max_bias}, 0, 1);
-  check_range("--ao-distance", double{options.distance}, 0, 1e30);
-  check_range("--ao-falloff", double{options.falloff}, 0, 100);
-  if (options.falloff > 0 && !(options.distance > 0))
-    throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
+  check_ray_options(options);
   check_range("--periodic", double{options.period_x}, 0, 1e30);
   check_range("--periodic", double{options.period_z}, 0, 1e30);
   if ((options.period_x > 0) != (options.period_z > 0))

@@ -17,4 +17,16 @@ inline void check_range(std::string_view name, double value, double low, double 
                                             value, low, high));
 }
 
+/// The options of rays that bakes and points have by the same names.
+template <class Options>
+void check_ray_options(const Options& options) {
+  check_range("--footprint", double{options.footprint}, 0, 1e6);
+  check_range("--report-bias", double{options.report_bias}, 0, 1);
+  check_range("--max-bias", double{options.max_bias}, 0, 1);
+  check_range("--ao-distance", double{options.distance}, 0, 1e30);
+  check_range("--ao-falloff", double{options.falloff}, 0, 100);
+  if (options.falloff > 0 && !(options.distance > 0))
+    throw Error(ErrorKind::usage, "--ao-falloff needs --ao-distance");
+}
+
 }  // namespace dapple
