@@ -2,13 +2,8 @@
 // instances.
 #include "dapple/bake.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -22,13 +17,13 @@
 #include "commands/option_text.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
+#include "commands/scene_file.hpp"
 #include "commands/shared_options.hpp"
 #include "commands/side_copies.hpp"
 #include "commands/tell.hpp"
 #include "commands/unique_meshes.hpp"
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
-#include "files/temporary_file.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -38,61 +33,6 @@ namespace fs = std::filesystem;
 
 /// Width and height of previews.
 constexpr int kPreviewSize = 1024;
-
-/// The file to bake. A procedural scene is written as a temporary GLB file beside the output, and
-/// removed once it is read.
-class SceneFile {
- public:
-  SceneFile(const std::string& spec, const std::string& output) : path_(spec) {
-    if (!spec.starts_with("scene:")) return;
-    const Scene scene = make_procedural(spec);
-    lights_ = scene.lights;
-    write(scene, fs::path(output).parent_path());
-  }
-  ~SceneFile() {
-    if (is_made_) remove();
-  }
-  SceneFile(const SceneFile&) = delete;
-  SceneFile& operator=(const SceneFile&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-  /// Those of a procedural scene: a GLB file has no sky.
-  [[nodiscard]] const std::vector<Light>& lights() const { return lights_; }
-
- private:
-  /// The name is reserved by an empty file, whose lock the finished one takes over: without a lock
-  /// the file would be one of a run that was killed.
-  void write(const Scene& scene, const fs::path& folder) {
-    const TemporaryFile reserved = create_temporary_file(folder.empty() ? "." : folder.string());
-    if (reserved.descriptor < 0)
-      throw Error(ErrorKind::failed,
-                  fmt::format("folder {}: {}", folder.empty() ? "." : folder.string(),
-                              std::strerror(errno)));
-    path_ = reserved.path;
-    is_made_ = true;
-    lock_ = reserved.descriptor;
-    remove_when_interrupted(path_);
-    try {
-      write_glb(scene, path_);
-    } catch (...) {
-      remove();
-      throw;
-    }
-    lock_ = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-    if (lock_ >= 0) flock(lock_, LOCK_EX | LOCK_NB);
-    close(reserved.descriptor);
-  }
-  void remove() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-    remove_when_interrupted("");
-    if (lock_ >= 0) close(lock_);
-  }
-
-  std::string path_;
-  std::vector<Light> lights_;
-  bool is_made_ = false;
-  int lock_ = -1;  ///< descriptor of the file that was made
-};
 
 /// NAME_baked.exr beside the output.
 std::string exr_path(const std::string& output) {
