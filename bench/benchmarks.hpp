@@ -23,8 +23,8 @@ void register_measured(const std::string& name, int repetitions, const Measure& 
       ->DisplayAggregatesOnly();
 }
 
-/// Occlusion, OcclusionTogether and OcclusionOfPoints, each exact and prefiltered: AO rays as
-/// single rays, in pixel packets, and in point packets. DomeRays: generation of rays to a dome
+/// Occlusion, OcclusionPixelPackets and OcclusionPointPackets, each exact and prefiltered: AO rays
+/// as single rays, in pixel packets, and in point packets. DomeRays: generation of rays to a dome
 /// light. Camera: the camera pass.
 void register_tracing(BenchScene& scene);
 /// Build: all of build_bvh(). Prefilter: the part of it that computes opacities.

@@ -121,8 +121,10 @@ void register_tracing(BenchScene& scene) {
                         });
     };
     add_occlusion("Occlusion", 1, RayOrder::any);
-    add_occlusion("OcclusionTogether", 1, RayOrder::by_pixel);
-    add_occlusion("OcclusionOfPoints", kRaysPerPoint, RayOrder::any);
+    add_occlusion("OcclusionPixelPackets", 1, RayOrder::by_pixel);
+    // So few exact rays of a point are traced in pixel packets.
+    if (estimator == Estimator::prefiltered)
+      add_occlusion("OcclusionPointPackets", kRaysPerPoint, RayOrder::any);
   }
   // Before the camera passes, because these overwrite the points.
   register_measured("DomeRays/" + scene.name(), kRepetitions,

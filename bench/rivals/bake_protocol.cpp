@@ -204,7 +204,7 @@ std::vector<Contestant> bake_contestants(const RivalScene& scene,
     const TracePoints trace = by_embree(scene, method, kContestBlack);
     contestants.push_back(
         contestant("Embree " + method.name() + ", uniform", true, uniformly, parts, trace));
-    contestants.push_back(contestant("Embree " + method.name() + ", dapple's samples", false,
+    contestants.push_back(contestant("Embree " + method.name() + ", dapple's samples", true,
                                      to_target(Estimator::exact), parts, trace));
   }
   for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered})

@@ -98,7 +98,7 @@ struct EmbreePictures::Worker {
     rays.count = 0;
     for (unsigned i = 0; i < hit_count; ++i) {
       const V3f from(origin[0][i], origin[1][i], origin[2][i]);
-      const LightSample sample = sample_light(renderer.lights_[light], from, x[i], y[i]);
+      const LightSample sample = renderer.lights_[light](from, x[i], y[i]);
       const float cosine = normal[0][i] * sample.direction.x + normal[1][i] * sample.direction.y +
                            normal[2][i] * sample.direction.z;
       if (cosine * sample.weight <= 0) continue;
@@ -134,14 +134,15 @@ struct EmbreePictures::Worker {
 };
 
 EmbreePictures::EmbreePictures(const EmbreeScenes& scenes, const View& view,
-                               std::vector<Light> lights)
-    : scenes_(scenes), camera_(view), lights_(std::move(lights)) {
-  for (const Light& light : lights_) {
+                               const std::vector<Light>& lights)
+    : scenes_(scenes), camera_(view) {
+  for (const Light& light : lights) {
     if (!can_sample(light))
       throw Error(ErrorKind::usage,
                   fmt::format("rivals: {} is a mesh or dome light, which the Embree side "
                               "cannot sample; measure --pass ao",
                               light.name));
+    lights_.emplace_back(light);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "rivals/camera_rays.hpp"
 #include "rivals/embree_trace.hpp"
+#include "rivals/light_sampler.hpp"
 
 namespace dapple::bench {
 
@@ -20,8 +21,8 @@ struct PictureMethod {
 
 class EmbreePictures {
  public:
-  /// Throws Error usage for a light that sample_light() cannot sample.
-  EmbreePictures(const EmbreeScenes& scenes, const View& view, std::vector<Light> lights);
+  /// Throws Error usage for a light that LightSampler cannot sample.
+  EmbreePictures(const EmbreeScenes& scenes, const View& view, const std::vector<Light>& lights);
 
   [[nodiscard]] const CameraRays& camera() const { return camera_; }
 
@@ -40,7 +41,7 @@ class EmbreePictures {
 
   const EmbreeScenes& scenes_;
   CameraRays camera_;
-  std::vector<Light> lights_;
+  std::vector<LightSampler> lights_;
 };
 
 }  // namespace dapple::bench

@@ -23,6 +23,10 @@ constexpr int kLargestSpp = 256;
 /// Minimum samples per pixel of the adaptive contestants.
 constexpr int kAdaptiveSpp = 1;
 
+/// Samples of pictures that Embree's methods are tried out with, in all and a pixel at most.
+constexpr std::uint32_t kCalibrationSamples = 1u << 20;
+constexpr int kMostCalibrationSpp = 16;
+
 /// Numbers of AO rays per camera sample of Embree's contestants.
 constexpr std::uint32_t kEmbreeRays[] = {1, 2};
 
@@ -104,14 +108,17 @@ std::string ImageStudy::reference_key() const {
 
 void ImageStudy::calibrate() {
   const bool flat = scene_.geometry.flat;
+  // With few samples a batch has few rays of each pixel, and packets are less coherent.
+  const int spp = std::clamp(static_cast<int>(kCalibrationSamples / scene_.view.pixel_count()), 1,
+                             kMostCalibrationSpp);
   const std::vector<EmbreeMethod> cameras = camera_methods(flat);
   const EmbreeMethod camera =
       best_of_each_alpha(cameras, try_out(cameras, [&](const EmbreeMethod& method) {
-                           pictures_.trace_camera_rays(1, 0, method);
+                           pictures_.trace_camera_rays(spp, 0, method);
                          }))[0];
-  const std::vector<EmbreeMethod> occlusions = occlusion_methods(pass_ == Pass::light && flat);
+  const std::vector<EmbreeMethod> occlusions = occlusion_methods(flat);
   const auto seconds = try_out(occlusions, [&](const EmbreeMethod& method) {
-    (void)pictures_.render(pass_, 1, 0, {camera, method}, kContestBlack);
+    (void)pictures_.render(pass_, spp, 0, {camera, method}, kContestBlack);
   });
   for (const EmbreeMethod& best : best_of_each_alpha(occlusions, seconds)) {
     for (const std::uint32_t rays : kEmbreeRays)

@@ -22,31 +22,6 @@ V3f cone_direction(const V3f& axis, float one_minus_cos, float x, float y) {
       .normalized();
 }
 
-/// rect_point() of kernels/lights/rect_sample.clh, in doubles.
-LightSample sample_rect(const Light& light, const V3f& origin, float u, float v) {
-  const bool u_is_shorter = light.edge_u.length2() <= light.edge_v.length2();
-  const V3d x_edge(u_is_shorter ? light.edge_u : light.edge_v);
-  const V3d y_edge(u_is_shorter ? light.edge_v : light.edge_u);
-  const double width = x_edge.length(), length = y_edge.length();
-  const V3d x_axis = x_edge / width, y_axis = y_edge / length, facing(light.direction);
-  const V3d corner = V3d(light.position) - V3d(origin) - (x_edge + y_edge) * 0.5;
-  const double left = corner.dot(x_axis), low = corner.dot(y_axis), high = low + length;
-  const double height = -corner.dot(facing), beside = std::max({low, -high, 0.0});
-  const double near_square = height * height + beside * beside + 1e-34;
-  const double near = std::sqrt(near_square), from = std::atan2(left, near);
-  const double angle = std::atan2(left + width, near) - from;
-  const double x = near * std::tan(from + u * angle), line_square = height * height + x * x + 1e-34;
-  const double first = low / std::sqrt(line_square + low * low);
-  const double range = high / std::sqrt(line_square + high * high) - first;
-  const double across = first + v * range;
-  const double y = across * std::sqrt(line_square / std::max(1 - across * across, 1e-12));
-  const V3d way = x_axis * x + y_axis * y - facing * height;
-  const double distance = std::max(way.length(), 1e-10);
-  const double weight =
-      std::max(height, 0.0) * angle * range * (near_square + x * x) / (near * line_square);
-  return {V3f(way / distance), static_cast<float>(distance), static_cast<float>(weight)};
-}
-
 /// The falloff of KHR_lights_punctual between the cones of a spot.
 float spot_share(const Light& light, const V3f& axis) {
   if (light.cos_outer <= -1) return 1;
@@ -85,19 +60,55 @@ bool can_sample(const Light& light) {
          light.kind == LightKind::sun;
 }
 
-LightSample sample_light(const Light& light, const V3f& origin, float x, float y) {
-  switch (light.kind) {
+LightSampler::LightSampler(const Light& light) : light_(light) {
+  if (light.kind != LightKind::rect) return;
+  const bool u_is_shorter = light.edge_u.length2() <= light.edge_v.length2();
+  const V3f x_edge = u_is_shorter ? light.edge_u : light.edge_v;
+  const V3f y_edge = u_is_shorter ? light.edge_v : light.edge_u;
+  width_ = x_edge.length();
+  length_ = y_edge.length();
+  x_axis_ = x_edge / width_;
+  y_axis_ = y_edge / length_;
+  corner_ = light.position - (x_edge + y_edge) * 0.5f;
+}
+
+// rect_point() of kernels/lights/rect_sample.clh. The angle that the shorter edge takes, and the
+// point at a part of it, by the addition theorems of the arc tangent and of the tangent.
+LightSample LightSampler::sample_rect(const V3f& origin, float u, float v) const {
+  const V3f& facing = light_.direction;
+  const V3f corner = corner_ - origin;
+  const float left = corner.dot(x_axis_), low = corner.dot(y_axis_), high = low + length_;
+  const float height = -corner.dot(facing), beside = std::max({low, -high, 0.0f});
+  const float near_square = height * height + beside * beside + 1e-30f;
+  const float near = std::sqrt(near_square);
+  const float angle = std::atan2(width_ * near, near_square + left * (left + width_));
+  const float slope = std::tan(u * angle);
+  const float x = near * (left + near * slope) / (near - left * slope);
+  const float line_square = height * height + x * x + 1e-30f;
+  const float first = low / std::sqrt(line_square + low * low);
+  const float range = high / std::sqrt(line_square + high * high) - first;
+  const float across = first + v * range;
+  const float y = across * std::sqrt(line_square / std::max(1 - across * across, 1e-7f));
+  const V3f way = x_axis_ * x + y_axis_ * y - facing * height;
+  const float distance = std::max(way.length(), 1e-10f);
+  const float weight =
+      std::max(height, 0.0f) * angle * range * (near_square + x * x) / (near * line_square);
+  return {way / distance, distance, weight};
+}
+
+LightSample LightSampler::operator()(const V3f& origin, float x, float y) const {
+  switch (light_.kind) {
     case LightKind::rect:
-      return sample_rect(light, origin, x, y);
+      return sample_rect(origin, x, y);
     case LightKind::sphere:
-      return sample_sphere(light, origin, x, y);
+      return sample_sphere(light_, origin, x, y);
     case LightKind::sun:
     case LightKind::mesh:
     case LightKind::dome:
     case LightKind::disk:
       break;
   }
-  return sample_sun(light, x, y);
+  return sample_sun(light_, x, y);
 }
 
 }  // namespace dapple::bench

@@ -13,10 +13,22 @@ struct LightSample {
   float weight;    ///< irradiance at radiance 1 is the mean of weight * cosine * transmittance
 };
 
-/// Whether sample_light() can sample this light: rects, spheres and suns.
+/// Whether LightSampler can sample this light: rects, spheres and suns.
 bool can_sample(const Light& light);
 
-/// A sample as seen from `origin`; (x, y) is a point of the unit square.
-LightSample sample_light(const Light& light, const V3f& origin, float x, float y);
+/// A light, with what is the same for all points.
+class LightSampler {
+ public:
+  explicit LightSampler(const Light& light);
+  /// A sample as seen from `origin`; (x, y) is a point of the unit square.
+  [[nodiscard]] LightSample operator()(const V3f& origin, float x, float y) const;
+
+ private:
+  [[nodiscard]] LightSample sample_rect(const V3f& origin, float u, float v) const;
+
+  Light light_;
+  V3f corner_, x_axis_, y_axis_;  ///< of a rect: world space; unit, along the shorter edge first
+  float width_ = 0, length_ = 0;  ///< of a rect: its edges, metres
+};
 
 }  // namespace dapple::bench

@@ -204,7 +204,7 @@ std::vector<EmbreeMethod> best_of_each_alpha(const std::vector<EmbreeMethod>& me
 }
 
 std::vector<EmbreeMethod> calibrated_methods(RivalScene& scene, const PreparedRays& rays) {
-  const std::vector<EmbreeMethod> methods = occlusion_methods(false);
+  const std::vector<EmbreeMethod> methods = occlusion_methods(scene.geometry.flat);
   std::vector<double> seconds;
   for (const RayRow& row : measure_rays(scene, rays, methods, false, kCalibrationRounds))
     seconds.push_back(row.fastest_seconds);

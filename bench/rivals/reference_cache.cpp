@@ -30,16 +30,28 @@ std::uint64_t content_of(const Scene& scene) {
     print.add(mesh.materials);
     print.add(mesh.uvs);
     print.add(mesh.vertex_alpha);
+    print.add(mesh.radii);
   }
-  for (const Texture& texture : scene.textures) print.add(texture.alpha);
-  for (const Instance& instance : scene.instances)
+  for (const Texture& texture : scene.textures) {
+    print.add(texture.alpha);
+    print.add_bytes(&texture.width, sizeof texture.width);
+    print.add_bytes(&texture.wrap_s, sizeof texture.wrap_s);
+    print.add_bytes(&texture.wrap_t, sizeof texture.wrap_t);
+    print.add_bytes(&texture.nearest, sizeof texture.nearest);
+  }
+  for (const Instance& instance : scene.instances) {
     print.add_bytes(&instance.to_world, sizeof instance.to_world);
+    print.add_bytes(&instance.mesh, sizeof instance.mesh);
+  }
   for (const Material& material : scene.materials) {
     print.add_bytes(&material.alpha_mode, sizeof material.alpha_mode);
+    print.add_bytes(&material.alpha_texture, sizeof material.alpha_texture);
+    print.add_bytes(&material.uses_vertex_alpha, sizeof material.uses_vertex_alpha);
     for (const float value : {material.alpha, material.alpha_cutoff})
       print.add_bytes(&value, sizeof value);
   }
   for (const Light& light : scene.lights) {
+    print.add_bytes(&light.kind, sizeof light.kind);
     for (const V3f& v : {light.position, light.direction, light.edge_u, light.edge_v})
       print.add_bytes(&v, sizeof v);
     for (const float v : {light.radius, light.angular_radius, light.cos_inner, light.cos_outer})

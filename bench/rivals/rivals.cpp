@@ -161,7 +161,8 @@ class SceneRun {
  private:
   void measure_all_rays(const PreparedRays& rays) {
     show_progress("rays");
-    const auto rows = measure_rays(scene_, rays, occlusion_methods(false), true, a_.repeats);
+    const auto rows =
+        measure_rays(scene_, rays, occlusion_methods(scene_.geometry.flat), true, a_.repeats);
     show(fmt::format("{} AO rays from {} points\n{}", rays.rays.size(), points_.size(),
                      rays_text(rows)));
     figures_["rays"] = rays_json(rows);
