@@ -178,7 +178,9 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Pa
 }
 
 // Kernels are compiled when they are first launched, not before.
-DeviceContext::~DeviceContext() {
+DeviceContext::~DeviceContext() { keep_compiled(); }
+
+void DeviceContext::keep_compiled() const {
   for (const std::string& program : state_->known_programs) KernelCache::of_process().keep(program);
 }
 

@@ -88,6 +88,8 @@ class DeviceContext {
   DeviceContext(const std::string& name, std::string kernel_dir,
                 Packets packets = Packets::automatic);
   ~DeviceContext();
+  /// Keeps the kernels that were compiled so far for later processes, as the destructor does.
+  void keep_compiled() const;
   DeviceContext(const DeviceContext&) = delete;
   DeviceContext& operator=(const DeviceContext&) = delete;
 

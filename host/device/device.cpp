@@ -18,4 +18,6 @@ Device::Device(const std::string& name, const std::string& kernel_dir, Packets p
 
 const DeviceInfo& Device::info() const { return context_->info(); }
 
+void Device::keep_compiled() const { context_->keep_compiled(); }
+
 }  // namespace dapple

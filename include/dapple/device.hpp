@@ -36,12 +36,15 @@ class DeviceContext;  // host/device/context.hpp
 /// An opened device with its command queue and compiled kernels; cheap to copy.
 class Device {
  public:
-  /// Opens the best device whose name or platform contains `name` (in any case), or the best of all
-  /// if `name` is empty. Throws Error device, which lists the devices.
+  /// Opens the best device called `name`, or else whose name or platform contains it (in any case);
+  /// the best of all if `name` is empty. Throws Error device, which lists the devices.
   explicit Device(const std::string& name = "", const std::string& kernel_dir = "",
                   Packets packets = Packets::automatic);
 
   [[nodiscard]] const DeviceInfo& info() const;
+  /// Keeps the kernels that were compiled so far for later processes. Otherwise that happens when
+  /// the last copy is destroyed.
+  void keep_compiled() const;
   [[nodiscard]] DeviceContext& context() const { return *context_; }
 
  private:

@@ -13,20 +13,22 @@ World space is right-handed, +Y up, in metres, as in glTF. Directions are unit v
 is of first order: light that scatters off a surface is not followed.
 """
 
-from ._drivers import use_driver_of_pip as _use_driver_of_pip
+from . import _drivers
 
-_use_driver_of_pip()
+_drivers.use_driver_of_pip()
 
 from ._errors import DeviceError, Error, InputError, UsageError  # noqa: E402
-from ._native import devices, version as _version  # noqa: E402
+from ._native import devices, keep_kernels as _keep_kernels, version as _version  # noqa: E402
 from ._picture import Picture  # noqa: E402
-from ._results import Bake, Irradiance, Mesh  # noqa: E402
+from ._results import Bake, BakedTexture, Irradiance, Mesh  # noqa: E402
 from ._scene import Scene, load  # noqa: E402
 
 __version__ = _version()
+_drivers.at_exit(_keep_kernels)  # compiled kernels, for later processes
 
 __all__ = [
     "Bake",
+    "BakedTexture",
     "DeviceError",
     "Error",
     "InputError",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 import os
-from typing import Callable, Optional, Sequence
+from typing import Callable, Iterable, Optional, Sequence
 
 import numpy as np
 
@@ -49,6 +49,13 @@ def text(name: str, value: str) -> str:
     if not isinstance(value, str):
         raise UsageError(f"{name} is {value!r}; it must be a string")
     return value
+
+
+def texts(name: str, values: Iterable[str]) -> list[str]:
+    """Several strings; one alone is refused, since it is a sequence of letters."""
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise UsageError(f"{name} is {values!r}; it must be a list of strings")
+    return [text(name, value) for value in values]
 
 
 def path(name: str, value: str | os.PathLike[str]) -> str:

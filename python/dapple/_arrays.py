@@ -31,13 +31,13 @@ def _numbers(name: str, values: npt.ArrayLike, kinds: str) -> npt.NDArray[Any]:
     return array
 
 
-def vectors(name: str, values: npt.ArrayLike) -> FloatArray:
-    """`values` as (n, 3) float32; an empty sequence becomes (0, 3)."""
+def vectors(name: str, values: npt.ArrayLike, width: int = 3) -> FloatArray:
+    """`values` as (n, width) float32; an empty sequence becomes (0, width)."""
     array = _numbers(name, values, "fiu")
     if array.ndim == 1 and array.size == 0:
-        array = array.reshape(0, 3)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise UsageError(f"{name} has the shape {shape_text(array.shape)}; it must be (n, 3)")
+        array = array.reshape(0, width)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise UsageError(f"{name} has the shape {shape_text(array.shape)}; it must be (n, {width})")
     with np.errstate(over="ignore"):
         result: FloatArray = np.ascontiguousarray(array, dtype=np.float32)
     if not np.isfinite(result).all():

@@ -9,6 +9,13 @@ import shutil
 import tempfile
 from importlib import metadata
 from pathlib import Path
+from typing import Callable
+
+
+def at_exit(function: Callable[[], object]) -> None:
+    """Calls the function when this process ends, not when one ends that was forked from it."""
+    process = os.getpid()
+    atexit.register(lambda: function() if os.getpid() == process else None)
 
 
 def _system_has_driver() -> bool:
@@ -41,6 +48,6 @@ def use_driver_of_pip() -> None:
     ctypes.CDLL(str(library))
     # Loaders of every make read such a folder.
     vendors = tempfile.mkdtemp(prefix="dapple-")
-    atexit.register(shutil.rmtree, vendors, ignore_errors=True)
+    at_exit(lambda: shutil.rmtree(vendors, ignore_errors=True))
     (Path(vendors) / "pip.icd").write_text(str(library), encoding="utf-8")
     os.environ["OCL_ICD_VENDORS"] = vendors

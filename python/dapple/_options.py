@@ -72,6 +72,7 @@ class RenderOptions(TypedDict, total=False):
     albedo: bool
     back: bool
     back_every: int
+    deep: bool
     visits: bool
     crypto_object: bool
     crypto_material: bool
@@ -98,6 +99,7 @@ class BakeOptions(TypedDict, total=False):
 
     vertices: bool
     instances: bool
+    texture: bool
     bent: bool
     light: bool
     light_rays: int
@@ -111,6 +113,8 @@ class BakeOptions(TypedDict, total=False):
     distance: float
     falloff: float
     at_vertices: bool
+    texture_size: int
+    margin: int
     sides: Literal["auto", "front", "max", "mean"]
     placement: Literal["together", "alone"]
     seed: int
@@ -138,7 +142,7 @@ _EXPECTED = {
 def _wanted(name: str, current: object, value: object) -> str:
     """What a value of the wrong type, or beyond the range of the engine's integers, must be."""
     if type(current) is int and isinstance(value, numbers.Integral) and not isinstance(value, bool):
-        low, high = (0, 2**32 - 1) if name == "seed" else (-(2**31), 2**31 - 1)
+        low, high = (0, 2**32 - 1) if name in ("seed", "texture_size") else (-(2**31), 2**31 - 1)
         return f"from {low} to {high}"
     return _EXPECTED.get(name) or type(current).__name__
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -12,11 +12,20 @@ from ._arrays import FloatArray
 from ._errors import UsageError
 
 if TYPE_CHECKING:
+    from typing import Literal
+
     import xarray
 
 
 def _layer_of(channel: str) -> str:
     return channel.rpartition(".")[0] or channel
+
+
+def _color(name: str, values: Sequence[float]) -> tuple[float, ...]:
+    color = _arguments.several(name, values, 3)
+    if not all(0 <= channel <= 1 for channel in color):
+        raise UsageError(f"{name} is {values!r}; colours are from 0 to 1")
+    return color
 
 
 class Picture(Mapping[str, FloatArray]):
@@ -71,20 +80,54 @@ class Picture(Mapping[str, FloatArray]):
         height, width = self[self.channels[0]].shape
         return f"<dapple.Picture {width}x{height}: {', '.join(self)}>"
 
-    def save(self, path: str | PathLike[str], layer: str = "") -> None:
+    def save(
+        self,
+        path: str | PathLike[str],
+        layer: str = "",
+        *,
+        half: Iterable[str] = (),
+        compression: Literal["zip", "zips", "piz", "dwaa", "none"] = "zip",
+        multipart: bool = False,
+        exposure: float | None = None,
+        background: Literal["sky", "none"] | Sequence[float] = "sky",
+    ) -> None:
         """Writes .exr with all layers, or .png with a preview of `layer` (empty: the picture).
 
+        EXR: half are layers of 16 bits, such as "ao" and "light" for all lights, or ["all"];
+        compression "dwaa" is lossy and needs multipart, a part for each layer. PNG: exposure in
+        stops (None: automatic) and background ("none": an alpha channel; or linear R, G, B in
+        [0, 1]) are of the picture, not of layers.
+
         >>> picture = dapple.load("scene:demo").render(width=32, height=18, spp=4)
-        >>> picture.save("demo.exr")
+        >>> picture.save("demo.exr", half=["ao", "albedo"])
         >>> picture.save("demo.png", layer="ao")
         """
         text = _arguments.path("path", path)
         if text.lower().endswith(".png"):
-            self._native.write_png(text, _arguments.text("layer", layer))
+            stops = None if exposure is None else _arguments.number("exposure", exposure)
+            if stops is not None and not -100 <= stops <= 100:
+                raise UsageError(f"exposure is {stops:g}; it must be from -100 to 100")
+            color = None if isinstance(background, str) else _color("background", background)
+            if color is None and background not in ("sky", "none"):
+                raise UsageError(f"background is {background!r}; it must be sky, none or a colour")
+            name = _arguments.text("layer", layer)
+            self._native.write_png(text, name, stops, color is None and background == "sky", color)
         elif text.lower().endswith(".exr"):
-            self._native.write_exr(text)
+            layers = _arguments.texts("half", half)
+            name = _arguments.text("compression", compression)
+            self._native.write_exr(text, layers, name, bool(multipart))
         else:
             raise UsageError(f"{text}: pictures are saved as .exr or .png")
+
+    def save_deep(self, path: str | PathLike[str]) -> None:
+        """Writes a deep EXR: A and Z of what camera rays slip through, of render(deep=True).
+
+        >>> dapple.load("scene:demo").render(width=32, height=18, deep=True).save_deep("deep.exr")
+        """
+        text = _arguments.path("path", path)
+        if not text.lower().endswith(".exr"):
+            raise UsageError(f"{text}: deep pictures are saved as .exr")
+        self._native.write_deep_exr(text)
 
     def to_xarray(self) -> xarray.Dataset:
         """All layers as an xarray.Dataset with the dimensions y, x and channel. Needs xarray.

@@ -44,8 +44,27 @@ class Irradiance:
 
 
 @dataclass(frozen=True)
+class BakedTexture:
+    """A texture that all meshes share. Row 0 is the top, v = 0, as in glTF.
+
+    >>> baked = dapple.load("scene:demo").bake(texture=True, texture_size=64, rays=16)
+    >>> baked.texture.layers["ao"].shape, baked.texture.uvs[0].shape[1:]
+    ((64, 64), (3, 2))
+    """
+
+    #: "ao" (s, s) in [0, 1]; "bent" (s, s, 3), unit vectors or zero, and "light.NAME" (s, s, 3),
+    #: W/m^2, if baked.
+    layers: dict[str, FloatArray]
+    #: For each mesh the texture coordinates of its triangles' corners, (m, 3, 2) in [0, 1]; (0, 3, 2)
+    #: for strands, and for meshes that are not placed.
+    uvs: list[FloatArray]
+    #: Share of the texels that triangles cover, without the margin.
+    coverage: float
+
+
+@dataclass(frozen=True)
 class Bake:
-    """Values at vertices and of instances.
+    """Values at vertices, of instances, and in a texture.
 
     >>> baked = dapple.load("scene:forest?trees=3&leaves=100").bake(rays=16, instances=True)
     >>> list(baked.meshes[0]), baked.instance_ao.shape
@@ -60,3 +79,5 @@ class Bake:
     instance_light: dict[str, FloatArray] = field(default_factory=dict)
     #: Lines for the user, such as the footprint that max_bias chose.
     notes: list[str] = field(default_factory=list)
+    #: None if not baked.
+    texture: BakedTexture | None = None

@@ -13,7 +13,7 @@ from ._arguments import Progress
 from ._arrays import FloatArray, IndexArray
 from ._errors import UsageError
 from ._picture import Picture
-from ._results import Bake, Irradiance, Mesh
+from ._results import Bake, BakedTexture, Irradiance, Mesh
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 class Scene:
     """Geometry, materials, lights and cameras. Made by load() or Scene.from_arrays().
 
-    The first query builds a BVH and keeps it until the scene is changed. A scene may be used by
+    The first call of occlusion() or irradiance() builds a BVH and keeps it until the scene is
+    changed; measure(), render() and bake() build theirs each time. A scene may be used by
     several threads; dapple does one call at a time, each on all cores.
 
     >>> scene = dapple.load("scene:tree?leaves=100")
@@ -321,30 +322,41 @@ class Scene:
         self,
         *,
         occluders: Iterable[Scene] = (),
+        texture_uvs: Iterable[npt.ArrayLike] = (),
         progress: Progress = None,
         **options: Unpack[_options.BakeOptions],
     ) -> Bake:
         """Bakes values at the vertices of the meshes. Options are those of `dapple bake`.
 
-        vertices, instances, bent, light: what is baked, True or False. rays (with a target_error
+        vertices, instances, texture, bent, light: what is baked, True or False. rays (with a target_error
         at most), light_rays, target_error in [0, 1], estimator, footprint, normals, report_bias,
         max_bias, distance (m), falloff, at_vertices, sides ("auto", "front", "max", "mean"),
-        placement ("together", "alone"), seed, ground, opacity (by material), device, cache.
+        placement ("together", "alone"), seed, ground, opacity (by material), device, cache. The
+        texture has texture_size (1024) texels a side, and values go on beyond charts for margin (16)
+        texels. texture_uvs: for each mesh texture coordinates of its vertices, (n, 2) in [0, 1]
+        without overlaps; none: charts of dapple's own.
 
         Each mesh has "ao" (n,) in [0, 1]. bent, light and instances add values beside AO: unit
         vectors (n, 3), W/m^2 (n, 3), and means over the surface of each instance. occluders occlude
-        but are not baked. The command can also write glTF files and textures.
+        but are not baked. The command writes all that into glTF files.
 
         >>> tree = dapple.load("scene:tree?leaves=100")
         >>> baked = tree.bake(rays=64)
         >>> baked.meshes[0]["ao"].shape == tree.meshes[0].positions.shape[:1]
         True
         """
-        chosen = _options.apply("bake", _native.BakeOptions(), options)
+        arguments = ("occluders", "texture_uvs", "progress")
+        chosen = _options.apply("bake", _native.BakeOptions(), options, arguments)
         others = _natives("occluders", occluders)
+        if not isinstance(texture_uvs, Iterable):
+            raise UsageError(f"texture_uvs is {texture_uvs!r}; it must be a list of arrays")
+        uvs = [_arrays.vectors(f"texture_uvs[{i}]", of, 2) for i, of in enumerate(texture_uvs)]
         progress = _arguments.progress_function(progress)
-        meshes, instance_ao, lights, notes = _native.bake(self._native, chosen, others, progress)
-        return Bake([dict(arrays) for arrays in meshes], instance_ao, dict(lights), notes)
+        meshes, instance_ao, lights, texture, notes = _native.bake(
+            self._native, chosen, uvs, others, progress
+        )
+        baked = None if texture is None else BakedTexture(dict(texture[0]), *texture[1:])
+        return Bake([dict(of) for of in meshes], instance_ao, dict(lights), notes, baked)
 
 
 def _points(points: npt.ArrayLike, normals: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:

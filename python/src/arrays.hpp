@@ -23,6 +23,9 @@ using VectorsIn =
 using FloatsIn = nb::ndarray<const float, nb::numpy, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using IndicesIn =
     nb::ndarray<const std::uint32_t, nb::numpy, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+/// (n, 2) float32.
+using CoordinatesIn =
+    nb::ndarray<const float, nb::numpy, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using FloatsOut = nb::ndarray<float, nb::numpy>;
 using IndicesOut = nb::ndarray<std::uint32_t, nb::numpy>;
 

@@ -49,6 +49,7 @@ NB_MODULE(_native, module) {
   using namespace dapple::python;
   module.doc() = "dapple's engine; use the package dapple around it.";
   module.def("version", [] { return DAPPLE_VERSION; });
+  module.def("keep_kernels", keep_kernels);
   bind_errors();
   bind_options(module);
   bind_scene(module);

@@ -7,9 +7,9 @@
 
 #include "bindings.hpp"
 #include "dapple/bake.hpp"
-#include "dapple/error.hpp"
 #include "dapple/points.hpp"
 #include "dapple/render.hpp"
+#include "names.hpp"
 #include "nanobind/stl/array.h"
 #include "nanobind/stl/optional.h"
 #include "nanobind/stl/pair.h"
@@ -20,10 +20,6 @@ namespace dapple::python {
 namespace {
 
 namespace nb = nanobind;
-
-/// Values of an enumeration by their names.
-template <class Value, std::size_t N>
-using Names = std::array<std::pair<const char*, Value>, N>;
 
 constexpr Names<Estimator, 2> kEstimators{
     {{"exact", Estimator::exact}, {"prefiltered", Estimator::prefiltered}}};
@@ -51,15 +47,7 @@ void add_choice(nb::class_<Options>& bound, const char* name, Value Options::*me
     return "";
   };
   const auto set = [name, member, &names](Options& options, const std::string& chosen) {
-    std::string known;
-    for (const auto& [text, value] : names) {
-      if (chosen == text) {
-        options.*member = value;
-        return;
-      }
-      known += (known.empty() ? "" : ", ") + std::string(text);
-    }
-    throw Error(ErrorKind::usage, std::string(name) + " is \"" + chosen + "\"; known are " + known);
+    options.*member = value_of(name, chosen, names);
   };
   bound.def_prop_rw(name, get, set);
 }
@@ -87,6 +75,7 @@ void bind_render_options(nb::module_& module) {
       .def_rw("albedo", &RenderOptions::albedo)
       .def_rw("back", &RenderOptions::back)
       .def_rw("back_every", &RenderOptions::back_every)
+      .def_rw("deep", &RenderOptions::deep)
       .def_rw("visits", &RenderOptions::visits)
       .def_prop_rw(
           "crypto_object", [](const RenderOptions& o) { return o.cryptomattes.objects; },
@@ -152,6 +141,7 @@ void bind_bake_options(nb::module_& module) {
   bound.def(nb::init<>())
       .def_rw("vertices", &BakeOptions::vertices)
       .def_rw("instances", &BakeOptions::instances)
+      .def_rw("texture", &BakeOptions::texture)
       .def_rw("bent", &BakeOptions::bent)
       .def_rw("light", &BakeOptions::light)
       .def_rw("light_rays", &BakeOptions::light_rays)
@@ -163,6 +153,8 @@ void bind_bake_options(nb::module_& module) {
       .def_rw("distance", &BakeOptions::distance)
       .def_rw("falloff", &BakeOptions::falloff)
       .def_rw("at_vertices", &BakeOptions::at_vertices)
+      .def_rw("texture_size", &BakeOptions::texture_size)
+      .def_rw("margin", &BakeOptions::margin)
       .def_rw("seed", &BakeOptions::seed)
       .def_rw("ground", &BakeOptions::ground)
       .def_rw("opacity", &BakeOptions::opacity)

@@ -1,14 +1,20 @@
 // Pictures: render() and its film as arrays.
+#include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "dapple/error.hpp"
 #include "dapple/film.hpp"
 #include "dapple/render.hpp"
 #include "engine_call.hpp"
+#include "names.hpp"
+#include "nanobind/stl/array.h"
 #include "nanobind/stl/map.h"
+#include "nanobind/stl/optional.h"
 #include "nanobind/stl/pair.h"
 #include "nanobind/stl/string.h"
 #include "nanobind/stl/vector.h"
@@ -51,6 +57,40 @@ std::vector<std::pair<std::string, std::string>> metadata(const RenderResult& pi
   return all;
 }
 
+constexpr Names<ExrCompression, 5> kCompressions{{{"zip", ExrCompression::zip},
+                                                  {"zips", ExrCompression::zips},
+                                                  {"piz", ExrCompression::piz},
+                                                  {"dwaa", ExrCompression::dwaa},
+                                                  {"none", ExrCompression::none}}};
+
+void write_picture(const RenderResult& picture, const std::string& path,
+                   const std::vector<std::string>& half, const std::string& compression,
+                   bool multipart) {
+  const ExrFormat format{value_of("compression", compression, kCompressions), multipart, half};
+  const nb::gil_scoped_release released;
+  write_exr(picture.film, path, format);
+}
+
+void write_preview(const RenderResult& picture, const std::string& path, const std::string& layer,
+                   std::optional<float> exposure, bool sky,
+                   const std::optional<std::array<float, 3>>& color) {
+  using Background = PngOptions::Background;
+  PngOptions options{exposure, sky ? Background::sky : Background::none, {}};
+  if (color) {
+    options.background = Background::color;
+    options.color = V3f((*color)[0], (*color)[1], (*color)[2]);
+  }
+  const nb::gil_scoped_release released;
+  write_png(picture.film, path, layer, options);
+}
+
+void write_deep(const RenderResult& picture, const std::string& path) {
+  if (picture.film.deep.first.empty())
+    throw Error(ErrorKind::usage, "the picture has no deep data: render it with deep=True");
+  const nb::gil_scoped_release released;
+  write_deep_exr(picture.film, path);
+}
+
 }  // namespace
 
 void bind_pictures(nb::module_& module) {
@@ -61,16 +101,11 @@ void bind_pictures(nb::module_& module) {
       .def_prop_ro("notes", [](const RenderResult& r) { return r.statistics.notes; })
       .def_prop_ro("rmse", [](const RenderResult& r) { return r.statistics.rmse; })
       .def_prop_ro("seconds", [](const RenderResult& r) { return r.statistics.seconds.total; })
-      .def(
-          "write_exr",
-          [](const RenderResult& r, const std::string& path) { write_exr(r.film, path); },
-          nb::arg("path"))
-      .def(
-          "write_png",
-          [](const RenderResult& r, const std::string& path, const std::string& layer) {
-            write_png(r.film, path, layer);
-          },
-          nb::arg("path"), nb::arg("layer"));
+      .def("write_exr", write_picture, nb::arg("path"), nb::arg("half"), nb::arg("compression"),
+           nb::arg("multipart"))
+      .def("write_png", write_preview, nb::arg("path"), nb::arg("layer"),
+           nb::arg("exposure").none(), nb::arg("sky"), nb::arg("color").none())
+      .def("write_deep_exr", write_deep, nb::arg("path"));
   module.def("render", render_picture, nb::arg("scene"), nb::arg("options"),
              nb::arg("progress").none());
 }

@@ -205,7 +205,11 @@ void bind_scene(nb::module_& module) {
           nb::arg("kind"), nb::arg("irradiance"))
       .def(
           "write_glb",
-          [](const SceneOnDevice& s, const std::string& path) { write_glb(*s.scene(), path); },
+          [](const SceneOnDevice& s, const std::string& path) {
+            const auto scene = s.scene();
+            const nb::gil_scoped_release released;
+            write_glb(*scene, path);
+          },
           nb::arg("path"));
   module.def("load", load, nb::arg("path"), nb::arg("time").none(), nb::arg("animation"),
              nb::arg("allow_outside"));

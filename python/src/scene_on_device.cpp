@@ -4,9 +4,22 @@
 
 namespace dapple::python {
 
-Device open_device(const std::string& name) {
-  // Never destroyed: drivers may be unloaded before static objects are.
+namespace {
+
+/// Never destroyed: drivers may be unloaded before static objects are.
+std::map<std::string, Device>& open_devices() {
   static auto& devices = *new std::map<std::string, Device>;
+  return devices;
+}
+
+}  // namespace
+
+void keep_kernels() {
+  for (const auto& [name, device] : open_devices()) device.keep_compiled();
+}
+
+Device open_device(const std::string& name) {
+  auto& devices = open_devices();
   const auto found = devices.find(name);
   return found != devices.end() ? found->second : devices.emplace(name, Device(name)).first->second;
 }

@@ -16,6 +16,10 @@ namespace dapple::python {
 /// EngineLock.
 Device open_device(const std::string& name);
 
+/// Keeps the kernels of open devices for later processes. For the end of the process, while the
+/// drivers are still there.
+void keep_kernels();
+
 /// A scene as queries see it: merged, with finished domes.
 struct Uploaded {
   Device device;

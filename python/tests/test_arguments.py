@@ -111,12 +111,12 @@ def test_no_points_give_no_values(plate: dapple.Scene) -> None:
     assert plate.measure([])["ao"].shape == (0,)
 
 
-def test_scenes_without_triangles_occlude_nothing() -> None:
+def test_scenes_without_triangles_are_refused() -> None:
     empty = dapple.Scene.from_arrays(np.zeros((0, 3)), np.zeros((0, 3), int))
-    try:
-        assert (empty.occlusion([[0, 0, 0]], UP) == 1).all()
-    except dapple.Error as error:
-        assert "\n" not in str(error)
+    for call in (empty.occlusion, empty.irradiance, empty.measure):
+        assert "no triangle or strand is left" in error_of(
+            lambda: call([[0, 0, 0]], UP), dapple.InputError
+        )
 
 
 def test_layouts_do_not_matter(tree: dapple.Scene, ground: np.ndarray) -> None:
@@ -134,4 +134,6 @@ def test_layouts_do_not_matter(tree: dapple.Scene, ground: np.ndarray) -> None:
         ground.tolist(),
     ):
         np.testing.assert_array_equal(tree.occlusion(points, UP), expected)
-    np.testing.assert_array_equal(tree.occlusion(ground[::-1], UP).shape, expected.shape)
+    np.testing.assert_array_equal(
+        tree.occlusion(ground[::-1], UP), tree.occlusion(np.ascontiguousarray(ground[::-1]), UP)
+    )

@@ -96,6 +96,15 @@ def test_textures_decode_and_have_the_values_of_the_vertices(
     image = Image.open(io.BytesIO(png))
     assert (image.size, image.mode, image.format) == ((128, 128), mode, "PNG")
     texels = np.asarray(image) / (2.0**bits - 1)
+    of_python = dapple.load(str(model)).bake(
+        vertices=False, texture=True, texture_size=128, rays=64, target_error=0
+    ).texture
+    assert of_python is not None
+    np.testing.assert_allclose(texels, of_python.layers["ao"], atol=0.51 / (2.0**bits - 1))
+    for mesh, corners in zip(file.meshes, of_python.uvs):
+        primitive = mesh.primitives[0]
+        uv = elements(file, primitive.attributes.TEXCOORD_0)
+        np.testing.assert_array_equal(uv[elements(file, primitive.indices)], corners.reshape(-1, 2))
     baked = dapple.load(str(model)).bake(rays=1024, target_error=0)
     truth = {
         tuple(position): ao

@@ -58,7 +58,7 @@ def test_measure_has_the_columns_of_the_program(
     subprocess.run([*arguments, "--rings", "5"], check=True)
     table = np.load(out)
     columns = tree.measure(ground, rings=5)
-    assert set(columns) <= set(table.dtype.names or ())
+    assert list(table.dtype.names or ()) == ["x", "y", "z", "nx", "ny", "nz", *columns]
     for name, values in columns.items():
         np.testing.assert_array_equal(table[name], values)
 
@@ -84,6 +84,25 @@ def test_pictures_are_arrays_and_files(tree: dapple.Scene, tmp_path: Path) -> No
     for name in ("a.exr", "a.png"):
         picture.save(tmp_path / name)
         assert (tmp_path / name).stat().st_size > 100
+
+
+def test_pictures_are_saved_as_asked(tmp_path: Path) -> None:
+    picture = plate_scene(0.5).render(width=32, height=32, spp=4, deep=True)
+    sizes = {}
+    for name, options in {
+        "plain": {}, "half": {"half": ["all"]}, "none": {"compression": "none"},
+        "parts": {"compression": "dwaa", "multipart": True},
+    }.items():
+        picture.save(tmp_path / f"{name}.exr", **options)  # type: ignore[arg-type]
+        sizes[name] = (tmp_path / f"{name}.exr").read_bytes()
+    assert len(sizes["half"]) < len(sizes["plain"]) < len(sizes["none"])
+    assert b"multiView" not in sizes["plain"] and b"scanlineimage" in sizes["parts"]
+    for name, options in {"auto": {}, "dark": {"exposure": -20}, "red": {"background": (1, 0, 0)}}.items():
+        picture.save(tmp_path / f"{name}.png", **options)  # type: ignore[arg-type]
+        sizes[name] = (tmp_path / f"{name}.png").read_bytes()
+    assert len({sizes["auto"], sizes["dark"], sizes["red"]}) == 3
+    picture.save_deep(tmp_path / "deep.exr")
+    assert b"deepscanline" in (tmp_path / "deep.exr").read_bytes()
 
 
 def test_cameras_and_crops(plate: dapple.Scene) -> None:
@@ -118,6 +137,23 @@ def test_instances_have_the_light_of_their_surface() -> None:
     square.add_sun((0, 1, 0), irradiance=2, name="noon")
     baked = square.bake(vertices=False, instances=True, light=True, sides="max")
     np.testing.assert_allclose(baked.instance_light["noon"], [[2, 2, 2]], rtol=1e-3)
+
+
+def test_textures_have_the_given_coordinates() -> None:
+    square, roof = plate_scene(half=1, height=0), plate_scene(half=0.25, height=0.25)
+    square.set_opacity(square.materials[0], 1)
+    uvs = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float32)
+    baked = square.bake(
+        vertices=False, texture=True, bent=True, texture_size=32, sides="mean", rays=256,
+        occluders=[roof], texture_uvs=[uvs],
+    )
+    texture = baked.texture
+    assert texture is not None and baked.meshes == [{}]
+    np.testing.assert_array_equal(texture.uvs[0], uvs[[[0, 1, 2], [0, 2, 3]]])
+    assert texture.coverage == pytest.approx(1)
+    ao = texture.layers["ao"]
+    assert ao.shape == (32, 32) and texture.layers["bent"].shape == (32, 32, 3)
+    assert ao[14:18, 14:18].mean() < 0.8 < 0.95 < ao[[0, 0, -1, -1], [0, -1, 0, -1]].mean()
 
 
 def test_ambient_is_the_sky_of_the_picture(plate: dapple.Scene) -> None:

@@ -77,6 +77,10 @@ WRONG: dict[str, Call] = {
     "occluders is 3": lambda s: s.bake(occluders=3),  # type: ignore[arg-type]
     "it must be a list of scenes": lambda s: s.bake(occluders=s),  # type: ignore[arg-type]
     "--rays is -1": lambda s: s.bake(rays=-1),
+    "--size is 0": lambda s: s.bake(texture=True, texture_size=0),
+    "texture_uvs[0] has the shape (4, 3); it must be (n, 2)": lambda s: s.bake(texture_uvs=[CORNERS]),
+    "has 3 for 4 vertices": lambda s: s.bake(texture=True, texture_uvs=[[(0, 0)] * 3]),
+    "has (0, 2) at vertex": lambda s: s.bake(texture=True, texture_uvs=[[(0, 2)] * 4]),
     'sides is "x"': lambda s: s.bake(sides="x"),  # type: ignore[typeddict-item]
     "--look-from has the coordinate nan": lambda s: s.render(
         look=[(0, NAN, 0), (0, 0, 0), (0, 1, 0)], **SMALL
@@ -99,6 +103,13 @@ WRONG: dict[str, Call] = {
     "seed is -1; it must be from 0": lambda s: s.occlusion(AT, UP, seed=-1),
     "rays is None": lambda s: s.occlusion([], UP, rays=None),  # type: ignore[typeddict-item]
     "there is no layer zzz": lambda s: s.render(**SMALL).save("/tmp/a.png", layer="zzz"),
+    "compression is \"x\"; known are zip": lambda s: s.render(**SMALL).save("/tmp/a.exr", compression="x"),  # type: ignore[arg-type]
+    "half is 'ao'; it must be a list": lambda s: s.render(**SMALL).save("/tmp/a.exr", half="ao"),
+    "--half": lambda s: s.render(**SMALL).save("/tmp/a.exr", half=["Z"]),
+    "exposure is nan": lambda s: s.render(**SMALL).save("/tmp/a.png", exposure=NAN),
+    "colours are from 0 to 1": lambda s: s.render(**SMALL).save("/tmp/a.png", background=(2, 0, 0)),
+    "background is 'x'": lambda s: s.render(**SMALL).save("/tmp/a.png", background="x"),  # type: ignore[arg-type]
+    "render it with deep=True": lambda s: s.render(**SMALL).save_deep("/tmp/a.exr"),
     "saved as .exr or .png": lambda s: s.render(**SMALL).save("/tmp/a.jpg"),
 }
 
