@@ -201,8 +201,14 @@ std::vector<std::string> refused_drivers() { return find_devices().refusals; }
 
 std::vector<cl::Device> usable_devices() { return find_devices().usable; }
 
+// A name may be a part of another one: PoCL's begins with "pthread-" and has that of the CPU.
 cl::Device choose_device(const std::string& name) {
   const FoundDevices devices = find_devices();
+  for (const cl::Device& device : devices.usable) {
+    if (describe(device).name != name) continue;
+    check_file_limit(device);
+    return device;
+  }
   std::string list;
   for (const cl::Device& device : devices.usable) {
     const DeviceInfo info = describe(device);

@@ -18,7 +18,8 @@ DeviceInfo describe(const cl::Device& device);
 /// units; Mesa's CPUs last. Without those of refused drivers. Never empty. Throws Error device.
 std::vector<cl::Device> usable_devices();
 
-/// The first usable device whose name or platform contains `name`, in upper or lower case. Throws
+/// The first usable device called `name`, or else whose name or platform contains it, in upper or
+/// lower case. Throws
 /// Error device, listing the usable devices, when none matches; Error failed when PoCL cannot write
 /// its files.
 cl::Device choose_device(const std::string& name);

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr int kNameAttempts = 100;
 constexpr std::string_view kPrefix = ".dapple-", kSuffix = ".tmp";
-constexpr std::time_t kDay = 24 * 60 * 60;
 
 /// Owns a file descriptor, or -1, and closes it.
 class Descriptor {
@@ -41,12 +40,6 @@ class Descriptor {
  private:
   int descriptor_;
 };
-
-std::string host_code() {
-  char name[256] = {};
-  if (gethostname(name, sizeof name - 1) != 0) name[0] = '\0';
-  return fmt::format("{:08x}", static_cast<std::uint32_t>(std::hash<std::string>{}(name)));
-}
 
 /// ".dapple-HOST-PROCESS-RANDOM.tmp". It does not contain the target's name, which may already have
 /// the maximum length.
@@ -80,11 +73,17 @@ bool is_abandoned(const fs::path& path, bool own_host) {
   struct stat status {};
   if (file.get() < 0 || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
   if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) return false;
-  if (!own_host && status.st_mtime > std::time(nullptr) - kDay) return false;
+  if (!own_host && status.st_mtime > std::time(nullptr) - kAbandonedSeconds) return false;
   return unlink(path.c_str()) == 0;
 }
 
 }  // namespace
+
+std::string host_code() {
+  char name[256] = {};
+  if (gethostname(name, sizeof name - 1) != 0) name[0] = '\0';
+  return fmt::format("{:08x}", static_cast<std::uint32_t>(std::hash<std::string>{}(name)));
+}
 
 TemporaryFile create_temporary_file(const std::string& folder) {
   TemporaryFile file;

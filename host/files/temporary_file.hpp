@@ -8,6 +8,13 @@
 
 namespace dapple {
 
+/// Files and folders of other hosts, whose locks may not be visible here, count as abandoned when
+/// they have been unchanged for so long.
+inline constexpr long kAbandonedSeconds = 24 * 60 * 60;
+
+/// Eight digits that name this host in names of temporary files and folders.
+std::string host_code();
+
 struct TemporaryFile {
   std::string path;
   int descriptor = -1;  ///< for reading and writing; closing its last duplicate unlocks
@@ -17,9 +24,9 @@ struct TemporaryFile {
 /// fails.
 TemporaryFile create_temporary_file(const std::string& folder);
 
-/// Removes the temporary files in `folder` whose processes have ended; returns how many. Locks of
-/// other hosts may not be visible here, so their files must also be unchanged for a day. Files that
-/// cannot be opened or removed stay.
+/// Removes the temporary files in `folder` whose processes have ended; returns how many. Files of
+/// other hosts must also be unchanged for kAbandonedSeconds. Files that cannot be opened or removed
+/// stay.
 std::size_t remove_abandoned_files(const std::string& folder);
 
 }  // namespace dapple

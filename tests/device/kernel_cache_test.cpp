@@ -6,12 +6,14 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <thread>
 
 #include "device/environment_while.hpp"
 #include "device/programs/sealed_folder.hpp"
+#include "files/temporary_file.hpp"
 #include "support/program_run.hpp"
 
 namespace dapple {
@@ -103,11 +105,21 @@ TEST_F(KernelCacheFiles, ADamagedSealNamesNoFileOutsideOfItsFolder) {
 
 TEST_F(KernelCacheFiles, FoldersOfKilledProcessesAreRemovedAndThoseOfRunningOnesKept) {
   const PrivateFolder living(path("cache"));
-  const fs::path dead = path("cache/dapple-run-killed");
+  const fs::path dead = path("cache/dapple-run-" + host_code() + "-killed");
   fs::create_directories(dead / "pocl");
   EXPECT_TRUE(compiles("one"));
   EXPECT_FALSE(fs::exists(dead));
   EXPECT_TRUE(fs::exists(living.path()));
+}
+
+// On a network file system, locks of folders are only seen by processes of the same host.
+TEST_F(KernelCacheFiles, FoldersOfOtherHostsAreKeptForADay) {
+  const fs::path running = path("cache/dapple-run-0-running"), old = path("cache/dapple-run-0-old");
+  for (const fs::path& folder : {running, old}) fs::create_directories(folder / "pocl");
+  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  EXPECT_TRUE(compiles("one"));
+  EXPECT_TRUE(fs::exists(running / "pocl"));
+  EXPECT_FALSE(fs::exists(old));
 }
 
 TEST_F(KernelCacheFiles, FoldersOfManyThreadsNeverCollide) {
@@ -128,9 +140,23 @@ TEST_F(KernelCacheFiles, FoldersOfManyThreadsNeverCollide) {
 }
 
 TEST_F(KernelCacheFiles, TheLeastRecentlyUsedProgramsAreRemoved) {
-  for (int i = 0; i < 100; ++i) EXPECT_TRUE(compiles("program " + std::to_string(i)));
-  EXPECT_EQ(entries(), 96u);
-  EXPECT_FALSE(compiles("program 99"));
+  const auto name = [](int i) { return "program " + std::to_string(i); };
+  constexpr int kLimit = 96;
+  for (int i = 0; i < kLimit; ++i) EXPECT_TRUE(compiles(name(i)));
+  // As if they had been compiled in this order, a second after each other, two hours ago.
+  const auto then = fs::file_time_type::clock::now() - std::chrono::hours(2);
+  for (const auto& entry : fs::directory_iterator(path("cache"))) {
+    const std::string text = bytes_of(entry.path() / kProgram / "program.bc");
+    const int number = std::stoi(text.substr(text.rfind(' ')));
+    fs::last_write_time(entry, then + std::chrono::seconds(number));
+  }
+  EXPECT_FALSE(compiles(name(0))) << "the oldest is used";
+  for (int i = kLimit; i < kLimit + 4; ++i) EXPECT_TRUE(compiles(name(i)));
+  EXPECT_EQ(entries(), std::size_t{kLimit});
+  const EnvironmentWhile place("POCL_CACHE_DIR", path("cache"));
+  const KernelCache cache;
+  for (int i = 0; i < kLimit + 4; ++i)
+    EXPECT_EQ(cache.has(name(i), ""), i == 0 || i > 4) << name(i);
 }
 
 class KernelCacheCold : public program_test::ProgramRun {

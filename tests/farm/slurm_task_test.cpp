@@ -1,5 +1,6 @@
-// farm/slurm/task with a stub in place of srun, which writes its arguments to a file: what it runs
-// at a first start and after a restart.
+// farm/slurm/task with stubs in place of Slurm's programs. That of srun writes its arguments to a
+// file, and fails as it is told: what the task runs at a first start and after a restart, and when
+// it queues itself again.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -17,21 +18,40 @@ using film_test::contains;
 class SlurmTask : public film_test::FilmFile {
  protected:
   void SetUp() override {
-    std::ofstream(path("srun")) << "#!/bin/sh\necho \"$@\" > '" + path("arguments") + "'\n";
-    std::filesystem::permissions(path("srun"), std::filesystem::perms::owner_all);
+    stub("srun", "echo \"$@\" > arguments; exit ${CODE:-0}");
+    stub("scontrol", "echo \"$@\" >> queued");
+    stub("sleep", ":");
+  }
+
+  void stub(const std::string& program, const std::string& does) const {
+    std::ofstream(path(program)) << "#!/bin/sh\n" << does << "\n";
+    std::filesystem::permissions(path(program), std::filesystem::perms::owner_all);
   }
 
   /// Runs frame 3 of a sequence, which begins with frame `first`. Returns the exit code.
   [[nodiscard]] int frame(int restarts, const std::string& options = "", int first = 1) const {
     const std::string command =
         "cd '" + folder_.string() + "' && PATH=\"$PWD:$PATH\" " +
-        "SLURM_ARRAY_TASK_ID=" + std::to_string(3 - first) +
+        "SLURM_JOB_ID=77 SLURM_ARRAY_TASK_ID=" + std::to_string(3 - first) +
+        " CODE=" + std::to_string(srun_code_) +
         " SLURM_CPUS_PER_TASK=8 SLURM_RESTART_COUNT=" + std::to_string(restarts) +
         " bash '" DAPPLE_SOURCE_FOLDER "/farm/slurm/task' frame " + std::to_string(first) +
         "/24 f_%04d.exr tree.glb " + options;
     return WEXITSTATUS(std::system(command.c_str()));
   }
   [[nodiscard]] bool ran() const { return std::filesystem::exists(path("arguments")); }
+
+  /// What the task asks of scontrol when srun ends with `code` after so many restarts. A checkpoint
+  /// is there. Expects that the task ends with the same code.
+  [[nodiscard]] std::string queued_after(int code, int restarts) {
+    std::ofstream(path("f_0003.exr.ckpt")) << "state";
+    std::filesystem::remove(path("queued"));
+    srun_code_ = code;
+    EXPECT_EQ(frame(restarts), code);
+    return bytes_of(path("queued"));
+  }
+
+  int srun_code_ = 0;  ///< with which the stub of srun ends
 };
 
 TEST_F(SlurmTask, AFirstStartRemovesWhatAnEarlierJobLeft) {
@@ -60,11 +80,34 @@ TEST_F(SlurmTask, ARestartGoesOnOrKnowsThatItWasDone) {
 
 TEST_F(SlurmTask, RendersWithoutCheckpointsBeginAgain) {
   for (const char* options : {"--shutter 0,0.5", "--deep=d.exr"}) {
+    std::ofstream(path("f_0003.exr")) << "of a part of the samples";
     EXPECT_EQ(frame(1, options), 0);
+    EXPECT_FALSE(std::filesystem::exists(path("f_0003.exr"))) << options;
     const std::string arguments = bytes_of(path("arguments"));
     EXPECT_FALSE(contains(arguments, "--checkpoint")) << arguments;
     EXPECT_TRUE(contains(arguments, options)) << arguments;
   }
+}
+
+TEST_F(SlurmTask, ASignalQueuesTheTaskAgainAtMostTenTimes) {
+  EXPECT_EQ(queued_after(143, 0), "requeue 77\n") << "SIGTERM";
+  EXPECT_EQ(queued_after(137, 9), "requeue 77\n") << "SIGKILL, and the tenth time";
+  EXPECT_EQ(queued_after(143, 10), "");
+}
+
+TEST_F(SlurmTask, OtherFailuresAreFinal) {
+  for (const int code : {1, 2, 3, 4}) {
+    EXPECT_EQ(queued_after(code, 0), "") << code;
+    EXPECT_EQ(queued_after(code, 1), "") << code;
+  }
+}
+
+TEST_F(SlurmTask, TheCheckpointIsRemovedOnceTheFrameIsWhole) {
+  EXPECT_EQ(queued_after(143, 1), "requeue 77\n");
+  EXPECT_TRUE(std::filesystem::exists(path("f_0003.exr.ckpt")));
+  EXPECT_EQ(queued_after(0, 1), "");
+  EXPECT_TRUE(contains(bytes_of(path("arguments")), "--resume f_0003.exr.ckpt"));
+  EXPECT_FALSE(std::filesystem::exists(path("f_0003.exr.ckpt")));
 }
 
 }  // namespace

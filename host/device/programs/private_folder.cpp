@@ -1,6 +1,6 @@
 // A lock shows whether the process that made a folder still runs. The operating system releases it
 // however the process ends, and unlike a process id it is valid in all containers that share the
-// parent folder.
+// parent folder. Locks of folders on network file systems are only visible on their own host.
 #include "device/programs/private_folder.hpp"
 
 #include <fcntl.h>
@@ -10,9 +10,11 @@
 
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <string>
 
 #include "dapple/error.hpp"
+#include "files/temporary_file.hpp"
 
 namespace dapple {
 namespace {
@@ -31,13 +33,23 @@ bool is_removed(int descriptor) {
   return fstat(descriptor, &status) != 0 || status.st_nlink == 0;
 }
 
+/// Whether the open folder has not changed for so long that its host no longer uses it.
+bool is_old(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 &&
+         status.st_mtime < std::time(nullptr) - kAbandonedSeconds;
+}
+
 void remove_stale_folders(const fs::path& parent) {
+  const std::string own = kPrefix + host_code() + '-';
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(parent, ignored)) {
-    if (!entry.path().filename().native().starts_with(kPrefix)) continue;
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(kPrefix)) continue;
     const int lock = open_folder(entry.path());
     if (lock < 0) continue;
-    if (flock(lock, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry.path(), ignored);
+    if ((name.starts_with(own) || is_old(lock)) && flock(lock, LOCK_EX | LOCK_NB) == 0)
+      fs::remove_all(entry.path(), ignored);
     close(lock);
   }
 }
@@ -50,7 +62,7 @@ PrivateFolder::PrivateFolder(const fs::path& parent) : owner_(getpid()) {
   if (error) throw Error(ErrorKind::failed, error.message());
   remove_stale_folders(parent);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    std::string name = (parent / (std::string(kPrefix) + "XXXXXX")).string();
+    std::string name = (parent / (kPrefix + host_code() + "-XXXXXX")).string();
     if (!mkdtemp(name.data())) throw Error(ErrorKind::failed, std::strerror(errno));
     lock_ = open_folder(name);
     path_ = name;
