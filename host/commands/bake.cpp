@@ -76,6 +76,20 @@ std::vector<OutputPath> side_outputs(const gltf::SourceFile& file, const BakeArg
   return sides;
 }
 
+/// Throws Error usage for a file beside the .gltf that is an input or one of `named`, or cannot be
+/// written. Folders that are made for copies hold no file yet.
+void check_sides(const std::vector<OutputPath>& sides, const std::vector<OutputPath>& named,
+                 const std::vector<std::string>& inputs) {
+  check_outputs_spare(sides, inputs);
+  for (const OutputPath& side : sides) {
+    std::error_code ignored;
+    const fs::path folder = fs::path(side.path).parent_path();
+    if (!folder.empty() && !fs::exists(folder, ignored)) continue;
+    check_outputs({side}, Folders::leave);
+    for (const OutputPath& other : named) check_outputs({other, side}, Folders::leave);
+  }
+}
+
 /// Writes the file with the baked values, and the EXR of a texture. Returns a note, or nothing.
 std::string write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArguments& a,
                         const BakeOptions& options, std::uint32_t uv_set,
@@ -197,7 +211,7 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   gltf::SourceFile file(input->path(), a.scene_options.allow_outside);
   input.reset();  // all of it is in memory
   if (a.instances == "unique") make_meshes_unique(file, scene);
-  check_outputs_spare(side_outputs(file, a, options), inputs);
+  check_sides(side_outputs(file, a, options), outputs, inputs);
   if (options.vertices) check_values_fit(file, scene, parse_channel(a.channel), options);
   std::uint32_t uv_set = 0;
   std::string layout_note;
@@ -206,6 +220,7 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
 
   progress.announce("building", "the BVH");
   BakeResult result = bake(scene, options, control, occluders);
+  slices_are_traced();
   progress.clear();
   if (result.interrupted) return report_interruption(result, a);
 

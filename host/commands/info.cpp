@@ -74,7 +74,8 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   json["lights"] = nlohmann::ordered_json::array();
   for (const Light& light : scene.lights)
     json["lights"].push_back({{"name", light.name}, {"kind", name_of(light.kind)}});
-  json["cameras"] = scene.cameras.size();
+  json["cameras"] = nlohmann::ordered_json::array();
+  for (const Camera& camera : scene.cameras) json["cameras"].push_back(camera.name);
   json["bounds"] = {{"min", {bvh.bounds.min.x, bvh.bounds.min.y, bvh.bounds.min.z}},
                     {"max", {bvh.bounds.max.x, bvh.bounds.max.y, bvh.bounds.max.z}}};
   json["nodes"] = bvh.nodes.size();
@@ -97,6 +98,12 @@ nlohmann::ordered_json report(const Scene& scene, const SceneBvh& bvh) {
   return json;
 }
 
+std::string names_text(const nlohmann::ordered_json& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name.get<std::string>();
+  return text;
+}
+
 /// To five digits.
 std::string point_text(const nlohmann::ordered_json& p) {
   return fmt::format("({:.5g}, {:.5g}, {:.5g})", p[0].get<double>(), p[1].get<double>(),
@@ -115,11 +122,9 @@ std::string report_text(const nlohmann::ordered_json& r) {
     text += fmt::format("  segments    {:.0f} of strands, {:.0f} with instances\n",
                         number("segments", "total"), number("segments", "instanced"));
   }
-  std::string materials;
-  for (const auto& name : r["materials"])
-    materials += (materials.empty() ? "" : ", ") + name.get<std::string>();
-  text += fmt::format("  instances   {}, cameras {}\n", r["instances"].dump(), r["cameras"].dump());
-  text += fmt::format("  materials   {}\n", materials);
+  text += fmt::format("  instances   {}\n", r["instances"].dump());
+  text += fmt::format("  materials   {}\n", names_text(r["materials"]));
+  if (!r["cameras"].empty()) text += fmt::format("  cameras     {}\n", names_text(r["cameras"]));
   std::string lights;
   for (const auto& light : r["lights"]) {
     lights += fmt::format("{}{} ({})", lights.empty() ? "" : ", ", light["name"].get<std::string>(),

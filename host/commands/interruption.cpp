@@ -37,7 +37,7 @@ char temporary[4096];    // written only while has_temporary is 0
 // second SIGTERM does not end the process at once: process managers send it twice.
 extern "C" void on_interruption(int signal) {
   if (!saving || (received && signal == SIGINT)) {
-    if (has_temporary) unlink(temporary);
+    if (has_temporary && unlink(temporary) != 0) rmdir(temporary);
     _exit(kSignalled + signal);
   }
   if (received) return;
@@ -101,6 +101,12 @@ Progress end_hanging_slices_early(Progress progress) {
     in_slice = 0;
     if (progress) progress(fraction);
   };
+}
+
+void slices_are_traced() {
+  noticed = 1;
+  in_slice = 0;
+  alarm(0);
 }
 
 void remove_when_interrupted(const std::string& path) {

@@ -24,8 +24,12 @@ Stop save_when_interrupted();
 /// calls `progress`.
 Progress end_hanging_slices_early(Progress progress);
 
-/// The file is removed if a signal ends the process at once. Empty: none. Longer paths than 4,095
-/// bytes are not remembered.
+/// All slices of a picture or bake are traced: until the next question whether to stop, a signal no
+/// longer ends the process after twenty seconds, since writing what is finished may take longer.
+void slices_are_traced();
+
+/// The file or empty folder is removed if a signal ends the process at once. Empty: none. Longer
+/// paths than 4,095 bytes are not remembered.
 void remove_when_interrupted(const std::string& path);
 
 /// Whether more than 0.8 s have passed since SIGTERM or SIGXCPU. Then the picture should be

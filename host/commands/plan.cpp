@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "camera/view.hpp"
 #include "commands/command.hpp"
@@ -93,14 +94,16 @@ class TrialFolder {
     const char* set = std::getenv("TMPDIR");
     const std::string parent = set && *set ? set : "/tmp";
     path_ = parent + "/dapple-plan-XXXXXX";
-    if (mkdtemp(path_.data())) return;
-    throw Error(ErrorKind::failed,
-                fmt::format("cannot make a folder in {} (TMPDIR, or else /tmp): {}", parent,
-                            std::strerror(errno)));
+    if (!mkdtemp(path_.data()))
+      throw Error(ErrorKind::failed,
+                  fmt::format("cannot make a folder in {} (TMPDIR, or else /tmp): {}", parent,
+                              std::strerror(errno)));
+    remove_when_interrupted(path_);
   }
   ~TrialFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
+    remove_when_interrupted("");
   }
   TrialFolder(const TrialFolder&) = delete;
   TrialFolder& operator=(const TrialFolder&) = delete;
@@ -152,9 +155,9 @@ double film_bytes(const RenderArguments& a, const RenderOptions& options, std::s
   return pixels * (saved ? of_pixel : of_pixel / 2);
 }
 
-/// `scene_now` returns the scene, each time the same.
-Plan plan_of(const RenderArguments& a, const RenderOptions& options,
-             const std::function<Scene()>& scene_now) {
+/// `scene_now` returns the scene, each time the same. None: a signal came.
+std::optional<Plan> plan_of(const RenderArguments& a, const RenderOptions& options,
+                            const std::function<Scene()>& scene_now) {
   Plan plan;
   plan.pixels = pixels_of(options);
   plan.rays = plan.pixels * options.spp;
@@ -166,6 +169,7 @@ Plan plan_of(const RenderArguments& a, const RenderOptions& options,
   RenderControl control;
   ProgressBar progress(a.quiet, "trial");
   control.progress = progress.callback();
+  control.stop = save_when_interrupted();
   control.part = folder.file("trial.dapple");
   Scene scene = scene_now();
   const std::size_t lights = options.light ? std::max<std::size_t>(2, scene.lights.size()) : 0;
@@ -178,12 +182,13 @@ Plan plan_of(const RenderArguments& a, const RenderOptions& options,
   Trial longer =
       trace_trial(renderer, std::move(scene), trial_options(options, rays), control, result);
   plan.before_seconds = longer.before_seconds;
-  while (longer.seconds < kLongEnough && longer.pixels < plan.pixels) {
+  while (!result.interrupted && longer.seconds < kLongEnough && longer.pixels < plan.pixels) {
     rays *= kLonger;
     shorter = longer;
     longer = trace_trial(renderer, scene_now(), trial_options(options, rays), control, result);
   }
   progress.clear();
+  if (result.interrupted) return {};
   plan.device = result.statistics.device;
   plan.trial_rays = longer.rays;
   plan.trial_seconds = longer.seconds;
@@ -268,13 +273,14 @@ void run_plan(RenderArguments a) {
     tell("note: the plan is for --footprint {}; a smaller one may be chosen (--max-bias)\n",
          options.footprint);
   Shot shot(a, options);
-  const Plan plan = plan_of(a, options, [&] {
+  const std::optional<Plan> plan = plan_of(a, options, [&] {
     Scene scene = shot.frame(seconds);
     check_outputs_spare(outputs, scene.files);
     return scene;
   });
-  if (!a.stats_json.empty()) write_whole_file(a.stats_json, json_text(plan_json(plan)));
-  if (!a.quiet) fmt::print("{}", plan_text(plan));
+  if (!plan) return;
+  if (!a.stats_json.empty()) write_whole_file(a.stats_json, json_text(plan_json(*plan)));
+  if (!a.quiet) fmt::print("{}", plan_text(*plan));
 }
 
 }  // namespace

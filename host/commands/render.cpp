@@ -182,6 +182,7 @@ void run_render(const RenderArguments& a) {
       control.settings.emplace_back("frame_seconds", fmt::format("{}", *frame.seconds));
     RenderResult result =
         render_frame(a, frame, shot, std::move(scene), renderer, options, control);
+    slices_are_traced();
     progress.clear();
     RenderStatistics& statistics = result.statistics;
     statistics.seconds.load = load_seconds;
@@ -198,9 +199,11 @@ void run_render(const RenderArguments& a) {
     const bool is_lit = !has_dark_lights(result.film);
     if (is_lit && !png.exposure && !frame.png.empty())
       png.exposure = std::log2(automatic_exposure(result.film));
-    if (is_lit && !options.ambient) options.ambient = static_cast<float>(statistics.ambient);
+    // A dome is the sky, whether the frame shows light or not.
+    if ((is_lit || !a.dome.empty()) && !options.ambient)
+      options.ambient = static_cast<float>(statistics.ambient);
     options.footprint = statistics.footprint;  // a sequence has the footprint of its first frame
-    options.max_bias = 0;
+    options.keep_footprint = true;
     write_pictures(result, frame, format, png);
     for (const std::string& name : half_layers_without_planes(result.film, format))
       statistics.notes.push_back(fmt::format("--half {}: there is no such layer", name));

@@ -326,6 +326,8 @@ void check_effects(const RenderArguments& a, const RenderOptions& o) {
   };
   need(o.back_every != defaults.back_every, "--back-every", o.back,
        "the pass back: --passes ao,light,back");
+  need(is_adaptive(o), "--target-rmse and --target-error", o.ao || o.light, "the pass ao or light");
+  need(o.ao_rays != defaults.ao_rays, "--ao-rays", o.ao, "the pass ao");
   need(o.light_rays != defaults.light_rays, "--light-rays", o.light, "the pass light");
   need(o.ao_distance > 0, "--ao-distance", o.ao, "the pass ao");
   need(o.max_spp != defaults.max_spp, "--max-spp", is_adaptive(o),

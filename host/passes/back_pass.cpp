@@ -24,10 +24,10 @@ SliceParams packed_slice(const BackParams& choice) {
   return packed;
 }
 
-void turn_points_pass(DeviceContext& context, const Queues& queues, const Queues& backs,
+void flip_points_pass(DeviceContext& context, const Queues& queues, const Queues& backs,
                       const BackParams& choice) {
   context.launch(
-      kTurnPoints, "shading", hit_records(samples_of(packed_slice(choice))),
+      kFlipPoints, "shading", hit_records(samples_of(packed_slice(choice))),
       {queues.work, queues.points, queues.sample_hits, backs.points, backs.sample_hits, choice},
       kRayGroup);
 }

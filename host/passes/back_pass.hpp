@@ -1,5 +1,5 @@
 // The samples whose other side is traced for `--passes back`. In: the surface points of a slice.
-// Out: queues of turned points.
+// Out: queues of points with flipped normals.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace dapple {
 
-inline const KernelName kTurnPoints{"turn_points", "queue_kernels", {}};
+inline const KernelName kFlipPoints{"flip_points", "queue_kernels", {}};
 inline const KernelName kCountBacks{"count_backs", "queue_kernels", {}};
 
 /// BackParams::slots for a slice: how many groups the samples of a pixel are in at most. `work`: of
@@ -20,10 +20,10 @@ uint groups_touched(const SliceParams& slice, std::span<const PixelWork> work, u
 /// without gaps: one sample for each group that a pixel's samples belong to.
 SliceParams packed_slice(const BackParams& choice);
 
-/// Writes the points of the chosen samples, turned to the side that is not seen, to backs.points,
+/// Writes the points of the chosen samples, flipped to the side that is not seen, to backs.points,
 /// and which of them hit to backs.sample_hits: packed_slice(), from choice.first_packed on. Comes
 /// before shading_pass().
-void turn_points_pass(DeviceContext& context, const Queues& queues, const Queues& backs,
+void flip_points_pass(DeviceContext& context, const Queues& queues, const Queues& backs,
                       const BackParams& choice);
 
 /// Adds the numbers of chosen samples and of those that hit to two planes of the film.

@@ -14,7 +14,7 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   std::vector<KernelShape> kernels{
       {kClosestHit, kRayGroup},     {kCompactHits, kScanItems},
       {kResolveDome, kRayGroup},    {kResolveAo, kRayGroup},
-      {kResolveLight, kRayGroup},   {kTurnPoints, kRayGroup},
+      {kResolveLight, kRayGroup},   {kFlipPoints, kRayGroup},
       {kResolveSurface, kRayGroup}, {kGatherRays, kRayGroup},
       {kCountBacks, kRayGroup},     {shading_kernel(context), kRayGroup},
   };
@@ -48,7 +48,7 @@ std::vector<KernelName> picture_kernels(const DeviceContext& context, const Rend
                                   kResolveSurface};
   if (traces_scalar(context)) kernels.insert(kernels.end(), {kCountHits, kOrderRays});
   if (shaded) kernels.push_back(shading_kernel(context));
-  if (options.back) kernels.insert(kernels.end(), {kTurnPoints, kCountBacks});
+  if (options.back) kernels.insert(kernels.end(), {kFlipPoints, kCountBacks});
   const auto add_occlusion = [&](int rays) {
     kernels.push_back(
         occlusion_kernel(options.estimator, packets_in_picture(context, options.estimator, rays)));

@@ -71,7 +71,7 @@ void trace_scalar(DeviceContext& context, const Queues& queues, const DeviceBuff
                   const std::string& label, Estimator estimator, const OcclusionParams& params) {
   if (queues.order.memory())
     context.launch(kOrderRays, "order",
-                   ceil_div<std::size_t>(params.ray_count, kOrderChunk) * kOrderGroup,
+                   ceil_div<std::size_t>(params.ray_count, kOrderBatch) * kOrderGroup,
                    {queues.rays, queues.order, params.ray_count}, kOrderGroup);
   context.launch(
       occlusion_kernel(estimator, Packets::scalar), label, params.ray_count,

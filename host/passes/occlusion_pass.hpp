@@ -26,8 +26,8 @@ inline const KernelName kGatherRays{"gather_rays", "queue_kernels", {}};
 inline const KernelName kOrderRays{"order_rays", "scalar/order_rays", {}};
 /// Work-items of a work-group of kOrderRays; DAPPLE_ORDER_GROUP.
 inline constexpr std::size_t kOrderGroup = 256;
-/// Rays that one of them orders; DAPPLE_ORDER_CHUNK.
-inline constexpr std::size_t kOrderChunk = 4096;
+/// Rays that one of them orders; DAPPLE_ORDER_BATCH.
+inline constexpr std::size_t kOrderBatch = 4096;
 /// Work-items of a work-group of occlusion_kernel() with packets.
 std::size_t packet_group(const DeviceContext& context, Packets with);
 

@@ -102,8 +102,8 @@ const std::map<std::string, Pass>& passes() {
        [](EmptyStage& s, const Variant&) {
          resolve_surface_pass(s.context, s.queues, s.film, {});
        }},
-      {"turn_points",
-       [](EmptyStage& s, const Variant&) { turn_points_pass(s.context, s.queues, s.queues, {}); }},
+      {"flip_points",
+       [](EmptyStage& s, const Variant&) { flip_points_pass(s.context, s.queues, s.queues, {}); }},
       {"count_backs",
        [](EmptyStage& s, const Variant&) { count_backs_pass(s.context, s.queues, s.film, {}); }},
       {"shade_points", warm_up_shading},

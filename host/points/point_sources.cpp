@@ -1,5 +1,6 @@
 #include "points/point_sources.hpp"
 
+#include <Imath/ImathMatrix.h>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -35,13 +36,16 @@ PointList triangle_points(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.has_strands()) continue;
+    // A mirrored instance reverses the winding of its triangles. The front stays the front, as glTF
+    // defines it. In doubles, because a product of three small scales vanishes in floats.
+    const float front = Imath::M44d(instance.to_world).determinant() < 0 ? -1.0f : 1.0f;
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       V3f corner[3];
       for (std::size_t k = 0; k < 3; ++k)
         corner[k] = mesh.positions[mesh.indices[3 * t + k]] * instance.to_world;
       const V3f area = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
       if (!(area.length() > 0) || !std::isfinite(area.length())) continue;
-      for (const float side : {1.0f, -1.0f}) {
+      for (const float side : {front, -front}) {
         list.points.push_back((corner[0] + corner[1] + corner[2]) / 3.0f);
         list.normals.push_back(area.normalized() * side);
       }

@@ -17,10 +17,11 @@ BackSlices::BackSlices(DeviceContext& context, const Queues& front, std::uint32_
 
 bool BackSlices::fits(const SliceParams& next, std::span<const PixelWork> work) const {
   if (empty()) return true;
-  const SliceParams& waits = choice_.resolve.slice;
-  const std::uint32_t pixels = waits.pixel_count + next.pixel_count;
-  return work.data() == work_.data() && next.first_work == waits.first_work + waits.pixel_count &&
-         next.first_sample == waits.first_sample && next.sample_count == waits.sample_count &&
+  const SliceParams& pending = choice_.resolve.slice;
+  const std::uint32_t pixels = pending.pixel_count + next.pixel_count;
+  return work.data() == work_.data() &&
+         next.first_work == pending.first_work + pending.pixel_count &&
+         next.first_sample == pending.first_sample && next.sample_count == pending.sample_count &&
          groups_touched(next, work, choice_.group_bits) == choice_.slots &&
          samples_of(packed_slice(choice_)) % DAPPLE_HIT_BITS == 0 &&
          std::size_t{pixels} * choice_.slots <= slice_samples_ &&
@@ -28,16 +29,16 @@ bool BackSlices::fits(const SliceParams& next, std::span<const PixelWork> work) 
 }
 
 void BackSlices::add(const SliceParams& next, std::span<const PixelWork> work) {
-  SliceParams waits = choice_.resolve.slice;
+  SliceParams pending = choice_.resolve.slice;
   choice_.first_packed = static_cast<uint>(samples_of(packed_slice(choice_)));
   choice_.slots = groups_touched(next, work, choice_.group_bits);
   choice_.resolve.slice = next;
-  turn_points_pass(context_, front_, queues_, choice_);
-  if (!waits.pixel_count)
-    waits = next;
+  flip_points_pass(context_, front_, queues_, choice_);
+  if (!pending.pixel_count)
+    pending = next;
   else
-    waits.pixel_count += next.pixel_count;
-  choice_.resolve.slice = waits;
+    pending.pixel_count += next.pixel_count;
+  choice_.resolve.slice = pending;
   work_ = work;
 }
 

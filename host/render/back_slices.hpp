@@ -1,6 +1,7 @@
 // The points whose backs are traced, of one slice or of several that follow each other: few points
 // of a slice are chosen, and passes of few points take longer for each. In: the surface points of
-// slices. Out: queues of turned points, without gaps, for the passes that trace a slice.
+// slices. Out: queues of points with flipped normals, without gaps, for the passes that trace a
+// slice.
 #pragma once
 
 #include <span>
@@ -17,13 +18,14 @@ class BackSlices {
   BackSlices(DeviceContext& context, const Queues& front, std::uint32_t slice_samples,
              const BackParams& choice);
 
-  /// Whether add() may add the slice to those that wait; true if none does. `work`: of its group.
+  /// Whether add() may add the slice to the pending ones; true if there are none. `work`: of its
+  /// group.
   [[nodiscard]] bool fits(const SliceParams& slice, std::span<const PixelWork> work) const;
   /// Comes before shading_pass().
   void add(const SliceParams& slice, std::span<const PixelWork> work);
 
   [[nodiscard]] bool empty() const { return choice_.resolve.slice.pixel_count == 0; }
-  /// Of the slices whose points wait, as if they were one.
+  /// Of the pending slices, as if they were one.
   [[nodiscard]] const BackParams& choice() const { return choice_; }
   [[nodiscard]] std::span<const PixelWork> work() const { return work_; }
   [[nodiscard]] const Queues& queues() const { return queues_; }

@@ -18,6 +18,12 @@ constexpr std::size_t kUnitPixels = std::size_t{kBiasUnit} * kBiasUnit;
 /// Units whose camera rays are traced at once, and about how many of their occlusion rays.
 constexpr std::size_t kUnitsAtOnce = 512, kRaysAtOnce = 1u << 20;
 
+/// Rays of a kind from one point: more tell little of the picture's bias, and fill the memory.
+constexpr int kMostRaysOfPoint = 4;
+
+/// Rays of all layers that are kept, of 56 bytes each with what is found.
+constexpr std::size_t kMostRaysKept = 1u << 24;
+
 /// Fewest units that are worth a launch, and how many times the units that seem to be missing are
 /// taken: experiment 545.
 constexpr std::size_t kFewestUnits = 16;
@@ -47,7 +53,7 @@ BiasPilot::BiasPilot(DeviceContext& context, const DeviceBuffers& scene, const V
       scene_(scene),
       options_(options),
       layout_(layout),
-      picture_rays_(context, scene, view, options, layout),
+      picture_rays_(context, scene, view, options, layout, kMostRaysOfPoint),
       camera_(camera),
       grid_(view),
       order_(spread_units(grid_)),
@@ -57,8 +63,9 @@ BiasPilot::BiasPilot(DeviceContext& context, const DeviceBuffers& scene, const V
       units_(grid_.empty_units()),
       layers_((options.ao ? 1 : 0) + layout.lights.size()) {
   camera_.keep_hits = layout.normals ? 1u : 0u;
-  const int rays =
+  const int asked =
       std::max(options.ao ? options.ao_rays : 1, layout.lights.empty() ? 1 : options.light_rays);
+  const int rays = std::min(asked, kMostRaysOfPoint);
   const std::size_t of_unit = kUnitPixels * splitting_factor(options);
   const std::size_t most = kRaysAtOnce / (of_unit * static_cast<std::size_t>(rays));
   units_at_once_ = std::clamp(most, std::size_t{1}, units_at_once_);
@@ -84,6 +91,7 @@ double BiasPilot::seen() const {
 }
 
 void BiasPilot::grow(std::size_t rays) {
+  rays = std::min(rays, kMostRaysKept / layers_.size());
   while (this->rays() < rays && !is_complete()) take_units(units_for(rays - this->rays()));
 }
 

@@ -63,7 +63,7 @@ BiasTracer::BiasTracer(DeviceContext& context, const DeviceBuffers& scene,
       sums_(std::move(sums)),
       share_(double{options.report_bias}),
       rays_at_once_(rays_at_once(context.info())),
-      waiting_(layers) {
+      pending_(layers) {
   sums_.differences.resize(layers);
   for (std::vector<float>& layer : sums_.differences) layer.resize(view.pixel_count());
 }
@@ -85,6 +85,7 @@ void BiasTracer::choose_among(const SliceParams& slice, const EntrySamples& of_e
     parts[part] = chosen_among(slice, of_entry, of_slice,
                                {begin, std::min(begin + kEntriesOfThread, slice.pixel_count)});
   });
+  chosen_factor_ = static_cast<float>(1 / share_);
   chosen_samples_.clear();
   for (const std::vector<ChosenSample>& part : parts)
     chosen_samples_.insert(chosen_samples_.end(), part.begin(), part.end());
@@ -136,70 +137,70 @@ void BiasTracer::keep_hits(const Queues& queues) {
 void BiasTracer::collect(std::size_t layer, const Queues& queues, const OcclusionParams& params) {
   sums_.rays += params.ray_count;
   if (chosen_slots_.empty()) return;
-  Waiting& waiting = waiting_[layer];
+  PendingRays& pending = pending_[layer];
   const auto added = static_cast<std::uint32_t>(chosen_slots_.size()) * params.rays_per_point;
-  if ((std::size_t{waiting.count} + added) * sizeof(Ray) > waiting.queues.rays.bytes()) {
-    if (waiting.count) trace(layer);
+  if ((std::size_t{pending.count} + added) * sizeof(Ray) > pending.queues.rays.bytes()) {
+    if (pending.count) trace(layer);
     const std::size_t room = rays_at_once_ + std::size_t{added};
-    waiting.queues.rays = context_.allocate(room * sizeof(Ray));
-    waiting.queues.occlusions = context_.allocate(room * sizeof(Occlusion));
+    pending.queues.rays = context_.allocate(room * sizeof(Ray));
+    pending.queues.occlusions = context_.allocate(room * sizeof(Occlusion));
   }
-  waiting.params = params;
-  gather_pass(context_, queues, slots_, waiting.queues, added, params.rays_per_point,
-              waiting.count);
-  waiting.count += added;
-  waiting.pixels.insert(waiting.pixels.end(), chosen_pixels_.begin(), chosen_pixels_.end());
-  waiting.factors.resize(waiting.pixels.size(), static_cast<float>(1 / share_));
-  if (waiting.count >= rays_at_once_) trace(layer);
+  pending.params = params;
+  gather_pass(context_, queues, slots_, pending.queues, added, params.rays_per_point,
+              pending.count);
+  pending.count += added;
+  pending.pixels.insert(pending.pixels.end(), chosen_pixels_.begin(), chosen_pixels_.end());
+  pending.factors.resize(pending.pixels.size(), chosen_factor_);
+  if (pending.count >= rays_at_once_) trace(layer);
 }
 
 void BiasTracer::finish() {
-  for (std::size_t layer = 0; layer < waiting_.size(); ++layer)
-    if (waiting_[layer].count) trace(layer);
+  for (std::size_t layer = 0; layer < pending_.size(); ++layer)
+    if (pending_[layer].count) trace(layer);
 }
 
 void BiasTracer::trace(std::size_t layer) {
-  Waiting& waiting = waiting_[layer];
-  const std::size_t bytes = waiting.count * sizeof(Occlusion);
+  PendingRays& pending = pending_[layer];
+  const std::size_t bytes = pending.count * sizeof(Occlusion);
   if (exact_.bytes() < bytes) {
     exact_ = context_.allocate(bytes);
-    if (traces_scalar(context_)) order_ = context_.allocate(waiting.count * sizeof(uint));
+    if (traces_scalar(context_)) order_ = context_.allocate(pending.count * sizeof(uint));
   }
   Queues queues;
-  queues.rays = waiting.queues.rays;
+  queues.rays = pending.queues.rays;
   queues.occlusions = exact_;
   queues.order = order_;
-  OcclusionParams params = waiting.params;
-  params.ray_count = waiting.count;
+  OcclusionParams params = pending.params;
+  params.ray_count = pending.count;
   occlusion_pass(context_, queues, scene_, "bias report", Estimator::exact, params,
                  RayOrder::by_pixel);
   {
-    const HostView exact = context_.view(exact_), rays = context_.view(waiting.queues.rays),
-                   prefiltered = context_.view(waiting.queues.occlusions);
+    const HostView exact = context_.view(exact_), rays = context_.view(pending.queues.rays),
+                   prefiltered = context_.view(pending.queues.occlusions);
     add(layer, rays.values<Ray>(), prefiltered.values<Occlusion>(),
-        exact.values<Occlusion>().first(waiting.count));
+        exact.values<Occlusion>().first(pending.count));
   }
-  waiting.count = 0;
-  waiting.pixels.clear();
-  waiting.factors.clear();
+  pending.count = 0;
+  pending.pixels.clear();
+  pending.factors.clear();
   if (sums_.exact_cost > kMaxCost * sums_.prefiltered_cost)
     share_ = double{options_.report_bias} * kMaxCost * sums_.prefiltered_cost / sums_.exact_cost;
 }
 
 void BiasTracer::add(std::size_t layer, std::span<const Ray> rays,
                      std::span<const Occlusion> prefiltered, std::span<const Occlusion> exact) {
-  const Waiting& waiting = waiting_[layer];
-  const std::size_t of_sample = waiting.params.rays_per_point;
+  const PendingRays& pending = pending_[layer];
+  const std::size_t of_sample = pending.params.rays_per_point;
   std::vector<float>& differences = sums_.differences[layer];
-  for (std::size_t sample = 0; sample < waiting.pixels.size(); ++sample) {
+  for (std::size_t sample = 0; sample < pending.pixels.size(); ++sample) {
     float difference = 0;
     for (std::size_t r = sample * of_sample; r < (sample + 1) * of_sample; ++r) {
       difference += rays[r].weight * (prefiltered[r].transmittance - exact[r].transmittance);
       sums_.exact_cost += cost_of(exact[r]);
       sums_.prefiltered_cost += cost_of(prefiltered[r]);
     }
-    differences[waiting.pixels[sample]] +=
-        difference * waiting.factors[sample] / static_cast<float>(of_sample);
+    differences[pending.pixels[sample]] +=
+        difference * pending.factors[sample] / static_cast<float>(of_sample);
   }
   sums_.exact_rays += static_cast<double>(exact.size());
 }

@@ -22,7 +22,7 @@ class BiasTracer {
   /// Chooses samples of a slice, while the device may still trace its camera rays. `work`: of the
   /// slice's group.
   void choose(const SliceParams& slice, std::span<const PixelWork> work);
-  /// Chooses points of turn_points_pass() in place of samples.
+  /// Chooses points of flip_points_pass() in place of samples.
   void choose_backs(const BackParams& choice, std::span<const PixelWork> work);
   /// Keeps those of them that hit something, once the slice's hits are listed.
   void keep_hits(const Queues& queues);
@@ -46,8 +46,8 @@ class BiasTracer {
     std::uint32_t pixel;   ///< in the crop
   };
 
-  /// Rays of a layer that wait on the device for being traced.
-  struct Waiting {
+  /// Rays of a layer that lie on the device until there are enough to trace.
+  struct PendingRays {
     OcclusionParams params{};
     Queues queues;                      ///< rays, and what the prefiltered pass found
     std::uint32_t count = 0;            ///< rays
@@ -79,9 +79,10 @@ class BiasTracer {
   double share_;                              ///< of the samples that are chosen next
   std::size_t rays_at_once_;                  ///< of a layer
   std::vector<ChosenSample> chosen_samples_;  ///< of the slice
+  float chosen_factor_ = 1;                   ///< inverse of the share by which they were chosen
   std::vector<std::uint32_t> chosen_slots_, chosen_pixels_;  ///< of the slice's chosen hits
   Buffer slots_;                                             ///< chosen_slots_ on the device
-  std::vector<Waiting> waiting_;                             ///< by layer
+  std::vector<PendingRays> pending_;                         ///< by layer
   Buffer exact_;                                             ///< Occlusion of exact rays
   Buffer order_;                                             ///< of these rays, as in Queues
 };

@@ -14,7 +14,7 @@ constexpr double kPilotShare = 1.0 / 32;
 }  // namespace
 
 bool needs_footprint_pilot(const RenderOptions& options, bool resumed) {
-  return (has_bias(options) && (options.max_bias > 0 || is_adaptive(options))) ||
+  return (has_bias(options) && (limits_bias(options) || is_adaptive(options))) ||
          (chooses_footprint(options) && !resumed);
 }
 
@@ -33,7 +33,8 @@ FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& pictu
   if (sampled.cryptomattes.any() || sampled.motion || sampled.deep) camera.medium_error = 0;
   BiasPilot pilot(kept.device->context(), scene, view, sampled, layout, camera);
   FootprintDemand demand{picture.options.footprint, sampled.max_bias.value_or(0),
-                         std::max(sampled.target_error, sampled.target_rmse), !first_footprint};
+                         std::max(sampled.target_error, sampled.target_rmse),
+                         !first_footprint && !sampled.keep_footprint};
   if (unasked) {
     pilot.limit(kPilotShare);
     demand.max_bias = kDefaultMaxBias;
@@ -44,7 +45,7 @@ FootprintChoice footprint_pilot(const KeptScene& kept, const PilotPicture& pictu
     // The rays of the first choice, so that the target leaves as much for the noise.
     FootprintDemand first = demand;
     first.footprint = *first_footprint;
-    first.may_shrink = true;
+    first.may_shrink = !sampled.keep_footprint;
     FootprintChoice choice = choose_footprint(pilot, first);
     choice.note.clear();
     if (choice.footprint == demand.footprint) return choice;

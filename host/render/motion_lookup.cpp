@@ -49,7 +49,8 @@ MotionLookup::MotionLookup(const Scene& now, const View& view, const SceneBvh& b
                                               : triangles_.data() + 8 * std::size_t{first.block};
     for (std::size_t lane = first.lane(); lane < end.lane(); ++lane, ++lanes) {
       const std::uint32_t primitive = bvh.primitives[lane];
-      if (primitive != kNoPrimitive) *lanes = {part_of[primitive], primitive};
+      // Files of the cache may name any; they are no primitives of the mesh then.
+      if (primitive < part_of.size()) *lanes = {part_of[primitive], primitive};
     }
   }
   for (const InstanceRecord& record : bvh.instances) {

@@ -283,7 +283,7 @@ class PictureTracer {
     trace_side({queues_}, hits);
   }
 
-  /// Those that wait, if there are any.
+  /// The pending ones, if there are any.
   void trace_backs() {
     if (!backs_ || backs_->empty()) return;
     const Queues& queues = backs_->queues();
@@ -315,7 +315,8 @@ class PictureTracer {
   void trace_side(const Side& side, std::uint32_t hits) {
     resolve_.backs = side.is_back ? 1 : 0;
     if (options_.ao) trace_ao(side, hits);
-    for (uint light = 0; light < light_count_; ++light) trace_light(side, light, hits);
+    for (uint light = 0; light < light_count_; ++light)
+      if (!scene_.dark_lights[light]) trace_light(side, light, hits);
   }
 
   void trace_ao(const Side& side, std::uint32_t hits) {

@@ -1,7 +1,5 @@
 #include "render/picture_rays.hpp"
 
-#include <limits>
-
 #include "passes/light_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 
@@ -10,7 +8,7 @@ namespace dapple {
 OcclusionParams PictureRays::make_ao(const Queues& queues, std::uint32_t hits) const {
   AoParams ao{};
   ao.point_count = hits;
-  ao.rays = static_cast<uint>(options_.ao_rays);
+  ao.rays = static_cast<uint>(ao_rays_);
   ao.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
                              static_cast<float>(footprint_ao_rays(options_)));
   ao.t_max =
@@ -19,7 +17,7 @@ OcclusionParams PictureRays::make_ao(const Queues& queues, std::uint32_t hits) c
   ao.shaded = shaded_;
   ao.viewpoint = viewpoint_;
   ao_ray_pass(context_, queues, ao);
-  OcclusionParams params = occlusion_params(hits, options_.ao_rays);
+  OcclusionParams params = occlusion_params(hits, ao_rays_);
   if (options_.ao_distance > 0 && options_.ao_falloff > 0) {
     params.inverse_distance = 1.0f / options_.ao_distance;
     params.falloff = options_.ao_falloff;
@@ -31,7 +29,7 @@ OcclusionParams PictureRays::make_light(const Queues& queues, std::uint32_t ligh
                                         std::uint32_t hits) const {
   LightParams params{};
   params.point_count = hits;
-  params.rays = static_cast<uint>(options_.light_rays);
+  params.rays = static_cast<uint>(light_rays_);
   params.inverse_count = 1.0f / (static_cast<float>(footprint_samples(options_)) *
                                  static_cast<float>(options_.light_rays));
   params.light = light;
@@ -39,7 +37,7 @@ OcclusionParams PictureRays::make_light(const Queues& queues, std::uint32_t ligh
   params.shaded = shaded_;
   params.viewpoint = viewpoint_;
   light_ray_pass(context_, scene_, queues, params);
-  return occlusion_params(hits, options_.light_rays);
+  return occlusion_params(hits, light_rays_);
 }
 
 OcclusionParams PictureRays::occlusion_params(std::uint32_t points, int rays) const {

@@ -2,6 +2,9 @@
 // and the list of hits. Out: queues with rays, and the parameters of the pass that traces them.
 #pragma once
 
+#include <algorithm>
+#include <limits>
+
 #include "camera/view.hpp"
 #include "dapple/options.hpp"
 #include "device/upload/scene_upload.hpp"
@@ -13,12 +16,16 @@ namespace dapple {
 /// The arguments of the constructor must outlive the object.
 class PictureRays {
  public:
-  /// `options`: by_sample().
+  /// `options`: by_sample(). At most `most` rays of a kind are made for each point, with the
+  /// footprints of all that `options` say.
   PictureRays(DeviceContext& context, const DeviceBuffers& scene, const View& view,
-              const RenderOptions& options, const FilmLayout& layout)
+              const RenderOptions& options, const FilmLayout& layout,
+              int most = std::numeric_limits<int>::max())
       : context_(context),
         scene_(scene),
         options_(options),
+        ao_rays_(std::min(options.ao_rays, most)),
+        light_rays_(std::min(options.light_rays, most)),
         viewpoint_(viewpoint(view)),
         shaded_(layout.normals ? 1u : 0u) {}
 
@@ -33,6 +40,7 @@ class PictureRays {
   DeviceContext& context_;
   const DeviceBuffers& scene_;
   const RenderOptions& options_;
+  int ao_rays_, light_rays_;
   Viewpoint viewpoint_;
   uint shaded_;
 };

@@ -35,21 +35,22 @@
 namespace dapple {
 namespace {
 
-/// Applies overrides, chooses the view, and adds lights and ground, in this order: the camera
-/// frames the scene without the ground.
+/// Applies overrides, chooses the view, and adds ground and lights, in this order: the camera
+/// frames the scene without the ground, and merging drops lights that nothing can be seen of.
 View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::string>& notes) {
   check_scene(scene);
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   View view = choose_view(scene, options, notes);
-  if (options.light && scene.lights.empty()) {
-    scene.lights = daylight(view.camera);
-    notes.emplace_back(
-        "no lights in the scene: added lights named sun and sky; --lights F brings others");
-  }
   check_film_memory(view, options.light ? scene.lights.size() : 0, options);
   if (options.ground) add_ground(scene);
   if (options.cryptomattes.any() || options.motion) name_objects(scene);
   merge_single_instances(scene);
+  if (options.light && scene.lights.empty()) {
+    scene.lights = daylight(view.camera);
+    notes.emplace_back(
+        "no lights in the scene: added lights named sun and sky; --lights F brings others");
+    check_film_memory(view, scene.lights.size(), options);
+  }
   finalize_domes(scene);
   return view;
 }
@@ -71,7 +72,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   set("normals", name_of(options.normals));
   set("footprint", options.footprint);
   if (options.packets != Packets::automatic) set("packets", name_of(options.packets));
-  if (options.max_bias > 0) set("max_bias", *options.max_bias);
+  if (limits_bias(options)) set("max_bias", *options.max_bias);
   if (options.target_error > 0) set("target_error", options.target_error);
   if (options.target_rmse > 0) set("target_rmse", options.target_rmse);
   if (is_adaptive(options)) set("max_spp", options.max_spp);
@@ -102,9 +103,11 @@ bool may_be_shaded(const Scene& scene, const RenderOptions& options) {
                      [](const Mesh& mesh) { return !mesh.normals.empty(); });
 }
 
-UploadOptions uploading_of(const RenderOptions& options, bool smooth) {
-  const bool normals = options.normals == Normals::shading;
-  return {normals, options.albedo, normals && smooth};
+/// All moments of a shutter have normals, or none has: the film's planes are those of the first.
+UploadOptions uploading_of(const RenderOptions& options, const ShutterScenes& moments) {
+  const bool shading = options.normals == Normals::shading;
+  return {shading && (moments.count == 1 || moments.smooth), options.albedo,
+          shading && moments.smooth};
 }
 
 void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
@@ -155,20 +158,35 @@ RenderOptions with_measured_bias(const FootprintChoice& choice, RenderOptions& o
   return traced;
 }
 
+/// The scene one frame later. If it cannot be rendered, because everything or the camera is scaled
+/// to nothing then, nothing moves.
+FrameScene next_frame(const Shutter& shutter, int time, const View& view,
+                      const RenderOptions& options, std::vector<std::string>& notes) {
+  std::vector<std::string> same;  // as of this frame
+  try {
+    FrameScene next{shutter.next_at(time), {}};
+    next.view = prepare_scene(next.scene, options, same);
+    return next;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::input) throw;
+    notes.push_back(
+        fmt::format("the frame after this one cannot be shown, so motion is 0: {}", error.what()));
+    return {Scene(), view};
+  }
+}
+
 /// What the hits of camera rays are looked up in, if the options ask for it. `scene` must be on the
 /// device, and live as long as the result.
 std::unique_ptr<HitLookups> hit_lookups(const KeptScene& kept, const Shutter& shutter, int time,
                                         const Scene& scene, const View& view,
-                                        const RenderOptions& options) {
+                                        const RenderOptions& options,
+                                        std::vector<std::string>& notes) {
   auto lookups = std::make_unique<HitLookups>();
   if (options.cryptomattes.any()) lookups->mattes.emplace(scene, kept.bvh->bvh());
   lookups->deep = options.deep;
-  if (options.motion) {
-    std::vector<std::string> notes;  // those of this frame again
-    FrameScene next{shutter.next_at(time), {}};
-    next.view = prepare_scene(next.scene, options, notes);
-    lookups->motion.emplace(scene, view, kept.bvh->bvh(), std::move(next));
-  }
+  if (options.motion)
+    lookups->motion.emplace(scene, view, kept.bvh->bvh(),
+                            next_frame(shutter, time, view, options, notes));
   return lookups;
 }
 
@@ -186,7 +204,7 @@ TracedPicture trace(KeptScene& kept, const Shutter& shutter, const Scene& first,
   }
   TracedPicture picture = trace_picture(
       *kept.device, kept.on_device, view, until(options, 0, shutter.times), layout, tracing,
-      std::move(state), *hit_lookups(kept, shutter, 0, first, view, options));
+      std::move(state), *hit_lookups(kept, shutter, 0, first, view, options, statistics.notes));
   for (int time = 1; time < shutter.times && !picture.interrupted; ++time) {
     Scene moved = shutter.scene_at(time);
     const View moved_view = prepare_scene(moved, options, statistics.notes);
@@ -195,17 +213,19 @@ TracedPicture trace(KeptScene& kept, const Shutter& shutter, const Scene& first,
     const UploadOptions uploading = kept.on_device.buffers->uploaded;
     kept.update_scene(moved, uploading, options.cache, statistics);
     tracing.progress = part_of(progress, time + 1, shutter.times);
-    picture = trace_picture(*kept.device, kept.on_device, moved_view,
-                            until(options, time, shutter.times), layout, tracing, std::move(state),
-                            *hit_lookups(kept, shutter, time, moved, moved_view, options));
+    picture = trace_picture(
+        *kept.device, kept.on_device, moved_view, until(options, time, shutter.times), layout,
+        tracing, std::move(state),
+        *hit_lookups(kept, shutter, time, moved, moved_view, options, statistics.notes));
   }
   return picture;
 }
 
 /// Uploads the scene while kernels are loaded and other processes compile those that are missing.
-/// `smooth`: triangles may have normals at other moments of the picture.
+/// `moments`: of all, of which this scene is the first.
 void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
-                   const RenderOptions& options, bool smooth, RenderStatistics& statistics) {
+                   const RenderOptions& options, const ShutterScenes& moments,
+                   RenderStatistics& statistics) {
   kept.open(options, statistics);
   const Device& device = *kept.device;
   check_memory(device.info(), min_need(scene), "needs at least");
@@ -215,7 +235,7 @@ void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
   kept.loader->stop();
   processes.start(device.context(), kernels, CompileTo::machine_code);
   kept.loader->start(kernels);
-  kept.update_scene(scene, uploading_of(options, smooth), options.cache, statistics);
+  kept.update_scene(scene, uploading_of(options, moments), options.cache, statistics);
   kept.compile(kernels, processes, statistics);
 }
 
@@ -323,9 +343,10 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const RenderOptions sampled = by_sample(options);
   // Moved out until the render succeeds: after an error nothing is kept.
   Kept kept = std::exchange(*kept_, {});
-  put_on_device(kept, scene, view, sampled, moments.smooth, statistics);
+  put_on_device(kept, scene, view, sampled, moments, statistics);
 
-  const std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
+  std::vector<Light> lights = options.light ? scene.lights : std::vector<Light>{};
+  set_lit_radiance(moments, lights);
   Box3f bounds = kept.bvh->bvh().bounds;
   bounds.extendBy(moments.bounds);
   const MatteNames names = matte_names(scene, options);

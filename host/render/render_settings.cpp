@@ -61,8 +61,10 @@ std::string scene_checksum(const SceneBvh& bvh, const DeviceBuffers& scene) {
   return hex_text(stream.value());
 }
 
+/// Not of radiances, which the sums are multiplied by afterwards; but dark lights have no sums.
 std::string light_checksum(const DeviceBuffers& scene) {
   ChecksumStream stream;
+  for (const bool dark : scene.dark_lights) stream.add_value(dark);
   stream.add_range(scene.light_records);
   stream.add_range(scene.emitter_triangles);
   stream.add_range(scene.environment_data);

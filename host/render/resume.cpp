@@ -8,6 +8,7 @@
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "render/stopwatch.hpp"
+#include "sampling/sample_plan.hpp"
 #include "sampling/shard.hpp"
 
 namespace dapple {
@@ -18,13 +19,14 @@ void require_enough_samples(const std::string& path, const TraceState& state,
                             const RenderOptions& options) {
   const bool adaptive = is_adaptive(options);
   const int asked = adaptive ? options.max_spp : options.spp;
+  const auto splitting = static_cast<std::uint32_t>(splitting_factor(options));
   const auto most =
-      (state.samples.empty() ? 0u : *std::max_element(state.samples.begin(), state.samples.end())) /
-      splitting_factor(options);
-  if (most <= static_cast<std::uint32_t>(asked)) return;
+      state.samples.empty() ? 0u : *std::max_element(state.samples.begin(), state.samples.end());
+  const std::uint32_t least = adaptive ? least_samples(by_sample(options).spp) : 0;
+  if (most <= std::max(least, static_cast<std::uint32_t>(asked) * splitting)) return;
   throw Error(ErrorKind::usage,
               fmt::format("--resume {}: has {} samples per pixel already, {} {} is fewer", path,
-                          most, adaptive ? "--max-spp" : "--spp", asked));
+                          most / splitting, adaptive ? "--max-spp" : "--spp", asked));
 }
 
 /// A render goes on from its first sample up to some other, in all pixels.

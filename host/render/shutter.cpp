@@ -24,6 +24,8 @@ void check_motion(const Shutter& shutter, const RenderOptions& options) {
   if (options.ground) refuse("with motion vectors the ground must be part of the scenes");
 }
 
+bool is_dark(const V3f& radiance) { return radiance == V3f(0, 0, 0); }
+
 }  // namespace
 
 void check_shutter(const Shutter& shutter, const RenderOptions& options,
@@ -54,13 +56,25 @@ void check_shutter(const Shutter& shutter, const RenderOptions& options,
 
 ShutterScenes look_at_moments(const Shutter& shutter) {
   ShutterScenes scenes;
+  scenes.count = shutter.times;
   for (int time = 0; shutter.times > 1 && time < shutter.times; ++time) {
     const Scene scene = shutter.scene_at(time);
     check_scene(scene);
     scenes.bounds.extendBy(scene_bounds(scene));
     scenes.smooth = scenes.smooth || is_smooth(scene);
+    if (time == 0) scenes.radiance.resize(scene.lights.size(), V3f(0, 0, 0));
+    if (scenes.radiance.size() != scene.lights.size()) scenes.radiance.clear();
+    for (std::size_t i = 0; i < scenes.radiance.size(); ++i)
+      if (is_dark(scenes.radiance[i])) scenes.radiance[i] = scene.lights[i].radiance;
   }
   return scenes;
+}
+
+void set_lit_radiance(const ShutterScenes& moments, std::vector<Light>& lights) {
+  if (moments.radiance.size() != lights.size()) return;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (is_dark(lights[i].radiance) && lights[i].kind != LightKind::dome)
+      lights[i].radiance = moments.radiance[i];
 }
 
 RenderOptions until(const RenderOptions& options, int time, int times) {

@@ -20,13 +20,21 @@ struct Shutter {
 void check_shutter(const Shutter& shutter, const RenderOptions& options,
                    const RenderControl& control);
 
-/// What holds for the scenes at all moments together. Empty for a single moment.
+/// What holds for the scenes at all moments together.
 struct ShutterScenes {
-  Box3f bounds;
-  bool smooth = false;  ///< at some moment
+  int count = 1;
+  Box3f bounds;         ///< empty for a single moment
+  bool smooth = false;  ///< at one of several moments
+  /// By light, at the first moment at which it is not 0; empty for a single moment, or if lights
+  /// come or go.
+  std::vector<V3f> radiance;
 };
 
 ShutterScenes look_at_moments(const Shutter& shutter);
+
+/// Gives lights that are dark at the first moment the radiance that they have when they are on: at
+/// moments without radiance they add nothing to the sums. Domes cannot be switched.
+void set_lit_radiance(const ShutterScenes& moments, std::vector<Light>& lights);
 
 /// The options as by_sample() returns them, with the end of the shard for `spp`, or that of the
 /// first `time` + 1 moments if it is less.

@@ -70,8 +70,11 @@ ResolveParams resolve_params(const View& view, const FilmLayout& layout, uint sp
 
 BackParams back_params(const View& view, const RenderOptions& options, const FilmLayout& layout,
                        const ResolveParams& resolve) {
+  // With a target, quiet pixels have as few as two batches, whatever their number for footprints.
   const auto samples =
-      static_cast<unsigned>(footprint_samples(options) * splitting_factor(options));
+      is_adaptive(options)
+          ? 2 * DAPPLE_SAMPLE_BATCH
+          : static_cast<unsigned>(footprint_samples(options) * splitting_factor(options));
   const unsigned group = std::min(static_cast<unsigned>(options.back_every), samples);
   BackParams params{};
   params.resolve = resolve;

@@ -100,6 +100,10 @@ std::vector<WorkGroup> in_order(Groups&& groups) {
 
 }  // namespace
 
+std::uint32_t least_samples(int spp) {
+  return std::max(2 * DAPPLE_SAMPLE_BATCH, whole_batches(spp));  // one has no variance
+}
+
 SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
                        std::vector<std::uint32_t> samples, std::uint32_t first)
     : width_(width),
@@ -112,8 +116,9 @@ SamplePlan::SamplePlan(int width, int height, const RenderOptions& options,
       target_{options.target_error, options.target_rmse} {
   samples_.resize(order_.size(), 0);
   if (!is_adaptive()) return;
-  min_ = std::max(2 * DAPPLE_SAMPLE_BATCH, whole_batches(options.spp));  // one has no variance
-  max_ = std::max(min_, whole_batches(options.max_spp));
+  min_ = least_samples(options.spp);
+  max_ = std::max(min_, static_cast<std::uint32_t>(options.max_spp) / DAPPLE_SAMPLE_BATCH *
+                            DAPPLE_SAMPLE_BATCH);
 }
 
 std::vector<WorkGroup> SamplePlan::pilot() {

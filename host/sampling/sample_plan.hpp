@@ -21,6 +21,9 @@ enum class SampleOrder {
   passes,
 };
 
+/// Samples that each pixel has with a target, if `spp` are asked for: whole batches, two at least.
+std::uint32_t least_samples(int spp);
+
 /// Decisions depend on the pixels' values, not on threads.
 class SamplePlan {
  public:

@@ -56,8 +56,8 @@ std::vector<Uses> count_uses(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     Uses& of_mesh = uses[instance.mesh];
     ++(instance.light < 0 ? of_mesh.as_geometry : of_mesh.as_light);
-    of_mesh.fixed |=
-        scene.meshes[instance.mesh].has_strands() && uniform_scale(instance.to_world) == 0;
+    of_mesh.fixed |= scene.meshes[instance.mesh].has_strands() &&
+                     is_invertible(instance.to_world) && uniform_scale(instance.to_world) == 0;
   }
   return uses;
 }
@@ -194,9 +194,9 @@ Mesh build_merged(Scene& scene, const std::vector<Instance>& instances,
   return merged;
 }
 
-void merge_chosen(Scene& scene) {
+void merge_chosen(Scene& scene, const std::vector<bool>& merged) {
   const std::vector<Uses> uses = count_uses(scene);
-  std::vector<Instance> taken = take_merged_instances(scene, choose_merged(scene, uses));
+  std::vector<Instance> taken = take_merged_instances(scene, merged);
   const auto strands = std::stable_partition(taken.begin(), taken.end(), [&](const Instance& i) {
     return !scene.meshes[i.mesh].has_strands();
   });
@@ -238,9 +238,14 @@ std::string reasons(const Scene& scene) {
 
 void merge_single_instances(Scene& scene) {
   check_scene(scene);
-  drop_singular_instances(scene);
+  // Copies that are scaled to nothing for some frames count in all: a mesh that is merged in one
+  // frame and not in the next would have no motion.
+  const bool moves = !scene.animations.empty();
+  if (!moves) drop_singular_instances(scene);
   put_out_strands(scene);
-  merge_chosen(scene);
+  const std::vector<bool> merged = choose_merged(scene, count_uses(scene));
+  if (moves) drop_singular_instances(scene);
+  merge_chosen(scene, merged);
   drop_unhittable_triangles(scene);
   drop_unused(scene);
   if (scene.instances.empty()) {

@@ -72,7 +72,7 @@ struct LookAt {
 struct RenderOptions {
   int width = 960;   ///< pixels, [1, 65535]
   int height = 540;  ///< pixels, [1, 65535]
-  /// Primary samples a pixel, [1, 2^20]. With a target it is the minimum, rounded up to whole
+  /// Camera rays a pixel, [1, 2^20]. With a target it is the minimum, rounded up to whole
   /// batches of four, at least two batches.
   int spp = 16;
   /// Sample each pixel until its estimated standard error is below this, [0, 1]; 0: no target.
@@ -85,7 +85,7 @@ struct RenderOptions {
   /// resumed render keeps the number of the first run, so that more samples estimate the same
   /// picture.
   int footprint_spp = 0;
-  int footprint_ao_rays = 0;  ///< AO rays a primary sample, in the same way, [1, 4096]; 0: ao_rays
+  int footprint_ao_rays = 0;  ///< AO rays a camera ray, in the same way, [1, 4096]; 0: ao_rays
   /// The samples that are traced. `spp` is that of all shards together, for which footprints are
   /// computed. Not together with a target.
   Shard shard;
@@ -94,12 +94,12 @@ struct RenderOptions {
   /// that the ray intersects. Larger values suit thin leaves and hair; 0: chosen from the scene's
   /// opacities. `spp` and `max_spp` count camera rays.
   int camera_splitting = 0;
-  /// AO rays a primary sample, [1, 4096], at least one for each sample that shares a camera ray
+  /// AO rays a camera ray, [1, 4096], at least one for each sample that shares a camera ray
   /// (two: experiment 516).
   int ao_rays = 2;
-  int light_rays = 1;  ///< rays a light and primary sample, [1, 4096]
+  int light_rays = 1;  ///< rays a light and sample, [1, 4096]; samples can share a camera ray
   Estimator estimator = Estimator::prefiltered;
-  float footprint = kDefaultFootprint;  ///< scale, >= 0; 0 is exact
+  float footprint = kDefaultFootprint;  ///< scale, [0, 10^6]; 0 is exact
   /// Share of the prefiltered rays that are traced exactly, too, to report the bias, [0,1]; 0:
   /// none. It changes no value of the film.
   float report_bias = kDefaultReportBias;
@@ -109,6 +109,9 @@ struct RenderOptions {
   /// where a small part of the rays is enough to tell that `footprint` has more. So give 0 to keep
   /// `footprint`, as for frames that must be alike.
   std::optional<float> max_bias;
+  /// Take `footprint` whatever its bias, as later frames of a sequence do. With a target its bias
+  /// is still measured.
+  bool keep_footprint = false;
   Normals normals = Normals::shading;
   bool ao = true;      ///< make the AO pass
   bool light = true;   ///< make the light passes
@@ -124,7 +127,7 @@ struct RenderOptions {
   Cryptomattes cryptomattes;
   bool deep = false;         ///< make Film::deep
   float ao_distance = 0.0f;  ///< metres; 0 is no limit
-  float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, >= 0; 0 is a hard limit
+  float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, [0, 100]; 0 is a hard limit
   /// Radiance of a uniform sky that is multiplied by AO in RGBA, [0, 1e30]; none: 1 without lights,
   /// 0 with a dome, otherwise a tenth of what the lights make of a white surface at most.
   std::optional<float> ambient;
@@ -169,21 +172,27 @@ inline constexpr double kMinPilotSamples = 1 << 20, kMaxPilotPixels = 1 << 27;
 /// Whether the footprint is chosen without a limit of bias or a target being given.
 [[nodiscard]] inline bool chooses_footprint(const RenderOptions& options) {
   const double pixels = double{1} * options.width * options.height;
-  return has_bias(options) && !options.max_bias && !is_adaptive(options) &&
-         pixels * options.spp >= kMinPilotSamples && pixels <= kMaxPilotPixels;
+  return has_bias(options) && !options.keep_footprint && !options.max_bias &&
+         !is_adaptive(options) && pixels * options.spp >= kMinPilotSamples &&
+         pixels <= kMaxPilotPixels;
+}
+
+/// Whether RenderOptions::max_bias limits the footprint.
+[[nodiscard]] inline bool limits_bias(const RenderOptions& options) {
+  return options.max_bias > 0 && !options.keep_footprint;
 }
 
 /// Whether rays are traced exactly, too: for the report, for the choice of a footprint or for a
 /// target.
 [[nodiscard]] inline bool measures_bias(const RenderOptions& options) {
-  return has_bias(options) && (options.report_bias > 0 || options.max_bias > 0 ||
+  return has_bias(options) && (options.report_bias > 0 || limits_bias(options) ||
                                is_adaptive(options) || chooses_footprint(options));
 }
 
 /// The RMSE of a picture for which footprints of footprint_samples() samples are meant, [0,1].
 [[nodiscard]] float footprint_rmse(const RenderOptions& options);
 
-/// AO rays a primary sample that divide the hemisphere into footprints.
+/// AO rays a camera ray that divide the hemisphere into footprints.
 [[nodiscard]] inline int footprint_ao_rays(const RenderOptions& options) {
   return options.footprint_ao_rays > 0 ? options.footprint_ao_rays : options.ao_rays;
 }

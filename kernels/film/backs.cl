@@ -1,5 +1,5 @@
 /* Chooses the samples whose backs are traced, one in each group of 2^group_bits samples of a pixel. In: the
-   surface points of a slice, before the shading pass. Out: the chosen points, turned to the other side and
+   surface points of a slice, before the shading pass. Out: the chosen points, flipped to the other side and
    packed, and which of them hit; planes with the numbers of both. */
 #include "film/film.clh"
 #include "sampling/random.clh"
@@ -30,11 +30,11 @@ inline uint chosen_sample(BackParams params, GroupedSamples of, uint slot) {
   return (group << params.group_bits) + ((group + shift) & ((1u << params.group_bits) - 1u)) - of.first_sample;
 }
 
-/* One work-item for each record of the packed slice. A turned point is numbered among those of its pixel,
+/* One work-item for each record of the packed slice. A flipped point is numbered among those of its pixel,
    so that its rays are stratified with theirs. */
-__kernel void turn_points(__global const PixelWork* work, __global const SurfacePoint* points,
-                          __global const SampleHits* sample_hits, __global SurfacePoint* turned,
-                          __global SampleHits* turned_hits, BackParams params) {
+__kernel void flip_points(__global const PixelWork* work, __global const SurfacePoint* points,
+                          __global const SampleHits* sample_hits, __global SurfacePoint* flipped,
+                          __global SampleHits* flipped_hits, BackParams params) {
   const SliceParams slice = params.resolve.slice;
   const uint begin = get_global_id(0) * DAPPLE_HIT_BITS, first = params.first_packed + begin;
   const uint end = min(begin + DAPPLE_HIT_BITS, slice.pixel_count * params.slots);
@@ -52,15 +52,15 @@ __kernel void turn_points(__global const PixelWork* work, __global const Surface
       SurfacePoint point = points[from + sample];
       point.sample = of.first_group + slot + i;
       for (uint axis = 0; axis < 3u; ++axis) point.normal[axis] = -point.normal[axis];
-      turned[first + lane] = point;
+      flipped[first + lane] = point;
     }
   }
   const SampleHits of_record = {hits, 0u, 0u, 0u};
-  turned_hits[first / DAPPLE_HIT_BITS] = of_record;
+  flipped_hits[first / DAPPLE_HIT_BITS] = of_record;
 }
 
 /* Planes: chosen samples, and those of them that hit. */
-__kernel void count_backs(__global const PixelWork* work, __global const SampleHits* turned_hits,
+__kernel void count_backs(__global const PixelWork* work, __global const SampleHits* flipped_hits,
                           __global long* film, BackParams params) {
   const uint local_pixel = get_global_id(0);
   const SliceParams slice = params.resolve.slice;
@@ -70,7 +70,7 @@ __kernel void count_backs(__global const PixelWork* work, __global const SampleH
   uint chosen = 0u, hits = 0u;
   for (uint slot = 0; slot < params.slots; ++slot) {
     chosen += chosen_sample(params, of, slot) < slice.sample_count ? 1u : 0u;
-    hits += sample_hit(turned_hits, local_pixel * params.slots + slot) ? 1u : 0u;
+    hits += sample_hit(flipped_hits, local_pixel * params.slots + slot) ? 1u : 0u;
   }
   if (!chosen) return;
   add_to_plane(film, params.resolve, 0u, entry.pixel, (long)chosen);

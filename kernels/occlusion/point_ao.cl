@@ -23,18 +23,18 @@ inline long sum_transmittances(const Packet* packet, uint count) {
 }
 
 /* Number of rays that the surface itself hides: tracing finds a transmittance of 1 for them. */
-inline uint count_hidden(__global const Ray* rays, uint count) {
-  uint hidden = 0;
-  for (uint i = 0; i < count; ++i) hidden += rays[i].weight == 0.0f ? 1u : 0u;
-  return hidden;
+inline uint count_below(__global const Ray* rays, uint count) {
+  uint below = 0;
+  for (uint i = 0; i < count; ++i) below += rays[i].weight == 0.0f ? 1u : 0u;
+  return below;
 }
 
-/* Mean transmittance, [0,1], of the `count` rays of a point, `hidden` of which are hidden. */
+/* Mean transmittance, [0,1], of the `count` rays of a point, `below` of which are below the surface. */
 inline float mean_transmittance(Scene scene, OcclusionParams params, __global const Ray* rays,
-                                uint count, uint hidden) {
+                                uint count, uint below) {
   ushort order[DAPPLE_RAY_BATCH];
   const uint traced = order_batch(rays, count, order);
-  long sum = ((long)(count - traced) - (long)hidden) * (long)DAPPLE_AO_STEPS;
+  long sum = ((long)(count - traced) - (long)below) * (long)DAPPLE_AO_STEPS;
   for (uint i = 0; i < traced; i += DAPPLE_PACKET_RAYS) {
     const uint together = min(traced - i, DAPPLE_PACKET_RAYS);
     Packet packet;
@@ -70,8 +70,8 @@ __kernel void point_ao(__global const BvhNode* nodes, __global const TriangleBlo
     const uint end = min((ticket + 1u) * params.batches_per_ticket, ao_params.point_count);
     for (uint point = ticket * params.batches_per_ticket; point < end; ++point) {
       make_rays_of(points + point, ao_params, rays);
-      const uint hidden = ao_params.shaded ? count_hidden(rays, ao_params.rays) : 0u;
-      ao[point] = mean_transmittance(scene, params, rays, ao_params.rays, hidden);
+      const uint below = ao_params.shaded ? count_below(rays, ao_params.rays) : 0u;
+      ao[point] = mean_transmittance(scene, params, rays, ao_params.rays, below);
     }
   }
 }

@@ -1,12 +1,12 @@
 /* Orders the rays of a queue so that those of neighbouring work-items are alike: GPUs run the items of a vector in
-   step, and rays of one direction visit the same nodes. Each work-group sorts a chunk of consecutive rays, which
+   step, and rays of one direction visit the same nodes. Each work-group sorts a batch of consecutive rays, which
    start near each other, by direction (a counting sort, Knuth 5.2). In: the queue. Out: a permutation of each
-   chunk; the order of rays in one cell varies, but no result depends on it. */
+   batch; the order of rays in one cell varies, but no result depends on it. */
 #include "dapple/shared/corner_normals.h"
 #include "dapple/shared/pass_params.h"
 
 #define DAPPLE_ORDER_GROUP 256u   /* items of a work-group */
-#define DAPPLE_ORDER_CHUNK 4096u  /* its rays (experiment 755) */
+#define DAPPLE_ORDER_BATCH 4096u  /* its rays (experiment 755) */
 #define DAPPLE_ORDER_SIDE 8u      /* cells along a side of the octahedral square */
 #define DAPPLE_ORDER_CELLS (DAPPLE_ORDER_SIDE * DAPPLE_ORDER_SIDE + 1u)
 
@@ -34,9 +34,9 @@ DAPPLE_INLINE void count_before(__local uint* cells) {
 __kernel __attribute__((reqd_work_group_size(DAPPLE_ORDER_GROUP, 1, 1)))
 void order_rays(__global const Ray* rays, __global uint* order, uint ray_count) {
   __local uint next[DAPPLE_ORDER_CELLS];
-  __local ushort cells[DAPPLE_ORDER_CHUNK];
-  const uint item = get_local_id(0), first = get_group_id(0) * DAPPLE_ORDER_CHUNK;
-  const uint count = min(ray_count - first, DAPPLE_ORDER_CHUNK);
+  __local ushort cells[DAPPLE_ORDER_BATCH];
+  const uint item = get_local_id(0), first = get_group_id(0) * DAPPLE_ORDER_BATCH;
+  const uint count = min(ray_count - first, DAPPLE_ORDER_BATCH);
   for (uint cell = item; cell < DAPPLE_ORDER_CELLS; cell += DAPPLE_ORDER_GROUP) next[cell] = 0u;
   barrier(CLK_LOCAL_MEM_FENCE);
   for (uint i = item; i < count; i += DAPPLE_ORDER_GROUP) {

@@ -7,11 +7,9 @@
 #include <cmath>
 #include <set>
 
-#include "bake/surface_samples.hpp"
 #include "bake/texture/charts.hpp"
 #include "bake/texture/dilation.hpp"
 #include "bake/texture/packing.hpp"
-#include "bake/texture/seams.hpp"
 #include "bake/texture/texel_cover.hpp"
 #include "dapple/error.hpp"
 #include "support/scene_on_device.hpp"
@@ -117,19 +115,27 @@ TEST(Packing, RectanglesStayApartAndInsideTheTexture) {
   const Packing packing = pack(sizes, kSize, kGap);
   ASSERT_EQ(packing.rects.size(), sizes.size());
   std::vector<int> owner(kSize * kSize, -1);
-  for (int i = 0; i < 200; ++i) {
-    const TexelRect& rect = packing.rects[static_cast<std::size_t>(i)];
-    EXPECT_GE(static_cast<float>(rect.width - 1),
-              sizes[static_cast<std::size_t>(i)].x * packing.scale);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const TexelRect& rect = packing.rects[i];
+    EXPECT_GE(static_cast<float>(rect.width - 1), sizes[i].x * packing.scale) << i;
+    EXPECT_GE(static_cast<float>(rect.height - 1), sizes[i].y * packing.scale) << i;
     ASSERT_LE(rect.x + rect.width, kSize);
     ASSERT_LE(rect.y + rect.height, kSize);
-    for (std::uint32_t y = rect.y; y < std::min(kSize, rect.y + rect.height + kGap); ++y) {
-      for (std::uint32_t x = rect.x; x < std::min(kSize, rect.x + rect.width + kGap); ++x) {
-        const bool in_gap = x >= rect.x + rect.width || y >= rect.y + rect.height;
-        int& of_texel = owner[y * kSize + x];
-        if (in_gap) continue;
-        EXPECT_EQ(of_texel, -1);
-        of_texel = i;
+    for (std::uint32_t y = rect.y; y < rect.y + rect.height; ++y) {
+      for (std::uint32_t x = rect.x; x < rect.x + rect.width; ++x) {
+        EXPECT_EQ(owner[y * kSize + x], -1) << i;
+        owner[y * kSize + x] = static_cast<int>(i);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < sizes.size(); ++i) {  // each with the gap all around
+    const TexelRect& rect = packing.rects[i];
+    const std::uint32_t right = std::min(kSize, rect.x + rect.width + kGap);
+    const std::uint32_t below = std::min(kSize, rect.y + rect.height + kGap);
+    for (std::uint32_t y = std::max(rect.y, kGap) - kGap; y < below; ++y) {
+      for (std::uint32_t x = std::max(rect.x, kGap) - kGap; x < right; ++x) {
+        const int found = owner[y * kSize + x];
+        EXPECT_TRUE(found == -1 || found == static_cast<int>(i)) << found << " is close to " << i;
       }
     }
   }
@@ -334,64 +340,28 @@ TEST(TextureLayout, GivenCoordinatesWithoutAreaAreTold) {
   EXPECT_EQ(std::count_if(notes.begin(), notes.end(), tells), 1);
 }
 
-TEST(Seams, LookupsFromBothSidesAgreeAndOtherTexelsStay) {
-  // A tube of 24 sides: its charts meet along smooth edges.
-  Mesh tube;
-  constexpr std::uint32_t kSides = 24;
-  for (std::uint32_t i = 0; i < 2 * kSides; ++i) {
-    const double angle = 2 * kPi * (i / 2) / kSides;
-    tube.positions.emplace_back(std::cos(angle), i % 2, std::sin(angle));
-  }
-  for (std::uint32_t i = 0; i < kSides; ++i) {
-    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
-    tube.indices.insert(tube.indices.end(), {a, a + 1, b, b, a + 1, b + 1});
-  }
-  tube.materials.resize(tube.indices.size() / 3);
+TEST(TextureLayout, GivenCoordinatesThatMissVerticesOrLeaveTheTextureAreRefused) {
   Scene scene;
-  scene.meshes = {tube};
   scene.materials.resize(1);
+  scene.meshes.resize(1);
+  append_grid(scene.meshes[0], {0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 1, 0);
   scene.instances.resize(1);
-  BakeOptions options;
-  options.texture_size = 128;
-  const TextureLayout layout = make_layout(scene, options);
-  ASSERT_GT(layout.charts, 1u);
-  const std::vector<SeamPoint> points = seam_points(tube, layout.corners[0], 128);
-  ASSERT_GE(points.size(), layout.charts);
-  std::vector<float> before(128 * 128);
-  for (std::uint32_t i = 0; i < before.size(); ++i)
-    before[i] = static_cast<float>(hash_of(1, i) % 1000) / 1000;
-  std::vector<float> after = before;
-  join_seams(points, after);
-  const auto step = [&](const std::vector<float>& texels) {
-    double sum = 0;
-    for (const SeamPoint& p : points) {
-      double difference = 0;
-      for (std::size_t i = 0; i < 4; ++i)
-        difference += double{texels[p.a.texel[i]] * p.a.weight[i]} -
-                      double{texels[p.b.texel[i]] * p.b.weight[i]};
-      sum += difference * difference;
+  const auto message = [&](std::vector<std::vector<V2f>> uvs) -> std::string {
+    BakeOptions options;
+    options.texture_uvs = std::move(uvs);
+    try {
+      given_layout(scene, options);
+    } catch (const Error& error) {
+      return error.what();
     }
-    return std::sqrt(sum / static_cast<double>(points.size()));
+    return "no error";
   };
-  EXPECT_LT(step(after), 0.05 * step(before));
-  std::set<std::uint32_t> read;
-  for (const SeamPoint& p : points)
-    for (const Lookup* side : {&p.a, &p.b}) read.insert(side->texel.begin(), side->texel.end());
-  for (std::uint32_t i = 0; i < before.size(); ++i) {
-    if (!read.contains(i)) {
-      ASSERT_EQ(after[i], before[i]) << i;
-    }
-  }
-}
-
-TEST(Seams, FlatSheetsAndHardEdgesHaveNone) {
-  const Scene cube = make_procedural("scene:cube?divisions=2");
-  BakeOptions options;
-  options.texture_size = 64;
-  const TextureLayout layout = make_layout(cube, options);
-  EXPECT_EQ(layout.charts, 6u);
-  for (std::size_t m = 0; m < cube.meshes.size(); ++m)
-    EXPECT_TRUE(seam_points(cube.meshes[m], layout.corners[m], 64).empty());
+  EXPECT_EQ(message({{V2f(0, 0), V2f(0, 1), V2f(1, 0), V2f(1, 1)}}), "no error");
+  EXPECT_NE(message({}).find("has 0 for 4 vertices"), std::string::npos);
+  EXPECT_NE(message({std::vector(3, V2f(0, 0))}).find("has 3 for 4"), std::string::npos);
+  EXPECT_NE(message({std::vector(4, V2f(0.5f, 1.5f))}).find("(0.5, 1.5)"), std::string::npos);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(message({std::vector(4, V2f(nan, 0))}).find("(nan, 0)"), std::string::npos);
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 // The camera matrices of an EXR file: world to a left-handed camera space that looks along +Z, and
-// world to NDC with (0,0) at the top left of the display window. Also camera parameters, and the
-// pixels that can see the scene.
+// world to NDC with (0,0) at the top left of the display window. Also camera parameters, which
+// camera and field of view the options choose, and the pixels that can see the scene.
 #include "camera/view.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <numbers>
+
+#include "support/film_files.hpp"
 
 namespace dapple {
 namespace {
@@ -93,6 +96,67 @@ TEST(View, CameraParametersAreTheSameCameraAndCountEverySample) {
   EXPECT_EQ(p.crop_width, 50u);
   EXPECT_EQ(p.seed, 5u);
   EXPECT_FLOAT_EQ(p.inverse_spp, 0.125f);
+}
+
+/// Cameras a, b at another place and with a field of view of its own, and the orthographic o.
+Scene scene_of_three_cameras() {
+  Scene scene;
+  scene.source = "three.glb";
+  scene.cameras = {camera_at({1, 2, 3}), camera_at({4, 5, 6}), camera_at({7, 8, 9})};
+  scene.cameras[0].name = "a";
+  scene.cameras[1].name = "b";
+  scene.cameras[1].fov_y = 0.5f;
+  scene.cameras[2].name = "o";
+  scene.cameras[2].kind = Camera::Kind::orthographic;
+  scene.cameras[2].half_height = 4;
+  return scene;
+}
+
+Camera chosen(const RenderOptions& options, std::vector<std::string>& notes) {
+  return choose_view(scene_of_three_cameras(), options, notes).camera;
+}
+
+TEST(View, ACameraIsChosenByItsNameAndWithoutOneIsTheFirst) {
+  std::vector<std::string> notes;
+  for (const Camera& camera : scene_of_three_cameras().cameras) {
+    RenderOptions options;
+    options.camera = camera.name;
+    const Camera found = chosen(options, notes);
+    EXPECT_EQ(found.name, camera.name);
+    EXPECT_EQ(found.to_world, camera.to_world) << camera.name;
+    EXPECT_EQ(found.kind, camera.kind) << camera.name;
+    EXPECT_EQ(found.fov_y, camera.fov_y) << camera.name;
+    EXPECT_EQ(found.half_height, camera.half_height) << camera.name;
+  }
+  EXPECT_TRUE(notes.empty());
+  EXPECT_EQ(chosen({}, notes).name, "a");
+  EXPECT_EQ(notes, std::vector<std::string>{"camera: a, the first of 3"});
+  RenderOptions options;
+  options.camera = "c";
+  const Error error = film_test::error_of([&] { chosen(options, notes); });
+  EXPECT_EQ(error.kind(), ErrorKind::usage);
+  EXPECT_STREQ(error.what(), "--camera c: three.glb has only these cameras: a, b, o");
+}
+
+TEST(View, AFieldOfViewReplacesThatOfPerspectiveCameras) {
+  std::vector<std::string> notes;
+  constexpr float kSixtyDegrees = std::numbers::pi_v<float> / 3;
+  RenderOptions options;
+  options.fov_degrees = 60;
+  for (const char* name : {"a", "b"}) {
+    options.camera = name;
+    EXPECT_FLOAT_EQ(chosen(options, notes).fov_y, kSixtyDegrees) << name;
+  }
+  options.camera = "b";
+  EXPECT_EQ(chosen(options, notes).to_world, scene_of_three_cameras().cameras[1].to_world);
+  options.camera = "o";
+  EXPECT_EQ(chosen(options, notes).kind, Camera::Kind::orthographic);
+  EXPECT_EQ(chosen(options, notes).half_height, 4) << "it has no field of view";
+  options.camera = "";
+  options.look = LookAt{{0, 0, 5}, {0, 0, 0}};
+  EXPECT_FLOAT_EQ(chosen(options, notes).fov_y, kSixtyDegrees);
+  options.fov_degrees = 0;
+  EXPECT_FLOAT_EQ(chosen(options, notes).fov_y, std::numbers::pi_v<float> * 2 / 9) << "40 degrees";
 }
 
 void expect_seen(const View& view, const Box3f& bounds, uint left, uint above, uint right,

@@ -130,6 +130,16 @@ TEST_F(BakeBadInput, CopiesOfSideFilesReplaceNoOtherFiles) {
   EXPECT_TRUE(bytes_of(path("other/in.bin")) == bytes_of(path("in.bin")));
 }
 
+TEST_F(BakeBadInput, AFileThatTwoBuffersNameIsCopied) {
+  write_text_file("in.gltf", "in.bin");
+  json twice = document("in.gltf");
+  twice["buffers"].push_back(twice["buffers"][0]);
+  write_bytes(path("in.gltf"), twice.dump());
+  std::filesystem::create_directory(path("other"));
+  EXPECT_EQ(dapple("bake in.gltf -o other/out.gltf --png other/out.png").code, 0);
+  EXPECT_TRUE(bytes_of(path("other/in.bin")) == bytes_of(path("in.bin")));
+}
+
 TEST_F(BakeBadInput, AFileInTheWayOfAFolderForCopiesIsFoundBeforeAnyWork) {
   write_text_file("in.gltf", "data/in.bin");
   write_bytes(path("other/data"), "a file");

@@ -63,24 +63,85 @@ TEST_F(BakeCommand, TextureCoordinatesAndNormalsCanHoldTheValues) {
   EXPECT_FALSE(std::filesystem::exists(path("late.glb")));
 }
 
-TEST_F(BakeCommand, AoIsMultipliedWithAColourThatIsThereOrReplacesIt) {
+constexpr std::array<float, 4> kColor{0.5f, 1, 0.75f, 0.25f};
+constexpr std::array<float, 6> kUvs{0.25f, 0.5f, 0.75f, 0.5f, 0.25f, 0.875f};
+
+/// A triangle with colours and texture coordinates, 1 m below a larger one. Seen from the triangle,
+/// the larger one holds a disk of radius 0.7 m and lies in one of 3.6 m: AO is from 0.07 to 0.67.
+GltfBuilder shaded_triangle() {
   GltfBuilder builder;
   builder.add_triangle();
-  builder.doc["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = builder.add_accessor(
-      std::vector<float>{0.5f, 1, 1, 0.25f, 0.5f, 1, 1, 0.25f, 0.5f, 1, 1, 0.25f}, test::kFloat,
-      "VEC4");
-  write("in.glb", builder.glb());
-  for (const auto& [blend, red] : {std::pair{"multiply", 0.5}, {"replace", 1.0}}) {
-    ASSERT_EQ(dapple(std::string("bake in.glb -o out.glb --blend ") + blend).code, 0);
-    const std::string bytes = bytes_of(path("out.glb"));
-    const json after = document("out.glb");
-    const json accessor = after["accessors"].back();
-    EXPECT_EQ(accessor["type"], "VEC4") << "alpha is kept";
-    const std::size_t begin = bytes.size() - 3 * 8;
-    std::uint16_t rgba[4];
-    std::memcpy(rgba, bytes.data() + begin, sizeof rgba);
-    EXPECT_NEAR(rgba[0] / 65535.0, red, 1e-4) << blend;  // AO is 1: nothing occludes
-    EXPECT_NEAR(rgba[3] / 65535.0, 0.25, 1e-4) << blend;
+  std::vector<float> colors;
+  for (int v = 0; v < 3; ++v) colors.insert(colors.end(), kColor.begin(), kColor.end());
+  json& attributes = builder.doc["meshes"][0]["primitives"][0]["attributes"];
+  attributes["COLOR_0"] = builder.add_accessor(colors, test::kFloat, "VEC4");
+  attributes["TEXCOORD_0"] =
+      builder.add_accessor(std::vector<float>(kUvs.begin(), kUvs.end()), test::kFloat, "VEC2");
+  builder.doc["meshes"].push_back(builder.doc["meshes"][0]);
+  builder.add("nodes", {{"mesh", 1}, {"scale", {4, 4, 1}}, {"translation", {-1, -1, 1}}});
+  return builder;
+}
+
+class BakedChannel : public BakeCommand {
+ protected:
+  BakedChannel() {
+    write("in.glb", shaded_triangle().glb());
+    ao_ = baked("--channel _AO", "_AO");
+  }
+
+  /// `attribute` of the lower triangle, of `components` numbers, after a bake with `options`.
+  [[nodiscard]] std::vector<float> baked(const std::string& options, const char* attribute,
+                                         std::size_t components = 1) const {
+    const Outcome run = dapple("bake in.glb -o out.glb --rays 1024 " + options);
+    EXPECT_EQ(run.code, 0) << run.err;
+    const test::GltfData file(path("out.glb"));
+    std::vector<float> values =
+        file.floats(file.doc["meshes"][0]["primitives"][0]["attributes"].at(attribute));
+    EXPECT_EQ(values.size(), 3 * components) << options;
+    values.resize(3 * components);
+    return values;
+  }
+
+  std::vector<float> ao_;  ///< as an attribute of its own
+};
+
+TEST_F(BakedChannel, AoIsInTheComponentOfTextureCoordinatesThatIsNamedAndTheOtherStays) {
+  const std::vector<float> x = baked("--channel TEXCOORD_0.x", "TEXCOORD_0", 2),
+                           y = baked("--channel TEXCOORD_0.y", "TEXCOORD_0", 2),
+                           added = baked("--channel TEXCOORD_1.y", "TEXCOORD_1", 2);
+  for (std::size_t v = 0; v < 3; ++v) {
+    EXPECT_GT(ao_[v], 0.02f);
+    EXPECT_LT(ao_[v], 0.8f);
+    EXPECT_EQ(x[2 * v], ao_[v]);
+    EXPECT_EQ(x[2 * v + 1], kUvs[2 * v + 1]);
+    EXPECT_EQ(y[2 * v], kUvs[2 * v]);
+    EXPECT_EQ(y[2 * v + 1], ao_[v]);
+    EXPECT_EQ(added[2 * v], 0.0f);
+    EXPECT_EQ(added[2 * v + 1], ao_[v]);
+  }
+}
+
+TEST_F(BakedChannel, AoIsMultipliedWithTheColoursThatAreNamedOrReplacesThem) {
+  struct Case {
+    const char* options;
+    std::array<bool, 4> named;
+    bool multiplied;
+  };
+  for (const Case& c :
+       {Case{"--blend multiply", {true, true, true, false}, true},
+        Case{"--blend replace", {true, true, true, false}, false},
+        Case{"--channel COLOR_0.g", {false, true, false, false}, true},
+        Case{"--channel COLOR_0.b --blend replace", {false, false, true, false}, false},
+        Case{"--channel COLOR_0.a", {false, false, false, true}, true}}) {
+    const std::vector<float> rgba = baked(c.options, "COLOR_0", 4);
+    for (std::size_t v = 0; v < 3; ++v) {
+      ASSERT_LT(ao_[v], 0.8f);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const float changed = c.multiplied ? kColor[k] * ao_[v] : ao_[v];
+        EXPECT_NEAR(rgba[4 * v + k], c.named[k] ? changed : kColor[k], 1e-5)  // 16 bits
+            << c.options << ", vertex " << v << ", component " << k;
+      }
+    }
   }
 }
 
@@ -154,10 +215,13 @@ TEST_F(BakeCommand, MeshesThatShareVerticesHaveValuesOfTheirOwn) {
   builder.doc.erase("scenes");
   builder.add("scenes", {{"nodes", {0, 1}}});
   write("in.glb", builder.glb());
-  const Outcome run = dapple("bake in.glb -o out.glb --channel _AO --sides front");
+  const Outcome run = dapple("bake in.glb -o out.glb --channel _AO --sides front --rays 1024");
   ASSERT_EQ(run.code, 0) << run.err;
-  const auto [first, second] = accessors_of_two(document("out.glb"), "_AO");
-  EXPECT_NE(first, second);
+  // The larger one hides almost all from the other one's front, and nothing hides its own.
+  const test::GltfData file(path("out.glb"));
+  const auto [below, above] = accessors_of_two(file.doc, "_AO");
+  for (const float ao : file.floats(below)) EXPECT_LT(ao, 0.1f);
+  for (const float ao : file.floats(above)) EXPECT_GT(ao, 0.99f);
 }
 
 TEST_F(BakeCommand, NormalsOfSheetsThatAreBrighterFromBehindStayInFront) {

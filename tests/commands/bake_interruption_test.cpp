@@ -6,7 +6,9 @@
 #include <set>
 
 #include "support/bake_command.hpp"
+#include "support/processor_time.hpp"
 #include "support/running_program.hpp"
+#include "support/sanitizers.hpp"
 
 namespace dapple {
 namespace {
@@ -123,8 +125,11 @@ TEST_F(BakeInterruption, WithoutACheckpointItEndsAtOnceAndLeavesNothing) {
   write_meshes(1024);
   RunningProgram program(bake_meshes({}), log());
   std::this_thread::sleep_for(Milliseconds(400));
+  const double used = processor_seconds(program.process());
   program.send(SIGINT);
   EXPECT_EQ(program.wait(), 130) << bytes_of(log());
+  EXPECT_LT(processor_seconds(program.usage()) - used, kSanitized ? 60 : 1)
+      << "its 34 million rays take several seconds";
   EXPECT_EQ(files_in_folder(), 1u);
 }
 

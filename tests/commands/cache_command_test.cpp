@@ -6,7 +6,9 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -53,6 +55,14 @@ class CacheCommand : public FilmFile {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(path("cache"))) files.push_back(entry.path());
     return files;
+  }
+
+  /// Whether there is a file in the cache that is not complete.
+  [[nodiscard]] bool has_temporary_file() const {
+    std::error_code ignored;  // the folder need not exist yet
+    for (const auto& entry : fs::directory_iterator(path("cache"), ignored))
+      if (entry.path().extension() == ".tmp") return true;
+    return false;
   }
 
   fs::path before_ = fs::current_path();
@@ -122,9 +132,9 @@ TEST_F(CacheCommand, AFolderThatCannotBeUsedIsFoundBeforeTheSceneIsRead) {
   EXPECT_EQ(bytes_of(path("cache")), "a file");
 }
 
-/// Starts a shell command in its own process group, and kills the whole group after that time:
-/// also the compiler processes that the command may have started.
-void kill_after(const std::string& shell, useconds_t microseconds) {
+/// Starts a shell command in its own process group, and kills the whole group at that moment,
+/// unless it ends before: also the compiler processes that the command may have started.
+void kill_at(const std::string& shell, const std::function<bool()>& is_moment) {
   const pid_t child = fork();
   if (child == 0) {
     setpgid(0, 0);
@@ -132,7 +142,11 @@ void kill_after(const std::string& shell, useconds_t microseconds) {
     _exit(127);
   }
   setpgid(child, child);  // here too, so that the group exists before it is killed
-  usleep(microseconds);
+  siginfo_t ended{};
+  while (ended.si_pid == 0 && !is_moment()) {
+    usleep(100);
+    waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT);
+  }
   kill(-child, SIGKILL);
   waitpid(child, nullptr, 0);
 }
@@ -146,14 +160,22 @@ TEST_F(CacheCommand, KilledBeforeItsFileIsCompleteTheNextRunCleansUpAndSucceeds)
   const double built = second("load") + second("build") + second("prefilter") + second("cache");
   std::mt19937 random(2);
   std::uniform_real_distribution<double> moment(second("load"), built);
+  int left = 0;
   for (int round = 0; round < 10; ++round) {
     fs::remove_all(path("cache"));
-    kill_after(command("killed", scene), static_cast<useconds_t>(1e6 * moment(random)));
+    const auto end = std::chrono::steady_clock::now() +
+                     std::chrono::microseconds(static_cast<std::int64_t>(1e6 * moment(random)));
+    kill_at(command("killed", scene), [&] {
+      // Every second one while it writes its file, which takes many times as long as noticing it.
+      return round % 2 == 0 ? std::chrono::steady_clock::now() >= end : has_temporary_file();
+    });
+    left += has_temporary_file() ? 1 : 0;
     ASSERT_EQ(run(command("next", scene)), 0) << bytes_of(path("next.txt"));
     expect_same_picture("first", "next");
     EXPECT_EQ(cached_files().size(), 1u);
     EXPECT_FALSE(contains(statistics("next")["notes"].dump(), "BVH cache"));
   }
+  EXPECT_GE(left, 1) << "no process was killed while it wrote its file";
 }
 
 }  // namespace

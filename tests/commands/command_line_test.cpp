@@ -2,7 +2,11 @@
 // files that a successful run writes, and no files after a failure.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,16 +21,31 @@ using namespace film_test;
 
 using program_test::Outcome;
 
-class CommandLine : public program_test::ProgramRun {};
+class CommandLine : public program_test::ProgramRun {
+ protected:
+  /// All commands, as `dapple --help` lists them.
+  [[nodiscard]] std::vector<std::string> commands() const {
+    const std::string help = dapple("--help").out;
+    std::istringstream lines(help.substr(std::min(help.size(), help.find("\nSubcommands:\n"))));
+    std::vector<std::string> names;
+    for (std::string line; std::getline(lines, line);)
+      if (line.size() > 2 && line.starts_with("  ") && line[2] != ' ')
+        names.push_back(line.substr(2, line.find(' ', 2) - 2));
+    EXPECT_GE(names.size(), 9u) << help;
+    return names;
+  }
+};
 
 TEST_F(CommandLine, HelpOfEveryCommandHasAnExample) {
-  for (const char* arguments : {"--help", "render --help", "bake --help", "info --help",
-                                "scene --help", "devices --help"}) {
-    const Outcome run = dapple(arguments);
-    EXPECT_EQ(run.code, 0) << arguments;
-    EXPECT_TRUE(contains(run.out, "Example")) << arguments;
-    EXPECT_TRUE(contains(run.out, "\n  dapple ")) << arguments;
-    EXPECT_EQ(run.err, "") << arguments;
+  std::vector<std::string> all = commands();
+  all.emplace_back("");  // the program itself
+  for (const std::string& command : all) {
+    SCOPED_TRACE(command);
+    const Outcome run = dapple(command + " --help");
+    EXPECT_EQ(run.code, 0);
+    EXPECT_TRUE(contains(run.out, "Example")) << run.out;
+    EXPECT_TRUE(contains(run.out, "\n  dapple " + command)) << run.out;
+    EXPECT_EQ(run.err, "");
   }
   EXPECT_TRUE(contains(dapple("--help").out, "Exit codes"));
   const Outcome version = dapple("--version");
@@ -46,18 +65,60 @@ TEST_F(CommandLine, TheVerboseVersionSaysHowItWasBuiltAndWhichDevicesThereAre) {
   expect_failure(dapple("--verbose"), 2, "subcommand");
 }
 
-TEST_F(CommandLine, ManualPageAndCompletionsNameEveryOption) {
-  const std::string help = dapple("points --help").out;
+/// The options that a help defines, from lines such as "  -o,--output TEXT   File to write".
+std::vector<std::string> flags_in(const std::string& help) {
+  std::vector<std::string> flags;
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.find("--");
+    if (!line.starts_with("  -") || at > 5) continue;
+    const std::size_t end = line.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at);
+    flags.push_back(line.substr(at, end - at));
+  }
+  return flags;
+}
+
+/// What a manual page ("man") or completions ("bash", "zsh") say about a command.
+std::string part_about(const std::string& command, const std::string& kind,
+                       const std::string& text) {
+  std::string begin = "\n    " + command + ") options=\"", end = "\" ;;";
+  if (kind == "zsh") {
+    begin = "\n  " + command + ") _arguments";
+    end = "'*:file:_files' ;;";
+  } else if (kind == "man") {
+    begin = end = "\n.SH ";
+    for (const char letter : command) begin += static_cast<char>(std::toupper(letter));
+    begin += '\n';
+  }
+  const std::size_t found = text.find(begin);
+  if (found == std::string::npos) return {};
+  const std::size_t at = found + begin.size();
+  return text.substr(at, text.find(end, at) - at);
+}
+
+/// How they write an option, with what ends its name.
+std::string written(const std::string& flag, const std::string& kind) {
+  if (kind == "bash") return " " + flag + " ";
+  if (kind == "zsh") return "'*" + flag + "[";
+  std::string escaped;
+  for (const char c : flag) escaped += c == '-' ? std::string("\\-") : std::string(1, c);
+  return "\\fB" + escaped + "\\fR";
+}
+
+TEST_F(CommandLine, ManualPageAndCompletionsNameEveryOptionOfEveryCommand) {
+  std::map<std::string, std::string> texts;
   for (const char* kind : {"man", "bash", "zsh"}) {
     const Outcome run = dapple(std::string("document ") + kind);
     EXPECT_EQ(run.code, 0) << run.err;
-    for (std::size_t at = help.find("--"); at != std::string::npos; at = help.find("--", at + 2)) {
-      std::string flag =
-          help.substr(at, help.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at) - at);
-      if (std::string(kind) == "man")
-        for (std::size_t i = 0; (i = flag.find('-', i)) != std::string::npos; i += 2)
-          flag.insert(i, "\\");
-      EXPECT_TRUE(contains(run.out, flag)) << kind << ": " << flag;
+    texts[kind] = run.out;
+  }
+  for (const std::string& command : commands()) {
+    const std::vector<std::string> flags = flags_in(dapple(command + " --help").out);
+    EXPECT_GE(flags.size(), 2u) << command << ": --help, and one of its own";
+    for (const auto& [kind, text] : texts) {
+      const std::string part = " " + part_about(command, kind, text) + " ";
+      for (const std::string& flag : flags)
+        EXPECT_TRUE(contains(part, written(flag, kind))) << kind << " of " << command << flag;
     }
   }
   expect_failure(dapple("document fish"), 2, "man, bash or zsh");
@@ -303,7 +364,8 @@ TEST_F(CommandLine, InfoAndDevicesPrintTheSceneAndTheDevices) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(json.at("opacity").at(axis), 0.95);
   const Outcome text_run = dapple("info 'scene:cube?divisions=2' --opacity cube=0.5");
   EXPECT_EQ(text_run.code, 0);
-  EXPECT_TRUE(contains(text_run.out, "bounds      (-0.5, 0, -0.5) to (0.5, 1, 0.5) m")) << text_run.out;
+  EXPECT_TRUE(contains(text_run.out, "bounds      (-0.5, 0, -0.5) to (0.5, 1, 0.5) m"))
+      << text_run.out;
   EXPECT_TRUE(contains(text_run.out, "48")) << text_run.out;
   EXPECT_TRUE(contains(text_run.out, "48 translucent")) << text_run.out;
   EXPECT_TRUE(contains(text_run.out, " all per triangle")) << text_run.out;

@@ -187,6 +187,22 @@ TEST_F(FramesCommand, AWindyTreeMovesFromFrameToFrame) {
   EXPECT_NE(ao("a.0.exr"), ao("a.1.exr"));
 }
 
+// As in tests/render/footprint_pilot_test.cpp: just enough samples that a footprint is chosen, and
+// a few pixels of the picture.
+TEST_F(FramesCommand, AFrameByItselfKeepsTheFootprintAndSoDoesOneThatIsGiven) {
+  const auto footprint = [&](const std::string& options) {
+    const Outcome run = dapple(
+        "render 'scene:grass?leaves=60000&length=30' --width 256 --height 256 --spp 16 --passes ao "
+        "--crop 96,200,159,215 -q -o a.exr --stats-json a.json " +
+        options);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return test::json::parse(bytes_of(path("a.json"))).at("footprint").get<double>();
+  };
+  EXPECT_LT(footprint(""), 4);
+  EXPECT_EQ(footprint("--frame 0"), 4) << "frames that are rendered one by one must be alike";
+  EXPECT_EQ(footprint("--footprint 4"), 4);
+}
+
 TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   const auto refuses = [&](const std::string& arguments, const std::string& part) {
     SCOPED_TRACE(arguments);

@@ -1,5 +1,5 @@
-// dapple merge and dapple plan as users call them: parts from renders of several processes, with
-// other numbers of threads, are the file of one render byte for byte; what they refuse, and say.
+// dapple merge as users call it: parts from renders of several processes, with other numbers of
+// threads, are the file of one render byte for byte; what it refuses, and says.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -128,37 +128,6 @@ TEST_F(MergeCommand, PreviewsHaveTheHeatMapOfARender) {
   EXPECT_EQ(bytes("m_visits.png"), bytes("same.png"));
   expect_failure(dapple("merge 1.dapple 2.dapple -o sum.dapple --half all"), 2, "--half");
   EXPECT_FALSE(std::filesystem::exists(path("sum.dapple")));
-}
-
-double number_after(const std::string& json, const std::string& key) {
-  const std::size_t at = json.find("\"" + key + "\": ");
-  return at == std::string::npos ? -1 : std::stod(json.substr(at + key.size() + 4));
-}
-
-TEST_F(MergeCommand, APlanIsOfTheRightSizeAndWritesNothing) {
-  const std::string options =
-      "'scene:tree?leaves=1000' --width 300 --height 200 --spp 8 --shard 1/2 ";
-  const Outcome plan = dapple("plan " + options + "--stats-json plan.json");
-  ASSERT_EQ(plan.code, 0) << plan.err;
-  EXPECT_TRUE(contains(plan.out, "a shard: about ")) << plan.out;
-  const Outcome quiet = dapple("plan -q " + options + "--stats-json plan.json");
-  EXPECT_EQ(quiet.code, 0);
-  EXPECT_EQ(quiet.out + quiet.err, "");
-  EXPECT_EQ(files_in_folder(), 1u);
-  ASSERT_EQ(dapple("render " + options + "-o part.dapple").code, 0);
-  const std::string json = bytes("plan.json");
-  EXPECT_EQ(number_after(json, "camera_rays"), 300 * 200 * 8);
-  const double said = number_after(json, "part_bytes"),
-               is = static_cast<double>(bytes("part.dapple").size());
-  EXPECT_GT(said, is / 3) << json;
-  EXPECT_LT(said, is * 2) << json;
-  EXPECT_GT(number_after(json, "memory_bytes"), 3e7);
-  EXPECT_GT(number_after(json, "seconds_of_rays"), 0);
-  expect_failure(dapple("plan scene:cube --target-rmse 0.1"), 2, "dapple plan needs --spp");
-  expect_failure(dapple("plan scene:cube --resume a.ckpt"), 2, "leave --resume out");
-  expect_failure(dapple("plan scene:cube --stats-json no/p.json"), 2, "there is no folder");
-  expect_failure(dapple("plan part.dapple --stats-json part.dapple"), 2, "would overwrite");
-  expect_failure(dapple("plan scene:cube --crop 9,9,4,4"), 2, "has no pixels");
 }
 
 }  // namespace

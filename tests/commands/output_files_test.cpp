@@ -108,5 +108,16 @@ TEST_F(OutputFiles, AFailedWriteExitsWith1AndLeavesNothingBehind) {
   EXPECT_EQ(files_in_folder(), 0u);
 }
 
+// Buffer and texture of a .gltf have names that no option says.
+TEST_F(OutputFiles, AFileBesideAGltfThatAnotherOptionNamesIsRefused) {
+  ASSERT_EQ(dapple("scene cube -o in.glb").code, 0);
+  const std::string bake = "bake in.glb -o out.gltf --to texture --size 16 --rays 8";
+  expect_failure(dapple(bake + " --png out_ao.png"), 2, "is the same file as --png");
+  expect_failure(dapple(bake + " --stats-json ./out.bin"), 2, "is the same file as --stats-json");
+  std::filesystem::create_directory(path("out.bin"));
+  expect_failure(dapple(bake), 2, "out.bin");
+  EXPECT_EQ(files_in_folder(), 2u);
+}
+
 }  // namespace
 }  // namespace dapple

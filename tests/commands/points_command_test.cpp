@@ -1,11 +1,15 @@
-// dapple points as a command: the report of the bias and its limit, and columns of suns.
+// dapple points as a command: the report of the bias and its limit, columns of bent normals and
+// suns, and skies that turn.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 #include <string>
 
 #include "dapple/film.hpp"
+#include "support/gltf_builder.hpp"
 #include "support/program_run.hpp"
 
 namespace dapple {
@@ -70,14 +74,18 @@ TEST_F(PointsCommand, TurnsAnImageOfTheSkyAndDoesNotOverwriteIt) {
   for (const char* channel : {"R", "G", "B"}) sky.planes.push_back({channel, pixels});
   write_exr(sky, path("sky.exr"));
   std::ofstream(path("at.csv")) << "x,y,z,nx,ny,nz\n0,50,0,0,0,1\n";
-  const std::string lit = "points 'scene:tree?leaves=10' --at at.csv --sky sky.exr -o ";
-  const auto red = [&](const std::string& options) {
-    const program_test::Outcome run = dapple(lit + "out.csv " + options);
+  std::ofstream(path("to_x.csv")) << "x,y,z,nx,ny,nz\n0,50,0,1,0,0\n";
+  const std::string lit = "points 'scene:tree?leaves=10' --sky sky.exr --at at.csv -o ";
+  const auto red = [&](const std::string& options, const std::string& at = "at.csv") {
+    const program_test::Outcome run =
+        dapple("points 'scene:tree?leaves=10' --sky sky.exr --at " + at + " -o out.csv " + options);
     EXPECT_EQ(run.code, 0) << run.err;
     return value_of("out.csv", "sky_r");
   };
   EXPECT_GT(red(""), 5.0);
   EXPECT_LT(red("--sky-rotation 180"), 0.5);
+  EXPECT_GT(red("--sky-rotation=90", "to_x.csv"), 5.0);
+  EXPECT_LT(red("--sky-rotation=-90", "to_x.csv"), 0.5);
   EXPECT_EQ(dapple(lit + "no.csv --sky-rotation nan").code, 2);
   const program_test::Outcome needs =
       dapple("points scene:tree --at at.csv --sky uniform --sky-rotation 3 -o no.csv");
@@ -116,6 +124,29 @@ TEST_F(PointsCommand, SumsSunsWithAStandardErrorOrWritesEach) {
   measured("-o each.csv --suns suns.csv --per-sun");
   EXPECT_TRUE(contains(first_line("each.csv"), ",sun_0,sun_1")) << first_line("each.csv");
   EXPECT_FALSE(contains(first_line("each.csv"), "sun_90"));
+}
+
+// A wall close to the point hides the sky where x is above 0. What is left of the cosine-weighted
+// directions has the mean (-2, pi, 0), but for its length: tests/points/bent_and_suns_test.cpp.
+TEST_F(PointsCommand, WritesBentNormalsAndEachSunInColumnsOfTheirOwn) {
+  test::GltfBuilder wall;
+  wall.add_mesh(
+      {{"attributes",
+        {{"POSITION", wall.add_positions({0.1f, -1, -300, 0.1f, -1, 300, 0.1f, 300, 0})}}}});
+  const test::Bytes bytes = wall.glb();
+  film_test::write_bytes(path("wall.glb"), {bytes.begin(), bytes.end()});
+  std::ofstream(path("at.csv")) << "x,y,z,nx,ny,nz\n0,0,0,0,1,0\n";
+  std::ofstream(path("suns.csv")) << "azimuth,elevation,irradiance\n270,30,800\n90,30,700\n";
+  const program_test::Outcome run = dapple(
+      "points wall.glb --at at.csv -o out.csv --rays 65536 --estimator exact --bent "
+      "--suns suns.csv --per-sun");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const double length = std::hypot(2.0, std::numbers::pi);
+  EXPECT_NEAR(value_of("out.csv", "bent_x"), -2 / length, 0.015);
+  EXPECT_NEAR(value_of("out.csv", "bent_y"), std::numbers::pi / length, 0.015);
+  EXPECT_NEAR(value_of("out.csv", "bent_z"), 0, 0.015);
+  EXPECT_NEAR(value_of("out.csv", "sun_0"), 800 * 0.5, 0.01);
+  EXPECT_NEAR(value_of("out.csv", "sun_1"), 0, 0.01) << "behind the wall";
 }
 
 }  // namespace

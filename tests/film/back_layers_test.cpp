@@ -179,5 +179,31 @@ TEST(Back, ACropHasTheValuesOfTheWholePicture) {
           << x << ", " << y;
 }
 
+// Quiet pixels, such as sky, get fewer samples than the footprints are made for.
+TEST(Back, WithATargetSkyHasNoBacksOfLeavesBesideIt) {
+  Mesh mesh;
+  mesh.positions = {{-0.2f, -0.2f, 0}, {0.2f, -0.2f, 0}, {0.2f, 0.2f, 0}, {-0.2f, 0.2f, 0}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  const Scene scene = scene_of(std::move(mesh));
+  RenderOptions options = picture();
+  options.light = false;
+  options.ground = true;
+  options.back_every = 64;
+  options.spp = 1;
+  options.max_spp = 256;
+  for (float RenderOptions::*target : {&RenderOptions::target_error, &RenderOptions::target_rmse}) {
+    RenderOptions with_target = options;
+    with_target.*target = 0.01f;
+    const Film film = render(scene, with_target).film;
+    std::size_t sky = 0;
+    for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
+      if (film.find("A")->pixels[p] > 0) continue;
+      ++sky;
+      EXPECT_EQ(film.find("ao.back.R")->pixels[p], 1) << p;
+    }
+    EXPECT_GT(sky, 10u);
+  }
+}
+
 }  // namespace
 }  // namespace dapple

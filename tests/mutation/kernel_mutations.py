@@ -133,7 +133,7 @@ MUTATIONS = [
         r"^ShadingNormal\."),
     Mutation(
         "hidden-rays-count-as-free-at-points", "kernels/occlusion/point_ao.cl",
-        "((long)(count - traced) - (long)hidden) * (long)DAPPLE_AO_STEPS",
+        "((long)(count - traced) - (long)below) * (long)DAPPLE_AO_STEPS",
         "(long)(count - traced) * (long)DAPPLE_AO_STEPS",
         r"^(ShadingNormal|SmoothBake|PointAo)\."),
     Mutation(
@@ -165,8 +165,8 @@ MUTATIONS = [
         r"^CameraPoints\."),
     Mutation(
         "last-surface-instead-of-first", "kernels/camera/k_buffer.clh",
-        "hit & (through > threshold) & (at->through.v <= threshold)",
-        "hit & (at->through.v <= threshold)",
+        "hit & (so_far > threshold) & (at->so_far.v <= threshold)",
+        "hit & (at->so_far.v <= threshold)",
         r"^(KBufferOnDevice|CameraSplitting|DeepAlpha)"),
     Mutation(
         "vertex-colour-without-decoding", "kernels/camera/color_entry.clh",
@@ -205,7 +205,7 @@ MUTATIONS = [
         r"^ScalarKernels\."),
     Mutation(
         "scalar-rays-forget-what-they-passed", "kernels/scalar/closest_hits.clh",
-        "  hits->before = through;\n",
+        "  hits->before = so_far;\n",
         "",
         r"^ScalarKernels\."),
     Mutation(

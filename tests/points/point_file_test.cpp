@@ -1,8 +1,9 @@
 // Files of points in CSV, NPY and PLY: reading returns what was written, and errors of invalid
-// files name the line or row. Also lists of suns, and grids of points.
+// files name the line or row. Also lists of suns, grids of points, and points of triangles.
 #include "points/point_file.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -19,9 +20,10 @@ namespace {
 class PointFile : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        std::filesystem::path(testing::TempDir()) /
-        ("points_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              ("points_" + std::to_string(getpid()) + "_" +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -267,6 +269,46 @@ TEST(PointSources, AGridHasItsLastRowAndColumnAndFacesUp) {
   EXPECT_LT((list.points.back() - V3f(1, 2, 0.3f)).length(), 1e-6f);
   EXPECT_THROW(grid_points({0, 0, 1, 1, 0}, 0), Error);
   EXPECT_THROW(grid_points({1, 0, 0, 1, 0.1}, 0), Error);
+}
+
+/// The triangle (0,0,0) (3,0,0) (0,3,0), and one without an area.
+Scene triangle_placed_by(const M44f& to_world) {
+  Scene scene;
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {6, 0, 0}};
+  mesh.indices = {0, 1, 2, 0, 1, 3};
+  mesh.materials = {0, 0};
+  scene.materials.resize(1);
+  scene.meshes = {mesh};
+  scene.instances.resize(1);
+  scene.instances[0].to_world = to_world;
+  return scene;
+}
+
+void expect_front_then_back(const PointList& list, const V3f& centre, const V3f& front) {
+  ASSERT_EQ(list.points.size(), 2u);
+  ASSERT_EQ(list.normals.size(), 2u);
+  for (const V3f& point : list.points) EXPECT_EQ(point, centre);
+  EXPECT_EQ(list.normals[0], front);
+  EXPECT_EQ(list.normals[1], -front);
+}
+
+TEST(PointSources, ATriangleWithAnAreaHasItsCentreForItsFrontAndThenItsBack) {
+  M44f moved;
+  moved.setTranslation(V3f(0, 0, 5));
+  expect_front_then_back(triangle_points(triangle_placed_by(moved)), V3f(1, 1, 5), V3f(0, 0, 1));
+}
+
+TEST(PointSources, TheFrontOfATriangleStaysTheFrontWhereItIsMirrored) {
+  M44f mirror;
+  mirror.setScale(V3f(-1, 1, 1));
+  expect_front_then_back(triangle_points(triangle_placed_by(mirror)), V3f(-1, 1, 0), V3f(0, 0, 1));
+  mirror.setScale(V3f(1, 1, -1));
+  expect_front_then_back(triangle_points(triangle_placed_by(mirror)), V3f(1, 1, 0), V3f(0, 0, -1));
+  M44f half_a_turn;  // two mirrors
+  half_a_turn.setScale(V3f(-1, 1, -1));
+  expect_front_then_back(triangle_points(triangle_placed_by(half_a_turn)), V3f(-1, 1, 0),
+                         V3f(0, 0, -1));
 }
 
 }  // namespace

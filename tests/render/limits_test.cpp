@@ -20,26 +20,33 @@ namespace fs = std::filesystem;
 
 class Limits : public program_test::ProgramRun {
  protected:
-  void expect_picture_or_error(const Outcome& run) const {
+  /// Returns whether it is the picture, which must be so wide.
+  bool expect_picture_or_error(const Outcome& run, int width) const {
     EXPECT_TRUE(run.code == 0 || run.code == 1 || run.code == 4) << run.code << run.err;
     EXPECT_EQ(fs::exists(path("out.exr")), run.code == 0);
     EXPECT_EQ(files_in_folder(), run.code == 0 ? 1u : 0u) << run.err;
     if (run.code != 0) {
       EXPECT_TRUE(contains(run.err, "dapple: ")) << run.err;
+    } else {
+      EXPECT_EQ(read_exr(path("out.exr")).width, width);
     }
     fs::remove(path("out.exr"));
+    return run.code == 0;
   }
 };
 
 TEST_F(Limits, TwentyStepsOfAddressSpaceGiveThePictureOrAnError) {
   DAPPLE_SKIP_WITH_SANITIZER();
+  int pictures = 0;
   for (int step = 0; step < 20; ++step) {
     const int kilobytes = 800'000 + step * 168'000;
     SCOPED_TRACE(kilobytes);
-    expect_picture_or_error(
+    const Outcome run =
         dapple("render 'scene:tree?leaves=150000' -o out.exr --width 900 --height 700 --spp 1 -q",
-               "ulimit -v " + std::to_string(kilobytes) + " && timeout 100"));
+               "ulimit -v " + std::to_string(kilobytes) + " && timeout 100");
+    pictures += expect_picture_or_error(run, 900) ? 1 : 0;
   }
+  EXPECT_GT(pictures, 0) << "the last step is 4 GB";
 }
 
 TEST_F(Limits, FileSizesFromNothingUpGiveThePictureOrAnErrorAndKeepTheFormerFile) {
@@ -49,7 +56,10 @@ TEST_F(Limits, FileSizesFromNothingUpGiveThePictureOrAnErrorAndKeepTheFormerFile
     const Outcome run = dapple("render scene:cube -o out.exr --width 640 --height 400 --spp 1 -q",
                                "ulimit -f " + std::to_string(blocks) + " &&");
     EXPECT_EQ(files_in_folder(), 1u);
-    if (run.code == 0) continue;
+    if (run.code == 0) {
+      EXPECT_EQ(read_exr(path("out.exr")).width, 640);
+      continue;
+    }
     EXPECT_EQ(run.code, 1) << run.err;
     if (blocks > 0) {  // with 0, the message cannot be written either
       EXPECT_TRUE(contains(run.err, "dapple: ")) << run.err;

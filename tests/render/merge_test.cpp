@@ -249,6 +249,7 @@ TEST_F(MergeParts, PartsOfOtherPicturesAreRefusedAndTheDifferenceNamed) {
       {"--seed 7, ", [](auto& o) { o.seed = 7; }},
       {"--width 41, ", [](auto& o) { o.width = 41; }},
       {"--passes ao,light,albedo, ", [](auto& o) { o.back = false; }},
+      {"--back-every 4, ", [](auto& o) { o.back_every = 4; }},
       {"--cryptomatte none, ", [](auto& o) { o.cryptomattes = {}; }},
       {"--footprint 2, ", [](auto& o) { o.footprint = 2; }},
       {"--camera-splitting 4, ", [](auto& o) { o.camera_splitting = 4; }},
@@ -276,6 +277,38 @@ TEST_F(MergeParts, PartsOfOtherPicturesAreRefusedAndTheDifferenceNamed) {
     expect_refused({first, path("other.dapple")}, text);
     expect_refused({path("other.dapple"), first}, "0.dapple");
   }
+}
+
+TEST_F(MergeParts, PartsWithOtherLightsAreRefused) {
+  RenderOptions options = small_picture();
+  options.shard = {2, 2};
+  Scene scene = tree();
+  std::vector<std::string> notes;
+  scene.lights = daylight(choose_view(scene, options, notes).camera);
+  scene.lights[0].radiance *= 2;
+  RenderControl control;
+  control.part = path("other.dapple");
+  control.settings = {{"frame_seconds", "1.5"}};
+  render(scene, options, control);
+  expect_refused({part(1, 2), path("other.dapple")}, "in set of lights");
+}
+
+TEST_F(MergeParts, PartsOfSeveralDevicesAreNotedWithEachDeviceOnce) {
+  const std::vector<std::string> parts{part(1, 3), part(2, 3), part(3, 3)};
+  const std::string own = read_part(parts[0], Read::description).device;
+  for (const std::string& moved : {parts[1], parts[2]}) {
+    Checkpoint checkpoint = read_part(moved, Read::all);
+    checkpoint.device = "GPU of a farm";
+    write_checkpoint(moved, checkpoint, checkpoint.state);
+  }
+  const std::vector<std::string> expected{
+      "parts were traced on " + own +
+      " and GPU of a farm: the picture's bits are not those of one device"};
+  const Merge merge = merge_parts(parts);
+  EXPECT_EQ(merge.result.statistics.notes, expected);
+  EXPECT_EQ(merge.result.statistics.device, own + " and GPU of a farm");
+  merge_parts({parts[0], parts[1]}, path("two.dapple"));
+  EXPECT_EQ(merge_parts({path("two.dapple"), parts[2]}).result.statistics.notes, expected);
 }
 
 TEST_F(MergeParts, DamagedFilesAreRefusedByName) {

@@ -57,6 +57,23 @@ TEST(OptionSettings, NameTheOptionThatChangesThePicture) {
   }
 }
 
+TEST(OptionSettings, HaveBackEveryOnlyWithThePassBack) {
+  const auto difference = [](bool back) {
+    RenderOptions then, now;
+    then.back = now.back = back;
+    then.back_every = 16;
+    now.back_every = 4;
+    return first_difference(option_settings(then, view_of(then)),
+                            option_settings(now, view_of(now)));
+  };
+  EXPECT_FALSE(difference(false));
+  const auto with_backs = difference(true);
+  ASSERT_TRUE(with_backs);
+  EXPECT_EQ(with_backs->name, "--back-every");
+  EXPECT_EQ(with_backs->before, "16");
+  EXPECT_EQ(with_backs->now, "4");
+}
+
 TEST(OptionSettings, LetTheNumberOfSamplesGrow) {
   const RenderOptions plain;
   RenderOptions more;

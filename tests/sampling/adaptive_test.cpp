@@ -2,11 +2,13 @@
 // of the whole picture, is below the target. The real error must agree with the estimate, and the
 // bits must be the same on every run.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <numbers>
 #include <numeric>
 
@@ -248,6 +250,31 @@ TEST(BatchVariances, UseNeighboursWhereAPixelHasFewBatches) {
   // The pixel's own 0.5 has weight 1, the neighbourhood's mean 0.5 / 9 has weight 16.
   EXPECT_NEAR(variances[4], (0.5f + 16 * 0.5f / 9) / 17, 1e-6f);
   EXPECT_NEAR(variances[0], 16 * 0.5f / 4 / 17, 1e-6f) << "a corner has four in its neighbourhood";
+}
+
+// Batches have four samples.
+TEST(AdaptiveSampling, TheMaximumIsKeptAndTheSameCommandResumes) {
+  const std::string file = (std::filesystem::temp_directory_path() /
+                            ("dapple_adaptive_" + std::to_string(getpid()) + ".ckpt"))
+                               .string();
+  for (const int max_spp : {3, 10, 50}) {
+    RenderOptions options = small_picture();
+    options.target_rmse = 1e-4f;
+    options.spp = 1;
+    options.max_spp = max_spp;
+    Scene scene = make_procedural("scene:tree?leaves=2000");
+    scene.lights = {key_light(scene, frame_scene(scene, 1.2f))};
+    RenderControl control;
+    control.checkpoint = file;
+    const RenderResult first = render(scene, options, control);
+    const auto& samples = channel(first, "samples");
+    const float least = 2 * DAPPLE_SAMPLE_BATCH;
+    EXPECT_LE(*std::max_element(samples.begin(), samples.end()),
+              std::max(least, static_cast<float>(max_spp)));
+    control.resume = file;
+    EXPECT_EQ(channel(render(scene, options, control), "ao.R"), channel(first, "ao.R")) << max_spp;
+  }
+  std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -99,6 +99,19 @@ TEST(LightsFile, ATargetTakesThePlaceOfANormal) {
             "light 1: target is the light's position: no direction leads there");
 }
 
+TEST(LightsFile, ADomesRotationIsInDegreesOfWhichWholeTurnsDoNotCount) {
+  const auto rotation = [](const std::string& degrees) {
+    return load_one(R"("type": "dome", "rotation_degrees": )" + degrees).at(0).rotation;
+  };
+  const auto quarter = std::numbers::pi_v<float> / 2;
+  EXPECT_FLOAT_EQ(rotation("90"), quarter);
+  EXPECT_FLOAT_EQ(rotation("-90"), -quarter);
+  EXPECT_FLOAT_EQ(rotation("450"), quarter);
+  EXPECT_FLOAT_EQ(rotation("270"), -quarter);
+  EXPECT_EQ(rotation("-720"), 0);
+  EXPECT_EQ(load_one(R"("type": "dome")").at(0).rotation, 0);
+}
+
 TEST(LightsFile, ExposureIsInStops) {
   const auto exposed = [](const std::string& stops) {
     return load_one(std::string(kSphere) + ", \"radius\": 1, \"exposure\": " + stops)

@@ -2,6 +2,7 @@
 // that no ray can hit are dropped and counted in a warning. Strands are not written as glTF, and do
 // not emit light.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -85,7 +86,10 @@ TEST(StrandScene, BoundsHoldTheirThickness) {
 
 TEST(StrandScene, StrandsAreNotWrittenAsGltf) {
   const Scene scene = strand_scene(curly_strands({.strands = 1}), 1);
-  const std::string path = (std::filesystem::temp_directory_path() / "strands.glb").string();
+  const std::string path = (std::filesystem::temp_directory_path() /
+                            ("dapple_strands_" + std::to_string(getpid()) + ".glb"))
+                               .string();
+  std::filesystem::remove(path);
   EXPECT_THROW(write_glb(scene, path), Error);
   EXPECT_FALSE(std::filesystem::exists(path));
 }

@@ -93,6 +93,26 @@ Packing pack_charts(const PlacedCharts& charts, const BakeOptions& options) {
   return pack(sizes, options.texture_size, gap);
 }
 
+/// The texture coordinates of the vertices of mesh `m`. Throws Error usage unless each has some, in
+/// [0,1] where triangles use it.
+const std::vector<V2f>& given_uvs(const Scene& scene, const BakeOptions& options, std::size_t m) {
+  const Mesh& mesh = scene.meshes[m];
+  static const std::vector<V2f> none;
+  const std::vector<V2f>& uvs = m < options.texture_uvs.size() ? options.texture_uvs[m] : none;
+  const std::string of_mesh = fmt::format("texture coordinates: mesh {} (\"{}\")", m, mesh.name);
+  if (uvs.size() != mesh.positions.size())
+    throw Error(ErrorKind::usage, fmt::format("{} has {} for {} vertices", of_mesh, uvs.size(),
+                                              mesh.positions.size()));
+  for (const std::uint32_t vertex : mesh.indices) {
+    const V2f& uv = uvs[vertex];
+    if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1))
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} has ({}, {}) at vertex {}; the texture is [0, 1]", of_mesh, uv.x,
+                              uv.y, vertex));
+  }
+  return uvs;
+}
+
 }  // namespace
 
 std::vector<bool> textured_meshes(const Scene& scene, BakeInstances kind) {
@@ -155,10 +175,12 @@ TextureLayout given_layout(const Scene& scene, const BakeOptions& options) {
   const std::vector<bool> textured = textured_meshes(scene, options.placement);
   TextureLayout layout;
   layout.corners.resize(scene.meshes.size());
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-    if (textured[m])
-      for (const std::uint32_t vertex : scene.meshes[m].indices)
-        layout.corners[m].push_back(options.texture_uvs.at(m).at(vertex));
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (!textured[m]) continue;
+    const std::vector<V2f>& uvs = given_uvs(scene, options, m);
+    for (const std::uint32_t vertex : scene.meshes[m].indices)
+      layout.corners[m].push_back(uvs[vertex]);
+  }
   return layout;
 }
 

@@ -220,12 +220,17 @@ BvhUpdate UpdatableBvh::update(const Scene& moved) {
   const auto start = std::chrono::steady_clock::now();
   BvhUpdate update;
   std::vector<MeshKey> keys = keys_of(moved);
-  if (keys.size() == state_->keys.size()) {
-    state_->update(moved, keys, update);
-  } else {
-    state_->build(moved, Motion::expected, "");
-    update.objects_rebuilt = keys.size();
-    update.is_new = true;
+  try {
+    if (keys.size() == state_->keys.size()) {
+      state_->update(moved, keys, update);
+    } else {
+      state_->build(moved, Motion::expected, "");
+      update.objects_rebuilt = keys.size();
+      update.is_new = true;
+    }
+  } catch (...) {
+    state_->keys.clear();  // the BVH is of no scene: the next update builds it anew
+    throw;
   }
   state_->keys = std::move(keys);
   state_->instances = moved.instances;

@@ -98,7 +98,8 @@ std::vector<CornerNormals> pack_normals(const Scene& scene, const SceneBvh& bvh,
   std::size_t groups = table;
   for (std::uint32_t& group : group_of)
     if (group) group = static_cast<std::uint32_t>(groups++);
-  if (group_of.empty() || (groups == table && !keep_flat)) return {};
+  if (groups == table && !keep_flat) return {};
+  if (group_of.empty()) return std::vector<CornerNormals>(DAPPLE_NORMAL_GROUP);  // strands alone
   std::vector<CornerNormals> all(DAPPLE_NORMAL_GROUP * groups, CornerNormals{});
   std::memcpy(all.data(), group_of.data(), group_of.size() * sizeof(group_of[0]));
   for_each_block(meshes, [&](const MeshLanes& lanes, std::size_t block) {

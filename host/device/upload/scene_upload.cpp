@@ -42,12 +42,19 @@ void share_if_new(DeviceContext& context, std::vector<T> now, std::vector<T>& va
   buffer = share(context, values);
 }
 
+std::vector<bool> dark_lights(const Scene& scene) {
+  std::vector<bool> dark;
+  for (const Light& light : scene.lights) dark.push_back(light.radiance == V3f(0, 0, 0));
+  return dark;
+}
+
 void share_lights(DeviceContext& context, const Scene& scene, DeviceBuffers& buffers) {
   std::vector<LightRecord> records;
   std::vector<EmitterTriangle> emitters;
   std::vector<float> environments;
   pack_lights(scene, records, emitters);
   pack_domes(scene, records, environments);
+  buffers.dark_lights = dark_lights(scene);
   share_if_new(context, std::move(records), buffers.light_records, buffers.lights);
   share_if_new(context, std::move(emitters), buffers.emitter_triangles, buffers.emitters);
   share_if_new(context, std::move(environments), buffers.environment_data, buffers.environments);
@@ -77,6 +84,7 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   if (!bvh.textured.empty()) pack_materials(scene, buffers->material_records, buffers->texel_data);
   pack_lights(scene, buffers->light_records, buffers->emitter_triangles);
   pack_domes(scene, buffers->light_records, buffers->environment_data);
+  buffers->dark_lights = dark_lights(scene);
   buffers->uploaded = options;
   if (options.normals) buffers->corner_normals = pack_normals(scene, bvh, options.flat_normals);
   if (options.colors) {

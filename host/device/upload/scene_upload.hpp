@@ -36,6 +36,7 @@ struct DeviceBuffers {
   SurfaceColors colors;
   Checksum color_key{};
   std::vector<LightRecord> light_records;
+  std::vector<bool> dark_lights;  ///< by light: its radiance is 0
   std::vector<EmitterTriangle> emitter_triangles;
   std::vector<float> environment_data;
 };

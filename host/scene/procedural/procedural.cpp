@@ -78,8 +78,7 @@ std::vector<Recipe> habit_recipes() {
          leaf_size(), seed(), height_of(10)}},
        make_palm_scene},
       {{"conifer",
-        "a conifer with whorls of branches and a mesh for every needle: materials \"leaf\" and "
-        "\"bark\"",
+        "a conifer with whorls of branches: materials \"leaf\" (needles) and \"bark\"",
         {leaves_of(300000, "number of needles, of two triangles each"), opacity_of("leaf", 1),
          leaf_size(), seed(), height_of(12)}},
        make_conifer_scene},

@@ -11,7 +11,8 @@ namespace dapple {
 using std::sqrt;
 #endif
 
-/* Transmittances below this count as 0. The largest stored depth is -log(1e-4). */
+/* The least transmittance of a node: larger opacities are stored as 1 - this. The largest stored
+   depth is -log(1e-4). */
 #define DAPPLE_MIN_TRANSMITTANCE 1e-4f
 #define DAPPLE_MAX_DEPTH 9.2103404f
 

@@ -194,6 +194,7 @@ TEST_F(BvhCache, EveryInputOfABvhChangesItsKey) {
       [](Scene& s) { s.textures[0].alpha[63] ^= 1; },
       [](Scene& s) { s.textures[0].wrap_s = Wrap::clamp; },
       [](Scene& s) { s.textures[0].wrap_t = Wrap::mirror; },
+      [](Scene& s) { s.textures[0].nearest = true; },
       [](Scene& s) { std::tie(s.textures[0].width, s.textures[0].height) = std::pair(16u, 4u); },
   };
   for (std::size_t e = 0; e < edits.size(); ++e) {
@@ -202,6 +203,10 @@ TEST_F(BvhCache, EveryInputOfABvhChangesItsKey) {
     EXPECT_NE(object_key(edited, edited.meshes[0]), key) << "edit " << e;
   }
   EXPECT_EQ(object_key(original, original.meshes[0]), key);
+  const Scene hair = strands_and_leaves();
+  Scene thicker = hair;
+  thicker.meshes[1].radii[5] *= 1.001f;
+  EXPECT_NE(object_key(thicker, thicker.meshes[1]), object_key(hair, hair.meshes[1]));
 }
 
 TEST_F(BvhCache, ObjectsOfFewTrianglesHaveNoFiles) {
@@ -370,29 +375,6 @@ TEST_F(BvhCache, AFileThatCannotBeReplacedIsANoteAndNotAnError) {
   EXPECT_EQ(bvh.statistics.cache.objects_written, 0u);
   EXPECT_TRUE(contains(bvh.statistics.cache.note, "it is a folder")) << bvh.statistics.cache.note;
   expect_same(bvh, build_bvh(single_object()));
-}
-
-TEST_F(BvhCache, AFolderThatCannotBeAFolderIsAUsageErrorThatNamesTheOption) {
-  write_bytes(path("file"), "x");
-  for (const std::string& bad : {path("file"), path("file/below"), std::string("/proc/none")}) {
-    const Error error = error_of([&] { build_bvh(single_object(), bad); });
-    EXPECT_EQ(error.kind(), ErrorKind::usage);
-    EXPECT_TRUE(contains(error.what(), "--cache " + bad + ": ")) << error.what();
-  }
-  EXPECT_EQ(bytes_of(path("file")), "x");
-}
-
-TEST_F(BvhCache, AReadOnlyFolderIsAUsageError) {
-  if (geteuid() == 0) GTEST_SKIP() << "root can write everywhere";
-  fs::create_directory(cache_);
-  fs::permissions(cache_, fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_EQ(error_of([&] { prepare_bvh_cache(cache_); }).kind(), ErrorKind::usage);
-  fs::permissions(cache_, fs::perms::owner_all);
-}
-
-TEST_F(BvhCache, AMissingFolderIsMadeWithThoseAboveIt) {
-  prepare_bvh_cache(path("a/b/c"));
-  EXPECT_TRUE(fs::is_directory(path("a/b/c")));
 }
 
 }  // namespace

@@ -1,0 +1,79 @@
+// Seams of charts: which there are, and that lookups from both sides agree when they are joined.
+#include "bake/texture/seams.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "bake/surface_samples.hpp"
+#include "bake/texture/texture_layout.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+TEST(Seams, LookupsFromBothSidesAgreeAndOtherTexelsStay) {
+  // A tube of 24 sides: its charts meet along smooth edges.
+  Mesh tube;
+  constexpr std::uint32_t kSides = 24;
+  for (std::uint32_t i = 0; i < 2 * kSides; ++i) {
+    const double angle = 2 * kPi * (i / 2) / kSides;
+    tube.positions.emplace_back(std::cos(angle), i % 2, std::sin(angle));
+  }
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
+    tube.indices.insert(tube.indices.end(), {a, a + 1, b, b, a + 1, b + 1});
+  }
+  tube.materials.resize(tube.indices.size() / 3);
+  Scene scene;
+  scene.meshes = {tube};
+  scene.materials.resize(1);
+  scene.instances.resize(1);
+  BakeOptions options;
+  options.texture_size = 128;
+  const TextureLayout layout = make_layout(scene, options);
+  ASSERT_GT(layout.charts, 1u);
+  const std::vector<SeamPoint> points = seam_points(tube, layout.corners[0], 128);
+  ASSERT_GE(points.size(), layout.charts);
+  std::vector<float> before(128 * 128);
+  for (std::uint32_t i = 0; i < before.size(); ++i)
+    before[i] = static_cast<float>(hash_of(1, i) % 1000) / 1000;
+  std::vector<float> after = before;
+  join_seams(points, after);
+  const auto step = [&](const std::vector<float>& texels) {
+    double sum = 0;
+    for (const SeamPoint& p : points) {
+      double difference = 0;
+      for (std::size_t i = 0; i < 4; ++i)
+        difference += double{texels[p.a.texel[i]] * p.a.weight[i]} -
+                      double{texels[p.b.texel[i]] * p.b.weight[i]};
+      sum += difference * difference;
+    }
+    return std::sqrt(sum / static_cast<double>(points.size()));
+  };
+  EXPECT_LT(step(after), 0.05 * step(before));
+  std::set<std::uint32_t> read;
+  for (const SeamPoint& p : points)
+    for (const Lookup* side : {&p.a, &p.b}) read.insert(side->texel.begin(), side->texel.end());
+  for (std::uint32_t i = 0; i < before.size(); ++i) {
+    if (!read.contains(i)) {
+      ASSERT_EQ(after[i], before[i]) << i;
+    }
+  }
+}
+
+TEST(Seams, FlatSheetsAndHardEdgesHaveNone) {
+  const Scene cube = make_procedural("scene:cube?divisions=2");
+  BakeOptions options;
+  options.texture_size = 64;
+  const TextureLayout layout = make_layout(cube, options);
+  EXPECT_EQ(layout.charts, 6u);
+  for (std::size_t m = 0; m < cube.meshes.size(); ++m)
+    EXPECT_TRUE(seam_points(cube.meshes[m], layout.corners[m], 64).empty());
+}
+
+}  // namespace
+}  // namespace dapple
