@@ -47,7 +47,7 @@ class Irradiance:
 class BakedTexture:
     """A texture that all meshes share. Row 0 is the top, v = 0, as in glTF.
 
-    >>> baked = dapple.load("scene:demo").bake(texture=True, texture_size=64, rays=16)
+    >>> baked = dapple.load("scene:cube").bake(texture=True, texture_size=64, rays=16)
     >>> baked.texture.layers["ao"].shape, baked.texture.uvs[0].shape[1:]
     ((64, 64), (3, 2))
     """

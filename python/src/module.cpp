@@ -8,6 +8,7 @@
 #include "engine_call.hpp"
 #include "nanobind/stl/string.h"
 #include "nanobind/stl/vector.h"
+#include "scene_on_device.hpp"
 
 namespace dapple::python {
 namespace {

@@ -148,7 +148,7 @@ def test_textures_have_the_given_coordinates() -> None:
         occluders=[roof], texture_uvs=[uvs],
     )
     texture = baked.texture
-    assert texture is not None and baked.meshes == [{}]
+    assert texture is not None and baked.meshes == []
     np.testing.assert_array_equal(texture.uvs[0], uvs[[[0, 1, 2], [0, 2, 3]]])
     assert texture.coverage == pytest.approx(1)
     ao = texture.layers["ao"]

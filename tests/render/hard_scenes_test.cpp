@@ -113,10 +113,11 @@ double largest_step(Scene scene, float step_m, const std::string& layer, Estimat
   RenderOptions options = picture_of(layer);
   options.spp = 64;
   options.estimator = estimator;
+  Renderer renderer;  // keeps the BVH
   std::vector<double> before;
   double largest = 0;
   for (int step = 0; step < 8; ++step) {
-    const std::vector<double> means = block_means(render(scene, options).film, layer);
+    const std::vector<double> means = block_means(renderer.render(scene, options).film, layer);
     for (std::size_t b = 0; b < before.size(); ++b)
       largest = std::max(largest, std::fabs(means[b] - before[b]));
     before = means;
