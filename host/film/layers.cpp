@@ -180,7 +180,8 @@ double root_mean_square(const std::vector<float>& values) {
 }
 
 void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
-                  const RenderOptions& options, std::size_t lights, RenderStatistics& s) {
+                  const RenderOptions& options, const std::vector<Light>& lights,
+                  RenderStatistics& s) {
   const double hits = sums.total(DAPPLE_PLANE_HITS);
   s.rays.camera =
       std::accumulate(picture.samples.begin(), picture.samples.end(), std::uint64_t{0}) /
@@ -192,8 +193,11 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
     s.ao = {per_ray(sums.total(layout.ao_visits()), s.rays.ao),
             per_ray(sums.total(layout.ao_visits() + 1), s.rays.ao)};
   }
-  s.rays.light =
-      static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.light_rays) * lights;
+  const auto lit = std::count_if(lights.begin(), lights.end(), [](const Light& light) {
+    return light.radiance != V3f(0, 0, 0);  // no rays go to others
+  });
+  s.rays.light = static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.light_rays) *
+                 static_cast<std::uint64_t>(lit);
   double visits = 0, tests = 0;
   for (const LightPlaneRange& planes : layout.lights) {
     visits += sums.total(planes.visits());
@@ -334,7 +338,7 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
     planes.add("error." + layer, [&](std::uint32_t p) { return errors[p]; });
     statistics.rmse[layer] = root_mean_square(errors);
   }
-  count_visits(sums, picture, layout, options, lights.size(), statistics);
+  count_visits(sums, picture, layout, options, lights, statistics);
   return planes.take();
 }
 

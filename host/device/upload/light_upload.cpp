@@ -35,7 +35,7 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
       store(vertex, triangle.vertex);
       // A mirrored instance reverses the winding of its triangles. The swapped edges keep the
       // normal on the front face, as glTF defines it.
-      const bool mirrored = instance.to_world.determinant() < 0;
+      const bool mirrored = Imath::M44d(instance.to_world).determinant() < 0;
       store(mirrored ? edge2 : edge1, triangle.edge1);
       store(mirrored ? edge1 : edge2, triangle.edge2);
       emitters.push_back(triangle);
