@@ -152,7 +152,7 @@ MUTATIONS = [
         r"^(Dome|DomeRange)\."),
     Mutation(
         "mirrored-emitters-face-inwards", "host/device/upload/light_upload.cpp",
-        "const bool mirrored = instance.to_world.determinant() < 0;",
+        "const bool mirrored = Imath::M44d(instance.to_world).determinant() < 0;",
         "const bool mirrored = false;",
         r"^(EmissiveMesh|Light)\."),
     Mutation(
