@@ -15,6 +15,7 @@
 #include "film/film_sums.hpp"
 #include "film/light_layers.hpp"
 #include "film/traced_picture.hpp"
+#include "scene/dark_light.hpp"
 
 namespace dapple {
 namespace {
@@ -193,9 +194,8 @@ void count_visits(const Sums& sums, const TracedPicture& picture, const FilmLayo
     s.ao = {per_ray(sums.total(layout.ao_visits()), s.rays.ao),
             per_ray(sums.total(layout.ao_visits() + 1), s.rays.ao)};
   }
-  const auto lit = std::count_if(lights.begin(), lights.end(), [](const Light& light) {
-    return light.radiance != V3f(0, 0, 0);  // no rays go to others
-  });
+  const auto lit = std::count_if(lights.begin(), lights.end(),
+                                 [](const Light& light) { return !is_dark(light); });
   s.rays.light = static_cast<std::uint64_t>(hits) * static_cast<std::uint64_t>(options.light_rays) *
                  static_cast<std::uint64_t>(lit);
   double visits = 0, tests = 0;

@@ -10,6 +10,7 @@
 #include "dapple/error.hpp"
 #include "sampling/shard.hpp"
 #include "scene/corner_normals.hpp"
+#include "scene/dark_light.hpp"
 #include "scene/scene_check.hpp"
 
 namespace dapple {
@@ -23,8 +24,6 @@ void check_motion(const Shutter& shutter, const RenderOptions& options) {
     refuse("motion vectors need the next frame: give --frame or --frames (render_shutter())");
   if (options.ground) refuse("with motion vectors the ground must be part of the scenes");
 }
-
-bool is_dark(const V3f& radiance) { return radiance == V3f(0, 0, 0); }
 
 }  // namespace
 
@@ -65,7 +64,7 @@ ShutterScenes look_at_moments(const Shutter& shutter) {
     if (time == 0) scenes.radiance.resize(scene.lights.size(), V3f(0, 0, 0));
     if (scenes.radiance.size() != scene.lights.size()) scenes.radiance.clear();
     for (std::size_t i = 0; i < scenes.radiance.size(); ++i)
-      if (is_dark(scenes.radiance[i])) scenes.radiance[i] = scene.lights[i].radiance;
+      if (scenes.radiance[i] == V3f(0, 0, 0)) scenes.radiance[i] = scene.lights[i].radiance;
   }
   return scenes;
 }
@@ -73,7 +72,7 @@ ShutterScenes look_at_moments(const Shutter& shutter) {
 void set_lit_radiance(const ShutterScenes& moments, std::vector<Light>& lights) {
   if (moments.radiance.size() != lights.size()) return;
   for (std::size_t i = 0; i < lights.size(); ++i)
-    if (is_dark(lights[i].radiance) && lights[i].kind != LightKind::dome)
+    if (is_dark(lights[i]) && lights[i].kind != LightKind::dome)
       lights[i].radiance = moments.radiance[i];
 }
 

@@ -9,6 +9,7 @@
 #include "device/upload/memory_need.hpp"
 #include "device/upload/normal_upload.hpp"
 #include "device/upload/texture_upload.hpp"
+#include "scene/dark_light.hpp"
 
 namespace dapple {
 namespace {
@@ -44,7 +45,7 @@ void share_if_new(DeviceContext& context, std::vector<T> now, std::vector<T>& va
 
 std::vector<bool> dark_lights(const Scene& scene) {
   std::vector<bool> dark;
-  for (const Light& light : scene.lights) dark.push_back(light.radiance == V3f(0, 0, 0));
+  for (const Light& light : scene.lights) dark.push_back(is_dark(light));
   return dark;
 }
 
