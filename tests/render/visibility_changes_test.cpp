@@ -59,7 +59,7 @@ Scene sphere_and_strand(bool has_sphere) {
   return scene;
 }
 
-TEST(ComingsAndGoings, ASmoothMeshMayAppearWhereThereWereOnlyStrands) {
+TEST(VisibilityChanges, ASmoothMeshMayAppearWhereThereWereOnlyStrands) {
   RenderOptions options = small_picture();
   options.light = false;
   for (const bool sphere_first : {false, true}) {
@@ -81,7 +81,7 @@ TEST(ComingsAndGoings, ASmoothMeshMayAppearWhereThereWereOnlyStrands) {
   }
 }
 
-TEST(ComingsAndGoings, ALightThatIsDarkAtSomeMomentsCountsForTheOthers) {
+TEST(VisibilityChanges, ALightThatIsDarkAtSomeMomentsCountsForTheOthers) {
   RenderOptions options = small_picture();
   options.ao = false;
   const auto lit = [](bool on) {
@@ -106,7 +106,7 @@ TEST(ComingsAndGoings, ALightThatIsDarkAtSomeMomentsCountsForTheOthers) {
 }
 
 // The first scene's lights are as the tracer has them: the sky's image is divided by its mean.
-TEST(ComingsAndGoings, ASkyIsAsBrightThroughAShutterAsInAStill) {
+TEST(VisibilityChanges, ASkyIsAsBrightThroughAShutterAsInAStill) {
   RenderOptions options = small_picture();
   options.ao = false;
   Scene scene = sphere();
@@ -120,7 +120,7 @@ TEST(ComingsAndGoings, ASkyIsAsBrightThroughAShutterAsInAStill) {
 }
 
 // The pilot, which pictures of 2^20 samples have, looks at the rays of each light.
-TEST(ComingsAndGoings, ASceneWhoseOnlyLightIsScaledToNothingGetsDaylight) {
+TEST(VisibilityChanges, ASceneWhoseOnlyLightIsScaledToNothingGetsDaylight) {
   Scene scene = sphere();
   Light glow;
   glow.name = "glow";
@@ -171,7 +171,7 @@ Film with_motion(const Scene& now, const Scene& next) {
       .film;
 }
 
-TEST(ComingsAndGoings, AnObjectMovesWhereAnotherCopyOfItsMeshAppearsOrVanishes) {
+TEST(VisibilityChanges, AnObjectMovesWhereAnotherCopyOfItsMeshAppearsOrVanishes) {
   for (const bool now : {false, true}) {
     for (const bool next : {false, true}) {
       const Film film = with_motion(squares(0, now), squares(0.1f, next));
@@ -181,7 +181,7 @@ TEST(ComingsAndGoings, AnObjectMovesWhereAnotherCopyOfItsMeshAppearsOrVanishes) 
   }
 }
 
-TEST(ComingsAndGoings, NothingMovesTowardsAFrameThatShowsNothing) {
+TEST(VisibilityChanges, NothingMovesTowardsAFrameThatShowsNothing) {
   Scene next = squares(0.1f, false);
   next.instances[0].to_world = nothing();
   const Film film = with_motion(squares(0, true), next);
@@ -189,7 +189,7 @@ TEST(ComingsAndGoings, NothingMovesTowardsAFrameThatShowsNothing) {
   EXPECT_EQ(mean(film, "motion.X"), 0);
 }
 
-TEST(ComingsAndGoings, ABvhThatCouldNotBeUpdatedIsBuiltAnewByTheNextUpdate) {
+TEST(VisibilityChanges, ABvhThatCouldNotBeUpdatedIsBuiltAnewByTheNextUpdate) {
   const Scene first = squares(0, true);
   Scene nothing_left = first, moved = first;
   for (V3f& position : nothing_left.meshes[0].positions) position.x = 0;
