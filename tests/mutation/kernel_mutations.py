@@ -189,9 +189,14 @@ MUTATIONS = [
         "depth_decode(node->depth[1][slot]), depth_decode(node->depth[0][slot]),",
         r"^ScalarKernels\."),
     Mutation(
-        "scalar-falloff-ignored", "kernels/scalar/transmittance.clh",
+        "scalar-falloff-ignored", "kernels/scalar/primitive_transmittance.clh",
         "  return opacity * powr(fmax(1.0f - t * params.inverse_distance, 0.0f), params.falloff);\n",
         "  return opacity;\n",
+        r"^ScalarKernels\."),
+    Mutation(
+        "scalar-leaves-evaluated-in-another-space", "kernels/scalar/transmittance.clh",
+        "      if (is_postponed(&traversal->postponed)) return false;\n",
+        "",
         r"^ScalarKernels\."),
     Mutation(
         "scalar-caps-of-strands-inside-out", "kernels/scalar/segment.clh",

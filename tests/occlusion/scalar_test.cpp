@@ -52,13 +52,19 @@ TEST(ScalarKernels, FindTheTransmittanceOfVectorKernelsRayByRay) {
             trace(device, upload(device, scene, bvh), rays, estimator);
       }
       int different = 0;
-      double difference = 0, hidden = 0, visits[2] = {}, tests[2] = {};
+      // A scalar ray that is stopped goes on to the end of its round, of up to 16 nodes.
+      double difference = 0, hidden = 0, stopped = 0;
+      double visits[2] = {}, tests[2] = {}, all_visits[2] = {};
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const float apart = found[1][i].transmittance - found[0][i].transmittance;
         different += !(std::fabs(apart) <= 1e-4f);
         difference += apart;
         hidden += found[0][i].transmittance < 1;
+        const bool is_stopped = found[0][i].transmittance == 0 || found[1][i].transmittance == 0;
+        stopped += is_stopped;
         for (const int k : {0, 1}) {
+          all_visits[k] += found[k][i].visits & 65535u;
+          if (is_stopped) continue;
           visits[k] += found[k][i].visits & 65535u;
           tests[k] += found[k][i].visits >> 16;
         }
@@ -72,8 +78,36 @@ TEST(ScalarKernels, FindTheTransmittanceOfVectorKernelsRayByRay) {
       EXPECT_LT(std::fabs(difference / count), 2e-4);
       EXPECT_NEAR(visits[1], visits[0], 0.01 * visits[0]);
       EXPECT_NEAR(tests[1], tests[0], 0.01 * tests[0]);
+      EXPECT_LE(all_visits[1], 1.01 * all_visits[0] + 16 * stopped);
     }
   }
+}
+
+// Rays that start a hundred million times as far away as the scene is large hit the boxes of empty
+// slots, too.
+TEST(ScalarKernels, RaysFromFarAwayTestTheTrianglesOfTheSceneAlone) {
+  const Scene scene = make_procedural("scene:cloud?leaves=1");
+  const SceneBvh bvh = build_bvh(scene);
+  std::vector<Ray> rays = rays_through(bvh.bounds, 2000, bvh.bounds.size().length(), 0.0f, 7);
+  for (Ray& ray : rays) {
+    for (int axis = 0; axis < 3; ++axis) ray.origin[axis] -= 1e8f * ray.direction[axis];
+    ray.t_max = 1e9f;
+  }
+  std::vector<Occlusion> found[2];
+  for (const Packets packets : {Packets::none, Packets::scalar}) {
+    const Device& device = device_with(packets);
+    found[packets == Packets::scalar] =
+        trace(device, upload(device, scene, bvh), rays, Estimator::exact);
+  }
+  double tests[2] = {};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    for (const int k : {0, 1}) {  // at such distances both round coarsely, and hit different ones
+      EXPECT_LE(found[k][i].visits >> 16, 2u) << "a leaf has two triangles";
+      tests[k] += found[k][i].visits >> 16;
+    }
+  }
+  EXPECT_GT(tests[0], 0);
+  EXPECT_GT(tests[1], 0);
 }
 
 // Opacities fade with the distance in covered nodes and on surfaces.
