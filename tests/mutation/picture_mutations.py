@@ -20,6 +20,11 @@ MUTATIONS = [
         "",
         r"^(OptionSettings|Resume)\."),
     Mutation(
+        "checksum-of-lights-without-dark-ones", "host/render/render_settings.cpp",
+        "  for (const bool dark : scene.dark_lights) stream.add_value(dark);\n",
+        "",
+        r"^ResumeContent\."),
+    Mutation(
         "radiance-of-lights-ignored", "host/film/layers.cpp",
         "return V3d(lights_[light].radiance) * sum *",
         "return sum *",
@@ -186,6 +191,11 @@ MUTATIONS = [
         "        copy.light = -1;\n",
         "",
         r"^Periodic\."),
+    Mutation(
+        "mirrored-triangles-show-their-back-first", "host/points/point_sources.cpp",
+        "Imath::M44d(instance.to_world).determinant() < 0 ? -1.0f : 1.0f;",
+        "1.0f;",
+        r"^PointSources\."),
     Mutation(
         "bake-chooses-the-darker-side", "host/bake/value_sums.cpp",
         "return difference > 0 ? Chosen::back : Chosen::front;",

@@ -108,6 +108,37 @@ TEST(BiasReport, OfAllRaysItIsTheDifferenceFromTheExactPicture) {
   }
 }
 
+/// Translucent leaves, which cost exact rays much, below two lights of the same samples.
+Scene tree_below_twin_lights(const RenderOptions& options) {
+  Scene scene = make_procedural("scene:tree?leaves=100000&opacity=0.3");
+  std::vector<std::string> notes;
+  Light light = key_light(scene, choose_view(scene, options, notes).camera);
+  light.sequence = 1;
+  for (const char* name : {"first", "second"}) {
+    light.name = name;
+    scene.lights.push_back(light);
+  }
+  return scene;
+}
+
+// Where exact rays are slow, rays of the first light lower the share before those of the second are
+// taken, whose samples were chosen by the old share.
+TEST(BiasReport, LightsOfTheSameSamplesHaveTheSameBiasWhileTheShareFalls) {
+  if (scene_test::device().info().kind != "CPU") GTEST_SKIP() << "its slices are too large";
+  RenderOptions options = with_share(small_picture(), 1);
+  options.ao = false;
+  options.light_rays = 2;
+  options.spp = 64;
+  options.footprint_spp = 1;  // for large footprints
+  options.max_bias = 0.0f;
+  const auto bias = render(tree_below_twin_lights(options), options).statistics.bias;
+  const Bias &first = bias.at("light.first"), &second = bias.at("light.second");
+  ASSERT_LT(first.share, 0.8) << "else the test shows nothing";
+  EXPECT_GT(std::fabs(first.mean), 1e-4);
+  EXPECT_NEAR(second.mean, first.mean, 1e-9);
+  EXPECT_NEAR(second.error, first.error, 1e-9);
+}
+
 TEST(BiasReport, FewRaysTellTheSameWithinTheError) {
   const Scene scene = tree();
   RenderOptions options = small_picture();
