@@ -51,6 +51,20 @@ std::string mismatch_text(const std::string& what) {
   return what;
 }
 
+/// An option that takes several values may have taken the argument that is missing.
+std::string missing_text(const CLI::App& command, const std::string& missing) {
+  const auto took_many = [](const CLI::Option* option) {
+    return !option->get_positional() && option->get_allow_extra_args() && option->count() > 0;
+  };
+  const auto lists = command.get_options(took_many);
+  if (missing.starts_with("-") || lists.empty()) return missing + " is missing";
+  const std::string list = "--" + lists.front()->get_lnames().front();
+  return fmt::format(
+      "{0} is missing: {1} takes all files that follow it; write {0} before {1}, or "
+      "after --, as in {1} FILE... -- {0}",
+      missing, list);
+}
+
 /// CLI11 lists them from the last to the first.
 std::string extras_text(const CLI::App& app) {
   std::vector<std::string> extras = parsed_command(app).remaining();
@@ -79,7 +93,7 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))
     return extras_text(app);
   if (name == "RequiredError" && std::regex_match(what, match, std::regex("(\\S+) is required")))
-    return long_name(match[1]) + " is missing";
+    return missing_text(parsed_command(app), long_name(match[1]));
   if (name == "RequiresError" &&
       std::regex_match(what, match, std::regex("(\\S+) requires (\\S+)")))
     return fmt::format("{} needs {}", long_name(match[1]), long_name(match[2]));

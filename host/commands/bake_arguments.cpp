@@ -132,7 +132,8 @@ void add_run_options(CLI::App& app, BakeArguments& a) {
   BakeOptions& o = a.options;
   add_opacity_option(app, a.opacity);
   app.add_option("--occluders", a.occluders,
-                 "glTF files that occlude and are not baked; may be repeated");
+                 "glTF files that occlude and are not baked: all files that follow, so SCENE comes "
+                 "before it; may be repeated");
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene, which occludes it");
   add_outside_option(app, a.scene_options.allow_outside);
   add_device_options(app, o.device, o.kernel_dir, o.cache);

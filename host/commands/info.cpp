@@ -11,6 +11,7 @@
 #include "commands/shot.hpp"
 #include "commands/statistics_text.hpp"
 #include "dapple/bvh.hpp"
+#include "dapple/error.hpp"
 
 namespace dapple {
 namespace {
@@ -163,6 +164,8 @@ std::string report_text(const nlohmann::ordered_json& r) {
 }
 
 void run_info(const InfoArguments& a) {
+  if (!a.scene_options.animation.empty() && !a.scene_options.time)
+    throw Error(ErrorKind::usage, "--animation needs --frame: which time to show");
   Scene scene = load_scene(a.scene, a.scene_options);
   for (const std::string& text : a.opacity) {
     const auto [material, value] = parse_opacity(text);
@@ -184,7 +187,8 @@ Run add_info_command(CLI::App& app) {
   app.add_option("--frame", a->scene_options.time,
                  "Time to show, in seconds (not a frame number); default: the rest pose");
   app.add_option("--animation", a->scene_options.animation,
-                 "The glTF animation that plays, by name; *: all at once; default: the first");
+                 "The glTF animation that plays, by name; *: all at once; default: the first. "
+                 "Needs --frame");
   app.add_option("--line-radius", a->scene_options.line_radius,
                  "Turn a glTF file's lines into strands of this radius, metres; 0: ignore them");
   app.add_flag("--allow-outside", a->scene_options.allow_outside,

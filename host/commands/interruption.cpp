@@ -33,13 +33,16 @@ volatile std::sig_atomic_t has_temporary = 0;
 timespec received_at{};  // written before `received`
 char temporary[4096];    // written only while has_temporary is 0
 
-// An unfinished file of a process that ends here has a temporary name; the next run removes it. A
-// second SIGTERM does not end the process at once: process managers send it twice.
+/// Ends the process from a signal handler. Its unfinished outputs have temporary names; the next
+/// run removes them.
+[[noreturn]] void end_at_once(int signal) {
+  if (has_temporary && unlink(temporary) != 0) rmdir(temporary);
+  _exit(kSignalled + signal);
+}
+
+// A second SIGTERM does not end the process at once: process managers send it twice.
 extern "C" void on_interruption(int signal) {
-  if (!saving || (received && signal == SIGINT)) {
-    if (has_temporary && unlink(temporary) != 0) rmdir(temporary);
-    _exit(kSignalled + signal);
-  }
+  if (!saving || (received && signal == SIGINT)) end_at_once(signal);
   if (received) return;
   clock_gettime(CLOCK_MONOTONIC, &received_at);
   received = signal;
@@ -50,7 +53,7 @@ extern "C" void on_interruption(int signal) {
 /// A slice takes a fraction of a second. If it does not end, the driver hangs, or compiles.
 extern "C" void on_alarm(int) {
   if (noticed) return;
-  if (!ends_early || in_slice) _exit(kSignalled + received);
+  if (!ends_early || in_slice) end_at_once(received);
   ends_early = 0;  // it saves, or writes the picture
   alarm(kSecondsOfSlice - kSecondsWithCheckpoint);
 }

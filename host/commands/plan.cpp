@@ -4,6 +4,7 @@
 // short.
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <random>
 
 #include "camera/view.hpp"
 #include "commands/command.hpp"
@@ -87,18 +89,22 @@ RenderOptions trial_options(const RenderOptions& options, double rays) {
   return trial;
 }
 
-/// A folder for the trial's files, removed at the end.
+/// A folder for the trial's files, removed at the end. A signal handler can remove it only while it
+/// is empty, as it is while a trial is traced.
 class TrialFolder {
  public:
   TrialFolder() {
     const char* set = std::getenv("TMPDIR");
     const std::string parent = set && *set ? set : "/tmp";
-    path_ = parent + "/dapple-plan-XXXXXX";
-    if (!mkdtemp(path_.data()))
-      throw Error(ErrorKind::failed,
-                  fmt::format("cannot make a folder in {} (TMPDIR, or else /tmp): {}", parent,
-                              std::strerror(errno)));
-    remove_when_interrupted(path_);
+    std::random_device random;
+    path_ = fmt::format("{}/dapple-plan-{:08x}{:08x}", parent, random(), random());
+    remove_when_interrupted(path_);  // before mkdir(): a signal may come right after it
+    if (mkdir(path_.c_str(), 0700) == 0) return;
+    const int reason = errno;
+    remove_when_interrupted("");
+    throw Error(ErrorKind::failed,
+                fmt::format("cannot make a folder in {} (TMPDIR, or else /tmp): {}", parent,
+                            std::strerror(reason)));
   }
   ~TrialFolder() {
     std::error_code ignored;
@@ -108,6 +114,12 @@ class TrialFolder {
   TrialFolder(const TrialFolder&) = delete;
   TrialFolder& operator=(const TrialFolder&) = delete;
   [[nodiscard]] std::string file(const char* name) const { return path_ + "/" + name; }
+  /// Removes a file of the folder; returns its size.
+  [[nodiscard]] static double take_bytes(const std::string& file) {
+    const auto bytes = static_cast<double>(std::filesystem::file_size(file));
+    std::filesystem::remove(file);
+    return bytes;
+  }
 
  private:
   std::string path_;
@@ -120,14 +132,11 @@ double resident_bytes() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-double file_bytes(const std::string& path) {
-  return static_cast<double>(std::filesystem::file_size(path));
-}
-
 struct Trial {
   double pixels = 0, rays = 0;
   double seconds = 0;         ///< of tracing
   double before_seconds = 0;  ///< of what comes before
+  double part_bytes = 0;      ///< of the part with its sums
 };
 
 Trial trace_trial(Renderer& renderer, Scene scene, const RenderOptions& options,
@@ -135,7 +144,9 @@ Trial trace_trial(Renderer& renderer, Scene scene, const RenderOptions& options,
   result = renderer.render(std::move(scene), options, control);
   const auto& seconds = result.statistics.seconds;
   const double pixels = pixels_of(options);
-  return {pixels, pixels * options.spp, seconds.trace, seconds.total - seconds.trace};
+  Trial trial{pixels, pixels * options.spp, seconds.trace, seconds.total - seconds.trace};
+  if (!result.interrupted) trial.part_bytes = TrialFolder::take_bytes(control.part);
+  return trial;
 }
 
 /// Seconds of `rays` camera rays, if they grow as from a trial to a longer one.
@@ -197,8 +208,8 @@ std::optional<Plan> plan_of(const RenderArguments& a, const RenderOptions& optio
       resident_bytes() + film_bytes(a, options, lights, plan.pixels - longer.pixels);
   const std::string image = folder.file("trial.exr");
   write_exr(result.film, image, to_format(a));
-  plan.image_bytes = file_bytes(image) * plan.pixels / longer.pixels;
-  plan.part_bytes = file_bytes(control.part) * plan.pixels / longer.pixels;
+  plan.image_bytes = TrialFolder::take_bytes(image) * plan.pixels / longer.pixels;
+  plan.part_bytes = longer.part_bytes * plan.pixels / longer.pixels;
   return plan;
 }
 

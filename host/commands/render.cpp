@@ -177,7 +177,7 @@ void run_render(const RenderArguments& a) {
     }
     const double load_seconds = since(start);
     control.part = is_part_path(frame.output) ? frame.output : "";
-    control.settings.clear();
+    control.settings = shot.settings();
     if (frame.seconds)
       control.settings.emplace_back("frame_seconds", fmt::format("{}", *frame.seconds));
     RenderResult result =

@@ -37,6 +37,15 @@ Shot::Shot(const RenderArguments& a, RenderOptions& options) : arguments_(a), op
   if (a.frames.empty() && a.shutter.empty() && !options.motion) return;
   moving_.emplace(a.scene, scene_options_of(a, options));
   options.ground = false;
+  options.opacity.clear();
+}
+
+std::vector<std::pair<std::string, std::string>> Shot::settings() const {
+  std::vector<std::pair<std::string, std::string>> settings;
+  if (!moving_) return settings;  // the renderer applies the opacities, and names them
+  for (const auto& [material, value] : options_.opacity)
+    settings.emplace_back("opacity_" + layer_name(material), fmt::format("{}", value));
+  return settings;
 }
 
 Scene Shot::frame(std::optional<double> seconds) {
@@ -46,6 +55,8 @@ Scene Shot::frame(std::optional<double> seconds) {
   if (lights_) use_lights(scene, *lights_);
   if (dome_) scene.lights.push_back(*dome_);
   if (!moving_) return scene;
+  // Before the ground is added, as in a still: its material is not the scene's.
+  for (const auto& [material, value] : options_.opacity) override_opacity(scene, material, value);
   if (!defaults_) defaults_ = choose_defaults(scene);
   add_defaults(scene);
   return scene;

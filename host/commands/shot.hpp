@@ -4,6 +4,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "commands/render_arguments.hpp"
@@ -13,12 +15,15 @@ namespace dapple {
 
 class Shot {
  public:
-  /// Reads the files. In a sequence, and with a shutter, the ground is added here and
-  /// `options.ground` is cleared.
+  /// Reads the files. In a sequence, and with a shutter or motion vectors, opacities are applied
+  /// and the ground is added here; `options.opacity` and `options.ground` are cleared.
   /// Throws Error.
   Shot(const RenderArguments& arguments, RenderOptions& options);
 
   Scene frame(std::optional<double> seconds);
+
+  /// The opacities that were cleared, for the film's metadata.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> settings() const;
 
  private:
   /// Chooses camera, lights and ground from the first frame.

@@ -7,6 +7,7 @@
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
 #include "scene/hair_file.hpp"
+#include "scene/unused_options.hpp"
 
 namespace dapple {
 namespace {
@@ -30,11 +31,13 @@ void validate(const SceneOptions& options) {
 Scene load_scene(const std::string& spec, const SceneOptions& options) {
   validate(options);
   if (spec.empty()) throw Error(ErrorKind::input, "the path of the scene is empty");
-  if (spec.starts_with("scene:")) return make_procedural(spec, options.time);
-  if (!is_hair_name(spec)) return load_gltf(spec, options);
-  Scene hair = load_hair(spec);
-  add_time_warning(spec, options.time, hair);
-  return hair;
+  const bool is_procedural = spec.starts_with("scene:");
+  if (!is_procedural && !is_hair_name(spec)) return load_gltf(spec, options);
+  refuse_named_animation(spec, options);
+  Scene scene = is_procedural ? make_procedural(spec, options.time) : load_hair(spec);
+  if (!is_procedural) add_time_warning(spec, options.time, scene);
+  warn_of_no_lines(spec, options, scene);
+  return scene;
 }
 
 }  // namespace dapple

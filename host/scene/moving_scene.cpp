@@ -8,6 +8,7 @@
 #include "dapple/error.hpp"
 #include "scene/gltf/moving_gltf.hpp"
 #include "scene/hair_file.hpp"
+#include "scene/unused_options.hpp"
 
 namespace dapple {
 
@@ -30,18 +31,25 @@ class GltfSource : public MovingScene::Source {
 
 class ProceduralSource : public MovingScene::Source {
  public:
-  explicit ProceduralSource(std::string name) : name_(std::move(name)) {}
+  ProceduralSource(std::string name, SceneOptions options)
+      : name_(std::move(name)), options_(std::move(options)) {}
   [[nodiscard]] Scene at(std::optional<double> seconds) const override {
-    return make_procedural(name_, seconds);
+    Scene scene = make_procedural(name_, seconds);
+    warn_of_no_lines(name_, options_, scene);
+    return scene;
   }
 
  private:
   std::string name_;
+  SceneOptions options_;
 };
 
 class HairSource : public MovingScene::Source {
  public:
-  explicit HairSource(const std::string& path) : path_(path), scene_(load_hair(path)) {}
+  HairSource(const std::string& path, const SceneOptions& options)
+      : path_(path), scene_(load_hair(path)) {
+    warn_of_no_lines(path, options, scene_);
+  }
   [[nodiscard]] Scene at(std::optional<double> seconds) const override {
     Scene scene = scene_;
     add_time_warning(path_, seconds, scene);
@@ -55,9 +63,11 @@ class HairSource : public MovingScene::Source {
 
 std::unique_ptr<const MovingScene::Source> open(const std::string& spec,
                                                 const SceneOptions& options) {
-  if (spec.starts_with("scene:")) return std::make_unique<ProceduralSource>(spec);
-  if (is_hair_name(spec)) return std::make_unique<HairSource>(spec);
-  return std::make_unique<GltfSource>(spec, options);
+  const bool is_procedural = spec.starts_with("scene:");
+  if (!is_procedural && !is_hair_name(spec)) return std::make_unique<GltfSource>(spec, options);
+  refuse_named_animation(spec, options);
+  if (is_procedural) return std::make_unique<ProceduralSource>(spec, options);
+  return std::make_unique<HairSource>(spec, options);
 }
 
 }  // namespace

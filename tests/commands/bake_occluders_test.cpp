@@ -115,6 +115,23 @@ TEST_F(BakeOccluders, TheGroundTakesTheLowerHalfOfTheSkyFromAWall) {
   EXPECT_EQ(document("out.glb")["meshes"].size(), 1u);
 }
 
+TEST_F(BakeOccluders, SeveralFilesMayFollowOneOptionAndASceneAmongThemIsMissed) {
+  expect_ao("floor.glb --occluders floor.glb roof.glb", 0);
+  expect_ao("--occluders floor.glb roof.glb -- floor.glb", 0);
+  const Outcome run = dapple("bake --occluders roof.glb floor.glb -o none.glb");
+  expect_failure(run, 2,
+                 "SCENE is missing: --occluders takes all files that follow it; write SCENE before "
+                 "--occluders, or after --, as in --occluders FILE... -- SCENE");
+  expect_failure(dapple("bake floor.glb --occluders roof.glb"), 2, "dapple: --output is missing;");
+  expect_failure(dapple("bake -o none.glb"), 2, "dapple: SCENE is missing;");
+}
+
+// As in a render: the plane that --ground adds is no material of the file.
+TEST_F(BakeOccluders, TheAddedGroundIsNoMaterialThatAnOpacityCanBeFor) {
+  expect_failure(dapple("bake floor.glb --ground --opacity ground=0 -o none.glb"), 2,
+                 "floor.glb: there is no material \"ground\"; there are: \"floor\"");
+}
+
 TEST_F(BakeOccluders, NotesOfTheirFilesAreSaid) {
   test::json points = roof_.doc["meshes"][0]["primitives"][0];
   points["mode"] = 0;

@@ -1,12 +1,15 @@
 // The options --frame and --frames of dapple render: one file for each frame, named by its number;
-// what stays the same in all frames; and arguments that are refused before anything is rendered.
+// what stays the same in all frames; what is said of scenes that do not move; and arguments that
+// are refused before anything is rendered.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <thread>
 
 #include "support/gltf_builder.hpp"
+#include "support/hair_builder.hpp"
 #include "support/program_run.hpp"
 #include "support/running_program.hpp"
 
@@ -56,6 +59,15 @@ class FramesCommand : public ProgramRun {
     std::ofstream(path("blink.glb"), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
+  }
+  static std::string text_of(const test::Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+  static int count(const std::string& text, const std::string& part) {
+    int found = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++found;
+    return found;
+  }
+  [[nodiscard]] Outcome small_render(const std::string& scene, const std::string& options) const {
+    return dapple("render " + scene + " --width 8 --height 8 --spp 2 " + options);
   }
   [[nodiscard]] bool is_there(const char* name) const {
     return std::filesystem::exists(path(name));
@@ -127,11 +139,7 @@ TEST_F(FramesCommand, CameraLightAndGroundOfASequenceStandStill) {
       << "the triangle is 1 m higher";
   EXPECT_NE(last.find("light.sun.R"), nullptr);
   EXPECT_NE(last.find("light.sky.R"), nullptr);
-  std::size_t notes = 0;
-  for (std::size_t at = 0; (at = run.err.find("no lights in the scene", at)) != std::string::npos;
-       ++at)
-    ++notes;
-  EXPECT_EQ(notes, 1u) << run.err;
+  EXPECT_EQ(count(run.err, "no lights in the scene"), 1) << run.err;
 }
 
 TEST_F(FramesCommand, WhatIsScaledToNothingAtFirstChangesNeitherLightsNorCameraLater) {
@@ -243,6 +251,94 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   refuses("--frame inf -o o.exr", "--frame must be a finite number");
   refuses("--animation walk -o o.exr", "--animation needs --frame or --frames");
   EXPECT_EQ(files_in_folder(), 0u);
+}
+
+TEST_F(FramesCommand, OfWhatDoesNotMoveStayAtRestAndSaySoOnce) {
+  write_bytes(path("still.glb"), text_of(test::one_triangle().glb()));
+  write_bytes(path("a.hair"), text_of(test::two_strands().bytes()));
+  const std::string rest = ": has no animations, and stays in its rest pose";
+  const std::pair<const char*, std::string> cases[] = {
+      {"still.glb", "still.glb" + rest},
+      {"'scene:forest?trees=2&leaves=10'", "scene:forest?trees=2&leaves=10" + rest},
+      {"'scene:tree?leaves=10'", "scene:tree?leaves=10" + rest + "; with wind=1 it moves"},
+      {"a.hair", "a.hair: hair has no animations, and stays"},
+  };
+  for (const auto& [scene, note] : cases) {
+    for (const char* time : {"--frame 2 -o a.exr", "--frames 1-2 --animation '*' -o a.#.exr"}) {
+      SCOPED_TRACE(std::string(scene) + " " + time);
+      const Outcome run = small_render(scene, time);
+      EXPECT_EQ(run.code, 0) << run.err;
+      EXPECT_EQ(count(run.err, "note: " + note + "\n"), 1) << run.err;
+    }
+    EXPECT_FALSE(contains(small_render(scene, "-o a.exr").err, "has no animations")) << scene;
+  }
+  const Outcome windy = small_render("'scene:tree?leaves=10&wind=1'", "--frame 2 -o a.exr");
+  EXPECT_FALSE(contains(windy.err, "has no animations")) << windy.err;
+}
+
+TEST_F(FramesCommand, AnAnimationThatASceneOfAnyKindDoesNotHaveIsRefused) {
+  write_bytes(path("still.glb"), text_of(test::one_triangle().glb()));
+  write_bytes(path("a.hair"), text_of(test::two_strands().bytes()));
+  for (const char* scene : {"still.glb", "a.hair", "scene:tree?wind=1", "scene:cube"}) {
+    SCOPED_TRACE(scene);
+    const std::string what = "--animation walk: " + std::string(scene) + " has no animations";
+    const std::string quoted = "'" + std::string(scene) + "'";
+    expect_failure(small_render(quoted, "--animation walk --frame 1 -o a.exr"), 2, what);
+    expect_failure(small_render(quoted, "--animation walk --frames 1-2 -o a.#.exr"), 2, what);
+    expect_failure(dapple("info " + quoted + " --animation walk --frame 1"), 2, what);
+    expect_failure(dapple("info " + quoted + " --animation walk"), 2, "--animation needs --frame");
+  }
+}
+
+TEST_F(FramesCommand, ALineRadiusWithoutLinesIsNoted) {
+  write_bytes(path("still.glb"), text_of(test::one_triangle().glb()));
+  write_bytes(path("a.hair"), text_of(test::two_strands().bytes()));
+  for (const std::string scene : {"still.glb", "a.hair", "scene:cube"}) {
+    const std::string note =
+        "note: " + scene + ": has no glTF lines, and --line-radius changes nothing\n";
+    for (const char* time : {"-o a.exr", "--frames 1-2 -o a.#.exr"}) {
+      SCOPED_TRACE(scene + " " + time);
+      const std::string options = std::string("--line-radius 0.01 ") + time;
+      EXPECT_EQ(count(small_render(scene, options).err, note), 1);
+      EXPECT_EQ(count(small_render(scene, time).err, "--line-radius"), 0);
+    }
+  }
+}
+
+/// Ways to render a scene at rest: each adds opacities and ground at another place.
+constexpr const char* kKinds[] = {"-o a.exr", "--frame 0 -o a.exr", "--frames 0-0 -o a.exr#",
+                                  "--frame 0 --shutter 0,1 --motion-samples 2 -o a.exr",
+                                  "--frame 0 --passes ao,motion -o a.exr"};
+
+TEST_F(FramesCommand, TheAddedGroundIsNoMaterialThatAnOpacityCanBeFor) {
+  write_climb();
+  for (const char* kind : kKinds) {
+    SCOPED_TRACE(kind);
+    expect_failure(small_render("climb.glb", std::string("--ground --opacity ground=0.5 ") + kind),
+                   2, "climb.glb: there is no material \"ground\"; there are: \"default\"");
+  }
+  EXPECT_EQ(files_in_folder(), 1u);
+}
+
+// The disk's own ground disappears; the camera looks down on the added one, which is as high.
+TEST_F(FramesCommand, AnOpacityOfTheScenesOwnGroundLeavesTheAddedGroundOpaque) {
+  for (const char* kind : kKinds) {
+    SCOPED_TRACE(kind);
+    const auto alpha_below = [&](const std::string& options) {
+      const Outcome run = small_render("scene:disk", options + kind);
+      EXPECT_EQ(run.code, 0) << run.err;
+      const std::string file = std::string(kind).ends_with('#') ? "a.exr0" : "a.exr";
+      const Film film = read_exr(path(file));
+      const auto is_named = [](const auto& setting) {
+        return setting == std::pair<std::string, std::string>("opacity_ground", "0");
+      };
+      const auto& settings = film.metadata.settings;
+      EXPECT_EQ(std::count_if(settings.begin(), settings.end(), is_named), 1);
+      return film.find("A")->pixels.back();
+    };
+    EXPECT_EQ(alpha_below("--opacity ground=0 "), 0);
+    EXPECT_EQ(alpha_below("--opacity ground=0 --ground "), 1);
+  }
 }
 
 TEST_F(FramesCommand, AnOutputOfAFrameThatIsTheInputIsRefused) {

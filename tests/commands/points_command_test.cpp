@@ -106,6 +106,14 @@ TEST_F(PointsCommand, TheSceneMayComeAfterListsOfNumbers) {
   EXPECT_TRUE(contains(suns.err, "--per-sun needs --suns")) << suns.err;
 }
 
+// As in a render: the plane that --ground adds is no material of the file.
+TEST_F(PointsCommand, RefusesAnOpacityForTheAddedGround) {
+  const program_test::Outcome run =
+      dapple("points 'scene:tree?leaves=30' --per-triangle --ground --opacity ground=0 -o a.csv");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_TRUE(contains(run.err, "there is no material \"ground\"")) << run.err;
+}
+
 TEST_F(PointsCommand, RefusesAHeightWithoutAGrid) {
   const program_test::Outcome run =
       dapple("points 'scene:tree?leaves=3000' --per-triangle --height 1 -o a.csv");

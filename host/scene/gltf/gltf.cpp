@@ -1,5 +1,6 @@
 // Makes a Scene from a glTF file, at rest or at a time. In: a path, options and a time; out: a
 // Scene. Each step is a file of this folder; only this folder uses tinygltf.
+#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -10,7 +11,9 @@
 #include "scene/gltf/instance.hpp"
 #include "scene/gltf/light.hpp"
 #include "scene/gltf/moving_gltf.hpp"
+#include "scene/gltf/topology.hpp"
 #include "scene/message.hpp"
+#include "scene/unused_options.hpp"
 
 namespace dapple {
 namespace {
@@ -24,6 +27,10 @@ auto within_memory(const std::string& path, const Work& work) {
   }
 }
 
+bool has_any_lines(const tinygltf::Model& model) {
+  return std::any_of(model.meshes.begin(), model.meshes.end(), gltf::has_lines);
+}
+
 }  // namespace
 
 namespace gltf {
@@ -35,6 +42,7 @@ MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, boo
   timeless_.files = document_.files;
   for (const std::string& note : document_.notes)
     timeless_.warnings.push_back(one_line(path + ": " + note));
+  if (!has_any_lines(document_.model)) warn_of_no_lines(path, options, timeless_);
   timeless_.animations = list_animations(document_);
   for (const auto& node : document_.model.nodes)
     timeless_.node_names.push_back(node.mesh >= 0 ? one_line(node.name) : "");
@@ -51,9 +59,7 @@ Scene MovingGltf::at(std::optional<double> seconds) const {
   check_crowding(scene);
   add_punctual_lights(document_, placed, options_, scene);
   add_cameras(document_, placed, scene);
-  if (seconds && document_.motion.clips.empty())
-    scene.warnings.push_back(
-        one_line(document_.file + ": has no animations, and stays in its rest pose"));
+  if (seconds && document_.motion.clips.empty()) warn_of_rest(document_.file, scene);
   return scene;
 }
 

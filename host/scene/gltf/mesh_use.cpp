@@ -20,10 +20,6 @@ float radius_in_mesh(float radius, const Imath::M44d& to_world) {
              : radius;
 }
 
-bool has_lines(const tinygltf::Mesh& mesh) {
-  return std::any_of(mesh.primitives.begin(), mesh.primitives.end(), is_of_lines);
-}
-
 bool is_bound_to_joints(const tinygltf::Mesh& mesh) {
   return std::all_of(mesh.primitives.begin(), mesh.primitives.end(), has_joints);
 }

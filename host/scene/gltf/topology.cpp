@@ -1,6 +1,7 @@
 // Converts lists, strips, fans and loops: see topology.hpp.
 #include "scene/gltf/topology.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -74,6 +75,10 @@ void append_segments(std::vector<std::uint32_t>& ends, const std::vector<std::ui
 
 bool is_of_lines(const tinygltf::Primitive& primitive) {
   return primitive.mode >= TINYGLTF_MODE_LINE && primitive.mode <= TINYGLTF_MODE_LINE_STRIP;
+}
+
+bool has_lines(const tinygltf::Mesh& mesh) {
+  return std::any_of(mesh.primitives.begin(), mesh.primitives.end(), is_of_lines);
 }
 
 std::uint64_t element_count(const Document& document, const tinygltf::Primitive& primitive,

@@ -13,6 +13,9 @@ namespace dapple::gltf {
 /// Whether a primitive has lines, as a list, a strip or a loop.
 bool is_of_lines(const tinygltf::Primitive& primitive);
 
+/// Whether any primitive of a mesh has lines.
+bool has_lines(const tinygltf::Mesh& mesh);
+
 /// Returns the number of a primitive's triangles or segments without reading geometry. Throws Error
 /// input when the number of indices of a list is not a multiple of 3 or 2.
 std::uint64_t element_count(const Document& document, const tinygltf::Primitive& primitive,

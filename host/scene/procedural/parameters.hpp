@@ -24,6 +24,8 @@ class ProceduralParameters {
   [[nodiscard]] std::uint32_t whole(std::string_view name) const;
   /// The time in seconds; none: the scene is at rest.
   [[nodiscard]] std::optional<double> time() const { return time_; }
+  /// Whether the scene has the parameter "wind", which alone moves procedural scenes.
+  [[nodiscard]] bool can_move() const { return find("wind") < table_.size(); }
 
  private:
   void assign(std::string_view pair);

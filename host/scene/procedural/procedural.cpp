@@ -10,6 +10,7 @@
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
 #include "scene/procedural/scenes.hpp"
+#include "scene/unused_options.hpp"
 
 namespace dapple {
 namespace {
@@ -185,6 +186,12 @@ const Recipe& find_recipe(std::string_view name) {
               fmt::format("scene:{}: there is no such scene; there are: {}", name, known));
 }
 
+void warn_if_still(const ProceduralParameters& parameters, Scene& scene) {
+  if (parameters.can_move() && parameters.real("wind") > 0) return;
+  warn_of_rest(scene.source, scene);
+  if (parameters.can_move()) scene.warnings.back() += "; with wind=1 it moves";
+}
+
 }  // namespace
 
 std::vector<ProceduralHelp> procedural_help() {
@@ -200,8 +207,10 @@ Scene make_procedural(const std::string& name, std::optional<double> time) {
   const Recipe& recipe = find_recipe(rest.substr(0, mark));
   const std::string_view query =
       mark == std::string_view::npos ? std::string_view{} : rest.substr(mark + 1);
-  Scene scene = recipe.make(ProceduralParameters(recipe.help, query, time));
+  const ProceduralParameters parameters(recipe.help, query, time);
+  Scene scene = recipe.make(parameters);
   scene.source = fmt::format("scene:{}", rest);
+  if (time) warn_if_still(parameters, scene);
   return scene;
 }
 
