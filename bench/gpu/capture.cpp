@@ -59,8 +59,8 @@ void save(const std::filesystem::path& path, const Bytes& bytes) {
 /// The buffer that an argument is; null: it is a value.
 cl_mem buffer_of(const Bytes& argument) {
   cl_mem memory = nullptr;
-  if (argument.size() != sizeof memory) return nullptr;
-  std::memcpy(&memory, argument.data(), sizeof memory);
+  if (argument.size() != sizeof(cl_mem)) return nullptr;
+  std::memcpy(&memory, argument.data(), sizeof(cl_mem));
   return buffers.contains(memory) ? memory : nullptr;
 }
 
@@ -76,12 +76,12 @@ Bytes content(cl_command_queue queue, cl_mem memory) {
 
 Bytes program_of(cl_kernel kernel) {
   cl_program program = nullptr;
-  clGetKernelInfo(kernel, CL_KERNEL_PROGRAM, sizeof program, &program, nullptr);
+  clGetKernelInfo(kernel, CL_KERNEL_PROGRAM, sizeof(cl_program), &program, nullptr);
   std::size_t size = 0;
   clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, nullptr);
   Bytes bytes(size);
   char* data = bytes.data();
-  check(size && clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof data, &data, nullptr) ==
+  check(size && clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof(char*), &data, nullptr) ==
                     CL_SUCCESS,
         "reading the program");
   return bytes;
@@ -112,7 +112,8 @@ bool is_wanted(cl_kernel kernel, cl_uint dimensions, const size_t* items, const 
 
 }  // namespace
 
-// NOLINTBEGIN(readability-identifier-naming): these replace OpenCL's functions.
+// These replace OpenCL's functions.
+// NOLINTBEGIN(readability-identifier-naming, readability-inconsistent-declaration-parameter-name)
 extern "C" {
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host,
@@ -148,4 +149,4 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
   return kLaunch(queue, kernel, dimensions, offset, items, group, waits, wait_for, event);
 }
 }
-// NOLINTEND(readability-identifier-naming)
+// NOLINTEND(readability-identifier-naming, readability-inconsistent-declaration-parameter-name)
