@@ -100,7 +100,7 @@ std::string argument_error_text(const CLI::App& app, const CLI::ParseError& erro
   if (name == "ExcludesError" &&
       std::regex_match(what, match, std::regex("(\\S+) excludes (\\S+)")))
     return fmt::format("{} does not go with {}", long_name(match[1]), long_name(match[2]));
-  return what;
+  return error.what();
 }
 
 void refuse_empty_values(CLI::App& command) {
