@@ -107,6 +107,11 @@ struct DeviceContext::State {
   cl_uint next_ticket = kFirstTicket;
   bool warming_up = false;
 
+  /// For the compiler; dapple/shared/language.h says what functions are static for.
+  [[nodiscard]] std::string options(const Variant& variant) const {
+    const bool has_static_functions = packets == Packets::scalar || info.kind != "CPU";
+    return variant.options() + (has_static_functions ? " -DDAPPLE_STATIC_FUNCTIONS" : "");
+  }
   /// The text that names a program of that source in KernelCache.
   [[nodiscard]] std::string known_by(const std::string& source, const Variant& variant) const;
   cl::Program& program(const std::string& file, const Variant& variant);
@@ -121,18 +126,19 @@ std::string Variant::options() const {
 
 std::string DeviceContext::State::known_by(const std::string& source,
                                            const Variant& variant) const {
-  return fmt::format("{}\n{}\n{}\n{}\n{}", info.platform, info.driver, info.name, variant.options(),
+  return fmt::format("{}\n{}\n{}\n{}\n{}", info.platform, info.driver, info.name, options(variant),
                      source);
 }
 
 cl::Program& DeviceContext::State::program(const std::string& file, const Variant& variant) {
   const auto key = std::pair(file, variant);
   if (const auto found = programs.find(key); found != programs.end()) return found->second;
-  const std::string source = expand_kernel(file, kernel_dir), options = variant.options();
+  const std::string source = expand_kernel(file, kernel_dir);
   const std::string known = known_by(source, variant);
   cl::Program built(context, source);
   cl_int result = CL_SUCCESS;
-  KernelCache::of_process().build(known, [&] { result = compile(built, device, options); });
+  KernelCache::of_process().build(known,
+                                  [&] { result = compile(built, device, options(variant)); });
   if (result != CL_SUCCESS) {
     const auto log = built.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
     throw Error(ErrorKind::device,
@@ -171,7 +177,9 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Pa
   s.device = choose_device(name);
   s.info = describe(s.device);
   in_opencl("opening " + s.info.name, [&] {
-    s.shares_memory = s.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
+    // GPUs may have the host's memory, too, but their drivers may copy what the host allocated.
+    s.shares_memory = s.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE &&
+                      (s.device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0;
     s.context = make_context(s.device);
     s.queue = cl::CommandQueue(s.context, s.device, CL_QUEUE_PROFILING_ENABLE);
   });

@@ -110,8 +110,11 @@ void add_devices(const cl::Platform& platform, FoundDevices& found) {
     platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
     for (const cl::Device& device : devices) {
       if (!is_usable(device)) continue;
-      const std::string refusal = driver_refusal(trimmed(platform.getInfo<CL_PLATFORM_NAME>()),
-                                                 trimmed(device.getInfo<CL_DRIVER_VERSION>()));
+      std::string refusal = driver_refusal(trimmed(platform.getInfo<CL_PLATFORM_NAME>()),
+                                           trimmed(device.getInfo<CL_DRIVER_VERSION>()));
+      if (refusal.empty())
+        refusal = language_refusal(trimmed(device.getInfo<CL_DEVICE_NAME>()),
+                                   device.getInfo<CL_DEVICE_OPENCL_C_VERSION>());
       if (refusal.empty()) {
         found.usable.push_back(device);
       } else if (std::find(found.refusals.begin(), found.refusals.end(), refusal) ==

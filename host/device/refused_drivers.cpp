@@ -19,4 +19,13 @@ std::string driver_refusal(const std::string& platform, const std::string& versi
          "intel-opencl-rt)";
 }
 
+std::string language_refusal(const std::string& device, const std::string& opencl_c) {
+  for (const char* old : {"OpenCL C 1.0", "OpenCL C 1.1"}) {
+    if (opencl_c.starts_with(old))
+      return device + " is not used: its driver compiles " + old +
+             ", and dapple's kernels are OpenCL C 1.2; install a newer driver";
+  }
+  return {};
+}
+
 }  // namespace dapple

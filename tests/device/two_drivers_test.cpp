@@ -85,6 +85,15 @@ TEST_F(TwoDrivers, ARefusedOneIsNamedAndTheOtherIsUsed) {
   EXPECT_TRUE(contains(chosen.err, "; PoCL 3.0-rc2 is not used: ")) << chosen.err;
 }
 
+TEST_F(TwoDrivers, OneWithAnOlderLanguageIsNotTaken) {
+  const std::string with_old = with_fake("old") + " FAKE_OPENCL_C='OpenCL C 1.1 Fake'";
+  const Outcome picture = render("", with_old);
+  EXPECT_EQ(picture.code, 0) << picture.err;
+  const std::string refusal = "old is not used: its driver compiles OpenCL C 1.1";
+  EXPECT_TRUE(contains(dapple("devices", with_old).out, "\n" + refusal));
+  EXPECT_TRUE(contains(render("--device old", with_old).err, "; " + refusal));
+}
+
 // The loader has the platform of a library once or twice, as it likes.
 TEST_F(TwoDrivers, TheSameDriverTwiceIsNoErrorAndRefusedOnce) {
   fs::copy_file(path("vendors/pocl.icd"), path("vendors/pocl_again.icd"));

@@ -96,6 +96,8 @@ cl_int get_device_info(cl_device_id, cl_device_info query, std::size_t room, voi
       return answer.text(from_environment("FAKE_OPENCL_VERSION", "1"));
     case CL_DEVICE_VERSION:
       return answer.text("OpenCL 1.2 ");
+    case CL_DEVICE_OPENCL_C_VERSION:
+      return answer.text(from_environment("FAKE_OPENCL_C", "OpenCL C 1.2 "));
     case CL_DEVICE_TYPE:  // so that it is listed before a CPU
       return answer.value(cl_device_type{CL_DEVICE_TYPE_GPU});
     case CL_DEVICE_PLATFORM:

@@ -8,6 +8,11 @@
 #if !defined(DAPPLE_PREFILTERED) || !defined(DAPPLE_SHARED_ORIGIN)
 #error "a kernel is compiled for a Variant: both of its options must be defined"
 #endif
+/* In C99 an inline function that the compiler calls has no definition. PoCL and Intel's runtime define
+   it; their code is as measured. Compilers for GPUs may not: static functions always have one. */
+#ifdef DAPPLE_STATIC_FUNCTIONS
+#define inline static inline
+#endif
 #define DAPPLE_GLOBAL __global
 typedef char schar; /* signed in OpenCL C */
 #define DAPPLE_FUNCTION inline
