@@ -33,8 +33,9 @@ volatile std::sig_atomic_t has_temporary = 0;
 timespec received_at{};  // written before `received`
 char temporary[4096];    // written only while has_temporary is 0
 
-/// Ends the process from a signal handler. Its unfinished outputs have temporary names; the next
-/// run removes them.
+/// Ends the process from a signal handler, and removes the file or empty folder that
+/// remove_when_interrupted() named. Other unfinished outputs have temporary names; the next run
+/// removes them.
 [[noreturn]] void end_at_once(int signal) {
   if (has_temporary && unlink(temporary) != 0) rmdir(temporary);
   _exit(kSignalled + signal);
