@@ -8,8 +8,9 @@
 #if !defined(DAPPLE_PREFILTERED) || !defined(DAPPLE_SHARED_ORIGIN)
 #error "a kernel is compiled for a Variant: both of its options must be defined"
 #endif
-/* In C99 an inline function has no definition where a call to it is not inlined. PoCL and Intel's runtime
-   provide one, and the figures are of their code. Compilers for GPUs may not, so functions are static there. */
+/* In C99 an inline function has no definition where a call to it is not inlined. PoCL and Intel's
+   runtime provide one, and the figures are of their code. Compilers for GPUs may not, so functions
+   are static there. */
 #ifdef DAPPLE_STATIC_FUNCTIONS
 #define inline static inline
 #endif
