@@ -20,22 +20,33 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& why) { throw Error(ErrorKind::usage, why); }
 
-/// A file, without its state.
+/// What differs from part to part: the memory of a merge must not grow with all that they share, as
+/// the names of a hundred thousand objects.
 struct Part {
   std::string path;
-  Checkpoint about;
+  std::vector<Piece> pieces;
+  std::string device;
+  int samples;
+  bool visits;
 };
 
-Part describe(const std::string& path) {
-  Part part{path, read_part(path, Read::description)};
-  for (const auto& [name, value] : part.about.options)
+/// The file without its state.
+Checkpoint describe(const std::string& path) {
+  Checkpoint about = read_part(path, Read::description);
+  for (const auto& [name, value] : about.options)
     if (name == "--target-error or --target-rmse" && value != "none")
       refuse(path +
              ": was made with a target error, which decides about samples from those of the "
              "whole picture; parts are made with --spp");
-  if (part.about.pieces.empty())
+  if (about.pieces.empty())
     refuse(path + ": is not finished; dapple render --resume " + path + " goes on");
-  return part;
+  return about;
+}
+
+Part part_of(const std::string& path, Checkpoint about) {
+  const PictureRecord& picture = about.picture;
+  return {path, std::move(about.pieces), std::move(about.device), picture.metadata.samples,
+          picture.options.visits};
 }
 
 /// Whatever parts of one picture must agree in: all but their pixels, samples and devices.
@@ -62,22 +73,19 @@ Settings common_settings(const Checkpoint& about) {
   return settings;
 }
 
-void require_one_picture(const std::vector<Part>& parts) {
-  const Settings of_first = common_settings(parts.front().about);
-  for (const Part& part : parts) {
-    const Settings of_part = common_settings(part.about);
-    auto other = first_difference(of_first, of_part);
-    if (!other) {
-      other = first_difference(of_part, of_first);  // settings that only the first has
-      if (other) std::swap(other->before, other->now);
-    }
-    if (!other) continue;
-    refuse(
-        other->is_opaque()
-            ? fmt::format("{}: differs from {} in {}", part.path, parts.front().path, other->name)
-            : fmt::format("{}: was made with {} {}, {} with {} {}", part.path, other->name,
-                          other->now, parts.front().path, other->name, other->before));
+/// `first`, `part`: what the files at the two paths must agree in.
+void require_one_picture(const Settings& first, const std::string& first_path, const Settings& part,
+                         const std::string& path) {
+  auto other = first_difference(first, part);
+  if (!other) {
+    other = first_difference(part, first);  // settings that only the first has
+    if (other) std::swap(other->before, other->now);
   }
+  if (!other) return;
+  refuse(other->is_opaque()
+             ? fmt::format("{}: differs from {} in {}", path, first_path, other->name)
+             : fmt::format("{}: was made with {} {}, {} with {} {}", path, other->name, other->now,
+                           first_path, other->name, other->before));
 }
 
 struct PieceOfFile {
@@ -88,7 +96,7 @@ struct PieceOfFile {
 std::vector<PieceOfFile> pieces_of(const std::vector<Part>& parts) {
   std::vector<PieceOfFile> pieces;
   for (const Part& part : parts)
-    for (const Piece& piece : part.about.pieces) pieces.push_back({piece, &part});
+    for (const Piece& piece : part.pieces) pieces.push_back({piece, &part});
   std::sort(pieces.begin(), pieces.end(), [](const PieceOfFile& a, const PieceOfFile& b) {
     return a.piece.rays.first < b.piece.rays.first;
   });
@@ -117,13 +125,21 @@ void require_no_overlap(const std::vector<PieceOfFile>& pieces) {
 
 /// Sorted by what they hold, so that the sum does not depend on the order of the paths.
 std::vector<Part> describe_all(const std::vector<std::string>& paths) {
+  if (paths.empty()) refuse("dapple merge needs the files of parts");
   std::vector<Part> parts;
-  for (const std::string& path : paths) parts.push_back(describe(path));
-  if (parts.empty()) refuse("dapple merge needs the files of parts");
-  require_one_picture(parts);
+  Settings of_first;
+  for (const std::string& path : paths) {
+    Checkpoint about = describe(path);
+    const Settings settings = common_settings(about);
+    if (parts.empty())
+      of_first = settings;
+    else
+      require_one_picture(of_first, paths.front(), settings, path);
+    parts.push_back(part_of(path, std::move(about)));
+  }
   require_no_overlap(pieces_of(parts));
   const auto key = [](const Part& part) {
-    const Piece& first = part.about.pieces.front();
+    const Piece& first = part.pieces.front();
     return std::tuple(first.rays.first, first.rect.y0, first.rect.x0);
   };
   std::sort(parts.begin(), parts.end(),
@@ -146,14 +162,13 @@ void add_devices(std::string of_part, std::string& of_sum) {
 
 /// The description of the sum. Options are those of a render without --shard, if it is whole.
 Checkpoint describe_sum(const std::vector<Part>& parts) {
-  Checkpoint sum = parts.front().about;
+  Checkpoint sum = describe(parts.front().path);
   sum.pieces.clear();
   for (const Part& part : parts) {
-    const PictureRecord& picture = part.about.picture;
-    sum.pieces.insert(sum.pieces.end(), part.about.pieces.begin(), part.about.pieces.end());
-    sum.picture.options.visits = sum.picture.options.visits || picture.options.visits;
-    sum.picture.metadata.samples = std::max(sum.picture.metadata.samples, picture.metadata.samples);
-    add_devices(part.about.device, sum.device);
+    sum.pieces.insert(sum.pieces.end(), part.pieces.begin(), part.pieces.end());
+    sum.picture.options.visits = sum.picture.options.visits || part.visits;
+    sum.picture.metadata.samples = std::max(sum.picture.metadata.samples, part.samples);
+    add_devices(part.device, sum.device);
   }
   sum.pieces = joined(std::move(sum.pieces));
   const PixelRect& crop = sum.picture.crop = box_of(sum.pieces);

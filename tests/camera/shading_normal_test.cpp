@@ -1,51 +1,27 @@
-// Shading normals: closed forms of smooth and tilted surfaces, flat surfaces bit for bit, the same
-// through instances and refits.
+// Shading normals: how they are packed, the closed form of a tilted surface, flat surfaces bit for
+// bit, the same through instances and refits. facets_test.cpp has smooth surfaces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <random>
 
 #include "dapple/render.hpp"
 #include "device/upload/normal_upload.hpp"
 #include "support/scene_on_device.hpp"
+#include "support/shading_pictures.hpp"
 #include "support/smooth_shapes.hpp"
 
 namespace dapple {
 namespace {
 
 using namespace scene_test;
+using test::options_of;
 using test::scene_of;
+using test::small_sun;
 using test::smooth_sphere;
-
-RenderOptions options_of(Normals normals, Estimator estimator = Estimator::exact) {
-  RenderOptions options;
-  options.width = 80;
-  options.height = 60;
-  options.spp = 16;
-  options.normals = normals;
-  options.estimator = estimator;
-  options.look = LookAt{V3f(0, 1, 4), V3f(0, 0, 0), V3f(0, 1, 0)};
-  return options;
-}
-
-/// A small sun of irradiance 1 across its direction.
-Light small_sun(const V3f& towards) {
-  Light sun;
-  sun.name = "sun";
-  sun.kind = LightKind::sun;
-  sun.direction = -towards.normalized();
-  sun.angular_radius = 0.02f;
-  sun.radiance = V3f(1 / (std::numbers::pi_v<float> * 4e-4f));
-  return sun;
-}
-
-V3f three(const Film& film, const std::string& layer, std::size_t pixel) {
-  return {film.find(layer + ".X")->pixels[pixel], film.find(layer + ".Y")->pixels[pixel],
-          film.find(layer + ".Z")->pixels[pixel]};
-}
+using test::three;
 
 /// A square of side 2 around the origin that faces +Z, whose normals are `normal`.
 Mesh square(const V3f& normal) {
@@ -140,59 +116,6 @@ TEST(PackNormals, NormalsOfTheFaceTakeNoMemoryAndOthersAreOnItsSide) {
   V3f decoded;
   corner_vector(corner_code(first_normals(pack_normals(scene, build_bvh(scene))), 0), &decoded.x);
   EXPECT_LE((decoded.normalized() - V3f(0, 0, 1)).length(), 0.002f) << "that of the face";
-}
-
-// A convex surface occludes nothing of its own hemispheres.
-TEST(ShadingNormal, ASphereOf504TrianglesIsUnoccludedEverywhere) {
-  Scene scene = scene_of(smooth_sphere());
-  EXPECT_EQ(scene.meshes[0].primitive_count(), 504u);
-  for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
-    RenderOptions options = options_of(Normals::shading, estimator);
-    options.light = false;
-    const Film film = render(scene, options).film;
-    const auto& ao = film.find("ao.R")->pixels;
-    const double mean = std::accumulate(ao.begin(), ao.end(), 0.0) / static_cast<double>(ao.size());
-    EXPECT_NEAR(mean, 1, estimator == Estimator::exact ? 1e-5 : 4e-3);
-    EXPECT_GE(*std::min_element(ao.begin(), ao.end()),
-              estimator == Estimator::exact ? 0.999f : 0.92f);
-  }
-}
-
-// The irradiance of a distant sun is the cosine, up to the terminator and behind it.
-TEST(ShadingNormal, ASphereInTheSunIsAsBrightAsItsCosine) {
-  Scene scene = scene_of(smooth_sphere());
-  const V3f towards = V3f(1, 0.3f, 0.4f).normalized();
-  scene.lights = {small_sun(towards)};
-  const Film film = render(scene, options_of(Normals::shading)).film;
-  int lit = 0, dark = 0;
-  for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
-    if (film.find("A")->pixels[p] < 1) continue;
-    // The middle of the pixel's samples lies on the facet; its direction is the sphere's normal.
-    const float cosine = three(film, "P", p).normalized().dot(towards);
-    const float light = film.find("light.sun.R")->pixels[p];
-    EXPECT_NEAR(light, std::max(0.0f, cosine), 0.03f) << "pixel " << p;
-    EXPECT_LE((three(film, "N", p).normalized() - three(film, "P", p).normalized()).length(),
-              0.03f);
-    lit += cosine > 0.03f;
-    dark += cosine < -0.03f;
-  }
-  EXPECT_GT(lit, 300);
-  EXPECT_GT(dark, 100);
-  EXPECT_NE(film.find("Ng.X"), nullptr);
-}
-
-TEST(ShadingNormal, FacetsAreThereWithGeometricNormals) {
-  Scene scene = scene_of(smooth_sphere());
-  scene.lights = {small_sun({1, 0.3f, 0.4f})};
-  const Film film = render(scene, options_of(Normals::geometric)).film;
-  EXPECT_EQ(film.find("Ng.X"), nullptr);
-  double worst = 0;
-  for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
-    if (film.find("A")->pixels[p] < 1) continue;
-    worst = std::max<double>(
-        worst, (three(film, "N", p).normalized() - three(film, "P", p).normalized()).length());
-  }
-  EXPECT_GT(worst, 0.1);
 }
 
 // A hemisphere that leans by theta against a plane sees (1 + cos theta) / 2 above it.
@@ -295,9 +218,9 @@ double mean_of(const Film& film, const std::string& channel) {
   return std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
 }
 
-// Two placements keep the mesh an instance, which is a mirrored, stretched and turned sphere; two
-// meshes of one placement each are merged. More than 256 triangles, so that instances stay.
-TEST(ShadingNormal, InstancesHaveTheNormalsOfTheSameMeshInWorldSpace) {
+/// A mirrored, stretched and turned sphere. Its second placement keeps the mesh an instance; more
+/// than 256 triangles, so that instances stay.
+Scene placed_sphere() {
   Scene placed = scene_of(smooth_sphere());
   M44f matrix;
   matrix.rotate(V3f(0.3f, 0.9f, 0));
@@ -305,6 +228,12 @@ TEST(ShadingNormal, InstancesHaveTheNormalsOfTheSameMeshInWorldSpace) {
   placed.instances.resize(2);
   placed.instances[0].to_world = matrix;
   placed.instances[1].to_world.setTranslation(V3f(50, 0, 0));
+  return placed;
+}
+
+// Two meshes of one placement each are merged.
+TEST(ShadingNormal, InstancesHaveTheNormalsOfTheSameMeshInWorldSpace) {
+  Scene placed = placed_sphere();
   Scene merged = placed;
   merged.meshes.push_back(merged.meshes[0]);
   merged.instances[1].mesh = 1;
@@ -315,6 +244,32 @@ TEST(ShadingNormal, InstancesHaveTheNormalsOfTheSameMeshInWorldSpace) {
   EXPECT_LE(worst_normal(a, b), 0.02);
   EXPECT_NEAR(mean_of(a, "ao.R"), mean_of(b, "ao.R"), 5e-4);
   EXPECT_NEAR(mean_of(a, "light.sun.R"), mean_of(b, "light.sun.R"), 5e-4);
+}
+
+// Camera rays do not depend on the normals, so that both pictures sum the same normals.
+TEST(ShadingNormal, TheLayerNgHasTheGeometricNormalsBitForBit) {
+  Renderer renderer;
+  for (const Scene& scene : {scene_of(smooth_sphere()), placed_sphere()}) {
+    for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+      RenderOptions options = options_of(Normals::shading, estimator);
+      options.light = false;
+      const Film smooth = renderer.render(scene, options).film;
+      options.normals = Normals::geometric;
+      const Film faceted = renderer.render(scene, options).film;
+      ASSERT_NE(smooth.find("Ng.X"), nullptr);
+      int full = 0;
+      float farthest = 0;
+      for (std::size_t p = 0; p < smooth.find("A")->pixels.size(); ++p) {
+        if (smooth.find("A")->pixels[p] < 1) continue;
+        ++full;
+        const V3f geometric = three(smooth, "Ng", p);
+        EXPECT_EQ(geometric, three(faceted, "N", p)) << "pixel " << p;
+        farthest = std::max(farthest, (geometric - three(smooth, "N", p)).length());
+      }
+      EXPECT_GT(full, 400);
+      EXPECT_GT(farthest, 0.1f) << "N has those of the round sphere";
+    }
+  }
 }
 
 TEST(ShadingNormal, RefittedMeshesHaveTheNormalsOfTheirNewForm) {

@@ -1,5 +1,6 @@
 // The memory of dapple merge does not grow with the number of parts: it holds the sums of the image
-// and one part, so that a farm's image of a hundred shards is merged on any machine.
+// and one part, so that a farm's image of a hundred shards is merged on any machine. All parts name
+// the scene's materials; it holds these names once, too.
 #include <gtest/gtest.h>
 
 #include "dapple/render.hpp"
@@ -19,17 +20,27 @@ constexpr int kWidth = 240, kHeight = 160;
 /// Sums of a part that are unpacked: the image has more than 20 values of 8 bytes.
 constexpr long kPartBytes = 20L * 8 * kWidth * kHeight;
 
+/// A tree of two materials, and `more` that nothing has.
+Scene tree_with_materials(int more) {
+  Scene scene = make_procedural("scene:tree?leaves=300");
+  for (int i = 0; i < more; ++i) {
+    scene.materials.emplace_back();
+    scene.materials.back().name = "a material of the scene's library, number " + std::to_string(i);
+  }
+  return scene;
+}
+
 class MergeMemory : public FilmFile {
  protected:
   /// Renders all shards of an image; returns their files.
-  std::vector<std::string> shards(int count) {
+  std::vector<std::string> shards(int count, const Scene& scene) {
     RenderOptions options;
+    options.cryptomattes.materials = true;
     options.width = kWidth;
     options.height = kHeight;
     options.spp = 24;
     options.ao_rays = 1;
     options.report_bias = 0;
-    const Scene scene = make_procedural("scene:tree?leaves=300");
     std::vector<std::string> files;
     for (int i = 1; i <= count; ++i) {
       options.shard = {i, count};
@@ -64,11 +75,23 @@ class MergeMemory : public FilmFile {
 
 TEST_F(MergeMemory, DoesNotGrowWithTheNumberOfParts) {
   DAPPLE_SKIP_WITH_SANITIZER();  // freed memory is kept
-  const long two = peak_bytes(shards(2), "two.exr"), many = peak_bytes(shards(24), "many.exr");
+  const Scene scene = tree_with_materials(0);
+  const long two = peak_bytes(shards(2, scene), "two.exr");
+  const long many = peak_bytes(shards(24, scene), "many.exr");
   EXPECT_TRUE(bytes_of(path("two.exr")) == bytes_of(path("many.exr")));
   EXPECT_GT(two, 2 * kPartBytes) << "the sums and a part are most of the memory";
   // 22 parts more, whose files alone are as large as the sums of one.
   EXPECT_LT(many, two + kPartBytes / 2) << "with 2 parts: " << two;
+  std::printf("merging 2 parts took %ld MB, 24 parts %ld MB\n", two / 1000000, many / 1000000);
+}
+
+TEST_F(MergeMemory, HoldsNamesThatAllPartsHaveOnce) {
+  DAPPLE_SKIP_WITH_SANITIZER();
+  const Scene scene = tree_with_materials(20000);
+  const long two = peak_bytes(shards(2, scene), "two.exr");
+  const long many = peak_bytes(shards(24, scene), "many.exr");
+  // The names of a part take 80 bytes each: 22 parts more would be 35 MB.
+  EXPECT_LT(many, two + 12000000) << "with 2 parts: " << two;
   std::printf("merging 2 parts took %ld MB, 24 parts %ld MB\n", two / 1000000, many / 1000000);
 }
 

@@ -11,6 +11,7 @@
 
 #include "dapple/render.hpp"
 #include "device/upload/color_upload.hpp"
+#include "support/hair_builder.hpp"
 #include "support/smooth_shapes.hpp"
 
 namespace dapple {
@@ -224,6 +225,47 @@ TEST(Albedo, StrandsHaveTheColoursOfTheirEnds) {
       EXPECT_NEAR(at(film, "albedo.R", edge), 0.125f, 1e-3);
     }
   }
+}
+
+/// A file of two strands of two segments each, from x = -1 to 1, at y = 0.5 and y = -0.5.
+test::HairBuilder two_level_strands() {
+  test::HairBuilder builder;
+  builder.strands = 2;
+  builder.default_segments = 2;
+  builder.default_thickness = 0.5f;
+  builder.points = {-1, 0.5f, 0, 0, 0.5f, 0, 1, 0.5f, 0, -1, -0.5f, 0, 0, -0.5f, 0, 1, -0.5f, 0};
+  return builder;
+}
+
+/// The albedo in the middle of each segment, in the file's order.
+std::vector<V3f> albedo_of_level_strands(const test::HairBuilder& builder) {
+  const test::TempFolder folder;
+  Scene scene = load_scene(folder.write("level.hair", builder.bytes()));
+  scene.cameras = square().cameras;
+  const Film film = render(scene, picture(32, 4)).film;
+  std::vector<V3f> colors;
+  for (const std::size_t pixel : {8 * 32 + 8, 8 * 32 + 24, 24 * 32 + 8, 24 * 32 + 24}) {
+    EXPECT_EQ(at(film, "A", pixel), 1.0f);
+    colors.emplace_back(at(film, "albedo.R", pixel), at(film, "albedo.G", pixel),
+                        at(film, "albedo.B", pixel));
+  }
+  return colors;
+}
+
+// A segment has the mean of its ends, stored as colours of textures are: to 1e-3.
+TEST(Albedo, StrandsOfAHairFileHaveItsColours) {
+  test::HairBuilder builder = two_level_strands();
+  builder.colors = {1,    0,     0, 0, 1,    0,     0, 0, 1,  //
+                    0.5f, 0.25f, 1, 0, 0.5f, 0.25f, 1, 1, 0.75f};
+  const std::vector<V3f> expected = {
+      {0.5f, 0.5f, 0}, {0, 0.5f, 0.5f}, {0.25f, 0.375f, 0.625f}, {0.5f, 0.75f, 0.5f}};
+  const std::vector<V3f> shown = albedo_of_level_strands(builder);
+  for (std::size_t i = 0; i < 4; ++i)
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(shown[i][c], expected[i][c], 1e-3) << i;
+  builder.colors.clear();
+  builder.default_color = {0.75f, 0.5f, 0.25f};
+  for (const V3f& color : albedo_of_level_strands(builder))
+    EXPECT_LE((color - V3f(0.75f, 0.5f, 0.25f)).length(), 1e-6f) << "the header's";
 }
 
 TEST(Albedo, InstancesHaveTheColoursOfTheirMesh) {

@@ -1,5 +1,5 @@
-// HAIR files: the strands, radii and opacities that arrays and their defaults give, which segments
-// and strands are dropped and counted in a warning, and which files are refused.
+// HAIR files: the strands, radii, opacities and colours that arrays and their defaults give, which
+// segments and strands are dropped and counted in a warning, and which files are refused.
 #include "scene/hair_file.hpp"
 
 #include <gtest/gtest.h>
@@ -70,6 +70,47 @@ TEST(HairFile, ArraysReplaceDefaults) {
   EXPECT_LT(mesh.radii[5], 1e-8f);
   EXPECT_EQ(mesh.vertex_alpha, (std::vector<float>{1, 0.75f, 0.5f, 0, 0, 1}));
   EXPECT_EQ(scene.materials[0].alpha, 1.0f);
+  EXPECT_EQ(mesh.colors, std::vector<V3f>(6, V3f(0, 0, 0))) << "not numbers";
+  EXPECT_EQ(scene.materials[0].color, V3f(1, 1, 1));
+}
+
+TEST(HairFile, TheDefaultColourIsTheMaterialsWhereThereIsNoArray) {
+  HairBuilder builder = two_strands();
+  builder.default_color = {0.75f, 0.5f, 0.25f};
+  const Scene scene = read(builder);
+  EXPECT_TRUE(scene.meshes[0].colors.empty());
+  EXPECT_EQ(scene.materials.at(0).color, V3f(0.75f, 0.5f, 0.25f));
+  builder.default_color = {kNan, -1, 2};
+  EXPECT_EQ(read(builder).materials.at(0).color, V3f(0, 0, 1)) << "clamped, not numbers are 0";
+}
+
+TEST(HairFile, EachPointHasItsOwnColour) {
+  HairBuilder builder = two_strands();
+  builder.thickness.assign(6, 0.25f);
+  builder.transparency.assign(6, 0.5f);
+  builder.colors = {1,    0,    0,     0,      1,     0,      0,    0,        1,  //
+                    0.5f, 0.5f, 0.25f, 0.125f, 0.75f, 0.625f, 1.5f, INFINITY, -1};
+  const Scene scene = read(builder);
+  EXPECT_EQ(scene.meshes[0].colors, (std::vector<V3f>{{1, 0, 0},
+                                                      {0, 1, 0},
+                                                      {0, 0, 1},
+                                                      {0.5f, 0.5f, 0.25f},
+                                                      {0.125f, 0.75f, 0.625f},
+                                                      {1, 1, 0}}));
+  EXPECT_EQ(scene.materials.at(0).color, V3f(1, 1, 1)) << "colours of points replace the default";
+}
+
+TEST(HairFile, ColoursStayWithTheirPointsWhereOthersAreDropped) {
+  HairBuilder builder;
+  builder.strands = 2;
+  builder.default_segments = 3;
+  builder.points = {1, 0, 0, 1,    0, 0, 1, 0, 0, 1, 0, 0,  // a strand of no length
+                    0, 0, 0, kNan, 0, 0, 0, 5, 0, 0, 6, 0};
+  for (std::uint32_t i = 0; i < 8; ++i)
+    builder.colors.insert(builder.colors.end(), {static_cast<float>(i) / 8, 0, 1});
+  const Mesh mesh = read(builder).meshes.at(0);
+  EXPECT_EQ(mesh.positions, (std::vector<V3f>{{0, 5, 0}, {0, 6, 0}}));
+  EXPECT_EQ(mesh.colors, (std::vector<V3f>{{0.75f, 0, 1}, {0.875f, 0, 1}}));
 }
 
 TEST(HairFile, AStrandWithoutSegmentsMayHaveAPointOrNone) {

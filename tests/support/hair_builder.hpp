@@ -2,6 +2,7 @@
 // header and the arrays that are not empty.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct HairBuilder {
   std::uint32_t default_segments = 0;
   float default_thickness = 0.5f;
   float default_transparency = 0;
+  std::array<float, 3> default_color = {0.3f, 0.2f, 0.1f};
   std::uint32_t more_arrays = 0;  ///< further bits for the header's field that names the arrays
 
   [[nodiscard]] Bytes bytes() const {
@@ -30,7 +32,7 @@ struct HairBuilder {
     append(file, default_segments);
     append(file, default_thickness);
     append(file, default_transparency);
-    for (const float channel : {0.3f, 0.2f, 0.1f}) append(file, channel);
+    for (const float channel : default_color) append(file, channel);
     file.resize(128, 0);
     for (const std::uint16_t count : segments) append(file, count);
     for (const auto* array : {&points, &thickness, &transparency, &colors}) {
