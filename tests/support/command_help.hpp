@@ -1,5 +1,5 @@
-// What the program's help says that there is. In: the text of `dapple --help` or of a command's; out:
-// the commands, and the options of the command.
+// What the program's help says that there is. In: the text of `dapple --help` or of a command's;
+// out: the commands, and the options of the command.
 #pragma once
 
 #include <set>
