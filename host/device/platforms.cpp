@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
+#include <tuple>
 
 #include "device/cpus.hpp"
 #include "device/driver_needs.hpp"
@@ -74,16 +75,18 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-/// Greater is better: GPUs, then CPUs, then the rest, Mesa's CPUs last; among equals by the number
-/// of compute units.
-std::pair<int, unsigned> rank(const cl::Device& device) {
+/// Greater is better: GPUs, then CPUs, then the rest, Mesa's CPUs last. GPUs with memory of their
+/// own come before those that have the host's, whose compute units are many and small; among equals
+/// the number of units decides.
+std::tuple<int, bool, unsigned> rank(const cl::Device& device) {
   const auto type = device.getInfo<CL_DEVICE_TYPE>();
   const bool on_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
   // Mesa traces on a CPU, too, but a hundred times slower than PoCL.
   const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
   const bool slow = on_cpu && trimmed(platform.getInfo<CL_PLATFORM_NAME>()) == kMesaPlatform;
   const int kind = slow ? 0 : type & CL_DEVICE_TYPE_GPU ? 3 : on_cpu ? 2 : 1;
-  return {kind, device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
+  const bool own_memory = !device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>();
+  return {kind, own_memory, device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
 }
 
 bool is_pocl(const cl::Platform& platform) {

@@ -57,4 +57,18 @@ void check_film_memory(const View& view, std::size_t light_count, const RenderOp
                   light_count == 1 ? "" : "s", has / kGigabyte));
 }
 
+void check_film_buffer(const DeviceInfo& device, const View& view, const std::vector<Light>& lights,
+                       const RenderOptions& options, bool has_normals) {
+  const FilmScales scales{1, 1, std::vector<float>(lights.size(), 1.0f)};
+  const FilmLayout layout(view.crop, options, scales, lights, has_normals);
+  if (layout.sum_bytes() <= device.largest_buffer_bytes) return;
+  throw Error(
+      ErrorKind::device,
+      fmt::format("--width {} --height {}: the image's sums take {} bytes in one buffer, {} "
+                  "gives {} at most; make it smaller, render parts with --crop, fewer "
+                  "--passes, or on another --device",
+                  view.width, view.height, layout.sum_bytes(), device.name,
+                  device.largest_buffer_bytes));
+}
+
 }  // namespace dapple

@@ -1,11 +1,13 @@
-// Compares the memory that a picture needs while it is rendered with the memory of the machine.
-// Without this check the operating system would end the process when a picture is too large. In: a
-// view and the number of lights. Out: an Error.
+// Compares the memory that a picture needs while it is rendered with the memory of the machine and
+// of the device. Without this check the operating system would end the process when a picture is
+// too large. In: a view and its lights. Out: an Error.
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "camera/view.hpp"
+#include "dapple/device.hpp"
 
 namespace dapple {
 
@@ -13,6 +15,11 @@ namespace dapple {
 /// half of the machine's memory. `options`: its further layers.
 void check_film_memory(const View& view, std::size_t light_count,
                        const RenderOptions& options = {});
+
+/// Throws Error device when the sums of such a picture are larger than the device's largest buffer.
+/// `has_normals`: shading normals.
+void check_film_buffer(const DeviceInfo& device, const View& view, const std::vector<Light>& lights,
+                       const RenderOptions& options, bool has_normals);
 
 /// Bytes that each pixel of such a picture takes while it is rendered.
 std::size_t film_bytes_per_pixel(std::size_t light_count, const RenderOptions& options);

@@ -229,6 +229,8 @@ void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
   kept.open(options, statistics);
   const Device& device = *kept.device;
   check_memory(device.info(), min_need(scene), "needs at least");
+  check_film_buffer(device.info(), view, options.light ? scene.lights : std::vector<Light>{},
+                    options, may_be_shaded(scene, options));
   const auto kernels = picture_kernels(device.context(), options, view.camera, scene.lights,
                                        may_be_shaded(scene, options));
   CompilerProcesses processes;

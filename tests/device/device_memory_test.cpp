@@ -51,6 +51,21 @@ TEST_F(DeviceMemory, ABufferLargerThanTheDeviceGivesIsSaidToo) {
   EXPECT_TRUE(contains(error.what(), " gives 100000 at most;")) << error.what();
 }
 
+TEST_F(DeviceMemory, APictureWhoseSumsAreLargerThanABufferNamesItsSizeAndTheCrop) {
+  const Scene scene = make_procedural("scene:cube?divisions=1");
+  RenderOptions options;
+  options.width = options.height = 64;
+  options.light = false;
+  opencl_test::pretend_memory(0, 300'000);
+  const Error error = error_of([&] { static_cast<void>(render(scene, options)); });
+  EXPECT_EQ(error.kind(), ErrorKind::device);
+  EXPECT_TRUE(contains(error.what(), "--width 64 --height 64: the image's sums take "))
+      << error.what();
+  EXPECT_TRUE(contains(error.what(), " gives 300000 at most; make it smaller, render parts with"));
+  options.crop = PixelRect{0, 0, 31, 15};
+  EXPECT_NO_THROW(static_cast<void>(render(scene, options)));
+}
+
 TEST_F(DeviceMemory, TheMinimumNeedIsAtMostTheUploadedBytes) {
   for (const char* name : {"scene:cube?divisions=1", "scene:tree?leaves=3000",
                            "scene:cloud?leaves=3000", "scene:forest?trees=9&leaves=500"}) {

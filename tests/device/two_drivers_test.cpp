@@ -94,6 +94,19 @@ TEST_F(TwoDrivers, OneWithAnOlderLanguageIsNotTaken) {
   EXPECT_TRUE(contains(render("--device old", with_old).err, "; " + refusal));
 }
 
+TEST_F(TwoDrivers, AGpuWithItsOwnMemoryComesBeforeALargerOneWithTheHosts) {
+  const Outcome run =
+      dapple("devices", with_fake("integrated") + " FAKE_OPENCL_SECOND_DEVICE=discrete");
+  EXPECT_EQ(run.code, 0) << run.err;
+  const std::size_t discrete = run.out.find("discrete\n"),
+                    integrated = run.out.find("integrated\n"),
+                    cpu = run.out.find("\n" + pocl_ + "\n");
+  EXPECT_EQ(discrete, 0u) << run.out;
+  EXPECT_LT(discrete, integrated) << run.out;
+  EXPECT_LT(integrated, cpu) << run.out;
+  EXPECT_NE(cpu, std::string::npos) << run.out;
+}
+
 // The loader has the platform of a library once or twice, as it likes.
 TEST_F(TwoDrivers, TheSameDriverTwiceIsNoErrorAndRefusedOnce) {
   fs::copy_file(path("vendors/pocl.icd"), path("vendors/pocl_again.icd"));

@@ -1,5 +1,7 @@
-// An OpenCL driver for tests of several drivers: it has one device, which is listed and cannot be
-// opened. In: environment variables for the names that it tells. Out: a library for an .icd file.
+// An OpenCL driver for tests of several drivers: its devices are listed and cannot be opened. The
+// first is a GPU of 96 compute units that has the host's memory, the second, if it is given a name,
+// one of 24 with its own. In: environment variables for the names that they tell. Out: a library
+// for an .icd file.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl_icd.h>
 
@@ -14,12 +16,14 @@ struct _cl_platform_id {
 };
 struct _cl_device_id {
   const cl_icd_dispatch* functions;
+  bool is_second;
 };
 
 namespace {
 
 cl_platform_id the_platform();
-cl_device_id the_device();
+cl_device_id first_device();
+cl_device_id second_device();
 
 std::string from_environment(const char* variable, const char* otherwise) {
   const char* value = std::getenv(variable);
@@ -83,15 +87,21 @@ cl_int get_platform_info(cl_platform_id, cl_platform_info query, std::size_t roo
 
 cl_int get_devices(cl_platform_id, cl_device_type, cl_uint room, cl_device_id* devices,
                    cl_uint* count) {
-  return list(the_device(), room, devices, count);
+  const bool has_second = std::getenv("FAKE_OPENCL_SECOND_DEVICE") != nullptr;
+  list(first_device(), room, devices, count);
+  if (!has_second) return CL_SUCCESS;
+  if (count) *count = 2;
+  if (devices && room > 1) devices[1] = second_device();
+  return CL_SUCCESS;
 }
 
-cl_int get_device_info(cl_device_id, cl_device_info query, std::size_t room, void* to,
+cl_int get_device_info(cl_device_id device, cl_device_info query, std::size_t room, void* to,
                        std::size_t* size) {
   const Answer answer{room, to, size};
   switch (query) {
     case CL_DEVICE_NAME:
-      return answer.text(from_environment("FAKE_OPENCL_DEVICE", "fake"));
+      return answer.text(device->is_second ? from_environment("FAKE_OPENCL_SECOND_DEVICE", "")
+                                           : from_environment("FAKE_OPENCL_DEVICE", "fake"));
     case CL_DRIVER_VERSION:
       return answer.text(from_environment("FAKE_OPENCL_VERSION", "1"));
     case CL_DEVICE_VERSION:
@@ -105,10 +115,11 @@ cl_int get_device_info(cl_device_id, cl_device_info query, std::size_t room, voi
     case CL_DEVICE_AVAILABLE:
     case CL_DEVICE_COMPILER_AVAILABLE:
     case CL_DEVICE_ENDIAN_LITTLE:
-    case CL_DEVICE_HOST_UNIFIED_MEMORY:
       return answer.value(cl_bool{CL_TRUE});
+    case CL_DEVICE_HOST_UNIFIED_MEMORY:
+      return answer.value(device->is_second ? cl_bool{CL_FALSE} : cl_bool{CL_TRUE});
     case CL_DEVICE_MAX_COMPUTE_UNITS:
-      return answer.value(cl_uint{1});
+      return answer.value(device->is_second ? cl_uint{24} : cl_uint{96});
     case CL_DEVICE_GLOBAL_MEM_SIZE:
     case CL_DEVICE_MAX_MEM_ALLOC_SIZE:
       return answer.value(cl_ulong{1} << 30);
@@ -146,8 +157,13 @@ cl_platform_id the_platform() {
   return &platform;
 }
 
-cl_device_id the_device() {
-  static _cl_device_id device{functions()};
+cl_device_id first_device() {
+  static _cl_device_id device{functions(), false};
+  return &device;
+}
+
+cl_device_id second_device() {
+  static _cl_device_id device{functions(), true};
   return &device;
 }
 
