@@ -300,8 +300,12 @@ Run add_plan_command(CLI::App& app) {
   auto a = std::make_shared<RenderArguments>();
   add_render_options(app, *a);
   app.get_option("--output")->required(false);
+  for (const char* refused : {"--deep", "--resume", "--target-rmse", "--target-error", "--max-spp",
+                              "--shutter", "--motion-samples"})
+    app.get_option(refused)->group("");  // not in the help; run_plan() says why
   app.footer(
-      "Takes the options of dapple render, and writes no image. The figures are for this "
+      "Takes the options of dapple render, but for targets, shutters, deep files and --resume, and "
+      "writes no image. The figures are for this "
       "machine.\n\n"
       "Example:\n  dapple plan tree.glb --spp 512 --width 1920 --height 1080 --shard 1/8");
   return [a] { run_plan(*a); };

@@ -48,7 +48,7 @@ class ThreadAffinity : public FilmFile {
                             "--checkpoint", path("a.ckpt"), "--checkpoint-every", "0.05"},
                            log());
     const auto is_tracing = [&] { return std::filesystem::exists(path("a.ckpt")); };
-    EXPECT_TRUE(wait_until(is_tracing, Milliseconds(60'000))) << bytes_of(log());
+    EXPECT_TRUE(wait_until(is_tracing, kLongest)) << bytes_of(log());
     std::vector<std::string> taken = cpus_of_threads(program.process());
     std::erase_if(taken, [](const std::string& cpus) {
       return cpus.find_first_of(",-") != std::string::npos;

@@ -43,7 +43,7 @@ TEST_F(Limits, TwentyStepsOfAddressSpaceGiveThePictureOrAnError) {
     SCOPED_TRACE(kilobytes);
     const Outcome run =
         dapple("render 'scene:tree?leaves=150000' -o out.exr --width 900 --height 700 --spp 1 -q",
-               "ulimit -v " + std::to_string(kilobytes) + " && timeout 100");
+               "ulimit -v " + std::to_string(kilobytes) + " && timeout 600");
     pictures += expect_picture_or_error(run, 900) ? 1 : 0;
   }
   EXPECT_GT(pictures, 0) << "the last step is 4 GB";
