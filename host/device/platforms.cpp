@@ -75,6 +75,13 @@ std::string trimmed(std::string text) {
   return text;
 }
 
+/// Deprecated since OpenCL 2.0: what a driver does not know counts as the host's memory.
+bool has_own_memory(const cl::Device& device) {
+  cl_bool shared = CL_TRUE;
+  clGetDeviceInfo(device(), CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof shared, &shared, nullptr);
+  return !shared;
+}
+
 /// Greater is better: GPUs, then CPUs, then the rest, Mesa's CPUs last. GPUs with memory of their
 /// own come before those that have the host's, whose compute units are many and small; among equals
 /// the number of units decides.
@@ -85,8 +92,7 @@ std::tuple<int, bool, unsigned> rank(const cl::Device& device) {
   const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
   const bool slow = on_cpu && trimmed(platform.getInfo<CL_PLATFORM_NAME>()) == kMesaPlatform;
   const int kind = slow ? 0 : type & CL_DEVICE_TYPE_GPU ? 3 : on_cpu ? 2 : 1;
-  const bool own_memory = !device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>();
-  return {kind, own_memory, device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
+  return {kind, has_own_memory(device), device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
 }
 
 bool is_pocl(const cl::Platform& platform) {
