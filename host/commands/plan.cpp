@@ -305,8 +305,7 @@ Run add_plan_command(CLI::App& app) {
     app.get_option(refused)->group("");  // not in the help; run_plan() says why
   app.footer(
       "Takes the options of dapple render, but for targets, shutters, deep files and --resume, and "
-      "writes no image. The figures are for this "
-      "machine.\n\n"
+      "writes no image. The figures are for this machine.\n\n"
       "Example:\n  dapple plan tree.glb --spp 512 --width 1920 --height 1080 --shard 1/8");
   return [a] { run_plan(*a); };
 }
