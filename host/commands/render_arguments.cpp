@@ -325,7 +325,7 @@ void check_effects(const RenderArguments& a, const RenderOptions& o) {
     if (given && !has_effect) throw Error(ErrorKind::usage, fmt::format("{} needs {}", flag, what));
   };
   need(o.back_every != defaults.back_every, "--back-every", o.back,
-       "the pass back: --passes ao,light,back");
+       "the pass back: --passes ao,light,albedo,back");
   need(is_adaptive(o), "--target-rmse and --target-error", o.ao || o.light, "the pass ao or light");
   need(o.ao_rays != defaults.ao_rays, "--ao-rays", o.ao, "the pass ao");
   need(o.light_rays != defaults.light_rays, "--light-rays", o.light, "the pass light");
