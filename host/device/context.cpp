@@ -179,7 +179,7 @@ DeviceContext::DeviceContext(const std::string& name, std::string kernel_dir, Pa
   in_opencl("opening " + s.info.name, [&] {
     // GPUs may have the host's memory, too, but their drivers may copy what the host allocated.
     s.shares_memory = (s.device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 &&
-                      s.device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != CL_FALSE;
+                      !has_own_memory(s.device);
     s.context = make_context(s.device);
     s.queue = cl::CommandQueue(s.context, s.device, CL_QUEUE_PROFILING_ENABLE);
   });

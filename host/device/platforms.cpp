@@ -75,13 +75,6 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-/// Deprecated since OpenCL 2.0: what a driver does not know counts as the host's memory.
-bool has_own_memory(const cl::Device& device) {
-  cl_bool shared = CL_TRUE;
-  clGetDeviceInfo(device(), CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof shared, &shared, nullptr);
-  return !shared;
-}
-
 /// Greater is better: GPUs, then CPUs, then the rest, Mesa's CPUs last. GPUs with memory of their
 /// own come before those that have the host's, whose compute units are many and small; among equals
 /// the number of units decides.
@@ -91,8 +84,10 @@ std::tuple<int, bool, unsigned> rank(const cl::Device& device) {
   // Mesa traces on a CPU, too, but a hundred times slower than PoCL.
   const cl::Platform platform(device.getInfo<CL_DEVICE_PLATFORM>());
   const bool slow = on_cpu && trimmed(platform.getInfo<CL_PLATFORM_NAME>()) == kMesaPlatform;
-  const int kind = slow ? 0 : type & CL_DEVICE_TYPE_GPU ? 3 : on_cpu ? 2 : 1;
-  return {kind, has_own_memory(device), device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
+  constexpr int kGpu = 3;
+  const int kind = slow ? 0 : type & CL_DEVICE_TYPE_GPU ? kGpu : on_cpu ? 2 : 1;
+  return {kind, kind == kGpu && has_own_memory(device),
+          device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()};
 }
 
 bool is_pocl(const cl::Platform& platform) {
@@ -190,6 +185,13 @@ FoundDevices find_devices() {
 }
 
 }  // namespace
+
+// The query is deprecated since OpenCL 2.0.
+bool has_own_memory(const cl::Device& device) {
+  cl_bool shared = CL_TRUE;
+  clGetDeviceInfo(device(), CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof shared, &shared, nullptr);
+  return !shared;
+}
 
 DeviceInfo describe(const cl::Device& device) {
   return in_opencl("asking a device for its properties", [&] {

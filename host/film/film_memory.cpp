@@ -58,17 +58,22 @@ void check_film_memory(const View& view, std::size_t light_count, const RenderOp
 }
 
 void check_film_buffer(const DeviceInfo& device, const View& view, const std::vector<Light>& lights,
-                       const RenderOptions& options, bool has_normals) {
-  const FilmScales scales{1, 1, std::vector<float>(lights.size(), 1.0f)};
-  const FilmLayout layout(view.crop, options, scales, lights, has_normals);
-  if (layout.sum_bytes() <= device.largest_buffer_bytes) return;
+                       const RenderOptions& options, const std::function<bool()>& is_smooth) {
+  const auto bytes = [&](bool has_normals) {
+    const FilmScales scales{1, 1, std::vector<float>(lights.size(), 1.0f)};
+    return FilmLayout(view.crop, options, scales, lights, has_normals).sum_bytes();
+  };
+  const bool shading = options.normals == Normals::shading;
+  std::size_t needed = bytes(shading);
+  if (needed > device.largest_buffer_bytes && shading && !is_smooth()) needed = bytes(false);
+  if (needed <= device.largest_buffer_bytes) return;
   throw Error(
       ErrorKind::device,
-      fmt::format("--width {} --height {}: the image's sums take {} bytes in one buffer, {} "
-                  "gives {} at most; make it smaller, render parts with --crop, fewer "
-                  "--passes, or on another --device",
-                  view.width, view.height, layout.sum_bytes(), device.name,
-                  device.largest_buffer_bytes));
+      fmt::format("the sums of {} x {} pixels with {} light{} take {} bytes in one buffer, {} "
+                  "gives {} at most; render a smaller image or parts with --crop, fewer lights "
+                  "with --lights, fewer --passes, or on another --device",
+                  view.crop.width(), view.crop.height(), lights.size(),
+                  lights.size() == 1 ? "" : "s", needed, device.name, device.largest_buffer_bytes));
 }
 
 }  // namespace dapple

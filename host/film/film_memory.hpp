@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "camera/view.hpp"
@@ -17,9 +18,9 @@ void check_film_memory(const View& view, std::size_t light_count,
                        const RenderOptions& options = {});
 
 /// Throws Error device when the sums of such a picture are larger than the device's largest buffer.
-/// `has_normals`: shading normals.
+/// `is_smooth`: whether the scene has shading normals; called only if that decides.
 void check_film_buffer(const DeviceInfo& device, const View& view, const std::vector<Light>& lights,
-                       const RenderOptions& options, bool has_normals);
+                       const RenderOptions& options, const std::function<bool()>& is_smooth);
 
 /// Bytes that each pixel of such a picture takes while it is rendered.
 std::size_t film_bytes_per_pixel(std::size_t light_count, const RenderOptions& options);

@@ -88,6 +88,21 @@ void require_one_picture(const Settings& first, const std::string& first_path, c
                            first_path, other->name, other->before));
 }
 
+/// The parts, sorted by what they hold, and what they agree in.
+struct Parts {
+  std::vector<Part> parts;
+  Settings common;
+};
+
+/// Reads a part once more. Throws Error usage if the file is no longer what was described.
+Checkpoint read_again(const Part& part, const Settings& common, Read what) {
+  Checkpoint about = read_part(part.path, what);
+  if (about.pieces != part.pieces || about.picture.options.visits != part.visits ||
+      common_settings(about) != common)
+    refuse(part.path + ": changed while it was merged");
+  return about;
+}
+
 struct PieceOfFile {
   Piece piece;
   const Part* part;
@@ -123,8 +138,8 @@ void require_no_overlap(const std::vector<PieceOfFile>& pieces) {
   }
 }
 
-/// Sorted by what they hold, so that the sum does not depend on the order of the paths.
-std::vector<Part> describe_all(const std::vector<std::string>& paths) {
+/// The order does not depend on that of the paths, so that the sum does not.
+Parts describe_all(const std::vector<std::string>& paths) {
   if (paths.empty()) refuse("dapple merge needs the files of parts");
   std::vector<Part> parts;
   Settings of_first;
@@ -144,7 +159,7 @@ std::vector<Part> describe_all(const std::vector<std::string>& paths) {
   };
   std::sort(parts.begin(), parts.end(),
             [&](const Part& a, const Part& b) { return key(a) < key(b); });
-  return parts;
+  return {std::move(parts), std::move(of_first)};
 }
 
 /// Adds the devices of a part to those of the sum, each once.
@@ -161,8 +176,8 @@ void add_devices(std::string of_part, std::string& of_sum) {
 }
 
 /// The description of the sum. Options are those of a render without --shard, if it is whole.
-Checkpoint describe_sum(const std::vector<Part>& parts) {
-  Checkpoint sum = describe(parts.front().path);
+Checkpoint describe_sum(const std::vector<Part>& parts, const Settings& common) {
+  Checkpoint sum = read_again(parts.front(), common, Read::description);
   sum.pieces.clear();
   for (const Part& part : parts) {
     sum.pieces.insert(sum.pieces.end(), part.pieces.begin(), part.pieces.end());
@@ -218,13 +233,13 @@ RenderResult film_of(const PictureRecord& picture, MergedSums&& sums) {
 
 Merge merge_parts(const std::vector<std::string>& paths, const std::string& output) {
   const Stopwatch total;
-  const std::vector<Part> parts = describe_all(paths);
-  Checkpoint sum = describe_sum(parts);
+  const auto [parts, common] = describe_all(paths);
+  Checkpoint sum = describe_sum(parts, common);
   const PictureRecord& picture = sum.picture;
   check_film_memory({{}, picture.width, picture.height, picture.crop}, picture.lights.size(),
                     picture.options);
   MergedSums sums(picture);
-  for (const Part& part : parts) sums.add(part.path, read_part(part.path, Read::all));
+  for (const Part& part : parts) sums.add(part.path, read_again(part, common, Read::all));
   Merge merge;
   merge.spp = static_cast<std::uint32_t>(picture.metadata.samples);
   merge.missing = missing_text(sum.pieces, merge.spp);

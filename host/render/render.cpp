@@ -30,6 +30,7 @@
 #include "render/stopwatch.hpp"
 #include "sampling/bias_estimate.hpp"
 #include "sampling/shard.hpp"
+#include "scene/corner_normals.hpp"
 #include "scene/scene_check.hpp"
 
 namespace dapple {
@@ -230,7 +231,7 @@ void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
   const Device& device = *kept.device;
   check_memory(device.info(), min_need(scene), "needs at least");
   check_film_buffer(device.info(), view, options.light ? scene.lights : std::vector<Light>{},
-                    options, may_be_shaded(scene, options));
+                    options, [&] { return moments.count > 1 ? moments.smooth : is_smooth(scene); });
   const auto kernels = picture_kernels(device.context(), options, view.camera, scene.lights,
                                        may_be_shaded(scene, options));
   CompilerProcesses processes;

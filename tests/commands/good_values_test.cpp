@@ -143,10 +143,14 @@ TEST_F(GoodValues, OfPlanAreThoseOfRenderButForWhatItRefuses) {
   run("plan" + kStage + "--frame 0.5");
   std::set<std::string> help;
   for (const Option& option : options_in(dapple("plan --help").out)) help.insert(option.flag);
-  for (const char* refused :
-       {"--deep d.exr", "--resume d.ckpt", "--target-rmse 0.1", "--target-error 0.2 --max-spp 32",
-        "--frame 0 --shutter 0,0.5 --motion-samples 2"}) {
-    expect_failure(dapple("plan" + kTree + refused), 2, "dapple plan ");
+  for (const auto& [refused, message] :
+       {std::pair{"--deep d.exr", "dapple plan knows no deep files"},
+        {"--resume d.ckpt", "dapple plan plans whole renders"},
+        {"--target-rmse 0.1", "dapple plan needs --spp"},
+        {"--target-error 0.2 --max-spp 32", "dapple plan needs --spp"},
+        {"--frame 0 --shutter 0,0.5 --motion-samples 2",
+         "dapple plan does not support moving scenes"}}) {
+    expect_failure(dapple("plan" + kTree + refused), 2, message);
     std::istringstream words(refused);
     for (std::string word; words >> word;)
       EXPECT_TRUE(word == "--frame" || !help.contains(word)) << word;

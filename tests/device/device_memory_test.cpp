@@ -59,11 +59,27 @@ TEST_F(DeviceMemory, APictureWhoseSumsAreLargerThanABufferNamesItsSizeAndTheCrop
   opencl_test::pretend_memory(0, 300'000);
   const Error error = error_of([&] { static_cast<void>(render(scene, options)); });
   EXPECT_EQ(error.kind(), ErrorKind::device);
-  EXPECT_TRUE(contains(error.what(), "--width 64 --height 64: the image's sums take "))
+  EXPECT_TRUE(contains(error.what(), "the sums of 64 x 64 pixels with 0 lights take "))
       << error.what();
-  EXPECT_TRUE(contains(error.what(), " gives 300000 at most; make it smaller, render parts with"));
+  EXPECT_TRUE(contains(error.what(), " gives 300000 at most; render a smaller image or parts with"))
+      << error.what();
   options.crop = PixelRect{0, 0, 31, 15};
   EXPECT_NO_THROW(static_cast<void>(render(scene, options)));
+}
+
+// 19 planes of 64 x 64 whole numbers of eight bytes are 622,592 bytes; normals are three more.
+TEST_F(DeviceMemory, NormalsThatAreThoseOfTheFacetsNeedNoSums) {
+  Scene scene = make_procedural("scene:cube?divisions=1");
+  RenderOptions options;
+  options.width = options.height = 64;
+  options.light = false;
+  options.albedo = true;
+  opencl_test::pretend_memory(0, 650'000);
+  EXPECT_NO_THROW(static_cast<void>(render(scene, options)));
+  Mesh& mesh = scene.meshes.at(0);
+  for (const V3f& position : mesh.positions) mesh.normals.push_back(position.normalized());
+  const Error error = error_of([&] { static_cast<void>(render(scene, options)); });
+  EXPECT_TRUE(contains(error.what(), " take 720896 bytes in one buffer, ")) << error.what();
 }
 
 TEST_F(DeviceMemory, TheMinimumNeedIsAtMostTheUploadedBytes) {

@@ -107,6 +107,15 @@ TEST_F(TwoDrivers, AGpuWithItsOwnMemoryComesBeforeALargerOneWithTheHosts) {
   EXPECT_NE(cpu, std::string::npos) << run.out;
 }
 
+TEST_F(TwoDrivers, WhereADriverDoesNotTellWhoseMemoryItIsTheLargerGpuComesFirst) {
+  const Outcome run =
+      dapple("devices",
+             with_fake("large") + " FAKE_OPENCL_SECOND_DEVICE=small FAKE_OPENCL_MEMORY=unknown");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_LT(run.out.find("large\n"), run.out.find("small\n")) << run.out;
+  EXPECT_NE(run.out.find("small\n"), std::string::npos) << run.out;
+}
+
 // The loader has the platform of a library once or twice, as it likes.
 TEST_F(TwoDrivers, TheSameDriverTwiceIsNoErrorAndRefusedOnce) {
   fs::copy_file(path("vendors/pocl.icd"), path("vendors/pocl_again.icd"));

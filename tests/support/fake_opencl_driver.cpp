@@ -117,6 +117,7 @@ cl_int get_device_info(cl_device_id device, cl_device_info query, std::size_t ro
     case CL_DEVICE_ENDIAN_LITTLE:
       return answer.value(cl_bool{CL_TRUE});
     case CL_DEVICE_HOST_UNIFIED_MEMORY:
+      if (from_environment("FAKE_OPENCL_MEMORY", "known") == "unknown") return CL_INVALID_VALUE;
       return answer.value(device->is_second ? cl_bool{CL_FALSE} : cl_bool{CL_TRUE});
     case CL_DEVICE_MAX_COMPUTE_UNITS:
       return answer.value(device->is_second ? cl_uint{24} : cl_uint{96});
