@@ -1,6 +1,7 @@
 #include "bake/bake_bias.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace dapple {
 namespace {
@@ -75,6 +76,8 @@ void BakeBias::compare(const BiasTracing& tracing, std::span<const SurfaceSample
   for (BiasUnit& unit : units) unit.tile += first;
   quantity.units.insert(quantity.units.end(), units.begin(), units.end());
   quantity.compared += static_cast<double>(chosen.size());
+  for (const SurfaceSample& sample : chosen)
+    quantity.rays += static_cast<double>(rays) * (sample.front + sample.back);
   compared_samples_ += static_cast<double>(chosen.size());
   compared_seconds_ += watch.seconds();
   limit_time();
@@ -90,10 +93,13 @@ void BakeBias::limit_time() {
 std::map<std::string, Bias> BakeBias::report() const {
   std::map<std::string, Bias> bias;
   for (const auto& [name, quantity] : quantities_) {
-    if (quantity.units.empty()) continue;
+    if (quantity.units.size() < 2) continue;
     std::vector<BiasUnit> units = quantity.units;
     for (BiasUnit& unit : units) unit.difference /= quantity.largest > 0 ? quantity.largest : 1;
-    bias[name] = estimate_bias(std::move(units), quantity.compared / quantity.samples);
+    Bias found = estimate_bias(std::move(units), quantity.compared / quantity.samples);
+    // A ray that was not compared might differ by all of its light.
+    found.error = std::hypot(found.error, 1 / std::max(1.0, quantity.rays));
+    bias[name] = found;
   }
   return bias;
 }

@@ -36,7 +36,7 @@ class BakeBias {
 
   /// tracing.values, which also compares. The object must outlive the function.
   TraceSamples with(BiasTracing tracing);
-  /// By quantity; empty if nothing was compared.
+  /// By quantity; without those of which too little was compared to tell an error.
   [[nodiscard]] std::map<std::string, Bias> report() const;
 
  private:
@@ -44,6 +44,7 @@ class BakeBias {
     std::vector<BiasUnit> units;
     float largest = 0;  ///< without occlusion
     double samples = 0, compared = 0;
+    double rays = 0;  ///< that were compared
   };
 
   void compare(const BiasTracing& tracing, std::span<const SurfaceSample> samples,

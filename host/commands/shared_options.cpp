@@ -30,7 +30,7 @@ CLI::Option* add_prefiltering_options(CLI::App& app, std::string& estimator, flo
 void add_max_bias_option(CLI::App& app, float& max_bias) {
   app.add_option("--max-bias", max_bias,
                  "Choose the largest footprint, from --footprint down to 0, whose bias is below "
-                 "this in each layer; 0: take --footprint")
+                 "this in AO and in each light; 0: take --footprint")
       ->capture_default_str();
 }
 

@@ -20,6 +20,9 @@ constexpr float kSmallestPart = 1.0f / 16;
 /// Part of a squared target to which the squared bias must be known.
 constexpr double kKnownPart = 0.1;
 
+/// The largest part of a target that a bias may be: noise_target() leaves half of it for the noise.
+constexpr double kMostOfTarget = 0.8660254;
+
 /// Rays of a layer that are enough for that with a target of 1, whatever the bias. The number grows
 /// as the square falls. If the bias is small a fourth of them may do: experiment 545.
 constexpr double kRaysOfTarget = 6.5;
@@ -36,10 +39,12 @@ constexpr double kGoalPart = 0.5;
 /// What is known of a footprint's bias, of the layer in which it may be largest.
 struct Judgement {
   double least = 0, most = 0;  ///< |mean| two standard errors down and up
+  bool has_layers = false;
 };
 
 Judgement judge(const std::vector<Bias>& layers) {
   Judgement of_all;
+  of_all.has_layers = !layers.empty();
   for (const Bias& bias : layers) {
     const double mean = std::fabs(bias.mean);
     of_all.least = std::max(of_all.least, mean - 2 * bias.error);
@@ -127,6 +132,9 @@ std::string note_of(const FootprintDemand& demand, float footprint, const Judgem
                                "footprint has too much bias");
   const std::string why = fmt::format("--max-bias {}: ", demand.max_bias);
   const float smallest = demand.footprint * kSmallestPart;
+  if (!last.has_layers)
+    return fmt::format("{}footprint {}: the bias of what is computed cannot be measured", why,
+                       footprint);
   if (footprint > 0)
     return fmt::format("{}footprint {}, whose bias is at most {:.4f}", why, footprint, last.most);
   if (last.least > double{demand.max_bias})
@@ -159,6 +167,10 @@ FootprintChoice choose_footprint(BiasSource& source, const FootprintDemand& dema
   if (choice.footprint == 0) choice.bias_rmse = 0;
   if (demand.may_shrink && (demand.max_bias > 0 || choice.footprint != demand.footprint))
     choice.note = note_of(demand, choice.footprint, last);
+  if (!demand.may_shrink && choice.bias_rmse > kMostOfTarget * target)
+    choice.note =
+        fmt::format("the target {} cannot be reached with footprint {}, whose bias is about {:.4f}",
+                    demand.target, choice.footprint, choice.bias_rmse);
   return choice;
 }
 

@@ -20,7 +20,7 @@ _drivers.use_driver_of_pip()
 from ._errors import DeviceError, Error, InputError, UsageError  # noqa: E402
 from ._native import devices, keep_kernels as _keep_kernels, version as _version  # noqa: E402
 from ._picture import Picture  # noqa: E402
-from ._results import Bake, BakedTexture, Irradiance, Mesh  # noqa: E402
+from ._results import Bake, BakedTexture, Bias, Columns, Irradiance, Mesh  # noqa: E402
 from ._scene import Scene, load  # noqa: E402
 
 __version__ = _version()
@@ -29,6 +29,8 @@ _drivers.at_exit(_keep_kernels)  # compiled kernels, for later processes
 __all__ = [
     "Bake",
     "BakedTexture",
+    "Bias",
+    "Columns",
     "DeviceError",
     "Error",
     "InputError",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Iterable, Mapping
 
 import numpy as np
 
@@ -44,6 +45,53 @@ class Irradiance:
 
 
 @dataclass(frozen=True)
+class Bias:
+    """Prefiltered less exact values, as a call found them by tracing a part of its rays exactly.
+
+    AO and gap fractions are in [0, 1]; lights are relative to their largest unoccluded irradiance.
+
+    >>> baked = dapple.load("scene:tree?leaves=1000").bake(rays=64)
+    >>> abs(baked.bias["ao"].mean) < 0.1, baked.bias["ao"].share <= 1
+    (True, True)
+    """
+
+    #: Over the values.
+    mean: float
+    #: Standard error of the mean.
+    error: float
+    #: Root mean square of the bias of tiles of neighbouring values, without noise.
+    tile_rmse: float
+    #: What tile_rmse is below with some certainty.
+    tile_rmse_limit: float
+    #: Share of the rays that were traced exactly, [0, 1].
+    share: float
+
+
+class Columns(dict[str, FloatArray]):
+    """What measure() returns: a dict of columns, (n,) float32 each, and what is known of them.
+
+    >>> columns = dapple.load("scene:tree?leaves=1000").measure([[0, 0.01, 0.5], [1, 0.01, 0]])
+    >>> columns["ao"].shape, sorted(columns.bias), columns.footprint
+    ((2,), ['ao', 'sky_view_factor'], 1.0)
+    """
+
+    def __init__(
+        self,
+        columns: Iterable[tuple[str, FloatArray]] = (),
+        bias: Mapping[str, Bias] | None = None,
+        footprint: float = 0.0,
+        notes: Iterable[str] = (),
+    ) -> None:
+        super().__init__(columns)
+        #: By quantity, before it was corrected; tile_rmse is what the correction leaves.
+        self.bias: dict[str, Bias] = dict(bias or {})
+        #: As given, or what max_bias chose.
+        self.footprint = footprint
+        #: Lines for the user, such as how large a bias was corrected.
+        self.notes: list[str] = list(notes)
+
+
+@dataclass(frozen=True)
 class BakedTexture:
     """A texture that all meshes share. Row 0 is the top, v = 0, as in glTF.
 
@@ -81,3 +129,7 @@ class Bake:
     notes: list[str] = field(default_factory=list)
     #: None if not baked.
     texture: BakedTexture | None = None
+    #: Of "ao", and of "light", all lights together; empty for exact rays and report_bias=0.
+    bias: dict[str, Bias] = field(default_factory=dict)
+    #: As given, or what max_bias chose.
+    footprint: float = 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from os import PathLike
-from typing import TYPE_CHECKING, Iterable, Sequence
+from typing import TYPE_CHECKING, Iterable, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ from ._arguments import Progress
 from ._arrays import FloatArray, IndexArray
 from ._errors import UsageError
 from ._picture import Picture
-from ._results import Bake, BakedTexture, Irradiance, Mesh
+from ._results import Bake, BakedTexture, Bias, Columns, Irradiance, Mesh
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -271,13 +271,14 @@ class Scene:
         periodic: tuple[float, float] | None = None,
         progress: Progress = None,
         **options: Unpack[_options.MeasureOptions],
-    ) -> dict[str, FloatArray]:
+    ) -> Columns:
         """Columns of numbers at points, (n,) float32 each, as `dapple points` writes them.
 
         ao, sky_view_factor, gap_N (rings), bent_x and so on, NAME_r and so on of lights in W/m^2,
         and sun or sun_N; with "_error" their standard errors. suns: (s, 3) directions towards
         suns; sun_irradiance: W/m^2 across them, one or (s,). periodic: the scene repeats itself
-        with these periods along X and Z, metres. Options: ao, sky_view_factor, bent, rings, lights,
+        with these periods along X and Z, metres. The result is a dict with .bias (by quantity),
+        .footprint and .notes. Options: ao, sky_view_factor, bent, rings, lights,
         per_sun, rays (256), estimator, footprint, distance, falloff, opacity by material, ground,
         seed, device, cache.
 
@@ -297,8 +298,10 @@ class Scene:
         if periodic is not None:
             chosen.period_x, chosen.period_z = _arguments.several("periodic", periodic, 2)
         progress = _arguments.progress_function(progress)
-        columns = _native.measure(self._native, at, facing, chosen, towards, across, progress)
-        return dict(columns)
+        columns, bias, footprint, notes = _native.measure(
+            self._native, at, facing, chosen, towards, across, progress
+        )
+        return Columns(columns, _biases(bias), footprint, notes)
 
     def render(self, *, progress: Progress = None, **options: Unpack[_options.RenderOptions]) -> Picture:
         """Renders a picture, float32 arrays (height, width). Options are those of `dapple render`.
@@ -352,16 +355,21 @@ class Scene:
             raise UsageError(f"texture_uvs is {texture_uvs!r}; it must be a list of arrays")
         uvs = [_arrays.vectors(f"texture_uvs[{i}]", of, 2) for i, of in enumerate(texture_uvs)]
         progress = _arguments.progress_function(progress)
-        meshes, instance_ao, lights, texture, notes = _native.bake(
+        meshes, instance_ao, lights, texture, notes, bias, footprint = _native.bake(
             self._native, chosen, uvs, others, progress
         )
         baked = None if texture is None else BakedTexture(dict(texture[0]), *texture[1:])
-        return Bake([dict(of) for of in meshes], instance_ao, dict(lights), notes, baked)
+        arrays = [dict(of) for of in meshes]
+        return Bake(arrays, instance_ao, dict(lights), notes, baked, _biases(bias), footprint)
 
 
 def _points(points: npt.ArrayLike, normals: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     at = _arrays.vectors("points", points)
     return at, _arrays.unit_vectors("normals", normals, len(at))
+
+
+def _biases(native: Mapping[str, tuple[float, float, float, float, float]]) -> dict[str, Bias]:
+    return {layer: Bias(*fields) for layer, fields in native.items()}
 
 
 def _natives(name: str, scenes: Iterable[Scene]) -> list[_native.Scene]:

@@ -1,4 +1,5 @@
 // Bakes: values at vertices, of instances and in a texture, as arrays.
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -6,9 +7,11 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "bias.hpp"
 #include "bindings.hpp"
 #include "dapple/bake.hpp"
 #include "engine_call.hpp"
+#include "nanobind/stl/map.h"
 #include "nanobind/stl/optional.h"
 #include "nanobind/stl/pair.h"
 #include "nanobind/stl/string.h"
@@ -25,9 +28,9 @@ using NamedArrays = std::vector<std::pair<std::string, FloatsOut>>;
 using Texture = std::tuple<NamedArrays, std::vector<FloatsOut>, double>;
 
 /// For each mesh its arrays, the AO of the instances, their irradiance by light, the texture,
-/// notes.
+/// notes, the bias by layer, the footprint.
 using Baked = std::tuple<std::vector<NamedArrays>, FloatsOut, NamedArrays, std::optional<Texture>,
-                         std::vector<std::string>>;
+                         std::vector<std::string>, std::map<std::string, BiasFields>, float>;
 
 Texture texture_of(BakedTexture texture, const std::vector<std::string>& light_names) {
   const std::size_t size = texture.size;
@@ -73,8 +76,13 @@ Baked bake_scene(const SceneOnDevice& scene, BakeOptions options,
     instance_light.emplace_back(found.light_names[i], array_of(std::move(found.instance_light[i])));
   std::optional<Texture> texture;
   if (found.texture.size > 0) texture = texture_of(std::move(found.texture), found.light_names);
-  return {std::move(meshes), array_of(std::move(found.instance_ao)), std::move(instance_light),
-          std::move(texture), std::move(found.statistics.notes)};
+  return {std::move(meshes),
+          array_of(std::move(found.instance_ao)),
+          std::move(instance_light),
+          std::move(texture),
+          std::move(found.statistics.notes),
+          bias_fields(found.statistics.bias),
+          found.statistics.footprint};
 }
 
 }  // namespace

@@ -1,17 +1,22 @@
 // Queries at points: ambient occlusion, irradiance, and measure_points() with all its columns.
 #include "dapple/points.hpp"
 
+#include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
+#include "bias.hpp"
 #include "bindings.hpp"
 #include "dapple/render.hpp"
 #include "engine_call.hpp"
 #include "film/layers.hpp"
+#include "nanobind/stl/map.h"
 #include "nanobind/stl/pair.h"
 #include "nanobind/stl/string.h"
+#include "nanobind/stl/tuple.h"
 #include "nanobind/stl/vector.h"
 #include "scene_on_device.hpp"
 
@@ -52,11 +57,14 @@ NamedIrradiance irradiance_at(SceneOnDevice& scene, const VectorsIn& points,
   return result;
 }
 
+/// The columns, the bias by quantity, the footprint, notes.
+using Measured = std::tuple<std::vector<std::pair<std::string, FloatsOut>>,
+                            std::map<std::string, BiasFields>, float, std::vector<std::string>>;
+
 /// `suns`: a direction and an irradiance each.
-std::vector<std::pair<std::string, FloatsOut>> measure_at(
-    const SceneOnDevice& scene, const VectorsIn& points, const VectorsIn& normals,
-    PointOptions options, const VectorsIn& suns, const FloatsIn& sun_irradiance,
-    const nb::object& progress) {
+Measured measure_at(const SceneOnDevice& scene, const VectorsIn& points, const VectorsIn& normals,
+                    PointOptions options, const VectorsIn& suns, const FloatsIn& sun_irradiance,
+                    const nb::object& progress) {
   const std::span<const V3f> directions = vectors(suns);
   for (std::size_t i = 0; i < directions.size(); ++i)
     options.suns.push_back({directions[i], sun_irradiance.data()[i]});
@@ -67,7 +75,7 @@ std::vector<std::pair<std::string, FloatsOut>> measure_at(
   std::vector<std::pair<std::string, FloatsOut>> columns;
   for (PointColumn& column : found.columns)
     columns.emplace_back(column.name, array_of(std::move(column.values)));
-  return columns;
+  return {std::move(columns), bias_fields(found.bias), found.footprint, std::move(found.notes)};
 }
 
 }  // namespace

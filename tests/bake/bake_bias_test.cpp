@@ -1,5 +1,7 @@
 // The bias that a bake reports of itself: it changes no value, agrees with exact values, and
 // chooses footprints.
+#include "bake/bake_bias.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -71,6 +73,30 @@ TEST(BakeBias, MaxBiasChoosesAFootprint) {
   EXPECT_EQ(bake(tree(), options).statistics.footprint, 0);
   options.max_bias = 2;
   EXPECT_THROW(bake(tree(), options), Error);
+}
+
+// The first blocks of 64 samples that are chosen as 2 % of all are 33, 88 and 122.
+TEST(BakeBias, OneBlockTellsNoErrorAndIsNotReported) {
+  const auto report_of = [](std::size_t samples) {
+    BakeBias bias(0.02);
+    const auto trace = [](std::span<const SurfaceSample> all, std::span<const std::uint32_t>,
+                          const Placements&, int, std::uint32_t) {
+      TracedSamples traced;
+      traced.front.resize(all.size(), SideValue{0.5f, V3f(0, 0, 0)});
+      traced.back = traced.front;
+      return traced;
+    };
+    const TraceSamples traced = bias.with({"ao", trace, trace, trace});
+    const std::vector<SurfaceSample> all(samples);
+    traced(all, std::vector<std::uint32_t>(samples), Placements{}, 8, 1);
+    return bias.report();
+  };
+  EXPECT_TRUE(report_of(64 * 33).empty()) << "none is chosen";
+  EXPECT_TRUE(report_of(64 * 34).empty()) << "one is";
+  const auto two = report_of(64 * 89);
+  ASSERT_EQ(two.count("ao"), 1u);
+  EXPECT_EQ(two.at("ao").mean, 0);
+  EXPECT_NEAR(two.at("ao").error, 1.0 / (2 * 64 * 8), 1e-9) << "of equal values not 0 either";
 }
 
 TEST(BakeBias, LightsHaveOne) {

@@ -14,6 +14,11 @@ MUTATIONS = [
         "const bool flip = in_order && !rays->backward[axis];",
         r"^(Packet|ClosedForm)\."),
     Mutation(
+        "mass-poles-decoded-on-the-other-side", "kernels/opacity/footprint.clh",
+        "off_pole_along(node, 1, y,",
+        "off_pole_along(node, 1, -y,",
+        r"^(Packet|ScalarKernels|HardScenes)\."),
+    Mutation(
         "slab-sign-of-single-rays", "kernels/geometry/node.clh",
         "const int forward = inverse > 0.0f;",
         "const int forward = inverse < 0.0f;",

@@ -131,6 +131,21 @@ MUTATIONS = [
         "tile.difference * tile.difference / pairs;",
         r"^(BiasEstimate|BiasReport)\."),
     Mutation(
+        "what-may-be-above-the-limit-is-clear", "host/sampling/footprint_choice.cpp",
+        "std::fabs(bias.mean) - kClear * bias.error > most;",
+        "std::fabs(bias.mean) + kClear * bias.error > most;",
+        r"^FootprintChoice\."),
+    Mutation(
+        "pilot-keeps-what-another-footprint-found", "host/render/bias_pilot.cpp",
+        "  if (layer.footprint != footprint) layer.prefiltered.clear();\n",
+        "",
+        r"^(FootprintPilot|BiasPilot|MaxBias)\."),
+    Mutation(
+        "pilot-of-the-crop", "host/render/footprint_pilot.cpp",
+        "  if (unasked) view.crop = {0, 0, view.width - 1, view.height - 1};\n",
+        "",
+        r"^FootprintPilot\."),
+    Mutation(
         "bias-of-resumed-samples", "host/render/bias_report.cpp",
         "    taken.fronts[pixel] -= earlier;\n",
         "",

@@ -36,6 +36,21 @@ MUTATIONS = [
         "  if (false) {\n",
         r"^Renderer\."),
     Mutation(
+        "nothing-is-a-wall", "host/bvh/opacity/wall.cpp",
+        "  if (!(areas.interior > kInteriorShare * areas.all)) return false;\n",
+        "  if (!(areas.interior < 0.0f)) return false;\n",
+        r"^(Wall|HardScenes)\."),
+    Mutation(
+        "mass-poles-on-the-other-side-along-y", "host/bvh/opacity/node_opacity.cpp",
+        "V3f(pole[0], pole[1], pole[2])",
+        "V3f(pole[0], -pole[1], pole[2])",
+        r"^MassShape\."),
+    Mutation(
+        "mass-poles-of-instances-on-the-other-side", "host/bvh/build/top_level.cpp",
+        "std::clamp(1.5f * place / mass.concentration,",
+        "std::clamp(-1.5f * place / mass.concentration,",
+        r"^(Instance|MassShape|HardScenes)\."),
+    Mutation(
         "opaque-triangles-with-vertices-of-the-mesh", "host/bvh/opacity/opaque_triangles.cpp",
         "    const std::uint32_t lower = words_[vertex / 32] & ((1u << vertex % 32) - 1);\n",
         "    const std::uint32_t lower = words_[vertex / 32];\n",

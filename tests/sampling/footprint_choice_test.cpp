@@ -79,6 +79,35 @@ TEST(FootprintChoice, ATargetAllowsHalfOfItAndTellsHowMuchThereIs) {
   EXPECT_NEAR(fixed.bias_rmse, 0.004, 1e-9);
 }
 
+TEST(FootprintChoice, AFootprintThatIsKeptAndMissesTheTargetIsNoted) {
+  MadeUpBias source(1u << 20);  // footprint 4: 0.004
+  FootprintDemand demand{4, 0, 0.004f, false};
+  EXPECT_EQ(choose_footprint(source, demand).footprint, 4);
+  EXPECT_EQ(
+      choose_footprint(source, demand)
+          .note.find(
+              "the target 0.004 cannot be reached with footprint 4, whose bias is about 0.004"),
+      0u);
+  demand.target = 0.005f;
+  EXPECT_EQ(choose_footprint(source, demand).note, "") << "0.004^2 + 0.0025^2 < 0.005^2";
+}
+
+/// Bent normals, say: their bias is not measured.
+class NoBias : public BiasSource {
+ public:
+  void grow(std::size_t) override {}
+  [[nodiscard]] bool is_complete() const override { return true; }
+  std::vector<Bias> bias(float) override { return {}; }
+};
+
+TEST(FootprintChoice, WithoutAMeasuredLayerTheNoteClaimsNoLimit) {
+  NoBias source;
+  const FootprintChoice choice = choose_footprint(source, {4, 0.01f, 0, true});
+  EXPECT_EQ(choice.footprint, 4);
+  EXPECT_EQ(choice.note,
+            "--max-bias 0.01: footprint 4: the bias of what is computed cannot be measured");
+}
+
 TEST(FootprintChoice, ATargetTakesAFourthOfTheRaysWhereTheyTellTheBias) {
   MadeUpBias small(1u << 20), large(1u << 20);
   choose_footprint(small, {1, 0, 0.02f, true});

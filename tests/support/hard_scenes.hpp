@@ -145,6 +145,7 @@ inline HardScene grass_at_a_grazing_angle() {
   return {make_procedural("scene:grass?leaves=100000"), {"ao"}};
 }
 
+/// Of just as many samples as it takes for a render to choose its footprint.
 inline RenderOptions picture_of(const std::string& layer) {
   RenderOptions options;
   options.width = options.height = 64;
