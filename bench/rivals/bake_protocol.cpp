@@ -58,11 +58,10 @@ std::vector<std::uint32_t> with_neighbours(const Mesh& mesh, const VertexGroups&
 
 BakedPart part_of(const Scene& scene, const Mesh& mesh, const std::vector<std::uint32_t>& chosen) {
   const std::vector<bool> two_sided = two_sided_triangles(scene, mesh, BakeSides::automatic);
-  const bool any = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
   BakedPart part;
-  for (const std::uint32_t t : with_neighbours(mesh, group_vertices(mesh, any), chosen)) {
+  for (const std::uint32_t t : with_neighbours(mesh, group_vertices(mesh, two_sided), chosen)) {
     for (std::uint32_t i = 3 * t; i < 3 * t + 3; ++i) {
       std::uint32_t& vertex = number[mesh.indices[i]];
       if (vertex == kNone) {

@@ -34,6 +34,9 @@ constexpr double kExpectedCoverage = 0.5;
 /// The share of the surface without area in given texture coordinates from which on a note says so.
 constexpr double kToldShare = 0.0005;
 
+/// The share of values above the target error from which on a note says so.
+constexpr double kToldAbove = 0.005;
+
 TracePoints trace_against(const OccluderScene& occluders) {
   return [&occluders](const QueryPoints& points, const OcclusionOptions& options, bool bent) {
     return point_occlusion(occluders.device, occluders.uploaded, points, options, bent);
@@ -156,6 +159,12 @@ Scene scene_of_mesh(const Scene& scene, std::size_t mesh) {
   return alone;
 }
 
+void add_preparation(const OccluderScene& occluders, BakeStatistics& s) {
+  s.seconds.build += occluders.build_seconds;
+  s.seconds.upload += occluders.upload_seconds;
+  s.device = occluders.device.info().name;
+}
+
 /// Traces against the whole scene, or against each mesh alone.
 class MeshOccluders {
  public:
@@ -167,6 +176,7 @@ class MeshOccluders {
   BakeTracing tracing(std::uint32_t mesh, const BakeRecords& records) {
     if (!together_) {
       alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
+      add_preparation(*alone_, records.statistics);
       options_ = asked_;
       measure_bias(
           *alone_,
@@ -236,7 +246,7 @@ bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders&
         BakeTracing tracing = occluders.tracing(m, records);
         return texture.add(m, placements, tracing);
       });
-  if (done) result.texture = texture.finish();
+  if (done) result.texture = texture.finish(records.statistics);
   return done;
 }
 
@@ -250,6 +260,20 @@ bool bake_all_instances(const Scene& scene, const BakeOptions& options,
   result.instance_ao = std::move(values->ao);
   result.instance_light = std::move(values->light);
   return true;
+}
+
+/// Says how many values have a larger error than the target, where these are not very few.
+void add_target_notes(const BakeOptions& asked, BakeStatistics& s) {
+  const auto add = [&](const TargetStatistics& counts, const char* of) {
+    const auto all = static_cast<double>(counts.values);
+    if (counts.above == 0 || static_cast<double>(counts.above) < kToldAbove * all) return;
+    s.notes.push_back(fmt::format(
+        "{:.1f} % of the values{} have an error above --target-error {}: the limit "
+        "is --rays {}",
+        100 * static_cast<double>(counts.above) / all, of, asked.target_error, asked.rays));
+  };
+  add(s.ao_target, "");
+  add(s.light_target, " of light");
 }
 
 }  // namespace
@@ -282,9 +306,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   std::optional<OccluderScene> together;
   if (!alone || options.instances) {
     together.emplace(scene, options, occluders);
-    s.seconds.build = together->build_seconds;
-    s.seconds.upload = together->upload_seconds;
-    s.device = together->device.info().name;
+    add_preparation(*together, s);
     s.notes = together->notes;
   } else {
     s.notes = scene.warnings;
@@ -300,6 +322,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   BakeCheckpoint checkpoint(control, std::move(settings));
   BakeBias bias(has_bias(options) ? double{options.report_bias} : 0.0);
   const BakeRecords records{progress, checkpoint, bias, s};
+  const double prepared = s.seconds.build + s.seconds.upload;
   const Stopwatch tracing;
   if (together && !alone) measure_bias(*together, pilot_meshes(scene, options), options, s);
   MeshOccluders mesh_occluders(scene, options, alone ? nullptr : &*together);
@@ -312,12 +335,13 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (options.light && !result.interrupted) add_up_groups(lights, result);
   s.bias = bias.report();
   s.footprint = options.footprint;
+  add_target_notes(asked, s);
   checkpoint.save(true);
   result.checkpoint_failure = checkpoint.failure();
   if (checkpoint.points_read() > 0)
     s.notes.push_back(fmt::format("went on from {}: {} of {} points", control.resume,
                                   checkpoint.points_read(), s.points));
-  s.seconds.trace = tracing.seconds();
+  s.seconds.trace = tracing.seconds() - (s.seconds.build + s.seconds.upload - prepared);
   s.seconds.total = total.seconds();
   return result;
 }

@@ -15,7 +15,7 @@ constexpr std::size_t kMostSamples = 1u << 17;
 PilotMesh::PilotMesh(const Scene& scene, std::uint32_t index, const BakeOptions& options,
                      Placements given)
     : mesh(&scene.meshes[index]),
-      groups{std::vector<std::uint32_t>(mesh->positions.size()), 1},
+      groups(one_group(mesh->positions.size())),
       two_sided(two_sided_triangles(scene, *mesh, options.sides)),
       normals(options.normals),
       placements(std::move(given)) {}

@@ -166,11 +166,12 @@ class InstanceRounds {
         tracing_(tracing),
         lights_(lights),
         sums_(scene.instances.size(), lights ? tracing.lights : 0) {
+    std::size_t most = 0;  // vertices of a mesh
     for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
       points_.emplace_back(scene, m, options);
-      if (one_group_.of_vertex.size() < scene.meshes[m].positions.size())
-        one_group_.of_vertex.resize(scene.meshes[m].positions.size());
+      most = std::max(most, scene.meshes[m].positions.size());
     }
+    one_group_ = one_group(most);
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i)
       if (is_invertible(scene.instances[i].to_world) &&
           !scene.meshes[scene.instances[i].mesh].has_strands())

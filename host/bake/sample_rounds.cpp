@@ -43,6 +43,7 @@ SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
       tracing_(tracing),
       trace_(lights ? tracing.light : tracing.ao),
       sums_(sums),
+      is_of_lights_(lights),
       lights_(lights ? std::max<std::size_t>(1, tracing.lights) : 1),
       variance_(surface.size(), this->placements()),
       taken_(surface.size()) {}
@@ -98,9 +99,32 @@ bool SampleRounds::refine(float target, std::uint32_t max_samples) {
       wanted[i] = std::clamp(static_cast<std::uint32_t>(needed), taken_[i], max_samples);
       more += wanted[i] - taken_[i];
     }
-    if (more <= kMinRound * static_cast<double>(taken_.size())) return true;
+    if (more <= kMinRound * static_cast<double>(taken_.size())) break;
     tracing_.progress.expect(more);
     if (!round(wanted)) return false;
+  }
+  count_values(target, max_samples);
+  return true;
+}
+
+// Counts the values that have samples, and those with an error above `target` around which no
+// sample may be added.
+void SampleRounds::count_values(float target, std::uint32_t max_samples) {
+  std::vector<bool> has_samples(sums_.size()), can_grow(sums_.size());
+  for (std::size_t i = 0; i < surface_.size(); ++i) {
+    if (!surface_.can_be_sampled(i)) continue;
+    for (const std::uint32_t place : surface_.places(i)) {
+      has_samples[place] = true;
+      if (taken_[i] < max_samples) can_grow[place] = true;
+    }
+  }
+  const std::vector<float> squares = sums_.squared_errors();
+  BakeStatistics& statistics = tracing_.statistics;
+  TargetStatistics& counts = is_of_lights_ ? statistics.light_target : statistics.ao_target;
+  for (std::size_t place = 0; place < squares.size(); ++place) {
+    if (!has_samples[place]) continue;
+    ++counts.values;
+    if (!can_grow[place] && squares[place] > target * target) ++counts.above;
   }
 }
 

@@ -54,6 +54,7 @@ class SampleRounds {
   [[nodiscard]] std::uint32_t first_samples(std::uint32_t least) const;
   bool take(std::uint32_t samples, int rays);
   bool refine(float target, std::uint32_t max_samples);
+  void count_values(float target, std::uint32_t max_samples);
   bool round(const std::vector<std::uint32_t>& wanted);
   [[nodiscard]] std::uint32_t placements() const {
     return static_cast<std::uint32_t>(placements_.to_world.size());
@@ -69,6 +70,7 @@ class SampleRounds {
   BakeTracing& tracing_;
   const TraceSamples& trace_;
   ValueSums& sums_;
+  bool is_of_lights_;
   std::size_t lights_;               ///< rays to lights are that many times as many
   std::size_t samples_at_once_ = 1;  ///< for take()'s rays
   int rays_ = kRaysPerSample;

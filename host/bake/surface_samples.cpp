@@ -85,6 +85,7 @@ SurfaceSample sample_triangle(const SampledTriangles& of, std::size_t triangle,
     sample.position += mesh.positions[corner[k]] * barycentric[k];
     sample.place[k] = of.groups.of_vertex[corner[k]];
     sample.weight[k] = twice_area * barycentric[k];
+    sample.turned[k] = of.groups.turned[corner[k]];
   }
   if (of.normals == Normals::shading) add_shading(mesh, triangle, barycentric, sample);
   return sample;
@@ -118,7 +119,9 @@ std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
       const std::uint32_t group = of.groups.of_vertex[vertex];
       SurfaceSample& sample = of_group[group];
       // The two sides of a folded sheet would cancel.
-      const float side = sample.normal.dot(area) < 0 ? -1.0f : 1.0f;
+      const float along = sample.normal.dot(area);
+      const bool first = sample.normal == V3f(0, 0, 0);
+      const float side = along < 0 || (first && of.groups.turned[vertex]) ? -1.0f : 1.0f;
       sample.normal += area * side;
       shading[group] += (normals ? (*normals)[k] * area.length() : area) * side;
       is_smooth[group] = is_smooth[group] || normals;

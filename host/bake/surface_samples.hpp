@@ -27,6 +27,7 @@ struct SurfaceSample {
   bool front = true, back = false;       ///< sides that are traced
   std::array<std::uint32_t, 3> place{};  ///< vertex groups, or texels, whose value it is part of
   std::array<float, 3> weight{};         ///< in these values; 0: none
+  std::array<bool, 3> turned{};          ///< its front is the back of these places
 };
 
 /// Samples of each triangle and rays of each sample and side.

@@ -145,22 +145,25 @@ void ValueSums::add(std::span<const SurfaceSample> samples, const TracedSamples&
 }
 
 void ValueSums::add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index) {
-  const auto add_to = [&](BothSides& place, float weight) {
-    if (sample.front) place.front.add(weight, found.front[index]);
-    if (sample.back) place.back.add(weight, found.back[index]);
+  const auto add_to = [&](BothSides& place, float weight, bool turned) {
+    if (sample.front) (turned ? place.back : place.front).add(weight, found.front[index]);
+    if (sample.back) (turned ? place.front : place.back).add(weight, found.back[index]);
   };
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(sample.weight[k] > 0)) continue;
-    add_to(of_place_[sample.place[k]], sample.weight[k]);
+    add_to(of_place_[sample.place[k]], sample.weight[k], sample.turned[k]);
+    std::vector<V3f>& light_in_front = sample.turned[k] ? back_light_ : front_light_;
+    std::vector<V3f>& light_behind = sample.turned[k] ? front_light_ : back_light_;
     for (std::size_t l = 0; l < lights_; ++l) {
       const std::size_t from = index * lights_ + l, to = sample.place[k] * lights_ + l;
-      front_light_[to] += found.front_light[from] * sample.weight[k];
-      back_light_[to] += found.back_light[from] * sample.weight[k];
+      light_in_front[to] += found.front_light[from] * sample.weight[k];
+      light_behind[to] += found.back_light[from] * sample.weight[k];
     }
   }
   const std::uint32_t part = parts_.of_place[sample.place[0]];
   if (part != SmallParts::kLarge)
-    add_to(of_part_[part], sample.weight[0] + sample.weight[1] + sample.weight[2]);
+    add_to(of_part_[part], sample.weight[0] + sample.weight[1] + sample.weight[2],
+           sample.turned[0]);
 }
 
 // In parts of fixed size, so that the sums do not depend on the number of threads.

@@ -141,8 +141,7 @@ RoundOptions round_options(const BakeOptions& options, std::uint32_t first,
 std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& two_sided,
                                    std::uint32_t index, const Placements& placements,
                                    const BakeOptions& options, BakeTracing& tracing) {
-  const bool any_two_sided = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
-  const VertexGroups groups = group_vertices(mesh, any_two_sided);
+  const VertexGroups groups = group_vertices(mesh, two_sided);
   const std::uint32_t hash = hash_of(options.seed, index);
   const SampledMesh sampled({mesh, groups, two_sided, options.normals}, options.at_vertices, hash);
   // At a vertex alone, only a second sample tells the variance.
@@ -166,12 +165,14 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
     add_errors(groups, light, statistics.squared_light_errors);
     for (std::size_t l = 0; l < tracing.lights; ++l) values.light.push_back(light.light_values(l));
   }
-  std::vector<bool> known;
+  std::vector<bool> known, filled(groups.count);
   for (const PlaceValue& value : of_group) known.push_back(value.known);
-  statistics.hidden_vertices +=
-      static_cast<std::size_t>(std::count(known.begin(), known.end(), false));
-  for (const HiddenGroup& hidden : hidden_groups(mesh, groups, std::move(known)))
+  for (const HiddenGroup& hidden : hidden_groups(mesh, groups, known)) {
     values.fill(hidden);
+    filled[hidden.group] = true;
+  }
+  for (const std::uint32_t group : groups.of_vertex)
+    if (!known[group]) ++(filled[group] ? statistics.hidden_vertices : statistics.dark_vertices);
   statistics.vertices += mesh.positions.size();
   statistics.triangles += mesh.primitive_count();
   return values.at_vertices(groups);

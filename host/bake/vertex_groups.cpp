@@ -31,6 +31,15 @@ std::vector<V3f> vertex_normals(const Mesh& mesh) {
   return normals;
 }
 
+/// The vertices of which all triangles are two-sided.
+std::vector<bool> two_sided_vertices(const Mesh& mesh, const std::vector<bool>& two_sided) {
+  std::vector<bool> vertices(mesh.positions.size(), !two_sided.empty());
+  for (std::size_t t = 0; t < two_sided.size(); ++t)
+    for (std::size_t corner = 3 * t; corner < 3 * t + 3 && !two_sided[t]; ++corner)
+      vertices[mesh.indices[corner]] = false;
+  return vertices;
+}
+
 /// A vertex and its position as bits, which compare fast.
 struct PlacedVertex {
   std::array<std::uint32_t, 3> position;
@@ -65,14 +74,15 @@ V3f area_vector(const Mesh& mesh, std::size_t triangle) {
   return (mesh.positions[corner[1]] - a).cross(mesh.positions[corner[2]] - a);
 }
 
-VertexGroups group_vertices(const Mesh& mesh, bool two_sided) {
+VertexGroups group_vertices(const Mesh& mesh, const std::vector<bool>& two_sided) {
   const std::vector<V3f> normals = vertex_normals(mesh);
+  const std::vector<bool> has_sides = two_sided_vertices(mesh, two_sided);
   const std::vector<PlacedVertex> order = order_by_position(mesh.positions);
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> first(mesh.positions.size(), kNone);  // vertex that began the group
   const auto similar = [&](std::uint32_t a, std::uint32_t b) {
     const float cosine = normals[a].dot(normals[b]);
-    return (two_sided ? std::fabs(cosine) : cosine) >= kSimilar;
+    return (has_sides[a] && has_sides[b] ? std::fabs(cosine) : cosine) >= kSimilar;
   };
   std::vector<std::uint32_t> firsts;  // few: the sides of an edge or corner
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
@@ -96,10 +106,17 @@ VertexGroups group_vertices(const Mesh& mesh, bool two_sided) {
   }
   VertexGroups groups;
   groups.of_vertex.resize(first.size());
-  for (std::uint32_t vertex = 0; vertex < first.size(); ++vertex)
+  groups.turned.resize(first.size());
+  for (std::uint32_t vertex = 0; vertex < first.size(); ++vertex) {
     groups.of_vertex[vertex] = first[vertex] == vertex ? static_cast<std::uint32_t>(groups.count++)
                                                        : groups.of_vertex[first[vertex]];
+    groups.turned[vertex] = normals[vertex].dot(normals[first[vertex]]) < 0;
+  }
   return groups;
+}
+
+VertexGroups one_group(std::size_t vertices) {
+  return {std::vector<std::uint32_t>(vertices), std::vector<bool>(vertices), 1};
 }
 
 std::vector<std::uint32_t> connected_parts(const Mesh& mesh, const VertexGroups& groups) {

@@ -12,13 +12,18 @@ namespace dapple {
 
 struct VertexGroups {
   std::vector<std::uint32_t> of_vertex;  ///< group of each vertex
+  std::vector<bool> turned;              ///< by vertex: its front is the back of its group
   std::size_t count = 0;
 };
 
 /// Groups by the mean normals of the triangles around each vertex: within 45 degrees of the group's
-/// first vertex. Groups are numbered by their first vertex. With `two_sided`, opposite normals
-/// count as equal. Linear in the vertices but for a sort.
-VertexGroups group_vertices(const Mesh& mesh, bool two_sided);
+/// first vertex, whose front is that of the group. Groups are numbered by their first vertex.
+/// Vertices whose triangles are all two-sided (`two_sided`, by triangle; empty: none) may have
+/// opposite normals. Linear in the vertices but for a sort.
+VertexGroups group_vertices(const Mesh& mesh, const std::vector<bool>& two_sided = {});
+
+/// All vertices as one group.
+VertexGroups one_group(std::size_t vertices);
 
 /// Sheets of at most so many vertices, such as leaves, have one better side.
 inline constexpr std::size_t kSmallPart = 64;

@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "bake/preview.hpp"
 #include "commands/bake_report.hpp"
@@ -90,25 +92,70 @@ void check_sides(const std::vector<OutputPath>& sides, const std::vector<OutputP
   }
 }
 
-/// Writes the file with the baked values, and the EXR of a texture. Returns a note, or nothing.
-std::string write_baked(const gltf::SourceFile& file, const Scene& scene, const BakeArguments& a,
-                        const BakeOptions& options, std::uint32_t uv_set,
-                        const BakeResult& result) {
+/// What viewers make of AO in one component of colours; empty for other channels.
+std::string component_note(const BakeChannel& channel) {
+  if (channel.components == "a")
+    return "COLOR_0.a is opacity in glTF: where AO is low, viewers show masked and blended "
+           "materials more transparent";
+  for (const auto& [component, color] : {std::pair{"r", "red"}, {"g", "green"}, {"b", "blue"}})
+    if (channel.components == component)
+      return fmt::format(
+          "COLOR_0.{} is {} in glTF: where AO is low, viewers show less {}, "
+          "which tints the model",
+          component, color, color);
+  return {};
+}
+
+/// Adds values at vertices. Returns notes.
+std::vector<std::string> add_to_vertices(gltf::Editor& editor, const gltf::SourceFile& file,
+                                         const Scene& scene, const BakeArguments& a,
+                                         const BakeResult& result) {
+  const BakeTargets targets{channel_of(a), a.blend == "multiply", a.bent_channel};
+  gltf::add_attributes(editor, file, baked_attributes(file, scene, result, targets));
+  std::vector<std::string> notes;
+  if (multiplies_colors(file, scene, result, targets))
+    notes.emplace_back(
+        "COLOR_0 of the file is multiplied by AO; if it holds baked AO already, use --blend "
+        "replace");
+  notes.push_back(component_note(targets.channel));
+  return notes;
+}
+
+/// Adds values of instances. Returns notes.
+std::vector<std::string> add_to_instances(gltf::Editor& editor, const gltf::SourceFile& file,
+                                          const Scene& scene, const BakeArguments& a,
+                                          const BakeResult& result) {
+  const std::string attribute = channel_of(a).attribute;
+  const std::vector<gltf::NodeValues> nodes = baked_nodes(file, scene, result, attribute);
+  std::vector<std::string> notes{gltf::add_node_values(editor, nodes)};
+  const auto has_attribute = [&](const gltf::NodeValues& values) {
+    return file.has_gpu_instances(values.node);
+  };
+  if (a.channel && std::none_of(nodes.begin(), nodes.end(), has_attribute))
+    notes.push_back(
+        fmt::format("no node has EXT_mesh_gpu_instancing: there is no {}, all values are extras.ao",
+                    attribute));
+  return notes;
+}
+
+/// Writes the file with the baked values, and the EXR of a texture. Returns notes, some of them
+/// empty.
+std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& scene,
+                                     const BakeArguments& a, const BakeOptions& options,
+                                     const FileUvs& uvs, const BakeResult& result) {
   gltf::Editor editor(file, a.output);
-  std::string note;
-  if (options.vertices)
-    gltf::add_attributes(
-        editor, file,
-        baked_attributes(file, scene, result,
-                         {parse_channel(a.channel), a.blend == "multiply", a.bent_channel}));
-  if (options.instances) note = gltf::add_node_values(editor, baked_nodes(scene, result));
-  if (options.texture)
-    gltf::add_occlusion_texture(editor,
-                                textured_primitives(file, scene, result.texture.layout, uv_set),
-                                occlusion_png(result.texture, a.bits));
+  std::vector<std::string> notes;
+  if (options.vertices) notes = add_to_vertices(editor, file, scene, a, result);
+  if (options.instances) notes = add_to_instances(editor, file, scene, a, result);
+  if (options.texture) {
+    const TextureLayout& layout = result.texture.layout;
+    const auto primitives = textured_primitives(file, scene, layout, uvs.set);
+    gltf::add_occlusion_texture(editor, primitives, occlusion_png(result.texture, a.bits));
+    notes = {coordinates_note(layout, primitives, uvs.note), texture_note(result.texture)};
+  }
   editor.write();
-  if (needs_exr(options)) write_baked_exr(result, exr_path(a.output));
-  return note;
+  if (needs_exr(options)) write_baked_exr(result, scene.source, options, exr_path(a.output));
+  return notes;
 }
 
 void write_preview(const Scene& scene, const BakeResult& result, const std::string& path) {
@@ -169,21 +216,10 @@ void report_interruption(const BakeResult& result, const BakeArguments& a) {
   tell("note: interrupted, {} is not written; --resume {} goes on\n", a.output, a.checkpoint);
 }
 
-/// Chooses the texture coordinates. Returns a line about them.
-std::string choose_layout(const gltf::SourceFile& file, const Scene& scene, const std::string& uv,
-                          BakeOptions& options, std::uint32_t& set) {
-  if (uv == "own") return {};
-  FileUvs chosen = choose_uvs(file, scene, options);
-  set = chosen.set;
-  options.texture_uvs = std::move(chosen.uvs);
-  if (!options.texture_uvs.empty()) return fmt::format("the texture uses TEXCOORD_{}", set);
-  return chosen.note.empty() ? "" : chosen.note + ": the texture has coordinates of its own";
-}
-
 /// Throws Error usage for a channel that the file or a light needs for other values.
 void check_values_fit(const gltf::SourceFile& file, const Scene& scene, const BakeChannel& channel,
                       const BakeOptions& options) {
-  check_channel(file, scene, channel);
+  if (options.vertices) check_channel(file, scene, channel);
   if (options.light) check_channel_spares_lights(channel, scene.lights);
 }
 
@@ -212,10 +248,10 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   input.reset();  // all of it is in memory
   if (a.instances == "unique") make_meshes_unique(file, scene);
   check_sides(side_outputs(file, a, options), outputs, inputs);
-  if (options.vertices) check_values_fit(file, scene, parse_channel(a.channel), options);
-  std::uint32_t uv_set = 0;
-  std::string layout_note;
-  if (options.texture) layout_note = choose_layout(file, scene, a.uv, options, uv_set);
+  if (!options.texture) check_values_fit(file, scene, channel_of(a), options);
+  FileUvs uvs;
+  if (options.texture && a.uv != "own") uvs = choose_uvs(file, scene, options);
+  options.texture_uvs = std::move(uvs.uvs);
   seconds.load = total.seconds();
 
   progress.announce("building", "the BVH");
@@ -225,18 +261,12 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   if (result.interrupted) return report_interruption(result, a);
 
   const Stopwatch writing;
-  const std::string write_note = write_baked(file, scene, a, options, uv_set, result);
+  const std::vector<std::string> notes = write_baked(file, scene, a, options, uvs, result);
   if (!a.png.empty()) write_preview(scene, result, a.png);
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
-  std::vector<std::string>& notes = result.statistics.notes;
-  for (const std::string& note : {layout_note, write_note})
-    if (!note.empty()) notes.push_back(note);
-  if (options.texture) notes.push_back(texture_note(result.texture));
-  if (options.vertices && parse_channel(a.channel).components == "a")
-    notes.push_back(
-        "COLOR_0.a is opacity in glTF: where AO is low, viewers show masked and blended "
-        "materials more transparent");
+  for (const std::string& note : notes)
+    if (!note.empty()) result.statistics.notes.push_back(note);
   if (!a.stats_json.empty()) write_statistics(result, seconds, a.stats_json);
   if (!a.quiet) print_summary(result.statistics, seconds, a.output);
   if (!result.checkpoint_failure.empty())

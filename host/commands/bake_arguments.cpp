@@ -61,11 +61,11 @@ void add_value_options(CLI::App& app, BakeArguments& a) {
          "Rays per light from each sample point and side. AO decides how many sample points "
          "there are")
       ->capture_default_str();
-  app.add_option(
-         "--channel", a.channel,
-         "Where AO goes: COLOR_0.rgb, COLOR_0.r, .g, .b or .a, TEXCOORD_1.x or .y, or a custom "
-         "attribute, for example _AO")
-      ->capture_default_str();
+  app.add_option("--channel", a.channel,
+                 "Where AO goes: COLOR_0.rgb, COLOR_0.r, .g, .b or .a, TEXCOORD_1.x or .y, or a "
+                 "custom attribute, for example _AO. With --to instance: a custom attribute of "
+                 "EXT_mesh_gpu_instancing; _COLOR_0 is a grey colour there. Default: COLOR_0.rgb; "
+                 "with --to instance _AO");
   app.add_option("--bent-channel", a.bent_channel, "Where bent normals go: _BENT_NORMAL or NORMAL")
       ->capture_default_str();
   app.add_option("--size", o.texture_size, "Width and height of the texture")
@@ -170,8 +170,11 @@ void refuse_options_without_effect(const CLI::App& app, const BakeOptions& optio
       if (!met && app.count(flag) > 0)
         throw Error(ErrorKind::usage, fmt::format("{} needs {}", flag, needed));
   };
-  need(options.vertices, "--to vertex", {"--channel", "--bent-channel", "--blend", "--at"});
+  need(!options.texture, "--to vertex or instance", {"--channel"});
+  need(options.vertices, "--to vertex", {"--bent-channel", "--blend", "--at"});
   need(!options.instances, "--to vertex or texture", {"--instances"});
+  need(options.placement != BakeInstances::alone, "--instances together or unique",
+       {"--occluders", "--ground"});
   need(options.texture, "--to texture", {"--size", "--bits", "--margin", "--uv"});
   need(options.bent, "--passes ao,bent", {"--bent-channel"});
   need(options.light, "--passes ao,light",
@@ -211,13 +214,15 @@ BakeOptions to_options(const BakeArguments& a) {
     throw Error(ErrorKind::usage,
                 "--passes bent needs --to vertex or texture: an instance has one AO value");
   choice<bool>("--uv", a.uv, {{"auto", false}, {"own", true}});
-  parse_channel(a.channel);
+  channel_of(a);
   choice<bool>("--bent-channel", a.bent_channel, {{"_BENT_NORMAL", false}, {"NORMAL", true}});
   validate(o);
   return o;
 }
 
-BakeChannel parse_channel(const std::string& text) {
+namespace {
+
+BakeChannel parse_channel(const std::string& text, bool of_instances) {
   const std::size_t dot = text.find('.');
   const BakeChannel channel{text.substr(0, dot),
                             dot == std::string::npos ? "" : text.substr(dot + 1)};
@@ -228,11 +233,23 @@ BakeChannel parse_channel(const std::string& text) {
   const bool uv = uv_set_of(attribute) && (components == "x" || components == "y");
   const bool custom = attribute.size() > 1 && attribute[0] == '_' && dot == std::string::npos &&
                       attribute != "_BENT_NORMAL";
-  if (color || uv || custom) return channel;
+  if (custom || (!of_instances && (color || uv))) return channel;
+  if (of_instances)
+    throw Error(ErrorKind::usage,
+                fmt::format("--channel is \"{}\"; with --to instance it can be _AO, _COLOR_0 (a "
+                            "grey colour) or another name that begins with _",
+                            text));
   throw Error(ErrorKind::usage,
               fmt::format("--channel is \"{}\"; it can be COLOR_0.rgb, .r, .g, .b or .a, "
                           "TEXCOORD_1.x or .y, or a name that begins with _, such as _AO",
                           text));
+}
+
+}  // namespace
+
+BakeChannel channel_of(const BakeArguments& a) {
+  const bool of_instances = a.to == "instance";
+  return parse_channel(a.channel.value_or(of_instances ? "_AO" : "COLOR_0.rgb"), of_instances);
 }
 
 std::optional<std::uint32_t> uv_set_of(const std::string& attribute) {

@@ -20,8 +20,8 @@ struct BakeChannel {
 struct BakeArguments {
   std::string scene, output, stats_json, png, lights, dome, uv = "auto";
   std::string checkpoint, checkpoint_every = "60s", resume;
-  std::string to = "vertex", passes = "ao", channel = "COLOR_0.rgb", blend = "multiply",
-              bent_channel = "_BENT_NORMAL";
+  std::string to = "vertex", passes = "ao", blend = "multiply", bent_channel = "_BENT_NORMAL";
+  std::optional<std::string> channel;  ///< as typed; channel_of() knows the defaults
   std::string at = "triangles", sides = "auto", instances = "together", estimator = "prefiltered",
               normals = "shading", report_bias = "2%";
   std::vector<std::string> opacity, occluders;
@@ -40,7 +40,8 @@ void add_bake_options(CLI::App& app, BakeArguments& a);
 BakeOptions to_options(const BakeArguments& a);
 /// Throws Error usage if an option was given that has no effect with the other options.
 void refuse_options_without_effect(const CLI::App& app, const BakeOptions& options);
-BakeChannel parse_channel(const std::string& text);
+/// Throws Error usage for a channel that values at vertices, or of instances, cannot have.
+BakeChannel channel_of(const BakeArguments& a);
 /// n of "TEXCOORD_n", 0 to 9; nothing for other names.
 std::optional<std::uint32_t> uv_set_of(const std::string& attribute);
 

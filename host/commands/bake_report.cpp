@@ -12,6 +12,9 @@
 namespace dapple {
 namespace {
 
+/// Smaller shares of texels that overlap are told as less than this.
+constexpr double kLeastTold = 1e-4;
+
 /// Root mean square of the standard errors of all values. `squares`: their sum.
 double standard_error(const BakeStatistics& s, double squares) {
   const std::size_t values = s.vertices + s.texels + s.instances;
@@ -28,11 +31,18 @@ std::string values_text(const BakeStatistics& s) {
 }  // namespace
 
 std::string texture_note(const BakedTexture& texture) {
-  const std::string charts = texture.layout.charts > 0
-                                 ? fmt::format("{} charts cover ", texture.layout.charts)
-                                 : std::string("triangles cover ");
-  return fmt::format("{}{:.0f} % of the {} x {} texels", charts, 100 * texture.coverage,
-                     texture.size, texture.size);
+  const std::size_t count = texture.layout.charts;
+  const std::string charts = count == 0   ? std::string("triangles cover ")
+                             : count == 1 ? std::string("1 chart covers ")
+                                          : fmt::format("{} charts cover ", count);
+  const std::string overlap =
+      texture.overlap > 0 ? fmt::format("; triangles overlap in {} % of these",
+                                        texture.overlap < kLeastTold
+                                            ? fmt::format("less than {:.2f}", 100 * kLeastTold)
+                                            : fmt::format("{:.2f}", 100 * texture.overlap))
+                          : std::string();
+  return fmt::format("{}{:.0f} % of the {} x {} texels{}", charts, 100 * texture.coverage,
+                     texture.size, texture.size, overlap);
 }
 
 void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
@@ -58,12 +68,15 @@ void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
       {"footprint", s.footprint},
       {"hidden_vertices", s.hidden_vertices},
       {"hidden_texels", s.hidden_texels},
+      {"dark_vertices", s.dark_vertices},
+      {"dark_texels", s.dark_texels},
       {"device", s.device},
       {"notes", s.notes}};
   if (result.texture.size > 0)
     json["texture"] = {{"size", result.texture.size},
                        {"charts", result.texture.layout.charts},
-                       {"coverage", result.texture.coverage}};
+                       {"coverage", result.texture.coverage},
+                       {"overlap", result.texture.overlap}};
   write_whole_file(path, json_text(json));
 }
 
@@ -88,6 +101,11 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
   if (s.hidden_texels > 0)
     fmt::print("{} texels lie inside closed geometry and have the nearest value\n",
                s.hidden_texels);
+  if (s.dark_vertices + s.dark_texels > 0)
+    fmt::print(
+        "{} {} see nothing, nor does what is around them: AO 0. In closed rooms --ao-distance "
+        "limits what occludes\n",
+        s.dark_vertices + s.dark_texels, s.dark_texels > 0 ? "texels" : "vertices");
   fmt::print("wrote {}\n", output);
 }
 

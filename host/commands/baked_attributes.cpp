@@ -22,6 +22,9 @@ using gltf::SourceFile;
 /// A primitive of the file, by its mesh and its number there.
 using Primitive = std::pair<std::uint32_t, std::uint32_t>;
 
+/// The attribute of EXT_mesh_gpu_instancing that engines such as three.js show as a colour: VEC3.
+constexpr const char* kInstanceColor = "_COLOR_0";
+
 /// Scales that differ by less are one scale and its rounding.
 constexpr float kEqualScales = 1e-4f;
 
@@ -268,6 +271,14 @@ std::vector<gltf::NodeValues> means_of_nodes(const Scene& scene, const gltf::Nod
   return nodes;
 }
 
+/// Three equal components in place of one.
+void make_grey(gltf::NodeValues& values) {
+  std::vector<float> grey;
+  for (const float value : values.values) grey.insert(grey.end(), 3, value);
+  values.components = 3;
+  values.values = std::move(grey);
+}
+
 void refuse_used_uvs(const SourceFile& file, const VertexSource& source, const BakeChannel& channel,
                      std::uint32_t set) {
   const std::string texture = file.texture_with_uvs(source.mesh, source.primitive, set);
@@ -334,10 +345,25 @@ std::vector<NewAttribute> baked_attributes(const SourceFile& file, const Scene& 
   return attributes;
 }
 
-std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const BakeResult& result) {
+bool multiplies_colors(const SourceFile& file, const Scene& scene, const BakeResult& result,
+                       const BakeTargets& targets) {
+  if (!targets.multiply || targets.channel.attribute != "COLOR_0") return false;
+  const std::uint32_t needed = targets.channel.components == "a" ? 4 : 3;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (result.meshes[m].ao.empty()) continue;
+    for (const VertexSource& source : scene.meshes[m].sources)
+      if (file.colors(source.mesh, source.primitive).components >= needed) return true;
+  }
+  return false;
+}
+
+std::vector<gltf::NodeValues> baked_nodes(const SourceFile& file, const Scene& scene,
+                                          const BakeResult& result, const std::string& attribute) {
   std::vector<gltf::NodeValues> nodes = means_of_nodes(
-      scene, {{}, "ao", "_AO", 1, {}},
+      scene, {{}, "ao", attribute, 1, {}},
       [&](std::size_t instance, std::size_t) { return result.instance_ao[instance]; });
+  for (gltf::NodeValues& values : nodes)
+    if (attribute == kInstanceColor && file.has_gpu_instances(values.node)) make_grey(values);
   for (std::size_t l = 0; l < result.instance_light.size(); ++l) {
     const std::string& name = result.light_names[l];
     for (gltf::NodeValues& values :

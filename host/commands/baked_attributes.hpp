@@ -29,8 +29,14 @@ std::vector<gltf::NewAttribute> baked_attributes(const gltf::SourceFile& file, c
                                                  const BakeResult& result,
                                                  const BakeTargets& targets);
 
+/// Whether baking multiplies components of a COLOR_0 that the file has.
+bool multiplies_colors(const gltf::SourceFile& file, const Scene& scene, const BakeResult& result,
+                       const BakeTargets& targets);
+
 /// Of each placement of a node the mean over the meshes that it shows: AO, and lights where they
-/// were baked, as the instance attributes _AO and _LIGHT_NAME or the extras ao and light_NAME.
-std::vector<gltf::NodeValues> baked_nodes(const Scene& scene, const BakeResult& result);
+/// were baked, as the instance attributes `attribute` and _LIGHT_NAME or the extras ao and
+/// light_NAME. An attribute _COLOR_0 is AO as a grey colour.
+std::vector<gltf::NodeValues> baked_nodes(const gltf::SourceFile& file, const Scene& scene,
+                                          const BakeResult& result, const std::string& attribute);
 
 }  // namespace dapple

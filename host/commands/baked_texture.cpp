@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "bake/texture/texture_layout.hpp"
+#include "bake/texture/uv_overlap.hpp"
 #include "dapple/film.hpp"
 #include "film/png.hpp"
+#include "sampling/bias_estimate.hpp"
 
 namespace dapple {
 namespace {
@@ -16,19 +19,35 @@ namespace {
 /// Overlaps up to this share are roundings at the borders of neighbouring triangles.
 constexpr double kMaxOverlap = 1e-3;
 
+/// glTF 2.0, 3.7.2.1: viewers should support at least two sets of texture coordinates.
+constexpr std::uint32_t kLastCommonSet = 1;
+
 /// Of a larger share of the surface without area in the texture, the values would be lost.
 constexpr double kMaxWithoutTexels = 0.01;
 
-/// Why texture coordinates cannot be used; empty: they can.
-std::string fault_of(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
-                     const BakeOptions& options) {
-  const double overlap = uv_overlap(scene, uvs, options.texture_size, options.placement);
-  if (std::isinf(overlap)) return "leaves the texture";
-  if (overlap > kMaxOverlap)
-    return fmt::format("overlaps itself in {:.1f} % of its texels", 100 * overlap);
+/// What overlaps in the texture coordinates `name`: triangles of one mesh, or meshes, or both.
+std::string overlap_text(const std::string& name, const UvOverlap& overlap) {
+  const std::string among = fmt::format("{:.1f} %", 100 * overlap.among);
+  if (overlap.within <= kMaxOverlap && overlap.within <= overlap.among)
+    return fmt::format(
+        "meshes overlap each other in {} in {} of its texels (all share one texture)", name, among);
+  const std::string itself =
+      fmt::format("{} overlaps itself in {:.1f} % of its texels", name, 100 * overlap.within);
+  if (overlap.among <= kMaxOverlap) return itself;
+  return fmt::format("{}, and meshes overlap each other in {} (all share one texture)", itself,
+                     among);
+}
+
+/// Why the texture coordinates `name` cannot be used; empty: they can.
+std::string fault_of(const std::string& name, const Scene& scene,
+                     const std::vector<std::vector<V2f>>& uvs, const BakeOptions& options) {
+  const UvOverlap overlap = find_overlap(scene, uvs, options.texture_size, options.placement);
+  if (std::isinf(overlap.share)) return name + " leaves the texture";
+  if (overlap.share > kMaxOverlap) return overlap_text(name, overlap);
   const double without = share_without_texels(scene, uvs, options.texture_size, options.placement);
   if (without > kMaxWithoutTexels)
-    return fmt::format("has no area in the texture for {:.1f} % of the surface", 100 * without);
+    return fmt::format("{} has no area in the texture for {:.1f} % of the surface", name,
+                       100 * without);
   return {};
 }
 
@@ -71,6 +90,34 @@ class VertexCopies {
   std::map<std::uint64_t, std::uint32_t> copies_;
 };
 
+/// As render() makes them. The options of places, such as the margin, are not among them: the
+/// texture shows them.
+FilmMetadata metadata_of(const BakeStatistics& statistics, const std::string& source,
+                         const BakeOptions& options) {
+  FilmMetadata m;
+  m.samples = options.rays;
+  m.seed = options.seed;
+  m.scene = source;
+  m.device = statistics.device;
+  m.version = DAPPLE_VERSION;
+  const auto set = [&](const std::string& name, const auto& value) {
+    m.settings.emplace_back(name, fmt::format("{}", value));
+  };
+  set("estimator", name_of(options.estimator));
+  set("normals", name_of(options.normals));
+  set("footprint", statistics.footprint);
+  if (options.max_bias > 0) set("max_bias", options.max_bias);
+  if (options.target_error > 0) set("target_error", options.target_error);
+  set("rays", options.rays);
+  if (options.light) set("light_rays", options.light_rays);
+  set("ao_distance", options.distance);
+  set("ao_falloff", options.falloff);
+  for (const auto& [material, value] : options.opacity)
+    set("opacity_" + layer_name(material), value);
+  for (const auto& [layer, bias] : statistics.bias) set("bias." + layer, bias_text(bias));
+  return m;
+}
+
 }  // namespace
 
 FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeOptions& options) {
@@ -78,10 +125,10 @@ FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeO
   for (const std::uint32_t set : {1u, 0u}) {
     std::vector<std::vector<V2f>> uvs = uvs_of_set(file, scene, set);
     if (uvs.empty()) continue;
-    const std::string fault = fault_of(scene, uvs, options);
+    const std::string fault = fault_of(fmt::format("TEXCOORD_{}", set), scene, uvs, options);
     if (fault.empty()) return {std::move(uvs), set, {}};
     if (!chosen.note.empty()) chosen.note += "; ";
-    chosen.note += fmt::format("TEXCOORD_{} {}", set, fault);
+    chosen.note += fault;
   }
   return chosen;
 }
@@ -110,6 +157,19 @@ std::vector<gltf::TexturedPrimitive> textured_primitives(const gltf::SourceFile&
   return primitives;
 }
 
+std::string coordinates_note(const TextureLayout& layout,
+                             const std::vector<gltf::TexturedPrimitive>& primitives,
+                             const std::string& fault) {
+  std::set<std::uint32_t> sets;
+  for (const gltf::TexturedPrimitive& primitive : primitives) sets.insert(primitive.uv_set);
+  if (sets.empty()) return {};
+  const std::string names = fmt::format("TEXCOORD_{}", fmt::join(sets, " or TEXCOORD_"));
+  if (layout.chart_of.empty()) return "the texture uses " + names;
+  return fmt::format(
+      "{}{}the texture has coordinates of its own, {}{}", fault, fault.empty() ? "" : ": ", names,
+      *sets.rbegin() > kLastCommonSet ? "; glTF viewers need not read sets beyond TEXCOORD_1" : "");
+}
+
 std::string occlusion_png(const BakedTexture& texture, int bits) {
   const auto side = static_cast<int>(texture.size);
   const float largest = bits == 16 ? 65535.0f : 255.0f;
@@ -121,11 +181,13 @@ std::string occlusion_png(const BakedTexture& texture, int bits) {
   return encode_png({side, side, 1, {grey.begin(), grey.end()}}, "the texture");
 }
 
-void write_baked_exr(const BakeResult& result, const std::string& path) {
+void write_baked_exr(const BakeResult& result, const std::string& source,
+                     const BakeOptions& options, const std::string& path) {
   const BakedTexture& texture = result.texture;
   Film film;
   film.width = film.height = static_cast<int>(texture.size);
   film.data_window = {0, 0, film.width - 1, film.height - 1};
+  film.metadata = metadata_of(result.statistics, source, options);
   film.planes.push_back({"ao", texture.ao});
   const auto add = [&](const std::string& layer, const char* letters,
                        const std::vector<V3f>& values) {

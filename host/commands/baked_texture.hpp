@@ -28,11 +28,18 @@ std::vector<gltf::TexturedPrimitive> textured_primitives(const gltf::SourceFile&
                                                          const TextureLayout& layout,
                                                          std::uint32_t set);
 
+/// Which texture coordinates show the texture. `fault`: FileUvs::note.
+std::string coordinates_note(const TextureLayout& layout,
+                             const std::vector<gltf::TexturedPrimitive>& primitives,
+                             const std::string& fault);
+
 /// AO as a grey PNG of 8 or 16 bits. It is linear, as glTF says.
 std::string occlusion_png(const BakedTexture& texture, int bits);
 
-/// All that was baked, as an EXR with the layers ao, bent (X, Y and Z in object space) and, for
-/// each light, light.NAME (R, G and B).
-void write_baked_exr(const BakeResult& result, const std::string& path);
+/// All that was baked of the scene `source`, as an EXR with the layers ao, bent (X, Y and Z in
+/// object space) and, for each light, light.NAME (R, G and B). The metadata have the options and
+/// the bias, by the names that renders give them.
+void write_baked_exr(const BakeResult& result, const std::string& source,
+                     const BakeOptions& options, const std::string& path);
 
 }  // namespace dapple

@@ -28,7 +28,9 @@ enum class BakeSides : std::uint8_t {
 /// Which placements of a mesh the values at its vertices describe.
 enum class BakeInstances : std::uint8_t {
   together,  ///< the mean over all placements, each in its surroundings
-  alone,     ///< the mesh without the rest of the scene, as it is in object space
+  /// The mesh without the rest of the scene and without occluders, as it is in object space:
+  /// `distance` is in the mesh's own units there, and `ground` is below the mesh.
+  alone,
 };
 
 struct BakeOptions {
@@ -54,15 +56,18 @@ struct BakeOptions {
   /// The footprint is the largest of `footprint`, a half of it, a quarter and so on with which the
   /// bias is at most this, [0,1]; exact rays if none is; 0: `footprint`.
   float max_bias = 0;
-  float distance = 0;  ///< metres; surfaces farther away do not occlude; 0: no limit
-  float falloff = 0;   ///< as RenderOptions::ao_falloff
+  /// Metres, or with BakeInstances::alone the mesh's own units; surfaces farther away do not
+  /// occlude; 0: no limit.
+  float distance = 0;
+  float falloff = 0;  ///< as RenderOptions::ao_falloff
   Normals normals = Normals::shading;
   bool at_vertices = false;  ///< rays start at the vertices, not from points of the triangles
   BakeSides sides = BakeSides::automatic;
   BakeInstances placement = BakeInstances::together;
   std::uint32_t texture_size = 1024;  ///< texels along each side, [1, 16384]
   int margin = 16;                    ///< texels by which values extend over the border of charts
-  /// Texture coordinates to use, for each mesh and vertex, in [0,1]; empty: a layout of our own.
+  /// Texture coordinates to use, for each mesh and vertex, in [0,1] up to rounding errors of 1e-5;
+  /// empty: a layout of our own.
   std::vector<std::vector<V2f>> texture_uvs;
   std::uint32_t seed = 0;
   bool ground = false;                                 ///< an opaque plane under the scene occludes
@@ -103,6 +108,13 @@ struct BakedTexture {
   std::vector<std::vector<V3f>> light;  ///< as BakedMesh::light, by light and texel
   TextureLayout layout;
   double coverage = 0;  ///< share of the texels that triangles cover, without the margin
+  double overlap = 0;   ///< share of these in which triangles overlap, as uv_overlap() counts
+};
+
+/// Values that were sampled to a target error. Vertices that share a value count once.
+struct TargetStatistics {
+  std::size_t values = 0;
+  std::size_t above = 0;  ///< those with a larger error, because BakeOptions::rays is the maximum
 };
 
 struct BakeStatistics {
@@ -113,12 +125,16 @@ struct BakeStatistics {
   std::uint64_t rays = 0;
   double squared_errors = 0;        ///< of AO, estimated; the sum over all values
   double squared_light_errors = 0;  ///< of all lights together, relative as target_error
+  /// Of AO, and of all lights together, at vertices and in the texture.
+  TargetStatistics ao_target, light_target;
   /// Of the prefiltered samples: the bias of "ao", and of "light", all lights together, relative to
   /// the largest unoccluded one. Empty if it is not reported.
   std::map<std::string, Bias> bias;
   float footprint = 0;              ///< BakeOptions::footprint, or what max_bias chose
   std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
   std::size_t hidden_texels = 0;    ///< the same in the texture
+  std::size_t dark_vertices = 0;    ///< see nothing, nor do those that triangles join them to: AO 0
+  std::size_t dark_texels = 0;      ///< the same, of a texture in which no texel sees anything
   std::string device;
   std::vector<std::string> notes;
 };
@@ -147,8 +163,8 @@ BakeResult bake(const Scene& scene, const BakeOptions& options = {},
 
 /// The share of the covered texels of a `size` x `size` texture that lie in several triangles at
 /// their centre, or in small triangles whose areas add up to more than the texel, [0,1], for
-/// texture coordinates as BakeOptions::texture_uvs; infinity if some are outside of [0,1]. Of the
-/// meshes that a bake with `placement` bakes.
+/// texture coordinates as BakeOptions::texture_uvs; infinity if some are more than 1e-5 outside of
+/// [0,1]. Of the meshes that a bake with `placement` bakes.
 double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
                   BakeInstances placement = BakeInstances::together);
 

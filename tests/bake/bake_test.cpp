@@ -179,6 +179,36 @@ TEST(Bake, SidesAreTheFrontTheBrighterOneOrTheMean) {
   EXPECT_LT(mean_of_leaf(leaf_on_table(false), BakeSides::automatic), 0.1f) << "single-sided";
 }
 
+// A sheet of which each triangle is there twice, once for each side: what is up is one's front and
+// the other's back.
+TEST(Bake, SheetsBackToBackHaveTheBrighterSideOfBoth) {
+  Scene scene = leaf_on_table(true);
+  append_grid(scene.meshes[0], {-0.05f, 0.001f, -0.05f}, {0, 0, 0.1f}, {0.1f, 0, 0}, 1, 0);
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::sun;
+  sun.direction = V3f(0, -1, 0);
+  sun.angular_radius = 0.01f;
+  sun.radiance = V3f(1 / (3.14159265f * 1e-4f));  // irradiance 1
+  scene.lights = {sun};
+  for (const bool at_vertices : {false, true}) {
+    for (const bool texture : {false, true}) {
+      BakeOptions options = many_rays();
+      options.bent = options.light = true;
+      options.at_vertices = at_vertices;
+      options.texture = texture;
+      options.texture_size = 32;
+      const BakeResult result = bake(scene, options);
+      for (std::size_t v = 0; v < 8; ++v) {
+        EXPECT_NEAR(result.meshes.at(0).ao.at(v), 1, 1e-4) << v;
+        EXPECT_GT(result.meshes[0].bent.at(v).y, 0.99f) << v;
+        EXPECT_NEAR(result.meshes[0].light.at(0).at(v).x, 1, 0.01) << v;
+      }
+      for (const float ao : result.texture.ao) EXPECT_GT(ao, texture ? 0.5f : 0.0f);
+    }
+  }
+}
+
 TEST(Bake, VerticesInsideClosedGeometryHaveTheirNeighboursValue) {
   // A strip of cells from far outside into a cube of side 1 about the origin.
   Scene scene = make_procedural("scene:cube?divisions=1");
@@ -196,6 +226,27 @@ TEST(Bake, VerticesInsideClosedGeometryHaveTheirNeighboursValue) {
   EXPECT_GT(result.meshes.at(0).ao[inside], 0.2f);
   const BakeResult alone = bake(strip, BakeOptions{});
   EXPECT_EQ(alone.statistics.hidden_vertices, 0u);
+  EXPECT_EQ(result.statistics.dark_vertices + alone.statistics.dark_vertices, 0u);
+}
+
+TEST(Bake, AClosedRoomIsDarkAndSaysSo) {
+  Scene room = make_procedural("scene:cube?divisions=2");
+  Mesh& mesh = room.meshes.at(0);
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);  // the front sides look inwards
+  BakeOptions options;
+  options.sides = BakeSides::front;
+  options.estimator = Estimator::exact;
+  options.texture = true;
+  options.texture_size = 64;
+  BakeResult result = bake(room, options);
+  EXPECT_EQ(result.statistics.dark_vertices, mesh.positions.size());
+  EXPECT_EQ(result.statistics.hidden_vertices + result.statistics.hidden_texels, 0u);
+  EXPECT_GT(result.statistics.dark_texels, 0u);
+  for (const float ao : result.meshes.at(0).ao) EXPECT_EQ(ao, 0);
+  options.distance = 1e-3f;
+  result = bake(room, options);
+  EXPECT_EQ(result.statistics.dark_vertices + result.statistics.dark_texels, 0u);
 }
 
 TEST(Bake, InstancesHaveTheValueOfTheirSurroundings) {

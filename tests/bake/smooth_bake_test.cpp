@@ -178,8 +178,8 @@ TEST(SmoothBake, SamplesAreAsBrightAsAPictureOfThem) {
   options.light = true;
   const OccluderScene occluders(scene, options, {});
   const Mesh& mesh = scene.meshes[0];
-  const VertexGroups groups = group_vertices(mesh, true);
   const std::vector<bool> two_sided(mesh.primitive_count(), true);
+  const VertexGroups groups = group_vertices(mesh, two_sided);
   std::vector<SurfaceSample> samples;
   for (std::uint32_t t = 5; t < mesh.primitive_count(); t += 47)
     samples.push_back(sample_triangle({mesh, groups, two_sided}, t, t));

@@ -34,24 +34,32 @@ Mesh folded_square(float degrees) {
 }
 
 TEST(VertexGroups, ASmoothSeamIsOneGroupAndAHardEdgeIsTwo) {
-  const VertexGroups smooth = group_vertices(folded_square(20), false);
+  const VertexGroups smooth = group_vertices(folded_square(20));
   EXPECT_EQ(smooth.count, 4u);
   EXPECT_EQ(smooth.of_vertex[0], smooth.of_vertex[3]);
   EXPECT_EQ(smooth.of_vertex[2], smooth.of_vertex[4]);
-  EXPECT_EQ(group_vertices(folded_square(90), false).count, 6u);
+  EXPECT_EQ(group_vertices(folded_square(90)).count, 6u);
 }
 
 TEST(VertexGroups, MinusZeroIsZero) {
   Mesh mesh = folded_square(0);
   mesh.positions[3] = V3f(-0.0f, 0, -0.0f);  // as the first corner
-  EXPECT_EQ(group_vertices(mesh, false).count, 4u);
+  EXPECT_EQ(group_vertices(mesh).count, 4u);
 }
 
 TEST(VertexGroups, OppositeNormalsAreSimilarOnlyOfTwoSidedSheets) {
   Mesh mesh = folded_square(0);
   std::swap(mesh.indices[4], mesh.indices[5]);  // the second triangle's other side
-  EXPECT_EQ(group_vertices(mesh, false).count, 6u);
-  EXPECT_EQ(group_vertices(mesh, true).count, 4u);
+  EXPECT_EQ(group_vertices(mesh).count, 6u);
+  EXPECT_EQ(group_vertices(mesh, {true, false}).count, 6u) << "only one of them has two sides";
+  const VertexGroups groups = group_vertices(mesh, {true, true});
+  EXPECT_EQ(groups.count, 4u);
+  // The last vertex is a group of its own.
+  EXPECT_EQ(groups.turned, (std::vector<bool>{false, false, false, true, true, false}));
+  const std::vector<bool> two_sided{true, true};
+  EXPECT_EQ(sample_triangle({mesh, groups, two_sided}, 0, 0).turned, (std::array<bool, 3>{}));
+  EXPECT_EQ(sample_triangle({mesh, groups, two_sided}, 1, 0).turned,
+            (std::array<bool, 3>{true, false, true}));
 }
 
 TEST(VertexGroups, PartsAreJoinedByTriangles) {
@@ -60,7 +68,7 @@ TEST(VertexGroups, PartsAreJoinedByTriangles) {
     mesh.positions.push_back(p);
   mesh.indices.insert(mesh.indices.end(), {6, 7, 8});
   mesh.materials.push_back(0);
-  const VertexGroups groups = group_vertices(mesh, false);
+  const VertexGroups groups = group_vertices(mesh);
   const std::vector<std::uint32_t> part = connected_parts(mesh, groups);
   EXPECT_EQ(groups.count, 7u);
   EXPECT_EQ(part[groups.of_vertex[0]], part[groups.of_vertex[5]]);
@@ -75,7 +83,7 @@ double grouping_seconds(std::size_t count) {
   double min = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 3; ++run) {
     const std::clock_t start = std::clock();
-    const VertexGroups groups = group_vertices(mesh, false);
+    const VertexGroups groups = group_vertices(mesh);
     min = std::min(min, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     EXPECT_EQ(groups.count, 3 * count) << "each vertex is a group";
   }
@@ -111,7 +119,7 @@ TEST(SurfaceSamples, TheFirstPowersOfFourLieInDifferentPartsOfATriangle) {
 
 TEST(SurfaceSamples, WeightsOfASampleAddUpToTwiceTheArea) {
   const Mesh mesh = triangles({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}});
-  const VertexGroups groups = group_vertices(mesh, false);
+  const VertexGroups groups = group_vertices(mesh);
   const std::vector<bool> two_sided{true};
   const SurfaceSample sample = sample_triangle({mesh, groups, two_sided}, 0, 5);
   EXPECT_NEAR(sample.weight[0] + sample.weight[1] + sample.weight[2], 6.0f, 1e-5f);

@@ -156,7 +156,8 @@ TEST_F(BakeBadInput, AFileInTheWayOfAFolderForCopiesIsFoundBeforeAnyWork) {
 // Points of a palette, for one: no texel was covered, and AO was 1 everywhere.
 TEST_F(BakeBadInput, CoordinatesWithoutAreaAreSaidWithTheirShareAndReplaced) {
   const std::string reason = "TEXCOORD_0 has no area in the texture for ";
-  const std::string replaced = " % of the surface: the texture has coordinates of its own\n";
+  const std::string replaced =
+      " % of the surface: the texture has coordinates of its own, TEXCOORD_1\n";
   for (const auto& [second, share] :
        {std::pair{std::vector<float>{0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f}, "50.0"},
         {std::vector<float>{0.6f, 0.9f, 0.7f, 0.9f, 0.8f, 0.9f}, "50.0"}}) {
@@ -180,7 +181,7 @@ TEST_F(BakeBadInput, CoordinatesThatOverlapAreSaidWithTheirShareAndReplaced) {
     EXPECT_EQ(run.code, 0) << run.err;
     return run.err;
   };
-  const std::string replaced = ": the texture has coordinates of its own\n";
+  const std::string replaced = ": the texture has coordinates of its own, TEXCOORD_1\n";
   EXPECT_TRUE(contains(bake_with(full, full),
                        "TEXCOORD_0 overlaps itself in 100.0 % of its texels" + replaced));
   // A quarter of the large triangle has the small one on it.

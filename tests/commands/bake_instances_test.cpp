@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "dapple/scene.hpp"
 #include "support/bake_command.hpp"
@@ -179,6 +180,64 @@ TEST_F(BakeCommand, InstancesGetExtrasOrAnInstanceAttribute) {
   const json& attributes = after["nodes"][2]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
   EXPECT_EQ(after["accessors"][attributes["_AO"].get<std::size_t>()]["count"], 2);
   EXPECT_EQ(load_gltf(path("out.glb")).instances.size(), 4u);
+}
+
+/// A triangle at two places of EXT_mesh_gpu_instancing that has colours, and at one of a node.
+GltfBuilder coloured_instances() {
+  GltfBuilder builder;
+  builder.add_triangle();
+  const int places =
+      builder.add_accessor(std::vector<float>{0, 0, 0, 0, 0, 0.1f}, test::kFloat, "VEC3");
+  const int colors =
+      builder.add_accessor(std::vector<float>{1, 0, 0, 0, 1, 0}, test::kFloat, "VEC3");
+  builder.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", places}, {"_COLOR_0", colors}};
+  builder.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  builder.add("nodes", {{"mesh", 0}, {"translation", {0, 0, 9}}});
+  return builder;
+}
+
+TEST_F(BakeCommand, TheColourOfInstancesIsGreyAoAndOtherChannelsAreScalars) {
+  write("in.glb", coloured_instances().glb());
+  std::map<std::string, std::vector<float>> values;
+  for (const std::string channel : {"_AO", "_COLOR_0", "_SHADE"}) {
+    const std::string option = channel == "_AO" ? "" : " --channel " + channel;
+    const Outcome run = dapple("bake in.glb -o out.glb --to instance" + option);
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_FALSE(contains(run.err, "extras.ao")) << run.err;
+    const test::GltfData file(path("out.glb"));
+    const json& node = file.doc["nodes"][0];
+    EXPECT_FALSE(node.contains("extras")) << node;
+    EXPECT_TRUE(file.doc["nodes"][1]["extras"]["ao"].is_number()) << file.doc["nodes"][1];
+    const json& attributes = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    EXPECT_EQ(attributes.contains("_AO"), channel == "_AO") << attributes;
+    const json& accessor = file.accessor(attributes.at(channel));
+    EXPECT_EQ(accessor["type"], channel == "_COLOR_0" ? "VEC3" : "SCALAR");
+    EXPECT_EQ(accessor["componentType"], test::kFloat);
+    values[channel] = file.floats(attributes.at(channel));
+  }
+  const std::vector<float>& ao = values["_AO"];
+  ASSERT_EQ(ao.size(), 2u);
+  EXPECT_LT(ao[0], 0.5f) << "the other one is close above it";
+  EXPECT_GT(ao[1], 0.9f);
+  EXPECT_EQ(values["_SHADE"], ao);
+  EXPECT_EQ(values["_COLOR_0"], (std::vector<float>{ao[0], ao[0], ao[0], ao[1], ao[1], ao[1]}));
+}
+
+TEST_F(BakeCommand, ChannelsThatInstancesCannotHaveAreRefusedAndThoseThatNoneHasTold) {
+  write("in.glb", rich_triangle().glb());
+  std::ofstream(path("sun.json")) << R"({"lights": [{"type": "sun", "name": "noon",
+      "direction": [0, 0, -1], "irradiance": 1}]})";
+  const std::string bake = "bake in.glb -o out.glb --to instance --channel ";
+  for (const char* channel : {"COLOR_0.rgb", "COLOR_0.r", "TEXCOORD_1.x", "TRANSLATION", "_"})
+    expect_failure(dapple(bake + channel), 2, "with --to instance it can be _AO, _COLOR_0");
+  expect_failure(dapple(bake + "_LIGHT_noon --passes ao,light --lights sun.json"), 2,
+                 "the attribute of the light \"noon\"");
+  EXPECT_FALSE(std::filesystem::exists(path("out.glb")));
+  const Outcome run = dapple(bake + "_COLOR_0");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "there is no _COLOR_0, all values are extras.ao")) << run.err;
+  EXPECT_TRUE(document("out.glb")["nodes"][0]["extras"]["ao"].is_number());
 }
 
 // Viewers transform normals with the inverse transpose: a direction b of a mesh that is scaled by S

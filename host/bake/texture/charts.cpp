@@ -38,7 +38,7 @@ struct Edge {
 class Neighbours {
  public:
   explicit Neighbours(const Mesh& mesh) : of_(mesh.primitive_count(), {kNone, kNone, kNone}) {
-    const VertexGroups groups = group_vertices(mesh, false);
+    const VertexGroups groups = group_vertices(mesh);
     std::vector<Edge> edges;
     edges.reserve(mesh.indices.size());
     for (std::uint32_t t = 0; t < of_.size(); ++t) {

@@ -26,7 +26,7 @@ struct TriangleEdge {
 };
 
 std::vector<TriangleEdge> sorted_edges(const Mesh& mesh) {
-  const VertexGroups groups = group_vertices(mesh, false);
+  const VertexGroups groups = group_vertices(mesh);
   std::vector<TriangleEdge> edges;
   edges.reserve(mesh.indices.size());
   for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t) {

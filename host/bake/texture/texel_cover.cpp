@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace dapple {
 namespace {
@@ -44,8 +45,46 @@ void visit_texels(const V2f* uv, std::uint32_t size, Visit visit) {
   };
   for (std::uint32_t y = texel(low.y); y <= texel(high.y); ++y)
     for (std::uint32_t x = texel(low.x); x <= texel(high.x); ++x)
-      if (clip_to_texel(uv, size, x, y).area() > kMinArea) visit(y * size + x);
+      if (clip_to_texel(uv, size, x, y).area() > kMinArea) visit(x, y);
 }
+
+/// A counter for each texel, in blocks of texels that are made at the first use: the charts of a
+/// small mesh are a few of them, wherever in the texture they lie.
+class TexelCounters {
+ public:
+  explicit TexelCounters(std::uint32_t size)
+      : size_(size),
+        blocks_each_way_((size + kBlock - 1) / kBlock),
+        blocks_(std::size_t{blocks_each_way_} * blocks_each_way_) {}
+
+  std::uint32_t& at(std::uint32_t x, std::uint32_t y) {
+    auto& block = blocks_[std::size_t{y / kBlock} * blocks_each_way_ + x / kBlock];
+    if (!block) block = std::make_unique<std::uint32_t[]>(std::size_t{kBlock} * kBlock);
+    return block[std::size_t{y % kBlock} * kBlock + x % kBlock];
+  }
+
+  /// Calls visit(texel, counter) for each counter above 0, by increasing texels.
+  template <class Visit>
+  void for_each(Visit visit) {
+    for (std::uint32_t top = 0; top < size_; top += kBlock) {
+      const auto row = std::span(blocks_).subspan(std::size_t{top / kBlock} * blocks_each_way_,
+                                                  blocks_each_way_);
+      if (std::none_of(row.begin(), row.end(), [](const auto& block) { return bool(block); }))
+        continue;
+      for (std::uint32_t y = top; y < std::min(top + kBlock, size_); ++y)
+        for (std::uint32_t b = 0; b < blocks_each_way_; ++b)
+          for (std::uint32_t x = 0; row[b] && x < kBlock; ++x)
+            if (std::uint32_t& counter = row[b][std::size_t{y - top} * kBlock + x]; counter > 0)
+              visit(y * size_ + b * kBlock + x, counter);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kBlock = 64;  ///< texels along its side
+
+  std::uint32_t size_, blocks_each_way_;
+  std::vector<std::unique_ptr<std::uint32_t[]>> blocks_;  ///< row by row; none: all are 0
+};
 
 }  // namespace
 
@@ -77,23 +116,22 @@ bool has_texel_area(const V2f* uv, std::uint32_t size) {
 }
 
 TexelCover cover_texels(std::span<const V2f> corners, std::uint32_t size) {
-  std::vector<std::uint32_t> count(std::size_t{size} * size);
+  TexelCounters counters(size);
   for (std::size_t i = 0; i < corners.size(); i += 3)
-    visit_texels(&corners[i], size, [&](std::uint32_t texel) { ++count[texel]; });
+    visit_texels(&corners[i], size, [&](std::uint32_t x, std::uint32_t y) { ++counters.at(x, y); });
   TexelCover cover;
   std::uint32_t sum = 0;
-  for (std::uint32_t texel = 0; texel < count.size(); ++texel) {
-    if (count[texel] == 0) continue;
+  counters.for_each([&](std::uint32_t texel, std::uint32_t& counter) {
     cover.texel.push_back(texel);
     cover.first.push_back(sum);
-    sum += count[texel];
-    count[texel] = cover.first.back();  // from here on where its next triangle goes
-  }
+    sum += counter;
+    counter = cover.first.back();  // from here on where its next triangle goes
+  });
   cover.first.push_back(sum);
   cover.triangles.resize(sum);
   for (std::size_t i = 0; i < corners.size(); i += 3)
-    visit_texels(&corners[i], size, [&](std::uint32_t texel) {
-      cover.triangles[count[texel]++] = static_cast<std::uint32_t>(i / 3);
+    visit_texels(&corners[i], size, [&](std::uint32_t x, std::uint32_t y) {
+      cover.triangles[counters.at(x, y)++] = static_cast<std::uint32_t>(i / 3);
     });
   return cover;
 }

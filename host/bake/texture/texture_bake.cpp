@@ -6,6 +6,7 @@
 #include "bake/texture/dilation.hpp"
 #include "bake/texture/seams.hpp"
 #include "bake/texture/texel_cover.hpp"
+#include "bake/texture/uv_overlap.hpp"
 #include "bake/vertex_bake.hpp"
 
 namespace dapple {
@@ -105,9 +106,10 @@ class SampledTexels : public SampledSurface {
 
 namespace {
 
-/// The small part of the mesh that a texel shows: that of its first triangle.
-SmallParts parts_of_texels(const Mesh& mesh, const SampledTexels& texels, bool any_two_sided) {
-  const VertexGroups groups = group_vertices(mesh, any_two_sided);
+/// The small part of the mesh that a texel shows: that of its first triangle. Texels have the front
+/// of their triangle, so sheets back to back are parts of their own.
+SmallParts parts_of_texels(const Mesh& mesh, const SampledTexels& texels) {
+  const VertexGroups groups = group_vertices(mesh);
   SmallParts parts = small_parts(mesh, groups);
   std::vector<std::uint32_t> of_texel(texels.size());
   for (std::size_t i = 0; i < of_texel.size(); ++i)
@@ -141,8 +143,7 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTra
     if (!has_area(mesh, t))
       std::fill_n(corners.begin() + static_cast<std::ptrdiff_t>(3 * t), 3, V2f(0));
   const SampledTexels texels(mesh, corners, two_sided, options_, hash);
-  const bool any = std::find(two_sided.begin(), two_sided.end(), true) != two_sided.end();
-  const SmallParts parts = parts_of_texels(mesh, texels, any);
+  const SmallParts parts = parts_of_texels(mesh, texels);
   // Neighbouring texels share no samples, so that a variance takes two of them.
   constexpr std::uint32_t kFirst = 2;
   ValueSums sums(parts, options_.sides);
@@ -226,13 +227,15 @@ void TextureBake::fill_hidden_texels() {
   if (known_ != covered_) take_nearest(nearest_valid(known_, texture_.size, all), true);
 }
 
-BakedTexture TextureBake::finish() {
+BakedTexture TextureBake::finish(BakeStatistics& statistics) {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     if (!known_[i]) continue;
     texture_.ao[i] /= weight_[i];
     if (options_.bent) texture_.bent[i].normalize();
     for (std::vector<V3f>& light : texture_.light) light[i] /= weight_[i];
   }
+  if (std::find(known_.begin(), known_.end(), true) == known_.end())
+    std::swap(statistics.hidden_texels, statistics.dark_texels);
   fill_hidden_texels();
   take_nearest(nearest_valid(known_, texture_.size, options_.margin), false);
   for (std::size_t i = 0; i < known_.size(); ++i)
@@ -240,6 +243,7 @@ BakedTexture TextureBake::finish() {
   join_all_seams();
   const auto covered = std::count(covered_.begin(), covered_.end(), true);
   texture_.coverage = static_cast<double>(covered) / static_cast<double>(covered_.size());
+  texture_.overlap = find_overlap(texture_.layout.corners, texture_.size).share;
   return std::move(texture_);
 }
 

@@ -17,8 +17,8 @@ class TextureBake {
   /// The values of mesh number `index`, if the texture has it. False: stopped.
   bool add(std::uint32_t index, const Placements& placements, BakeTracing& tracing);
 
-  /// The texture, with its margin.
-  BakedTexture finish();
+  /// The texture, with its margin. Counts hidden texels as dark ones if no texel sees anything.
+  BakedTexture finish(BakeStatistics& statistics);
 
  private:
   /// Texels without a value take that of the one that `nearest` names; `only_covered`: if triangles

@@ -21,6 +21,9 @@ namespace {
 constexpr double kGapShare = 0.05;
 constexpr std::uint32_t kMinGap = 2;
 
+/// Exporters compute texture coordinates in floats: 1.0000001 is the border.
+constexpr float kOutside = 1e-5f;
+
 /// Of a mesh, the first that is not scaled to zero; the identity if it has none.
 M44f first_placement(const Scene& scene, std::uint32_t mesh) {
   for (const Instance& instance : scene.instances)
@@ -105,7 +108,7 @@ const std::vector<V2f>& given_uvs(const Scene& scene, const BakeOptions& options
                                               mesh.positions.size()));
   for (const std::uint32_t vertex : mesh.indices) {
     const V2f& uv = uvs[vertex];
-    if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1))
+    if (!texture_point(uv))
       throw Error(ErrorKind::usage,
                   fmt::format("{} has ({}, {}) at vertex {}; the texture is [0, 1]", of_mesh, uv.x,
                               uv.y, vertex));
@@ -128,6 +131,12 @@ std::vector<bool> textured_meshes(const Scene& scene, BakeInstances kind) {
     textured.push_back(is_new);
   }
   return textured;
+}
+
+std::optional<V2f> texture_point(const V2f& uv) {
+  const auto is_near = [](float x) { return x >= -kOutside && x <= 1 + kOutside; };
+  if (!is_near(uv.x) || !is_near(uv.y)) return std::nullopt;
+  return V2f(std::clamp(uv.x, 0.0f, 1.0f), std::clamp(uv.y, 0.0f, 1.0f));
 }
 
 TextureLayout make_layout(const Scene& scene, const BakeOptions& options) {
@@ -179,7 +188,7 @@ TextureLayout given_layout(const Scene& scene, const BakeOptions& options) {
     if (!textured[m]) continue;
     const std::vector<V2f>& uvs = given_uvs(scene, options, m);
     for (const std::uint32_t vertex : scene.meshes[m].indices)
-      layout.corners[m].push_back(uvs[vertex]);
+      layout.corners[m].push_back(texture_point(uvs[vertex]).value());
   }
   return layout;
 }
@@ -194,7 +203,10 @@ double share_without_texels(const Scene& scene, const std::vector<std::vector<V2
     const M44f to_world = first_placement(scene, m);
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       V2f uv[3];
-      for (std::size_t k = 0; k < 3; ++k) uv[k] = uvs.at(m).at(mesh.indices[3 * t + k]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V2f& given = uvs.at(m).at(mesh.indices[3 * t + k]);
+        uv[k] = texture_point(given).value_or(given);
+      }
       const double area = world_area(mesh, t, to_world);
       all += area;
       if (!has_texel_area(uv, size)) without += area;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "dapple/bake.hpp"
@@ -12,6 +13,10 @@ namespace dapple {
 /// Whether each mesh is in the texture: no strands, none without a placement, and of meshes that
 /// are one mesh of a file in several poses only the first one.
 std::vector<bool> textured_meshes(const Scene& scene, BakeInstances kind);
+
+/// The point of the texture that coordinates name: the border where they are rounding errors, 1e-5
+/// at most, outside of [0,1]; none if they are farther outside.
+std::optional<V2f> texture_point(const V2f& uv);
 
 /// Makes a layout of its own for all textured meshes: make_charts() of each, packed by size. Throws
 /// Error usage, with the size that it takes, if they don't fit in options.texture_size.

@@ -1,6 +1,8 @@
-// How much of a texture several triangles share: see uv_overlap() in dapple/bake.hpp.
+#include "bake/texture/uv_overlap.hpp"
+
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 
 #include "bake/texture/texel_cover.hpp"
@@ -34,71 +36,108 @@ void visit_centres(const V2f* uv, std::uint32_t size, Visit visit) {
   }
 }
 
-/// Counts the triangles at the centres of texels.
-class TexelCounts {
+/// The triangles at the centres of texels, mesh after mesh.
+class TexelUse {
  public:
-  explicit TexelCounts(std::uint32_t size) : size_(size), count_(std::size_t{size} * size) {}
+  explicit TexelUse(std::uint32_t size) : size_(size), last_(std::size_t{size} * size) {}
 
-  void add(const V2f* uv) {
+  /// A triangle of mesh number `mesh`: that of the triangle before, or a later one.
+  void add(const V2f* uv, std::uint32_t mesh) {
     bool has_centre = false;
     visit_centres(uv, size_, [&](std::uint32_t x, std::uint32_t y) {
       has_centre = true;
-      add_at(std::size_t{y} * size_ + x);
+      std::uint32_t& last = last_[std::size_t{y} * size_ + x];
+      if (last != 0) last |= (last & kMesh) == mesh + 1 ? kWithin : kAmong;
+      last = (last & ~kMesh) | (mesh + 1);
     });
-    if (!has_centre) add_small(uv);
+    if (!has_centre) add_small(uv, mesh);
   }
 
-  /// The share of the covered texels that several triangles cover.
-  [[nodiscard]] double share() {
-    for (const auto& [texel, area] : small_)
-      for (int i = 0; i < 2 && area > kFullTexel; ++i) add_at(texel);
+  [[nodiscard]] UvOverlap overlap() {
+    for (const auto& [texel, small] : small_)
+      if (small.area > kFullTexel)
+        last_[texel] |= (small.within ? kWithin : 0) | (small.first != small.last ? kAmong : 0);
     small_.clear();
-    return covered_ > 0 ? static_cast<double>(several_) / static_cast<double>(covered_) : 0.0;
+    std::size_t covered = 0, several = 0, within = 0, among = 0;
+    for (const std::uint32_t last : last_) {
+      covered += last != 0 ? 1 : 0;
+      several += (last & ~kMesh) != 0 ? 1 : 0;
+      within += (last & kWithin) != 0 ? 1 : 0;
+      among += (last & kAmong) != 0 ? 1 : 0;
+    }
+    const auto share = [&](std::size_t texels) {
+      return covered > 0 ? static_cast<double>(texels) / static_cast<double>(covered) : 0.0;
+    };
+    return {share(several), share(within), share(among)};
   }
 
  private:
-  void add_at(std::size_t texel) {
-    if (count_[texel] == 0) ++covered_;
-    if (count_[texel] == 1) ++several_;
-    count_[texel] = static_cast<std::uint8_t>(std::min(2, count_[texel] + 1));
-  }
+  static constexpr std::uint32_t kWithin = 1u << 31, kAmong = 1u << 30, kMesh = kAmong - 1;
 
-  /// Of a triangle without a texel's centre the area in the texel of its middle.
-  void add_small(const V2f* uv) {
+  /// Triangles without a texel's centre, of one texel.
+  struct SmallTriangles {
+    double area = 0, area_of_last = 0;  ///< of all; of the last mesh
+    std::uint32_t first = 0, last = 0;  ///< meshes
+    bool within = false;                ///< those of one mesh are more than a texel
+  };
+
+  /// Adds the area in the texel of the triangle's middle.
+  void add_small(const V2f* uv, std::uint32_t mesh) {
     const V2f middle = (uv[0] + uv[1] + uv[2]) * (static_cast<float>(size_) / 3);
     const auto texel = [&](float x) {
       return std::min(static_cast<std::uint32_t>(std::max(x, 0.0f)), size_ - 1);
     };
     const std::uint32_t x = texel(middle.x), y = texel(middle.y);
-    small_[std::size_t{y} * size_ + x] += double{clip_to_texel(uv, size_, x, y).area()};
+    const double area = double{clip_to_texel(uv, size_, x, y).area()};
+    const auto [at, is_new] = small_.try_emplace(std::size_t{y} * size_ + x);
+    SmallTriangles& small = at->second;
+    if (is_new) small.first = small.last = mesh;
+    if (small.last != mesh) small.area_of_last = 0;
+    small.last = mesh;
+    small.area += area;
+    small.area_of_last += area;
+    small.within |= small.area_of_last > kFullTexel;
   }
 
   std::uint32_t size_;
-  std::vector<std::uint8_t> count_;  ///< by texel, at most 2
-  std::unordered_map<std::size_t, double> small_;
-  std::size_t covered_ = 0, several_ = 0;
+  /// By texel, the mesh of the last triangle and one more, and kWithin and kAmong as they apply; 0:
+  /// no triangle.
+  std::vector<std::uint32_t> last_;
+  std::unordered_map<std::size_t, SmallTriangles> small_;
 };
 
 }  // namespace
 
-double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
-                  BakeInstances placement) {
-  TexelCounts counts(size);
+UvOverlap find_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs,
+                       std::uint32_t size, BakeInstances placement) {
+  TexelUse use(size);
   const std::vector<bool> textured = textured_meshes(scene, placement);
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+  for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     if (!textured[m]) continue;
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       V2f uv[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        uv[k] = uvs.at(m).at(mesh.indices[3 * t + k]);
-        const bool inside = uv[k].x >= 0 && uv[k].x <= 1 && uv[k].y >= 0 && uv[k].y <= 1;
-        if (!inside) return std::numeric_limits<double>::infinity();
+        const std::optional<V2f> p = texture_point(uvs.at(m).at(mesh.indices[3 * t + k]));
+        if (!p) return {std::numeric_limits<double>::infinity(), 0, 0};
+        uv[k] = *p;
       }
-      counts.add(uv);
+      use.add(uv, m);
     }
   }
-  return counts.share();
+  return use.overlap();
+}
+
+UvOverlap find_overlap(const std::vector<std::vector<V2f>>& corners, std::uint32_t size) {
+  TexelUse use(size);
+  for (std::uint32_t m = 0; m < corners.size(); ++m)
+    for (std::size_t i = 0; i < corners[m].size(); i += 3) use.add(&corners[m][i], m);
+  return use.overlap();
+}
+
+double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
+                  BakeInstances placement) {
+  return find_overlap(scene, uvs, size, placement).share;
 }
 
 }  // namespace dapple
