@@ -320,11 +320,11 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   Settings settings = bake_settings(scene, asked, occluders);
   if (together) settings.emplace_back("device", s.device);
   BakeCheckpoint checkpoint(control, std::move(settings));
-  BakeBias bias(has_bias(options) ? double{options.report_bias} : 0.0);
-  const BakeRecords records{progress, checkpoint, bias, s};
   const double prepared = s.seconds.build + s.seconds.upload;
   const Stopwatch tracing;
   if (together && !alone) measure_bias(*together, pilot_meshes(scene, options), options, s);
+  BakeBias bias(has_bias(options) ? double{options.report_bias} : 0.0);
+  const BakeRecords records{progress, checkpoint, bias, s};
   MeshOccluders mesh_occluders(scene, options, alone ? nullptr : &*together);
   if (options.vertices)
     result.interrupted = !bake_vertices(scene, options, mesh_occluders, records, result);

@@ -11,11 +11,13 @@ import pytest
 
 
 def test_bakes_have_the_bias_of_the_program(program: str, tree: dapple.Scene, tmp_path: Path) -> None:
-    arguments = [program, "bake", tree._native.source, "-o", tmp_path / "tree.glb", "-q"]
+    model = tmp_path / "tree.glb"
+    tree.save(model)
+    arguments = [program, "bake", model, "-o", tmp_path / "out.glb", "-q"]
     options = ["--rays", "64", "--target-error", "0", "--report-bias", "100%"]
     subprocess.run([*arguments, *options, "--stats-json", tmp_path / "s.json"], check=True)
     figures = json.loads((tmp_path / "s.json").read_text())
-    baked = tree.bake(rays=64, target_error=0, report_bias=1)
+    baked = dapple.load(model).bake(rays=64, target_error=0, report_bias=1)
     assert list(baked.bias) == list(figures["bias"]) == ["ao"]
     ao = baked.bias["ao"]
     found = (ao.mean, ao.error, ao.tile_rmse, ao.tile_rmse_limit, ao.share)

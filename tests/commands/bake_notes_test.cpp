@@ -95,7 +95,7 @@ TEST_F(BakeNotes, NameTheTextureCoordinatesThatWereMade) {
 }
 
 TEST_F(BakeNotes, SayHowManyValuesMissTheTarget) {
-  const std::string tree = "bake 'scene:tree?leaves=100' -o out.glb ";
+  const std::string tree = "bake 'scene:tree?leaves=20' -o out.glb ";
   const Outcome few = dapple(tree + "--target-error 0.001 --rays 16");
   ASSERT_EQ(few.code, 0) << few.err;
   EXPECT_TRUE(contains(few.err,

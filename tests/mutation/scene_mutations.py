@@ -49,7 +49,7 @@ MUTATIONS = [
         "mass-poles-of-instances-on-the-other-side", "host/bvh/build/top_level.cpp",
         "std::clamp(1.5f * place / mass.concentration,",
         "std::clamp(-1.5f * place / mass.concentration,",
-        r"^(Instance|MassShape|HardScenes)\."),
+        r"^InstanceMass\."),
     Mutation(
         "opaque-triangles-with-vertices-of-the-mesh", "host/bvh/opacity/opaque_triangles.cpp",
         "    const std::uint32_t lower = words_[vertex / 32] & ((1u << vertex % 32) - 1);\n",
