@@ -204,7 +204,8 @@ TEST(Bake, SheetsBackToBackHaveTheBrighterSideOfBoth) {
         EXPECT_GT(result.meshes[0].bent.at(v).y, 0.99f) << v;
         EXPECT_NEAR(result.meshes[0].light.at(0).at(v).x, 1, 0.01) << v;
       }
-      for (const float ao : result.texture.ao) EXPECT_GT(ao, texture ? 0.5f : 0.0f);
+      // Texels of the table below the leaf are darker: 0.86.
+      for (const float ao : result.texture.ao) EXPECT_GT(ao, 0.8f);
     }
   }
 }
