@@ -66,12 +66,13 @@ class DeviceRays {
     context_.write(queues_.rays, rays.rays.data(), rays.rays.size() * sizeof(Ray));
   }
 
-  Traced trace(Estimator estimator, std::size_t together) {
+  Traced trace(Estimator estimator, std::size_t together, float roulette) {
     OcclusionParams params{};
     params.scene = scene_.params;
     params.ray_count = static_cast<uint>(results_.size());
     params.rays_per_point = static_cast<uint>(together);
     params.footprint = kDefaultFootprint;
+    params.roulette = roulette;
     const double before = device_seconds();
     occlusion_pass(context_, queues_, scene_, "rivals", estimator, params);
     Traced traced;
@@ -159,15 +160,17 @@ std::vector<RayRow> measure_rays(RivalScene& scene, const PreparedRays& rays,
     });
   }
   std::optional<DeviceRays> on_device;
-  const auto add = [&](const char* name, Estimator estimator, std::size_t together) {
-    racers.emplace_back(name, false, [&on_device, estimator, together] {
-      return on_device->trace(estimator, together);
+  const auto add = [&](const char* name, Estimator estimator, std::size_t together,
+                       float roulette = 0) {
+    racers.emplace_back(name, false, [&on_device, estimator, together, roulette] {
+      return on_device->trace(estimator, together, roulette);
     });
   };
   if (ours) {
     on_device.emplace(scene, rays);
     add("exact", Estimator::exact, 1);
     add("exact packet", Estimator::exact, kRaysAPoint);
+    add("exact packet, roulette", Estimator::exact, kRaysAPoint, RenderOptions{}.roulette);
     add("prefiltered", Estimator::prefiltered, 1);
     add("prefiltered packet", Estimator::prefiltered, kRaysAPoint);
   }

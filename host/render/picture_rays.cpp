@@ -46,6 +46,7 @@ OcclusionParams PictureRays::occlusion_params(std::uint32_t points, int rays) co
   params.rays_per_point = static_cast<uint>(rays);
   params.ray_count = points * params.rays_per_point;
   params.footprint = options_.footprint;
+  if (options_.estimator == Estimator::exact) params.roulette = options_.roulette;
   return params;
 }
 

@@ -72,6 +72,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   set("estimator", name_of(options.estimator));
   set("normals", name_of(options.normals));
   set("footprint", options.footprint);
+  if (options.estimator == Estimator::exact) set("roulette", options.roulette);
   if (options.packets != Packets::automatic) set("packets", name_of(options.packets));
   if (limits_bias(options)) set("max_bias", *options.max_bias);
   if (options.target_error > 0) set("target_error", options.target_error);

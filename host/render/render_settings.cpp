@@ -96,6 +96,7 @@ Settings option_settings(const RenderOptions& options, const View& view) {
       {"--estimator", name_of(options.estimator)},
       {"--packets", name_of(options.packets)},
       {"--footprint", number(options.footprint)},
+      {"--roulette", number(options.roulette)},
       {"--max-bias", number(options.max_bias.value_or(0.0f))},
       {"--normals", name_of(options.normals)},
       {"--passes", passes_text(options)},

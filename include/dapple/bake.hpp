@@ -123,14 +123,18 @@ struct BakeStatistics {
   } seconds;
   std::size_t triangles = 0, vertices = 0, texels = 0, instances = 0, points = 0;
   std::uint64_t rays = 0;
-  double squared_errors = 0;        ///< of AO, estimated; the sum over all values
+  /// Values that have samples: not those of vertices that no triangle uses, nor of texels and
+  /// vertices all of whose samples lie inside closed geometry.
+  std::size_t sampled_values = 0;
+  double squared_errors = 0;        ///< of AO, estimated; the sum over all sampled values
   double squared_light_errors = 0;  ///< of all lights together, relative as target_error
-  /// Of AO, and of all lights together, at vertices and in the texture.
+  /// Of AO, and of all lights together, at vertices, in the texture and of instances.
   TargetStatistics ao_target, light_target;
   /// Of the prefiltered samples: the bias of "ao", and of "light", all lights together, relative to
   /// the largest unoccluded one. Empty if it is not reported.
   std::map<std::string, Bias> bias;
   float footprint = 0;              ///< BakeOptions::footprint, or what max_bias chose
+  std::size_t inside_samples = 0;   ///< inside closed geometry; they count for no value
   std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
   std::size_t hidden_texels = 0;    ///< the same in the texture
   std::size_t dark_vertices = 0;    ///< see nothing, nor do those that triangles join them to: AO 0
@@ -154,10 +158,12 @@ struct BakeResult {
 /// Bakes `scene`. Its instances and meshes must be as the reader returned them. `occluders` are
 /// scenes that occlude and are not baked. A vertex's value is the mean of the AO at points of the
 /// triangles around it, weighted by area and by the vertex's barycentric coordinate (the lumped
-/// form of Kavan, Bargteil and Sloan, "Least Squares Vertex Baking", 2011). Vertices at the same
+/// form of Kavan, Bargteil and Sloan, "Least Squares Vertex Baking", 2011). Points inside closed
+/// opaque geometry, such as those of a floor below a box, do not count. Vertices at the same
 /// position with normals of triangles within 45 degrees share one value. A bake that is
 /// resumed from a checkpoint of `control` must have the same arguments as the first one. Throws
-/// Error usage, input, device or failed. The same arguments give the same bits.
+/// Error usage, input, device or failed; usage also for `occluders` with BakeInstances::alone,
+/// unless only instances are baked. The same arguments give the same bits.
 BakeResult bake(const Scene& scene, const BakeOptions& options = {},
                 const RenderControl& control = {}, const std::vector<Scene>& occluders = {});
 

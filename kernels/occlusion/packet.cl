@@ -35,7 +35,7 @@ inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray
   Shares tests = make_shares(packet.tests, count);
   for (uint i = 0; i < count; i += 8u) {
     Lanes transmittance;
-    transmittance.v = packet_transmittance(&packet, i);
+    transmittance.v = packet_transmittance(params, &packet, i);
     for (uint lane = 0; lane < min(8u, count - i); ++lane) {
       __global Occlusion* result = results + order[i + lane];
       result->transmittance = transmittance.f[lane];

@@ -11,11 +11,11 @@
 #define DAPPLE_AO_STEPS 1099511627776.0f
 
 /* Sum of the transmittances of the packet's first `count` rays, in units of 2^-40. */
-inline long sum_transmittances(const Packet* packet, uint count) {
+inline long sum_transmittances(OcclusionParams params, const Packet* packet, uint count) {
   long8 sums = (long8)(0);
   for (uint i = 0; i < count; i += 8u) {
     const int8 counts = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < (int)(count - i);
-    const float8 seen = counts ? packet_transmittance(packet, i) : (float8)(0.0f);
+    const float8 seen = counts ? packet_transmittance(params, packet, i) : (float8)(0.0f);
     sums += convert_long8(seen * DAPPLE_AO_STEPS);
   }
   const long4 four = sums.lo + sums.hi;
@@ -39,7 +39,7 @@ inline float mean_transmittance(Scene scene, OcclusionParams params, __global co
     const uint together = min(traced - i, DAPPLE_PACKET_RAYS);
     Packet packet;
     traverse_rays(scene, params, rays, order + i, together, &packet);
-    sum += sum_transmittances(&packet, together);
+    sum += sum_transmittances(params, &packet, together);
   }
   return (float)sum / (DAPPLE_AO_STEPS * (float)count);
 }

@@ -65,6 +65,7 @@ class RenderOptions(TypedDict, total=False):
     light_rays: int
     estimator: Estimator
     footprint: float
+    roulette: float
     report_bias: float
     max_bias: float | None
     ao: bool

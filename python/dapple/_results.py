@@ -108,6 +108,8 @@ class BakedTexture:
     uvs: list[FloatArray]
     #: Share of the texels that triangles cover, without the margin.
     coverage: float
+    #: Share of these in which triangles overlap: values of several places are averaged there.
+    overlap: float
 
 
 @dataclass(frozen=True)

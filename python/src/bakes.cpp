@@ -24,8 +24,9 @@ namespace {
 
 using NamedArrays = std::vector<std::pair<std::string, FloatsOut>>;
 
-/// The layers, for each mesh the texture coordinates of its triangles' corners, and the coverage.
-using Texture = std::tuple<NamedArrays, std::vector<FloatsOut>, double>;
+/// The layers, for each mesh the texture coordinates of its triangles' corners, the coverage
+/// and the overlap.
+using Texture = std::tuple<NamedArrays, std::vector<FloatsOut>, double, double>;
 
 /// For each mesh its arrays, the AO of the instances, their irradiance by light, the texture,
 /// notes, the bias by layer, the footprint.
@@ -46,7 +47,7 @@ Texture texture_of(BakedTexture texture, const std::vector<std::string>& light_n
     const std::size_t triangles = of_mesh.size() / 3;
     corners.push_back(array_of<float>(std::move(of_mesh), {triangles, 3, 2}));
   }
-  return {std::move(layers), std::move(corners), texture.coverage};
+  return {std::move(layers), std::move(corners), texture.coverage, texture.overlap};
 }
 
 Baked bake_scene(const SceneOnDevice& scene, BakeOptions options,

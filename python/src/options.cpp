@@ -68,6 +68,7 @@ void bind_render_options(nb::module_& module) {
       .def_rw("ao_rays", &RenderOptions::ao_rays)
       .def_rw("light_rays", &RenderOptions::light_rays)
       .def_rw("footprint", &RenderOptions::footprint)
+      .def_rw("roulette", &RenderOptions::roulette)
       .def_rw("report_bias", &RenderOptions::report_bias)
       .def_rw("max_bias", &RenderOptions::max_bias)
       .def_rw("ao", &RenderOptions::ao)

@@ -150,10 +150,20 @@ def test_textures_have_the_given_coordinates() -> None:
     texture = baked.texture
     assert texture is not None and baked.meshes == []
     np.testing.assert_array_equal(texture.uvs[0], uvs[[[0, 1, 2], [0, 2, 3]]])
-    assert texture.coverage == pytest.approx(1)
+    assert texture.coverage == pytest.approx(1) and texture.overlap == 0
     ao = texture.layers["ao"]
     assert ao.shape == (32, 32) and texture.layers["bent"].shape == (32, 32, 3)
     assert ao[14:18, 14:18].mean() < 0.8 < 0.95 < ao[[0, 0, -1, -1], [0, -1, 0, -1]].mean()
+
+
+def test_textures_tell_how_far_triangles_overlap() -> None:
+    square = plate_scene(half=1, height=0)
+    folded = np.array([[0, 0], [1, 0], [1, 1], [1, 0.5]], np.float32)  # half of one on the other
+    baked = square.bake(
+        vertices=False, texture=True, texture_size=32, rays=8, target_error=0, texture_uvs=[folded]
+    )
+    assert baked.texture is not None
+    assert baked.texture.overlap == pytest.approx(0.5, abs=0.06)
 
 
 def test_ambient_is_the_sky_of_the_picture(plate: dapple.Scene) -> None:

@@ -211,6 +211,22 @@ TEST_F(FramesCommand, AFrameByItselfKeepsTheFootprintAndSoDoesOneThatIsGiven) {
   EXPECT_EQ(footprint("--footprint 4"), 4);
 }
 
+TEST_F(FramesCommand, ASequenceKeepsTheFootprintThatItsFirstFrameChose) {
+  const Outcome run = dapple(
+      "render 'scene:grass?leaves=60000&length=30' --width 256 --height 256 --spp 16 --passes ao "
+      "--crop 96,200,159,215 --frames 0-1 -q -o a.#.exr --stats-json a.#.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto first = test::json::parse(bytes_of(path("a.0.json"))),
+             second = test::json::parse(bytes_of(path("a.1.json")));
+  EXPECT_LT(first.at("footprint"), 4);
+  EXPECT_EQ(second.at("footprint"), first.at("footprint"));
+  const auto chooses = [](const test::json& statistics) {
+    return statistics.dump().find("bias pilot") != std::string::npos;
+  };
+  EXPECT_TRUE(chooses(first));
+  EXPECT_FALSE(chooses(second));
+}
+
 TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   const auto refuses = [&](const std::string& arguments, const std::string& part) {
     SCOPED_TRACE(arguments);

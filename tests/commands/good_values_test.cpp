@@ -103,7 +103,7 @@ const std::vector<std::string> kPictures = {
     "--report-bias 50% --ambient 0.5 --normals shading --ao-distance 3 --ao-falloff 2 --ground",
     "-o c.exr --background sky --png c.png --look-from 0,1,6 --look-at 0,0.5,0 --up 0,1,0.1 "
     "--fov 30 --aperture 0.05 --focus-distance 6 --light-radius 0.2 --opacity leaf=0.5 "
-    "--estimator exact --packets none --cache trees " +
+    "--estimator exact --roulette 0.5 --packets none --cache trees " +
         kKernels,
     "-o g.dapple --shard 1/2 --dome sky.hdr --dome-rotation 90",
 };

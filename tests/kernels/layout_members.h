@@ -63,7 +63,8 @@
   STRUCT(OcclusionParams)                                                                    \
   MEMBER(OcclusionParams, scene) MEMBER(OcclusionParams, ray_count)                          \
   MEMBER(OcclusionParams, footprint) MEMBER(OcclusionParams, inverse_distance)               \
-  MEMBER(OcclusionParams, falloff) MEMBER(OcclusionParams, rays_per_point)                   \
+  MEMBER(OcclusionParams, falloff) MEMBER(OcclusionParams, roulette)                         \
+  MEMBER(OcclusionParams, rays_per_point)                                                    \
   MEMBER(OcclusionParams, large_batches) MEMBER(OcclusionParams, batches_per_ticket)                \
   STRUCT(PixelWork) MEMBER(PixelWork, pixel) MEMBER(PixelWork, first_sample)                 \
   STRUCT(SliceParams)                                                                        \

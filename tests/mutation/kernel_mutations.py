@@ -24,6 +24,16 @@ MUTATIONS = [
         "const int forward = inverse < 0.0f;",
         r"^(Traversal|Packet|PacketsOption)\."),
     Mutation(
+        "roulette-keeps-what-rays-have", "kernels/occlusion/packet.clh",
+        "return hidden ? (float8)(0.0f) : max(value, roulette_floor(params));",
+        "return hidden ? (float8)(0.0f) : value;",
+        r"^Roulette\."),
+    Mutation(
+        "roulette-draws-from-the-footprint", "kernels/occlusion/roulette.clh",
+        "(float)(hash_uint(key) >> 8)",
+        "(float)(key & 0xffffffu)",
+        r"^Roulette\."),
+    Mutation(
         "forgotten-child", "kernels/occlusion/packet_stack.clh",
         "  const uint inner_mask = node->inner_mask;\n#ifdef DAPPLE_PACK_8_INTS",
         "  const uint inner_mask = node->inner_mask & 0x7fu;\n#ifdef DAPPLE_PACK_8_INTS",

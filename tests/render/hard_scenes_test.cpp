@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/camera_steps.hpp"
 #include "support/compare_films.hpp"
 
 namespace dapple {
@@ -118,34 +119,13 @@ TEST(HardScenes, TipsOfGrassInFewSamples) {
   expect_close(prefiltered, render(grass, options).film, "ao", {0.012, 0.014, 0.025});
 }
 
-/// Means of blocks of 16x16 pixels of the first channel of `layer`.
-std::vector<double> block_means(const Film& film, const std::string& layer) {
-  constexpr std::size_t kSize = 64, kBlock = 16, kBlocks = kSize / kBlock;
-  const std::vector<float>& pixels = film.find(layer + ".R")->pixels;
-  std::vector<double> means(kBlocks * kBlocks);
-  for (std::size_t p = 0; p < pixels.size(); ++p)
-    means[p / kSize / kBlock * kBlocks + p % kSize / kBlock] +=
-        double{pixels[p]} / (kBlock * kBlock);
-  return means;
-}
-
-/// The largest change of the mean of a block while the camera moves in seven steps of `step_m`
-/// metres along x and z.
-double largest_step(Scene scene, float step_m, const std::string& layer, Estimator estimator) {
+/// The largest change of the mean of a block of 16x16 pixels in seven steps of the camera.
+double largest_step(const Scene& scene, float step_m, const std::string& layer,
+                    Estimator estimator) {
   RenderOptions options = picture_of(layer);
   options.spp = 64;
   options.estimator = estimator;
-  Renderer renderer;  // keeps the BVH
-  std::vector<double> before;
-  double largest = 0;
-  for (int step = 0; step < 8; ++step) {
-    const std::vector<double> means = block_means(renderer.render(scene, options).film, layer);
-    for (std::size_t b = 0; b < before.size(); ++b)
-      largest = std::max(largest, std::fabs(means[b] - before[b]));
-    before = means;
-    for (const int axis : {0, 2}) scene.cameras[0].to_world[3][axis] += step_m;
-  }
-  return largest;
+  return camera_steps::largest_step(camera_steps::frames(scene, step_m, layer, options, 8));
 }
 
 struct SteppedScene {

@@ -31,6 +31,7 @@ TEST(OptionSettings, NameTheOptionThatChangesThePicture) {
       {"--estimator", [](auto& o) { o.estimator = Estimator::exact; }},
       {"--packets", [](auto& o) { o.packets = Packets::none; }},
       {"--footprint", [](auto& o) { o.footprint = 3.5f; }},
+      {"--roulette", [](auto& o) { o.roulette = 0.5f; }},
       {"--max-bias", [](auto& o) { o.max_bias = 0.1f; }},
       {"--normals", [](auto& o) { o.normals = Normals::geometric; }},
       {"--passes", [](auto& o) { o.albedo = !o.albedo; }},

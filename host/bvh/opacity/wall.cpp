@@ -20,8 +20,10 @@ constexpr float kOneSided = 0.5f;
 constexpr float kFlat = 0.7f;
 
 /// Positions are equal if they are on the same point of a grid of this many steps over the
-/// surfaces, or, if these are farther from the origin than they are wide, over that distance.
-constexpr float kGridSteps = 4194304.0f;
+/// surfaces, or, if these are farther from the origin than they are wide, over that distance. Few
+/// enough that corners which differ by a rounding error seldom lie on two sides of a step: with 2^22
+/// walls of such corners leaked.
+constexpr float kGridSteps = 131072.0f;
 
 /// Returns for each vertex a hash of its position; 0 only by chance.
 std::vector<std::uint32_t> position_hashes(std::span<const V3f> positions) {

@@ -29,6 +29,7 @@ typedef struct OcclusionParams {
   float footprint;        /* scale, >= 0 */
   float inverse_distance; /* AO: 1 / D for the falloff; 0: none */
   float falloff;          /* AO: the power p; 0: none */
+  float roulette;         /* exact rays: c of roulette.clh, [0,1); 0: none */
   uint rays_per_point;    /* packets: consecutive rays that share their origin */
   /* The next two are for packets; occlusion_pass() and point_ao_pass() set them. */
   uint large_batches;      /* pixel packets: number of batches of DAPPLE_PIXEL_RAY_BATCH rays */
