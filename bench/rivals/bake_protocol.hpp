@@ -3,23 +3,11 @@
 // different programs.
 #pragma once
 
-#include "bake/sample_tracer.hpp"
+#include "rivals/baked_parts.hpp"
 #include "rivals/contest.hpp"
 #include "rivals/rival_scene.hpp"
 
 namespace dapple::bench {
-
-/// Part of a mesh that is baked instead of the mesh: some triangles, and all others at their
-/// vertices.
-struct BakedPart {
-  Mesh mesh;
-  std::vector<bool> two_sided;          ///< by triangle
-  std::vector<std::uint32_t> compared;  ///< vertices of the chosen triangles
-  Placements placements;
-};
-
-/// Parts around `triangles` evenly chosen triangles of the scene, or around all if there are fewer.
-std::vector<BakedPart> choose_parts(const Scene& scene, std::size_t triangles);
 
 /// AO at the compared vertices by Embree with `rays` rays for each triangle and side, as two
 /// independent halves.

@@ -70,7 +70,8 @@ BakeTracing tracing_against(const OccluderScene& occluders, const BakeOptions& o
                       {},
                       0,
                       records.progress,
-                      records.statistics};
+                      records.statistics,
+                      occluders.closed.get()};
   if (!options.light || occluders.lights.empty()) return tracing;
   tracing.light = records.checkpoint.with(records.bias.with(
       {"light", light_tracer(options, occluders), light_tracer(compared.prefiltered, occluders),
@@ -298,11 +299,14 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
     throw Error(ErrorKind::usage,
                 fmt::format("--passes light: {}; --lights or --dome brings some",
                             asked.lights ? "there are no lights" : "the scene has no lights"));
+  const bool alone = asked.placement == BakeInstances::alone;
+  if (alone && (asked.vertices || asked.texture) && !occluders.empty())
+    throw Error(ErrorKind::usage,
+                "--occluders needs --instances together or unique: a mesh alone has none");
   BakeOptions options = asked;
   const Stopwatch total;
   BakeResult result;
   BakeStatistics& s = result.statistics;
-  const bool alone = options.placement == BakeInstances::alone;
   std::optional<OccluderScene> together;
   if (!alone || options.instances) {
     together.emplace(scene, options, occluders);

@@ -196,6 +196,18 @@ class InstanceRounds {
 
   [[nodiscard]] const InstanceSums& sums() const { return sums_; }
 
+  /// Instances with samples, and those that have too few for the target.
+  [[nodiscard]] TargetStatistics counts() const {
+    TargetStatistics counts;
+    const double target = double{options_.target_error} * double{options_.target_error};
+    for (std::uint32_t i = 0; i < scene_.instances.size() && target > 0; ++i) {
+      if (sums_.count(i) == 0) continue;
+      ++counts.values;
+      if (sums_.squared_error(i) > target) ++counts.above;
+    }
+    return counts;
+  }
+
  private:
   bool trace_round(std::uint32_t count) {
     std::map<std::uint32_t, std::vector<SurfaceSample>> of_mesh;
@@ -258,6 +270,11 @@ class InstanceRounds {
   std::uint32_t traces_ = 0;
 };
 
+void add(TargetStatistics& sum, const TargetStatistics& counts) {
+  sum.values += counts.values;
+  sum.above += counts.above;
+}
+
 }  // namespace
 
 std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptions& options,
@@ -267,13 +284,18 @@ std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptio
                         std::vector(tracing.lights, std::vector<V3f>(count, V3f(0)))};
   InstanceRounds ao(scene, options, tracing, false);
   if (!ao.run()) return {};
+  add(tracing.statistics.ao_target, ao.counts());
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (ao.sums().count(i) > 0) values.ao[i] = static_cast<float>(ao.sums().mean(i));
+    if (ao.sums().count(i) > 0) {
+      values.ao[i] = static_cast<float>(ao.sums().mean(i));
+      ++tracing.statistics.sampled_values;
+    }
     tracing.statistics.squared_errors += ao.sums().squared_error(i);
   }
   if (tracing.light) {
     InstanceRounds light(scene, options, tracing, true);
     if (!light.run()) return {};
+    add(tracing.statistics.light_target, light.counts());
     for (std::uint32_t i = 0; i < count; ++i) {
       tracing.statistics.squared_light_errors += light.sums().squared_error(i);
       for (std::size_t l = 0; l < values.light.size() && light.sums().count(i) > 0; ++l)

@@ -82,6 +82,7 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
   upload_seconds = uploading.seconds();
   kernels.finish();
   for (std::string& warning : scene.warnings) notes.push_back(std::move(warning));
+  closed = std::make_unique<ClosedGeometry>(std::move(scene));
 }
 
 }  // namespace dapple

@@ -2,9 +2,11 @@
 // scenes and options. Out: an uploaded scene.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "bake/closed_geometry.hpp"
 #include "dapple/bake.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/device.hpp"
@@ -18,6 +20,7 @@ struct OccluderScene {
   Device device;
   SceneBvh bvh;
   DeviceScene uploaded;
+  std::unique_ptr<ClosedGeometry> closed;  ///< of the same scene
   std::vector<Light> lights;  ///< as uploaded; empty unless options.light
   double build_seconds = 0, upload_seconds = 0;
   std::vector<std::string> notes;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "bake/inside_samples.hpp"
 #include "bake/placement_choice.hpp"
 
 namespace dapple {
@@ -36,15 +37,15 @@ double place_count(const std::array<std::uint32_t, 3>& places) {
 
 SampleRounds::SampleRounds(const SampledSurface& surface, std::uint32_t hash,
                            const Placements& placements, BakeTracing& tracing, ValueSums& sums,
-                           bool lights)
+                           const ValueSums* ao)
     : surface_(surface),
       hash_(hash),
       placements_(placements),
       tracing_(tracing),
-      trace_(lights ? tracing.light : tracing.ao),
+      trace_(ao ? tracing.light : tracing.ao),
       sums_(sums),
-      is_of_lights_(lights),
-      lights_(lights ? std::max<std::size_t>(1, tracing.lights) : 1),
+      ao_(ao),
+      lights_(ao ? std::max<std::size_t>(1, tracing.lights) : 1),
       variance_(surface.size(), this->placements()),
       taken_(surface.size()) {}
 
@@ -107,22 +108,20 @@ bool SampleRounds::refine(float target, std::uint32_t max_samples) {
   return true;
 }
 
-// Counts the values that have samples, and those with an error above `target` around which no
-// sample may be added.
+// Counts the values that have samples outside of closed geometry, and those with an error above
+// `target` around which no sample may be added.
 void SampleRounds::count_values(float target, std::uint32_t max_samples) {
-  std::vector<bool> has_samples(sums_.size()), can_grow(sums_.size());
+  std::vector<bool> can_grow(sums_.size());
   for (std::size_t i = 0; i < surface_.size(); ++i) {
     if (!surface_.can_be_sampled(i)) continue;
-    for (const std::uint32_t place : surface_.places(i)) {
-      has_samples[place] = true;
+    for (const std::uint32_t place : surface_.places(i))
       if (taken_[i] < max_samples) can_grow[place] = true;
-    }
   }
   const std::vector<float> squares = sums_.squared_errors();
   BakeStatistics& statistics = tracing_.statistics;
-  TargetStatistics& counts = is_of_lights_ ? statistics.light_target : statistics.ao_target;
-  for (std::size_t place = 0; place < squares.size(); ++place) {
-    if (!has_samples[place]) continue;
+  TargetStatistics& counts = ao_ ? statistics.light_target : statistics.ao_target;
+  for (std::uint32_t place = 0; place < squares.size(); ++place) {
+    if (!sums_.is_sampled(place)) continue;
     ++counts.values;
     if (!can_grow[place] && squares[place] > target * target) ++counts.above;
   }
@@ -149,6 +148,10 @@ SurfaceSample SampleRounds::sample(const SampleIndex& index) const {
   }
   sample.front = front;
   sample.back = sample.back && back;
+  // Of lights: where the sun does not shine, most samples are dark.
+  sample.may_be_inside =
+      !ao_ || std::any_of(sample.place.begin(), sample.place.end(),
+                          [&](std::uint32_t place) { return ao_->has_inside(place); });
   return sample;
 }
 
@@ -174,22 +177,29 @@ bool SampleRounds::trace() {
   const bool goes_on = !found || tracing_.progress.add(before.samples.size());
   batch_traced_ = std::move(batch);
   if (goes_on && !batch_traced_.samples.empty())
-    traced_ = std::async(std::launch::async, [this] {
-      return trace_(batch_traced_.samples, batch_traced_.placement, placements_, rays_,
-                    batch_traced_.hash);
-    });
+    traced_ = std::async(std::launch::async, [this] { return traced(batch_traced_); });
   if (!found) return true;
   add_traced(before, *found);
   return goes_on;
+}
+
+TracedSamples SampleRounds::traced(const Batch& batch) const {
+  TracedSamples found = trace_(batch.samples, batch.placement, placements_, rays_, batch.hash);
+  if (tracing_.closed)
+    found.inside =
+        find_inside_samples(batch.samples, batch.placement, placements_, found, *tracing_.closed);
+  return found;
 }
 
 void SampleRounds::add_traced(const Batch& batch, const TracedSamples& found) {
   sums_.add(batch.samples, found);
   tracing_.statistics.points += found.points;
   tracing_.statistics.rays += found.rays;
+  for (const std::uint8_t inside : found.inside) tracing_.statistics.inside_samples += inside;
   for (std::size_t i = 0; i < batch.samples.size() && placements() > 1; ++i)
-    variance_.add(batch.indices[i].element, batch.placement[i], batch.samples[i],
-                  found.front[i].scalar, found.back[i].scalar);
+    if (!found.is_inside(i))
+      variance_.add(batch.indices[i].element, batch.placement[i], batch.samples[i],
+                    found.front[i].scalar, found.back[i].scalar);
 }
 
 // Of the elements around a place, that whose samples are the least balanced counts.

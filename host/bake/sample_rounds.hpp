@@ -6,6 +6,7 @@
 #include <future>
 
 #include "bake/bake_progress.hpp"
+#include "bake/closed_geometry.hpp"
 #include "bake/placement_variance.hpp"
 #include "bake/sampled_surface.hpp"
 #include "bake/value_sums.hpp"
@@ -19,6 +20,7 @@ struct BakeTracing {
   std::size_t lights = 0;  ///< their number
   BakeProgress& progress;
   BakeStatistics& statistics;
+  ClosedGeometry* closed = nullptr;  ///< samples inside of it do not count
 };
 
 /// How many samples and rays to take.
@@ -32,10 +34,10 @@ struct RoundOptions {
 
 class SampleRounds {
  public:
-  /// `hash`: random bits of the surface. `lights`: trace lights, not AO. All references must
-  /// outlive the rounds.
+  /// `hash`: random bits of the surface. `ao`: lights are traced, and these are the values of AO;
+  /// null: AO is traced. All references must outlive the rounds.
   SampleRounds(const SampledSurface& surface, std::uint32_t hash, const Placements& placements,
-               BakeTracing& tracing, ValueSums& sums, bool lights);
+               BakeTracing& tracing, ValueSums& sums, const ValueSums* ao = nullptr);
 
   /// Takes samples as the options say. False: stopped.
   bool run(const RoundOptions& options);
@@ -61,6 +63,7 @@ class SampleRounds {
   }
   [[nodiscard]] SurfaceSample sample(const SampleIndex& index) const;
   bool trace();
+  TracedSamples traced(const Batch& batch) const;
   void add_traced(const Batch& batch, const TracedSamples& found);
   void set_variance_factors();
 
@@ -70,7 +73,7 @@ class SampleRounds {
   BakeTracing& tracing_;
   const TraceSamples& trace_;
   ValueSums& sums_;
-  bool is_of_lights_;
+  const ValueSums* ao_;              ///< null: AO is traced, not lights
   std::size_t lights_;               ///< rays to lights are that many times as many
   std::size_t samples_at_once_ = 1;  ///< for take()'s rays
   int rays_ = kRaysPerSample;

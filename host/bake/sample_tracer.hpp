@@ -33,8 +33,13 @@ struct TracedSamples {
   std::vector<SideValue> front, back;
   /// Irradiance by each light, those of a sample one after the other; empty for AO.
   std::vector<V3f> front_light, back_light;
+  /// 1 for samples inside closed geometry, which do not count; empty: there are none.
+  std::vector<std::uint8_t> inside;
   float largest = 1;  ///< scalar of a sample that nothing occludes, at most
   std::uint64_t points = 0, rays = 0;
+  [[nodiscard]] bool is_inside(std::size_t sample) const {
+    return !inside.empty() && inside[sample] != 0;
+  }
 };
 
 /// Traces samples. `placement`: of each sample, index into `placements`. `rays`: of each sample and

@@ -25,6 +25,7 @@ struct SurfaceSample {
   V3f reach{0, 0, 0};                    ///< largest coordinates of its triangle, not negative
   bool is_on_plane = true;               ///< `normal`, or `geometric`, is that of a triangle
   bool front = true, back = false;       ///< sides that are traced
+  bool may_be_inside = true;             ///< whether it is tested: inside_samples.hpp
   std::array<std::uint32_t, 3> place{};  ///< vertex groups, or texels, whose value it is part of
   std::array<float, 3> weight{};         ///< in these values; 0: none
   std::array<bool, 3> turned{};          ///< its front is the back of these places

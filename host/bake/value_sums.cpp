@@ -47,6 +47,10 @@ float ValueSums::Side::count() const {
   return weight_squares > 0 ? weight * weight / weight_squares : 0;
 }
 
+float ValueSums::BothSides::inside_count() const {
+  return inside_squares > 0 ? inside_weight * inside_weight / inside_squares : 0;
+}
+
 float ValueSums::Side::squared_deviations() const {
   return weight > 0 ? std::max(0.0f, sum_squares / weight - mean() * mean()) * count() : 0.0f;
 }
@@ -141,7 +145,20 @@ void ValueSums::set_sampling(int rays, bool several_placements) {
 
 void ValueSums::add(std::span<const SurfaceSample> samples, const TracedSamples& found) {
   largest_ = std::max(largest_, found.largest);
-  for (std::size_t i = 0; i < samples.size(); ++i) add(samples[i], found, i);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (found.is_inside(i))
+      add_inside(samples[i]);
+    else
+      add(samples[i], found, i);
+  }
+}
+
+void ValueSums::add_inside(const SurfaceSample& sample) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    BothSides& place = of_place_[sample.place[k]];
+    place.inside_weight += sample.weight[k];
+    place.inside_squares += sample.weight[k] * sample.weight[k];
+  }
 }
 
 void ValueSums::add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index) {
@@ -222,9 +239,10 @@ std::vector<float> ValueSums::missing_samples(float target) const {
   std::vector<float> factors = squared_errors();
   tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t i) {
     const BothSides& place = of_place_[i];
-    const float samples = place.front.count() + place.back.count();
-    const bool may_be_hidden =
-        lights_ == 0 && samples > 0 && std::max(place.front.mean(), place.back.mean()) <= kHidden;
+    const float counted = place.front.count() + place.back.count();
+    const bool is_dark = lights_ == 0 && std::max(place.front.mean(), place.back.mean()) <= kHidden;
+    const bool may_be_hidden = counted > 0 ? is_dark : has_inside(static_cast<std::uint32_t>(i));
+    const float samples = counted + place.inside_count();
     factors[i] = std::max(
         {1.0f, factors[i] / (target * target), may_be_hidden ? kSamplesOfHidden / samples : 1.0f});
   });
@@ -235,6 +253,8 @@ std::vector<PlaceValue> ValueSums::values() const {
   std::vector<PlaceValue> values(of_place_.size());
   for (std::uint32_t i = 0; i < values.size(); ++i) {
     const BothSides& place = of_place_[i];
+    values[i].inside = has_inside(i);
+    if (is_inside(i)) continue;
     if (place.front.weight <= 0) {  // without a triangle there is nothing to occlude
       values[i] = {1, V3f(0, 0, 0), true};
       continue;
@@ -247,7 +267,7 @@ std::vector<PlaceValue> ValueSums::values() const {
     const float ao = both ? 0.5f * (place.front.mean() + place.back.mean()) : chosen.mean();
     const V3f bent =
         both && sides_ == BakeSides::mean ? place.front.bent + place.back.bent : chosen.bent;
-    values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true};
+    values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true, values[i].inside};
   }
   return values;
 }

@@ -21,8 +21,9 @@ struct SmallParts {
 /// The value of a place.
 struct PlaceValue {
   float ao = 0;
-  V3f bent{0, 0, 0};   ///< unit length, or zero
-  bool known = false;  ///< false: inside closed geometry, from where nothing is seen
+  V3f bent{0, 0, 0};    ///< unit length, or zero
+  bool known = false;   ///< false: inside closed geometry, from where nothing is seen
+  bool inside = false;  ///< some of its samples are surely inside closed geometry
 };
 
 class ValueSums {
@@ -39,7 +40,8 @@ class ValueSums {
   /// For each place variance_factor() of its samples; without them, all 1.
   void set_variance_factors(std::vector<float> factors) { factors_ = std::move(factors); }
 
-  /// Adds what was found at samples on the sides that were traced.
+  /// Adds what was found at samples on the sides that were traced. Those inside closed geometry do
+  /// not count for values.
   void add(std::span<const SurfaceSample> samples, const TracedSamples& found);
 
   /// Chooses the brighter side of each small part and of each place of larger ones, from the
@@ -50,6 +52,21 @@ class ValueSums {
   /// Whether a side of a place counts for its value.
   [[nodiscard]] bool counts(std::uint32_t place, bool back) const {
     return chosen_[place] == Chosen::both || (chosen_[place] == Chosen::back) == back;
+  }
+
+  /// Whether a place has samples that count.
+  [[nodiscard]] bool is_sampled(std::uint32_t place) const {
+    return of_place_[place].front.weight > 0 || of_place_[place].back.weight > 0;
+  }
+
+  /// Whether samples of a place lie inside closed geometry.
+  [[nodiscard]] bool has_inside(std::uint32_t place) const {
+    return of_place_[place].inside_weight > 0;
+  }
+
+  /// Whether all samples of a place do.
+  [[nodiscard]] bool is_inside(std::uint32_t place) const {
+    return has_inside(place) && !is_sampled(place);
   }
 
   /// The squared standard error of each place's scalar, estimated from its samples and from those
@@ -80,11 +97,14 @@ class ValueSums {
   };
   struct BothSides {
     Side front, back;
+    float inside_weight = 0, inside_squares = 0;  ///< of samples inside closed geometry
+    [[nodiscard]] float inside_count() const;
   };
   enum class Chosen : std::uint8_t { both, front, back };
   class PooledVariance;
 
   void add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index);
+  void add_inside(const SurfaceSample& sample);
   [[nodiscard]] float scale() const { return largest_ > 0 ? largest_ : 1; }
   [[nodiscard]] PooledVariance pooled_variance() const;
 

@@ -93,10 +93,15 @@ struct GroupValues {
   }
 };
 
-/// Adds the squared errors of the values at all vertices to `sum`.
-void add_errors(const VertexGroups& groups, const ValueSums& sums, double& sum) {
+/// Adds the squared errors of the values at all vertices to `sum`; returns how many have samples.
+std::size_t add_errors(const VertexGroups& groups, const ValueSums& sums, double& sum) {
   const std::vector<float> squares = sums.squared_errors();
-  for (const std::uint32_t group : groups.of_vertex) sum += double{squares[group]};
+  std::size_t sampled = 0;
+  for (const std::uint32_t group : groups.of_vertex) {
+    sum += double{squares[group]};
+    sampled += sums.is_sampled(group) ? 1 : 0;
+  }
+  return sampled;
 }
 
 }  // namespace
@@ -147,32 +152,38 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
   // At a vertex alone, only a second sample tells the variance.
   const std::uint32_t first = options.at_vertices ? 2 : 1;
   ValueSums sums(small_parts(mesh, groups), options.sides);
-  SampleRounds rounds(sampled, hash, placements, tracing, sums, false);
+  SampleRounds rounds(sampled, hash, placements, tracing, sums);
   RoundOptions how = round_options(options, first, placements, false);
   if (options.at_vertices)
     how.fixed = sample_counts(options.rays, placements.to_world.size(), true);
   if (!rounds.run(how)) return {};
   sums.choose_sides(true);
   BakeStatistics& statistics = tracing.statistics;
-  add_errors(groups, sums, statistics.squared_errors);
+  statistics.sampled_values += add_errors(groups, sums, statistics.squared_errors);
   const std::vector<PlaceValue> of_group = sums.values();
   GroupValues values(of_group, options.bent);
+  std::vector<bool> known, filled(groups.count);
+  for (const PlaceValue& value : of_group) known.push_back(value.known);
   if (tracing.light) {
     ValueSums light(small_parts(mesh, groups), options.sides, tracing.lights);
-    SampleRounds light_rounds(sampled, ~hash, placements, tracing, light, true);
+    SampleRounds light_rounds(sampled, ~hash, placements, tracing, light, &sums);
     if (!light_rounds.run(round_options(options, first, placements, true))) return {};
     light.choose_sides(true);
     add_errors(groups, light, statistics.squared_light_errors);
     for (std::size_t l = 0; l < tracing.lights; ++l) values.light.push_back(light.light_values(l));
+    for (std::uint32_t i = 0; i < known.size(); ++i) known[i] = known[i] && !light.is_inside(i);
   }
-  std::vector<bool> known, filled(groups.count);
-  for (const PlaceValue& value : of_group) known.push_back(value.known);
   for (const HiddenGroup& hidden : hidden_groups(mesh, groups, known)) {
     values.fill(hidden);
     filled[hidden.group] = true;
   }
-  for (const std::uint32_t group : groups.of_vertex)
-    if (!known[group]) ++(filled[group] ? statistics.hidden_vertices : statistics.dark_vertices);
+  for (const std::uint32_t group : groups.of_vertex) {
+    if (known[group]) continue;
+    if (filled[group])
+      ++statistics.hidden_vertices;
+    else if (!of_group[group].inside)  // else its part is wholly inside another, and never seen
+      ++statistics.dark_vertices;
+  }
   statistics.vertices += mesh.positions.size();
   statistics.triangles += mesh.primitive_count();
   return values.at_vertices(groups);

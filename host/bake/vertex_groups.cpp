@@ -115,6 +115,16 @@ VertexGroups group_vertices(const Mesh& mesh, const std::vector<bool>& two_sided
   return groups;
 }
 
+std::vector<std::uint32_t> places_of_vertices(const Mesh& mesh) {
+  const std::vector<PlacedVertex> order = order_by_position(mesh.positions);
+  std::vector<std::uint32_t> places(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool is_first = i == 0 || order[i].position != order[i - 1].position;
+    places[order[i].vertex] = is_first ? order[i].vertex : places[order[i - 1].vertex];
+  }
+  return places;
+}
+
 VertexGroups one_group(std::size_t vertices) {
   return {std::vector<std::uint32_t>(vertices), std::vector<bool>(vertices), 1};
 }

@@ -22,6 +22,9 @@ struct VertexGroups {
 /// opposite normals. Linear in the vertices but for a sort.
 VertexGroups group_vertices(const Mesh& mesh, const std::vector<bool>& two_sided = {});
 
+/// For each vertex the first one at the same position.
+std::vector<std::uint32_t> places_of_vertices(const Mesh& mesh);
+
 /// All vertices as one group.
 VertexGroups one_group(std::size_t vertices);
 

@@ -15,10 +15,13 @@ namespace {
 /// Smaller shares of texels that overlap are told as less than this.
 constexpr double kLeastTold = 1e-4;
 
-/// Root mean square of the standard errors of all values. `squares`: their sum.
+/// Root mean square of the standard errors of all values that have samples. `squares`: their sum.
 double standard_error(const BakeStatistics& s, double squares) {
-  const std::size_t values = s.vertices + s.texels + s.instances;
-  return values > 0 ? std::sqrt(squares / static_cast<double>(values)) : 0.0;
+  return s.sampled_values > 0 ? std::sqrt(squares / static_cast<double>(s.sampled_values)) : 0.0;
+}
+
+nlohmann::ordered_json target_json(const TargetStatistics& counts) {
+  return {{"values", counts.values}, {"above", counts.above}};
 }
 
 /// What has values, counted.
@@ -64,8 +67,11 @@ void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
       {"rays", s.rays},
       {"standard_error", standard_error(s, s.squared_errors)},
       {"standard_error_light", standard_error(s, s.squared_light_errors)},
+      {"ao_target", target_json(s.ao_target)},
+      {"light_target", target_json(s.light_target)},
       {"bias", bias_json(s.bias)},
       {"footprint", s.footprint},
+      {"inside_samples", s.inside_samples},
       {"hidden_vertices", s.hidden_vertices},
       {"hidden_texels", s.hidden_texels},
       {"dark_vertices", s.dark_vertices},
@@ -88,13 +94,15 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
       s.triangles, values_text(s), s.rays, s.points,
       s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
       seconds.load, s.seconds.build, s.seconds.trace, seconds.write, seconds.total);
-  if (s.vertices + s.texels + s.instances > 0)
+  if (s.sampled_values > 0)
     fmt::print("standard error of an AO value {:.3f}{} (root mean square)\n",
                standard_error(s, s.squared_errors),
                s.squared_light_errors > 0
                    ? fmt::format(", of light {:.3f}", standard_error(s, s.squared_light_errors))
                    : "");
   fmt::print("{}", bias_lines(s.bias));
+  if (s.inside_samples > 0)
+    fmt::print("{} samples lie inside closed geometry and do not count\n", s.inside_samples);
   if (s.hidden_vertices > 0)
     fmt::print("{} vertices lie inside closed geometry and have their neighbours' values\n",
                s.hidden_vertices);

@@ -296,16 +296,24 @@ void refuse_used_uvs(const SourceFile& file, const VertexSource& source, const B
 void check_channel(const SourceFile& file, const Scene& scene, const BakeChannel& channel) {
   const auto set = uv_set_of(channel.attribute);
   if (!set) return;
+  std::uint32_t most = 0;  // sets of a primitive
+  for (const Mesh& mesh : scene.meshes)
+    for (const VertexSource& source : mesh.sources)
+      most = std::max(most, file.uv_sets(source.mesh, source.primitive));
   for (const Mesh& mesh : scene.meshes) {
     for (const VertexSource& source : mesh.sources) {
       if (!mesh.has_strands()) refuse_used_uvs(file, source, channel, *set);
       const std::uint32_t sets = file.uv_sets(source.mesh, source.primitive);
       if (*set <= sets) continue;
       throw Error(ErrorKind::usage,
-                  fmt::format("--channel is {}.{}, but mesh {} primitive {} has {} sets of texture "
-                              "coordinates; TEXCOORD_{} is the next one",
+                  fmt::format("--channel is {}.{}, but mesh {} primitive {} has {} set{} of "
+                              "texture coordinates; TEXCOORD_{} is the next one{}",
                               channel.attribute, channel.components, source.mesh, source.primitive,
-                              sets, sets));
+                              sets, sets == 1 ? "" : "s", sets,
+                              sets == most ? ""
+                                           : fmt::format(". Others have up to {}: an attribute "
+                                                         "such as _AO fits all",
+                                                         most)));
     }
   }
 }

@@ -126,7 +126,7 @@ FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeO
     std::vector<std::vector<V2f>> uvs = uvs_of_set(file, scene, set);
     if (uvs.empty()) continue;
     const std::string fault = fault_of(fmt::format("TEXCOORD_{}", set), scene, uvs, options);
-    if (fault.empty()) return {std::move(uvs), set, {}};
+    if (fault.empty()) return {std::move(uvs), set, chosen.note};
     if (!chosen.note.empty()) chosen.note += "; ";
     chosen.note += fault;
   }
@@ -164,9 +164,10 @@ std::string coordinates_note(const TextureLayout& layout,
   for (const gltf::TexturedPrimitive& primitive : primitives) sets.insert(primitive.uv_set);
   if (sets.empty()) return {};
   const std::string names = fmt::format("TEXCOORD_{}", fmt::join(sets, " or TEXCOORD_"));
-  if (layout.chart_of.empty()) return "the texture uses " + names;
+  const std::string reason = fault.empty() ? "" : fault + ": ";
+  if (layout.chart_of.empty()) return reason + "the texture uses " + names;
   return fmt::format(
-      "{}{}the texture has coordinates of its own, {}{}", fault, fault.empty() ? "" : ": ", names,
+      "{}the texture has coordinates of its own, {}{}", reason, names,
       *sets.rbegin() > kLastCommonSet ? "; glTF viewers need not read sets beyond TEXCOORD_1" : "");
 }
 

@@ -137,7 +137,9 @@ struct BakeStatistics {
   std::size_t inside_samples = 0;   ///< inside closed geometry; they count for no value
   std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
   std::size_t hidden_texels = 0;    ///< the same in the texture
-  std::size_t dark_vertices = 0;    ///< see nothing, nor do those that triangles join them to: AO 0
+  /// See nothing, nor do those that triangles join them to: AO 0. Without those of parts that lie
+  /// inside closed geometry as a whole.
+  std::size_t dark_vertices = 0;
   std::size_t dark_texels = 0;      ///< the same, of a texture in which no texel sees anything
   std::string device;
   std::vector<std::string> notes;

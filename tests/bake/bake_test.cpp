@@ -281,6 +281,25 @@ TEST(Bake, AMeshAloneIsNotOccludedByOthersAndTogetherItIsTheMeanOfItsPlacements)
   EXPECT_EQ(bake(scene, options).meshes.at(0).ao[0], 1.0f);
 }
 
+TEST(Bake, OccludersOfMeshesAloneAreRefused) {
+  const Scene scene = make_procedural("scene:cube");
+  BakeOptions options;
+  options.rays = 8;
+  options.target_error = 0;
+  options.placement = BakeInstances::alone;
+  const std::vector<Scene> occluders{scene};
+  try {
+    bake(scene, options, {}, occluders);
+    FAIL() << "a mesh alone has no occluders";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_NE(std::string(error.what()).find("--occluders needs"), std::string::npos);
+  }
+  options.vertices = false;
+  options.instances = true;  // instances are in their surroundings
+  EXPECT_EQ(bake(scene, options, {}, occluders).instance_ao.size(), 1u);
+}
+
 TEST(Bake, TheSameArgumentsGiveTheSameBits) {
   const Scene tree = make_procedural("scene:tree?leaves=2000");
   BakeOptions options;

@@ -24,7 +24,8 @@ TEST(BakeTarget, MissingValuesAreFewerWithMoreRaysAndNoneWithEnough) {
   const TargetStatistics few = found_with(8), more = found_with(128), enough = found_with(8192);
   EXPECT_GT(few.above, few.values / 4);
   EXPECT_LE(few.above, few.values);
-  EXPECT_EQ(more.values, few.values);
+  EXPECT_GE(more.values, few.values) << "a value may have its first samples inside a twig";
+  EXPECT_LE(more.values, few.values + few.values / 100);
   EXPECT_GT(more.above, 0u);
   EXPECT_LT(more.above, few.above / 2);
   EXPECT_EQ(enough.above, 0u);
@@ -48,7 +49,7 @@ TEST(BakeTarget, MissingValuesAreToldFromAHalfPercentOn) {
   BakeOptions options;
   options.target_error = 0.08f;
   std::size_t told = 0, untold = 0;
-  for (options.rays = 96; options.rays <= 192; options.rays += 32) {
+  for (options.rays = 32; options.rays <= 192; options.rays += 32) {
     const BakeStatistics found = bake(tree, options).statistics;
     const TargetStatistics& target = found.ao_target;
     const bool is_told = std::any_of(

@@ -57,6 +57,18 @@ TEST(BakeTexture, TexelsInsideClosedGeometryHaveTheNearestValueWhateverTheMargin
   }
 }
 
+TEST(BakeTexture, AClosedRoomIsDarkThoughPrefilteredRaysSeeALittle) {
+  Scene room = make_procedural("scene:cube?divisions=1");
+  Mesh& mesh = room.meshes.at(0);
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);  // the front sides look inwards
+  BakeOptions options = into_texture(128);
+  options.sides = BakeSides::front;
+  const BakeResult result = bake(room, options);
+  EXPECT_GT(result.statistics.dark_texels, 0u);
+  EXPECT_EQ(result.statistics.hidden_texels, 0u);
+}
+
 TEST(BakeTexture, OfSeveralPosesTheFirstOneIsBaked) {
   Mesh mesh = square_mesh(1, 0, 1, 0);
   mesh.sources = {{0, 0, 0, static_cast<std::uint32_t>(mesh.positions.size()), {}}};

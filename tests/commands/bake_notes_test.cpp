@@ -94,6 +94,23 @@ TEST_F(BakeNotes, NameTheTextureCoordinatesThatWereMade) {
   }
 }
 
+TEST_F(BakeNotes, PrimitivesMayDifferInSetsIfTheChannelIsOrFollowsTheirs) {
+  write("in.glb", with_uv_sets(1, 2).glb());
+  std::ignore = notes_of("--channel TEXCOORD_1.x");
+  const test::GltfData out(path("out.glb"));
+  const json primitives = out.doc["meshes"][0]["primitives"];
+  const auto added = out.floats(primitives[0]["attributes"]["TEXCOORD_1"]);
+  EXPECT_EQ(added, (std::vector<float>{1, 0, 1, 0, 1, 0}));
+  const auto replaced = out.floats(primitives[1]["attributes"]["TEXCOORD_1"]);
+  EXPECT_EQ(replaced, (std::vector<float>{1, 0, 1, 0, 1, 2}));
+  std::filesystem::remove(path("out.glb"));
+  write("in.glb", with_uv_sets(0, 1).glb());
+  expect_failure(dapple("bake in.glb -o out.glb --channel TEXCOORD_1.x"), 2,
+                 "mesh 0 primitive 0 has 0 sets of texture coordinates; TEXCOORD_0 is the next "
+                 "one. Others have up to 1: an attribute such as _AO fits all");
+  EXPECT_EQ(files_in_folder(), 1u);
+}
+
 TEST_F(BakeNotes, SayHowManyValuesMissTheTarget) {
   const std::string tree = "bake 'scene:tree?leaves=20' -o out.glb ";
   const Outcome few = dapple(tree + "--target-error 0.001 --rays 16");
@@ -109,6 +126,60 @@ TEST_F(BakeNotes, SayHowManyValuesMissTheTarget) {
     ASSERT_EQ(run.code, 0) << run.err;
     EXPECT_FALSE(contains(run.err, "--target-error")) << run.err;
   }
+}
+
+TEST_F(BakeNotes, SayHowManyInstancesMissTheTarget) {
+  const std::string forest =
+      "bake 'scene:forest?trees=3&leaves=100' -o out.glb --to instance --stats-json s.json ";
+  const Outcome few = dapple(forest + "--target-error 0.0001 --rays 16");
+  ASSERT_EQ(few.code, 0) << few.err;
+  EXPECT_TRUE(contains(few.err,
+                       "% of the values have an error above --target-error 0.0001: the limit is "
+                       "--rays 16\n"))
+      << few.err;
+  json statistics = json::parse(bytes_of(path("s.json")));
+  EXPECT_EQ(statistics["ao_target"]["values"], 4) << "the ground is one";
+  EXPECT_GE(statistics["ao_target"]["above"], 3);
+  EXPECT_EQ(statistics["light_target"], json({{"values", 0}, {"above", 0}}));
+  for (const char* options : {"", "--rays 16"}) {
+    const Outcome run = dapple(forest + options);
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_FALSE(contains(run.err, "--target-error")) << run.err;
+    statistics = json::parse(bytes_of(path("s.json")));
+    EXPECT_EQ(statistics["ao_target"]["above"], 0) << options;
+  }
+}
+
+TEST_F(BakeNotes, StatisticsHaveTheTargetOfVerticesAndTexels) {
+  write("in.glb", rich_triangle().glb());
+  for (const char* to : {"vertex", "texture --size 8"}) {
+    const Outcome run =
+        dapple("bake in.glb -o out.glb --stats-json s.json --to " + std::string(to));
+    ASSERT_EQ(run.code, 0) << run.err;
+    const json counts = json::parse(bytes_of(path("s.json")))["ao_target"];
+    EXPECT_GE(counts["values"], 3) << to;
+    EXPECT_EQ(counts["above"], 0) << to;
+  }
+}
+
+TEST_F(BakeNotes, TheStandardErrorIsThatOfVerticesOfTrianglesWithAnArea) {
+  std::map<bool, double> error;
+  for (const bool more : {false, true}) {
+    GltfBuilder builder;
+    builder.add_triangle();
+    std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    if (more) positions.insert(positions.end(), 9, 0.5f);
+    std::vector<std::uint16_t> corners{0, 1, 2};
+    if (more) corners.insert(corners.end(), {3, 4, 5});
+    json& primitive = builder.doc["meshes"][0]["primitives"][0];
+    primitive["attributes"] = {{"POSITION", builder.add_positions(positions)}};
+    primitive["indices"] = builder.add_accessor(corners, test::kUint16, "SCALAR");
+    write("in.glb", builder.glb());
+    std::ignore = notes_of("--stats-json s.json");
+    error[more] = json::parse(bytes_of(path("s.json")))["standard_error"].get<double>();
+  }
+  EXPECT_GT(error[false], 0);
+  EXPECT_DOUBLE_EQ(error[true], error[false]);
 }
 
 TEST_F(BakeNotes, StatisticsOfMeshesAloneHaveTheDeviceAndTheTimeOfBuilding) {

@@ -82,14 +82,19 @@ TEST_F(BakeUvSets, TheSecondIsPreferredToTheFirst) {
 
 TEST_F(BakeUvSets, TheFirstIsUsedWhereTheSecondCannotBe) {
   const Rect upper = {0, 0, 1, 0.25f}, lower = {0, 0.5f, 1, 0.75f}, outside = {0, 0, 1.5f, 1};
-  for (const auto& [first, second] :
-       {std::pair{Square{upper, kFull}, Square{lower, kFull}},  // they overlap
-        {Square{upper, upper}, Square{lower, outside}},
-        {Square{upper, upper}, Square{lower, kPoint}},
-        {Square{upper, upper}, Square{lower}}}) {
-    write_squares({{first}, {second}});
+  struct Case {
+    Square first, second;
+    std::string reason;
+  };
+  for (const Case& c :
+       {Case{{upper, kFull}, {lower, kFull}, "meshes overlap each other in TEXCOORD_1 in 100.0 %"},
+        Case{{upper, upper}, {lower, outside}, "TEXCOORD_1 leaves the texture"},
+        Case{{upper, upper}, {lower, kPoint}, "TEXCOORD_1 has no area in the texture for 50.0 %"},
+        Case{{upper, upper}, {lower}, "the texture uses"}}) {
+    write_squares({{c.first}, {c.second}});
     const std::string notes = notes_of();
-    EXPECT_TRUE(contains(notes, "note: the texture uses TEXCOORD_0\n")) << notes;
+    EXPECT_TRUE(contains(notes, "note: " + c.reason)) << notes;
+    EXPECT_TRUE(contains(notes, ": the texture uses TEXCOORD_0\n")) << notes;
     EXPECT_EQ(set_used(), 0);
     EXPECT_EQ(statistics()["coverage"], 0.5);
   }

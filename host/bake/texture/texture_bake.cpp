@@ -12,6 +12,10 @@
 namespace dapple {
 namespace {
 
+/// In closed rooms up to this share of the texels see something: prefiltered rays pass a little
+/// through walls near by.
+constexpr double kFewSee = 0.02;
+
 /// Barycentric coordinates of `p` in a triangle of the texture.
 std::array<float, 3> barycentric(const V2f* uv, const V2f& p) {
   const V2f a = uv[1] - uv[0], b = uv[2] - uv[0], c = p - uv[0];
@@ -130,6 +134,7 @@ TextureBake::TextureBake(const Scene& scene, const BakeOptions& options, Texture
   if (options.bent) texture_.bent.resize(texels, V3f(0));
   known_.resize(texels);
   covered_.resize(texels);
+  dark_.resize(texels);
   weight_.resize(texels);
 }
 
@@ -147,36 +152,41 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTra
   // Neighbouring texels share no samples, so that a variance takes two of them.
   constexpr std::uint32_t kFirst = 2;
   ValueSums sums(parts, options_.sides);
-  SampleRounds rounds(texels, hash, placements, tracing, sums, false);
+  SampleRounds rounds(texels, hash, placements, tracing, sums);
   if (!rounds.run(round_options(options_, kFirst, placements, false))) return false;
   sums.choose_sides(true);
+  std::vector<PlaceValue> values = sums.values();
   std::vector<std::vector<V3f>> light;
   if (tracing.light) {
     ValueSums light_sums(parts, options_.sides, tracing.lights);
-    SampleRounds light_rounds(texels, ~hash, placements, tracing, light_sums, true);
+    SampleRounds light_rounds(texels, ~hash, placements, tracing, light_sums, &sums);
     if (!light_rounds.run(round_options(options_, kFirst, placements, true))) return false;
     light_sums.choose_sides(true);
     for (const float square : light_sums.squared_errors())
       tracing.statistics.squared_light_errors += double{square};
     for (std::size_t l = 0; l < tracing.lights; ++l) light.push_back(light_sums.light_values(l));
+    for (std::uint32_t i = 0; i < values.size(); ++i)
+      values[i].known = values[i].known && !light_sums.is_inside(i);
     texture_.light.resize(tracing.lights, std::vector<V3f>(texture_.ao.size(), V3f(0, 0, 0)));
   }
-  add_values(texels, sums, light, tracing.statistics);
+  for (const float square : sums.squared_errors())
+    tracing.statistics.squared_errors += double{square};
+  for (std::uint32_t i = 0; i < values.size(); ++i)
+    tracing.statistics.sampled_values += sums.is_sampled(i) ? 1 : 0;
+  add_values(texels, values, light, tracing.statistics);
   tracing.statistics.triangles += mesh.primitive_count();
   tracing.statistics.texels += texels.size();
   return true;
 }
 
-void TextureBake::add_values(const SampledTexels& texels, const ValueSums& sums,
+void TextureBake::add_values(const SampledTexels& texels, const std::vector<PlaceValue>& values,
                              const std::vector<std::vector<V3f>>& light,
                              BakeStatistics& statistics) {
-  const std::vector<PlaceValue> values = sums.values();
-  const std::vector<float> squares = sums.squared_errors();
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::uint32_t texel = texels.texel(i);
     covered_[texel] = true;
-    statistics.squared_errors += double{squares[i]};
     if (!values[i].known) {
+      dark_[texel] = !values[i].inside;
       ++statistics.hidden_texels;
       continue;
     }
@@ -227,6 +237,22 @@ void TextureBake::fill_hidden_texels() {
   if (known_ != covered_) take_nearest(nearest_valid(known_, texture_.size, all), true);
 }
 
+void TextureBake::keep_dark_texels(BakeStatistics& statistics) {
+  const auto covered = static_cast<double>(std::count(covered_.begin(), covered_.end(), true));
+  const auto known = static_cast<double>(std::count(known_.begin(), known_.end(), true));
+  if (known > kFewSee * covered) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < known_.size() && known > 0; ++i) {
+    if (known_[i] || !dark_[i]) continue;
+    known_[i] = true;
+    ++kept;
+  }
+  // Texels that several meshes cover were counted for each of them.
+  kept = known > 0 ? std::min(kept, statistics.hidden_texels) : statistics.hidden_texels;
+  statistics.hidden_texels -= kept;
+  statistics.dark_texels += kept;
+}
+
 BakedTexture TextureBake::finish(BakeStatistics& statistics) {
   for (std::size_t i = 0; i < known_.size(); ++i) {
     if (!known_[i]) continue;
@@ -234,8 +260,7 @@ BakedTexture TextureBake::finish(BakeStatistics& statistics) {
     if (options_.bent) texture_.bent[i].normalize();
     for (std::vector<V3f>& light : texture_.light) light[i] /= weight_[i];
   }
-  if (std::find(known_.begin(), known_.end(), true) == known_.end())
-    std::swap(statistics.hidden_texels, statistics.dark_texels);
+  keep_dark_texels(statistics);
   fill_hidden_texels();
   take_nearest(nearest_valid(known_, texture_.size, options_.margin), false);
   for (std::size_t i = 0; i < known_.size(); ++i)

@@ -17,7 +17,7 @@ class TextureBake {
   /// The values of mesh number `index`, if the texture has it. False: stopped.
   bool add(std::uint32_t index, const Placements& placements, BakeTracing& tracing);
 
-  /// The texture, with its margin. Counts hidden texels as dark ones if no texel sees anything.
+  /// The texture, with its margin. Counts hidden texels as dark ones if next to none sees anything.
   BakedTexture finish(BakeStatistics& statistics);
 
  private:
@@ -28,13 +28,17 @@ class TextureBake {
   /// of the texture where a chart has none.
   void fill_hidden_texels();
   void join_all_seams();
-  void add_values(const SampledTexels& texels, const ValueSums& sums,
+  /// Where next to no texel sees anything, those that do not are dark, unless samples of them are
+  /// inside closed geometry.
+  void keep_dark_texels(BakeStatistics& statistics);
+  void add_values(const SampledTexels& texels, const std::vector<PlaceValue>& values,
                   const std::vector<std::vector<V3f>>& light, BakeStatistics& statistics);
 
   const Scene& scene_;
   const BakeOptions& options_;
   BakedTexture texture_;
   std::vector<bool> known_, covered_;  ///< by texel
+  std::vector<bool> dark_;             ///< sees nothing, and no sample of it is inside
   std::vector<float> weight_;          ///< part of each texel that triangles cover
 };
 

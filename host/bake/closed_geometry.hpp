@@ -1,0 +1,53 @@
+// Which points lie inside closed geometry. In: a scene. Out: for a point above a surface, whether a
+// closed part surrounds it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bake/box_tree.hpp"
+#include "dapple/scene.hpp"
+
+namespace dapple {
+
+class ClosedGeometry {
+ public:
+  /// Keeps what it needs of the triangles. Takes time only in prepare().
+  explicit ClosedGeometry(Scene scene);
+
+  /// Finds the closed parts, the first time that it is called. Linear but for parallel sorts.
+  void prepare();
+
+  /// Whether the point, in world space, lies inside a closed opaque part, judged by rays to the
+  /// side of `normal`: all of them leave one part once more than they enter it. Parts whose front
+  /// faces inwards, such as rooms, surround nothing; nor do leaves or terrains (closed_parts.hpp).
+  /// prepare() must have been called.
+  [[nodiscard]] bool surrounds(const V3f& point, const V3f& normal) const;
+
+ private:
+  /// The closed parts of a mesh.
+  struct Solids {
+    std::vector<std::array<V3f, 3>> triangles;
+    std::vector<std::uint32_t> parts;  ///< of each triangle
+    BoxTree tree;                      ///< of the triangles
+    std::vector<Box3f> bounds;         ///< of each part
+    BoxTree tree_of_parts;
+  };
+  struct Placement {
+    M44f to_object;
+    std::uint32_t mesh;
+  };
+
+  static Solids solids_of(const Scene& scene, const Mesh& mesh);
+  static bool surrounds(const Solids& solids, const M44f& to_object, const V3f& point,
+                        const V3f& normal);
+
+  Scene scene_;  ///< until prepare()
+  bool is_prepared_ = false;
+  std::vector<Solids> of_mesh_;
+  std::vector<Placement> placements_;  ///< of meshes with closed parts
+  BoxTree boxes_;                      ///< of placements_, in world space
+};
+
+}  // namespace dapple

@@ -1,0 +1,244 @@
+// Samples inside closed geometry: which parts of a mesh are closed, which points they surround, and
+// that baked values do not count such samples, where surfaces pass through boxes or stand below
+// them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/closed_geometry.hpp"
+#include "bake/closed_parts.hpp"
+#include "dapple/bake.hpp"
+#include "support/scene_on_device.hpp"
+
+namespace dapple {
+namespace {
+
+using namespace scene_test;
+
+/// Appends a box whose sides have vertices of their own, facing outwards.
+void append_box(Mesh& mesh, const V3f& low, const V3f& high) {
+  const V3f x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
+  append_grid(mesh, low, z, y, 1, 0);
+  append_grid(mesh, low + x, y, z, 1, 0);
+  append_grid(mesh, low, x, z, 1, 0);
+  append_grid(mesh, low + y, z, x, 1, 0);
+  append_grid(mesh, low, y, x, 1, 0);
+  append_grid(mesh, low + z, x, y, 1, 0);
+}
+
+Mesh box_mesh(const V3f& low, const V3f& high) {
+  Mesh mesh;
+  append_box(mesh, low, high);
+  return mesh;
+}
+
+void turn(Mesh& mesh) {
+  for (std::size_t t = 0; t < mesh.primitive_count(); ++t)
+    std::swap(mesh.indices[3 * t], mesh.indices[3 * t + 1]);
+}
+
+/// A tube about the Y axis from y = 0 to 8, of radius 1 and so many sides, without ends.
+Mesh tube_mesh(std::uint32_t sides) {
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double angle = 2 * kPi * i / sides;
+    const V3f at(static_cast<float>(std::cos(angle)), 0, static_cast<float>(-std::sin(angle)));
+    mesh.positions.insert(mesh.positions.end(), {at, at + V3f(0, 8, 0)});
+    const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % sides);
+    mesh.indices.insert(mesh.indices.end(), {a, b, b + 1, a, b + 1, a + 1});
+    mesh.materials.insert(mesh.materials.end(), {0, 0});
+  }
+  return mesh;
+}
+
+Scene scene_of(Mesh mesh, bool double_sided = false) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].double_sided = double_sided;
+  place(scene, std::move(mesh));
+  return scene;
+}
+
+std::size_t closed_count(const Mesh& mesh) {
+  return closed_parts(mesh, std::vector<bool>(mesh.primitive_count(), true)).count;
+}
+
+TEST(ClosedParts, AreBoxesAndTubesAndNotSheets) {
+  Mesh boxes = box_mesh({0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(closed_count(boxes), 1u) << "its sides share no vertices";
+  append_box(boxes, {2, 0, 0}, {3, 1, 1});
+  EXPECT_EQ(closed_count(boxes), 2u);
+  turn(boxes);
+  EXPECT_EQ(closed_count(boxes), 2u);
+  for (const std::uint32_t sides : {3u, 8u}) EXPECT_EQ(closed_count(tube_mesh(sides)), 1u) << sides;
+  EXPECT_EQ(closed_count(square_mesh(1, 0, 8, 0)), 0u);
+  Mesh open = box_mesh({0, 0, 0}, {1, 1, 1});
+  open.indices.resize(open.indices.size() - 6);
+  open.materials.resize(open.materials.size() - 2);
+  EXPECT_EQ(closed_count(open), 0u) << "a sixth is open";
+}
+
+TEST(ClosedParts, AreOpaque) {
+  const Mesh box = box_mesh({0, 0, 0}, {1, 1, 1});
+  Scene scene = scene_of(box);
+  const auto count = [&] { return closed_parts(box, opaque_triangles(scene, box)).count; };
+  EXPECT_EQ(count(), 1u);
+  scene.materials[0].alpha_mode = AlphaMode::blend;
+  EXPECT_EQ(count(), 1u) << "its alpha is 1";
+  scene.materials[0].alpha = 0.9f;
+  EXPECT_EQ(count(), 0u);
+  scene.materials[0].alpha_mode = AlphaMode::mask;
+  EXPECT_EQ(count(), 1u);
+  scene.materials[0].alpha_texture = 0;
+  EXPECT_EQ(count(), 0u);
+}
+
+/// On how many of 100 sides `scene` surrounds the point.
+int surrounding_directions(const Scene& scene, const V3f& point) {
+  ClosedGeometry closed(scene);
+  closed.prepare();
+  Points random(7);
+  int found = 0;
+  for (int i = 0; i < 100; ++i) found += closed.surrounds(point, random.on_sphere()) ? 1 : 0;
+  return found;
+}
+
+TEST(ClosedGeometry, SurroundsWhatIsInABoxWhateverElseIsThere) {
+  Scene scene = scene_of(box_mesh({-1, -1, -1}, {1, 1, 1}));
+  for (const V3f& in : {V3f(0, 0, 0), V3f(0.99f, 0, 0), V3f(-0.9f, 0.9f, 0.9f)})
+    EXPECT_EQ(surrounding_directions(scene, in), 100) << in;
+  for (const V3f& out : {V3f(1.01f, 0, 0), V3f(0, 3, 0), V3f(-1.1f, 0.9f, 0.9f)})
+    EXPECT_EQ(surrounding_directions(scene, out), 0) << out;
+  Mesh room = box_mesh({-5, -5, -5}, {5, 5, 5});
+  turn(room);
+  place(scene, room);
+  place(scene, square_mesh(1.9f, 0.5f, 2, 0));
+  merge_single_instances(scene);
+  EXPECT_EQ(surrounding_directions(scene, {0, 0, 0}), 100);
+  EXPECT_EQ(surrounding_directions(scene, {3, 0, 0}), 0) << "in the room";
+}
+
+TEST(ClosedGeometry, SurroundsWhatIsInAnInstanceMirroredOrNot) {
+  Scene scene = scene_of(box_mesh({-1, -1, -1}, {1, 1, 1}));
+  M44f mirrored;
+  mirrored.setScale(V3f(-2, 1, 0.5f));
+  mirrored[3][0] = 10;
+  scene.instances.push_back({0, mirrored});
+  EXPECT_EQ(surrounding_directions(scene, {0, 0, 0.9f}), 100);
+  EXPECT_EQ(surrounding_directions(scene, {11.9f, 0, 0.4f}), 100);
+  EXPECT_EQ(surrounding_directions(scene, {10, 0, 0.6f}), 0);
+}
+
+TEST(ClosedGeometry, NoSheetsSurroundAPoint) {
+  // A canopy of large leaves above, all of whose backs are seen, and a tent.
+  Mesh canopy;
+  for (const float y : {1.0f, 1.5f, 2.0f})
+    append_grid(canopy, {-50, y, 50}, {100, 0, 0}, {0, 0, -100}, 4, 0);
+  append_grid(canopy, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, 1, 0);
+  EXPECT_EQ(surrounding_directions(scene_of(canopy), {0, 0.5f, 0}), 0);
+  Mesh tent;
+  append_grid(tent, {0, 1, 1}, {-1, -1, 0}, {0, 0, -2}, 1, 0);
+  append_grid(tent, {0, 1, -1}, {1, -1, 0}, {0, 0, 2}, 1, 0);
+  EXPECT_EQ(surrounding_directions(scene_of(tent), {0, 0.5f, 0}), 0);
+}
+
+/// A floor of two triangles, 4 x 4 metres, at y = 0. Its samples below the box are as dark as the
+/// box is wide, 3 x 3 metres; from others it is hardly seen, being flat.
+Scene floor_scene() { return scene_of(square_mesh(4, 0, 1, 0)); }
+
+Scene flat_box(float bottom) {
+  return scene_of(box_mesh({-1.5f, bottom, -1.5f}, {1.5f, 0.01f, 1.5f}));
+}
+
+BakeOptions few_rays() {
+  BakeOptions options;
+  options.target_error = 0;
+  options.rays = 512;
+  return options;
+}
+
+TEST(InsideSamples, AFloorIsNotDarkerAtItsVerticesBelowABox) {
+  for (const float bottom : {-1.0f, 0.0f}) {  // through the floor, and standing on it
+    for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+      BakeOptions options = few_rays();
+      options.estimator = estimator;
+      const BakeResult result = bake(floor_scene(), options, {}, {flat_box(bottom)});
+      for (const float ao : result.meshes.at(0).ao) EXPECT_GT(ao, 0.96f) << bottom;
+      // 9/16 of the floor; 128 samples.
+      EXPECT_NEAR(static_cast<double>(result.statistics.inside_samples), 72, 8) << bottom;
+      EXPECT_EQ(result.statistics.hidden_vertices + result.statistics.dark_vertices, 0u);
+    }
+  }
+}
+
+TEST(InsideSamples, WithATargetTooAndOnBothSides) {
+  Scene floor = floor_scene();
+  floor.materials[0].double_sided = true;
+  BakeOptions options;
+  options.sides = BakeSides::mean;
+  const BakeResult through = bake(floor, options, {}, {flat_box(-0.01f)});
+  for (const float ao : through.meshes.at(0).ao) EXPECT_GT(ao, 0.94f);
+  EXPECT_GT(through.statistics.inside_samples, 0u);
+  // The lower side of the floor below a box that stands on it is open.
+  const BakeResult on = bake(floor, options, {}, {flat_box(0)});
+  EXPECT_EQ(on.statistics.inside_samples, 0u);
+  for (const float ao : on.meshes.at(0).ao) EXPECT_LT(ao, 0.85f);
+}
+
+TEST(InsideSamples, AnOpenSheetStillDarkensWhatLiesBelow) {
+  const Scene sheet = scene_of(square_mesh(3, 0.001f, 1, 0));
+  const BakeResult result = bake(floor_scene(), few_rays(), {}, {sheet});
+  EXPECT_EQ(result.statistics.inside_samples, 0u);
+  double sum = 0;
+  for (const float ao : result.meshes.at(0).ao) sum += double{ao} / 4;
+  EXPECT_LT(sum, 0.6) << "9/16 of the floor see nothing";
+}
+
+TEST(InsideSamples, TexelsHaveTheValueOfTheirVisiblePart) {
+  BakeOptions options = few_rays();
+  options.vertices = false;
+  options.texture = true;
+  options.texture_size = 4;
+  options.margin = 0;
+  options.texture_uvs = {{V2f(0, 0), V2f(1, 0), V2f(0, 1), V2f(1, 1)}};
+  // Its sides cross the outer texels in their middle.
+  const BakeResult result = bake(floor_scene(), options, {}, {flat_box(-1)});
+  ASSERT_EQ(result.texture.ao.size(), 16u);
+  for (const float ao : result.texture.ao) EXPECT_GT(ao, 0.93f);
+  EXPECT_EQ(result.statistics.hidden_texels, 4u) << "the inner ones";
+}
+
+TEST(InsideSamples, LightIsThatOfTheVisiblePart) {
+  Light sun;
+  sun.kind = LightKind::sun;
+  sun.direction = V3f(0, -1, 0);
+  sun.angular_radius = 0.01f;
+  sun.radiance = V3f(10000, 10000, 10000);
+  BakeOptions options = few_rays();
+  options.light = true;
+  options.lights = std::vector{sun};
+  const double open = 10000 * kPi * std::pow(std::sin(0.01), 2);
+  const BakeResult result = bake(floor_scene(), options, {}, {flat_box(-1)});
+  for (const V3f& light : result.meshes.at(0).light.at(0))
+    EXPECT_NEAR(double{light.x}, open, 0.03 * open);
+}
+
+TEST(InsideSamples, AMeshThatIsInsideAsAWholeStaysDark) {
+  const Scene small = scene_of(box_mesh({-0.1f, -0.5f, -0.1f}, {0.1f, -0.3f, 0.1f}));
+  const BakeResult result = bake(small, few_rays(), {}, {flat_box(-1)});
+  EXPECT_EQ(result.statistics.dark_vertices, small.meshes[0].positions.size());
+  for (const float ao : result.meshes.at(0).ao) EXPECT_EQ(ao, 0);
+}
+
+TEST(InsideSamples, InAClosedRoomAreNone) {
+  Mesh room = box_mesh({-2, -2, -2}, {2, 2, 2});
+  turn(room);
+  BakeOptions options = few_rays();
+  options.estimator = Estimator::exact;
+  const BakeResult result = bake(scene_of(room), options);
+  EXPECT_EQ(result.statistics.inside_samples, 0u);
+  EXPECT_EQ(result.statistics.dark_vertices, room.positions.size());
+}
+
+}  // namespace
+}  // namespace dapple
