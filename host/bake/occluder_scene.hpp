@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/closed_geometry.hpp"
+#include "bake/inside/closed_geometry.hpp"
 #include "dapple/bake.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/device.hpp"
@@ -21,7 +21,7 @@ struct OccluderScene {
   SceneBvh bvh;
   DeviceScene uploaded;
   std::unique_ptr<ClosedGeometry> closed;  ///< of the same scene
-  std::vector<Light> lights;  ///< as uploaded; empty unless options.light
+  std::vector<Light> lights;               ///< as uploaded; empty unless options.light
   double build_seconds = 0, upload_seconds = 0;
   std::vector<std::string> notes;
 };

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "bake/inside_samples.hpp"
+#include "bake/inside/inside_samples.hpp"
 #include "bake/placement_choice.hpp"
 
 namespace dapple {

@@ -6,7 +6,7 @@
 #include <future>
 
 #include "bake/bake_progress.hpp"
-#include "bake/closed_geometry.hpp"
+#include "bake/inside/closed_geometry.hpp"
 #include "bake/placement_variance.hpp"
 #include "bake/sampled_surface.hpp"
 #include "bake/value_sums.hpp"

@@ -53,8 +53,9 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias)
       ->each([&a](const std::string&) { a.footprint_given = true; });
   app.add_option("--roulette", o.roulette,
-                 "Exact rays of less transmittance than this, below 1, end at random, and the others "
-                 "count for them: the same mean, sooner, with a little more noise; 0: none ends")
+                 "With --estimator exact: rays of less transmittance than this end at random, and "
+                 "the others count for them: the same mean, sooner, with a little more noise; 0: "
+                 "none ends")
       ->capture_default_str();
   app.add_option(
          "--max-bias", o.max_bias,

@@ -140,7 +140,7 @@ struct BakeStatistics {
   /// See nothing, nor do those that triangles join them to: AO 0. Without those of parts that lie
   /// inside closed geometry as a whole.
   std::size_t dark_vertices = 0;
-  std::size_t dark_texels = 0;      ///< the same, of a texture in which no texel sees anything
+  std::size_t dark_texels = 0;  ///< the same, of a texture in which no texel sees anything
   std::string device;
   std::vector<std::string> notes;
 };

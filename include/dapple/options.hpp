@@ -100,10 +100,10 @@ struct RenderOptions {
   int light_rays = 1;  ///< rays a light and sample, [1, 4096]; samples can share a camera ray
   Estimator estimator = Estimator::prefiltered;
   float footprint = kDefaultFootprint;  ///< scale, [0, 10^6]; 0 is exact
-  /// Exact rays whose transmittance T is below this end at random; those that do not, a share of
-  /// T / roulette, count as rays of this transmittance. [0, 1); 0: no ray ends, as in reports of the
-  /// bias. Pictures have the same mean, sooner, with a little more noise (kernels/occlusion/
-  /// roulette.clh, experiment 359).
+  /// With Estimator::exact: rays whose transmittance T is below this end at random; those that do
+  /// not, a share of T / roulette, count as rays of this transmittance. [0, 1); 0: none ends, as in
+  /// reports of the bias. Pictures have the same mean, sooner, with a little more noise
+  /// (kernels/occlusion/roulette.clh, experiment 359).
   float roulette = 0.25f;
   /// Share of the prefiltered rays that are traced exactly, too, to report the bias, [0,1]; 0:
   /// none. It changes no value of the film.

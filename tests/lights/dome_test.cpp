@@ -128,6 +128,7 @@ TEST(Dome, PicturesOfATreeComeNearerToExactAsTheFootprintShrinks) {
   options.spp = 16;
   options.ao = false;
   options.estimator = Estimator::exact;
+  options.roulette = 0;
   const Film exact = render(scene, options).film;
   options.estimator = Estimator::prefiltered;
   double last = 1e9;

@@ -29,9 +29,19 @@ MUTATIONS = [
         "return hidden ? (float8)(0.0f) : value;",
         r"^Roulette\."),
     Mutation(
-        "roulette-draws-from-the-footprint", "kernels/occlusion/roulette.clh",
+        "roulette-draws-the-same-for-all-rays", "kernels/occlusion/roulette.clh",
         "(float)(hash_uint(key) >> 8)",
-        "(float)(key & 0xffffffu)",
+        "(float)(hash_uint(7u) >> 8)",
+        r"^Roulette\."),
+    Mutation(
+        "roulette-keeps-what-single-rays-have", "kernels/occlusion/traverse.clh",
+        "result.value < hidden ? 0.0f : max(result.value, roulette_floor(params));",
+        "result.value < hidden ? 0.0f : result.value;",
+        r"^Roulette\."),
+    Mutation(
+        "roulette-keeps-what-scalar-rays-have", "kernels/scalar/transmittance.clh",
+        "fmax(traversal.found.value, roulette_floor(params))",
+        "traversal.found.value",
         r"^Roulette\."),
     Mutation(
         "forgotten-child", "kernels/occlusion/packet_stack.clh",

@@ -57,6 +57,7 @@ double mean_difference(const Film& a, const Film& b, const std::string& channel)
 
 Film exact_picture(const Scene& scene, RenderOptions options) {
   options.estimator = Estimator::exact;
+  options.roulette = 0;  // as the report's rays
   return render(scene, options).film;
 }
 

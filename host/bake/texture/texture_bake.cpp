@@ -241,16 +241,17 @@ void TextureBake::keep_dark_texels(BakeStatistics& statistics) {
   const auto covered = static_cast<double>(std::count(covered_.begin(), covered_.end(), true));
   const auto known = static_cast<double>(std::count(known_.begin(), known_.end(), true));
   if (known > kFewSee * covered) return;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < known_.size() && known > 0; ++i) {
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < known_.size(); ++i) {
     if (known_[i] || !dark_[i]) continue;
-    known_[i] = true;
-    ++kept;
+    known_[i] = known > 0;
+    ++dark;
   }
-  // Texels that several meshes cover were counted for each of them.
-  kept = known > 0 ? std::min(kept, statistics.hidden_texels) : statistics.hidden_texels;
-  statistics.hidden_texels -= kept;
-  statistics.dark_texels += kept;
+  // Texels that several meshes cover were counted for each of them. Without a known texel none of
+  // those inside closed geometry gets a value.
+  dark = std::min(dark, statistics.hidden_texels);
+  statistics.hidden_texels = known > 0 ? statistics.hidden_texels - dark : 0;
+  statistics.dark_texels += dark;
 }
 
 BakedTexture TextureBake::finish(BakeStatistics& statistics) {

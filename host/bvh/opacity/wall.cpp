@@ -20,9 +20,9 @@ constexpr float kOneSided = 0.5f;
 constexpr float kFlat = 0.7f;
 
 /// Positions are equal if they are on the same point of a grid of this many steps over the
-/// surfaces, or, if these are farther from the origin than they are wide, over that distance. Few
-/// enough that corners which differ by a rounding error seldom lie on two sides of a step: with 2^22
-/// walls of such corners leaked.
+/// surfaces, or, if these are farther from the origin than they are wide, over that distance. So
+/// few that corners which differ by a rounding error are on two points in one of 128 coordinates at
+/// most: with 2^22 steps walls of such corners leaked.
 constexpr float kGridSteps = 131072.0f;
 
 /// Returns for each vertex a hash of its position; 0 only by chance.
@@ -126,6 +126,10 @@ std::vector<bool> interior_triangles(const OpaqueTriangles& opaque) {
   for (std::size_t t = 0; t < opaque.count(); ++t) {
     int closed = 0;
     for (int k = 0; k < 3; ++k) closed += rings.is_closed(corner(t, k)) ? 1 : 0;
+    // Smaller than a step: of such triangles all corners seem to be closed.
+    const bool is_small = corner(t, 0) == corner(t, 1) || corner(t, 1) == corner(t, 2) ||
+                          corner(t, 2) == corner(t, 0);
+    if (is_small) closed = 0;
     interior[t] = closed == 3;
     any |= interior[t];
     for (int k = 0; closed > 0 && k < 3; ++k) is_near[opaque.vertex(t, k)] = true;

@@ -1,4 +1,4 @@
-#include "bake/closed_parts.hpp"
+#include "bake/inside/closed_parts.hpp"
 
 #include <tbb/parallel_sort.h>
 

@@ -1,4 +1,4 @@
-#include "bake/closed_geometry.hpp"
+#include "bake/inside/closed_geometry.hpp"
 
 #include <Imath/ImathBoxAlgo.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "bake/closed_parts.hpp"
+#include "bake/inside/closed_parts.hpp"
 #include "scene/invertible.hpp"
 
 namespace dapple {

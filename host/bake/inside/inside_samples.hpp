@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/closed_geometry.hpp"
+#include "bake/inside/closed_geometry.hpp"
 #include "bake/sample_tracer.hpp"
 
 namespace dapple {

@@ -1,4 +1,4 @@
-#include "bake/inside_samples.hpp"
+#include "bake/inside/inside_samples.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/box_tree.hpp"
+#include "bake/inside/box_tree.hpp"
 #include "dapple/scene.hpp"
 
 namespace dapple {

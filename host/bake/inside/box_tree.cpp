@@ -1,4 +1,4 @@
-#include "bake/box_tree.hpp"
+#include "bake/inside/box_tree.hpp"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
