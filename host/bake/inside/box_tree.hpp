@@ -15,7 +15,7 @@ namespace dapple {
 class BoxTree {
  public:
   BoxTree() = default;
-  /// Boxes must not be empty. Linear but for a parallel sort.
+  /// Boxes must not be empty. Linear.
   explicit BoxTree(const std::vector<Box3f>& boxes);
 
   /// Calls visit(index) for each box for which overlaps(box) is true. `overlaps` must be true for a
