@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <span>
 
 #include "accuracy/report.hpp"
 #include "bvh/build/object_bvh.hpp"
@@ -32,9 +33,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-template <class T>
-double bytes(const std::vector<T>& data) {
-  return static_cast<double>(data.size() * sizeof(T));
+template <class Values>
+double bytes(const Values& values) {
+  return static_cast<double>(std::span(values).size_bytes());
 }
 
 double mesh_bytes(const Mesh& mesh) {

@@ -31,12 +31,12 @@ Contestant by_embree(const RivalScene& scene, std::span<const Surface> points,
 }
 
 Contestant by_dapple(const RivalScene& scene, const std::shared_ptr<BakedPoints>& points,
-                     const char* name, Estimator estimator) {
-  const auto run = [&scene, points, estimator](double rays, std::uint32_t seed) {
+                     const char* name, Estimator estimator, float footprint) {
+  const auto run = [&scene, points, estimator, footprint](double rays, std::uint32_t seed) {
     OcclusionOptions options;
     options.rays = static_cast<int>(rays);
     options.estimator = estimator;
-    options.footprint = scene.options.footprint;
+    options.footprint = footprint;
     options.seed = seed;
     const auto start = std::chrono::steady_clock::now();
     const std::vector<float> ao =
@@ -58,7 +58,7 @@ Truth point_truth(const RivalScene& scene, std::span<const Surface> points, std:
 
 std::vector<Contestant> point_contestants(const RivalScene& scene, std::span<const Surface> points,
                                           const std::vector<EmbreeMethod>& methods,
-                                          std::size_t max_rays) {
+                                          const PointQueries& queries) {
   auto baked = std::make_shared<BakedPoints>();
   for (const Surface& point : points) {
     baked->positions.push_back(point.position);
@@ -67,10 +67,11 @@ std::vector<Contestant> point_contestants(const RivalScene& scene, std::span<con
   std::vector<Contestant> contestants;
   for (const EmbreeMethod& method : methods)
     contestants.push_back(by_embree(scene, points, method));
-  contestants.push_back(by_dapple(scene, baked, "exact", Estimator::exact));
-  contestants.push_back(by_dapple(scene, baked, "prefiltered", Estimator::prefiltered));
+  contestants.push_back(by_dapple(scene, baked, "exact", Estimator::exact, queries.footprint));
+  contestants.push_back(
+      by_dapple(scene, baked, "prefiltered", Estimator::prefiltered, queries.footprint));
   for (Contestant& contestant : contestants)
-    for (std::size_t rays = 1; rays <= max_rays; rays *= 2)
+    for (std::size_t rays = 1; rays <= queries.max_rays; rays *= 2)
       contestant.ladder.push_back(static_cast<double>(rays));
   return contestants;
 }

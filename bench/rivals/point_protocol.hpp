@@ -7,9 +7,9 @@
 
 namespace dapple::bench {
 
-struct PointOptions {
-  std::size_t max_rays = 1024;        ///< per point, at the largest effort
-  std::size_t reference_rays = 4096;  ///< per point
+struct PointQueries {
+  std::size_t max_rays = 1024;        ///< a point, at the largest effort
+  float footprint = kPointFootprint;  ///< dapple's
 };
 
 /// Exact AO by Embree with multiplicative alpha, as two independent halves.
@@ -18,6 +18,6 @@ Truth point_truth(const RivalScene& scene, std::span<const Surface> points, std:
 /// Embree's `methods`, and dapple's exact, prefiltered and packets, with 1, 2, 4... rays per point.
 std::vector<Contestant> point_contestants(const RivalScene& scene, std::span<const Surface> points,
                                           const std::vector<EmbreeMethod>& methods,
-                                          std::size_t max_rays);
+                                          const PointQueries& queries);
 
 }  // namespace dapple::bench

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "accuracy/report.hpp"
 #include "dapple/error.hpp"
@@ -36,6 +37,7 @@ struct Arguments {
   double least_rmse = kImageTargets.back();
   std::size_t points = 1000, max_rays = 1024, ray_points = kRayPoints;
   bool quick = false;
+  std::optional<float> footprint;  ///< none: the defaults
   RenderOptions render;
 
   [[nodiscard]] bool measures(const std::string& name) const {
@@ -76,9 +78,8 @@ void add_options(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(kImageTargets.back(), kImageTargets.front()));
   app.add_option("--camera-splitting", a.render.camera_splitting,
                  "Of dapple's pictures: samples that share a camera ray; 0: as the scene suits");
-  app.add_option("--footprint", a.render.footprint,
-                 "dapple's footprint scale, of pictures and points")
-      ->capture_default_str();
+  app.add_option("--footprint", a.footprint,
+                 "dapple's footprint scale, of pictures and points (4 and 8)");
   app.add_option("--device", a.render.device, "Part of an OpenCL device's name");
   app.add_flag("--quick", a.quick, "A fraction of the work, to see whether all works");
   app.add_option("--json", a.json, "Write the figures as JSON");
@@ -99,6 +100,7 @@ void make_quick(Arguments& a) {
 void apply_options(Arguments& a) {
   if (a.quick) make_quick(a);
   a.render.width = a.render.height = a.size;
+  if (a.footprint) a.render.footprint = *a.footprint;
   for (const std::string& text : a.opacity)
     a.render.opacity.push_back(parse_material_opacity(text));
   validate(a.render);
@@ -174,7 +176,8 @@ class SceneRun {
     for (std::size_t i = 0; i < count; ++i) points.push_back(points_[i * points_.size() / count]);
     show_progress("points: reference");
     const Truth truth = point_truth(scene_, points, static_cast<std::size_t>(a_.reference_spp));
-    report(hold_contest(point_contestants(scene_, points, methods, a_.max_rays), truth,
+    const PointQueries queries{a_.max_rays, a_.footprint.value_or(kPointFootprint)};
+    report(hold_contest(point_contestants(scene_, points, methods, queries), truth,
                         {a_.repeats, 0, show_progress}),
            kPointTargets, "points", fmt::format("AO at {} points", count), "rays a point");
   }

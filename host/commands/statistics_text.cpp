@@ -58,6 +58,18 @@ std::string refit_line(const RenderStatistics& s) {
       s.refit.cost_ratio);
 }
 
+std::string seconds_line(const RenderStatistics& s) {
+  const auto& t = s.seconds;
+  const auto if_any = [](const char* step, double seconds) {
+    return seconds > 0 ? fmt::format("{} {:.2f}, ", step, seconds) : "";
+  };
+  return fmt::format(
+      "  seconds: load {:.2f}, prepare {:.2f}, cache {:.2f}, build {:.2f}, prefilter {:.2f}, {}"
+      "upload {:.2f}, kernels {:.2f}, trace {:.2f}, {}develop {:.2f}, write {:.2f}, total {:.2f}\n",
+      t.load, t.prepare, t.cache, t.build, t.prefilter, if_any("refit", t.refit), t.upload,
+      t.kernel_build, t.trace, if_any("checkpoint", t.checkpoint), t.develop, t.write, t.total);
+}
+
 std::string errors_line(const RenderStatistics& s) {
   std::string passes;
   for (const auto& [layer, value] : s.rmse) {
@@ -111,16 +123,12 @@ std::string bytes_text(double bytes) {
 
 nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
   nlohmann::ordered_json json;
-  json["seconds"] = {{"load", s.seconds.load},
-                     {"cache", s.seconds.cache},
-                     {"build", s.seconds.build},
-                     {"prefilter", s.seconds.prefilter},
-                     {"refit", s.seconds.refit},
-                     {"upload", s.seconds.upload},
-                     {"kernel_build", s.seconds.kernel_build},
-                     {"trace", s.seconds.trace},
-                     {"checkpoint", s.seconds.checkpoint},
-                     {"write", s.seconds.write},
+  json["seconds"] = {{"load", s.seconds.load},           {"prepare", s.seconds.prepare},
+                     {"cache", s.seconds.cache},         {"build", s.seconds.build},
+                     {"prefilter", s.seconds.prefilter}, {"refit", s.seconds.refit},
+                     {"upload", s.seconds.upload},       {"kernel_build", s.seconds.kernel_build},
+                     {"trace", s.seconds.trace},         {"checkpoint", s.seconds.checkpoint},
+                     {"develop", s.seconds.develop},     {"write", s.seconds.write},
                      {"total", s.seconds.total}};
   json["pass_seconds"] = s.pass_seconds;
   json["rays"] = {{"camera", s.rays.camera}, {"ao", s.rays.ao}, {"light", s.rays.light}};
@@ -174,12 +182,7 @@ std::string statistics_text(const RenderStatistics& s) {
   text += bias_lines(s.bias);
   text += cache_line(s);
   text += refit_line(s);
-  const auto& t = s.seconds;
-  text += fmt::format(
-      "  seconds: load {:.2f}, cache {:.2f}, build {:.2f}, prefilter {:.2f}, upload {:.2f}, "
-      "kernels {:.2f}, trace {:.2f}, {}write {:.2f}, total {:.2f}\n",
-      t.load, t.cache, t.build, t.prefilter, t.upload, t.kernel_build, t.trace,
-      t.checkpoint > 0 ? fmt::format("checkpoint {:.2f}, ", t.checkpoint) : "", t.write, t.total);
+  text += seconds_line(s);
   std::string passes;
   for (const auto& [label, seconds] : s.pass_seconds)
     passes += fmt::format("{}{} {:.2f}", passes.empty() ? "" : ", ", label, seconds);

@@ -77,11 +77,17 @@ void KeptScene::update_scene(const Scene& scene, const UploadOptions& uploading,
     const BvhStatistics& built = bvh->bvh().statistics;
     add_build_seconds(statistics, built);
     if (!cache.empty()) add_cache_statistics(statistics, built);
+    statistics.seconds.build += updating.seconds() - seconds_of_the_scene(statistics);
     const Stopwatch upload_time;
     on_device = upload(*device, scene, bvh->bvh(), uploading);
     statistics.seconds.upload = upload_time.seconds();
   }
   add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
+}
+
+double seconds_of_the_scene(const RenderStatistics& statistics) {
+  const auto& s = statistics.seconds;
+  return s.cache + s.build + s.prefilter + s.refit + s.upload + s.kernel_build;
 }
 
 void KeptScene::compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,

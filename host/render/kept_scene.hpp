@@ -36,4 +36,7 @@ struct KeptScene {
                RenderStatistics& statistics) const;
 };
 
+/// Seconds so far of bringing the scene to the device.
+double seconds_of_the_scene(const RenderStatistics& statistics);
+
 }  // namespace dapple

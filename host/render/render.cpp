@@ -1,5 +1,4 @@
-// render(): scene and options in, film and statistics out. Read it top to bottom to know
-// what dapple does.
+// render(): scene and options in, film and statistics out. Read it to know what dapple does.
 #include "dapple/render.hpp"
 
 #include <fmt/format.h>
@@ -357,6 +356,7 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const DeviceBuffers& buffers = *kept.on_device.buffers;
   const FilmLayout layout(view.crop, sampled, film_scales(view, bounds, buffers.light_records),
                           lights, !buffers.corner_normals.empty());
+  statistics.seconds.prepare = total.seconds() - seconds_of_the_scene(statistics);
   const Stopwatch trace_time;
   RenderOptions traced = options;
   if (needs_footprint_pilot(options, resumed.has_value())) {
@@ -386,6 +386,8 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
                                       std::move(tracing), std::move(state), statistics);
   statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
   finish(result, content, picture, control);
+  statistics.seconds.develop =
+      trace_time.seconds() - statistics.seconds.trace - statistics.seconds.checkpoint;
   *kept_ = std::move(kept);
   statistics.seconds.total = total.seconds();
   return result;

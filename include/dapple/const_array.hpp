@@ -17,15 +17,17 @@ class ConstArray : public std::span<const T> {
   ConstArray(const ConstArray&) = default;
   ConstArray& operator=(const ConstArray&) = default;
 
-  ConstArray(std::vector<T>&& values)  // NOLINT: implicit conversion is wanted
-      : ConstArray(std::make_shared<const std::vector<T>>(std::move(values))) {}
+  template <class Allocator>
+  ConstArray(std::vector<T, Allocator>&& values)  // NOLINT: implicit conversion is wanted
+      : ConstArray(std::make_shared<const std::vector<T, Allocator>>(std::move(values))) {}
 
   /// `keeper` owns the memory of the values.
   ConstArray(std::span<const T> values, std::shared_ptr<const void> keeper)
       : std::span<const T>(values), keeper_(std::move(keeper)) {}
 
  private:
-  explicit ConstArray(std::shared_ptr<const std::vector<T>> values)
+  template <class Allocator>
+  explicit ConstArray(std::shared_ptr<const std::vector<T, Allocator>> values)
       : std::span<const T>(*values), keeper_(std::move(values)) {}
 
   std::shared_ptr<const void> keeper_;

@@ -20,11 +20,12 @@ namespace dapple {
 
 struct RenderStatistics {
   struct {
-    double load = 0, cache = 0, build = 0, prefilter = 0, refit = 0, upload = 0, kernel_build = 0,
-           trace = 0, checkpoint = 0, write = 0, total = 0;
-  } seconds;  ///< wall time. cache: reads and writes; refit: finding and refitting what moved;
-              ///< kernel_build: wait for kernels after the scene is on the device; trace: all
-              ///< passes with the camera pass, without checkpoints
+    double load = 0, prepare = 0, cache = 0, build = 0, prefilter = 0, refit = 0, upload = 0,
+           kernel_build = 0, trace = 0, checkpoint = 0, develop = 0, write = 0, total = 0;
+  } seconds;  ///< wall time; the others add up to total. prepare: device, camera, names; cache:
+              ///< reads and writes; refit: finding and refitting what moved; kernel_build: wait
+              ///< for kernels after the scene is on the device; trace: all passes with the camera
+              ///< pass, without checkpoints; develop: the film from its sums
   std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
   struct {
     std::uint64_t camera = 0, ao = 0, light = 0;
@@ -150,9 +151,9 @@ DeviceCheck check_device(const Device& device);
 struct OcclusionOptions {
   int rays = 64;  ///< for each point, [1, 2^20]
   Estimator estimator = Estimator::prefiltered;
-  float footprint = kDefaultFootprint;  ///< [0, 10^6]
-  float distance = 0.0f;                ///< metres, [0, 10^30]; 0: no limit
-  float falloff = 0.0f;                 ///< [0, 100]; above 0 only with a distance
+  float footprint = kPointFootprint;  ///< [0, 10^6]
+  float distance = 0.0f;              ///< metres, [0, 10^30]; 0: no limit
+  float falloff = 0.0f;               ///< [0, 100]; above 0 only with a distance
   std::uint32_t seed = 0;
 };
 

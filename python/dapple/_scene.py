@@ -216,7 +216,7 @@ class Scene:
         """Ambient occlusion at points, (n,) float32 in [0, 1]; 1: nothing occludes.
 
         points: (n, 3), metres. normals: (n, 3) unit vectors, or one for all. Options: rays (64) a
-        point; estimator "prefiltered" or "exact"; footprint (4): larger is faster, 0 is exact;
+        point; estimator "prefiltered" or "exact"; footprint (8): larger is faster, 0 is exact;
         distance (0: no limit), metres; falloff (0); seed (0). The same arguments give the same
         bits. progress is called with fractions in [0, 1]; an exception of it ends the call.
 

@@ -282,10 +282,14 @@ TEST_F(CommandLine, AQuietRenderPrintsNothingAndWritesItsThreeFiles) {
   EXPECT_EQ(read_exr(path("out.exr")).width, 8);
   EXPECT_EQ(bytes_of(path("out.png")).substr(1, 3), "PNG");
   const auto json = nlohmann::json::parse(bytes_of(path("out.json")));
-  for (const char* key :
-       {"load", "build", "prefilter", "upload", "kernel_build", "trace", "write", "total"}) {
+  double sum = 0;
+  for (const char* key : {"load", "prepare", "cache", "build", "prefilter", "refit", "upload",
+                          "kernel_build", "trace", "checkpoint", "develop", "write"}) {
     EXPECT_GE(json.at("seconds").at(key).get<double>(), 0) << key;
+    sum += json.at("seconds").at(key).get<double>();
   }
+  const double total = json.at("seconds").at("total").get<double>();
+  EXPECT_NEAR(sum, total, 0.01 + 0.05 * total);
   EXPECT_GE(json["seconds"]["total"].get<double>(), json["seconds"]["trace"].get<double>());
   EXPECT_EQ(json.at("rays").at("camera"), 64);
   // Each sample that hit a surface has two AO rays, and one ray each to the sun and the sky.

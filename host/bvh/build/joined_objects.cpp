@@ -28,11 +28,11 @@ void shift(std::uint32_t&, const ObjectOffsets&, int) {}
 /// Concatenates the parts' values, each shifted by its offsets, with `spare` more elements. Parts
 /// are freed one by one, so that only one is in memory twice.
 template <class T>
-std::vector<T> values_of(std::span<ConstArray<T>* const> parts,
+LargeVector<T> values_of(std::span<ConstArray<T>* const> parts,
                          std::span<const ObjectOffsets> offsets, std::size_t spare) {
   std::size_t count = spare;
   for (const ConstArray<T>* part : parts) count += part->size();
-  std::vector<T> values;
+  LargeVector<T> values;
   values.reserve(count);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const ConstArray<T> part = std::exchange(*parts[p], {});
@@ -114,7 +114,7 @@ std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
 }
 
 void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
-          const std::vector<ObjectOffsets>& offsets, std::vector<BvhNode> top) {
+          const std::vector<ObjectOffsets>& offsets, LargeVector<BvhNode> top) {
   ConstArray<BvhNode> top_nodes(std::move(top));
   std::vector<ConstArray<BvhNode>*> nodes = arrays_of(objects, &FinishedObject::nodes);
   nodes.push_back(&top_nodes);
@@ -128,11 +128,11 @@ void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
 
 ChangeableArrays join_changeable(SceneBvh& bvh, std::vector<FinishedObject>& objects,
                                  const std::vector<ObjectOffsets>& offsets, std::size_t spare) {
-  const auto nodes = std::make_shared<std::vector<BvhNode>>(
+  const auto nodes = std::make_shared<LargeVector<BvhNode>>(
       values_of<BvhNode>(arrays_of(objects, &FinishedObject::nodes), offsets, spare));
-  const auto blocks = std::make_shared<std::vector<TriangleBlock>>(
+  const auto blocks = std::make_shared<LargeVector<TriangleBlock>>(
       values_of<TriangleBlock>(arrays_of(objects, &FinishedObject::blocks), offsets, 0));
-  const auto textured = std::make_shared<std::vector<TexturedTriangle>>(
+  const auto textured = std::make_shared<LargeVector<TexturedTriangle>>(
       values_of<TexturedTriangle>(arrays_of(objects, &FinishedObject::textured), offsets, 0));
   bvh.nodes = {*nodes, nodes};
   bvh.blocks = {*blocks, blocks};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bvh/storage/bvh_cache.hpp"
+#include "bvh/storage/large_pages.hpp"
 #include "dapple/bvh.hpp"
 
 namespace dapple {
@@ -21,7 +22,7 @@ std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
 /// of the top level at the end. An array that only one object fills is taken without a copy; it may
 /// stay mapped from a cache file.
 void join(SceneBvh& bvh, std::vector<FinishedObject>& objects,
-          const std::vector<ObjectOffsets>& offsets, std::vector<BvhNode> top);
+          const std::vector<ObjectOffsets>& offsets, LargeVector<BvhNode> top);
 
 /// The arrays of a SceneBvh as vectors that may be written to.
 struct ChangeableArrays {

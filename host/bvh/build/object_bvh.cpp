@@ -180,8 +180,8 @@ double expected_visits(double half_areas, const Box3f& root) {
   return area > 0 ? half_areas / area : 1;
 }
 
-std::vector<BvhNode> pack_nodes(const WideTree& tree) {
-  std::vector<BvhNode> nodes(tree.nodes.size());
+LargeVector<BvhNode> pack_nodes(const WideTree& tree) {
+  LargeVector<BvhNode> nodes(tree.nodes.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), 1024), [&](const auto& range) {
     for (std::size_t n = range.begin(); n < range.end(); ++n) {
       const WideNode& wide = tree.nodes[n];

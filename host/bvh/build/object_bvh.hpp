@@ -8,6 +8,7 @@
 #include "bvh/opacity/coverage_map.hpp"
 #include "bvh/opacity/node_opacity.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
+#include "bvh/storage/large_pages.hpp"
 #include "dapple/shared/geometry.h"
 
 namespace dapple {
@@ -30,10 +31,10 @@ struct ObjectSummary {
 /// from the first node, block and textured triangle of this object. Either `blocks` or `segments`
 /// is empty.
 struct ObjectBvh : ObjectSummary {
-  std::vector<BvhNode> nodes;
-  std::vector<TriangleBlock> blocks;
-  std::vector<SegmentBlock> segments;
-  std::vector<TexturedTriangle> textured;
+  LargeVector<BvhNode> nodes;
+  LargeVector<TriangleBlock> blocks;
+  LargeVector<SegmentBlock> segments;
+  LargeVector<TexturedTriangle> textured;
   std::vector<std::uint32_t> primitives;  ///< by lane of the blocks: index in the mesh
 };
 
@@ -57,7 +58,7 @@ void prefilter(BuiltObject& built, const TextureIntegrals& integrals,
 
 /// Packs the boxes and the layout of a wide tree into nodes. The opacities stay 0. Leaf ends
 /// count from 0; the caller sets `prim_base`, and adds its first lane to them.
-std::vector<BvhNode> pack_nodes(const WideTree& tree);
+LargeVector<BvhNode> pack_nodes(const WideTree& tree);
 
 /// Returns the opacity of a node from its coverage map, its normals and its box.
 NodeOpacity map_opacity(const CoverageMap& map, const NormalMoments& normals, const Box3f& box);

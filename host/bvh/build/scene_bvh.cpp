@@ -16,7 +16,7 @@ BuiltScene build_scene(const Scene& scene, const std::string& cache_folder) {
   built.offsets = lay_out(objects, scene.source);
   built.objects.assign(objects.begin(), objects.end());
   describe_objects(bvh.statistics, built.objects);
-  std::vector<BvhNode> top = place_instances(bvh, scene, built.objects, built.offsets);
+  LargeVector<BvhNode> top = place_instances(bvh, scene, built.objects, built.offsets);
   join(bvh, objects, built.offsets, std::move(top));
   bvh.statistics.lane_use = lane_use(bvh);
   return built;

@@ -117,7 +117,7 @@ struct Covered {
 class TopPrefilter {
  public:
   TopPrefilter(const WideTree& tree, const std::vector<PrimitiveBox>& order,
-               const std::vector<PlacedInstance>& placed, std::vector<BvhNode>& nodes)
+               const std::vector<PlacedInstance>& placed, LargeVector<BvhNode>& nodes)
       : tree_(tree), order_(order), placed_(placed), nodes_(nodes) {}
 
   /// The children of the first levels are computed in parallel.
@@ -160,12 +160,12 @@ class TopPrefilter {
   const WideTree& tree_;
   const std::vector<PrimitiveBox>& order_;
   const std::vector<PlacedInstance>& placed_;
-  std::vector<BvhNode>& nodes_;
+  LargeVector<BvhNode>& nodes_;
 };
 
 struct TopLevel {
-  std::vector<BvhNode> nodes;
-  std::vector<InstanceRecord> instances;  ///< in the order of the leaves
+  LargeVector<BvhNode> nodes;
+  LargeVector<InstanceRecord> instances;  ///< in the order of the leaves
   V3f root_opacity{0, 0, 0};
   std::uint32_t stack = 0;  ///< traversal stack entries needed
 };
@@ -207,7 +207,7 @@ void check_stack(std::uint32_t needed, const std::string& source) {
 
 }  // namespace
 
-std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
+LargeVector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
                                      const std::vector<ObjectSummary>& objects,
                                      const std::vector<ObjectOffsets>& offsets) {
   const auto start = std::chrono::steady_clock::now();

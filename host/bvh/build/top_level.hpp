@@ -14,7 +14,7 @@ namespace dapple {
 /// the top level, which follow the nodes of all objects; none if there is only one object and it is
 /// in world space. `objects`: of each mesh; `offsets`: lay_out(). Throws Error input if nothing can
 /// be hit, failed if the BVH is too deep for the kernels' stack.
-std::vector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
+LargeVector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
                                      const std::vector<ObjectSummary>& objects,
                                      const std::vector<ObjectOffsets>& offsets);
 

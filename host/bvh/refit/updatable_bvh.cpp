@@ -118,7 +118,7 @@ void UpdatableBvh::State::put_together(const Scene& scene, std::vector<FinishedO
 /// Builds the top level into the nodes reserved for it.
 void UpdatableBvh::State::place(const Scene& scene, BvhUpdate& update) {
   describe_objects(bvh.statistics, objects);
-  const std::vector<BvhNode> top = place_instances(bvh, scene, objects, offsets);
+  const LargeVector<BvhNode> top = place_instances(bvh, scene, objects, offsets);
   const std::size_t first = offsets.back().node;
   std::copy(top.begin(), top.end(), arrays.nodes.subspan(first).begin());
   if (!top.empty()) update.nodes.push_back({first, first + top.size()});

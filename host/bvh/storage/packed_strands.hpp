@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "bvh/build/wide_tree.hpp"
+#include "bvh/storage/large_pages.hpp"
 #include "bvh/storage/segment_block.hpp"
 #include "dapple/bvh.hpp"
 
 namespace dapple {
 
 struct PackedStrands {
-  std::vector<SegmentBlock> blocks;
+  LargeVector<SegmentBlock> blocks;
   std::vector<std::uint32_t> first_block;  ///< of each node
   std::vector<std::uint32_t> primitives;   ///< by lane: index in the mesh, or kNoPrimitive
 };

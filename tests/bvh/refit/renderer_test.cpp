@@ -181,6 +181,7 @@ class CrownOcclusion {
     OcclusionOptions options;
     options.rays = 128;
     options.estimator = estimator;
+    options.footprint = kDefaultFootprint;  // of pictures, which are what moves
     double sum = 0;
     for (options.seed = 0; options.seed < seeds; ++options.seed) {
       const auto values = occlusion(scene_test::device(), scene, points_, normals_, options);
