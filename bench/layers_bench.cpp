@@ -35,6 +35,15 @@ const std::vector<Layer>& layers() {
       {"back", [](RenderOptions& o) { o.back = true; }},
       {"normals", [](RenderOptions&) {}, [](RenderOptions& o) { o.normals = Normals::geometric; }},
       {"deep", [](RenderOptions& o) { o.deep = true; }},
+      {"all",
+       [](RenderOptions& o) {
+         o.cryptomattes = {true, true};
+         o.motion = o.back = true;
+       },
+       [](RenderOptions& o) {
+         o.albedo = false;
+         o.normals = Normals::geometric;
+       }},
   };
   return all;
 }

@@ -210,19 +210,22 @@ TexelFootprint texel_footprint(const RenderOptions& options, int spp) {
 
 Projection::Projection(const View& view)
     : to_camera_(Imath::M44d(view.camera.to_world).inverse()),
-      half_(half_extent(view)),
-      width_(view.width),
-      height_(view.height),
-      perspective_(view.camera.kind == Camera::Kind::perspective) {}
+      middle_(view.width / 2.0, view.height / 2.0),
+      perspective_(view.camera.kind == Camera::Kind::perspective) {
+  const Imath::V2d half(half_extent(view));
+  pixels_ = {middle_.x / half.x, -middle_.y / half.y};
+}
 
 std::optional<Imath::V2d> Projection::operator()(const V3d& at) const {
-  V3d on_plane = at * to_camera_;
+  V3d on_plane;
+  to_camera_.multDirMatrix(at, on_plane);  // the matrix is affine: no division
+  on_plane += to_camera_.translation();
+  double scale = 1;
   if (perspective_) {
     if (!(on_plane.z < 0)) return {};
-    on_plane /= -on_plane.z;
+    scale = -1 / on_plane.z;
   }
-  return Imath::V2d((on_plane.x / half_.x + 1) / 2 * width_,
-                    (1 - on_plane.y / half_.y) / 2 * height_);
+  return middle_ + Imath::V2d(on_plane.x, on_plane.y) * pixels_ * scale;
 }
 
 float pixel_width(const View& view, const V3f& at) {

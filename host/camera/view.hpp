@@ -55,11 +55,12 @@ class Projection {
   /// Pixels from the top left at which the ray through the middle of the lens passes `at` (world
   /// space); none: `at` is not in front of a perspective camera.
   [[nodiscard]] std::optional<Imath::V2d> operator()(const V3d& at) const;
+  bool operator==(const Projection&) const = default;
 
  private:
   Imath::M44d to_camera_;
-  Imath::V2d half_;  ///< half extent of the image plane
-  double width_, height_;
+  Imath::V2d pixels_;  ///< of half the image, by the half extent of the image plane
+  Imath::V2d middle_;  ///< of the image, pixels
   bool perspective_;
 };
 

@@ -9,6 +9,7 @@
 #include "camera/view.hpp"
 #include "commands/shared_options.hpp"
 #include "dapple/error.hpp"
+#include "scene/default_lights.hpp"
 #include "scene/ground.hpp"
 
 namespace dapple {
@@ -96,8 +97,7 @@ void Shot::add_defaults(Scene& scene) const {
   if (defaults_->ground_under) add_ground(scene, *defaults_->ground_under);
   scene.warnings.insert(scene.warnings.end(), defaults_->notes.begin(), defaults_->notes.end());
   if (!defaults_->lights.empty())
-    scene.warnings.emplace_back(
-        "no lights in the scene: added lights named sun and sky; --lights F brings others");
+    scene.warnings.push_back(daylight_note(defaults_->ground_under.has_value()));
 }
 
 }  // namespace dapple

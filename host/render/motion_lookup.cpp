@@ -36,7 +36,8 @@ MotionLookup::MotionLookup(const Scene& now, const View& view, const SceneBvh& b
       triangles_(8 * bvh.blocks.size()),
       segments_(8 * bvh.segments.size()),
       project_now_(view),
-      project_next_(next_.view) {
+      project_next_(next_.view),
+      camera_stands_(project_now_ == project_next_) {
   std::vector<std::uint32_t> part_of;  // by primitive of a mesh
   std::uint32_t part = 0;
   for (std::uint32_t m = 0; m < now_.meshes.size(); ++m) {
@@ -96,7 +97,9 @@ Imath::V2d MotionLookup::at(std::uint32_t instance, std::uint32_t primitive,
   const Movement& movement = movements_[instance == kNoInstance ? 0 : instance];
   const V3d from(position);
   V3d to = from;
-  if (part.is_there && movement.is_there && (!movement.still || part.deforms)) {
+  const bool moves = part.is_there && movement.is_there && (!movement.still || part.deforms);
+  if (!moves && camera_stands_) return {0, 0};
+  if (moves) {
     const V3d at_object = from * movement.now_to_object;
     to = (at_object + shift_in_object(of, at_object)) * movement.next_to_world;
   }

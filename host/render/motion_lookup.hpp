@@ -50,6 +50,7 @@ class MotionLookup {
   std::vector<PartPrimitive> triangles_, segments_;  ///< by lane
   std::vector<Movement> movements_;                  ///< by InstanceRecord
   Projection project_now_, project_next_;
+  bool camera_stands_;
 };
 
 }  // namespace dapple

@@ -30,6 +30,7 @@
 #include "sampling/bias_estimate.hpp"
 #include "sampling/shard.hpp"
 #include "scene/corner_normals.hpp"
+#include "scene/default_lights.hpp"
 #include "scene/scene_check.hpp"
 
 namespace dapple {
@@ -47,8 +48,7 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
   merge_single_instances(scene);
   if (options.light && scene.lights.empty()) {
     scene.lights = daylight(view.camera);
-    notes.emplace_back(
-        "no lights in the scene: added lights named sun and sky; --lights F brings others");
+    notes.push_back(daylight_note(options.ground));
     check_film_memory(view, scene.lights.size(), options);
   }
   finalize_domes(scene);

@@ -1,5 +1,7 @@
 // Lights for scenes without their own. In: the camera, and for the key light the scene's bounds.
 // Out: a sun and a sky, or one rect light (a photographer's "key light").
+#include "scene/default_lights.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -82,6 +84,13 @@ Light key_light(const Scene& scene, const Camera& camera) {
   // Irradiance at the centre is radiance * area / distance^2 to first order, which is about 1.
   light.radiance = V3f(kKeyDistance * kKeyDistance);
   return light;
+}
+
+std::string daylight_note(bool on_ground) {
+  std::string note =
+      "no lights in the scene: added lights named sun and sky; --lights F brings others";
+  if (!on_ground) note += ", --ground a floor for their shadows";
+  return note;
 }
 
 }  // namespace dapple

@@ -147,6 +147,7 @@ TEST_F(CommandLine, UsageErrorsNameTheirFlagAndLeaveNothingBehind) {
       {"--ao-rays 0", "--ao-rays"},
       {"--light-rays 5000", "--light-rays"},
       {"--back-every 0", "--back-every"},
+      {"--multipart=foo", "--multipart"},
       {"--footprint nan", "--footprint"},
       {"--footprint -1", "--footprint"},
       {"--report-bias 101", "--report-bias"},
