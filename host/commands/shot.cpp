@@ -97,7 +97,7 @@ void Shot::add_defaults(Scene& scene) const {
   if (defaults_->ground_under) add_ground(scene, *defaults_->ground_under);
   scene.warnings.insert(scene.warnings.end(), defaults_->notes.begin(), defaults_->notes.end());
   if (!defaults_->lights.empty())
-    scene.warnings.push_back(daylight_note(defaults_->ground_under.has_value()));
+    scene.warnings.push_back(default_light_note(defaults_->ground_under.has_value()));
 }
 
 }  // namespace dapple

@@ -48,7 +48,7 @@ View prepare_scene(Scene& scene, const RenderOptions& options, std::vector<std::
   merge_single_instances(scene);
   if (options.light && scene.lights.empty()) {
     scene.lights = daylight(view.camera);
-    notes.push_back(daylight_note(options.ground));
+    notes.push_back(default_light_note(options.ground));
     check_film_memory(view, scene.lights.size(), options);
   }
   finalize_domes(scene);

@@ -86,7 +86,7 @@ Light key_light(const Scene& scene, const Camera& camera) {
   return light;
 }
 
-std::string daylight_note(bool on_ground) {
+std::string default_light_note(bool on_ground) {
   std::string note =
       "no lights in the scene: added lights named sun and sky; --lights F brings others";
   if (!on_ground) note += ", --ground a floor for their shadows";

@@ -6,6 +6,6 @@
 namespace dapple {
 
 /// `on_ground`: --ground was given, so that plants do not stand on nothing.
-std::string daylight_note(bool on_ground);
+std::string default_light_note(bool on_ground);
 
 }  // namespace dapple

@@ -192,8 +192,13 @@ MUTATIONS = [
         r"^Motion\."),
     Mutation(
         "still-instances-do-not-deform", "host/render/motion_lookup.cpp",
-        "if (part.is_there && movement.is_there && (!movement.still || part.deforms)) {",
-        "if (part.is_there && movement.is_there && !movement.still) {",
+        "part.is_there && movement.is_there && (!movement.still || part.deforms);",
+        "part.is_there && movement.is_there && !movement.still;",
+        r"^Motion\."),
+    Mutation(
+        "cameras-stand-where-points-do", "host/render/motion_lookup.cpp",
+        "if (!moves && camera_stands_) return {0, 0};",
+        "if (!moves) return {0, 0};",
         r"^Motion\."),
     Mutation(
         "shutter-without-its-last-moment", "host/render/shutter.cpp",
