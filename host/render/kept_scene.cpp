@@ -68,6 +68,7 @@ void KeptScene::open(const RenderOptions& options, RenderStatistics& statistics)
 void KeptScene::update_scene(const Scene& scene, const UploadOptions& uploading,
                              const std::string& cache, RenderStatistics& statistics) {
   const Stopwatch updating;
+  const double before = counted_seconds(statistics);
   if (bvh) {
     const BvhUpdate changes = update(*device, on_device, *bvh, scene, uploading);
     add_update_statistics(statistics, changes, bvh->bvh().statistics);
@@ -77,7 +78,7 @@ void KeptScene::update_scene(const Scene& scene, const UploadOptions& uploading,
     const BvhStatistics& built = bvh->bvh().statistics;
     add_build_seconds(statistics, built);
     if (!cache.empty()) add_cache_statistics(statistics, built);
-    statistics.seconds.build += updating.seconds() - seconds_of_the_scene(statistics);
+    statistics.seconds.build += updating.seconds() - (counted_seconds(statistics) - before);
     const Stopwatch upload_time;
     on_device = upload(*device, scene, bvh->bvh(), uploading);
     statistics.seconds.upload = upload_time.seconds();
@@ -85,9 +86,10 @@ void KeptScene::update_scene(const Scene& scene, const UploadOptions& uploading,
   add_bvh_statistics(statistics, bvh->bvh(), *on_device.buffers);
 }
 
-double seconds_of_the_scene(const RenderStatistics& statistics) {
+double counted_seconds(const RenderStatistics& statistics) {
   const auto& s = statistics.seconds;
-  return s.cache + s.build + s.prefilter + s.refit + s.upload + s.kernel_build;
+  return s.load + s.prepare + s.cache + s.build + s.prefilter + s.refit + s.upload +
+         s.kernel_build + s.trace + s.checkpoint + s.develop + s.write;
 }
 
 void KeptScene::compile(const std::vector<KernelName>& kernels, CompilerProcesses& processes,

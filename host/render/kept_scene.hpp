@@ -36,7 +36,7 @@ struct KeptScene {
                RenderStatistics& statistics) const;
 };
 
-/// Seconds so far of bringing the scene to the device.
-double seconds_of_the_scene(const RenderStatistics& statistics);
+/// The sum of the steps' seconds so far.
+double counted_seconds(const RenderStatistics& statistics);
 
 }  // namespace dapple

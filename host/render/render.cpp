@@ -356,15 +356,15 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const DeviceBuffers& buffers = *kept.on_device.buffers;
   const FilmLayout layout(view.crop, sampled, film_scales(view, bounds, buffers.light_records),
                           lights, !buffers.corner_normals.empty());
-  statistics.seconds.prepare = total.seconds() - seconds_of_the_scene(statistics);
-  const Stopwatch trace_time;
+  statistics.seconds.prepare = total.seconds() - counted_seconds(statistics);
+  const Stopwatch pilot_time;
   RenderOptions traced = options;
   if (needs_footprint_pilot(options, resumed.has_value())) {
     traced =
         with_measured_bias(footprint_pilot(kept, {view, options, bounds, lights},
                                            resumed ? std::optional(asked_footprint) : std::nullopt),
                            options, statistics);
-    statistics.pass_seconds["bias pilot"] = trace_time.seconds();
+    statistics.pass_seconds["bias pilot"] = pilot_time.seconds();
   }
   statistics.footprint = options.footprint;
 
@@ -384,10 +384,9 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   }
   const TracedPicture picture = trace(kept, shutter, scene, view, traced, layout, lights,
                                       std::move(tracing), std::move(state), statistics);
-  statistics.seconds.trace = trace_time.seconds() - statistics.seconds.checkpoint;
+  statistics.seconds.trace = total.seconds() - counted_seconds(statistics);
   finish(result, content, picture, control);
-  statistics.seconds.develop =
-      trace_time.seconds() - statistics.seconds.trace - statistics.seconds.checkpoint;
+  statistics.seconds.develop = total.seconds() - counted_seconds(statistics);
   *kept_ = std::move(kept);
   statistics.seconds.total = total.seconds();
   return result;

@@ -5,7 +5,7 @@
 
 namespace dapple {
 
-/// `on_ground`: --ground was given, so that plants do not stand on nothing.
+/// `on_ground`: the scene has the default ground; else the note tells how to get it.
 std::string default_light_note(bool on_ground);
 
 }  // namespace dapple

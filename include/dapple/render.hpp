@@ -22,10 +22,10 @@ struct RenderStatistics {
   struct {
     double load = 0, prepare = 0, cache = 0, build = 0, prefilter = 0, refit = 0, upload = 0,
            kernel_build = 0, trace = 0, checkpoint = 0, develop = 0, write = 0, total = 0;
-  } seconds;  ///< wall time; the others add up to total. prepare: device, camera, names; cache:
-              ///< reads and writes; refit: finding and refitting what moved; kernel_build: wait
-              ///< for kernels after the scene is on the device; trace: all passes with the camera
-              ///< pass, without checkpoints; develop: the film from its sums
+  } seconds;  ///< wall time; the others add up to total. prepare: camera, ground, names, a resumed
+              ///< checkpoint; cache: reads and writes; refit: finding and refitting what moved;
+              ///< kernel_build: wait for kernels after the scene is on the device; trace: all
+              ///< passes, and scenes of later times, without checkpoints; develop: the film
   std::map<std::string, double> pass_seconds;  ///< by pass label, from the device's own clock
   struct {
     std::uint64_t camera = 0, ao = 0, light = 0;

@@ -245,7 +245,7 @@ class Scene:
         """Irradiance of each light at points, W/m^2, (n, 3) linear RGB, by the lights' names.
 
         Arguments as for occlusion(), without distance and falloff; rays (16) are for each point
-        and light.
+        and light; footprint (4).
 
         >>> corners = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]
         >>> square = dapple.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], opacity=0.25)

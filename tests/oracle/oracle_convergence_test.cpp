@@ -22,6 +22,7 @@ Film film_of(const Scene& scene, Estimator estimator, float footprint) {
   options.light = false;
   options.estimator = estimator;
   options.footprint = footprint;
+  options.roulette = 0;  // footprint 0 composites every surface
   return render(scene, options).film;
 }
 

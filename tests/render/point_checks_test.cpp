@@ -61,6 +61,12 @@ TEST(PointChecks, WrongPointsAndNormalsAreNamed) {
   }
 }
 
+// Documents name them; at points the noise of few rays counts more than bias (experiment 640).
+TEST(PointChecks, DefaultFootprintsAreThoseOfTheDocuments) {
+  EXPECT_EQ(OcclusionOptions().footprint, 8);
+  EXPECT_EQ(IrradianceOptions().footprint, 4);
+}
+
 TEST(PointChecks, OptionsOfOcclusionHaveRanges) {
   const SceneOnDevice scene(square());
   const std::pair<OcclusionOptions, const char*> wrong[] = {

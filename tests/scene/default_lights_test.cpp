@@ -1,5 +1,7 @@
 // Lights that a scene may get: sun and sky stand where the camera says, and are as bright as they
 // are said to be; the key light hangs up left in front and gives an irradiance of about one.
+#include "scene/default_lights.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,6 +44,13 @@ TEST(Daylight, TheSunStandsUpLeftInFrontAtAnyTiltOfTheCamera) {
     EXPECT_LT(towards.dot(row(camera.to_world, 0)), 0);
     EXPECT_GT(towards.dot(V3f(back.x, 0, back.z)), 0);
   }
+}
+
+TEST(Daylight, TheNoteOffersAGroundOnlyWhereThereIsNone) {
+  const std::string note = default_light_note(true);
+  EXPECT_NE(note.find("--lights F"), std::string::npos) << note;
+  EXPECT_EQ(note.find("--ground"), std::string::npos) << note;
+  EXPECT_EQ(default_light_note(false), note + ", --ground a floor for their shadows");
 }
 
 TEST(Daylight, TheSunIsWarmTheSkyBlueAndClearlyDimmer) {
