@@ -44,12 +44,16 @@ class OpenclFailure : public testing::Test {
   /// Renders after fail_call(n) or fail_allocation(n), and expects one Error. Kernels are loaded
   /// ahead on another thread: if a call of theirs fails there, it is made again, and the picture is
   /// right.
-  void expect_one_error(int n) const {
+  void expect_one_error(int n) {
     SCOPED_TRACE("failure " + std::to_string(n));
     std::string what;
     try {
       EXPECT_TRUE(render_small() == picture_) << failed_call();
-      EXPECT_TRUE(loads_kernels(failed_call())) << failed_call() << ": no Error was thrown";
+      if (failed_call() == "clGetDeviceInfo") {
+        EXPECT_EQ(++untold_, 1) << "drivers may keep silent on whose memory a device has, alone";
+      } else {
+        EXPECT_TRUE(loads_kernels(failed_call())) << failed_call() << ": no Error was thrown";
+      }
     } catch (const Error& error) {
       what = error.what();
       EXPECT_EQ(error.kind(), ErrorKind::device) << failed_call();
@@ -65,6 +69,7 @@ class OpenclFailure : public testing::Test {
 
   const std::vector<std::uint32_t> picture_;
   const int living_before_;
+  int untold_ = 0;  ///< questions about the device whose failure was no error
 };
 
 class OpenclFailureAtEveryCall : public OpenclFailure {};
