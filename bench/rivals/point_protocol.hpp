@@ -8,8 +8,8 @@
 namespace dapple::bench {
 
 struct PointQueries {
-  std::size_t max_rays = 1024;        ///< a point, at the largest effort
-  float footprint = kPointFootprint;  ///< dapple's
+  std::size_t max_rays = 1024;            ///< a point, at the largest effort
+  float footprint = kOcclusionFootprint;  ///< dapple's
 };
 
 /// Exact AO by Embree with multiplicative alpha, as two independent halves.

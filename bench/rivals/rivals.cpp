@@ -176,7 +176,7 @@ class SceneRun {
     for (std::size_t i = 0; i < count; ++i) points.push_back(points_[i * points_.size() / count]);
     show_progress("points: reference");
     const Truth truth = point_truth(scene_, points, static_cast<std::size_t>(a_.reference_spp));
-    const PointQueries queries{a_.max_rays, a_.footprint.value_or(kPointFootprint)};
+    const PointQueries queries{a_.max_rays, a_.footprint.value_or(kOcclusionFootprint)};
     report(hold_contest(point_contestants(scene_, points, methods, queries), truth,
                         {a_.repeats, 0, show_progress}),
            kPointTargets, "points", fmt::format("AO at {} points", count), "rays a point");

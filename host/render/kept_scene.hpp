@@ -36,7 +36,7 @@ struct KeptScene {
                RenderStatistics& statistics) const;
 };
 
-/// The sum of the steps' seconds so far.
+/// The sum of the seconds of all steps so far; what is left of the total is the current step's.
 double counted_seconds(const RenderStatistics& statistics);
 
 }  // namespace dapple

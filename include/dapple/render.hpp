@@ -151,9 +151,9 @@ DeviceCheck check_device(const Device& device);
 struct OcclusionOptions {
   int rays = 64;  ///< for each point, [1, 2^20]
   Estimator estimator = Estimator::prefiltered;
-  float footprint = kPointFootprint;  ///< [0, 10^6]
-  float distance = 0.0f;              ///< metres, [0, 10^30]; 0: no limit
-  float falloff = 0.0f;               ///< [0, 100]; above 0 only with a distance
+  float footprint = kOcclusionFootprint;  ///< [0, 10^6]
+  float distance = 0.0f;                  ///< metres, [0, 10^30]; 0: no limit
+  float falloff = 0.0f;                   ///< [0, 100]; above 0 only with a distance
   std::uint32_t seed = 0;
 };
 

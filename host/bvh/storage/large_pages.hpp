@@ -1,6 +1,6 @@
 // Memory of the arrays that rays read at random. In: a number of values. Out: memory, in pages of
 // 2 MB where the system has them (Linux's transparent huge pages). With pages of 4 kB a visit of a
-// node of a large scene often misses the table of addresses, too (experiment 129).
+// node of a large scene often misses the TLB, too (experiment 129). Small arrays have usual memory.
 #pragma once
 
 #include <sys/mman.h>
