@@ -12,6 +12,7 @@
 #include <ImfThreading.h>
 #include <ImfTileDescriptionAttribute.h>
 #include <ImfVersion.h>
+#include <openexr.h>
 
 #include <algorithm>
 #include <array>
@@ -30,7 +31,6 @@ using Imath::V2i;
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr std::size_t kMaxParts = 4096;
-constexpr std::size_t kMaxName = 255;     ///< of an attribute or its type
 constexpr std::uint32_t kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
 
 std::int64_t area(const Box2i& window) {
@@ -38,32 +38,26 @@ std::int64_t area(const Box2i& window) {
   return width * (std::int64_t{window.max.y} - window.min.y + 1);
 }
 
-/// A text of a header, up to its zero, as OpenEXR limits it.
-std::string read_name(Imf::IStream& stream) {
-  std::string name;
-  for (char c = 0; stream.read(&c, 1), c != 0;) {
-    name += c;
-    if (name.size() > kMaxName) throw std::runtime_error("a name in its header is too long");
-  }
-  return name;
+void keep_message(exr_const_context_t file, exr_result_t, const char* message) {
+  void* kept = nullptr;
+  exr_get_user_data(file, &kept);
+  if (kept != nullptr) *static_cast<std::string*>(kept) = message;
 }
 
-/// OpenEXR allocates memory of the size that an attribute claims, so this must be in the file.
-/// Leaves the stream at the beginning of the header, where it is.
-void check_attributes(Imf::IStream& stream, std::uint64_t file_bytes) {
-  const std::uint64_t begin = stream.tellg();
-  while (!read_name(stream).empty()) {
-    read_name(stream);  // its type
-    std::array<char, 4> bytes{};
-    stream.read(bytes.data(), static_cast<int>(bytes.size()));
-    std::uint64_t end = stream.tellg();
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-      end += std::uint64_t{static_cast<unsigned char>(bytes[i])} << (8 * i);
-    if (end > file_bytes)
-      throw std::runtime_error("damaged: an attribute of its header is larger than the file");
-    stream.seekg(end);
-  }
-  stream.seekg(begin);
+/// OpenEXR's C++ interface allocates the memory that a header claims before it reads it. Its C
+/// interface, which is asked first, compares each size with the file and with the attribute's type.
+/// It goes on after some of what it complains of.
+void check_attributes(const std::string& path) {
+  std::string message;
+  exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  settings.user_data = &message;
+  settings.error_handler_fn = keep_message;
+  exr_context_t file = nullptr;
+  const exr_result_t result = exr_start_read(&file, path.c_str(), &settings);
+  if (result == EXR_ERR_SUCCESS) exr_finish(&file);
+  if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (result != EXR_ERR_SUCCESS || !message.empty())
+    throw std::runtime_error("damaged: its header: " + message);
 }
 
 // Reads only the headers, one for each part; OpenEXR does not yet allocate memory of the size that
@@ -77,10 +71,9 @@ std::vector<Imf::Header> peek_headers(const std::string& path) {
   for (std::size_t i = 4; i < 8; ++i) {
     version |= static_cast<unsigned char>(opening[i]) << (8 * (i - 4));
   }
-  const std::uint64_t file_bytes = std::filesystem::file_size(path);
+  check_attributes(path);
   std::vector<Imf::Header> headers;
   do {
-    check_attributes(stream, file_bytes);
     headers.emplace_back();
     headers.back().readFrom(stream, version);
     if (headers.size() > kMaxParts) {

@@ -134,7 +134,21 @@ TEST_F(ExrReader, RefusesAttributesThatAreLargerThanTheFileBeforeItAllocatesThem
   ASSERT_NE(at, std::string::npos);
   exr.replace(at + type.size(), 4, "\xff\xff\xff\x7f");
   write_bytes(path("b.exr"), exr);
-  expect_refused(path("b.exr"), "an attribute of its header is larger than the file");
+  expect_refused(path("b.exr"), "damaged: its header: ");
+}
+
+// OpenEXR's C++ interface reads eight bytes whatever the size, and then takes bytes of the value
+// for the next attribute's name, type and size: here of 2 GB.
+TEST_F(ExrReader, RefusesAttributesThatMisstateTheSizeOfTheirType) {
+  write_exr(ramp_film(2, 2), path("a.exr"));
+  std::string exr = bytes_of(path("a.exr"));
+  const std::string name("screenWindowCenter\0v2f\0", 23);
+  const std::size_t at = exr.find(name) + name.size();
+  ASSERT_GE(at, name.size());
+  exr.insert(at + 4 + 8, std::string("x\0y\0\xff\xff\xff\x7f", 8));
+  exr[at] = 16;
+  write_bytes(path("b.exr"), exr);
+  expect_refused(path("b.exr"), "damaged: its header: ");
 }
 
 TEST_F(ExrReader, RefusesSubsampledChannels) {
