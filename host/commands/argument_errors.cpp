@@ -22,7 +22,7 @@ std::string expected_values(const CLI::App& app, const std::string& flag, const 
   const bool is_whole = std::regex_match(text, std::regex("[+-]?\\d+"));
   if (type == "UINT")
     return is_whole ? "a whole number from 0 to 4294967295" : "a whole number, 0 or more";
-  if (type == "INT" && is_whole) return "a whole number from -2147483648 to 2147483647";
+  if (type == "INT" && is_whole) return "a whole number of at most nine digits";
   if (type == "INT") return "a whole number";
   if (type == "FLOAT") return "a number";
   return "another value";

@@ -12,11 +12,11 @@
 #include <ImfThreading.h>
 #include <ImfTileDescriptionAttribute.h>
 #include <ImfVersion.h>
-#include <openexr.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <new>
 #include <set>
 #include <stdexcept>
@@ -31,6 +31,7 @@ using Imath::V2i;
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr std::size_t kMaxParts = 4096;
+constexpr std::size_t kMaxName = 255;     ///< of an attribute or its type
 constexpr std::uint32_t kStripRows = 64;  // a multiple of ZIP's blocks of 16 rows
 
 std::int64_t area(const Box2i& window) {
@@ -38,31 +39,94 @@ std::int64_t area(const Box2i& window) {
   return width * (std::int64_t{window.max.y} - window.min.y + 1);
 }
 
-void keep_message(exr_const_context_t file, exr_result_t, const char* message) {
-  void* kept = nullptr;
-  exr_get_user_data(file, &kept);
-  if (kept != nullptr) *static_cast<std::string*>(kept) = message;
+/// A text of a header, up to its zero, as OpenEXR limits it.
+std::string read_name(Imf::IStream& stream) {
+  std::string name;
+  for (char c = 0; stream.read(&c, 1), c != 0;) {
+    name += c;
+    if (name.size() > kMaxName) throw std::runtime_error("a name in its header is too long");
+  }
+  return name;
 }
 
-/// OpenEXR's C++ interface allocates the memory that a header claims before it reads it. Its C
-/// interface, which is asked first, compares each size with the file and with the attribute's type.
-/// It goes on after some of what it complains of.
-void check_attributes(const std::string& path) {
-  std::string message;
-  exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  settings.user_data = &message;
-  settings.error_handler_fn = keep_message;
-  exr_context_t file = nullptr;
-  const exr_result_t result = exr_start_read(&file, path.c_str(), &settings);
-  if (result == EXR_ERR_SUCCESS) exr_finish(&file);
-  if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (result != EXR_ERR_SUCCESS || !message.empty())
-    throw std::runtime_error("damaged: its header: " + message);
+std::uint32_t read_number(Imf::IStream& stream) {
+  std::array<char, 4> bytes{};
+  stream.read(bytes.data(), static_cast<int>(bytes.size()));
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    number |= std::uint32_t{static_cast<unsigned char>(bytes[i])} << (8 * i);
+  return number;
+}
+
+/// Bytes of the types of fixed size, which OpenEXR reads whatever size an attribute claims.
+const std::map<std::string, std::uint64_t> kFixedSizes = {
+    {"box2f", 16},
+    {"box2i", 16},
+    {"chromaticities", 32},
+    {"compression", 1},
+    {"deepImageState", 1},
+    {"double", 8},
+    {"envmap", 1},
+    {"float", 4},
+    {"int", 4},
+    {"keycode", 28},
+    {"lineOrder", 1},
+    {"m33d", 72},
+    {"m33f", 36},
+    {"m44d", 128},
+    {"m44f", 64},
+    {"rational", 8},
+    {"tiledesc", 9},
+    {"timecode", 8},
+    {"v2d", 16},
+    {"v2f", 8},
+    {"v2i", 8},
+    {"v3d", 24},
+    {"v3f", 12},
+    {"v3i", 12},
+};
+
+/// Of a value that begins here and claims `claimed` bytes, those that OpenEXR reads. Texts in lists
+/// and previews have sizes of their own, for which it allocates memory.
+std::uint64_t bytes_read(Imf::IStream& stream, const std::string& type, std::uint64_t claimed) {
+  constexpr std::uint64_t kChannel = 16, kPixel = 4;
+  if (const auto fixed = kFixedSizes.find(type); fixed != kFixedSizes.end()) return fixed->second;
+  const std::uint64_t begin = stream.tellg();
+  if (type == "chlist") {
+    while (!read_name(stream).empty()) stream.seekg(stream.tellg() + kChannel);
+  } else if (type == "stringvector") {
+    while (stream.tellg() < begin + claimed) stream.seekg(stream.tellg() + read_number(stream));
+  } else if (type == "preview") {
+    const std::uint64_t width = read_number(stream), height = read_number(stream);
+    if (width * height > claimed) return 0;  // also where it is more than 64 bits
+    return 8 + kPixel * width * height;
+  } else {
+    return claimed;
+  }
+  return stream.tellg() - begin;
+}
+
+/// OpenEXR allocates the memory that an attribute claims before it reads it, so this must be in the
+/// file, and what it reads must be what is claimed: else the next bytes would count as attributes.
+/// Leaves the stream at the beginning of the header, where it is.
+void check_attributes(Imf::IStream& stream, std::uint64_t file_bytes) {
+  const std::uint64_t begin = stream.tellg();
+  for (std::string name = read_name(stream); !name.empty(); name = read_name(stream)) {
+    const std::string type = read_name(stream);
+    const std::uint64_t claimed = read_number(stream), value = stream.tellg();
+    if (claimed > file_bytes || value + claimed > file_bytes)
+      throw std::runtime_error("damaged: an attribute of its header is larger than the file");
+    if (bytes_read(stream, type, claimed) != claimed)
+      throw std::runtime_error("damaged: the attribute " + name + " of its header has " +
+                               std::to_string(claimed) + " bytes, which no " + type + " has");
+    stream.seekg(value + claimed);
+  }
+  stream.seekg(begin);
 }
 
 // Reads only the headers, one for each part; OpenEXR does not yet allocate memory of the size that
 // they claim.
-std::vector<Imf::Header> peek_headers(const std::string& path) {
+std::vector<Imf::Header> peek_headers(const std::string& path, std::uint64_t file_bytes) {
   Imf::StdIFStream stream(path.c_str());
   std::array<char, 8> opening{};
   stream.read(opening.data(), static_cast<int>(opening.size()));
@@ -71,9 +135,9 @@ std::vector<Imf::Header> peek_headers(const std::string& path) {
   for (std::size_t i = 4; i < 8; ++i) {
     version |= static_cast<unsigned char>(opening[i]) << (8 * (i - 4));
   }
-  check_attributes(path);
   std::vector<Imf::Header> headers;
   do {
+    check_attributes(stream, file_bytes);
     headers.emplace_back();
     headers.back().readFrom(stream, version);
     if (headers.size() > kMaxParts) {
@@ -119,9 +183,24 @@ std::vector<std::string> channel_names(const Imf::Header& header) {
   return names;
 }
 
-void check_headers(const std::vector<Imf::Header>& headers) {
+/// Chunks, of at most 256 rows or a tile each. OpenEXR reads a table of where each begins.
+std::uint64_t fewest_chunks(const Imf::Header& header) {
+  const Box2i& window = header.dataWindow();
+  const auto width = static_cast<std::uint64_t>(window.max.x - window.min.x) + 1;
+  const auto height = static_cast<std::uint64_t>(window.max.y - window.min.y) + 1;
+  const auto ceiling = [](std::uint64_t whole, std::uint64_t part) {
+    return (whole + part - 1) / part;
+  };
+  if (!header.hasTileDescription()) return ceiling(height, 256);
+  const Imf::TileDescription& tile = header.tileDescription();
+  return ceiling(width, std::max(1u, tile.xSize)) * ceiling(height, std::max(1u, tile.ySize));
+}
+
+void check_headers(const std::vector<Imf::Header>& headers, std::uint64_t file_bytes) {
   for (const Imf::Header& header : headers) {
     check_size(header);
+    if (fewest_chunks(header) > file_bytes / sizeof(std::uint64_t))
+      throw std::runtime_error("damaged: its image is larger than the file");
     if (header.hasType() && Imf::isDeepData(header.type())) {
       throw std::runtime_error("it has deep data, which is not read");
     }
@@ -181,7 +260,8 @@ void refuse_other_files(const std::string& path) {
 ExrFile::ExrFile(const std::string& path) : path_(path) {
   refuse_other_files(path);
   with_path(path, [&] {
-    check_headers(peek_headers(path));
+    const std::uint64_t file_bytes = std::filesystem::file_size(path);
+    check_headers(peek_headers(path, file_bytes), file_bytes);
     file_ = std::make_unique<Imf::MultiPartInputFile>(path.c_str(), Imf::globalThreadCount());
     const Box2i& window = file_->header(0).dataWindow();
     width_ = static_cast<std::uint32_t>(window.max.x - window.min.x + 1);

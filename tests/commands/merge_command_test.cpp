@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <regex>
 
+#include "files/exr_reader.hpp"
 #include "support/program_run.hpp"
 
 namespace dapple {
@@ -39,6 +41,19 @@ TEST_F(MergeCommand, ShardsOfOtherProcessesAreTheFileOfOneRender) {
   expect_failure(dapple("merge a.dapple -o a.dapple"), 2,
                  "would overwrite a.dapple, which is read");
   EXPECT_FALSE(std::filesystem::exists(path("no.exr")));
+}
+
+TEST_F(MergeCommand, ARenderGoesOnFromAMergeThatLacksNothing) {
+  ASSERT_EQ(dapple(kTree + "--shard 1/2 -o a.dapple").code, 0);
+  ASSERT_EQ(dapple(kTree + "--shard 2/2 -o b.dapple").code, 0);
+  ASSERT_EQ(dapple("merge a.dapple b.dapple -o sum.dapple").code, 0);
+  const std::string more = std::regex_replace(kTree, std::regex("--spp 7"), "--spp 14");
+  const Outcome render = dapple(more + "--resume sum.dapple -o more.exr");
+  ASSERT_EQ(render.code, 0) << render.err;
+  const ExrImage image = ExrFile(path("more.exr")).image();
+  for (const float samples : image.channels.at("samples")) EXPECT_EQ(samples, 14);
+  ASSERT_EQ(dapple("merge b.dapple -o half.dapple").code, 0);
+  expect_failure(dapple(more + "--resume half.dapple -o no.exr"), 2, "half.dapple");
 }
 
 /// A sky of random pixels, which lights a crop from another side than the whole image.

@@ -78,9 +78,9 @@ TEST_F(OptionValues, AreNumbersWhereNumbersAreExpectedAndNeverNaN) {
 TEST_F(OptionValues, OutOfRangeAreNamedAsTyped) {
   const std::pair<const char*, const char*> cases[] = {
       {"--spp 99999999999999999999",
-       "--spp 99999999999999999999: expected a whole number from -2147483648 to"},
+       "--spp 99999999999999999999: expected a whole number of at most nine digits"},
       {"--spp -99999999999999999999",
-       "--spp -99999999999999999999: expected a whole number from -2147483648"},
+       "--spp -99999999999999999999: expected a whole number of at most nine digits"},
       {"--shard 1/99999999999", "--shard: '99999999999' is out of range"},
       {"--report-bias 200%", "--report-bias 200%: expected 0% to 100%"},
       {"--report-bias -1", "--report-bias -1: expected 0% to 100%"},

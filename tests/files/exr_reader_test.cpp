@@ -1,5 +1,7 @@
 // The EXR reader. It reads files of other programs, and refuses damaged files with a message that
 // names them. It never allocates more pixels than the file can hold.
+#include "files/exr_reader.hpp"
+
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -123,6 +125,24 @@ TEST_F(ExrReader, RefusesHugeWindowsBeforeItAllocatesThem) {
   expect_refused(path("c.exr"), "");
 }
 
+TEST_F(ExrReader, RefusesMoreTilesThanTheFileHasRoomFor) {
+  Imf::Header header(1, 1);
+  header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+  header.setTileDescription({1, 1, Imf::ONE_LEVEL});
+  {
+    Imf::TiledOutputFile file(path("tile.exr").c_str(), header);
+    float pixel = 0.5f;
+    Imf::FrameBuffer buffer;
+    buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&pixel), 4, 4));
+    file.setFrameBuffer(buffer);
+    file.writeTile(0, 0);
+  }
+  EXPECT_EQ(ExrFile(path("tile.exr")).image().channels.at("Y").at(0), 0.5f);
+  write_bytes(path("tiles.exr"),
+              with_data_window(bytes_of(path("tile.exr")), {{0, 0}, {9'999, 9'999}}));
+  expect_refused(path("tiles.exr"), "damaged: its image is larger than the file");
+}
+
 TEST_F(ExrReader, RefusesAttributesThatAreLargerThanTheFileBeforeItAllocatesThem) {
   Film film = ramp_film(2, 2);
   film.metadata = some_metadata();
@@ -134,10 +154,10 @@ TEST_F(ExrReader, RefusesAttributesThatAreLargerThanTheFileBeforeItAllocatesThem
   ASSERT_NE(at, std::string::npos);
   exr.replace(at + type.size(), 4, "\xff\xff\xff\x7f");
   write_bytes(path("b.exr"), exr);
-  expect_refused(path("b.exr"), "damaged: its header: ");
+  expect_refused(path("b.exr"), "an attribute of its header is larger than the file");
 }
 
-// OpenEXR's C++ interface reads eight bytes whatever the size, and then takes bytes of the value
+// OpenEXR reads eight bytes whatever the size, and then takes bytes of the value
 // for the next attribute's name, type and size: here of 2 GB.
 TEST_F(ExrReader, RefusesAttributesThatMisstateTheSizeOfTheirType) {
   write_exr(ramp_film(2, 2), path("a.exr"));
@@ -148,7 +168,9 @@ TEST_F(ExrReader, RefusesAttributesThatMisstateTheSizeOfTheirType) {
   exr.insert(at + 4 + 8, std::string("x\0y\0\xff\xff\xff\x7f", 8));
   exr[at] = 16;
   write_bytes(path("b.exr"), exr);
-  expect_refused(path("b.exr"), "damaged: its header: ");
+  expect_refused(
+      path("b.exr"),
+      "damaged: the attribute screenWindowCenter of its header has 16 bytes, which no v2f");
 }
 
 TEST_F(ExrReader, RefusesSubsampledChannels) {

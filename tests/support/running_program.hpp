@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,8 +20,8 @@ namespace dapple::program_test {
 
 using Milliseconds = std::chrono::milliseconds;
 
-/// More than anything takes on the busiest machine.
-constexpr Milliseconds kLongest{600'000};
+/// More than anything takes on a busy machine, and less than tests may take.
+constexpr Milliseconds kLongest{240'000};
 
 /// Waits until `condition` is true, at most `limit`; returns whether it became true.
 inline bool wait_until(const std::function<bool()>& condition, Milliseconds limit) {
@@ -42,6 +43,7 @@ class RunningProgram {
     argv.push_back(nullptr);
     process_ = fork();
     if (process_ != 0) return;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // where the test is killed, so is the program
     const int file = open(output.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0666);
     dup2(file, STDOUT_FILENO);
     dup2(file, STDERR_FILENO);
