@@ -202,7 +202,7 @@ RenderControl to_control(const BakeArguments& a, ProgressBar& progress) {
   // Without a checkpoint there is nothing to save: a signal ends the process at once.
   if (!a.checkpoint.empty()) {
     control.stop = save_when_interrupted();
-    control.progress = end_hanging_slices_early(control.progress);
+    control.progress = end_early(a.checkpoint, a.resume, control.progress);
   }
   control.checkpoint = a.checkpoint;
   control.checkpoint_every = parse_seconds("--checkpoint-every", a.checkpoint_every);

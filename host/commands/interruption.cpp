@@ -1,11 +1,13 @@
 #include "commands/interruption.hpp"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <ctime>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -16,8 +18,11 @@ namespace {
 
 constexpr int kSignalled = 128;           ///< added to a signal's number, as shells do
 constexpr unsigned kSecondsOfSlice = 20;  ///< after a signal; more than any on a busy machine
-/// The same after SIGTERM or SIGXCPU with checkpoints: only the work since the last one is lost.
-constexpr unsigned kSecondsWithCheckpoint = 2;
+/// The same after SIGTERM or SIGXCPU with checkpoints: only the work since the last one is lost. To
+/// free the memory takes a quarter of a second more, on a busy machine four times that: so there is
+/// a look at the processor time that the first second brought.
+constexpr useconds_t kFirstLook = 999'999, kSecondLook = 600'000;  ///< microseconds, in turn
+constexpr double kStarvedSeconds = 0.6;
 
 /// A render is late if its checkpoint is written later than this after the signal. The picture
 /// takes 1.5 times as long again, on busy machines too, and two seconds are the limit for both.
@@ -27,11 +32,17 @@ constexpr double kLateSeconds = 0.8;
 volatile std::sig_atomic_t received = 0;
 volatile std::sig_atomic_t saving = 0;
 volatile std::sig_atomic_t noticed = 0;
-volatile std::sig_atomic_t ends_early = 0;  // a slice after kSecondsWithCheckpoint
+volatile std::sig_atomic_t ends_early = 0;  // after the looks, not after kSecondsOfSlice
+volatile std::sig_atomic_t has_looked = 0;
 volatile std::sig_atomic_t in_slice = 0;
+volatile std::sig_atomic_t all_traced = 0;
+volatile std::sig_atomic_t is_saved = 0;  // all that was traced before the signal
+volatile std::sig_atomic_t skips_picture = 0;
 volatile std::sig_atomic_t has_temporary = 0;
-timespec received_at{};  // written before `received`
-char temporary[4096];    // written only while has_temporary is 0
+timespec received_at{}, processor_time{};  // written before `received`
+char temporary[4096];                      // written only while has_temporary is 0
+char checkpoint[4096];                     // written before ends_early; empty: none, or longer
+struct stat earlier {};  // of a file at the checkpoint's path that is not of this render
 
 /// Ends the process from a signal handler, and removes the file or empty folder that
 /// remove_when_interrupted() named. Other unfinished outputs have temporary names; the next run
@@ -41,22 +52,66 @@ char temporary[4096];    // written only while has_temporary is 0
   _exit(kSignalled + signal);
 }
 
+/// Whether the checkpoint's file is of this render, or of the one that it goes on from.
+bool has_checkpoint() {
+  struct stat now {};
+  if (checkpoint[0] == '\0' || stat(checkpoint, &now) != 0) return false;
+  return now.st_ino != earlier.st_ino || now.st_mtim.tv_sec != earlier.st_mtim.tv_sec ||
+         now.st_mtim.tv_nsec != earlier.st_mtim.tv_nsec;
+}
+
+double seconds_between(const timespec& begin, const timespec& end) {
+  return static_cast<double>(end.tv_sec - begin.tv_sec) +
+         1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
+}
+
+/// Whether other programs took the processors since the signal.
+bool is_starved() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return seconds_between(processor_time, now) < kStarvedSeconds;
+}
+
+/// Says what is not there, unless a note does, which tells that the picture is skipped.
+[[noreturn]] void end_with_last_checkpoint() {
+  static const char lost[] =
+      "dapple: ended before the samples since the last checkpoint were saved\n";
+  static const char saved[] =
+      "dapple: ended before the picture was written; the checkpoint has all\n";
+  const std::string_view text = skips_picture ? "" : is_saved ? saved : lost;
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+  end_at_once(received);
+}
+
 // A second SIGTERM does not end the process at once: process managers send it twice.
 extern "C" void on_interruption(int signal) {
   if (!saving || (received && signal == SIGINT)) end_at_once(signal);
   if (received) return;
   clock_gettime(CLOCK_MONOTONIC, &received_at);
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &processor_time);
   received = signal;
   if (signal == SIGINT) ends_early = 0;
-  if (!noticed) alarm(ends_early ? kSecondsWithCheckpoint : kSecondsOfSlice);
+  if (noticed) return;
+  if (ends_early)
+    ualarm(kFirstLook, 0);
+  else
+    alarm(kSecondsOfSlice);
 }
 
-/// A slice takes a fraction of a second. If it does not end, the driver hangs, or compiles.
+/// A slice takes a fraction of a second. If it does not end, the driver hangs, or compiles. Saving
+/// or writing the picture may take longer on a busy machine: that is given up where there is an
+/// earlier checkpoint, unless all is traced.
 extern "C" void on_alarm(int) {
+  if (ends_early && !has_looked && !(has_checkpoint() && is_starved())) {
+    has_looked = 1;
+    ualarm(kSecondLook, 0);
+    return;
+  }
+  if (ends_early && !all_traced && has_checkpoint()) end_with_last_checkpoint();
   if (noticed) return;
   if (!ends_early || in_slice) end_at_once(received);
-  ends_early = 0;  // it saves, or writes the picture
-  alarm(kSecondsOfSlice - kSecondsWithCheckpoint);
+  ends_early = 0;
+  alarm(kSecondsOfSlice);
 }
 
 /// The kernel sends SIGXCPU at the soft limit of processor time, and SIGKILL at the hard one;
@@ -99,10 +154,13 @@ Stop save_when_interrupted() {
   };
 }
 
-Progress end_hanging_slices_early(Progress progress) {
+Progress end_early(const std::string& path, const std::string& resumed, Progress progress) {
+  checkpoint[path.size() < sizeof checkpoint ? path.copy(checkpoint, path.size()) : 0] = '\0';
+  if (path == resumed || stat(path.c_str(), &earlier) != 0) earlier = {};
   ends_early = 1;
   return [progress = std::move(progress)](double fraction) {
     in_slice = 0;
+    all_traced = fraction >= 1;
     if (progress) progress(fraction);
   };
 }
@@ -121,12 +179,12 @@ void remove_when_interrupted(const std::string& path) {
 }
 
 bool is_late() {
+  is_saved = received;
   if (received != SIGTERM && received != SIGXCPU) return false;
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<double>(now.tv_sec - received_at.tv_sec) +
-             1e-9 * static_cast<double>(now.tv_nsec - received_at.tv_nsec) >
-         kLateSeconds;
+  skips_picture = seconds_between(received_at, now) > kLateSeconds ? 1 : 0;
+  return skips_picture != 0;
 }
 
 int interruption_code() { return received ? kSignalled + received : 0; }

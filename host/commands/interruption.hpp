@@ -18,11 +18,12 @@ void catch_interruptions();
 /// twenty seconds ends it too: a driver hangs.
 Stop save_when_interrupted();
 
-/// For a render or bake that writes checkpoints, so that little is lost: where a slice has not
-/// ended two seconds after SIGTERM or SIGXCPU, the process ends. Returns a function to be called
-/// after each slice, and again where another slice does not follow the question whether to stop; it
-/// calls `progress`.
-Progress end_hanging_slices_early(Progress progress);
+/// For a render or bake that writes checkpoints to `path`, so that little is lost: the process is
+/// gone within two seconds of SIGTERM or SIGXCPU where a slice does not end, or where there is a
+/// checkpoint of this run, or of the file `resumed`, and the next is not written. Returns a
+/// function to be called after each slice, and again where another slice does not follow the
+/// question whether to stop, with the fraction done; it calls `progress`.
+Progress end_early(const std::string& path, const std::string& resumed, Progress progress);
 
 /// All slices of a picture or bake are traced: until the next question whether to stop, a signal no
 /// longer ends the process after twenty seconds, since writing what is finished may take longer.
@@ -32,9 +33,9 @@ void slices_are_traced();
 /// paths than 4,095 bytes are not remembered.
 void remove_when_interrupted(const std::string& path);
 
-/// Whether more than 0.8 s have passed since SIGTERM or SIGXCPU. Then the picture should be
-/// skipped, because process managers kill programs that do not end soon. Always false after SIGINT,
-/// which a person sends.
+/// Called once an interrupted render is saved: whether more than 0.8 s have passed since SIGTERM or
+/// SIGXCPU. Then the picture should be skipped, because process managers kill programs that do not
+/// end soon. Always false after SIGINT, which a person sends.
 bool is_late();
 
 /// The exit code for the signal that came, or 0.

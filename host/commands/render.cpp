@@ -40,7 +40,7 @@ RenderControl to_control(const RenderArguments& a, ProgressBar& progress) {
   RenderControl control{progress.callback(), save_when_interrupted(), a.checkpoint,
                         parse_seconds("--checkpoint-every", a.checkpoint_every), a.resume};
   control.skip_film = is_late;
-  if (!a.checkpoint.empty()) control.progress = end_hanging_slices_early(control.progress);
+  if (!a.checkpoint.empty()) control.progress = end_early(a.checkpoint, a.resume, control.progress);
   return control;
 }
 

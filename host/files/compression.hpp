@@ -10,8 +10,11 @@
 
 namespace dapple {
 
+/// yes: a third of the time for 1.7 times the size.
+enum class Haste : bool { no, yes };
+
 /// Compresses `bytes` to zstd frames, one after the other. Throws Error failed.
-std::vector<std::byte> compress(Section bytes);
+std::vector<std::byte> compress(Section bytes, Haste haste = Haste::no);
 
 /// Number of bytes that `frames` decompress to; 0 unless they are whole frames that state their
 /// size.

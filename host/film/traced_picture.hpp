@@ -29,6 +29,7 @@ struct TracedPicture {
   std::map<std::string, double> pass_seconds;  ///< device seconds by label, of all runs
   std::size_t queue_bytes = 0;
   bool interrupted = false;
+  bool skipped = false;  ///< interrupted, and without sums, errors and bias: there is no time left
 };
 
 }  // namespace dapple

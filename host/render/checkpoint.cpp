@@ -11,7 +11,6 @@
 #include "camera/camera_splitting.hpp"
 #include "dapple/error.hpp"
 #include "dapple/shared/ray.h"
-#include "files/compression.hpp"
 #include "files/sealed_file.hpp"
 #include "film/matte_sums.hpp"
 
@@ -180,19 +179,21 @@ bool fits(const Round& round, std::uint32_t slice_samples, std::size_t pixels) {
 }  // namespace
 
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
-                      const TraceState& state, Durable durable) {
+                      const TraceState& state, Durable durable, Haste haste) {
   // The work of a round that is done is of no use any more.
   const Round none;
   const Round& round = state.round.is_done() ? none : state.round;
   // Paths may have other bytes than UTF-8; names of objects have not.
   const std::string about =
       header(checkpoint, state, round).dump(-1, ' ', false, json::error_handler_t::replace);
-  std::vector<std::vector<std::byte>> packed{compress(as_section(state.sum_values())),
-                                             compress(as_section(state.square_values())),
-                                             compress(as_section(state.samples))};
-  for (const WorkGroup& group : round.groups) packed.push_back(compress(as_section(group.work)));
-  if (!state.mattes.empty()) packed.push_back(compress(as_section(state.mattes)));
-  if (!state.motion.empty()) packed.push_back(compress(as_section(state.motion.values())));
+  std::vector<std::vector<std::byte>> packed;
+  const auto add = [&](Section section) { packed.push_back(compress(section, haste)); };
+  add(as_section(state.sum_values()));
+  add(as_section(state.square_values()));
+  add(as_section(state.samples));
+  for (const WorkGroup& group : round.groups) add(as_section(group.work));
+  if (!state.mattes.empty()) add(as_section(state.mattes));
+  if (!state.motion.empty()) add(as_section(state.motion.values()));
   std::vector<Section> sections{as_section(about)};
   for (const std::vector<std::byte>& bytes : packed) sections.emplace_back(bytes);
   // Checkpoints are not synced to disk (experiment 805): after a power failure the checksum shows

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "files/compression.hpp"
 #include "files/output_file.hpp"
 #include "render/picture_record.hpp"
 #include "render/pieces.hpp"
@@ -27,7 +28,8 @@ struct Checkpoint {
 
 /// The content of the file. The state is separate so that it need not be copied.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
-                      const TraceState& state, Durable durable = Durable::no);
+                      const TraceState& state, Durable durable = Durable::no,
+                      Haste haste = Haste::no);
 
 /// Reads and verifies the file. Throws Error failed, "--resume PATH: ...", if it is damaged.
 /// Whether the state fits a picture is checked by check_state().

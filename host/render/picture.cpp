@@ -75,13 +75,8 @@ class PictureTracer {
     }
     keep_state(plan, control, !picture.interrupted);
     picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
-    if (plan.is_adaptive() && all_have_variances(picture.samples))
-      picture.errors = standard_errors(picture.samples);
-    picture.sums = context_.view(film_.sums);
-    if (bias_) picture.bias = bias_of(picture.sums, picture.samples, view);
-    picture.mattes = std::move(hit_sums_.mattes);
-    picture.motion = std::move(hit_sums_.motion);
-    picture.deep = std::move(hit_sums_.deep);
+    picture.skipped = picture.interrupted && control.skip_film && control.skip_film();
+    if (!picture.skipped) add_sums(picture, plan, view);
     context_.finish();
     picture.pass_seconds = pass_seconds();
     picture.queue_bytes = queues_.bytes() + (backs_ ? backs_->bytes() : 0);
@@ -90,6 +85,16 @@ class PictureTracer {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  void add_sums(TracedPicture& picture, const SamplePlan& plan, const View& view) {
+    if (plan.is_adaptive() && all_have_variances(picture.samples))
+      picture.errors = standard_errors(picture.samples);
+    picture.sums = context_.view(film_.sums);
+    if (bias_) picture.bias = bias_of(picture.sums, picture.samples, view);
+    picture.mattes = std::move(hit_sums_.mattes);
+    picture.motion = std::move(hit_sums_.motion);
+    picture.deep = std::move(hit_sums_.deep);
+  }
 
   static double sum_of(const std::vector<std::uint32_t>& samples) {
     return static_cast<double>(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}));

@@ -22,6 +22,8 @@ struct TraceControl {
   double save_every = 0;                          ///< seconds
   std::function<void(const TraceState&)> finish;  ///< called once all samples are traced
   SampleOrder order = SampleOrder::pixels;
+  /// Asked once an interrupted picture is saved. true: it is left without sums, for the end is near.
+  std::function<bool()> skip_film = {};
 };
 
 /// Runs every pass that `options` select over the view's crop. The result depends on

@@ -278,8 +278,7 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
   RenderStatistics& statistics = result.statistics;
   add_trace_statistics(statistics, picture, layout);
   result.interrupted = picture.interrupted;
-  if (result.interrupted && !control.checkpoint.empty() && result.checkpoint_failure.empty() &&
-      control.skip_film && control.skip_film()) {
+  if (picture.skipped) {
     statistics.notes.push_back(interruption_note(picture, options, control));
     return;
   }

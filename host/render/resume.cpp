@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 
 #include "camera/camera_splitting.hpp"
@@ -91,11 +92,17 @@ void write_checkpoints(TraceControl& tracing, const RenderControl& control, Chec
   if (control.checkpoint.empty()) return;
   tracing.order = SampleOrder::passes;
   tracing.save_every = control.checkpoint_every;
-  tracing.save = [&control, &result, about = std::move(about)](const TraceState& state) {
+  auto stopped = std::make_shared<bool>(false);
+  if (control.stop) tracing.stop = [&control, stopped] { return *stopped = control.stop(); };
+  tracing.skip_film = [&control, &result] {
+    return result.checkpoint_failure.empty() && control.skip_film && control.skip_film();
+  };
+  tracing.save = [&control, &result, stopped, about = std::move(about)](const TraceState& state) {
     const Stopwatch writing;
     result.checkpoint_failure.clear();
     try {
-      write_checkpoint(control.checkpoint, about, state);
+      write_checkpoint(control.checkpoint, about, state, Durable::no,
+                       *stopped ? Haste::yes : Haste::no);
     } catch (const Error& error) {
       result.checkpoint_failure = error.what();
     }

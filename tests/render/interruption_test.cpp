@@ -9,6 +9,7 @@
 #include <memory>
 #include <random>
 
+#include "render/checkpoint.hpp"
 #include "support/film_files.hpp"
 #include "support/hanging_program.hpp"
 #include "support/processor_time.hpp"
@@ -137,6 +138,31 @@ TEST_F(Interruption, AHangingDriverIsLeftTwoSecondsAfterSIGTERMWithTheLastCheckp
   // The checkpoint is whole: nothing is wrong with it but that it was made with these kernels.
   EXPECT_EQ(run(render(kEndless, {"--resume", path("a.ckpt")})), 2);
   EXPECT_TRUE(contains(bytes_of(log()), "differs from this run in kernels")) << bytes_of(log());
+}
+
+// The program stands still while it has a slice to end or something to save, as on a machine that
+// is very busy.
+TEST_F(Interruption, WhereTheMachineIsBusyTheLastCheckpointIsKept) {
+  bool kept = false;
+  for (int side = 400; side <= 3200 && !kept; side *= 2) {
+    std::vector<std::string> arguments = with_checkpoint(kEndless, "0.3");
+    arguments[5] = arguments[7] = std::to_string(side);
+    std::filesystem::remove(path("a.ckpt"));
+    std::filesystem::remove(path("out.exr"));
+    RunningProgram program(arguments, log());
+    ASSERT_TRUE(wait_until([&] { return is_there("a.ckpt"); }, kLongest)) << bytes_of(log());
+    program.send(SIGTERM);
+    std::this_thread::sleep_for(Milliseconds(1));
+    program.send(SIGSTOP);
+    std::this_thread::sleep_for(Milliseconds(1'100));
+    program.send(SIGCONT);
+    EXPECT_EQ(program.wait(), 143) << bytes_of(log());
+    kept = contains(bytes_of(log()),
+                    "dapple: ended before the samples since the last checkpoint were saved\n");
+  }
+  EXPECT_TRUE(kept) << bytes_of(log());
+  EXPECT_FALSE(is_there("out.exr"));
+  EXPECT_GT(read_checkpoint(path("a.ckpt")).state.samples.size(), 0u);
 }
 
 // The program stands still for a second after the signal, as on a machine that is very busy. It may
