@@ -95,7 +95,10 @@ std::uint64_t bytes_read(Imf::IStream& stream, const std::string& type, std::uin
   if (type == "chlist") {
     while (!read_name(stream).empty()) stream.seekg(stream.tellg() + kChannel);
   } else if (type == "stringvector") {
-    while (stream.tellg() < begin + claimed) stream.seekg(stream.tellg() + read_number(stream));
+    while (stream.tellg() < begin + claimed) {
+      const std::uint32_t length = read_number(stream);
+      stream.seekg(stream.tellg() + length);
+    }
   } else if (type == "preview") {
     const std::uint64_t width = read_number(stream), height = read_number(stream);
     if (width * height > claimed) return 0;  // also where it is more than 64 bits

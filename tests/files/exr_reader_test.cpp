@@ -6,6 +6,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
+#include <ImfStringVectorAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
@@ -171,6 +172,21 @@ TEST_F(ExrReader, RefusesAttributesThatMisstateTheSizeOfTheirType) {
   expect_refused(
       path("b.exr"),
       "damaged: the attribute screenWindowCenter of its header has 16 bytes, which no v2f");
+}
+
+TEST_F(ExrReader, ReadsListsOfTextsAndRefusesThoseThatReachBeyondThemselves) {
+  Imf::Header header(1, 1);
+  header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+  header.insert("texts", Imf::StringVectorAttribute({"", "ab", ""}));
+  { Imf::OutputFile file(path("a.exr").c_str(), header); }
+  EXPECT_EQ(ExrFile(path("a.exr")).width(), 1u);
+  std::string exr = bytes_of(path("a.exr"));
+  const std::size_t at = exr.find(std::string("\2\0\0\0ab", 6));
+  ASSERT_NE(at, std::string::npos);
+  exr.replace(at, 4, "\xff\xff\xff\x7f");
+  write_bytes(path("b.exr"), exr);
+  expect_refused(path("b.exr"),
+                 "damaged: the attribute texts of its header has 14 bytes, which no");
 }
 
 TEST_F(ExrReader, RefusesSubsampledChannels) {
