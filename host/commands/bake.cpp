@@ -241,7 +241,10 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   if (!input->lights().empty()) scene.lights = input->lights();
   const std::vector<Scene> occluders = load_occluders(a);
   check_outputs_spare(outputs, files_read(a, scene, occluders));
-  if (options.light) choose_lights(a, scene);
+  if (options.light) {
+    if (!a.dome.empty()) progress.announce("reading", a.dome);
+    choose_lights(a, scene);
+  }
   const std::vector<std::string> inputs = files_read(a, scene, occluders);  // and images of lights
   check_outputs_spare(outputs, inputs);
   gltf::SourceFile file(input->path(), a.scene_options.allow_outside);

@@ -188,6 +188,7 @@ void run_points(const Arguments& a) {
   progress.announce("reading", a.scene);
   Scene scene = load_scene(a.scene, a.scene_options);
   check_outputs_spare(outputs, files_read(a, scene));
+  if (names_image(a.sky)) progress.announce("reading", a.sky);
   set_lights(a, scene);
   check_outputs_spare(outputs, files_read(a, scene));  // and images of lights
   const PointList list = points_of(a, scene);

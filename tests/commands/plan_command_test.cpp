@@ -60,6 +60,17 @@ TEST_F(PlanCommand, WritesNothingButItsStatistics) {
   EXPECT_GT(json.at("shard").at("seconds_of_rays"), 0);
 }
 
+// The render takes a second or two. It comes first: then kernels are compiled.
+TEST_F(PlanCommand, SecondsAreThoseOfTheRenderOnAMachineThatDoesNothingElse) {
+  const std::string options = "'scene:tree?leaves=20000' --width 240 --height 160 --spp 96";
+  ASSERT_EQ(dapple("render " + options + " -q -o out.exr --stats-json render.json").code, 0);
+  const auto render = nlohmann::json::parse(bytes_of(path("render.json")));
+  const auto planned = plan(options);
+  // Programs that begin or end meanwhile change both by a factor.
+  expect_within(planned.at("shard").at("seconds_of_rays"), render.at("seconds").at("trace"), 4,
+                "seconds of rays");
+}
+
 // Where trials are slow, sizes are those of an image of a fifth of the pixels, times five. Small
 // images have more edges in a pixel and compress a little less. A trial's part has all samples, and
 // sums of twice the samples are larger numbers. Memory is also what is kept of earlier trials.

@@ -36,6 +36,22 @@ TEST_F(ProgressOnATerminal, SaysWhatIsReadAndBuilt) {
   EXPECT_NE(wrote, std::string::npos) << text;
 }
 
+// One of 16384x8192 pixels takes seconds.
+TEST_F(ProgressOnATerminal, SaysWhichImageOfASkyIsRead) {
+  film_test::write_bytes(path("sky.hdr"),
+                         std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n") +
+                             "\x5a\x78\xc8\x81\x3c\x32\x28\x80");
+  ASSERT_EQ(dapple("scene cube -o cube.glb").code, 0);
+  for (const char* command :
+       {"render cube.glb --dome sky.hdr -o out.exr --width 8 --height 8 --spp 1",
+        "bake cube.glb --passes ao,light --dome sky.hdr --rays 8 -o out.glb",
+        "points cube.glb --grid 0,0,1,1,0.5 --sky sky.hdr --rays 16 -o out.csv"}) {
+    const std::string text = shown(command);
+    EXPECT_TRUE(film_test::contains(text, "reading sky.hdr ...")) << text;
+    EXPECT_TRUE(film_test::contains(text, "building the BVH ...")) << text;
+  }
+}
+
 TEST_F(ProgressOnATerminal, IsErasedBeforeAnError) {
   const std::string text = shown(kLostFile);
   EXPECT_NE(text.find("\r\033[Kdapple: no_such_file.glb: no such file"), std::string::npos) << text;

@@ -43,6 +43,7 @@ TEST_F(PacketsOption, DevicesCommandReportsWhetherEveryKernelRuns) {
   const auto run = dapple("devices --check");
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_TRUE(film_test::contains(run.out, "runs every kernel; ")) << run.out;
+  EXPECT_TRUE(film_test::contains(run.err, "compiling every kernel for ")) << run.err;
   film_test::write_bytes(path("kernels/occlusion/packet.cl"), "this is no OpenCL C\n");
   const auto broken = dapple("devices --check --kernel-dir kernels");
   EXPECT_EQ(broken.code, 4) << broken.err;
