@@ -91,6 +91,7 @@ const std::map<std::string, std::uint64_t> kFixedSizes = {
 std::uint64_t bytes_read(Imf::IStream& stream, const std::string& type, std::uint64_t claimed) {
   constexpr std::uint64_t kChannel = 16, kPixel = 4;
   if (const auto fixed = kFixedSizes.find(type); fixed != kFixedSizes.end()) return fixed->second;
+  if (type == "floatvector") return claimed / 4 * 4;
   const std::uint64_t begin = stream.tellg();
   if (type == "chlist") {
     while (!read_name(stream).empty()) stream.seekg(stream.tellg() + kChannel);

@@ -3,6 +3,7 @@
 #include "files/exr_reader.hpp"
 
 #include <ImfChannelList.h>
+#include <ImfFloatVectorAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
@@ -187,6 +188,23 @@ TEST_F(ExrReader, ReadsListsOfTextsAndRefusesThoseThatReachBeyondThemselves) {
   write_bytes(path("b.exr"), exr);
   expect_refused(path("b.exr"),
                  "damaged: the attribute texts of its header has 14 bytes, which no");
+}
+
+// OpenEXR reads whole numbers of four bytes, and takes what is left for the next attribute.
+TEST_F(ExrReader, RefusesPartsOfNumbers) {
+  Imf::Header header(1, 1);
+  header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+  header.insert("numbers", Imf::FloatVectorAttribute({1, 2}));
+  { Imf::OutputFile file(path("a.exr").c_str(), header); }
+  EXPECT_EQ(ExrFile(path("a.exr")).width(), 1u);
+  std::string exr = bytes_of(path("a.exr"));
+  const std::string type("numbers\0floatvector\0", 20);
+  const std::size_t at = exr.find(type);
+  ASSERT_NE(at, std::string::npos);
+  exr[at + type.size()] = 10;
+  exr.insert(at + type.size() + 12, "x\0", 2);
+  write_bytes(path("b.exr"), exr);
+  expect_refused(path("b.exr"), "the attribute numbers of its header has 10 bytes, which no");
 }
 
 TEST_F(ExrReader, RefusesSubsampledChannels) {
