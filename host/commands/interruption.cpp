@@ -22,7 +22,7 @@ constexpr unsigned kSecondsOfSlice = 20;  ///< after a signal; more than any on 
 /// free the memory takes a quarter of a second more, on a busy machine four times that: so there is
 /// a look at the processor time that the first second brought.
 constexpr useconds_t kFirstLook = 999'999, kSecondLook = 600'000;  ///< microseconds, in turn
-constexpr double kStarvedSeconds = 0.6;
+constexpr double kStarvedShare = 0.6;                              ///< of one processor
 
 /// A render is late if its checkpoint is written later than this after the signal. The picture
 /// takes 1.5 times as long again, on busy machines too, and two seconds are the limit for both.
@@ -65,11 +65,14 @@ double seconds_between(const timespec& begin, const timespec& end) {
          1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec);
 }
 
-/// Whether other programs took the processors since the signal.
+/// Whether the process had little of the processors since the signal: other programs took them, or
+/// it waits for a disk.
 bool is_starved() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return seconds_between(processor_time, now) < kStarvedSeconds;
+  timespec processor_now{}, now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &processor_now);
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return seconds_between(processor_time, processor_now) <
+         kStarvedShare * seconds_between(received_at, now);
 }
 
 /// Says what is not there, unless a note does, which tells that the picture is skipped.
@@ -99,15 +102,15 @@ extern "C" void on_interruption(int signal) {
 }
 
 /// A slice takes a fraction of a second. If it does not end, the driver hangs, or compiles. Saving
-/// or writing the picture may take longer on a busy machine: that is given up where there is an
-/// earlier checkpoint, unless all is traced.
+/// or writing the picture of an interrupted render is given up where there is a checkpoint and the
+/// machine is busy (experiment 821).
 extern "C" void on_alarm(int) {
   if (ends_early && !has_looked && !(has_checkpoint() && is_starved())) {
     has_looked = 1;
     ualarm(kSecondLook, 0);
     return;
   }
-  if (ends_early && !all_traced && has_checkpoint()) end_with_last_checkpoint();
+  if (ends_early && !all_traced && has_checkpoint() && is_starved()) end_with_last_checkpoint();
   if (noticed) return;
   if (!ends_early || in_slice) end_at_once(received);
   ends_early = 0;
@@ -168,7 +171,7 @@ Progress end_early(const std::string& path, const std::string& resumed, Progress
 void slices_are_traced() {
   noticed = 1;
   in_slice = 0;
-  alarm(0);
+  if (!is_saved) alarm(0);  // else there is a checkpoint that has all
 }
 
 void remove_when_interrupted(const std::string& path) {

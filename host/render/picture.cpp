@@ -73,6 +73,8 @@ class PictureTracer {
       picture.interrupted = !trace_round(plan, control);
       trace_backs();
     }
+    // With a target the fraction that is done may be less.
+    if (!picture.interrupted && control.progress) control.progress(1);
     keep_state(plan, control, !picture.interrupted);
     picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
     picture.skipped = picture.interrupted && control.skip_film && control.skip_film();
