@@ -337,6 +337,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (options.instances && !result.interrupted)
     result.interrupted = !bake_all_instances(scene, options, *together, records, result);
   if (options.light && !result.interrupted) add_up_groups(lights, result);
+  if (!result.interrupted) progress.finish();
   s.bias = bias.report();
   s.footprint = options.footprint;
   add_target_notes(asked, s);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "dapple/render.hpp"
 
@@ -19,7 +20,7 @@ class BakeProgress {
   /// Adds traced samples. False if the bake is to stop.
   bool add(std::size_t samples) {
     done_ += static_cast<double>(samples);
-    shown_ = std::max(shown_, std::min(1.0, done_ / std::max(1.0, total_)));
+    shown_ = std::max(shown_, std::min(std::nextafter(1.0, 0.0), done_ / std::max(1.0, total_)));
     show();
     return !(control_.stop && control_.stop());
   }
@@ -28,6 +29,12 @@ class BakeProgress {
   /// caller takes the device to be at work until it is shown progress.
   void show() const {
     if (control_.progress) control_.progress(shown_);
+  }
+
+  /// All samples are traced, also if there were fewer than expected.
+  void finish() {
+    shown_ = 1;
+    show();
   }
 
  private:

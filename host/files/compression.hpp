@@ -10,7 +10,7 @@
 
 namespace dapple {
 
-/// yes: a third of the time for 1.7 times the size.
+/// yes: a third of the time for 1.7 times the size (experiment 820).
 enum class Haste : bool { no, yes };
 
 /// Compresses `bytes` to zstd frames, one after the other. Throws Error failed.

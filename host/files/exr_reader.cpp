@@ -144,12 +144,20 @@ std::vector<Imf::Header> peek_headers(const std::string& path, std::uint64_t fil
     check_attributes(stream, file_bytes);
     headers.emplace_back();
     headers.back().readFrom(stream, version);
+    // As OpenEXR does: where there is one part, the version tells, not what the header says.
+    if (!Imf::isMultiPart(version) && !Imf::isNonImage(version))
+      headers.back().setType(Imf::isTiled(version) ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
     if (headers.size() > kMaxParts) {
       throw std::runtime_error("it has more than " + std::to_string(kMaxParts) + " parts");
     }
   } while (Imf::isMultiPart(version) && !headers.back().readsNothing());
   if (headers.size() > 1) headers.pop_back();  // the empty one that ends the list
   return headers;
+}
+
+/// A file without tiles may have the attribute `tiles` all the same.
+bool is_tiled(const Imf::Header& header) {
+  return header.hasType() && header.type() == Imf::TILEDIMAGE;
 }
 
 void check_size(const Imf::Header& header) {
@@ -165,7 +173,7 @@ void check_size(const Imf::Header& header) {
                              std::to_string(height) + " pixels is over the limit of " +
                              std::to_string(kMaxPixels));
   }
-  if (!header.hasTileDescription()) return;
+  if (!is_tiled(header)) return;
   // OpenEXR keeps one row of tiles for scanline access.
   const Imf::TileDescription& tile = header.tileDescription();
   if (too_large(tile.xSize, tile.ySize) || too_large(width, tile.ySize)) {
@@ -195,7 +203,7 @@ std::uint64_t fewest_chunks(const Imf::Header& header) {
   const auto ceiling = [](std::uint64_t whole, std::uint64_t part) {
     return (whole + part - 1) / part;
   };
-  if (!header.hasTileDescription()) return ceiling(height, 256);
+  if (!is_tiled(header)) return ceiling(height, 256);
   const Imf::TileDescription& tile = header.tileDescription();
   return ceiling(width, std::max(1u, tile.xSize)) * ceiling(height, std::max(1u, tile.ySize));
 }

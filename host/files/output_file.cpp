@@ -93,7 +93,6 @@ PendingFile::PendingFile(const std::string& target) : name_(target), target_(fol
   temporary_ = std::move(file.path);
   lock_ = fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
   copy_permissions(target_, descriptor_);
-  buffer_.reserve(kBufferBytes);
 }
 
 PendingFile::~PendingFile() {

@@ -73,7 +73,6 @@ class PictureTracer {
       picture.interrupted = !trace_round(plan, control);
       trace_backs();
     }
-    // With a target the fraction that is done may be less.
     if (!picture.interrupted && control.progress) control.progress(1);
     keep_state(plan, control, !picture.interrupted);
     picture.samples = traced_samples(state_.round, state_.slice_samples, plan.samples());
@@ -214,9 +213,7 @@ class PictureTracer {
     const double total = plan.is_adaptive() ? given / plan.fraction_done()
                                             : static_cast<double>(layout_.pixels) * plan.minimum();
     for (bool new_group = true; !round.is_done(); new_group = round.entry + round.sample == 0) {
-      if (control.save && traced_ > saved_samples_ &&
-          Clock::now() - saved_ >= std::chrono::duration<double>(control.save_every))
-        save(plan, control);
+      if (!save_if_due(plan, control)) return false;
       if (control.stop && control.stop()) return false;
       const WorkGroup& group = round.groups[round.group];
       const SliceParams slice = next_slice(round, state_.slice_samples);
@@ -227,13 +224,19 @@ class PictureTracer {
       is_saved_ = false;
       traced_ += static_cast<double>(samples_of(slice));
       advance(round, state_.slice_samples);
-      progress_ = std::max(progress_, traced_ / total);
+      progress_ = std::max(progress_, std::min(std::nextafter(1.0, 0.0), traced_ / total));
       if (control.progress) control.progress(progress_);
     }
     return true;
   }
 
-  void save(const SamplePlan& plan, const TraceControl& control) {
+  /// Returns false if the render is to stop: then it is saved at its end.
+  bool save_if_due(const SamplePlan& plan, const TraceControl& control) {
+    if (!control.save || traced_ <= saved_samples_ ||
+        Clock::now() - saved_ < std::chrono::duration<double>(control.save_every))
+      return true;
+    if (control.stop && control.stop()) return false;
+    if (control.progress) control.progress(progress_);  // no slice follows
     trace_backs();
     read_state(plan);
     control.save(state_);
@@ -241,6 +244,7 @@ class PictureTracer {
     saved_ = Clock::now();
     saved_samples_ = traced_;
     is_saved_ = true;
+    return true;
   }
 
   /// At the end: `finished` unless interrupted.

@@ -64,6 +64,28 @@ TEST_F(ExrReader, TakesTiles) {
   EXPECT_EQ(read_exr(path("a.exr")).planes.at(0).pixels, kForeignPixels);
 }
 
+// Of one pixel each, more than the file has bytes: it is written by lines all the same.
+TEST_F(ExrReader, TakesLinesWhoseHeaderNamesTiles) {
+  constexpr int kSide = 64;
+  Imf::Header header(kSide, kSide);
+  header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+  header.setTileDescription(Imf::TileDescription(1, 1));
+  header.compression() = Imf::ZIP_COMPRESSION;
+  const std::vector<float> pixels(std::size_t{kSide} * kSide, 0.5f);
+  {
+    Imf::OutputFile file(path("a.exr").c_str(), header);
+    Imf::FrameBuffer buffer;
+    buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, pixels.data(), header.dataWindow()));
+    file.setFrameBuffer(buffer);
+    file.writePixels(kSide);
+  }
+  std::string bytes = bytes_of(path("a.exr"));
+  ASSERT_EQ(bytes[5], 2) << "OpenEXR sets the flag of tiles for the attribute";
+  bytes[5] = 0;
+  write_bytes(path("a.exr"), bytes);
+  EXPECT_EQ(read_exr(path("a.exr")).planes.at(0).pixels, pixels);
+}
+
 void expect_refused(const std::string& path, const std::string& why) {
   const Error error = error_of([&] { read_exr(path); });
   EXPECT_EQ(error.kind(), ErrorKind::input);

@@ -80,8 +80,8 @@ void walk(const FinishedObject& object, std::uint32_t index, std::size_t& visits
       require(node.child_base + inner > index);
       walk(object, node.child_base + inner++, visits);
     }
-    for (std::uint32_t i = bvh_leaf_begin(&node, slot);
-         i < bvh_leaf_end(node.leaf_end, slot); ++i) {
+    for (std::uint32_t i = bvh_leaf_begin(&node, slot); i < bvh_leaf_end(node.leaf_end, slot);
+         ++i) {
       if (node.prim_base & DAPPLE_SEGMENTS) {
         const std::size_t block = bvh_block_index(bvh_block(node.prim_base, i));
         require(block < object.segments.size());

@@ -1,6 +1,7 @@
-// Reads any bytes as points or suns; the first byte chooses the format. This gives an Error of kind
-// input, or finite points with unit normals, or finite suns.
+// Reads any bytes as the file DAPPLE_FUZZ_FILE, points or suns (a target for each format). This
+// gives an Error of kind input, or finite points with unit normals, or finite suns.
 #include <cmath>
+#include <string_view>
 
 #include "dapple/error.hpp"
 #include "fuzz/input_file.hpp"
@@ -31,17 +32,14 @@ void read_any_suns(const std::string& path) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const dapple::fuzz::InputFile csv("points.csv"), npy("points.npy"), ply("points.ply"),
-      suns("suns.csv");
-  if (size == 0) return 0;
-  const std::uint8_t format = data[0] % 4;
-  ++data;
-  --size;
+  constexpr std::string_view kName = DAPPLE_FUZZ_FILE;
+  static const dapple::fuzz::InputFile file{std::string(kName)};
+  const std::string& path = file.fill(data, size);
   try {
-    if (format == 0) read_any_points(csv.fill(data, size));
-    if (format == 1) read_any_points(npy.fill(data, size));
-    if (format == 2) read_any_points(ply.fill(data, size));
-    if (format == 3) read_any_suns(suns.fill(data, size));
+    if (kName == "suns.csv")
+      read_any_suns(path);
+    else
+      read_any_points(path);
   } catch (const dapple::Error& error) {
     require(error.kind() == dapple::ErrorKind::input);
   }

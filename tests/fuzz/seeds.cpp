@@ -1,5 +1,6 @@
 // Writes the scenes of the corpus, small images and point files as the first inputs of the fuzzers.
-// The command `seeds FOLDER` makes the folders FOLDER/gltf, image, radiance_hdr, exr and points.
+// The command `seeds FOLDER` makes the folders FOLDER/gltf, image, radiance_hdr, exr, csv, npy, ply
+// and suns.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -94,23 +95,17 @@ void write_exr_images(const std::filesystem::path& folder) {
   }
 }
 
-/// A file of each format; its first byte tells points_fuzz.cpp the format.
+/// A file of each format.
 void write_points_and_suns(const std::filesystem::path& folder) {
   dapple::PointList list;
   list.points = {{1, 2, 3}, {0.5f, 0, -1}};
   list.normals = {{0, 1, 0}, {1, 0, 0}};
-  const std::string endings[] = {".csv", ".npy", ".ply"};
-  for (std::size_t format = 0; format < std::size(endings); ++format) {
-    const std::filesystem::path path = folder / ("points" + endings[format]);
-    std::filesystem::create_directories(folder);
-    dapple::write_points(path, list, {{"ao", {0.25f, 1}}});
-    std::ifstream file(path, std::ios::binary);
-    Bytes bytes{static_cast<std::uint8_t>(format)};
-    bytes.insert(bytes.end(), std::istreambuf_iterator<char>(file), {});
-    write_seed(path, bytes);
+  for (const std::string format : {"csv", "npy", "ply"}) {
+    std::filesystem::create_directories(folder / format);
+    dapple::write_points(folder / format / ("points." + format), list, {{"ao", {0.25f, 1}}});
   }
-  const std::string suns = "\x03x,y,z,irradiance\n0,1,0,800\n0.5,0.5,0,300\n";
-  write_seed(folder / "suns.csv", Bytes(suns.begin(), suns.end()));
+  const std::string suns = "x,y,z,irradiance\n0,1,0,800\n0.5,0.5,0,300\n";
+  write_seed(folder / "suns" / "suns.csv", Bytes(suns.begin(), suns.end()));
 }
 
 }  // namespace
@@ -128,6 +123,6 @@ int main(int argc, char** argv) {
   write_images(folder / "image");
   write_radiance_images(folder / "radiance_hdr");
   write_exr_images(folder / "exr");
-  write_points_and_suns(folder / "points");
+  write_points_and_suns(folder);
   return 0;
 }
