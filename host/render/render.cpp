@@ -146,16 +146,24 @@ void add_bias(RenderResult& result, const TracedPicture& picture, const FilmLayo
   }
 }
 
-/// The options that the picture is traced with: what a target leaves for the noise. Sets the
-/// footprint in `options`.
-RenderOptions with_measured_bias(const FootprintChoice& choice, RenderOptions& options,
-                                 RenderStatistics& statistics) {
-  options.footprint = choice.footprint;
-  if (!choice.note.empty()) statistics.notes.push_back(choice.note);
+/// Chooses the footprint by a pilot where one is needed. `first_footprint`: of a resumed picture.
+/// Returns what is traced: targets are of the noise alone.
+RenderOptions with_chosen_footprint(const KeptScene& kept, const PilotPicture& picture,
+                                    std::optional<float> first_footprint, RenderOptions& options,
+                                    RenderStatistics& statistics) {
   RenderOptions traced = options;
-  traced.footprint_spp = footprint_samples(options);
-  for (float* target : {&traced.target_error, &traced.target_rmse})
-    if (*target > 0) *target = noise_target(*target, choice.bias_rmse);
+  if (needs_footprint_pilot(options, first_footprint.has_value())) {
+    const Stopwatch time;
+    const FootprintChoice choice = footprint_pilot(kept, picture, first_footprint);
+    options.footprint = choice.footprint;
+    if (!choice.note.empty()) statistics.notes.push_back(choice.note);
+    traced = options;
+    traced.footprint_spp = footprint_samples(options);
+    for (float* target : {&traced.target_error, &traced.target_rmse})
+      if (*target > 0) *target = noise_target(*target, choice.bias_rmse);
+    statistics.pass_seconds["bias pilot"] = time.seconds();
+  }
+  statistics.footprint = options.footprint;
   return traced;
 }
 
@@ -356,17 +364,9 @@ RenderResult Renderer::render_shutter(const std::function<Scene(int)>& scene_at,
   const FilmLayout layout(view.crop, sampled, film_scales(view, bounds, buffers.light_records),
                           lights, !buffers.corner_normals.empty());
   statistics.seconds.prepare = total.seconds() - counted_seconds(statistics);
-  const Stopwatch pilot_time;
-  RenderOptions traced = options;
-  if (needs_footprint_pilot(options, resumed.has_value())) {
-    traced =
-        with_measured_bias(footprint_pilot(kept, {view, options, bounds, lights},
-                                           resumed ? std::optional(asked_footprint) : std::nullopt),
-                           options, statistics);
-    statistics.pass_seconds["bias pilot"] = pilot_time.seconds();
-  }
-  statistics.footprint = options.footprint;
-
+  const RenderOptions traced = with_chosen_footprint(
+      kept, {view, options, bounds, lights},
+      resumed ? std::optional(asked_footprint) : std::nullopt, options, statistics);
   // After the pilot, because the metadata name the footprint that it chose.
   const FilmMetadata about = metadata(scene, view, options, kept.device->info(), control);
   const PictureContent content{scene, view, sampled, lights, names, layout, about};
