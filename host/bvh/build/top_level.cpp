@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/error.hpp"
@@ -29,15 +30,23 @@ void store_rows(const M44f& m, float (&rows)[12]) {
 }
 
 /// Returns the world box around the boxes of the root's children. It is tighter than the world box
-/// around the root's box.
+/// around the root's box. Of each sum for a corner the least and the largest terms are added up
+/// (Arvo, "Transforming Axis-Aligned Bounding Boxes", Graphics Gems, 1990).
 Box3f world_box(const std::vector<Box3f>& parts, const M44f& to_world) {
   Box3f world;
   for (const Box3f& box : parts) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const V3f p(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                  corner & 4 ? box.max.z : box.min.z);
-      world.extendBy(p * to_world);
+    if (box.isEmpty()) continue;
+    V3f low(0.0f), high(0.0f);
+    for (int from = 0; from < 3; ++from) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const float a = box.min[from] * to_world[from][axis];
+        const float b = box.max[from] * to_world[from][axis];
+        low[axis] += std::min(a, b);
+        high[axis] += std::max(a, b);
+      }
     }
+    const V3f origin(to_world[3][0], to_world[3][1], to_world[3][2]);
+    world.extendBy(Box3f(low + origin, high + origin));
   }
   return world;
 }
@@ -123,10 +132,9 @@ class TopPrefilter {
   /// The children of the first levels are computed in parallel.
   Covered node(std::uint32_t index, int level = 0) {
     const auto children = tree_.children_of(tree_.nodes[index]);
-    std::array<NodeOpacity, DAPPLE_BVH_WIDTH> opacities;
-    std::array<CoverageMap, DAPPLE_BVH_WIDTH> maps;
+    std::array<std::optional<Covered>, DAPPLE_BVH_WIDTH> below;  // none of instances
     const auto cover = [&](std::size_t slot) {
-      opacities[slot] = cover_child(children[slot], maps[slot], level);
+      if (!children[slot].count) below[slot].emplace(node(children[slot].first, level + 1));
     };
     if (level < kParallelLevels) {
       tbb::parallel_for(std::size_t{0}, children.size(), cover);
@@ -136,9 +144,9 @@ class TopPrefilter {
     NodeCoverage coverage(tree_.nodes[index].box);
     NormalMoments normals;
     for (unsigned slot = 0; slot < children.size(); ++slot) {
-      coverage.add(maps[slot], children[slot].box);
-      normals.add(opacities[slot].normals);
-      set_child_opacity(nodes_[index], slot, opacities[slot], children[slot].box);
+      const NodeOpacity opacity = add(coverage, children[slot], below[slot]);
+      normals.add(opacity.normals);
+      set_child_opacity(nodes_[index], slot, opacity, children[slot].box);
     }
     return {coverage.map(), normals};
   }
@@ -146,15 +154,16 @@ class TopPrefilter {
  private:
   static constexpr int kParallelLevels = 4;
 
-  NodeOpacity cover_child(const WideChild& child, CoverageMap& map, int level) {
-    if (child.count) {
-      const NodeOpacity& opacity = placed_[order_[child.first].primitive].opacity;
-      map = uniform_map(opacity.axes);
-      return opacity;
+  /// Adds an instance or, if there is one, what is `below`. Returns its opacity.
+  NodeOpacity add(NodeCoverage& coverage, const WideChild& child,
+                  const std::optional<Covered>& below) const {
+    if (below) {
+      coverage.add(below->map, child.box);
+      return map_opacity(below->map, below->normals, child.box);
     }
-    const Covered below = node(child.first, level + 1);
-    map = below.map;
-    return map_opacity(map, below.normals, child.box);
+    const NodeOpacity& opacity = placed_[order_[child.first].primitive].opacity;
+    coverage.add_uniform(opacity.axes, child.box);
+    return opacity;
   }
 
   const WideTree& tree_;

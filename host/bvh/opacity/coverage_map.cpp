@@ -284,10 +284,4 @@ bool is_single_layer(std::span<const CoveringTriangle> triangles) {
   return true;
 }
 
-CoverageMap uniform_map(const V3f& opacity) {
-  CoverageMap map;
-  for (int axis = 0; axis < 3; ++axis) map.transmittance[axis].fill(1.0f - opacity[axis]);
-  return map;
-}
-
 }  // namespace dapple

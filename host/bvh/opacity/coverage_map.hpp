@@ -135,6 +135,9 @@ class NodeCoverage {
   /// Adds a child by its map over `child_box`, which lies in the node's box.
   void add(const CoverageMap& child, const Box3f& child_box, const SurfaceAreas& areas = {});
 
+  /// Adds a child that is filled uniformly: one `opacity` over its box for each axis.
+  void add_uniform(const V3f& opacity, const Box3f& child_box);
+
   /// Adds the triangles of a leaf: a single layer by is_single_layer(), with constant opacities.
   void add_layer(const Covering& covering, const Box3f& child_box, const SurfaceAreas& areas);
 
@@ -159,9 +162,6 @@ class NodeCoverage {
 /// Whether no triangle of a leaf occludes another, seen along any axis: they lie side by side, edge
 /// to edge.
 bool is_single_layer(std::span<const CoveringTriangle> triangles);
-
-/// Returns a map whose cells all have the same opacity, one value for each axis.
-CoverageMap uniform_map(const V3f& opacity);
 
 // Implementation of cover().
 

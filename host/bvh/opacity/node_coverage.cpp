@@ -214,6 +214,24 @@ void NodeCoverage::add(const CoverageMap& child, const Box3f& child_box,
   children_[child_count_++] = ranges;
 }
 
+void NodeCoverage::add_uniform(const V3f& opacity, const Box3f& child_box) {
+  const CellRanges ranges = cell_ranges(child_box);
+  for_register_width([&]<int kLanes>() __attribute__((always_inline)) {
+    Cells cells;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!(face_area(box_, axis) > 0.0f)) continue;
+      const auto across = cell_shares<kLanes>(ranges[column_axis(axis)]) * opacity[axis];
+      const CellRange& rows = ranges[row_axis(axis)];
+      const int first = std::clamp(static_cast<int>(rows.from), 0, kMapSize - 1);
+      const int last = std::clamp(static_cast<int>(rows.to), 0, kMapSize - 1);
+      for (int row = first; row <= last; ++row)
+        (across * row_share(rows, row)).store(&cells[row * kMapSize]);
+      merge(ranges, axis, first, last, cells, {});
+    }
+  });
+  children_[child_count_++] = ranges;
+}
+
 void NodeCoverage::add_layer(const Covering& covering, const Box3f& child_box,
                              const SurfaceAreas& areas) {
   const CellRanges ranges = cell_ranges(child_box);

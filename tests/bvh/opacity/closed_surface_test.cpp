@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "bvh/build/object_bvh.hpp"
+#include "support/uniform_map.hpp"
 
 namespace dapple {
 namespace {

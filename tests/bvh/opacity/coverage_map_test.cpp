@@ -9,6 +9,7 @@
 
 #include "bvh/build/object_bvh.hpp"
 #include "bvh/opacity/triangle_opacity.hpp"
+#include "support/uniform_map.hpp"
 
 namespace dapple {
 namespace {
@@ -163,13 +164,38 @@ TEST(CoverageMap, AChildAsLargeAsItsParentIsTakenOverUnchanged) {
   }
 }
 
+// Boxes anywhere in the parent's, some of them flat or at its border.
+TEST(CoverageMap, AUniformChildCountsAsItsMap) {
+  Numbers numbers(3);
+  for (int round = 0; round < 200; ++round) {
+    NodeCoverage by_box(kBox), by_map(kBox);
+    for (int child = 0; child < 4; ++child) {
+      Box3f box;
+      for (int corner = 0; corner < 2; ++corner) {
+        V3f at = numbers.vector(-0.2f, 1.2f);
+        for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(1.0f, std::max(0.0f, at[axis]));
+        box.extendBy(in_box(at));
+      }
+      if (round % 5 == 0) box.max[child % 3] = box.min[child % 3];
+      const V3f opacity = numbers.vector(0, 1);
+      by_box.add_uniform(opacity, box);
+      by_map.add(uniform_map(opacity), box);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      for (int cell = 0; cell < kMapCells; ++cell)
+        ASSERT_NEAR(by_box.map().transmittance[axis][cell], by_map.map().transmittance[axis][cell],
+                    2e-5f)
+            << round << ", " << axis << ", " << cell;
+  }
+}
+
 TEST(CoverageMap, AdjacentSolidPartsFillTheirParentWhereverTheyTouch) {
   for (const float at : {0.5f, 0.25f, 0.37f, 0.501f}) {
     Box3f left = kBox, right = kBox;
     left.max.x = right.min.x = in_box({at, 0, 0}).x;
     NodeCoverage node(kBox);
-    node.add(uniform_map(V3f(1, 1, 1)), left);
-    node.add(uniform_map(V3f(1, 1, 1)), right);
+    node.add_uniform(V3f(1, 1, 1), left);
+    node.add_uniform(V3f(1, 1, 1), right);
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(node.map().mean_opacity(axis), 1, 1e-5f)
           << "split at " << at << ", axis " << axis;
@@ -184,8 +210,8 @@ TEST(CoverageMap, PartsThatOverlapWithinACellMultiplyOnlyThere) {
   left.max.x = in_box({0.75f, 0, 0}).x;
   right.min.x = in_box({0.25f, 0, 0}).x;
   NodeCoverage node(kBox);
-  node.add(uniform_map(V3f(0.5f, 0.5f, 0.5f)), left);
-  node.add(uniform_map(V3f(0.5f, 0.5f, 0.5f)), right);
+  node.add_uniform(V3f(0.5f, 0.5f, 0.5f), left);
+  node.add_uniform(V3f(0.5f, 0.5f, 0.5f), right);
   for (const int axis : {1, 2}) {
     EXPECT_NEAR(node.map().mean_opacity(axis), 0.5f * 0.5f + 0.5f * 0.75f, 1e-5f);
   }
@@ -193,13 +219,13 @@ TEST(CoverageMap, PartsThatOverlapWithinACellMultiplyOnlyThere) {
 
 TEST(CoverageMap, OverlappingChildrenMultiplyAndSolidStaysSolid) {
   NodeCoverage node(kBox);
-  node.add(uniform_map(V3f(0.5f, 0.2f, 0)), kBox);
-  node.add(uniform_map(V3f(0.5f, 0.9f, 0)), kBox);
+  node.add_uniform(V3f(0.5f, 0.2f, 0), kBox);
+  node.add_uniform(V3f(0.5f, 0.9f, 0), kBox);
   EXPECT_NEAR(node.map().mean_opacity(0), 0.75f, 1e-5f);
   EXPECT_NEAR(node.map().mean_opacity(1), 0.92f, 1e-5f);
   EXPECT_NEAR(node.map().mean_opacity(2), 0, 1e-6f);
-  node.add(uniform_map(V3f(1, 1, 1)), kBox);
-  node.add(uniform_map(V3f(0.3f, 0.3f, 0.3f)), kBox);
+  node.add_uniform(V3f(1, 1, 1), kBox);
+  node.add_uniform(V3f(0.3f, 0.3f, 0.3f), kBox);
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(node.map().mean_opacity(axis), 1, 1e-5f);
 }
 
@@ -207,7 +233,7 @@ TEST(CoverageMap, AFlatBoxIsOpaqueOnlyAlongItsNormal) {
   Box3f flat = kBox;
   flat.max.z = flat.min.z;
   NodeCoverage node(kBox);
-  node.add(uniform_map(V3f(0.8f, 0.8f, 0.8f)), flat);
+  node.add_uniform(V3f(0.8f, 0.8f, 0.8f), flat);
   EXPECT_NEAR(node.map().mean_opacity(0), 0, 1e-6f);
   EXPECT_NEAR(node.map().mean_opacity(1), 0, 1e-6f);
   EXPECT_NEAR(node.map().mean_opacity(2), 0.8f, 1e-5f);
