@@ -72,8 +72,15 @@ std::string checksum_of(Add add) {
 
 /// Where the values are, and of which kinds.
 std::string contents(const BakeOptions& o) {
-  return fmt::format("{}{}{}{}{}", o.vertices ? "vertex " : "", o.texture ? "texture " : "",
-                     o.instances ? "instance " : "", o.bent ? "bent " : "", o.light ? "light" : "");
+  std::vector<std::string> words{"ao"};
+  const std::pair<bool, const char*> all[] = {{o.vertices, "vertex"},
+                                              {o.texture, "texture"},
+                                              {o.instances, "instance"},
+                                              {o.bent, "bent"},
+                                              {o.light, "light"}};
+  for (const auto& [is_wanted, word] : all)
+    if (is_wanted) words.emplace_back(word);
+  return fmt::format("{}", fmt::join(words, ","));
 }
 
 }  // namespace

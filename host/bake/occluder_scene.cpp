@@ -61,7 +61,6 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
   check_scene(scene);
   for (const Scene& other : others) check_scene(other);
   KernelsAhead kernels(device.context(), kernels_of(device.context(), options));
-  for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   if (!options.light || options.lights) {
     scene.lights = options.light ? *options.lights : std::vector<Light>{};
     for (Instance& instance : scene.instances) instance.light = -1;
@@ -70,6 +69,7 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
     append_scene(scene, other);
     notes.insert(notes.end(), other.warnings.begin(), other.warnings.end());
   }
+  for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   if (options.ground) add_ground(scene);
   merge_single_instances(scene);
   finalize_domes(scene);

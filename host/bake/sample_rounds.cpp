@@ -88,7 +88,7 @@ bool SampleRounds::take(std::uint32_t samples, int rays) {
 bool SampleRounds::refine(float target, std::uint32_t max_samples) {
   std::vector<std::uint32_t> wanted(taken_.size());
   for (;;) {
-    sums_.choose_sides(true);
+    sums_.choose_sides();
     set_variance_factors();
     const std::vector<float> factors = sums_.missing_samples(target);
     double more = 0;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace dapple {
 namespace {
@@ -20,6 +21,10 @@ constexpr float kSamplesOfHidden = 8;
 
 /// A side is surely the brighter one if the difference is so many standard errors.
 constexpr float kSure = 1.75f;
+
+/// A sample counts for the three corners of its triangle, for each as 2/3 of one of full weight: so
+/// the squared error of a part's mean is twice what independent corners would have.
+constexpr float kSharedSamples = 2;
 
 /// Places that one thread takes at a time.
 constexpr std::size_t kPlacesAtOnce = 1u << 14;
@@ -132,8 +137,7 @@ ValueSums::ValueSums(SmallParts parts, BakeSides sides, std::size_t lights)
     : sides_(sides),
       parts_(std::move(parts)),
       of_place_(parts_.of_place.size()),
-      of_part_(parts_.count),
-      chosen_(of_place_.size(), Chosen::both),
+      share_of_back_(of_place_.size(), 0.5f),
       lights_(lights),
       front_light_(of_place_.size() * lights, V3f(0, 0, 0)),
       back_light_(front_light_) {}
@@ -177,10 +181,6 @@ void ValueSums::add(const SurfaceSample& sample, const TracedSamples& found, std
       light_behind[to] += found.back_light[from] * sample.weight[k];
     }
   }
-  const std::uint32_t part = parts_.of_place[sample.place[0]];
-  if (part != SmallParts::kLarge)
-    add_to(of_part_[part], sample.weight[0] + sample.weight[1] + sample.weight[2],
-           sample.turned[0]);
 }
 
 // In parts of fixed size, so that the sums do not depend on the number of threads.
@@ -198,25 +198,45 @@ ValueSums::PooledVariance ValueSums::pooled_variance() const {
       [](PooledVariance a, const PooledVariance& b) { return a += b; });
 }
 
-// By sums over a small part: means of single vertices are noisy, and the larger of two is biased.
-void ValueSums::choose_sides(bool surely) {
+// The probability that the back is the brighter side, if the errors of both means are normal.
+float ValueSums::BackMinusFront::share_of_back() const {
+  if (places == 0) return 0;
+  const float error = std::sqrt(square_error);
+  if (std::abs(difference) >= kSure * error) return difference > 0 ? 1.0f : 0.0f;
+  return 0.5f * std::erfc(-difference / (error * std::numbers::sqrt2_v<float>));
+}
+
+void ValueSums::BackMinusFront::add(const BothSides& values, const PooledVariance& variance) {
+  const Side &front = values.front, &back = values.back;
+  if (!(front.weight > 0 && back.weight > 0)) return;
+  ++places;
+  difference += back.mean() - front.mean();
+  square_error += variance.of(front) / front.count() + variance.of(back) / back.count();
+}
+
+// By small parts: means of single vertices are noisy, and the larger of two is biased. All places
+// of a part count the same, however many samples they have.
+void ValueSums::choose_sides() {
   if (sides_ == BakeSides::mean) return;
   const PooledVariance variance = pooled_variance();
-  const auto choose = [&](const BothSides& values) {
-    if (values.back.weight <= 0) return Chosen::front;
-    const float difference = values.back.mean() - values.front.mean();
-    const float square = variance.of(values.front) / values.front.count() +
-                         variance.of(values.back) / values.back.count();
-    if (surely && difference * difference < kSure * kSure * square) return Chosen::both;
-    return difference > 0 ? Chosen::back : Chosen::front;
-  };
-  std::vector<Chosen> of_part(of_part_.size());
-  tbb::parallel_for(std::size_t{0}, of_part.size(),
-                    [&](std::size_t i) { of_part[i] = choose(of_part_[i]); });
-  tbb::parallel_for(std::size_t{0}, chosen_.size(), [&](std::size_t i) {
-    chosen_[i] = parts_.of_place[i] == SmallParts::kLarge ? choose(of_place_[i])
-                                                          : of_part[parts_.of_place[i]];
+  std::vector<BackMinusFront> of_part(parts_.count);
+  for (std::size_t i = 0; i < of_place_.size(); ++i)
+    if (parts_.of_place[i] != SmallParts::kLarge)
+      of_part[parts_.of_place[i]].add(of_place_[i], variance);
+  for (BackMinusFront& part : of_part) part.square_error *= kSharedSamples;
+  tbb::parallel_for(std::size_t{0}, share_of_back_.size(), [&](std::size_t i) {
+    BackMinusFront of_place;
+    if (parts_.of_place[i] == SmallParts::kLarge) of_place.add(of_place_[i], variance);
+    share_of_back_[i] = parts_.of_place[i] == SmallParts::kLarge
+                            ? of_place.share_of_back()
+                            : of_part[parts_.of_place[i]].share_of_back();
   });
+}
+
+float ValueSums::sampled_share_of_back(std::uint32_t place) const {
+  const BothSides& sides = of_place_[place];
+  if (!(sides.front.weight > 0)) return 1;
+  return sides.back.weight > 0 ? share_of_back_[place] : 0.0f;
 }
 
 std::vector<float> ValueSums::squared_errors() const {
@@ -255,18 +275,17 @@ std::vector<PlaceValue> ValueSums::values() const {
     const BothSides& place = of_place_[i];
     values[i].inside = has_inside(i);
     if (is_inside(i)) continue;
-    if (place.front.weight <= 0) {  // without a triangle there is nothing to occlude
+    if (!is_sampled(i)) {  // without a triangle there is nothing to occlude
       values[i] = {1, V3f(0, 0, 0), true};
       continue;
     }
     if (std::max(place.front.mean(), place.back.mean()) <= kHidden) continue;
-    // The larger of two means that differ by noise would be too large.
-    const bool both = counts(i, false) && counts(i, true) && place.back.weight > 0;
-    const bool back = both ? place.back.mean() > place.front.mean() : counts(i, true);
-    const Side& chosen = back ? place.back : place.front;
-    const float ao = both ? 0.5f * (place.front.mean() + place.back.mean()) : chosen.mean();
-    const V3f bent =
-        both && sides_ == BakeSides::mean ? place.front.bent + place.back.bent : chosen.bent;
+    const float share = sampled_share_of_back(i);
+    const float ao = place.front.mean() + share * (place.back.mean() - place.front.mean());
+    // Bent normals of two sides cancel each other: that of the more likely side counts.
+    const V3f bent = sides_ == BakeSides::mean ? place.front.bent + place.back.bent
+                     : share > 0.5f            ? place.back.bent
+                                               : place.front.bent;
     values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true, values[i].inside};
   }
   return values;
@@ -275,14 +294,11 @@ std::vector<PlaceValue> ValueSums::values() const {
 std::vector<V3f> ValueSums::light_values(std::size_t light) const {
   std::vector<V3f> values(of_place_.size(), V3f(0, 0, 0));
   for (std::uint32_t i = 0; i < values.size(); ++i) {
-    const float sides[2] = {of_place_[i].front.weight, of_place_[i].back.weight};
-    float used = 0;
-    for (const bool back : {false, true}) {
-      if (!counts(i, back) || !(sides[back] > 0)) continue;
-      values[i] += (back ? back_light_ : front_light_)[i * lights_ + light] / sides[back];
-      ++used;
-    }
-    if (used > 0) values[i] /= used;
+    if (!is_sampled(i)) continue;
+    const float share = sampled_share_of_back(i);
+    const std::size_t at = i * lights_ + light;
+    if (share < 1) values[i] += front_light_[at] * ((1 - share) / of_place_[i].front.weight);
+    if (share > 0) values[i] += back_light_[at] * (share / of_place_[i].back.weight);
   }
   return values;
 }

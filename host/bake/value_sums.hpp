@@ -45,13 +45,13 @@ class ValueSums {
   void add(std::span<const SurfaceSample> samples, const TracedSamples& found);
 
   /// Chooses the brighter side of each small part and of each place of larger ones, from the
-  /// samples so far. `surely`: only where the difference is significant. Sides that were not chosen
-  /// from, and all sides for BakeSides::mean, count both.
-  void choose_sides(bool surely);
+  /// samples so far. Where neither is surely the brighter one, both count, each by the probability
+  /// that it is. For BakeSides::mean both count the same.
+  void choose_sides();
 
   /// Whether a side of a place counts for its value.
   [[nodiscard]] bool counts(std::uint32_t place, bool back) const {
-    return chosen_[place] == Chosen::both || (chosen_[place] == Chosen::back) == back;
+    return back ? share_of_back_[place] > 0 : share_of_back_[place] < 1;
   }
 
   /// Whether a place has samples that count.
@@ -100,21 +100,29 @@ class ValueSums {
     float inside_weight = 0, inside_squares = 0;  ///< of samples inside closed geometry
     [[nodiscard]] float inside_count() const;
   };
-  enum class Chosen : std::uint8_t { both, front, back };
   class PooledVariance;
+  /// How much brighter the backs of places are than their fronts: sums over places that have both.
+  struct BackMinusFront {
+    float difference = 0, square_error = 0;
+    std::size_t places = 0;
+    void add(const BothSides& values, const PooledVariance& variance);
+    /// The weight of the back in the value: 0 or 1 where a side surely is the brighter one.
+    [[nodiscard]] float share_of_back() const;
+  };
 
   void add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index);
   void add_inside(const SurfaceSample& sample);
   [[nodiscard]] float scale() const { return largest_ > 0 ? largest_ : 1; }
   [[nodiscard]] PooledVariance pooled_variance() const;
+  /// share_of_back_ of a place, whose sides may lack samples.
+  [[nodiscard]] float sampled_share_of_back(std::uint32_t place) const;
 
   BakeSides sides_;
   SmallParts parts_;
   std::vector<BothSides> of_place_;
-  std::vector<BothSides> of_part_;
-  std::vector<Chosen> chosen_;  ///< by place
-  std::vector<float> factors_;  ///< by place, of the variance of means; empty: 1
-  int rays_ = kRaysPerSample;   ///< of a sample
+  std::vector<float> share_of_back_;  ///< by place, [0,1]: the weight of its back
+  std::vector<float> factors_;        ///< by place, of the variance of means; empty: 1
+  int rays_ = kRaysPerSample;         ///< of a sample
   bool several_placements_ = false;
   float largest_ = 0;  ///< the largest TracedSamples::largest
   std::size_t lights_;

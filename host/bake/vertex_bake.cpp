@@ -157,7 +157,7 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
   if (options.at_vertices)
     how.fixed = sample_counts(options.rays, placements.to_world.size(), true);
   if (!rounds.run(how)) return {};
-  sums.choose_sides(true);
+  sums.choose_sides();
   BakeStatistics& statistics = tracing.statistics;
   statistics.sampled_values += add_errors(groups, sums, statistics.squared_errors);
   const std::vector<PlaceValue> of_group = sums.values();
@@ -168,7 +168,7 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
     ValueSums light(small_parts(mesh, groups), options.sides, tracing.lights);
     SampleRounds light_rounds(sampled, ~hash, placements, tracing, light, &sums);
     if (!light_rounds.run(round_options(options, first, placements, true))) return {};
-    light.choose_sides(true);
+    light.choose_sides();
     add_errors(groups, light, statistics.squared_light_errors);
     for (std::size_t l = 0; l < tracing.lights; ++l) values.light.push_back(light.light_values(l));
     for (std::uint32_t i = 0; i < known.size(); ++i) known[i] = known[i] && !light.is_inside(i);

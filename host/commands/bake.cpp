@@ -150,8 +150,10 @@ std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& 
   if (options.texture) {
     const TextureLayout& layout = result.texture.layout;
     const auto primitives = textured_primitives(file, scene, layout, uvs.set);
-    gltf::add_occlusion_texture(editor, primitives, occlusion_png(result.texture, a.bits));
-    notes = {coordinates_note(layout, primitives, uvs.note), texture_note(result.texture)};
+    const std::size_t replaced =
+        gltf::add_occlusion_texture(editor, primitives, occlusion_png(result.texture, a.bits));
+    notes = {coordinates_note(layout, primitives, uvs.note), texture_note(result.texture),
+             replaced_note(replaced)};
   }
   editor.write();
   if (needs_exr(options)) write_baked_exr(result, scene.source, options, exr_path(a.output));

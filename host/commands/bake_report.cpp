@@ -48,6 +48,13 @@ std::string texture_note(const BakedTexture& texture) {
                      texture.size, texture.size, overlap);
 }
 
+std::string replaced_note(std::size_t replaced) {
+  if (replaced == 0) return {};
+  return fmt::format(
+      "{} had an occlusion texture, which is replaced; strength and extras stay",
+      replaced == 1 ? std::string("1 material") : fmt::format("{} materials", replaced));
+}
+
 void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
                       const std::string& path) {
   const BakeStatistics& s = result.statistics;

@@ -15,6 +15,9 @@ struct BakeSeconds {
 /// A line on a texture's charts and coverage.
 std::string texture_note(const BakedTexture& texture);
 
+/// A line on the occlusion textures of the file that were `replaced`; empty: none.
+std::string replaced_note(std::size_t replaced);
+
 void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
                       const std::string& path);
 

@@ -51,20 +51,29 @@ std::string fault_of(const std::string& name, const Scene& scene,
   return {};
 }
 
-/// TEXCOORD_`set` for each mesh and vertex; empty if a primitive has none.
+/// TEXCOORD_`set` for each mesh and vertex; empty if a primitive has none. `missing`: that
+/// primitive, if others have one.
 std::vector<std::vector<V2f>> uvs_of_set(const gltf::SourceFile& file, const Scene& scene,
-                                         std::uint32_t set) {
+                                         std::uint32_t set, std::string& missing) {
   std::vector<std::vector<V2f>> uvs(scene.meshes.size());
+  bool some = false;
   for (std::size_t m = 0; m < uvs.size(); ++m) {
     if (scene.meshes[m].has_strands()) continue;
     for (const VertexSource& source : scene.meshes[m].sources) {
       const std::vector<V2f> all = file.uvs(source.mesh, source.primitive, set);
-      if (all.empty()) return {};
+      some = some || !all.empty();
+      if (all.empty()) {
+        if (missing.empty())
+          missing = fmt::format("primitive {} of mesh {} has no TEXCOORD_{}", source.primitive,
+                                source.mesh, set);
+        continue;
+      }
       for (std::uint32_t i = 0; i < source.count; ++i)
         uvs[m].push_back(all.at(source.used.empty() ? i : source.used[i]));
     }
   }
-  return uvs;
+  if (!some) missing.clear();
+  return some && missing.empty() ? std::move(uvs) : std::vector<std::vector<V2f>>{};
 }
 
 /// The vertices of one primitive by the chart that shows them.
@@ -123,10 +132,13 @@ FilmMetadata metadata_of(const BakeStatistics& statistics, const std::string& so
 FileUvs choose_uvs(const gltf::SourceFile& file, const Scene& scene, const BakeOptions& options) {
   FileUvs chosen;
   for (const std::uint32_t set : {1u, 0u}) {
-    std::vector<std::vector<V2f>> uvs = uvs_of_set(file, scene, set);
-    if (uvs.empty()) continue;
-    const std::string fault = fault_of(fmt::format("TEXCOORD_{}", set), scene, uvs, options);
-    if (fault.empty()) return {std::move(uvs), set, chosen.note};
+    std::string fault;
+    std::vector<std::vector<V2f>> uvs = uvs_of_set(file, scene, set, fault);
+    if (!uvs.empty()) {
+      fault = fault_of(fmt::format("TEXCOORD_{}", set), scene, uvs, options);
+      if (fault.empty()) return {std::move(uvs), set, chosen.note};
+    }
+    if (fault.empty()) continue;
     if (!chosen.note.empty()) chosen.note += "; ";
     chosen.note += fault;
   }

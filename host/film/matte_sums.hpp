@@ -18,8 +18,8 @@ struct MatteSlot {
 };
 
 /// Slots of a pixel of a picture at most: those whose first samples come first. Samples that would
-/// need one more count for nothing.
-inline constexpr std::size_t kMaxMatteSlots = 32;
+/// need one more count for nothing. 4 kB; each sample looks through half of them.
+inline constexpr std::size_t kMaxMatteSlots = 256;
 
 /// For shards that begin later: earlier samples decide which slots the picture has.
 inline constexpr std::size_t kAnyMatteSlots = ~std::size_t{0};

@@ -14,8 +14,8 @@ std::uint32_t object_number(int object) { return static_cast<std::uint32_t>(std:
 
 }  // namespace
 
-MatteLookup::MatteLookup(const Scene& scene, const SceneBvh& bvh)
-    : triangles_(8 * bvh.blocks.size()), segments_(8 * bvh.segments.size()) {
+MatteLookup::MatteLookup(const Scene& scene, const SceneBvh& bvh, Cryptomattes wanted)
+    : wanted_(wanted), triangles_(8 * bvh.blocks.size()), segments_(8 * bvh.segments.size()) {
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh& mesh = scene.meshes[m];
     const ObjectOffsets &first = bvh.objects[m], &end = bvh.objects[m + 1];
@@ -37,7 +37,7 @@ MatteLookup::Ids MatteLookup::at(std::uint32_t instance, std::uint32_t primitive
   Ids ids = is_segment ? segments_[primitive & ~DAPPLE_SEGMENTS] : triangles_[primitive];
   if (ids.object == kOfInstance)
     ids.object = instance_objects_[instance == kNoInstance ? 0 : instance];
-  return ids;
+  return {wanted_.objects ? ids.object : 0, wanted_.materials ? ids.material : 0};
 }
 
 }  // namespace dapple

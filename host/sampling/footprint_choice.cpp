@@ -126,10 +126,11 @@ double rmse_of(BiasSource& source, float footprint, double target) {
 /// `last`: of the smallest footprint that was tried, above 0.
 std::string note_of(const FootprintDemand& demand, float footprint, const Judgement& last) {
   if (!(demand.max_bias > 0))
-    return footprint > 0 ? fmt::format("the target: footprint {}", footprint)
-                         : std::string(
-                               "the target: exact rays (footprint 0): even the smallest "
-                               "footprint has too much bias");
+    return fmt::format("for the target, {} in place of footprint {}",
+                       footprint > 0 ? fmt::format("footprint {}", footprint)
+                                     : std::string("exact rays (footprint 0)"),
+                       demand.footprint) +
+           (footprint > 0 ? ", whose bias is too large" : ": even the smallest has too much bias");
   const std::string why = fmt::format("--max-bias {}: ", demand.max_bias);
   const float smallest = demand.footprint * kSmallestPart;
   if (!last.has_layers)

@@ -85,6 +85,11 @@ MovingScene::~MovingScene() = default;
 MovingScene::MovingScene(MovingScene&&) noexcept = default;
 MovingScene& MovingScene::operator=(MovingScene&&) noexcept = default;
 
-Scene MovingScene::at(std::optional<double> seconds) const { return source_->at(seconds); }
+Scene MovingScene::at(std::optional<double> seconds) const {
+  SceneOptions options;
+  options.time = seconds;
+  validate(options);
+  return source_->at(seconds);
+}
 
 }  // namespace dapple

@@ -82,9 +82,14 @@ TEST_F(BakeNotes, NameTheTextureCoordinatesThatWereMade) {
        {Case{0, 0, "", "note: " + own + "TEXCOORD_0\n"},
         Case{1, 1, "", "note: TEXCOORD_0 leaves the texture: " + own + "TEXCOORD_1\n"},
         Case{1, 1, "--uv own", "note: " + own + "TEXCOORD_1\n"},
-        Case{0, 1, "", "note: " + own + "TEXCOORD_0 or TEXCOORD_1\n"},
+        Case{
+            0, 1, "",
+            "note: primitive 0 of mesh 0 has no TEXCOORD_0: " + own + "TEXCOORD_0 or TEXCOORD_1\n"},
         Case{2, 2, "--uv own", "note: " + own + "TEXCOORD_2" + beyond + "\n"},
-        Case{0, 2, "", "note: " + own + "TEXCOORD_0 or TEXCOORD_2" + beyond + "\n"}}) {
+        Case{2, 0, "",
+             "note: primitive 1 of mesh 0 has no TEXCOORD_1; primitive 1 of mesh 0 has no "
+             "TEXCOORD_0: " +
+                 own + "TEXCOORD_0 or TEXCOORD_2" + beyond + "\n"}}) {
     write("in.glb", with_uv_sets(c.first, c.second).glb());
     const std::string notes = notes_of("--to texture --size 64 --margin 1 " + c.options);
     EXPECT_TRUE(contains(notes, c.note)) << notes << "instead of " << c.note;
@@ -92,6 +97,27 @@ TEST_F(BakeNotes, NameTheTextureCoordinatesThatWereMade) {
     EXPECT_TRUE(
         mesh["primitives"][0]["attributes"].contains("TEXCOORD_" + std::to_string(c.first)));
   }
+}
+
+TEST_F(BakeNotes, SayThatOcclusionTexturesOfTheFileAreReplaced) {
+  GltfBuilder builder = rich_triangle();
+  const std::string note =
+      "note: 1 material had an occlusion texture, which is replaced; strength and extras stay\n";
+  const int image = builder.add("images", {{"uri", "missing.png"}});
+  const int texture = builder.add("textures", {{"source", image}});
+  const int material = builder.add("materials", {{"name", "leaf"}});
+  builder.doc["meshes"][0]["primitives"][0]["material"] = material;
+  write("in.glb", builder.glb());
+  EXPECT_FALSE(contains(notes_of("--to texture --size 16"), note)) << "there is none";
+  builder.doc["materials"][material]["occlusionTexture"] = {
+      {"index", texture}, {"strength", 0.25}, {"extras", {{"by", "hand"}}}};
+  write("in.glb", builder.glb());
+  EXPECT_TRUE(contains(notes_of("--to texture --size 16"), note));
+  const json after = document("out.glb")["materials"][material]["occlusionTexture"];
+  EXPECT_NE(after["index"], texture);
+  EXPECT_EQ(after["strength"], 0.25);
+  EXPECT_EQ(after["extras"], (json{{"by", "hand"}}));
+  EXPECT_FALSE(contains(notes_of("--channel _AO"), "occlusion texture"));
 }
 
 TEST_F(BakeNotes, PrimitivesMayDifferInSetsIfTheChannelIsOrFollowsTheirs) {

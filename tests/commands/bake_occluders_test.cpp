@@ -62,6 +62,7 @@ TEST_F(BakeOccluders, OfAnOpacityLetTheRestThrough) {
   expect_ao("both.glb", 0);
   expect_ao("both.glb --opacity roof=0.3", 0.7);
   expect_ao("both.glb --opacity floor=0.3", 0);
+  expect_ao("floor.glb --occluders roof.glb --opacity roof=0.3", 0.7);
 }
 
 // A plane at height h takes 1 - (h/D)^2 of the sky from a point that sees no farther than D. With

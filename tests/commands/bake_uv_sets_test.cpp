@@ -90,7 +90,7 @@ TEST_F(BakeUvSets, TheFirstIsUsedWhereTheSecondCannotBe) {
        {Case{{upper, kFull}, {lower, kFull}, "meshes overlap each other in TEXCOORD_1 in 100.0 %"},
         Case{{upper, upper}, {lower, outside}, "TEXCOORD_1 leaves the texture"},
         Case{{upper, upper}, {lower, kPoint}, "TEXCOORD_1 has no area in the texture for 50.0 %"},
-        Case{{upper, upper}, {lower}, "the texture uses"}}) {
+        Case{{upper, upper}, {lower}, "primitive 0 of mesh 1 has no TEXCOORD_1"}}) {
     write_squares({{c.first}, {c.second}});
     const std::string notes = notes_of();
     EXPECT_TRUE(contains(notes, "note: " + c.reason)) << notes;

@@ -265,6 +265,11 @@ TEST_F(FramesCommand, InvalidArgumentsAreRefusedBeforeAnythingIsRendered) {
   refuses("--frames 1-2 --fps 0 -o o.#.exr", "--fps must be a number above 0");
   refuses("--frame nan -o o.exr", "--frame");
   refuses("--frame inf -o o.exr", "--frame must be a finite number");
+  for (const char* more : {"--passes motion", "--shutter 0,1 --spp 8"}) {
+    refuses(std::string(more) + " --frame nan -o o.exr", "--frame must be a finite number");
+    refuses(std::string(more) + " --frame inf -o o.exr", "--frame must be a finite number");
+  }
+  refuses("--frames 5-6 --fps 1e-308 -o o.#.exr", "--frame must be a finite number");
   refuses("--animation walk -o o.exr", "--animation needs --frame or --frames");
   EXPECT_EQ(files_in_folder(), 0u);
 }

@@ -130,12 +130,12 @@ TEST_F(CryptomatteFile, IdsAndAttributesSurviveEveryFormat) {
   }
 }
 
-TEST(MatteSums, CountAtMostThirtyTwoSlotsOfAPixel) {
+TEST(MatteSums, CountAtMostSoManySlotsOfAPixel) {
   MatteSums sums(1);
-  for (std::uint32_t object = 0; object < 40; ++object) add(sums, 0, object, 0, 2);
-  add(sums, 0, 31, 0, 1);
+  for (std::uint32_t object = 0; object < 300; ++object) add(sums, 0, object, 0, 2);
+  add(sums, 0, 255, 0, 1);
   ASSERT_EQ(sums.of_pixel(0).size(), kMaxMatteSlots);
-  EXPECT_EQ(sums.of_pixel(0)[31], (MatteSlot{31, 0, 3, 5}));
+  EXPECT_EQ(sums.of_pixel(0)[255], (MatteSlot{255, 0, 3, 5}));
 }
 
 // What a picture keeps of many slots is what its earliest samples hit, in whatever order parts

@@ -88,6 +88,36 @@ Film alone(Scene scene, int node, RenderOptions options) {
   return render(std::move(scene), options).film;
 }
 
+// Each sample may stop at another of them, as in the distance of a meadow whose plants are nodes.
+TEST(CryptomatteRender, ManyObjectsInAPixelAreAllCounted) {
+  Scene scene;
+  scene.materials = {material_of(0.02f), material_of(1)};
+  scene.materials[0].name = "leaf";
+  scene.materials[1].name = "wall";
+  for (int i = 0; i <= 200; ++i) {
+    Mesh square;
+    append_grid(square, {-2, -2, 0.01f * static_cast<float>(i)}, {4, 0, 0}, {0, 4, 0}, 1,
+                i == 0 ? 1 : 0);
+    square.name = "sheet " + std::to_string(i);
+    place(scene, std::move(square));
+  }
+  scene.cameras = {look_at({0, 0, 8}, {0, 0, 0}, {0, 1, 0}, 0.1f)};
+  RenderOptions options = small_picture(1);
+  options.width = options.height = 4;
+  options.spp = 512;
+  for (const Cryptomattes mattes : {Cryptomattes{true, true}, Cryptomattes{false, true}}) {
+    options.cryptomattes = mattes;
+    const Film film = render(scene, options).film;
+    const std::vector<float> leaves = coverage(film, "crypto_material", "leaf"),
+                             wall = coverage(film, "crypto_material", "wall");
+    // 200 sheets that each stop 0.02 leave 0.018 for the wall.
+    for (std::size_t p = 0; p < leaves.size(); ++p) {
+      EXPECT_NEAR(leaves[p] + wall[p], film.find("A")->pixels[p], 1e-6) << p;
+      EXPECT_NEAR(wall[p], 0.018, 0.03) << p;
+    }
+  }
+}
+
 TEST(CryptomatteRender, EachObjectCoversWhatItsAlphaAloneIs) {
   const Scene scene = garden();
   for (const int splitting : {1, 4}) {

@@ -154,14 +154,14 @@ bool TextureBake::add(std::uint32_t index, const Placements& placements, BakeTra
   ValueSums sums(parts, options_.sides);
   SampleRounds rounds(texels, hash, placements, tracing, sums);
   if (!rounds.run(round_options(options_, kFirst, placements, false))) return false;
-  sums.choose_sides(true);
+  sums.choose_sides();
   std::vector<PlaceValue> values = sums.values();
   std::vector<std::vector<V3f>> light;
   if (tracing.light) {
     ValueSums light_sums(parts, options_.sides, tracing.lights);
     SampleRounds light_rounds(texels, ~hash, placements, tracing, light_sums, &sums);
     if (!light_rounds.run(round_options(options_, kFirst, placements, true))) return false;
-    light_sums.choose_sides(true);
+    light_sums.choose_sides();
     for (const float square : light_sums.squared_errors())
       tracing.statistics.squared_light_errors += double{square};
     for (std::size_t l = 0; l < tracing.lights; ++l) light.push_back(light_sums.light_values(l));

@@ -124,6 +124,8 @@ class OcclusionMaterials {
         std::move(primitive);
   }
 
+  [[nodiscard]] std::size_t replaced() const { return replaced_.size(); }
+
  private:
   void add_user(const Json& primitive, int uv_set) {
     users_[material_of(primitive)].insert(uv_set);
@@ -135,7 +137,7 @@ class OcclusionMaterials {
   std::size_t with_texture(int material, std::uint32_t uv_set) {
     const auto [known, is_new] = made_.try_emplace({material, uv_set}, 0);
     if (!is_new) return known->second;
-    const Json occlusion = {{"index", texture_}, {"texCoord", uv_set}};
+    const Json occlusion = occlusion_of(material, uv_set);
     if (material != kNoMaterial && users_[material].size() == 1) {
       known->second = static_cast<std::size_t>(material);
       editor_.json()["materials"][known->second]["occlusionTexture"] = occlusion;
@@ -149,8 +151,22 @@ class OcclusionMaterials {
     return known->second;
   }
 
+  /// What does not concern the coordinates of the texture before stays.
+  Json occlusion_of(int material, std::uint32_t uv_set) {
+    Json occlusion = {{"index", texture_}, {"texCoord", uv_set}};
+    if (material == kNoMaterial) return occlusion;
+    const Json& before = editor_.json()["materials"][static_cast<std::size_t>(material)];
+    const auto replaced = before.find("occlusionTexture");
+    if (replaced == before.end()) return occlusion;
+    replaced_.insert(material);
+    for (const char* key : {"strength", "extras"})
+      if (replaced->contains(key)) occlusion[key] = (*replaced)[key];
+    return occlusion;
+  }
+
   Editor& editor_;
   std::size_t texture_;
+  std::set<int> replaced_;              ///< materials that had an occlusion texture
   std::size_t material_count_;          ///< of the file
   std::map<int, std::set<int>> users_;  ///< uv sets of a material's primitives; -1: not baked
   std::map<std::pair<int, std::uint32_t>, std::size_t> made_;
@@ -158,8 +174,8 @@ class OcclusionMaterials {
 
 }  // namespace
 
-void add_occlusion_texture(Editor& editor, const std::vector<TexturedPrimitive>& primitives,
-                           const std::string& png) {
+std::size_t add_occlusion_texture(Editor& editor, const std::vector<TexturedPrimitive>& primitives,
+                                  const std::string& png) {
   const std::size_t sampler =
       editor.push("samplers", {{"wrapS", kClampToEdge}, {"wrapT", kClampToEdge}});
   const std::size_t texture = editor.push(
@@ -171,6 +187,7 @@ void add_occlusion_texture(Editor& editor, const std::vector<TexturedPrimitive>&
     materials.add_texture(textured);
   }
   if (removed) unlist_unused_extension(editor.json(), kDraco);
+  return materials.replaced();
 }
 
 }  // namespace dapple::gltf

@@ -1,0 +1,104 @@
+// Values of places from samples of both sides: which side counts, and how much.
+#include "bake/value_sums.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace dapple {
+namespace {
+
+/// Samples that each count for one place.
+class Samples {
+ public:
+  /// `front`, `back`: AO; below 0: not traced.
+  void add(std::uint32_t place, float front, float back, bool inside = false) {
+    SurfaceSample sample;
+    sample.place = {place, place, place};
+    sample.weight = {1, 0, 0};
+    sample.front = front >= 0;
+    sample.back = back >= 0;
+    samples_.push_back(sample);
+    found_.front.push_back({front, V3f(0, 0, 0)});
+    found_.back.push_back({back, V3f(0, 0, 0)});
+    found_.inside.push_back(inside ? 1 : 0);
+  }
+  void add_to(ValueSums& sums) const { sums.add(samples_, found_); }
+
+ private:
+  std::vector<SurfaceSample> samples_;
+  TracedSamples found_;
+};
+
+SmallParts one_part(std::size_t places) { return {std::vector<std::uint32_t>(places, 0), 1}; }
+
+// Its first sample lay inside of a twig, after which only the brighter side of its leaf was traced.
+TEST(ValueSums, APlaceWithSamplesOfOneSideHasTheirMean) {
+  for (const bool back : {false, true}) {
+    Samples samples;
+    samples.add(0, 0.5f, 0.5f, true);
+    for (int i = 0; i < 4; ++i) samples.add(0, back ? -1 : 0.25f, back ? 0.25f : -1);
+    for (int i = 0; i < 20; ++i) samples.add(1, back ? 0.1f : 0.9f, back ? 0.9f : 0.1f);
+    ValueSums sums(one_part(2), BakeSides::max);
+    samples.add_to(sums);
+    sums.choose_sides();
+    const std::vector<PlaceValue> values = sums.values();
+    EXPECT_TRUE(values[0].known);
+    EXPECT_TRUE(values[0].inside);
+    EXPECT_NEAR(values[0].ao, 0.25f, 1e-6f);
+    EXPECT_NEAR(values[1].ao, 0.9f, 1e-6f);
+  }
+}
+
+TEST(ValueSums, APlaceWithoutSamplesIsUnoccluded) {
+  ValueSums sums(one_part(1), BakeSides::max);
+  sums.choose_sides();
+  EXPECT_EQ(sums.values()[0].ao, 1);
+}
+
+// Samples are added where values are uncertain, which must not decide for the whole leaf.
+TEST(ValueSums, PlacesOfAPartCountTheSameHoweverManySamplesTheyHave) {
+  Samples samples;
+  for (int i = 0; i < 40; ++i) samples.add(0, 0.9f, 0.1f);
+  for (int i = 0; i < 4000; ++i) samples.add(1, 0.2f, 0.5f);
+  ValueSums sums(one_part(2), BakeSides::max);
+  samples.add_to(sums);
+  sums.choose_sides();
+  EXPECT_FALSE(sums.counts(0, true));
+  EXPECT_FALSE(sums.counts(1, true));
+  EXPECT_NEAR(sums.values()[0].ao, 0.9f, 1e-5f);
+  EXPECT_NEAR(sums.values()[1].ao, 0.2f, 1e-5f);
+}
+
+TEST(ValueSums, WhereNeitherSideIsSurelyBrighterTheLikelierCountsMore) {
+  float before = 0.5f;
+  for (const float back : {0.5f, 0.54f, 0.58f, 0.62f}) {
+    Samples samples;
+    for (int i = 0; i < 8; ++i) {
+      const float noise = i % 2 ? 0.2f : -0.2f;
+      samples.add(0, 0.5f + noise, back - noise);
+    }
+    ValueSums sums(one_part(1), BakeSides::max);
+    samples.add_to(sums);
+    sums.choose_sides();
+    const float ao = sums.values()[0].ao;
+    EXPECT_TRUE(sums.counts(0, false) && sums.counts(0, true)) << back;
+    EXPECT_LE(ao, back);
+    EXPECT_GE(ao, 0.5f * (0.5f + back)) << "the mean";
+    EXPECT_GE(ao, before);
+    before = ao;
+  }
+  EXPECT_GT(before, 0.57f);
+}
+
+TEST(ValueSums, WithoutAChoiceBothSidesCountTheSame) {
+  Samples samples;
+  for (int i = 0; i < 100; ++i) samples.add(0, 0.9f, 0.3f);
+  ValueSums sums(one_part(1), BakeSides::mean);
+  samples.add_to(sums);
+  sums.choose_sides();
+  EXPECT_NEAR(sums.values()[0].ao, 0.6f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace dapple
