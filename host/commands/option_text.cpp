@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <type_traits>
@@ -12,6 +13,7 @@
 namespace dapple {
 namespace {
 
+/// The parts between characters `at`, without blanks around them.
 std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts{""};
   for (const char c : text) {
@@ -20,6 +22,10 @@ std::vector<std::string> split(const std::string& text, char at) {
     } else {
       parts.back() += c;
     }
+  }
+  for (std::string& part : parts) {
+    part.erase(0, std::min(part.find_first_not_of(' '), part.size()));
+    part.erase(part.find_last_not_of(' ') + 1);
   }
   return parts;
 }

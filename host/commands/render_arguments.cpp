@@ -96,7 +96,9 @@ void add_scene_options(CLI::App& app, RenderArguments& a) {
   CLI::Option& look_from =
       *app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
   app.add_option("--look-at", a.look_at, "Point that this camera looks at: X,Y,Z");
-  app.add_option("--up", a.up, "Up direction of this camera: X,Y,Z; default 0,1,0")
+  app.add_option("--up", a.up,
+                 "Up direction of this camera: X,Y,Z; default 0,1,0, or 0,0,-1 for one that looks "
+                 "straight up or down")
       ->needs(&look_from);
   app.add_option("--fov", a.fov,
                  "Vertical field of view, degrees; default: the camera's own, or 40");
@@ -361,8 +363,11 @@ RenderOptions to_options(const RenderArguments& a) {
     if (a.look_from.empty() || a.look_at.empty()) {
       throw Error(ErrorKind::usage, "--look-from and --look-at go together");
     }
-    o.look = LookAt{parse_vector("--look-from", a.look_from), parse_vector("--look-at", a.look_at),
-                    a.up.empty() ? V3f(0, 1, 0) : parse_vector("--up", a.up)};
+    const V3f from = parse_vector("--look-from", a.look_from),
+              at = parse_vector("--look-at", a.look_at);
+    const bool is_vertical = from.x == at.x && from.z == at.z;
+    const V3f up = is_vertical ? V3f(0, 0, -1) : V3f(0, 1, 0);
+    o.look = LookAt{from, at, a.up.empty() ? up : parse_vector("--up", a.up)};
   }
   if (!a.shard.empty()) o.shard = parse_shard(a.shard);
   if (!a.up.empty()) parse_vector("--up", a.up);

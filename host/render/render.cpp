@@ -26,6 +26,7 @@
 #include "render/picture.hpp"
 #include "render/resume.hpp"
 #include "render/shutter.hpp"
+#include "render/slice_params.hpp"
 #include "render/stopwatch.hpp"
 #include "sampling/bias_estimate.hpp"
 #include "sampling/shard.hpp"
@@ -82,7 +83,7 @@ FilmMetadata metadata(const Scene& scene, const View& view, const RenderOptions&
   set(kAmbient, 0.0);  // set_ambient() knows it once there are sums
   set("ao_rays", options.ao_rays);
   set("light_rays", options.light_rays);
-  if (options.back) set("back_every", options.back_every);
+  if (options.back) set("back_every", back_group(options));
   if (view.camera.lens_radius > 0) {
     set("aperture", view.camera.lens_radius);
     set("focus_distance", view.camera.focus_distance);

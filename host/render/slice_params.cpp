@@ -68,18 +68,21 @@ ResolveParams resolve_params(const View& view, const FilmLayout& layout, uint sp
   return params;
 }
 
-BackParams back_params(const View& view, const RenderOptions& options, const FilmLayout& layout,
-                       const ResolveParams& resolve) {
+unsigned back_group(const RenderOptions& options) {
   // With a target, quiet pixels have as few as two batches, whatever their number for footprints.
   const auto samples =
       is_adaptive(options)
           ? 2 * DAPPLE_SAMPLE_BATCH
           : static_cast<unsigned>(footprint_samples(options) * splitting_factor(options));
-  const unsigned group = std::min(static_cast<unsigned>(options.back_every), samples);
+  return std::bit_floor(std::min(static_cast<unsigned>(options.back_every), samples));
+}
+
+BackParams back_params(const View& view, const RenderOptions& options, const FilmLayout& layout,
+                       const ResolveParams& resolve) {
   BackParams params{};
   params.resolve = resolve;
   params.resolve.plane = layout.back_samples;
-  params.group_bits = static_cast<uint>(std::bit_width(group) - 1);  // rounded down
+  params.group_bits = static_cast<uint>(std::countr_zero(back_group(options)));
   params.seed = options.seed;
   params.width = static_cast<uint>(view.width);
   params.crop_x = static_cast<uint>(view.crop.x0);

@@ -65,7 +65,7 @@ Camera look_at(V3f from, V3f at, V3f up, float fov_y) {
   if (back.length2() == 0) throw Error(ErrorKind::usage, "camera: from and at are the same point");
   const V3f across = up.normalized().cross(back);
   if (across.length() < 1e-5f) {
-    throw Error(ErrorKind::usage, "camera: up is zero or points along the view");
+    throw Error(ErrorKind::usage, "camera: up is zero or points along the view; choose another");
   }
   const V3f right = across.normalized();
   Camera camera;

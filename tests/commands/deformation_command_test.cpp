@@ -109,6 +109,19 @@ TEST_F(DeformationCommand, TheNormalsOfFlatMeshesChangeNoBit) {
   }
 }
 
+TEST_F(DeformationCommand, AViewFromAboveHasNorthAboveUnlessItIsToldAnother) {
+  test::GltfBuilder b = test::one_triangle();
+  const auto half = static_cast<float>(std::sqrt(0.5));
+  b.doc["nodes"][0]["rotation"] = {-half, 0, 0, half};  // Y to -Z
+  write_glb("flat.glb", b);
+  const std::string above = "flat.glb --look-from 0.5,3,-0.5 --look-at 0.5,0,-0.5 --passes ao ";
+  const Film north = film(above);
+  expect_same_bits(north, film(above + "--up 0,0,-1"), {"A", "P.X", "P.Z"});
+  EXPECT_GT(mean(north, "A"), 0.01);
+  EXPECT_NE(plane(north, "A"), plane(film(above + "--up 1,0,0"), "A"));
+  expect_same_bits(north, film(above + "--half ' N , ao '"), {"A"});
+}
+
 TEST_F(DeformationCommand, TheLensInACamerasExtrasIsThatOfTheOptions) {
   test::GltfBuilder b = test::one_triangle();
   b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.6}, {"znear", 0.1}}}});

@@ -195,6 +195,9 @@ TEST(Back, WithATargetSkyHasNoBacksOfLeavesBesideIt) {
     RenderOptions with_target = options;
     with_target.*target = 0.01f;
     const Film film = render(scene, with_target).film;
+    const auto& settings = film.metadata.settings;
+    const std::pair<std::string, std::string> used("back_every", "8");
+    EXPECT_EQ(std::count(settings.begin(), settings.end(), used), 1) << "not the 64 of the options";
     std::size_t sky = 0;
     for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
       if (film.find("A")->pixels[p] > 0) continue;

@@ -131,9 +131,10 @@ TEST(LookAt, DegenerateViewsAreRefused) {
     return "no error";
   };
   EXPECT_EQ(refused({1, 2, 3}, {1, 2, 3}, up, 1), "camera: from and at are the same point");
-  EXPECT_EQ(refused({0, 5, 0}, {0, 0, 0}, up, 1), "camera: up is zero or points along the view");
+  EXPECT_EQ(refused({0, 5, 0}, {0, 0, 0}, up, 1),
+            "camera: up is zero or points along the view; choose another");
   EXPECT_EQ(refused({0, 0, 5}, {0, 0, 0}, {0, 0, 0}, 1),
-            "camera: up is zero or points along the view");
+            "camera: up is zero or points along the view; choose another");
   EXPECT_EQ(refused({kInfinity, 0, 0}, {0, 0, 0}, up, 1), "camera: from, at and up must be finite");
   EXPECT_NE(refused({0, 0, 5}, {0, 0, 0}, up, 0).find("field of view"), std::string::npos);
 }
