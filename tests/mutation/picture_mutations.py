@@ -213,9 +213,19 @@ MUTATIONS = [
         r"^PointSources\."),
     Mutation(
         "bake-chooses-the-darker-side", "host/bake/value_sums.cpp",
-        "return difference > 0 ? Chosen::back : Chosen::front;",
-        "return difference < 0 ? Chosen::back : Chosen::front;",
-        r"^(Bake|BakeClosedForm)\."),
+        "return difference > 0 ? 1.0f : 0.0f;",
+        "return difference < 0 ? 1.0f : 0.0f;",
+        r"^(Bake|BakeClosedForm|ValueSums)\."),
+    Mutation(
+        "sides-of-leaves-by-their-number-of-samples", "host/bake/value_sums.cpp",
+        "  difference += back.mean() - front.mean();",
+        "  difference += (back.mean() - front.mean()) * back.count();",
+        r"^(Bake|ValueSums)\."),
+    Mutation(
+        "a-place-without-a-front-is-white", "host/bake/value_sums.cpp",
+        "    if (!is_sampled(i)) {  // without",
+        "    if (of_place_[i].front.weight <= 0) {  // without",
+        r"^(Bake|ValueSums)\."),
     Mutation(
         "bake-ignores-areas", "host/bake/surface_samples.cpp",
         "sample.weight[k] = twice_area * barycentric[k];",
@@ -253,8 +263,8 @@ MUTATIONS = [
         r"^BakeLight\."),
     Mutation(
         "baked-irradiance-of-both-sides-adds", "host/bake/value_sums.cpp",
-        "    if (used > 0) values[i] /= used;\n",
-        "    if (!(used > 0)) values[i] = V3f(0, 0, 0);\n",
+        "front_light_[at] * ((1 - share) / of_place_",
+        "front_light_[at] * (1 / of_place_",
         r"^BakeLight\."),
     Mutation(
         "compare-overlooks-a-nan", "host/compare/difference.cpp",
