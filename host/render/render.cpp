@@ -192,7 +192,8 @@ std::unique_ptr<HitLookups> hit_lookups(const KeptScene& kept, const Shutter& sh
                                         const RenderOptions& options,
                                         std::vector<std::string>& notes) {
   auto lookups = std::make_unique<HitLookups>();
-  if (options.cryptomattes.any()) lookups->mattes.emplace(scene, kept.bvh->bvh(), options.cryptomattes);
+  if (options.cryptomattes.any())
+    lookups->mattes.emplace(scene, kept.bvh->bvh(), options.cryptomattes);
   lookups->deep = options.deep;
   if (options.motion)
     lookups->motion.emplace(scene, view, kept.bvh->bvh(),

@@ -18,8 +18,8 @@ std::uint32_t samples_of_slice(const DeviceInfo& device, const RenderOptions& op
 /// Without `slice` and what differs from pass to pass.
 ResolveParams resolve_params(const View& view, const FilmLayout& layout, uint splitting_bits);
 
-/// Of so many samples one has its back traced, a power of two: RenderOptions::back_every, or as many
-/// as every pixel has.
+/// Of so many samples one has its back traced, a power of two: RenderOptions::back_every, or as
+/// many as every pixel has.
 unsigned back_group(const RenderOptions& options);
 
 /// Without resolve.slice. `resolve`: resolve_params(). `options`: by_sample().

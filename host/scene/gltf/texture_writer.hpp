@@ -26,10 +26,11 @@ struct TexturedPrimitive {
 
 /// Replaces the vertices of primitives that have new ones, with all attributes and morph targets,
 /// and gives the materials of all the texture `png` as occlusion. Materials that other primitives
-/// use too are copied. An occlusion texture that a material has is replaced; its strength and extras
-/// stay. Returns how many are. The file of a .gltf's image is named as Editor::add_image() says.
+/// use too are copied. An occlusion texture that a material has is replaced; its strength and
+/// extras stay. Returns how many are. The file of a .gltf's image is named as Editor::add_image()
+/// says.
 std::size_t add_occlusion_texture(Editor& editor, const std::vector<TexturedPrimitive>& primitives,
-                           const std::string& png);
+                                  const std::string& png);
 
 /// The suffix of that image's file.
 inline constexpr const char* kOcclusionSuffix = "_ao";
