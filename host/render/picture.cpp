@@ -180,11 +180,7 @@ class PictureTracer {
 
   /// Chooses the next round. Returns false if there is nothing left to trace.
   bool next_round(SamplePlan& plan, const TraceControl& control) {
-    if (plan.is_adaptive()) {
-      state_.round = {next_for_target(plan)};
-    } else {
-      state_.round = {plan.least(control.order)};
-    }
+    state_.round = {plan.is_adaptive() ? next_for_target(plan) : plan.least(control.order)};
     return !state_.round.is_done();
   }
 
