@@ -66,8 +66,8 @@ class PictureTracer {
   TracedPicture trace(const View& view, const TraceControl& control) {
     SamplePlan plan(width_, static_cast<int>(layout_.pixels) / width_, options_, state_.samples,
                     state_.first_sample);
-    saved_samples_ = traced_ =
-        sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
+    traced_ = sum_of(traced_samples(state_.round, state_.slice_samples, plan.samples()));
+    saved_samples_ = traced_;
     TracedPicture picture;
     while (!picture.interrupted && (!state_.round.is_done() || next_round(plan, control))) {
       picture.interrupted = !trace_round(plan, control);
