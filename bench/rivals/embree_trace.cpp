@@ -182,9 +182,9 @@ void EmbreeTracer::occlusion(const EmbreeMethod& method, const RayBatch& rays,
   AlphaContext context = this->context(method, rays, found.transmittance);
   std::fill_n(found.transmittance, rays.count, 1.0f);
   const EmbreeScene& scene = method.scene(scenes_);
-  if (method.alpha == Alpha::multiplicative && scene.has_spatial_splits()) {
-    context.hit = hit_;
-  }
+  // With spatial splits, and in coherent packets, a filter may be called twice for a triangle.
+  const bool may_repeat = scene.has_spatial_splits() || method.coherent;
+  if (method.alpha == Alpha::multiplicative && may_repeat) context.hit = hit_;
   if (method.width == 1) {
     occlusion_singles(scene.top(), context, rays, found.transmittance);
   } else if (method.width == 8) {

@@ -160,9 +160,17 @@ Scene scene_of_mesh(const Scene& scene, std::size_t mesh) {
   return alone;
 }
 
-void add_preparation(const OccluderScene& occluders, BakeStatistics& s) {
+double prepared_seconds(const BakeStatistics& s) {
+  return s.seconds.prepare + s.seconds.build + s.seconds.upload + s.seconds.kernel_build;
+}
+
+/// `seconds`: since the occluders began to be prepared.
+void add_preparation(const OccluderScene& occluders, double seconds, BakeStatistics& s) {
+  const double before = prepared_seconds(s);
   s.seconds.build += occluders.build_seconds;
   s.seconds.upload += occluders.upload_seconds;
+  s.seconds.kernel_build += occluders.kernel_seconds;
+  s.seconds.prepare += seconds - (prepared_seconds(s) - before);
   s.device = occluders.device.info().name;
 }
 
@@ -176,8 +184,9 @@ class MeshOccluders {
   /// Valid until the next call.
   BakeTracing tracing(std::uint32_t mesh, const BakeRecords& records) {
     if (!together_) {
+      const Stopwatch preparing;
       alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
-      add_preparation(*alone_, records.statistics);
+      add_preparation(*alone_, preparing.seconds(), records.statistics);
       options_ = asked_;
       measure_bias(
           *alone_,
@@ -310,7 +319,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   std::optional<OccluderScene> together;
   if (!alone || options.instances) {
     together.emplace(scene, options, occluders);
-    add_preparation(*together, s);
+    add_preparation(*together, total.seconds(), s);
     s.notes = together->notes;
   } else {
     s.notes = scene.warnings;
@@ -324,8 +333,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   Settings settings = bake_settings(scene, asked, occluders);
   if (together) settings.emplace_back("device", s.device);
   BakeCheckpoint checkpoint(control, std::move(settings));
-  const double prepared = s.seconds.build + s.seconds.upload;
-  const Stopwatch tracing;
+  s.seconds.prepare += total.seconds() - prepared_seconds(s);
   if (together && !alone) measure_bias(*together, pilot_meshes(scene, options), options, s);
   BakeBias bias(has_bias(options) ? double{options.report_bias} : 0.0);
   const BakeRecords records{progress, checkpoint, bias, s};
@@ -338,6 +346,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
     result.interrupted = !bake_all_instances(scene, options, *together, records, result);
   if (options.light && !result.interrupted) add_up_groups(lights, result);
   if (!result.interrupted) progress.finish();
+  if (options.max_bias > 0 && !has_bias(asked)) s.notes.emplace_back(kNothingToLimit);
   s.bias = bias.report();
   s.footprint = options.footprint;
   add_target_notes(asked, s);
@@ -346,8 +355,8 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (checkpoint.points_read() > 0)
     s.notes.push_back(fmt::format("went on from {}: {} of {} points", control.resume,
                                   checkpoint.points_read(), s.points));
-  s.seconds.trace = tracing.seconds() - (s.seconds.build + s.seconds.upload - prepared);
   s.seconds.total = total.seconds();
+  s.seconds.trace = s.seconds.total - prepared_seconds(s);
   return result;
 }
 

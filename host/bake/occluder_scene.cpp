@@ -80,7 +80,9 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
   const Stopwatch uploading;
   uploaded = upload(device, scene, bvh);
   upload_seconds = uploading.seconds();
+  const Stopwatch compiling;
   kernels.finish();
+  kernel_seconds = compiling.seconds();
   for (std::string& warning : scene.warnings) notes.push_back(std::move(warning));
   closed = std::make_unique<ClosedGeometry>(std::move(scene));
 }

@@ -22,7 +22,7 @@ struct OccluderScene {
   DeviceScene uploaded;
   std::unique_ptr<ClosedGeometry> closed;  ///< of the same scene
   std::vector<Light> lights;               ///< as uploaded; empty unless options.light
-  double build_seconds = 0, upload_seconds = 0;
+  double build_seconds = 0, upload_seconds = 0, kernel_seconds = 0;
   std::vector<std::string> notes;
 };
 

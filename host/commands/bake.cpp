@@ -17,6 +17,7 @@
 #include "commands/command.hpp"
 #include "commands/interruption.hpp"
 #include "commands/option_text.hpp"
+#include "commands/output_name.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/progress.hpp"
 #include "commands/scene_file.hpp"
@@ -52,6 +53,7 @@ bool needs_exr(const BakeOptions& options) {
 std::vector<OutputPath> named_outputs(const BakeArguments& a, const BakeOptions& options) {
   std::vector<OutputPath> outputs{{"--output", a.output}};
   if (!a.stats_json.empty()) outputs.push_back({"--stats-json", a.stats_json});
+  check_png_name(a.png);
   if (!a.png.empty()) outputs.push_back({"--png", a.png});
   if (needs_exr(options)) outputs.push_back({"--passes", exr_path(a.output)});
   // A new checkpoint may replace the one that the bake resumes from.

@@ -61,8 +61,10 @@ void write_statistics(const BakeResult& result, const BakeSeconds& seconds,
   nlohmann::ordered_json json = {
       {"seconds",
        {{"load", seconds.load},
+        {"prepare", s.seconds.prepare},
         {"build", s.seconds.build},
         {"upload", s.seconds.upload},
+        {"kernel_build", s.seconds.kernel_build},
         {"trace", s.seconds.trace},
         {"write", seconds.write},
         {"total", seconds.total}}},
@@ -97,10 +99,11 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
   for (const std::string& note : s.notes) tell("note: {}\n", note);
   fmt::print(
       "{} triangles, {}, {} rays from {} points ({:.1f} million rays per second)\n"
-      "load {:.2f}, build {:.2f}, trace {:.2f}, write {:.2f}, total {:.2f} s\n",
+      "load {:.2f}, prepare {:.2f}, build {:.2f}, trace {:.2f}, write {:.2f}, total {:.2f} s\n",
       s.triangles, values_text(s), s.rays, s.points,
       s.seconds.trace > 0 ? static_cast<double>(s.rays) / s.seconds.trace * 1e-6 : 0.0,
-      seconds.load, s.seconds.build, s.seconds.trace, seconds.write, seconds.total);
+      seconds.load, s.seconds.prepare + s.seconds.upload + s.seconds.kernel_build, s.seconds.build,
+      s.seconds.trace, seconds.write, seconds.total);
   if (s.sampled_values > 0)
     fmt::print("standard error of an AO value {:.3f}{} (root mean square)\n",
                standard_error(s, s.squared_errors),

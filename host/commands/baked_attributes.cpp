@@ -151,7 +151,6 @@ struct FileSums {
 NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexSums& sums,
                              const BakeChannel& channel, bool multiply) {
   NewAttribute attribute;
-  attribute.storage = gltf::Storage::normalized16;
   attribute.components = colors.components == 4 || channel.components == "a" ? 4 : 3;
   if (colors.values.empty()) colors.values.assign(4 * sums.ao.size(), 1.0f);
   for (std::size_t v = 0; v < sums.ao.size(); ++v) {
@@ -163,6 +162,10 @@ NewAttribute color_attribute(gltf::PrimitiveColors colors, const VertexSums& sum
     for (std::size_t c = 0; c < attribute.components; ++c)
       attribute.values.push_back(colors.values[4 * v + c]);
   }
+  // The file's colours may be floats of any value.
+  if (std::all_of(attribute.values.begin(), attribute.values.end(),
+                  [](float value) { return value >= 0 && value <= 1; }))
+    attribute.storage = gltf::Storage::normalized16;
   return attribute;
 }
 

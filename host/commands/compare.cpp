@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "commands/command.hpp"
+#include "commands/output_name.hpp"
 #include "commands/output_paths.hpp"
 #include "compare/difference.hpp"
 #include "compare/figures_text.hpp"
@@ -33,6 +34,7 @@ void check(const CompareArguments& a) {
     throw Error(ErrorKind::usage, "--max-rmse must be a number, 0 or more");
   }
   std::vector<OutputPath> outputs;
+  check_png_name(a.png);
   if (!a.png.empty()) outputs.push_back({"--png", a.png});
   if (!a.html.empty()) outputs.push_back({"--html", a.html});
   check_outputs(outputs);

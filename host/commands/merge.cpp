@@ -11,6 +11,7 @@
 #include "commands/frames.hpp"
 #include "commands/interruption.hpp"
 #include "commands/option_text.hpp"
+#include "commands/output_name.hpp"
 #include "commands/output_paths.hpp"
 #include "commands/render_arguments.hpp"
 #include "commands/shared_options.hpp"
@@ -42,7 +43,7 @@ void check(const MergeArguments& a) {
                 fmt::format("-o {}: --half, --multipart and --compression are for an image (.exr)",
                             files.output));
   check_outputs(outputs);
-  check_output_name("--output", files.output);
+  check_exr_name("--output", files.output);
   check_outputs_spare(outputs, a.parts);
   check_png(files);
 }

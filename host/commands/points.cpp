@@ -201,13 +201,16 @@ void run_points(const Arguments& a) {
       measure_points(std::move(scene), list.points, list.normals, options, control);
   progress.clear();
   result.notes.insert(result.notes.begin(), list.notes.begin(), list.notes.end());
+  const Stopwatch writing;
   write_points(a.output, list, result.columns);
-  const double seconds = total.seconds();
+  const double write_seconds = writing.seconds(), seconds = total.seconds();
   if (!a.stats_json.empty()) {
     const nlohmann::ordered_json json = {{"seconds",
                                           {{"load", load_seconds},
+                                           {"prepare", result.prepare_seconds},
                                            {"build", result.build_seconds},
                                            {"trace", result.trace_seconds},
+                                           {"write", write_seconds},
                                            {"total", seconds}}},
                                          {"points", list.points.size()},
                                          {"footprint", result.footprint},
@@ -219,9 +222,11 @@ void run_points(const Arguments& a) {
   if (a.quiet) return;
   for (const std::string& note : result.notes) tell("note: {}\n", note);
   if (!result.bias.empty()) fmt::print("means before their correction, RMSE after it:\n");
-  fmt::print("{}{} points; load {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\nwrote {}\n",
-             bias_lines(result.bias), list.points.size(), load_seconds, result.build_seconds,
-             result.trace_seconds, seconds, a.output);
+  fmt::print(
+      "{}{} points; load {:.2f}, prepare {:.2f}, build {:.2f}, trace {:.2f}, total {:.2f} s\n"
+      "wrote {}\n",
+      bias_lines(result.bias), list.points.size(), load_seconds, result.prepare_seconds,
+      result.build_seconds, result.trace_seconds, seconds, a.output);
 }
 
 }  // namespace

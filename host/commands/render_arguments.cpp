@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "commands/option_text.hpp"
+#include "commands/output_name.hpp"
 #include "commands/shared_options.hpp"
 #include "dapple/error.hpp"
 
@@ -77,8 +77,9 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   app.add_option(
       "--ambient", o.ambient,
       "Radiance of a uniform sky that lights the RGBA picture through AO. Default: 1 without "
-      "lights, 0 with a dome, otherwise a tenth of the largest radiance that the lights give a "
-      "white surface without occlusion");
+      "lights, 0 with a dome, otherwise a tenth of the radiance that the lights give white "
+      "surfaces "
+      "without occlusion (90th percentile of the pixels)");
   app.add_option("--normals", a.normals,
                  "shading: the normals of the meshes; geometric: flat facets")
       ->capture_default_str();
@@ -195,13 +196,6 @@ void check_motion(const RenderArguments& a) {
   check_animation(a);
 }
 
-/// Outputs have the right format, whatever their names; the names of these formats would deceive.
-bool is_named_as(const std::string& path, const char* format) {
-  const auto ends = [&](const char* suffix) { return path.ends_with(suffix); };
-  constexpr const char* kOthers[] = {".jpg", ".jpeg", ".tif", ".tiff", ".hdr", ".json"};
-  return ends(format) || std::any_of(std::begin(kOthers), std::end(kOthers), ends);
-}
-
 /// A part is for dapple merge, which makes the image.
 void check_part(const RenderArguments& a, const RenderOptions& options) {
   const auto refuse = [](const std::string& why) { throw Error(ErrorKind::usage, why); };
@@ -229,19 +223,9 @@ void check_part(const RenderArguments& a, const RenderOptions& options) {
 
 }  // namespace
 
-void check_output_name(const char* flag, const std::string& path) {
-  if (is_named_as(path, ".png"))
-    throw Error(ErrorKind::usage,
-                fmt::format("{} is {}, but images are OpenEXR files (.exr); --png FILE "
-                            "writes a preview beside it",
-                            flag, path));
-}
-
 void check_png(const RenderArguments& a) {
   parse_png_options(a.exposure, a.background);
-  if (is_named_as(a.png, ".exr"))
-    throw Error(ErrorKind::usage,
-                fmt::format("--png is {}, but previews are PNG files (.png)", a.png));
+  check_png_name(a.png);
   if (!a.png.empty()) return;
   const RenderArguments defaults;
   for (const char* flag : {a.exposure != defaults.exposure ? "--exposure" : "",
@@ -376,8 +360,8 @@ RenderOptions to_options(const RenderArguments& a) {
   dome_rotation("--dome-rotation", a.dome_rotation);
   for (const std::string& text : a.opacity) o.opacity.push_back(parse_opacity(text));
   validate(o);
-  check_output_name("--output", a.output);
-  check_output_name("--deep", a.deep);
+  check_exr_name("--output", a.output);
+  check_exr_name("--deep", a.deep);
   check_part(a, o);
   check_motion(a);
   return o;

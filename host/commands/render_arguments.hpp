@@ -45,9 +45,6 @@ void add_file_options(CLI::App& app, RenderArguments& arguments);
 /// Throws Error usage if options of the PNG are wrong, or there is none that they are for.
 void check_png(const RenderArguments& arguments);
 
-/// Throws Error usage if the name of an image, given by `flag`, is that of another format.
-void check_output_name(const char* flag, const std::string& path);
-
 /// Whether the file is a part, FILE.dapple, and not an image.
 bool is_part_path(const std::string& path);
 

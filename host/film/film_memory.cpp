@@ -24,8 +24,9 @@ double machine_bytes() {
 /// All values count twice. Sums are on the device and, unless it shares the host's memory, in the
 /// host's copy; channels are in the film and in the file that is being written.
 std::size_t film_bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
+  const std::size_t squares = 1 + lights;  // of two floats each
   std::size_t sums = DAPPLE_SURFACE_PLANES + DAPPLE_AO_PLANES + kNormalPlanes + kAlbedoPlanes +
-                     DAPPLE_DOME_PLANES * lights;  // as if all were domes
+                     DAPPLE_DOME_PLANES * lights + squares;  // as if all were domes
   std::size_t channels = kSurfaceChannels + kLightChannels * lights;
   if (options.back) {
     sums += 3 + 3 * lights;  // samples, hits and AO; lights as if all were domes

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "film/light_layers.hpp"
+#include "scene/images/dome_image.hpp"
 
 namespace dapple {
 namespace {
@@ -114,6 +118,13 @@ FilmLayout::FilmLayout(const PixelRect& crop, const RenderOptions& options,
                       scales.lights.at(lights.size())});
     plane_count += lights.back().count();
     squares += 2;
+  }
+  for (LightLayer& layer : light_layers(scene_lights)) {
+    if (layer.lights.size() < 2) continue;
+    std::vector<double> luminances;
+    for (const std::size_t l : layer.lights)
+      luminances.push_back(luminance(scene_lights[l].radiance));
+    groups.push_back({std::move(layer.lights), std::move(luminances)});
   }
   if (options.back) {
     back_samples = plane_count;

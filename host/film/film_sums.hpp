@@ -39,6 +39,12 @@ struct FilmScales {
 /// bits, if what it gives the nearest point does not become too large; others get 2^26.
 FilmScales film_scales(const View& view, const Box3f& bounds, std::span<const LightRecord> lights);
 
+/// Lights that share a layer, and the luminances of their radiances.
+struct LightGroup {
+  std::vector<std::size_t> lights;
+  std::vector<double> luminances;
+};
+
 /// The first plane of each pass, and the powers of two that values are multiplied by. The sum of
 /// 2^24 samples of the largest value fits 63 bits. Irradiances have no largest value: their sums
 /// stop at 2^61 in a slice and at the largest number in all.
@@ -50,6 +56,7 @@ struct FilmLayout {
   std::uint32_t normals = 0;  ///< first plane of shading normals; 0: there are none
   std::uint32_t albedo = 0;   ///< first of three planes, or 0
   std::vector<LightPlaneRange> lights;
+  std::vector<LightGroup> groups;  ///< of two lights or more, in the order of light_layers()
   /// Planes of the number of samples whose backs are traced, and of those that hit; 0: none are.
   std::uint32_t back_samples = 0;
   std::uint32_t back_ao = 0;  ///< the backs' plane of transmittance, or 0

@@ -72,7 +72,7 @@ std::vector<std::uint32_t> sources_of_backs(const Sums& sums, const TracedPictur
 }
 
 /// Irradiance of the lights at a pixel, linear RGB: with occlusion, of all lights together or of
-/// one; and the largest without occlusion, of all lights together, over all pixels and channels.
+/// one; and a percentile of that without occlusion, of all lights together.
 class LightPlanes {
  public:
   LightPlanes(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
@@ -110,15 +110,24 @@ class LightPlanes {
   [[nodiscard]] std::uint32_t back_source(std::uint32_t pixel) const {
     return backs_.empty() ? pixel : backs_[pixel];
   }
-  [[nodiscard]] double largest_unoccluded() const {
-    double largest = 0;
+  /// The irradiance without occlusion that `share` of the pixels do not exceed, in the channel in
+  /// which it is largest. Only those pixels count whose surfaces face a light; 0 if none do.
+  [[nodiscard]] double unoccluded_percentile(double share) const {
+    std::vector<double> values;
     for (std::uint32_t p = 0; p < layout_.pixels; ++p) {
+      const double hits = sums_.at(DAPPLE_PLANE_HITS, p);
+      if (hits == 0) continue;
       V3d value(0.0);
       for (std::size_t l = 0; l < lights_.size(); ++l)
-        value += of_planes(l, layout_.lights[l].unoccluded(), p, sample_count(picture_, p));
-      largest = std::max({largest, value.x, value.y, value.z});
+        value += of_planes(l, layout_.lights[l].unoccluded(), p, hits);
+      const double largest = std::max({value.x, value.y, value.z});
+      if (largest > 0) values.push_back(largest);
     }
-    return largest;
+    if (values.empty()) return 0;
+    const auto at = values.begin() +
+                    static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
   }
 
  private:
@@ -221,16 +230,17 @@ void add_visits(Planes& planes, const Sums& sums, const TracedPicture& picture,
 }
 
 /// The radiance of the sky that AO lets through: the option's; else 1 without lights, 0 beside a
-/// dome, which is a sky itself, and beside other lights a tenth of what they reflect from a white
-/// surface.
+/// dome, which is a sky itself, and beside other lights a tenth of what they reflect from bright
+/// white surfaces. A percentile, because a few pixels near a lamp may be a thousand times as
+/// bright.
 double ambient_of(const RenderOptions& options, const std::vector<Light>& lights,
                   const LightPlanes& light) {
-  constexpr double kShare = 0.1;
+  constexpr double kShare = 0.1, kPercentile = 0.9;
   if (options.ambient) return *options.ambient;
   if (lights.empty()) return 1;
   const bool dome = std::any_of(lights.begin(), lights.end(),
                                 [](const Light& l) { return l.kind == LightKind::dome; });
-  return dome ? 0 : kShare * light.largest_unoccluded() / std::numbers::pi;
+  return dome ? 0 : kShare * light.unoccluded_percentile(kPercentile) / std::numbers::pi;
 }
 
 }  // namespace

@@ -16,6 +16,11 @@
 
 namespace dapple {
 
+struct PictureBias {
+  std::vector<Bias> passes;  ///< by layer as BiasSums
+  std::vector<Bias> groups;  ///< of FilmLayout::groups, then of their backs
+};
+
 struct TracedPicture {
   HostView sums;                       ///< values of std::int64_t in the order of FilmLayout
   std::vector<std::uint32_t> samples;  ///< number of samples of each pixel; 0 only if interrupted
@@ -25,7 +30,7 @@ struct TracedPicture {
   MatteSums mattes;                            ///< of no pixels unless requested
   MotionSums motion;                           ///< of no pixels unless requested
   DeepSums deep;                               ///< of no pixels unless requested
-  std::vector<Bias> bias;                      ///< by layer as BiasSums; empty unless requested
+  PictureBias bias;                            ///< empty unless requested
   std::map<std::string, double> pass_seconds;  ///< device seconds by label, of all runs
   std::size_t queue_bytes = 0;
   bool interrupted = false;

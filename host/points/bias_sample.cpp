@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "points/sun_irradiance.hpp"
 #include "render/point_occlusion.hpp"
 #include "sampling/bias_estimate.hpp"
@@ -13,6 +15,9 @@ using Imath::V3d;
 
 /// Values of points, each from one set, that are also found exactly.
 constexpr std::size_t kBiasSamples = 1024;
+
+/// Fewer points do not tell how they differ.
+constexpr std::size_t kLeastPoints = 8;
 
 /// Neighbouring points of the sample that are a tile.
 constexpr std::uint32_t kPointsOfTile = 16;
@@ -62,17 +67,25 @@ std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& 
   for (std::size_t k = 0; k < names.size(); ++k) {
     corrections.emplace_back(exact[k].values, prefiltered[k].values);
     const BiasCorrection& correction = corrections.back();
-    if (!correction.is_measured()) continue;
+    const std::size_t values = exact[k].values.size();
+    if (values == 0) continue;
     std::vector<BiasUnit> units(points_.size());
     for (std::uint32_t i = 0; i < units.size(); ++i) units[i].tile = i / kPointsOfTile;
-    for (std::size_t v = 0; v < exact[k].values.size(); ++v) {
+    for (std::size_t v = 0; v < values; ++v) {
       BiasUnit& unit = units[exact[k].points[v]];
       unit.count += 1;
       unit.difference += correction.corrected(prefiltered[k].values[v]) - exact[k].values[v];
     }
     Bias bias = estimate_bias(std::move(units), share_);
-    bias.mean = correction.mean_bias();
-    bias.error = correction.mean_error();
+    const double rays = static_cast<double>(values) * rays_of_set(options_, 0).rays;
+    if (correction.is_measured()) {
+      bias.mean = correction.mean_bias();
+      bias.error = correction.mean_error();
+    } else if (points_.size() < kLeastPoints) {
+      bias.error = 1 / std::sqrt(rays);
+    }
+    // One ray more could have differed by all of its light.
+    bias.error = std::hypot(bias.error, 1 / rays);
     bias_[names[k]] = bias;
   }
   return corrections;

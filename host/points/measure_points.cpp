@@ -54,6 +54,9 @@ class Measurement {
       if (!result_.interrupted) throw;
     }
     if (options_.report_bias > 0) result_.bias = sample_.report();
+    if (options_.report_bias > 0 && is_corrected() && !result_.interrupted && result_.bias.empty())
+      result_.notes.emplace_back(
+          "the bias is not reported: no column has values whose bias is known");
   }
 
  private:
@@ -108,6 +111,7 @@ class Measurement {
   }
 
   void choose_footprint() {
+    if (options_.max_bias > 0 && !is_corrected()) result_.notes.emplace_back(kNothingToLimit);
     if (options_.max_bias > 0 && !sample_.is_empty()) {
       const FootprintChoice choice =
           dapple::choose_footprint(sample_, {options_.footprint, options_.max_bias, 0, true});
@@ -305,7 +309,7 @@ PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<c
   check_points("measure_points", points, normals);
   check_suns(options.suns);
   PointResult result;
-  const Stopwatch building;
+  const Stopwatch preparing;
   std::vector<V3f> in_period;
   if (options.period_x > 0) {
     check_scene(scene);
@@ -316,7 +320,8 @@ PointResult measure_points(Scene scene, std::span<const V3f> points, std::span<c
     repeat(scene, options.period_x, options.period_z, points);
   }
   const SceneOfPoints on(std::move(scene), options);
-  result.build_seconds = building.seconds();
+  result.build_seconds = on.build_seconds;
+  result.prepare_seconds = preparing.seconds() - on.build_seconds;
   result.device = on.device.info().name;
   result.notes = on.scene.warnings;
   const Stopwatch tracing;

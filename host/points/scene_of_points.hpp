@@ -10,6 +10,7 @@
 #include "device/programs/kernels_ahead.hpp"
 #include "passes/kernel_list.hpp"
 #include "points/point_sets.hpp"
+#include "render/stopwatch.hpp"
 #include "scene/scene_check.hpp"
 
 namespace dapple {
@@ -23,7 +24,9 @@ struct SceneOfPoints {
     KernelsAhead kernels(device.context(), kernels_of(device.context(), scene, options));
     if (options.ground) add_ground(scene);
     merge_single_instances(scene);
+    const Stopwatch building;
     bvh = build_bvh(scene, options.cache);
+    build_seconds = building.seconds();
     uploaded = upload(device, scene, bvh);
     kernels.finish();
   }
@@ -53,6 +56,7 @@ struct SceneOfPoints {
   Scene scene;
   SceneBvh bvh;
   DeviceScene uploaded;
+  double build_seconds = 0;
 };
 
 }  // namespace dapple

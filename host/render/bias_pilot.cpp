@@ -29,6 +29,9 @@ constexpr std::size_t kMostRaysKept = 1u << 24;
 constexpr std::size_t kFewestUnits = 16;
 constexpr double kSpareUnits = 1.1;
 
+/// Fewer units do not tell how they differ.
+constexpr std::ptrdiff_t kLeastUnits = 8;
+
 /// Units in an order whose beginnings are evenly spread: by the height of a lattice of two
 /// dimensions above each (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences",
 /// 2018).
@@ -181,7 +184,8 @@ void BiasPilot::trace(const Layer& layer, Estimator estimator, float footprint,
 std::vector<Bias> BiasPilot::bias(float footprint) {
   std::vector<Bias> out;
   for (std::size_t i = 0; i < layers_.size(); ++i)
-    out.push_back(bias_of(layers_[i], !options_.ao || i > 0, footprint));
+    if (!layers_[i].rays.empty())
+      out.push_back(bias_of(layers_[i], !options_.ao || i > 0, footprint));
   return out;
 }
 
@@ -203,9 +207,13 @@ Bias BiasPilot::bias_of(Layer& layer, bool is_light, float footprint) {
   for (std::size_t i = 0; i < units.size() && is_light; ++i)
     if (units[i].count > 0) largest = std::max(largest, weights[i] / units[i].count);
   for (BiasUnit& unit : units) unit.difference /= largest > 0 ? largest : 1;
+  const auto seen = std::count_if(units.begin(), units.end(),
+                                  [](const BiasUnit& unit) { return unit.count > 0; });
   Bias bias = estimate_bias(std::move(units), 1);
-  if (!layer.rays.empty())  // as in picture_bias()
-    bias.error = std::hypot(bias.error, 1 / static_cast<double>(layer.rays.size()));
+  // As in picture_bias().
+  const auto ray_count = static_cast<double>(layer.rays.size());
+  bias.error =
+      seen < kLeastUnits ? 1 / std::sqrt(ray_count) : std::hypot(bias.error, 1 / ray_count);
   return bias;
 }
 

@@ -27,7 +27,7 @@ class BiasPilot : public BiasSource {
   [[nodiscard]] bool is_complete() const override { return next_ >= most_units_; }
   /// Pixels that show geometry; for --target-error only these count.
   [[nodiscard]] double seen() const override;
-  /// Layers are AO and the lights.
+  /// Of AO and of each light, as far as they have rays.
   std::vector<Bias> bias(float footprint) override;
 
  private:

@@ -45,22 +45,25 @@ void add_bvh_statistics(RenderStatistics& s, const SceneBvh& bvh, const DeviceBu
   s.bytes.instances = buffers.instances.bytes();
 }
 
-/// The options that a device is opened with.
-std::array<std::string, 3> key_of(const RenderOptions& options) {
-  return {options.device, options.kernel_dir, name_of(options.packets)};
+/// Whether the options would open the device as it was opened.
+bool is_named(const Device& device, const RenderOptions& options) {
+  const DeviceContext& opened = device.context();
+  return opened.chosen_by() == options.device && opened.kernel_dir() == options.kernel_dir &&
+         opened.packets() == options.packets;
 }
 
 }  // namespace
 
+void KeptScene::use(const Device& opened) {
+  loader.reset();  // before the device
+  *this = {};
+  device = opened;
+  loader = std::make_unique<KernelLoader>(device->context());
+}
+
 void KeptScene::open(const RenderOptions& options, RenderStatistics& statistics) {
-  const auto key = key_of(options);
-  if (!device || key != device_key) {
-    loader.reset();  // before the device
-    *this = {};
-    device_key = key;
-    device.emplace(options.device, options.kernel_dir, options.packets);
-    loader = std::make_unique<KernelLoader>(device->context());
-  }
+  if (!device || !is_named(*device, options))
+    use(Device(options.device, options.kernel_dir, options.packets));
   statistics.device = device->info().name;
   for (std::string& note : device->context().notes()) statistics.notes.push_back(std::move(note));
 }

@@ -2,7 +2,6 @@
 // a scene. Out: the scene on the device, built at first and refitted later, and statistics of it.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,11 +16,13 @@
 namespace dapple {
 
 struct KeptScene {
-  std::array<std::string, 3> device_key;  ///< the options that `device` was opened with
   std::optional<Device> device;
   std::unique_ptr<KernelLoader> loader;  ///< of the device
   std::optional<UpdatableBvh> bvh;
   DeviceScene on_device;
+
+  /// Keeps an open device.
+  void use(const Device& opened);
 
   /// Opens the device that the options name, unless it is open.
   void open(const RenderOptions& options, RenderStatistics& statistics);

@@ -138,18 +138,14 @@ class PictureTracer {
     state_.bias.earlier = traced_samples(state_.round, state_.slice_samples, state_.samples);
   }
 
-  std::vector<Bias> bias_of(const HostView& sums, const std::vector<std::uint32_t>& samples,
-                            const View& view) {
+  PictureBias bias_of(const HostView& sums, const std::vector<std::uint32_t>& samples,
+                      const View& view) {
     bias_->finish();
     // Without a target states have no squares, and those of earlier runs and moments are missing:
     // then the largest irradiance counts less of its noise.
     const HostView squares = context_.view(film_.squares);
-    std::vector<double> divisors =
+    const std::vector<double> divisors =
         FilmMoments(sums, squares, layout_, options_, samples, width_).largest_values();
-    if (options_.back) {
-      const std::vector<double> of_front = divisors;
-      divisors.insert(divisors.end(), of_front.begin(), of_front.end());
-    }
     const SideSamples taken = samples_of_bias(bias_->sums(), sums, samples, layout_,
                                               backs_ ? backs_->choice().group_bits : 0);
     return picture_bias(bias_->sums(), sums, taken, layout_, view, divisors);

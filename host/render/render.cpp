@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -128,25 +127,6 @@ MatteNames matte_names(const Scene& scene, const RenderOptions& options) {
   return names;
 }
 
-/// Stores the bias of each layer in the statistics and the metadata.
-void add_bias(RenderResult& result, const TracedPicture& picture, const FilmLayout& layout,
-              const std::vector<Light>& lights) {
-  const std::vector<std::string> layers = bias_layers(layout, lights);
-  const Plane& alpha = *result.film.find("A");
-  const auto seen = std::count_if(alpha.pixels.begin(), alpha.pixels.end(),
-                                  [](float value) { return value > 0; });
-  const double share = static_cast<double>(seen) / static_cast<double>(alpha.pixels.size());
-  for (std::size_t i = 0; i < picture.bias.size(); ++i) {
-    const Bias& bias = picture.bias[i];
-    result.statistics.bias[layers[i]] = bias;
-    result.film.metadata.settings.emplace_back("bias." + layers[i], bias_text(bias));
-    const auto noise = result.statistics.rmse.find(layers[i]);
-    if (noise == result.statistics.rmse.end()) continue;
-    result.statistics.rmse_with_bias[layers[i]] =
-        std::sqrt(noise->second * noise->second + share * mean_square(bias));
-  }
-}
-
 /// Chooses the footprint by a pilot where one is needed. `first_footprint`: of a resumed picture.
 /// Returns what is traced: targets are of the noise alone.
 RenderOptions with_chosen_footprint(const KeptScene& kept, const PilotPicture& picture,
@@ -163,6 +143,8 @@ RenderOptions with_chosen_footprint(const KeptScene& kept, const PilotPicture& p
     for (float* target : {&traced.target_error, &traced.target_rmse})
       if (*target > 0) *target = noise_target(*target, choice.bias_rmse);
     statistics.pass_seconds["bias pilot"] = time.seconds();
+  } else if (limits_bias(options) && !has_bias(options)) {
+    statistics.notes.emplace_back(kNothingToLimit);
   }
   statistics.footprint = options.footprint;
   return traced;
@@ -296,11 +278,7 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
                  view.crop,  develop(picture, layout, options, lights, statistics),
                  metadata,   options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
   set_ambient(result.film.metadata, statistics.ambient);
-  add_bias(result, picture, layout, lights);
-  if (has_bias(options) && statistics.footprint > 0 && options.report_bias > 0 &&
-      picture.bias.empty())
-    result.statistics.notes.emplace_back(
-        "the bias is not reported: too few rays were traced exactly; --report-bias 100% takes all");
+  if (has_bias(options) && options.report_bias > 0) add_bias(result, picture, layout, lights);
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   statistics.notes.insert(statistics.notes.end(), scene.warnings.begin(), scene.warnings.end());
   if (!result.interrupted) return;
@@ -313,6 +291,7 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
 struct Renderer::Kept : KeptScene {};
 
 Renderer::Renderer() : kept_(std::make_unique<Kept>()) {}
+Renderer::Renderer(const Device& device) : Renderer() { kept_->use(device); }
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;

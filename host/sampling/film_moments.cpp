@@ -38,7 +38,27 @@ std::vector<double> FilmMoments::largest_values() const {
     const LightPass pass = light_pass(light);
     out.push_back(largest_unoccluded(pass, [&](std::size_t p) { return variance_at(pass, p); }));
   }
+  for (const LightGroup& group : layout_.groups) out.push_back(largest_unoccluded(group, out));
   return out;
+}
+
+// The largest of noisy means is too large, and so may be the sum of the largest of each light.
+double FilmMoments::largest_unoccluded(const LightGroup& group,
+                                       const std::vector<double>& largest) const {
+  double bound = 0, found = 0;
+  for (std::size_t i = 0; i < group.lights.size(); ++i)
+    bound += group.luminances[i] * largest[group.lights[i] + (options_.ao ? 1 : 0)];
+  for (std::uint32_t p = 0; p < layout_.pixels; ++p) {
+    double value = 0;
+    for (std::size_t i = 0; i < group.lights.size(); ++i) {
+      const LightPass pass = light_pass(group.lights[i]);
+      value += group.luminances[i] * pass.scale *
+               luminance_sum(pass.planes.unoccluded(), pass.planes.channels, p);
+    }
+    found = std::max(found, mean(value, p));
+  }
+  const double least = std::min(found, bound);
+  return least > 0 ? least : 1.0;
 }
 
 // Occlusion is 0 where samples missed.

@@ -32,7 +32,7 @@ class FilmMoments {
   [[nodiscard]] std::vector<std::vector<float>> variances() const;
 
   /// What the errors of every pass are relative to: 1 for AO, of lights the largest unoccluded
-  /// irradiance at radiance 1.
+  /// irradiance at radiance 1. Then the largest of each of FilmLayout::groups, at its radiances.
   [[nodiscard]] std::vector<double> largest_values() const;
 
  private:
@@ -71,6 +71,9 @@ class FilmMoments {
   /// it is called for few of them.
   template <class Variance>
   [[nodiscard]] double largest_unoccluded(const LightPass& pass, const Variance& variance) const;
+  /// Of the lights of a group together. `largest`: by pass.
+  [[nodiscard]] double largest_unoccluded(const LightGroup& group,
+                                          const std::vector<double>& largest) const;
   /// A pixel's batches in a pass. `mean`: returns the mean of a pixel's samples.
   template <class Mean>
   [[nodiscard]] BatchMoments moments(const Mean& mean, std::uint32_t squares_plane,

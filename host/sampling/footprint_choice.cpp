@@ -134,7 +134,7 @@ std::string note_of(const FootprintDemand& demand, float footprint, const Judgem
   const std::string why = fmt::format("--max-bias {}: ", demand.max_bias);
   const float smallest = demand.footprint * kSmallestPart;
   if (!last.has_layers)
-    return fmt::format("{}footprint {}: the bias of what is computed cannot be measured", why,
+    return fmt::format("{}footprint {}: nothing is seen whose bias could be measured", why,
                        footprint);
   if (footprint > 0)
     return fmt::format("{}footprint {}, whose bias is at most {:.4f}", why, footprint, last.most);

@@ -44,6 +44,10 @@ struct FootprintChoice {
   std::string note;      ///< for the user; may be empty
 };
 
+/// The note where a limit is given and all rays are exact.
+inline constexpr const char* kNothingToLimit =
+    "--max-bias has no effect: nothing is computed that has a bias";
+
 /// The largest of the scale, a half of it, ... a sixteenth and 0 whose bias is small enough: for
 /// max_bias, in every layer |mean| + 2 standard errors; for a target, an RMSE of half of it. With
 /// only_if_clear: the scale stays unless a layer's |mean| - 2 standard errors is above max_bias;

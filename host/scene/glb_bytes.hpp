@@ -8,9 +8,10 @@
 
 namespace dapple {
 
-/// The binary chunk is the sections one after the other; its size must be a multiple of 4. Throws
-/// Error failed when the file cannot be written or would be larger than GLB's 32-bit lengths.
+/// The binary chunk is the sections one after the other; its size must be a multiple of 4.
+/// `others`: chunks of other types with their headers, which come last. Throws Error failed when
+/// the file cannot be written or would be larger than GLB's 32-bit lengths.
 void write_glb_bytes(const std::string& path, std::string json,
-                     std::span<const std::string_view> binary);
+                     std::span<const std::string_view> binary, std::string_view others = {});
 
 }  // namespace dapple

@@ -30,12 +30,12 @@ void append_word(std::string& out, std::size_t word) {
 }  // namespace
 
 void write_glb_bytes(const std::string& path, std::string json,
-                     std::span<const std::string_view> binary) {
+                     std::span<const std::string_view> binary, std::string_view others) {
   json.resize((json.size() + 3) / 4 * 4, ' ');
   std::size_t byte_count = 0;
   for (const std::string_view section : binary) byte_count += section.size();
   const std::size_t total = kHeaderBytes + kChunkHeaderBytes + json.size() +
-                            (byte_count > 0 ? kChunkHeaderBytes + byte_count : 0);
+                            (byte_count > 0 ? kChunkHeaderBytes + byte_count : 0) + others.size();
   if (total > std::numeric_limits<std::uint32_t>::max()) {
     throw Error(
         ErrorKind::failed,
@@ -53,6 +53,7 @@ void write_glb_bytes(const std::string& path, std::string json,
     sections.push_back(binary_header);
     sections.insert(sections.end(), binary.begin(), binary.end());
   }
+  sections.push_back(others);
   write_whole_file(path, sections);
 }
 

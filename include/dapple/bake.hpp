@@ -119,7 +119,7 @@ struct TargetStatistics {
 
 struct BakeStatistics {
   struct {
-    double build = 0, upload = 0, kernel_build = 0, trace = 0, total = 0;
+    double prepare = 0, build = 0, upload = 0, kernel_build = 0, trace = 0, total = 0;
   } seconds;
   std::size_t triangles = 0, vertices = 0, texels = 0, instances = 0, points = 0;
   std::uint64_t rays = 0;

@@ -136,7 +136,8 @@ struct RenderOptions {
   float ao_distance = 0.0f;  ///< metres; 0 is no limit
   float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, [0, 100]; 0 is a hard limit
   /// Radiance of a uniform sky that is multiplied by AO in RGBA, [0, 1e30]; none: 1 without lights,
-  /// 0 with a dome, otherwise a tenth of what the lights make of a white surface at most.
+  /// 0 with a dome, otherwise a tenth of what the lights make of bright white surfaces: of the 90th
+  /// percentile, over pixels whose surfaces face a light, of irradiance without occlusion.
   std::optional<float> ambient;
   std::string camera;  ///< by name; empty: the first, or one that shows it all
   std::optional<LookAt> look;

@@ -69,7 +69,9 @@ struct PointResult {
   std::map<std::string, Bias> bias;
   float footprint = 0;  ///< PointOptions::footprint, or what max_bias chose
   std::vector<std::string> notes;
-  double build_seconds = 0, trace_seconds = 0;
+  /// Seconds of BVHs; of the rest before rays are traced: of the device, its kernels and the
+  /// upload; and of tracing.
+  double build_seconds = 0, prepare_seconds = 0, trace_seconds = 0;
   std::string device;
   bool interrupted = false;  ///< stopped: quantities that were not finished have no columns
 };

@@ -33,11 +33,11 @@ struct RenderStatistics {
   struct {
     double visits = 0, tests = 0;  ///< node visits and triangle tests a ray
   } camera, ao, light;
-  /// With a target: estimated root mean square of the pixels' errors, by layer ("ao",
-  /// "light.NAME"); of lights relative to their largest unoccluded irradiance.
+  /// With a target: estimated root mean square of the pixels' errors, by pass ("ao", "light.NAME",
+  /// of each light of a group); of lights relative to their largest unoccluded irradiance.
   std::map<std::string, double> rmse;
-  /// Of prefiltered pictures: the bias by layer, as `rmse`; also "ao.back" and the like. Empty if
-  /// it is not reported.
+  /// Of prefiltered pictures: the bias by layer of the film, of a group of lights as a whole; also
+  /// "ao.back" and the like. Empty if it is not reported.
   std::map<std::string, Bias> bias;
   /// `rmse` together with the bias, where both are known: the estimated distance from the truth.
   std::map<std::string, double> rmse_with_bias;
@@ -109,6 +109,9 @@ struct RenderControl {
 class Renderer {
  public:
   Renderer();
+  /// Uses `device` and its kernels for pictures whose options name it as it was opened. No two
+  /// Renderers may use one device at once.
+  explicit Renderer(const Device& device);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

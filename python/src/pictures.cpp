@@ -26,8 +26,9 @@ namespace {
 RenderResult render_picture(const SceneOnDevice& scene, const RenderOptions& options,
                             const nb::object& progress) {
   const auto kept = scene.scene();
-  return call_engine(progress,
-                     [&](const RenderControl& control) { return render(*kept, options, control); });
+  return call_engine(progress, [&](const RenderControl& control) {
+    return Renderer(open_device(options.device)).render(*kept, options, control);
+  });
 }
 
 /// The pixels of a channel, (height, width), as a view of the film.

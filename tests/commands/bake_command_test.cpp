@@ -68,11 +68,11 @@ constexpr std::array<float, 6> kUvs{0.25f, 0.5f, 0.75f, 0.5f, 0.25f, 0.875f};
 
 /// A triangle with colours and texture coordinates, 1 m below a larger one. Seen from the triangle,
 /// the larger one holds a disk of radius 0.7 m and lies in one of 3.6 m: AO is from 0.07 to 0.67.
-GltfBuilder shaded_triangle() {
+GltfBuilder shaded_triangle(std::array<float, 4> color = kColor) {
   GltfBuilder builder;
   builder.add_triangle();
   std::vector<float> colors;
-  for (int v = 0; v < 3; ++v) colors.insert(colors.end(), kColor.begin(), kColor.end());
+  for (int v = 0; v < 3; ++v) colors.insert(colors.end(), color.begin(), color.end());
   json& attributes = builder.doc["meshes"][0]["primitives"][0]["attributes"];
   attributes["COLOR_0"] = builder.add_accessor(colors, test::kFloat, "VEC4");
   attributes["TEXCOORD_0"] =
@@ -119,6 +119,12 @@ TEST_F(BakedChannel, AoIsInTheComponentOfTextureCoordinatesThatIsNamedAndTheOthe
     EXPECT_EQ(added[2 * v], 0.0f);
     EXPECT_EQ(added[2 * v + 1], ao_[v]);
   }
+}
+
+TEST_F(BakedChannel, ColoursAboveOneStayFloats) {
+  write("in.glb", shaded_triangle({4, 1, 0.5f, 1}).glb());
+  const std::vector<float> rgba = baked("", "COLOR_0", 4);
+  for (std::size_t v = 0; v < 3; ++v) EXPECT_FLOAT_EQ(rgba[4 * v], 4 * ao_[v]);
 }
 
 TEST_F(BakedChannel, AoIsMultipliedWithTheColoursThatAreNamedOrReplacesThem) {

@@ -108,6 +108,40 @@ TEST_F(BakeRoundTrip, OfUniqueMeshesChangesNothing) {
   expect_same_picture("--instances unique --channel _AO");
 }
 
+TEST_F(BakeRoundTrip, KeepsChunksOfOtherTypes) {
+  std::string glb = bytes_of(path("in.glb"));
+  const std::string chunks("\x04\0\0\0ABCDdata\x08\0\0\0EFGHmore...", 28);
+  glb += chunks;
+  for (std::size_t i = 0; i < 4; ++i) glb[8 + i] = static_cast<char>(glb.size() >> 8 * i & 255);
+  std::ofstream(path("in.glb"), std::ios::binary) << glb;
+  ASSERT_EQ(dapple("bake in.glb -o out.glb --rays 8 -q --channel _AO").code, 0);
+  EXPECT_TRUE(bytes_of(path("out.glb")).ends_with(chunks));
+  EXPECT_EQ(bits_of(picture("out.glb").find("ao.R")->pixels),
+            bits_of(picture("in.glb").find("ao.R")->pixels));
+  // The rules that a fixture checks know no such chunks.
+  for (const char* name : {"in.glb", "out.glb"}) std::filesystem::remove(path(name));
+}
+
+TEST_F(BakeRoundTrip, TwiceMakesNoLargerFileThanOnce) {
+  for (const char* arguments :
+       {"", "--channel _AO --passes ao,bent", "--to texture --size 64", "--to instance"}) {
+    SCOPED_TRACE(arguments);
+    const std::string options = " --rays 8 -q " + std::string(arguments);
+    ASSERT_EQ(dapple("bake in.glb -o once.glb" + options).code, 0);
+    const Outcome again = dapple("bake once.glb -o twice.glb" + options);
+    ASSERT_EQ(again.code, 0) << again.err;
+    // Numbers in its JSON may have other lengths.
+    EXPECT_NEAR(static_cast<double>(bytes_of(path("twice.glb")).size()),
+                static_cast<double>(bytes_of(path("once.glb")).size()), 200);
+    const json once = document("once.glb"), twice = document("twice.glb");
+    for (const char* array : {"accessors", "bufferViews", "images", "textures", "samplers"})
+      EXPECT_EQ(twice.value(array, json::array()).size(), once.value(array, json::array()).size())
+          << array;
+    const Film before = picture("once.glb"), after = picture("twice.glb");
+    EXPECT_EQ(bits_of(after.find("ao.R")->pixels), bits_of(before.find("ao.R")->pixels));
+  }
+}
+
 TEST_F(BakeRoundTrip, OfLightsChangesNothing) {
   for (const char* to : {"vertex --channel _AO", "texture --size 32", "instance"})
     expect_same_picture("--passes ao,light --lights lights.json --to " + std::string(to));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -62,6 +63,30 @@ TEST_F(PointsCommand, KeepsALimitOfTheBiasAndSaysWithWhichFootprint) {
   EXPECT_TRUE(contains(run.err, "exact rays (footprint 0)")) << run.err;
   measured("-o b.csv --footprint 0");
   EXPECT_EQ(bytes_of(path("a.csv")), bytes_of(path("b.csv")));
+}
+
+TEST_F(PointsCommand, SaysThatALimitOfTheBiasHasNoEffectOnExactRays) {
+  const program_test::Outcome run = measured("-o a.csv --max-bias 0.01 --footprint 0");
+  EXPECT_TRUE(contains(run.err, "--max-bias has no effect")) << run.err;
+}
+
+// All values are 0 or 1: nothing is corrected, and the bias is 0 within what so many rays tell.
+TEST_F(PointsCommand, ReportsABiasWhereNothingIsCorrected) {
+  std::ofstream(path("above.csv")) << "x,y,z,nx,ny,nz\n0,90,0,0,1,0\n1,90,0,0,1,0\n";
+  const program_test::Outcome run =
+      dapple("points 'scene:tree?leaves=10' --at above.csv --rays 64 -o a.csv --stats-json a.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto json = nlohmann::json::parse(bytes_of(path("a.json")));
+  const auto& ao = json.at("bias").at("ao");
+  EXPECT_EQ(ao.at("mean"), 0);
+  EXPECT_GT(ao.at("error").get<double>(), 0);
+  double sum = 0;
+  for (const char* key : {"load", "prepare", "build", "trace", "write"}) {
+    EXPECT_GE(json.at("seconds").at(key).get<double>(), 0) << key;
+    sum += json["seconds"][key].get<double>();
+  }
+  const double total = json["seconds"]["total"].get<double>();
+  EXPECT_NEAR(sum, total, 0.01 + 0.05 * total);
 }
 
 TEST_F(PointsCommand, TurnsAnImageOfTheSkyAndDoesNotOverwriteIt) {

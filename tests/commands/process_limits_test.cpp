@@ -110,6 +110,8 @@ TEST_F(ProcessLimits, TheCommandLineSaysWhatItExpects) {
       {"render x.glb -o o.json", "--output is o.json, but images are OpenEXR files"},
       {"merge x.dapple -o o.png", "--output is o.png, but images are OpenEXR files"},
       {"render x.glb -o o.exr --png p.jpg", "--png is p.jpg, but previews are PNG files"},
+      {"bake x.glb -o o.glb --png p.jpg", "--png is p.jpg, but previews are PNG files"},
+      {"compare x.exr y.exr --png p.jpg", "--png is p.jpg, but previews are PNG files"},
       {"render x.glb -o o.exr --crop 0,0,3.5,2", "'3.5' is not a whole number"},
       {"render x.glb -o o.exr --exposure 1", "--exposure needs --png"},
       {"render x.glb -o o.exr --background none", "--background needs --png"},

@@ -1,5 +1,4 @@
-// The layer albedo against direct look-ups in textures and colours of corners, and RGBA recombined
-// from its layers.
+// The layer albedo against direct look-ups in textures and colours of corners.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -303,62 +302,6 @@ TEST(Albedo, ANewColourOfAKeptSceneIsSeen) {
   renderer.render(scene, picture(8, 4));
   scene.materials[0].color = V3f(0.125f);
   EXPECT_NEAR(at(renderer.render(scene, picture(8, 4)).film, "albedo.G", 20), 0.125f, 1e-6);
-}
-
-double ambient_of(const Film& film) {
-  for (const auto& [name, value] : film.metadata.settings)
-    if (name == "ambient") return std::stod(value);
-  return -1;
-}
-
-/// The largest relative difference of RGB and its layers.
-double worst_recombination(const Film& film, const std::vector<std::string>& lights) {
-  const double ambient = ambient_of(film);
-  double worst = 0, largest = 0;
-  for (const char* letter : {"R", "G", "B"}) {
-    for (std::size_t p = 0; p < film.find("A")->pixels.size(); ++p) {
-      double light = ambient * (at(film, std::string("ao.") + letter, p) - 1.0 + at(film, "A", p));
-      for (const std::string& name : lights)
-        light += at(film, "light." + name + "." + letter, p) / std::numbers::pi;
-      const double beauty = light * at(film, std::string("albedo.") + letter, p);
-      largest = std::max<double>(largest, at(film, letter, p));
-      worst = std::max(worst, std::fabs(beauty - at(film, letter, p)));
-    }
-  }
-  EXPECT_GT(largest, 0);
-  return worst / largest;
-}
-
-TEST(Beauty, IsAlbedoTimesSkyAndLights) {
-  RenderOptions options;
-  options.width = options.height = 48;
-  Scene scene = load_scene("scene:tree?leaves=2000");
-  scene.lights.resize(1);
-  scene.lights[0].name = "rect";
-  scene.lights[0].position = V3f(3, 12, 3);
-  const Film rect = render(scene, options).film;
-  EXPECT_GT(ambient_of(rect), 0);
-  EXPECT_LE(worst_recombination(rect, {"rect"}), 1e-5);
-  Light dome;
-  dome.name = "sky";
-  dome.kind = LightKind::dome;
-  dome.radiance = V3f(0.2f, 0.3f, 0.5f);
-  Light sun;
-  sun.name = "sun";
-  sun.kind = LightKind::sun;
-  sun.direction = V3f(0.3f, -1, -0.4f).normalized();
-  sun.radiance = V3f(10000, 9000, 8000);
-  scene.lights = {dome, sun};
-  const Film outdoors = render(scene, options).film;
-  EXPECT_EQ(ambient_of(outdoors), 0) << "a dome is a sky";
-  EXPECT_LE(worst_recombination(outdoors, {"sky", "sun"}), 1e-5);
-  options.ambient = 0.25f;
-  const Film with_ambient = render(scene, options).film;
-  EXPECT_EQ(ambient_of(with_ambient), 0.25);
-  EXPECT_LE(worst_recombination(with_ambient, {"sky", "sun"}), 1e-5);
-  options.light = false;
-  options.ambient = {};
-  EXPECT_EQ(ambient_of(render(scene, options).film), 1);
 }
 
 TEST(Albedo, LeavesAllOtherLayersAsTheyAreAndIsGoneWhenOff) {

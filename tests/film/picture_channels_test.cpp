@@ -163,13 +163,18 @@ TEST(PictureChannels, RgbaIsLightsAndATenthOfThemThroughAoPremultiplied) {
   options.estimator = Estimator::exact;
   const Picture free(scene, options);
   double largest = 0;
+  std::vector<double> of_samples_that_hit;
   const auto light = [](const Picture& picture, int pixel) {
     return picture.at3("light.warm.", "RGB", pixel) + picture.at3("light.cool.", "RGB", pixel);
   };
   for (int pixel = 0; pixel < kWidth * kHeight; ++pixel) {
     const V3f sum = light(free, pixel);
-    largest = std::max({largest, double{sum.x}, double{sum.y}, double{sum.z}});
+    const double brightest = std::max({sum.x, sum.y, sum.z});
+    largest = std::max(largest, brightest);
+    if (brightest > 0) of_samples_that_hit.push_back(brightest / free.at("A", pixel));
   }
+  std::sort(of_samples_that_hit.begin(), of_samples_that_hit.end());
+  const double bright = of_samples_that_hit.at((of_samples_that_hit.size() - 1) * 9 / 10);
   // A sheet between the ground and the lights that no camera ray crosses, so camera samples stay
   // the same.
   scene.materials.push_back(material_of(0.5f));
@@ -183,7 +188,7 @@ TEST(PictureChannels, RgbaIsLightsAndATenthOfThemThroughAoPremultiplied) {
       darkened += picture->at("ao.R", pixel) < 0.99f;
       const double ao = picture->at("ao.R", pixel) - (1 - a);
       // light.NAME is a mean over all samples: already premultiplied. The materials are white.
-      const V3f expected = (light(*picture, pixel) + V3f(static_cast<float>(0.1 * largest * ao))) /
+      const V3f expected = (light(*picture, pixel) + V3f(static_cast<float>(0.1 * bright * ao))) /
                            std::numbers::pi_v<float>;
       const V3f found(picture->at("R", pixel), picture->at("G", pixel), picture->at("B", pixel));
       for (int channel = 0; channel < 3; ++channel) {

@@ -97,13 +97,11 @@ TEST(BiasReport, OfAllRaysItIsTheDifferenceFromTheExactPicture) {
     EXPECT_NEAR(bias.at("ao").share, 1, 1e-6);
     EXPECT_NEAR(bias.at("ao").mean, mean_difference(result.film, exact, "ao.R"), 2e-6);
     EXPECT_NEAR(bias.at("ao.back").mean, mean_difference(result.film, exact, "ao.back.R"), 2e-6);
-    // Of a light it is relative to the largest unoccluded irradiance; ambient is a tenth of that of
-    // the channel in which it is largest, of the noisiest pixel. Here that is a sixth more.
-    const double largest = result.statistics.ambient * 10 * scene_test::kPi;
-    const V3f radiance = scene.lights[0].radiance;
-    const double strongest = std::max({radiance.x, radiance.y, radiance.z});
+    // Of a light it is relative to the largest irradiance without occlusion, which is about that of
+    // the brightest pixel.
+    const std::vector<float>& light = exact.find("light.key.R")->pixels;
     const double difference = mean_difference(result.film, exact, "light.key.R") /
-                              double{radiance.x} * strongest / largest;
+                              double{*std::max_element(light.begin(), light.end())};
     EXPECT_NEAR(bias.at("light.key").mean, difference, 0.2 * std::fabs(difference) + 1e-6);
     EXPECT_NE(difference, 0);
   }
@@ -156,6 +154,33 @@ TEST(BiasReport, FewRaysTellTheSameWithinTheError) {
     outside += std::fabs(few.mean - all.mean) > 2 * few.error ? 1 : 0;
   }
   EXPECT_LE(outside, 2);  // one in twenty is expected
+}
+
+// Of a group of lights its layer has one, not each light. Here all lights have the same one.
+TEST(BiasReport, AGroupOfLightsHasThatOfItsLayer) {
+  RenderOptions options = with_share(small_picture(), 0.5f);
+  options.ao = false;
+  options.spp = 64;
+  options.footprint_spp = 1;  // for large footprints
+  options.max_bias = 0.0f;
+  Scene scene = tree_below_twin_lights(options);
+  scene.lights[1].radiance *= 0.25f;
+  const Bias alone = render(scene, options).statistics.bias.at("light.second");
+  EXPECT_GT(std::fabs(alone.mean), 1e-4);
+  for (Light& light : scene.lights) light.group = "both";
+  const auto bias = render(scene, options).statistics.bias;
+  ASSERT_EQ(bias.size(), 1u);
+  EXPECT_NEAR(bias.at("light.both").mean, alone.mean, 1e-6);
+  EXPECT_NEAR(bias.at("light.both").error, alone.error, 1e-6);
+}
+
+TEST(BiasReport, OfFewPixelsItsErrorIsThatOfItsRays) {
+  RenderOptions options = with_share(small_picture(), 0.1f);
+  options.width = options.height = 1;
+  options.spp = 4096;
+  const Bias bias = render(tree(), options).statistics.bias.at("ao");
+  EXPECT_GT(bias.error, 0.02);
+  EXPECT_LT(bias.error, 0.2);
 }
 
 TEST(BiasReport, ExactPicturesHaveNone) {
@@ -232,6 +257,8 @@ TEST(MaxBias, ItTakesTheLargestFootprintWhoseBiasIsSmallEnough) {
   const RenderResult exact = render(hair(), options);
   EXPECT_EQ(exact.statistics.footprint, 0);
   EXPECT_TRUE(exact.statistics.bias.empty());
+  for (const std::string& note : exact.statistics.notes)
+    EXPECT_FALSE(note.starts_with("--max-bias has no effect")) << note;
   options.max_bias = kLimit;
   const RenderResult chosen = render(hair(), options);
   RenderOptions given = options;
@@ -245,6 +272,32 @@ TEST(MaxBias, ItTakesTheLargestFootprintWhoseBiasIsSmallEnough) {
   const RenderResult same = render(hair(), with_share(given, 1));
   expect_same_planes(chosen.film, same.film);
   EXPECT_LE(std::fabs(same.statistics.bias.at("ao").mean), kLimit);
+}
+
+TEST(MaxBias, OfNothingThatIsSeenSaysSo) {
+  RenderOptions options = small_picture();
+  options.look = LookAt{V3f(0, 50, 0), V3f(10, 60, 0)};
+  options.max_bias = 0.01f;
+  const RenderStatistics statistics = render(tree(), options).statistics;
+  EXPECT_EQ(statistics.footprint, options.footprint);
+  const std::string note =
+      "--max-bias 0.01: footprint 4: nothing is seen whose bias could be measured";
+  EXPECT_EQ(std::count(statistics.notes.begin(), statistics.notes.end(), note), 1);
+  for (const std::string& other : statistics.notes)
+    EXPECT_EQ(other.find("--report-bias"), std::string::npos) << other;
+}
+
+TEST(MaxBias, WithoutABiasSaysThatItHasNoEffect) {
+  for (const bool exact : {true, false}) {
+    RenderOptions options = small_picture();
+    options.max_bias = 0.01f;
+    options.estimator = exact ? Estimator::exact : Estimator::prefiltered;
+    options.ao = options.light = exact;
+    const std::vector<std::string> notes = render(tree(), options).statistics.notes;
+    EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+      return note.starts_with("--max-bias has no effect");
+    }));
+  }
 }
 
 TEST(MaxBias, AResumedPictureKeepsTheFootprint) {

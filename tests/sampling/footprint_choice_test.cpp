@@ -105,7 +105,7 @@ TEST(FootprintChoice, WithoutAMeasuredLayerTheNoteClaimsNoLimit) {
   const FootprintChoice choice = choose_footprint(source, {4, 0.01f, 0, true});
   EXPECT_EQ(choice.footprint, 4);
   EXPECT_EQ(choice.note,
-            "--max-bias 0.01: footprint 4: the bias of what is computed cannot be measured");
+            "--max-bias 0.01: footprint 4: nothing is seen whose bias could be measured");
 }
 
 TEST(FootprintChoice, ATargetTakesAFourthOfTheRaysWhereTheyTellTheBias) {

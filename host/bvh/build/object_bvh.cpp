@@ -112,6 +112,16 @@ std::vector<std::uint8_t> lanes_with(const std::vector<bool>& flags,
   return lanes;
 }
 
+/// The values of the lanes' triangles; 0 where a lane has none.
+std::vector<float> by_lane(const std::vector<float>& values,
+                           std::span<const std::uint32_t> primitives) {
+  std::vector<float> lanes(values.empty() ? 0 : primitives.size());
+  tbb::parallel_for(std::size_t{0}, lanes.size(), [&](std::size_t i) {
+    if (primitives[i] != kNoPrimitive) lanes[i] = values[primitives[i]];
+  });
+  return lanes;
+}
+
 /// Sets where the primitives of a node begin. Leaf ends count from lane 0 of the block.
 void begin_at(BvhNode& node, std::uint32_t prim_base) {
   node.prim_base = prim_base;
@@ -221,7 +231,8 @@ void summarize(BuiltObject& built) {
 void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
                      std::span<PrimitiveBox> boxes, BuiltObject& built) {
   fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
-  std::vector<bool> closed, interior;
+  std::vector<bool> closed;
+  std::vector<float> interior;
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
                        [&] {
                          const OpaqueTriangles opaque(mesh, opacities);
@@ -237,7 +248,7 @@ void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
       [&] { summarize(built); });
   pack_triangles(built, layout, boxes, mesh, opacities);
   built.closed = lanes_with(closed, built.object.primitives);
-  built.interior = lanes_with(interior, built.object.primitives);
+  built.interior = by_lane(interior, built.object.primitives);
 }
 
 void build_strands(const Mesh& mesh, const std::vector<float>& opacities,

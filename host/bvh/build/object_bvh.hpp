@@ -41,9 +41,9 @@ struct ObjectBvh : ObjectSummary {
 /// A built object, and the data that prefiltering needs.
 struct BuiltObject {
   ObjectBvh object;
-  WideTree tree;                       ///< the tree from which the object was packed
-  std::vector<std::uint8_t> closed;    ///< by block: bit l for lane l, closed_triangles(); or empty
-  std::vector<std::uint8_t> interior;  ///< the same of interior_triangles()
+  WideTree tree;                     ///< the tree from which the object was packed
+  std::vector<std::uint8_t> closed;  ///< by block: bit l for lane l, closed_triangles(); or empty
+  std::vector<float> interior;       ///< by lane: interior_triangles(); or empty
 };
 
 /// Builds and packs the triangles or segments of `mesh` that are not fully transparent. If there

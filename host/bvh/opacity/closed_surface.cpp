@@ -35,7 +35,7 @@ std::vector<bool> closed_triangles(const OpaqueTriangles& opaque) {
     closed[t] = component.vector.length() < kOpenShare * component.area;
     any |= closed[t];
   }
-  return any ? opaque.flags_in_mesh(std::move(closed)) : std::vector<bool>{};
+  return any ? opaque.in_mesh(std::move(closed)) : std::vector<bool>{};
 }
 
 void SurfaceAreas::add(const V3f& area, float opacity, bool closed) {

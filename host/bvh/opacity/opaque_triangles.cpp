@@ -65,11 +65,4 @@ V3f OpaqueTriangles::area_vector(std::size_t triangle) const {
   return 0.5f * (positions_[vertex(triangle, 1)] - a).cross(positions_[vertex(triangle, 2)] - a);
 }
 
-std::vector<bool> OpaqueTriangles::flags_in_mesh(std::vector<bool> flags) const {
-  if (triangles_.empty()) return flags;
-  std::vector<bool> all(mesh_triangles_);
-  for (std::size_t t = 0; t < triangles_.size(); ++t) all[triangles_[t]] = flags[t];
-  return all;
-}
-
 }  // namespace dapple

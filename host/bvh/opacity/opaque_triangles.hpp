@@ -28,8 +28,14 @@ class OpaqueTriangles {
   }
   /// Normal of a triangle, as long as its area in square metres.
   [[nodiscard]] V3f area_vector(std::size_t triangle) const;
-  /// Returns flags of these triangles as those of the mesh's triangles, where all others have none.
-  [[nodiscard]] std::vector<bool> flags_in_mesh(std::vector<bool> flags) const;
+  /// Returns values of these triangles as those of the mesh's triangles, where all others have 0.
+  template <class Value>
+  [[nodiscard]] std::vector<Value> in_mesh(std::vector<Value> values) const {
+    if (triangles_.empty()) return values;
+    std::vector<Value> all(mesh_triangles_);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) all[triangles_[t]] = values[t];
+    return all;
+  }
 
  private:
   std::size_t mesh_triangles_;

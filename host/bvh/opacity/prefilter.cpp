@@ -176,7 +176,7 @@ class Prefilter {
   /// Moving triangles remain connected, so a node that is refitted stays a wall or not.
   void set_opacity(std::uint32_t own, unsigned slot, NodeOpacity& opacity, const Box3f& box,
                    const SurfaceAreas& areas, const WallAreas& walls) const {
-    opacity.wall = task_.node_of.empty() ? is_wall(walls, opacity.normals)
+    opacity.wall = task_.node_of.empty() ? is_wall(walls, opacity.normals, box)
                                          : bvh_is_wall(object_.nodes[own].depth, slot);
     const float factor = set_child_opacity(object_.nodes[own], slot, opacity, box);
     if (task_.record) task_.record->nodes[own].keep(slot, opacity.axes, areas, box, factor);
@@ -241,7 +241,7 @@ class Prefilter {
       const V3f area = 0.5f * triangle.edge1.cross(triangle.edge2);
       leaf.normals.add(area, opacity);
       leaf.areas.add(area, opacity, triangle.closed);
-      leaf.walls.add(area, opacity, has_bit(object_.interior, bvh_block(node.prim_base, i), lane));
+      leaf.walls.add(area, opacity, chord(bvh_block(node.prim_base, i), lane));
       leaf.storage[leaf.count++] = triangle;
     }
     leaf.drawn = leaf.count;
@@ -252,6 +252,12 @@ class Prefilter {
   /// The bit of a lane in bytes by block of the object; `bytes` may be empty.
   bool has_bit(std::span<const std::uint8_t> bytes, std::uint32_t block, unsigned lane) const {
     return !bytes.empty() && (bytes[block - object_.first_block] >> lane & 1u) != 0;
+  }
+
+  /// Of interior_triangles().
+  float chord(std::uint32_t block, unsigned lane) const {
+    return object_.interior.empty() ? 0.0f
+                                    : object_.interior[8 * (block - object_.first_block) + lane];
   }
 
   float mean_opacity(const CoveringTriangle& triangle, float u, float v, float share) const {
@@ -302,7 +308,7 @@ void prefilter(BuiltObject& built, const TextureIntegrals& integrals, RefitRecor
                             object.segments, built.interior};
   const Summary all = prefilter({arrays, built.tree, {}, record, nullptr}, integrals);
   object.opacity = map_opacity(all.map, all.normals, object.box);
-  object.opacity.wall = is_wall(all.walls, all.normals);
+  object.opacity.wall = is_wall(all.walls, all.normals, object.box);
 }
 
 }  // namespace dapple

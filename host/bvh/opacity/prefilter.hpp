@@ -30,7 +30,7 @@ struct ObjectArrays {
   /// these are the arrays of the object alone.
   std::uint32_t first_node = 0, first_block = 0, first_textured = 0;
   std::span<const SegmentBlock> segments = {};  ///< of strands, which are never refitted
-  std::span<const std::uint8_t> interior = {};  ///< BuiltObject::interior; empty when refitting
+  std::span<const float> interior = {};         ///< BuiltObject::interior; empty when refitting
 };
 
 /// Provides the results of subtrees that are prefiltered elsewhere. In the tree these are nodes

@@ -4,11 +4,14 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "bvh/opacity/connected_vertices.hpp"
 
 namespace dapple {
 namespace {
+
+using Imath::V3d;
 
 /// Minimum share of interior triangles in the surfaces of a wall.
 constexpr float kInteriorShare = 0.5f;
@@ -18,6 +21,10 @@ constexpr float kOneSided = 0.5f;
 /// Minimum sum of the squared eigenvalues of the normals' second moments, whose trace is 1. A flat
 /// surface has 1, a tube 1/2, a sphere 1/3.
 constexpr float kFlat = 0.7f;
+/// Maximum longest side of a node that is small inside what its surfaces enclose, in mean chords.
+/// Across a twig nodes have one chord, along it more; whole nodes of the walls of a rough cave have
+/// up to three (experiment 252).
+constexpr float kSmallInside = 4.0f;
 
 /// Positions are equal if they are on the same point of a grid of this many steps over the
 /// surfaces, or, if these are farther from the origin than they are wide, over that distance. So
@@ -87,35 +94,69 @@ class Rings {
   std::vector<Entry> entries_;
 };
 
-/// Adds the triangles at the rim of connected surfaces most of whose area is interior: beside the
-/// rim of a wall, too, light would leak through its box. `belongs`: whether a triangle is in such a
-/// surface; `vertex`: a vertex at the position of a triangle's corner, the same for all there.
+/// Sums over the triangles of a connected surface.
+struct SurfaceSums {
+  V3d origin{0, 0, 0};            ///< a point of it, near which the sums are exact
+  V3d centre{0, 0, 0};            ///< of the triangles' centres from there, times their areas
+  V3d vector{0, 0, 0};            ///< of area vectors
+  double area = 0, interior = 0;  ///< of all triangles, and of those inside the surface
+  double product = 0;             ///< of area vectors and positions: three volumes
+
+  void add(const V3d& corner, const V3d& centre_of_triangle, const V3d& area_vector,
+           bool is_interior) {
+    if (area == 0) origin = corner;
+    const double size = area_vector.length();
+    centre += size * (centre_of_triangle - origin);
+    vector += area_vector;
+    area += size;
+    if (is_interior) interior += size;
+    product += area_vector.dot(corner - origin);
+  }
+  /// Seen from its centre, so that of an open surface, too, it does not depend on the origin.
+  [[nodiscard]] double volume() const {
+    return area > 0 ? std::fabs(product - vector.dot(centre) / area) / 3 : 0;
+  }
+  [[nodiscard]] float mean_chord() const {
+    const double chord = area > 0 ? 4 * volume() / area : 0;
+    return std::max(static_cast<float>(chord), std::numeric_limits<float>::min());
+  }
+};
+
+/// The chords of interior triangles. Triangles at the rim of connected surfaces most of whose area
+/// is interior are so, too: beside the rim of a wall light would leak through its box as well.
+/// `belongs`: whether a triangle is in a surface that has interior ones; `vertex`: a vertex at the
+/// position of a triangle's corner, the same for all there.
 template <class Belongs, class Vertex>
-void extend_to_rims(const OpaqueTriangles& opaque, const Belongs& belongs, const Vertex& vertex,
-                    std::vector<bool>& interior) {
+std::vector<float> chords_of(const OpaqueTriangles& opaque, const std::vector<bool>& interior,
+                             const Belongs& belongs, const Vertex& vertex) {
   ConnectedVertices surfaces =
       connect_triangles(opaque.positions().size(), interior.size(), belongs, vertex);
-  struct Areas {
-    float all = 0, interior = 0;
-  };
-  std::vector<Areas> areas(opaque.positions().size());
+  std::vector<std::uint32_t> number(opaque.positions().size());  // by root; 0: none yet
+  std::vector<SurfaceSums> sums(1);
   for (std::size_t t = 0; t < interior.size(); ++t) {
     if (!belongs(t)) continue;
-    Areas& surface = areas[surfaces.root(vertex(t, 0))];
-    const float area = opaque.area_vector(t).length();
-    surface.all += area;
-    if (interior[t]) surface.interior += area;
+    std::uint32_t& surface = number[surfaces.root(vertex(t, 0))];
+    if (surface == 0) {
+      surface = static_cast<std::uint32_t>(sums.size());
+      sums.emplace_back();
+    }
+    const auto corner = [&](int k) { return V3d(opaque.positions()[opaque.vertex(t, k)]); };
+    sums[surface].add(corner(0), (corner(0) + corner(1) + corner(2)) / 3.0,
+                      V3d(opaque.area_vector(t)), interior[t]);
   }
+  std::vector<float> chords(interior.size());
   for (std::size_t t = 0; t < interior.size(); ++t) {
-    if (interior[t] || !belongs(t)) continue;
-    const Areas& surface = areas[surfaces.root(vertex(t, 0))];
-    interior[t] = surface.interior > kInteriorShare * surface.all;
+    if (!belongs(t)) continue;
+    const SurfaceSums& surface = sums[number[surfaces.root(vertex(t, 0))]];
+    if (interior[t] || surface.interior > double{kInteriorShare} * surface.area)
+      chords[t] = surface.mean_chord();
   }
+  return chords;
 }
 
 }  // namespace
 
-std::vector<bool> interior_triangles(const OpaqueTriangles& opaque) {
+std::vector<float> interior_triangles(const OpaqueTriangles& opaque) {
   const std::vector<std::uint32_t> hashes = position_hashes(opaque.positions());
   const auto corner = [&](std::size_t t, int k) { return hashes[opaque.vertex(t, k % 3)]; };
   Rings rings(hashes.size());
@@ -136,33 +177,36 @@ std::vector<bool> interior_triangles(const OpaqueTriangles& opaque) {
   }
   if (!any) return {};
   rings.forget();
-  extend_to_rims(
-      opaque,
+  return opaque.in_mesh(chords_of(
+      opaque, interior,
       [&](std::size_t t) {
         return is_near[opaque.vertex(t, 0)] || is_near[opaque.vertex(t, 1)] ||
                is_near[opaque.vertex(t, 2)];
       },
-      [&](std::size_t t, int k) { return rings.first_vertex(corner(t, k), opaque.vertex(t, k)); },
-      interior);
-  return opaque.flags_in_mesh(std::move(interior));
+      [&](std::size_t t, int k) { return rings.first_vertex(corner(t, k), opaque.vertex(t, k)); }));
 }
 
-void WallAreas::add(const V3f& area, float opacity, bool is_interior) {
+void WallAreas::add(const V3f& area, float opacity, float chord) {
   const float size = area.length();
   all += opacity * size;
-  if (!is_interior) return;
+  if (!(chord > 0.0f)) return;
   vector += area;
   interior += size;
+  chords += chord * size;
 }
 
 void WallAreas::add(const WallAreas& areas) {
   vector += areas.vector;
   interior += areas.interior;
+  chords += areas.chords;
   all += areas.all;
 }
 
-bool is_wall(const WallAreas& areas, const NormalMoments& normals) {
+bool is_wall(const WallAreas& areas, const NormalMoments& normals, const Box3f& box) {
   if (!(areas.interior > kInteriorShare * areas.all)) return false;
+  const V3f sides = box.max - box.min;
+  const float extent = std::max({sides.x, sides.y, sides.z});
+  if (extent * areas.interior < kSmallInside * areas.chords) return true;
   if (areas.vector.length() > kOneSided * areas.interior) return true;
   const auto& m = normals.sum;
   const float trace = m[0] + m[1] + m[2];

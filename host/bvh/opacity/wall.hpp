@@ -10,27 +10,30 @@
 
 namespace dapple {
 
-/// Returns which triangles of the mesh lie inside an opaque surface: around each corner opaque
+/// Finds the triangles of the mesh that lie inside an opaque surface: around each corner opaque
 /// triangles close a ring. Corners at equal positions count as one. A leaf has no such triangles, a
 /// wall, a trunk or the ground has few others; where these make up most of a connected surface, its
-/// rim counts, too. One entry a triangle of the mesh; empty if there are none. Almost linear in the
-/// triangles.
-std::vector<bool> interior_triangles(const OpaqueTriangles& opaque);
+/// rim counts, too. Returns for each of them the mean chord of what its connected surface encloses,
+/// 4 volumes / area (Cauchy), in metres and above 0: of a tube the diameter. 0 for other triangles
+/// of the mesh; empty if there are none. Almost linear in the triangles.
+std::vector<float> interior_triangles(const OpaqueTriangles& opaque);
 
 /// Sums over the triangles of a node, by which is_wall() decides.
 struct WallAreas {
   V3f vector{0, 0, 0};  ///< of the area vectors of interior_triangles(), square metres
   float interior = 0;   ///< area of interior_triangles()
+  float chords = 0;     ///< of these, area times mean chord
   float all = 0;        ///< area of all surfaces, times their opacities
 
-  /// Adds a triangle with area vector `area`.
-  void add(const V3f& area, float opacity, bool is_interior);
+  /// Adds a triangle with area vector `area`. `chord`: of interior_triangles().
+  void add(const V3f& area, float opacity, float chord);
   void add(const WallAreas& areas);
 };
 
 /// Whether most of the node is a continuing opaque surface of which it holds one side (as a wall,
-/// or a part of a trunk) or which is flat (as a thick wall with both sides). A whole twig is
-/// neither: light passes beside it.
-bool is_wall(const WallAreas& areas, const NormalMoments& normals);
+/// or a part of a trunk), or which is flat (as a thick wall with both sides), or which encloses
+/// more than the node (as a cave, of which it holds a pillar). A whole twig is none of these: light
+/// passes beside it. `box`: of the node.
+bool is_wall(const WallAreas& areas, const NormalMoments& normals, const Box3f& box);
 
 }  // namespace dapple

@@ -1,7 +1,9 @@
 // Reads cameras: see camera.hpp.
 #include "scene/gltf/camera.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -33,16 +35,40 @@ void check_clip_planes(double near, double far, const std::string& who, const st
   fail(file, "{} has zfar {:g} and znear {:g}; zfar must be larger", who, far, near);
 }
 
-/// Reads a length in metres from the camera's extras; 0 if it is not there. The limits are those of
-/// the command line's options.
-float length_in_extras(const nlohmann::json& extras, const char* key, double low, double high,
-                       const std::string& who, const std::string& file) {
-  if (!extras.is_object() || !extras.contains(key)) return 0;
-  const nlohmann::json& value = extras[key];
-  const double length = value.is_number() ? value.get<double>() : -1;
-  if (length >= low && length <= high) return static_cast<float>(length);
-  fail(file, "{} has extras.{} that is not a length in metres from {:g} to {:g}", who, key, low,
-       high);
+/// A length in metres that extras may have. The limits are those of the command line's options.
+struct LensLength {
+  const char* key;
+  double low, high;
+  float Camera::*member;
+};
+
+constexpr LensLength kLensLengths[] = {
+    {"dapple_aperture", 0, 1e6, &Camera::lens_radius},
+    {"dapple_focus_distance", 1e-6, 1e12, &Camera::focus_distance},
+};
+
+/// Reads the lens from the extras of a camera or of the node that places it. Keys that look as if
+/// they were meant for dapple get a note.
+void read_extras(const nlohmann::json& extras, const std::string& who, const std::string& file,
+                 Camera& camera, std::vector<std::string>& notes) {
+  if (!extras.is_object()) return;
+  for (const auto& [name, value] : extras.items()) {
+    const std::string& key = name;
+    if (!key.starts_with("dapple_")) continue;
+    const auto* const known = std::find_if(std::begin(kLensLengths), std::end(kLensLengths),
+                                           [&](const LensLength& l) { return key == l.key; });
+    if (known == std::end(kLensLengths)) {
+      notes.push_back(
+          one_line(fmt::format("{}: {} has extras.{}, which is ignored: dapple knows {} and {}",
+                               file, who, excerpt(key), kLensLengths[0].key, kLensLengths[1].key)));
+      continue;
+    }
+    const double length = value.is_number() ? value.get<double>() : -1;
+    if (!(length >= known->low && length <= known->high))
+      fail(file, "{} has extras.{} that is not a length in metres from {:g} to {:g}", who, key,
+           known->low, known->high);
+    camera.*known->member = static_cast<float>(length);
+  }
 }
 
 Camera perspective(const tinygltf::PerspectiveCamera& given, const std::string& who,
@@ -70,7 +96,7 @@ Camera orthographic(const tinygltf::OrthographicCamera& given, const std::string
 
 /// Reads all cameras of the document, also those without a placed node, so that any damage in the
 /// file is found.
-std::vector<Camera> read_lenses(const Document& document) {
+std::vector<Camera> read_lenses(const Document& document, std::vector<std::string>& notes) {
   std::vector<Camera> lenses;
   for (std::size_t i = 0; i < document.model.cameras.size(); ++i) {
     const auto& given = document.model.cameras[i];
@@ -78,11 +104,7 @@ std::vector<Camera> read_lenses(const Document& document) {
     lenses.push_back(given.type == "perspective"
                          ? perspective(given.perspective, who, document.file)
                          : orthographic(given.orthographic, who, document.file));
-    Camera& lens = lenses.back();
-    const nlohmann::json& extras = document.camera_extras[i];
-    lens.lens_radius = length_in_extras(extras, "dapple_aperture", 0, 1e6, who, document.file);
-    lens.focus_distance =
-        length_in_extras(extras, "dapple_focus_distance", 1e-6, 1e12, who, document.file);
+    read_extras(document.camera_extras[i], who, document.file, lenses.back(), notes);
   }
   return lenses;
 }
@@ -109,6 +131,10 @@ void add_camera(const Document& document, const PlacedNode& placed,
   const auto& given = document.model.cameras[static_cast<std::size_t>(node.camera)];
   const std::string who = element("camera", static_cast<std::size_t>(node.camera), given.name);
   Camera camera = lenses[static_cast<std::size_t>(node.camera)];
+  const auto of_node = document.camera_node_extras.find(placed.node);
+  if (of_node != document.camera_node_extras.end())
+    read_extras(of_node->second, element("node", static_cast<std::size_t>(placed.node), node.name),
+                document.file, camera, scene.warnings);
   camera.name =
       names.free_one(one_line(!given.name.empty()  ? given.name
                               : !node.name.empty() ? node.name
@@ -126,7 +152,7 @@ void add_camera(const Document& document, const PlacedNode& placed,
 }  // namespace
 
 void add_cameras(const Document& document, const std::vector<PlacedNode>& placed, Scene& scene) {
-  const std::vector<Camera> lenses = read_lenses(document);
+  const std::vector<Camera> lenses = read_lenses(document, scene.warnings);
   CameraNames names;
   for (const PlacedNode& at : placed) {
     if (document.model.nodes[static_cast<std::size_t>(at.node)].camera >= 0) {

@@ -73,11 +73,11 @@ std::span<const std::uint8_t> checked_glb(std::span<const std::uint8_t> bytes,
 
 Container split_container(std::span<const std::uint8_t> bytes, const std::string& file) {
   if (bytes.empty()) fail(file, "is empty");
-  if (bytes.size() < 4 || u32_at(bytes, 0) != kMagic) return {as_text(bytes), {}};
+  if (bytes.size() < 4 || u32_at(bytes, 0) != kMagic) return {as_text(bytes), {}, {}};
   const auto glb = checked_glb(bytes, file);
   const Chunk json = chunk_at(glb, kHeaderBytes, file);
   if (json.type != kJsonChunk) fail(file, "GLB does not begin with a JSON chunk");
-  Container container{as_text(json.data), {}};
+  Container container{as_text(json.data), {}, {}};
   // The specification pads with spaces, some writers with NULs.
   while (container.json.ends_with('\0')) container.json.remove_suffix(1);
   std::size_t next = kHeaderBytes + kChunkHeaderBytes + json.data.size();
@@ -89,7 +89,10 @@ Container split_container(std::span<const std::uint8_t> bytes, const std::string
       fail(file, "GLB has its BIN chunk at byte {}; it can only be the second chunk",
            grouped(next));
     }
-    if (chunk.type == kBinChunk) container.binary = chunk.data;
+    if (chunk.type == kBinChunk)
+      container.binary = chunk.data;
+    else if (container.others.empty())
+      container.others = as_text(glb.subspan(next));
     next += kChunkHeaderBytes + chunk.data.size();
   }
   return container;

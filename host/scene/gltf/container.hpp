@@ -13,6 +13,8 @@ namespace dapple::gltf {
 struct Container {
   std::string_view json;
   std::optional<std::span<const std::uint8_t>> binary;  ///< GLB's BIN chunk
+  std::string_view others =
+      {};  ///< GLB's chunks of other types, which come last, and their headers
 };
 
 /// Splits the bytes of a .gltf or .glb file; the first four bytes tell which one it is. Throws

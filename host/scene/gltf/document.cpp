@@ -170,13 +170,25 @@ void put_primitive_indices(tinygltf::Model& model, const std::vector<int>& indic
   }
 }
 
-/// `extras` of the cameras of a tree that is not checked yet.
-std::vector<Json> extras_of_cameras(const Json& root) {
-  std::vector<Json> extras;
-  if (!root.is_object() || !root.contains("cameras")) return extras;
-  for (const Json& camera : root["cameras"])
-    extras.push_back(camera.is_object() ? camera.value("extras", Json()) : Json());
-  return extras;
+/// The elements of an array of the root of a tree that is not checked yet.
+const Json& elements(const Json& root, const char* key) {
+  static const Json none = Json::array();
+  return root.is_object() && root.contains(key) ? root[key] : none;
+}
+
+/// `extras` of all cameras, and of the nodes that place them, of a tree that is not checked yet.
+void keep_extras_of_cameras(const Json& root, Document& document) {
+  const auto extras = [](const Json& element) {
+    return element.is_object() ? element.value("extras", Json()) : Json();
+  };
+  for (const Json& camera : elements(root, "cameras"))
+    document.camera_extras.push_back(extras(camera));
+  int index = 0;
+  for (const Json& node : elements(root, "nodes")) {
+    if (node.is_object() && node.contains("camera") && node.contains("extras"))
+      document.camera_node_extras[index] = extras(node);
+    ++index;
+  }
 }
 
 void parse_model(Document& document, Json& root) {
@@ -211,7 +223,7 @@ Document load_document(const std::string& path, bool allow_outside) {
   if (container.json.starts_with("\xef\xbb\xbf"))
     document.notes.push_back("its JSON begins with a byte order mark, which glTF forbids");
   Json root = parse_json(container.json, path);
-  document.camera_extras = extras_of_cameras(root);
+  keep_extras_of_cameras(root, document);
   check_schema(root, path);
   check_version(root, path);
   check_extensions(root.value("extensionsRequired", std::vector<std::string>()), path);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -31,7 +32,8 @@ struct Document {
   std::vector<std::span<const std::uint8_t>> buffers;  ///< byteLength bytes each
   std::vector<ImageSource> images;
   Motion motion;
-  std::vector<nlohmann::json> camera_extras;  ///< by camera; null: none
+  std::vector<nlohmann::json> camera_extras;         ///< by camera; null: none
+  std::map<int, nlohmann::json> camera_node_extras;  ///< by node, of those that place a camera
   std::vector<std::string> files;  ///< paths of the scene file, its buffers and its images
   std::uint64_t bytes = 0;         ///< of the scene file and of the buffers' files
   std::vector<std::string> notes;  ///< what the file may not have, and is read nevertheless

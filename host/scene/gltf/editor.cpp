@@ -6,6 +6,7 @@
 
 #include "files/output_file.hpp"
 #include "scene/glb_bytes.hpp"
+#include "scene/gltf/compaction.hpp"
 #include "scene/gltf/uri.hpp"
 #include "scene/images/media_type.hpp"
 #include "scene/message.hpp"
@@ -65,6 +66,7 @@ std::size_t Editor::add_image(const std::string& png, const std::string& suffix)
 }
 
 void Editor::write() {
+  if (is_glb_out()) drop_unused(content().json, json_, bytes_);
   if (bytes_.empty())
     remove_buffer();  // a buffer has at least one byte
   else
@@ -73,7 +75,7 @@ void Editor::write() {
   if (is_glb_out()) {
     align(bytes_, 4);
     const std::string_view binary = bytes_;
-    write_glb_bytes(out_, text, {&binary, 1});
+    write_glb_bytes(out_, text, {&binary, 1}, content().container.others);
     return;
   }
   PendingFiles files;

@@ -1,5 +1,6 @@
 // Edits a copy of a glTF file: its JSON is changed in place, and new bytes come at the end of one
-// of its buffers, so that all else stays as it is, unknown extensions included.
+// of its buffers, so that all else stays as it is, unknown extensions included. From a .glb what
+// lost its last use by that is dropped.
 #pragma once
 
 #include <string>

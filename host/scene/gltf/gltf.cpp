@@ -1,5 +1,7 @@
 // Makes a Scene from a glTF file, at rest or at a time. In: a path, options and a time; out: a
 // Scene. Each step is a file of this folder; only this folder uses tinygltf.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <new>
 #include <utility>
@@ -31,6 +33,14 @@ bool has_any_lines(const tinygltf::Model& model) {
   return std::any_of(model.meshes.begin(), model.meshes.end(), gltf::has_lines);
 }
 
+void warn_of_other_scenes(const tinygltf::Model& model, Scene& scene) {
+  if (model.scenes.size() < 2) return;
+  const auto shown = static_cast<std::size_t>(std::max(model.defaultScene, 0));
+  scene.warnings.push_back(one_line(
+      fmt::format("{}: of its {} scenes only {} is read", scene.source, model.scenes.size(),
+                  element("scene", shown, model.scenes[shown].name))));
+}
+
 }  // namespace
 
 namespace gltf {
@@ -42,6 +52,7 @@ MovingGltf::MovingGltf(const std::string& path, const SceneOptions& options, boo
   timeless_.files = document_.files;
   for (const std::string& note : document_.notes)
     timeless_.warnings.push_back(one_line(path + ": " + note));
+  warn_of_other_scenes(document_.model, timeless_);
   if (!has_any_lines(document_.model)) warn_of_no_lines(path, options, timeless_);
   timeless_.animations = list_animations(document_);
   for (const auto& node : document_.model.nodes)

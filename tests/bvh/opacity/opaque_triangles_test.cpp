@@ -57,10 +57,13 @@ TEST(OpaqueTriangles, AreTheMeshItselfIfAllAreOpaque) {
 TEST(OpaqueTriangles, SurfacesAmongOthersAreFound) {
   const MixedMesh mixed;
   const OpaqueTriangles opaque(mixed.mesh, mixed.opacities);
-  for (const auto& flags : {closed_triangles(opaque), interior_triangles(opaque)}) {
-    ASSERT_EQ(flags.size(), mixed.opacities.size());
-    for (std::size_t t = 0; t < flags.size(); ++t)
-      EXPECT_EQ(flags[t], mixed.opacities[t] == 1.0f) << t;
+  const std::vector<bool> closed = closed_triangles(opaque);
+  const std::vector<float> interior = interior_triangles(opaque);
+  ASSERT_EQ(closed.size(), mixed.opacities.size());
+  ASSERT_EQ(interior.size(), mixed.opacities.size());
+  for (std::size_t t = 0; t < closed.size(); ++t) {
+    EXPECT_EQ(closed[t], mixed.opacities[t] == 1.0f) << t;
+    EXPECT_EQ(interior[t] > 0, mixed.opacities[t] == 1.0f) << t;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "dapple/bvh.hpp"
 #include "support/scene_on_device.hpp"
@@ -17,8 +18,8 @@ using namespace scene_test;
 
 std::ptrdiff_t count_interior(const Mesh& mesh, float opacity = 1.0f) {
   const std::vector<float> opacities(mesh.indices.size() / 3, opacity);
-  const std::vector<bool> interior = interior_triangles({mesh, opacities});
-  return std::count(interior.begin(), interior.end(), true);
+  const std::vector<float> chords = interior_triangles({mesh, opacities});
+  return std::count_if(chords.begin(), chords.end(), [](float chord) { return chord > 0; });
 }
 
 /// A mesh in which each triangle has three vertices of its own, as exporters of hard edges write.
@@ -68,15 +69,48 @@ TEST(InteriorTriangles, AreNoneOfLeavesAndOfTranslucentSurfaces) {
   EXPECT_EQ(count_interior(test::smooth_sphere(), 0.99f), 0);
 }
 
+/// The chord of all interior triangles, which must be one surface.
+float chord_of(const Mesh& mesh) {
+  const std::vector<float> ones(mesh.indices.size() / 3, 1.0f);
+  const std::vector<float> chords = interior_triangles({mesh, ones});
+  EXPECT_EQ(std::count(chords.begin(), chords.end(), chords[0]), std::ssize(chords));
+  return chords[0];
+}
+
+// 4/3 of the radius (Cauchy). Turned inside out, and far away, it is the same.
+TEST(InteriorTriangles, HaveTheMeanChordOfASphere) {
+  Mesh sphere = test::smooth_sphere(120, 60);
+  EXPECT_NEAR(chord_of(sphere), 4.0 / 3, 0.005);
+  for (std::size_t t = 0; t < sphere.indices.size(); t += 3)
+    std::swap(sphere.indices[t], sphere.indices[t + 1]);
+  for (V3f& p : sphere.positions) p = 10.0f * p + V3f(1000, -2000, 500);
+  EXPECT_NEAR(chord_of(sphere), 40.0 / 3, 0.05);
+}
+
+// The diameter of its tube, however large the ring is.
+TEST(InteriorTriangles, HaveTheMeanChordOfATorus) {
+  EXPECT_NEAR(chord_of(test::smooth_torus(120, 60).meshes[0]), 0.8, 0.004);
+}
+
+// Flat sheets enclose nothing.
+TEST(InteriorTriangles, OfASheetHaveAChordOfNothing) {
+  Mesh sheet;
+  append_grid(sheet, {5, 1, 7}, {1, 0, 0}, {0, 0, 1}, 8, 0);
+  EXPECT_LT(chord_of(sheet), 1e-5);
+}
+
 /// Sums over triangles of given area vectors.
 struct Sums {
   WallAreas areas;
   NormalMoments normals;
+  float chord = 1e-30f;
   void add(const V3f& area, bool interior = true) {
-    areas.add(area, 1.0f, interior);
+    areas.add(area, 1.0f, interior ? chord : 0);
     normals.add(area, 1.0f);
   }
-  [[nodiscard]] bool wall() const { return is_wall(areas, normals); }
+  [[nodiscard]] bool wall(float extent = 1) const {
+    return is_wall(areas, normals, {V3f(0, 0, 0), V3f(0.5f, extent, 0.2f)});
+  }
 };
 
 TEST(Wall, IsOneSideOfASurfaceOrFlat) {
@@ -93,6 +127,18 @@ TEST(Wall, IsOneSideOfASurfaceOrFlat) {
   EXPECT_TRUE(slab.wall());
   EXPECT_FALSE(tube.wall());
   EXPECT_FALSE(Sums().wall());
+}
+
+TEST(Wall, IsSmallInsideWhatItsSurfacesEnclose) {
+  Sums pillar;
+  pillar.chord = 2;
+  for (const float side : {1.0f, -1.0f}) {
+    pillar.add({side, 0, 0});
+    pillar.add({0, 0, side});
+    pillar.add({0, side, 0});
+  }
+  EXPECT_TRUE(pillar.wall(7.9f));
+  EXPECT_FALSE(pillar.wall(8.1f));
 }
 
 TEST(Wall, HasMostlyInteriorTriangles) {

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "dapple/error.hpp"
+#include "device/context.hpp"
 #include "support/sanitizers.hpp"
 #include "support/scene_on_device.hpp"
 #include "support/swaying_tree.hpp"
@@ -36,6 +37,13 @@ double mean_of(const RenderResult& result, const std::string& channel) {
 }
 
 double mean_ao(const RenderResult& result) { return mean_of(result, "ao.R"); }
+
+/// Of all launches on the device so far.
+double seconds_of(const Device& device) {
+  double sum = 0;
+  for (const auto& [label, seconds] : device.context().pass_seconds()) sum += seconds;
+  return sum;
+}
 
 Scene tree(int leaves) { return make_procedural("scene:tree?leaves=" + std::to_string(leaves)); }
 
@@ -72,6 +80,26 @@ TEST(Renderer, TheSamePictureTwiceIsTheSameBits) {
     EXPECT_EQ(first.film.planes[p].pixels, second.film.planes[p].pixels);
     EXPECT_EQ(first.film.planes[p].pixels, fresh.film.planes[p].pixels);
   }
+}
+
+TEST(Renderer, UsesAnOpenDeviceForPicturesThatNameIt) {
+  const Device device;
+  const Scene still = tree(500);
+  RenderOptions options = small_picture(Estimator::prefiltered);
+  const RenderResult fresh = render(still, options);
+  for (int picture = 0; picture < 2; ++picture) {  // the second has the first one's kernels
+    const double before = seconds_of(device);
+    const RenderResult made = Renderer(device).render(still, options);
+    EXPECT_GT(seconds_of(device), before);
+    for (std::size_t p = 0; p < fresh.film.planes.size(); ++p)
+      EXPECT_EQ(fresh.film.planes[p].pixels, made.film.planes[p].pixels);
+  }
+  const double before = seconds_of(device);
+  options.packets = Packets::none;
+  EXPECT_GT(mean_ao(Renderer(device).render(still, options)), 0);
+  EXPECT_EQ(seconds_of(device), before) << "its kernels are others";
+  options.device = "no such device";
+  EXPECT_THROW(Renderer(device).render(still, options), Error);
 }
 
 // Camera rays are traced only in the pixels that can see the scene's bounds. The bounds must move

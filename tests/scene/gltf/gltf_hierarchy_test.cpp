@@ -73,9 +73,12 @@ TEST(GltfHierarchy, TheDefaultSceneIsShownElseTheFirstElseEveryRoot) {
   builder.doc["scene"] = 1;
   ASSERT_EQ(world_triangles(builder.load()).size(), 1u);
   EXPECT_EQ(world_triangles(builder.load())[0][0], V3f(5, 0, 0));
+  ASSERT_EQ(builder.load().warnings.size(), 1u);
+  EXPECT_TRUE(builder.load().warnings[0].ends_with("of its 2 scenes only scene 1 is read"));
   builder.doc.erase("scene");
   builder.doc.erase("scenes");
   EXPECT_EQ(world_triangles(builder.load()).size(), 2u);
+  EXPECT_TRUE(builder.load().warnings.empty());
 }
 
 TEST(GltfCamera, KeepsItsPlaceAndLosesTheScaleOfItsNode) {
@@ -149,6 +152,30 @@ TEST(GltfCamera, ExtrasBringALens) {
        {std::pair("dapple_aperture", 1.1e6), std::pair("dapple_focus_distance", 0.0),
         std::pair("dapple_focus_distance", 1.1e12)})
     EXPECT_THROW(camera_with_extras({{key, wrong}}), Error) << key << " beyond the option's limit";
+}
+
+TEST(GltfCamera, ExtrasOfItsNodeComeFirst) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  builder.add("cameras", {{"type", "perspective"},
+                          {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}},
+                          {"extras", {{"dapple_aperture", 0.25}, {"dapple_focus_distance", 3}}}});
+  builder.add("nodes", {{"extras", {{"dapple_aperture", "not a camera's"}}}});
+  builder.add("nodes", {{"name", "shot"}, {"camera", 0}, {"extras", {{"dapple_aperture", 0.5}}}});
+  builder.add("nodes", {{"camera", 0}});
+  const Scene scene = builder.load();
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  EXPECT_FLOAT_EQ(scene.cameras[0].lens_radius, 0.5f);
+  EXPECT_FLOAT_EQ(scene.cameras[0].focus_distance, 3.0f);
+  EXPECT_FLOAT_EQ(scene.cameras[1].lens_radius, 0.25f);
+  EXPECT_TRUE(scene.warnings.empty());
+  builder.doc["nodes"].back()["extras"] = {{"dapple_apperture", 0.5}};
+  const std::vector<std::string> notes = builder.load().warnings;
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("has extras.dapple_apperture, which is ignored: dapple knows "
+                          "dapple_aperture and dapple_focus_distance"),
+            std::string::npos)
+      << notes[0];
 }
 
 Light load_light(const json& light, const SceneOptions& options = {}) {
