@@ -84,12 +84,14 @@ void measure_camera(benchmark::State& state, BenchScene& scene, uint samples) {
   time_launches(state, context, [&] { for_each_slice([] {}); });
   std::vector<SampleHits> sample_hits(rays.camera_count / DAPPLE_HIT_BITS);
   double visits = 0, tests = 0;
+  // A record has the totals of the work-item that traced its rays, as in film/film.cl.
+  constexpr double kOfRecord = double{DAPPLE_HIT_BITS} / double{DAPPLE_ITEM_RAYS};
   for_each_slice([&] {
     context.read(rays.camera.sample_hits, sample_hits.data(),
                  sample_hits.size() * sizeof(SampleHits));
     for (const SampleHits& record : sample_hits) {
-      visits += record.visits;
-      tests += double{DAPPLE_HIT_BITS} * record.tests;
+      visits += kOfRecord * record.visits;
+      tests += kOfRecord * record.tests;
     }
   });
   report_work(state, visits, tests, static_cast<double>(rays.camera_count * samples));
