@@ -15,6 +15,8 @@ using Imath::V3d;
 
 /// Minimum share of interior triangles in the surfaces of a wall.
 constexpr float kInteriorShare = 0.5f;
+/// Minimum share of triangles whose neighbours face both sides in a surface that does.
+constexpr float kMixedShare = 0.002f;
 /// Minimum length of the sum of area vectors, relative to the area. Half a sphere has 1/2, a third
 /// of a tube 0.83, the walls of a room but one 0.2.
 constexpr float kOneSided = 0.5f;
@@ -56,16 +58,23 @@ std::vector<std::uint32_t> position_hashes(std::span<const V3f> positions) {
 }
 
 /// For each corner, the exclusive or of the hashes of the corners that its triangles join it with.
-/// In a closed ring of triangles each of them occurs twice, so the result is 0. Corners are keys of
-/// an open-addressing hash table.
+/// In a closed ring of triangles each of them occurs twice, so the result is 0. If all triangles
+/// face the same side, it is once the next corner and once the last one, so that the differences
+/// add up to 0, too. Corners are keys of an open-addressing hash table.
 class Rings {
  public:
   explicit Rings(std::size_t corners)
       : mask_(std::bit_ceil(2 * corners + 1) - 1), entries_(mask_ + 1) {}
   void add(std::uint32_t corner, std::uint32_t next, std::uint32_t last) {
-    entries_[find(corner)].ring ^= next ^ last;
+    Entry& entry = entries_[find(corner)];
+    entry.ring ^= next ^ last;
+    entry.turn += next - last;
   }
   [[nodiscard]] bool is_closed(std::uint32_t corner) { return entries_[find(corner)].ring == 0; }
+
+  [[nodiscard]] bool faces_one_side(std::uint32_t corner) {
+    return entries_[find(corner)].turn == 0;
+  }
 
   /// Makes room for first_vertex(): the rings are gone.
   void forget() {
@@ -81,7 +90,7 @@ class Rings {
  private:
   static constexpr std::uint32_t kNone = ~0u;
   struct Entry {
-    std::uint32_t corner = 0, ring = 0;
+    std::uint32_t corner = 0, ring = 0, turn = 0;
   };
   /// The corner's entry, taken when it is new.
   std::size_t find(std::uint32_t corner) {
@@ -101,20 +110,31 @@ struct SurfaceSums {
   V3d vector{0, 0, 0};            ///< of area vectors
   double area = 0, interior = 0;  ///< of all triangles, and of those inside the surface
   double product = 0;             ///< of area vectors and positions: three volumes
+  double mixed = 0;               ///< area of triangles whose neighbours may face the other side
+  double cones = 0;               ///< three times the volume between all triangles and the centre
 
   void add(const V3d& corner, const V3d& centre_of_triangle, const V3d& area_vector,
-           bool is_interior) {
+           bool is_interior, bool is_mixed) {
     if (area == 0) origin = corner;
     const double size = area_vector.length();
     centre += size * (centre_of_triangle - origin);
     vector += area_vector;
     area += size;
     if (is_interior) interior += size;
+    if (is_mixed) mixed += size;
     product += area_vector.dot(corner - origin);
   }
-  /// Seen from its centre, so that of an open surface, too, it does not depend on the origin.
+  /// For surfaces whose triangles face both sides, once all triangles are added.
+  void add_cone(const V3d& corner, const V3d& area_vector) {
+    cones += std::fabs(area_vector.dot(corner - origin - centre / area));
+  }
+  /// Whether product says nothing of the volume.
+  [[nodiscard]] bool faces_both_sides() const { return mixed > double{kMixedShare} * area; }
+  /// Seen from its centre, so that of an open surface, too, it does not depend on the origin. Where
+  /// triangles face both sides it is right if all of the surface can be seen from there.
   [[nodiscard]] double volume() const {
-    return area > 0 ? std::fabs(product - vector.dot(centre) / area) / 3 : 0;
+    if (!(area > 0)) return 0;
+    return faces_both_sides() ? cones / 3 : std::fabs(product - vector.dot(centre) / area) / 3;
   }
   [[nodiscard]] float mean_chord() const {
     const double chord = area > 0 ? 4 * volume() / area : 0;
@@ -125,14 +145,22 @@ struct SurfaceSums {
 /// The chords of interior triangles. Triangles at the rim of connected surfaces most of whose area
 /// is interior are so, too: beside the rim of a wall light would leak through its box as well.
 /// `belongs`: whether a triangle is in a surface that has interior ones; `vertex`: a vertex at the
-/// position of a triangle's corner, the same for all there.
+/// position of a triangle's corner, the same for all there; `is_mixed`: by vertex, whether not all
+/// triangles of its closed ring face the same side.
 template <class Belongs, class Vertex>
 std::vector<float> chords_of(const OpaqueTriangles& opaque, const std::vector<bool>& interior,
-                             const Belongs& belongs, const Vertex& vertex) {
+                             const std::vector<bool>& is_mixed, const Belongs& belongs,
+                             const Vertex& vertex) {
   ConnectedVertices surfaces =
       connect_triangles(opaque.positions().size(), interior.size(), belongs, vertex);
   std::vector<std::uint32_t> number(opaque.positions().size());  // by root; 0: none yet
   std::vector<SurfaceSums> sums(1);
+  const auto surface_of = [&](std::size_t t) -> SurfaceSums& {
+    return sums[number[surfaces.root(vertex(t, 0))]];
+  };
+  const auto corner = [&](std::size_t t, int k) {
+    return V3d(opaque.positions()[opaque.vertex(t, k)]);
+  };
   for (std::size_t t = 0; t < interior.size(); ++t) {
     if (!belongs(t)) continue;
     std::uint32_t& surface = number[surfaces.root(vertex(t, 0))];
@@ -140,14 +168,18 @@ std::vector<float> chords_of(const OpaqueTriangles& opaque, const std::vector<bo
       surface = static_cast<std::uint32_t>(sums.size());
       sums.emplace_back();
     }
-    const auto corner = [&](int k) { return V3d(opaque.positions()[opaque.vertex(t, k)]); };
-    sums[surface].add(corner(0), (corner(0) + corner(1) + corner(2)) / 3.0,
-                      V3d(opaque.area_vector(t)), interior[t]);
+    bool mixed = false;
+    for (int k = 0; k < 3; ++k) mixed |= is_mixed[opaque.vertex(t, k)];
+    sums[surface].add(corner(t, 0), (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0,
+                      V3d(opaque.area_vector(t)), interior[t], mixed);
   }
+  for (std::size_t t = 0; t < interior.size(); ++t)
+    if (belongs(t) && surface_of(t).faces_both_sides())
+      surface_of(t).add_cone(corner(t, 0), V3d(opaque.area_vector(t)));
   std::vector<float> chords(interior.size());
   for (std::size_t t = 0; t < interior.size(); ++t) {
     if (!belongs(t)) continue;
-    const SurfaceSums& surface = sums[number[surfaces.root(vertex(t, 0))]];
+    const SurfaceSums& surface = surface_of(t);
     if (interior[t] || surface.interior > double{kInteriorShare} * surface.area)
       chords[t] = surface.mean_chord();
   }
@@ -162,7 +194,7 @@ std::vector<float> interior_triangles(const OpaqueTriangles& opaque) {
   Rings rings(hashes.size());
   for (std::size_t t = 0; t < opaque.count(); ++t)
     for (int k = 0; k < 3; ++k) rings.add(corner(t, k), corner(t, k + 1), corner(t, k + 2));
-  std::vector<bool> interior(opaque.count()), is_near(hashes.size());
+  std::vector<bool> interior(opaque.count()), is_near(hashes.size()), is_mixed(hashes.size());
   bool any = false;
   for (std::size_t t = 0; t < opaque.count(); ++t) {
     int closed = 0;
@@ -173,12 +205,16 @@ std::vector<float> interior_triangles(const OpaqueTriangles& opaque) {
     if (is_small) closed = 0;
     interior[t] = closed == 3;
     any |= interior[t];
-    for (int k = 0; closed > 0 && k < 3; ++k) is_near[opaque.vertex(t, k)] = true;
+    for (int k = 0; closed > 0 && k < 3; ++k) {
+      is_near[opaque.vertex(t, k)] = true;
+      is_mixed[opaque.vertex(t, k)] =
+          rings.is_closed(corner(t, k)) && !rings.faces_one_side(corner(t, k));
+    }
   }
   if (!any) return {};
   rings.forget();
   return opaque.in_mesh(chords_of(
-      opaque, interior,
+      opaque, interior, is_mixed,
       [&](std::size_t t) {
         return is_near[opaque.vertex(t, 0)] || is_near[opaque.vertex(t, 1)] ||
                is_near[opaque.vertex(t, 2)];

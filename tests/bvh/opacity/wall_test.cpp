@@ -87,6 +87,18 @@ TEST(InteriorTriangles, HaveTheMeanChordOfASphere) {
   EXPECT_NEAR(chord_of(sphere), 40.0 / 3, 0.05);
 }
 
+// As of careless exporters: every other triangle faces the other side, or all of one half do.
+TEST(InteriorTriangles, HaveTheMeanChordOfASphereWhoseTrianglesFaceBothSides) {
+  const Mesh sphere = test::smooth_sphere(120, 60);
+  for (const bool halves : {false, true}) {
+    Mesh turned = sphere;
+    for (std::size_t t = 0; t < turned.indices.size() / 3; ++t)
+      if (halves ? t < turned.indices.size() / 6 : t % 2 == 0)
+        std::swap(turned.indices[3 * t], turned.indices[3 * t + 1]);
+    EXPECT_NEAR(chord_of(turned), 4.0 / 3, 0.005) << halves;
+  }
+}
+
 // The diameter of its tube, however large the ring is.
 TEST(InteriorTriangles, HaveTheMeanChordOfATorus) {
   EXPECT_NEAR(chord_of(test::smooth_torus(120, 60).meshes[0]), 0.8, 0.004);
