@@ -146,6 +146,11 @@ MUTATIONS = [
         "",
         r"^FootprintPilot\."),
     Mutation(
+        "bias-of-a-group-from-other-passes", "host/render/bias_report.cpp",
+        "differences[group.lights[i] + (layout.ao ? 1 : 0)][pixel]",
+        "differences[group.lights[i]][pixel]",
+        r"^BiasReport\."),
+    Mutation(
         "bias-of-resumed-samples", "host/render/bias_report.cpp",
         "    taken.fronts[pixel] -= earlier;\n",
         "",

@@ -41,6 +41,16 @@ MUTATIONS = [
         "  if (!(areas.interior < 0.0f)) return false;\n",
         r"^(Wall|HardScenes)\."),
     Mutation(
+        "no-node-is-small-inside-a-cave", "host/bvh/opacity/wall.cpp",
+        "extent * areas.interior < kSmallInside * areas.chords",
+        "extent * areas.interior < 0.01f * areas.chords",
+        r"^(Scenes/ClosedSurfaces|Wall)\."),
+    Mutation(
+        "volumes-of-surfaces-that-face-both-sides-cancel", "host/bvh/opacity/wall.cpp",
+        "return faces_both_sides() ? cones / 3 :",
+        "return false ? cones / 3 :",
+        r"^InteriorTriangles\."),
+    Mutation(
         "mass-poles-on-the-other-side-along-y", "host/bvh/opacity/node_opacity.cpp",
         "V3f(pole[0], pole[1], pole[2])",
         "V3f(pole[0], -pole[1], pole[2])",
