@@ -14,13 +14,8 @@
 namespace dapple {
 namespace {
 
-void add_picture_options(CLI::App& app, RenderArguments& a) {
+void add_sampling_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
-  app.add_option("--width", o.width, "Image width, pixels")->capture_default_str();
-  app.add_option("--height", o.height, "Image height, pixels")->capture_default_str();
-  app.add_option(
-      "--crop", a.crop,
-      "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
   app.add_option("--spp", a.spp,
                  "Camera rays per pixel. With a target this is the minimum, and each pixel gets at "
                  "least 8 samples: camera rays times --camera-splitting")
@@ -61,9 +56,12 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
          "--max-bias", o.max_bias,
          "Choose the largest footprint, from --footprint down to 0, whose bias is below this in "
          "each layer; 0: take --footprint. Without it, --footprint, --frame and a target: a "
-         "smaller "
-         "footprint if a part of the rays shows that the bias is above 0.002")
+         "smaller footprint if a part of the rays shows that the bias is above 0.002")
       ->type_name("FLOAT");
+}
+
+void add_layer_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
   app.add_option("--passes", a.passes,
                  "With commas between: ao, light, albedo (colours), back (AO and light of the side "
                  "that faces away from the camera), motion (image motion until the next frame, in "
@@ -78,8 +76,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
       "--ambient", o.ambient,
       "Radiance of a uniform sky that lights the RGBA picture through AO. Default: 1 without "
       "lights, 0 with a dome, otherwise a tenth of the radiance that the lights give white "
-      "surfaces "
-      "without occlusion (90th percentile of the pixels)");
+      "surfaces without occlusion (90th percentile of the pixels)");
   app.add_option("--normals", a.normals,
                  "shading: the normals of the meshes; geometric: flat facets")
       ->capture_default_str();
@@ -88,6 +85,17 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
   add_ao_range_options(app, o.ao_distance, o.ao_falloff);
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
       ->capture_default_str();
+}
+
+void add_picture_options(CLI::App& app, RenderArguments& a) {
+  RenderOptions& o = a.options;
+  app.add_option("--width", o.width, "Image width, pixels")->capture_default_str();
+  app.add_option("--height", o.height, "Image height, pixels")->capture_default_str();
+  app.add_option(
+      "--crop", a.crop,
+      "Render only this part: X0,Y0,X1,Y1, pixels from the top left, both ends included");
+  add_sampling_options(app, a);
+  add_layer_options(app, a);
 }
 
 void add_scene_options(CLI::App& app, RenderArguments& a) {
