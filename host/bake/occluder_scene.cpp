@@ -1,5 +1,7 @@
 #include "bake/occluder_scene.hpp"
 
+#include <fmt/format.h>
+
 #include "bake/bake_bias.hpp"
 #include "bake/surface_samples.hpp"
 #include "device/programs/kernels_ahead.hpp"
@@ -68,6 +70,9 @@ OccluderScene::OccluderScene(Scene scene, const BakeOptions& options,
   for (const Scene& other : others) {
     append_scene(scene, other);
     notes.insert(notes.end(), other.warnings.begin(), other.warnings.end());
+    if (options.light && !other.lights.empty())
+      notes.push_back(fmt::format("{}: its {} light{} not baked: occluders only hide", other.source,
+                                  other.lights.size(), other.lights.size() == 1 ? " is" : "s are"));
   }
   for (const auto& [material, value] : options.opacity) override_opacity(scene, material, value);
   if (options.ground) add_ground(scene);

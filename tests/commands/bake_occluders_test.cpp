@@ -143,5 +143,17 @@ TEST_F(BakeOccluders, NotesOfTheirFilesAreSaid) {
   EXPECT_TRUE(contains(run.err, "point primitives are ignored")) << run.err;
 }
 
+TEST_F(BakeOccluders, ThatEmitLightAreSaidNotTo) {
+  roof_.doc["materials"][0]["emissiveFactor"] = {1, 1, 1};
+  write("lamp.glb", roof_.glb());
+  std::ofstream(path("sun.json")) << R"({"lights": [{"type": "sun", "direction": [0, -1, 0],
+      "irradiance": 1}]})";
+  const std::string bake = "bake floor.glb --occluders lamp.glb --rays 16 -o out.glb ";
+  const Outcome lit = dapple(bake + "--passes ao,light --lights sun.json");
+  EXPECT_EQ(lit.code, 0) << lit.err;
+  EXPECT_TRUE(contains(lit.err, "lamp.glb: its 1 light is not baked")) << lit.err;
+  EXPECT_FALSE(contains(dapple(bake).err, "is not baked"));
+}
+
 }  // namespace
 }  // namespace dapple
