@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "bake/inside/inside_samples.hpp"
 #include "bake/vertex_bake.hpp"
 #include "scene/invertible.hpp"
 
@@ -77,11 +78,15 @@ class InstanceSums {
   InstanceSums(std::size_t instances, std::size_t lights)
       : of_instance_(instances), light_(lights, std::vector<V3f>(instances, V3f(0))) {}
 
-  /// Of a two-sided sample the mean of both sides.
+  /// Of a two-sided sample the mean of both sides. Samples inside closed geometry do not count.
   void add(const InstanceSlice& slice, const TracedSamples& found) {
     largest_ = std::max(largest_, found.largest);
-    for (std::size_t s = 0; s < slice.samples.size(); ++s)
-      add(slice.instance[s], part_of(found, s, slice.samples[s].back ? 0.5f : 0.0f));
+    for (std::size_t s = 0; s < slice.samples.size(); ++s) {
+      if (found.is_inside(s))
+        ++of_instance_[slice.instance[s]].inside;
+      else
+        add(slice.instance[s], part_of(found, s, slice.samples[s].back ? 0.5f : 0.0f));
+    }
   }
 
   /// Of a two-sided sample the brighter side. Each of two traces tells which side of the other one
@@ -89,6 +94,10 @@ class InstanceSums {
   void add(const InstanceSlice& slice, const TracedSamples& one, const TracedSamples& other) {
     largest_ = std::max({largest_, one.largest, other.largest});
     for (std::size_t s = 0; s < slice.samples.size(); ++s) {
+      if (one.is_inside(s) || other.is_inside(s)) {
+        ++of_instance_[slice.instance[s]].inside;
+        continue;
+      }
       const auto back_of = [&](const TracedSamples& found) {
         const bool behind = found.back[s].scalar > found.front[s].scalar;
         return slice.samples[s].back && behind ? 1.0f : 0.0f;
@@ -102,15 +111,19 @@ class InstanceSums {
     }
   }
 
+  /// Whether the instance has samples, inside closed geometry or not.
+  [[nodiscard]] bool has_any(std::uint32_t instance) const {
+    return of_instance_[instance].count + of_instance_[instance].inside > 0;
+  }
   [[nodiscard]] std::uint32_t count(std::uint32_t instance) const {
     return of_instance_[instance].count;
   }
-  /// Of an instance with samples.
+  /// 0 if all of the instance is inside closed geometry.
   [[nodiscard]] double mean(std::uint32_t instance) const {
-    return of_instance_[instance].sum / of_instance_[instance].count;
+    return of_instance_[instance].sum / std::max(1u, of_instance_[instance].count);
   }
   [[nodiscard]] V3f mean_light(std::size_t light, std::uint32_t instance) const {
-    return light_[light][instance] / static_cast<float>(of_instance_[instance].count);
+    return light_[light][instance] / static_cast<float>(std::max(1u, of_instance_[instance].count));
   }
   /// The squared standard error of a mean of independent samples, relative to the largest
   /// unoccluded value so far (of AO: 1). That samples are spread evenly makes it smaller.
@@ -128,7 +141,7 @@ class InstanceSums {
  private:
   struct Sums {
     double sum = 0, sum_squares = 0;
-    std::uint32_t count = 0;
+    std::uint32_t count = 0, inside = 0;  ///< samples that count, and those that do not
   };
   /// The value of a sample.
   struct Part {
@@ -246,6 +259,10 @@ class InstanceRounds {
     const TraceSamples& trace = lights_ ? tracing_.light : tracing_.ao;
     TracedSamples found = trace(slice.samples, slice.placement, slice.placements, rays,
                                 hash_of(lights_ ? 0x55555555u : 0u, traces_++));
+    if (tracing_.closed)
+      found.inside = find_inside_samples(slice.samples, slice.placement, slice.placements, found,
+                                         *tracing_.closed);
+    for (const std::uint8_t inside : found.inside) tracing_.statistics.inside_samples += inside;
     tracing_.statistics.points += found.points;
     tracing_.statistics.rays += found.rays;
     return found;
@@ -255,7 +272,7 @@ class InstanceRounds {
   void drop_finished() {
     const double target = double{options_.target_error} * double{options_.target_error};
     std::erase_if(unfinished_, [&](std::uint32_t i) {
-      return sums_.count(i) == 0 || (target > 0 && sums_.squared_error(i) <= target);
+      return !sums_.has_any(i) || (target > 0 && sums_.squared_error(i) <= target);
     });
   }
 
@@ -286,7 +303,7 @@ std::optional<InstanceValues> bake_instances(const Scene& scene, const BakeOptio
   if (!ao.run()) return {};
   add(tracing.statistics.ao_target, ao.counts());
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (ao.sums().count(i) > 0) {
+    if (ao.sums().has_any(i)) {
       values.ao[i] = static_cast<float>(ao.sums().mean(i));
       ++tracing.statistics.sampled_values;
     }

@@ -102,6 +102,34 @@ TEST(BakeInstances, ValuesAreMeansOverTheSurface) {
         << i;
 }
 
+// A plate of 2 m by 2 m through the middle of a cube, which hides a quarter of it, and another one
+// inside of the cube. Its other samples see at least half of the sky.
+TEST(BakeInstances, SamplesInsideClosedGeometryDoNotCount) {
+  Scene scene = make_procedural("scene:cube?divisions=4");
+  scene.lights.clear();
+  const Box3f cube = scene_bounds(scene);
+  const float side = cube.size().x, height = 0.5f * (cube.min.y + cube.max.y);
+  Mesh plate;
+  append_grid(plate, V3f(-side, 0, -side), V3f(0, 0, 2 * side), V3f(2 * side, 0, 0), 4, 0);
+  scene.meshes.push_back(plate);
+  for (const float size : {1.0f, 0.2f}) {
+    Instance instance;
+    instance.mesh = static_cast<std::uint32_t>(scene.meshes.size() - 1);
+    instance.to_world.setScale(size);
+    instance.to_world *= M44f().setTranslation(
+        V3f(0.5f * (cube.min.x + cube.max.x), height, 0.5f * (cube.min.z + cube.max.z)));
+    scene.instances.push_back(instance);
+  }
+  BakeOptions options = of_instances(0.005f);
+  options.sides = BakeSides::front;
+  const BakeResult result = bake(scene, options);
+  const std::size_t plates = scene.instances.size() - 2;
+  EXPECT_GT(result.statistics.inside_samples, 10u);
+  EXPECT_GT(result.instance_ao.at(plates), 0.8f) << "0.66 with those inside";
+  EXPECT_LT(result.instance_ao.at(plates), 0.95f);
+  EXPECT_EQ(result.instance_ao.at(plates + 1), 0.0f);
+}
+
 TEST(BakeInstances, ErrorsAreWithinTheTargetAndReported) {
   const Scene scene = grove();
   const BakeResult truth = bake(scene, of_instances(0));
