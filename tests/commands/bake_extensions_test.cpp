@@ -100,6 +100,25 @@ TEST_F(BakeExtensions, EmbeddedImagesHaveTheirOwnMediaType) {
   EXPECT_EQ(baked("")["images"][0]["mimeType"], "image/webp");
 }
 
+// An occlusion texture with a transform is replaced by one without.
+TEST_F(BakeExtensions, ExtensionsThatNoElementHasAnyMoreAreNotListed) {
+  for (const bool another : {false, true}) {
+    GltfBuilder builder = triangle_with_variants();
+    const int image =
+        builder.add("images", {{"bufferView", builder.add_view(test::png::with_alpha(1, 1, {255}))},
+                               {"mimeType", "image/png"}});
+    builder.add("textures", {{"source", image}});
+    const json texture = {{"index", 0},
+                          {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}}}}}};
+    for (json& material : builder.doc["materials"]) material["occlusionTexture"] = texture;
+    if (another) builder.doc["materials"][0]["emissiveTexture"] = texture;
+    builder.doc["extensionsUsed"].push_back("KHR_texture_transform");
+    write("in.glb", builder.glb());
+    const json used = baked("--to texture --size 16")["extensionsUsed"];
+    EXPECT_EQ(std::count(used.begin(), used.end(), "KHR_texture_transform"), another ? 1 : 0);
+  }
+}
+
 TEST_F(BakeExtensions, TextureCoordinatesThatATextureUsesAreNotReplaced) {
   GltfBuilder builder = triangle_with_variants();
   const int uvs = builder.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, test::kFloat, "VEC2");

@@ -5,23 +5,19 @@
 namespace dapple::gltf {
 namespace {
 
-bool is_used(const Json& json, const char* name) {
-  const auto has_it = [name](const Json& element) { return has_extension(element, name); };
-  const Json none = Json::array();
-  const Json& nodes = json.contains("nodes") ? json["nodes"] : none;
-  const Json& meshes = json.contains("meshes") ? json["meshes"] : none;
-  return std::any_of(nodes.begin(), nodes.end(), has_it) ||
-         std::any_of(meshes.begin(), meshes.end(), [&](const Json& mesh) {
-           if (!mesh.contains("primitives")) return false;
-           const Json& primitives = mesh["primitives"];
-           return std::any_of(primitives.begin(), primitives.end(), has_it);
-         });
+/// Whether the element, or one in it, has the extension.
+bool is_used(const Json& element, const char* name) {
+  if (!element.is_structured()) return false;
+  return has_extension(element, name) ||
+         std::any_of(element.begin(), element.end(),
+                     [name](const Json& part) { return is_used(part, name); });
 }
 
 }  // namespace
 
 bool has_extension(const Json& element, const char* name) {
-  return element.contains("extensions") && element["extensions"].contains(name);
+  return element.is_object() && element.contains("extensions") &&
+         element["extensions"].contains(name);
 }
 
 bool remove_extension(Json& element, const char* name) {

@@ -8,15 +8,15 @@ namespace dapple::gltf {
 
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
 inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+inline constexpr const char* kTextureTransform = "KHR_texture_transform";
 
-/// Whether a primitive or node has the extension.
+/// Whether a primitive, a node or another element has the extension.
 bool has_extension(const Json& element, const char* name);
 
 /// Removes the extension from a primitive or node. Returns whether it had it.
 bool remove_extension(Json& element, const char* name);
 
-/// Removes an extension that no primitive and no node has from extensionsUsed and
-/// extensionsRequired.
+/// Removes an extension that no element has from extensionsUsed and extensionsRequired.
 void unlist_unused_extension(Json& json, const char* name);
 
 }  // namespace dapple::gltf

@@ -125,6 +125,7 @@ class OcclusionMaterials {
   }
 
   [[nodiscard]] std::size_t replaced() const { return replaced_.size(); }
+  [[nodiscard]] bool had_transform() const { return had_transform_; }
 
  private:
   void add_user(const Json& primitive, int uv_set) {
@@ -159,6 +160,7 @@ class OcclusionMaterials {
     const auto replaced = before.find("occlusionTexture");
     if (replaced == before.end()) return occlusion;
     replaced_.insert(material);
+    had_transform_ |= has_extension(*replaced, kTextureTransform);
     for (const char* key : {"strength", "extras"})
       if (replaced->contains(key)) occlusion[key] = (*replaced)[key];
     return occlusion;
@@ -167,6 +169,7 @@ class OcclusionMaterials {
   Editor& editor_;
   std::size_t texture_;
   std::set<int> replaced_;              ///< materials that had an occlusion texture
+  bool had_transform_ = false;          ///< whether one of these textures had one
   std::size_t material_count_;          ///< of the file
   std::map<int, std::set<int>> users_;  ///< uv sets of a material's primitives; -1: not baked
   std::map<std::pair<int, std::uint32_t>, std::size_t> made_;
@@ -187,6 +190,7 @@ std::size_t add_occlusion_texture(Editor& editor, const std::vector<TexturedPrim
     materials.add_texture(textured);
   }
   if (removed) unlist_unused_extension(editor.json(), kDraco);
+  if (materials.had_transform()) unlist_unused_extension(editor.json(), kTextureTransform);
   return materials.replaced();
 }
 
