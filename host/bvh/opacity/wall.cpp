@@ -15,7 +15,8 @@ using Imath::V3d;
 
 /// Minimum share of interior triangles in the surfaces of a wall.
 constexpr float kInteriorShare = 0.5f;
-/// Minimum share of triangles whose neighbours face both sides in a surface that does.
+/// Minimum share of the area of triangles whose neighbours face both sides in a surface that does.
+/// The corners of a room of which each wall faces as it likes are such a share.
 constexpr float kMixedShare = 0.002f;
 /// Minimum length of the sum of area vectors, relative to the area. Half a sphere has 1/2, a third
 /// of a tube 0.83, the walls of a room but one 0.2.
@@ -133,7 +134,6 @@ struct SurfaceSums {
   /// Seen from its centre, so that of an open surface, too, it does not depend on the origin. Where
   /// triangles face both sides it is right if all of the surface can be seen from there.
   [[nodiscard]] double volume() const {
-    if (!(area > 0)) return 0;
     return faces_both_sides() ? cones / 3 : std::fabs(product - vector.dot(centre) / area) / 3;
   }
   [[nodiscard]] float mean_chord() const {
