@@ -10,6 +10,7 @@
 #include "bake/bake_checkpoint.hpp"
 #include "bake/bake_pilot.hpp"
 #include "bake/bake_settings.hpp"
+#include "bake/inside/inside_samples.hpp"
 #include "bake/instance_bake.hpp"
 #include "bake/light_tracer.hpp"
 #include "bake/mesh_placements.hpp"
@@ -64,18 +65,22 @@ struct ComparedOptions {
 BakeTracing tracing_against(const OccluderScene& occluders, const BakeOptions& options,
                             const ComparedOptions& compared, const BakeRecords& records) {
   const TracePoints trace = trace_against(occluders);
-  BakeTracing tracing{records.checkpoint.with(records.bias.with(
-                          {"ao", ao_tracer(trace, options), ao_tracer(trace, compared.prefiltered),
-                           ao_tracer(trace, compared.exact)})),
-                      {},
-                      0,
-                      records.progress,
-                      records.statistics,
-                      occluders.closed.get()};
+  const auto recorded = [&](BiasTracing tracing) {
+    tracing.exact = telling_inside(std::move(tracing.exact), *occluders.closed);
+    return telling_inside(records.checkpoint.with(records.bias.with(std::move(tracing))),
+                          *occluders.closed);
+  };
+  BakeTracing tracing{
+      recorded({"ao", ao_tracer(trace, options), ao_tracer(trace, compared.prefiltered),
+                ao_tracer(trace, compared.exact)}),
+      {},
+      0,
+      records.progress,
+      records.statistics};
   if (!options.light || occluders.lights.empty()) return tracing;
-  tracing.light = records.checkpoint.with(records.bias.with(
-      {"light", light_tracer(options, occluders), light_tracer(compared.prefiltered, occluders),
-       light_tracer(compared.exact, occluders)}));
+  tracing.light = recorded({"light", light_tracer(options, occluders),
+                            light_tracer(compared.prefiltered, occluders),
+                            light_tracer(compared.exact, occluders)});
   tracing.lights = occluders.lights.size();
   return tracing;
 }
@@ -95,11 +100,12 @@ void measure_bias(const OccluderScene& occluders, const std::vector<PilotMesh>& 
   };
   const TracePoints trace = trace_against(occluders);
   std::vector<PilotQuantity> quantities{
-      {kRaysPerSample, ao_tracer(trace, compared.exact),
+      {kRaysPerSample, telling_inside(ao_tracer(trace, compared.exact), *occluders.closed),
        [&](float footprint) { return ao_tracer(trace, with_footprint(footprint)); }}};
   if (options.light && !occluders.lights.empty())
     quantities.push_back(
-        {options.light_rays, light_tracer(compared.exact, occluders),
+        {options.light_rays,
+         telling_inside(light_tracer(compared.exact, occluders), *occluders.closed),
          [&](float footprint) { return light_tracer(with_footprint(footprint), occluders); }});
   BakePilot pilot(meshes, std::move(quantities), options.seed);
   const FootprintChoice choice =

@@ -30,6 +30,7 @@ std::vector<BiasUnit> differences(std::span<const SurfaceSample> samples,
     unit.difference += double{a.scalar} - double{b.scalar};
   };
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (exact.is_inside(i)) continue;
     BiasUnit& unit = units[i / kBlock];
     if (samples[i].front) add(unit, prefiltered.front[i], exact.front[i]);
     if (samples[i].back) add(unit, prefiltered.back[i], exact.back[i]);
@@ -72,12 +73,15 @@ void BakeBias::compare(const BiasTracing& tracing, std::span<const SurfaceSample
   std::vector<BiasUnit> units =
       differences(chosen, tracing.prefiltered(chosen, places, placements, rays, hash),
                   tracing.exact(chosen, places, placements, rays, hash));
+  for (const BiasUnit& unit : units) quantity.rays += rays * unit.count;
   const std::uint32_t first = quantity.units.empty() ? 0 : (quantity.units.back().tile + 1);
-  for (BiasUnit& unit : units) unit.tile += first;
+  for (BiasUnit& unit : units) {
+    unit.tile += first;
+    unit.count /= share_;
+    unit.difference /= share_;
+  }
   quantity.units.insert(quantity.units.end(), units.begin(), units.end());
   quantity.compared += static_cast<double>(chosen.size());
-  for (const SurfaceSample& sample : chosen)
-    quantity.rays += static_cast<double>(rays) * (sample.front + sample.back);
   compared_samples_ += static_cast<double>(chosen.size());
   compared_seconds_ += watch.seconds();
   limit_time();

@@ -23,7 +23,7 @@ inline bool has_bias(const BakeOptions& options) {
 struct BiasTracing {
   std::string name;
   TraceSamples values;              ///< as they are baked
-  TraceSamples prefiltered, exact;  ///< to be compared
+  TraceSamples prefiltered, exact;  ///< to be compared; exact tells what is inside
 };
 
 /// Functions must be called one after the other.
@@ -41,7 +41,7 @@ class BakeBias {
 
  private:
   struct Quantity {
-    std::vector<BiasUnit> units;
+    std::vector<BiasUnit> units;  ///< each also stands for those that were not chosen
     float largest = 0;  ///< without occlusion
     double samples = 0, compared = 0;
     double rays = 0;  ///< that were compared
@@ -60,6 +60,7 @@ class BakeBias {
 };
 
 /// Differences between prefiltered and exact values of samples, by blocks of consecutive ones.
+/// Without samples inside closed geometry, which `exact` tells: they count for no value.
 std::vector<BiasUnit> differences(std::span<const SurfaceSample> samples,
                                   const TracedSamples& prefiltered, const TracedSamples& exact);
 

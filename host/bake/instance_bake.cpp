@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "bake/inside/inside_samples.hpp"
 #include "bake/vertex_bake.hpp"
 #include "scene/invertible.hpp"
 
@@ -257,11 +256,8 @@ class InstanceRounds {
 
   TracedSamples traced(const InstanceSlice& slice, int rays) {
     const TraceSamples& trace = lights_ ? tracing_.light : tracing_.ao;
-    TracedSamples found = trace(slice.samples, slice.placement, slice.placements, rays,
-                                hash_of(lights_ ? 0x55555555u : 0u, traces_++));
-    if (tracing_.closed)
-      found.inside = find_inside_samples(slice.samples, slice.placement, slice.placements, found,
-                                         *tracing_.closed);
+    const TracedSamples found = trace(slice.samples, slice.placement, slice.placements, rays,
+                                      hash_of(lights_ ? 0x55555555u : 0u, traces_++));
     for (const std::uint8_t inside : found.inside) tracing_.statistics.inside_samples += inside;
     tracing_.statistics.points += found.points;
     tracing_.statistics.rays += found.rays;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include "bake/inside/inside_samples.hpp"
 #include "bake/placement_choice.hpp"
 
 namespace dapple {
@@ -184,11 +183,7 @@ bool SampleRounds::trace() {
 }
 
 TracedSamples SampleRounds::traced(const Batch& batch) const {
-  TracedSamples found = trace_(batch.samples, batch.placement, placements_, rays_, batch.hash);
-  if (tracing_.closed)
-    found.inside =
-        find_inside_samples(batch.samples, batch.placement, placements_, found, *tracing_.closed);
-  return found;
+  return trace_(batch.samples, batch.placement, placements_, rays_, batch.hash);
 }
 
 void SampleRounds::add_traced(const Batch& batch, const TracedSamples& found) {

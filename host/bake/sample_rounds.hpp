@@ -6,21 +6,19 @@
 #include <future>
 
 #include "bake/bake_progress.hpp"
-#include "bake/inside/closed_geometry.hpp"
 #include "bake/placement_variance.hpp"
 #include "bake/sampled_surface.hpp"
 #include "bake/value_sums.hpp"
 
 namespace dapple {
 
-/// The tracer of a bake, and its callbacks.
+/// The tracers of a bake, and its callbacks.
 struct BakeTracing {
   TraceSamples ao;
   TraceSamples light;      ///< empty: lights are not baked
   std::size_t lights = 0;  ///< their number
   BakeProgress& progress;
   BakeStatistics& statistics;
-  ClosedGeometry* closed = nullptr;  ///< samples inside of it do not count
 };
 
 /// How many samples and rays to take.

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <thread>
 
 #include "dapple/bake.hpp"
 #include "dapple/error.hpp"
@@ -100,6 +102,36 @@ TEST(BakeBias, OneBlockTellsNoErrorAndIsNotReported) {
   ASSERT_EQ(two.count("ao"), 1u);
   EXPECT_EQ(two.at("ao").mean, 0);
   EXPECT_NEAR(two.at("ao").error, 1.0 / (2 * 64 * 8), 1e-9) << "of equal values not 0 either";
+}
+
+/// A tracer whose samples have this value and which takes a time.
+TraceSamples slow_tracer(const float& value, int milliseconds) {
+  return [&value, milliseconds](std::span<const SurfaceSample> all, std::span<const std::uint32_t>,
+                                const Placements&, int, std::uint32_t) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    TracedSamples traced;
+    traced.front.resize(all.size(), SideValue{value, V3f(0, 0, 0)});
+    traced.back = traced.front;
+    return traced;
+  };
+}
+
+// Comparing takes twenty times the time of tracing, so that of what comes later less is compared. A
+// tenth of the samples has a bias of 0.1, the others have 0.3.
+TEST(BakeBias, WhatWasComparedMoreDoesNotCountMore) {
+  BakeBias bias(1);
+  float value = 0.1f;
+  const float none = 0;
+  const TraceSamples traced =
+      bias.with({"ao", slow_tracer(value, 2), slow_tracer(value, 20), slow_tracer(none, 20)});
+  for (std::size_t blocks : {1000, 9000}) {
+    const std::vector<SurfaceSample> all(64 * blocks);
+    traced(all, std::vector<std::uint32_t>(all.size()), Placements{}, 8, 1);
+    value = 0.3f;
+  }
+  const Bias found = bias.report().at("ao");
+  EXPECT_LT(found.share, 0.2) << "most of the first and few of the others";
+  EXPECT_NEAR(found.mean, 0.28, 0.01) << "0.11 to 0.13 if all of them counted the same";
 }
 
 TEST(BakeBias, LightsHaveOne) {

@@ -3,6 +3,7 @@
 // them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bake/inside/closed_geometry.hpp"
@@ -183,6 +184,31 @@ TEST(InsideSamples, WithATargetTooAndOnBothSides) {
   const BakeResult on = bake(floor, options, {}, {flat_box(0)});
   EXPECT_EQ(on.statistics.inside_samples, 0u);
   for (const float ao : on.meshes.at(0).ao) EXPECT_LT(ao, 0.85f);
+}
+
+// Half of the samples are on a grid of 3,200 triangles inside of a box, where nothing has a bias. All
+// are in one mesh, so that they are traced, and compared, at once.
+TEST(InsideSamples, TheReportedBiasDoesNotCountThem) {
+  BakeOptions options = few_rays();
+  options.rays = 64;
+  options.footprint = 64;
+  options.report_bias = 1;
+  Scene scene = make_procedural("scene:palm?leaves=10");
+  Mesh& mesh = scene.meshes.at(0);
+  mesh.normals.clear();
+  const Bias alone = bake(scene, options).statistics.bias.at("ao");
+  const auto opaque = static_cast<std::uint32_t>(scene.materials.size());
+  scene.materials.emplace_back();
+  const std::size_t palm = mesh.primitive_count();
+  const V3f away(100, 0, 0);
+  append_box(mesh, away - V3f(1, 1, 1), away + V3f(1, 1, 1));
+  append_grid(mesh, away - V3f(0.5f, 0, 0.5f), V3f(0, 0, 1), V3f(1, 0, 0), 40, 0);
+  std::fill(mesh.materials.begin() + palm, mesh.materials.end(), opaque);
+  const BakeResult result = bake(scene, options);
+  ASSERT_GT(result.statistics.inside_samples, 3200u);
+  const Bias beside = result.statistics.bias.at("ao");
+  EXPECT_LT(alone.mean, -10 * alone.error);
+  EXPECT_NEAR(beside.mean / alone.mean, 1, 0.15) << "0.5 with those inside";
 }
 
 TEST(InsideSamples, AnOpenSheetStillDarkensWhatLiesBelow) {

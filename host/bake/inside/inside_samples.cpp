@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace dapple {
 namespace {
@@ -38,8 +42,7 @@ void drop_outside(const WorldPoints& points, const ClosedGeometry& closed,
   });
 }
 
-}  // namespace
-
+/// 1 for each sample that is inside, by what was `found` there.
 std::vector<std::uint8_t> find_inside_samples(std::span<const SurfaceSample> samples,
                                               std::span<const std::uint32_t> placement,
                                               const Placements& placements,
@@ -60,6 +63,18 @@ std::vector<std::uint8_t> find_inside_samples(std::span<const SurfaceSample> sam
     drop_outside(WorldPoints(dark, of_placement, placements, back), closed, inside);
   for (std::size_t k = 0; k < index.size(); ++k) result[index[k]] = inside[k];
   return result;
+}
+
+}  // namespace
+
+TraceSamples telling_inside(TraceSamples trace, ClosedGeometry& closed) {
+  return [trace = std::move(trace), &closed](
+             std::span<const SurfaceSample> samples, std::span<const std::uint32_t> placement,
+             const Placements& placements, int rays, std::uint32_t hash) {
+    TracedSamples found = trace(samples, placement, placements, rays, hash);
+    found.inside = find_inside_samples(samples, placement, placements, found, closed);
+    return found;
+  };
 }
 
 }  // namespace dapple
