@@ -140,8 +140,15 @@ std::vector<std::string> add_to_instances(gltf::Editor& editor, const gltf::Sour
   return notes;
 }
 
-/// Writes the file with the baked values, and the EXR of a texture. Returns notes, some of them
-/// empty.
+void write_preview(const Scene& scene, const BakeResult& result, const std::string& path,
+                   PendingFiles& files) {
+  const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0f) : scene.cameras.front();
+  files.add(path,
+            encode_png(draw_preview(scene, result, camera, kPreviewSize, kPreviewSize), path));
+}
+
+/// Writes the file with the baked values, the EXR of a texture and the preview: all of them, or
+/// none. Returns notes, some of them empty.
 std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& scene,
                                      const BakeArguments& a, const BakeOptions& options,
                                      const FileUvs& uvs, const BakeResult& result) {
@@ -157,15 +164,13 @@ std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& 
     notes = {coordinates_note(layout, primitives, uvs.note), texture_note(result.texture),
              replaced_note(replaced)};
   }
-  editor.write();
-  if (needs_exr(options)) write_baked_exr(result, scene.source, options, exr_path(a.output));
+  PendingFiles files;
+  editor.write(files);
+  if (needs_exr(options))
+    write_baked_exr(result, scene.source, options, files.add(exr_path(a.output)));
+  if (!a.png.empty()) write_preview(scene, result, a.png, files);
+  files.commit();
   return notes;
-}
-
-void write_preview(const Scene& scene, const BakeResult& result, const std::string& path) {
-  const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0f) : scene.cameras.front();
-  write_whole_file(
-      path, encode_png(draw_preview(scene, result, camera, kPreviewSize, kPreviewSize), path));
 }
 
 /// Chooses the lights to bake: those of --lights or else the scene's, and --dome beside them.
@@ -269,7 +274,6 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
 
   const Stopwatch writing;
   const std::vector<std::string> notes = write_baked(file, scene, a, options, uvs, result);
-  if (!a.png.empty()) write_preview(scene, result, a.png);
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
   for (const std::string& note : notes)

@@ -10,6 +10,7 @@
 #include "bake/texture/texture_layout.hpp"
 #include "bake/texture/uv_overlap.hpp"
 #include "dapple/film.hpp"
+#include "film/exr_output.hpp"
 #include "film/png.hpp"
 #include "sampling/bias_estimate.hpp"
 
@@ -195,7 +196,7 @@ std::string occlusion_png(const BakedTexture& texture, int bits) {
 }
 
 void write_baked_exr(const BakeResult& result, const std::string& source,
-                     const BakeOptions& options, const std::string& path) {
+                     const BakeOptions& options, PendingFile& file) {
   const BakedTexture& texture = result.texture;
   Film film;
   film.width = film.height = static_cast<int>(texture.size);
@@ -214,7 +215,7 @@ void write_baked_exr(const BakeResult& result, const std::string& source,
   if (!texture.bent.empty()) add("bent", "XYZ", texture.bent);
   for (std::size_t l = 0; l < texture.light.size(); ++l)
     add("light." + result.light_names[l], "RGB", texture.light[l]);
-  write_exr(film, path);
+  write_exr(film, file, {}, Durable::yes);
 }
 
 }  // namespace dapple

@@ -40,6 +40,6 @@ std::string occlusion_png(const BakedTexture& texture, int bits);
 /// object space) and, for each light, light.NAME (R, G and B). The metadata have the options and
 /// the bias, by the names that renders give them.
 void write_baked_exr(const BakeResult& result, const std::string& source,
-                     const BakeOptions& options, const std::string& path);
+                     const BakeOptions& options, PendingFile& file);
 
 }  // namespace dapple

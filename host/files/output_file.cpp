@@ -161,7 +161,7 @@ void PendingFile::commit() {
 }
 
 void PendingFiles::add(const std::string& path, std::string_view bytes) {
-  PendingFile& file = files_.emplace_back(path);
+  PendingFile& file = add(path);
   file.write(bytes.data(), bytes.size());
   file.close();
   file.verify();

@@ -75,6 +75,8 @@ class PendingFile {
 /// leaves neither some of them nor new ones beside old ones.
 class PendingFiles {
  public:
+  /// A file to write, which the caller closes and verifies. Throws Error failed.
+  PendingFile& add(const std::string& path) { return files_.emplace_back(path); }
   /// Writes `bytes` for the file `path` and verifies them. Throws Error failed.
   void add(const std::string& path, std::string_view bytes);
   /// Gives all files their names, in the order of add(). Throws Error failed.

@@ -19,4 +19,7 @@ void use_exr_threads(int count);
 /// neither.
 void write_exr(const Film& film, const std::string& path, const ExrFormat& format, Durable durable);
 
+/// The same for a file that gets its name later. Throws Error usage or failed.
+void write_exr(const Film& film, PendingFile& file, const ExrFormat& format, Durable durable);
+
 }  // namespace dapple

@@ -178,8 +178,13 @@ void write_exr(const Film& film, const std::string& path, const ExrFormat& forma
 
 void write_exr(const Film& film, const std::string& path, const ExrFormat& format,
                Durable durable) {
-  validate(format);
   PendingFile file(path);
+  write_exr(film, file, format, durable);
+  file.commit();
+}
+
+void write_exr(const Film& film, PendingFile& file, const ExrFormat& format, Durable durable) {
+  validate(format);
   const std::string reason = film_defect(film);
   if (!reason.empty()) file.fail(reason);
   const std::vector<ExrPart> parts = exr_parts(film, format);
@@ -192,7 +197,6 @@ void write_exr(const Film& film, const std::string& path, const ExrFormat& forma
   } catch (const std::exception& problem) {
     file.fail(problem.what());
   }
-  file.commit();
 }
 
 Film read_exr(const std::string& path) {

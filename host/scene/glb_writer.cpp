@@ -6,9 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dapple/error.hpp"
 #include "dapple/scene.hpp"
-#include "files/output_file.hpp"
 #include "scene/glb_bytes.hpp"
 #include "scene/glb_layout.hpp"
 
@@ -29,17 +27,15 @@ void append_word(std::string& out, std::size_t word) {
 
 }  // namespace
 
-void write_glb_bytes(const std::string& path, std::string json,
-                     std::span<const std::string_view> binary, std::string_view others) {
+void write_glb_bytes(PendingFile& file, std::string json, std::span<const std::string_view> binary,
+                     std::string_view others) {
   json.resize((json.size() + 3) / 4 * 4, ' ');
   std::size_t byte_count = 0;
   for (const std::string_view section : binary) byte_count += section.size();
   const std::size_t total = kHeaderBytes + kChunkHeaderBytes + json.size() +
                             (byte_count > 0 ? kChunkHeaderBytes + byte_count : 0) + others.size();
   if (total > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(
-        ErrorKind::failed,
-        fmt::format("{}: would have {} bytes; a GLB file has room for 4294967295", path, total));
+    file.fail(fmt::format("it would have {} bytes; a GLB file has room for 4294967295", total));
   }
   std::string header, binary_header;
   for (const std::size_t word : {std::size_t{kGlbMagic}, std::size_t{kGlbVersion}, total,
@@ -54,7 +50,9 @@ void write_glb_bytes(const std::string& path, std::string json,
     sections.insert(sections.end(), binary.begin(), binary.end());
   }
   sections.push_back(others);
-  write_whole_file(path, sections);
+  for (const std::string_view section : sections) file.write(section.data(), section.size());
+  file.close();
+  file.verify();
 }
 
 void write_glb(const Scene& scene, const std::string& path) {
@@ -62,7 +60,9 @@ void write_glb(const Scene& scene, const std::string& path) {
   std::vector<std::string_view> binary;
   for (const auto& section : layout.sections)
     binary.emplace_back(reinterpret_cast<const char*>(section.data()), section.size());
-  write_glb_bytes(path, layout.json, binary);
+  PendingFile file(path);
+  write_glb_bytes(file, layout.json, binary);
+  file.commit();
 }
 
 }  // namespace dapple

@@ -4,7 +4,9 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "support/program_run.hpp"
 
@@ -106,6 +108,27 @@ TEST_F(OutputFiles, AFailedWriteExitsWith1AndLeavesNothingBehind) {
   const Outcome run = dapple("scene cube -o x.glb", "trap '' XFSZ && ulimit -f 1 &&");
   expect_failure(run, 1, "x.glb");
   EXPECT_EQ(files_in_folder(), 0u);
+}
+
+// The EXR has more than 2.1 MB, which is the least that PoCL needs; the other files have less.
+TEST_F(OutputFiles, ABakeWhoseLastFileFailsLeavesTheOldOnes) {
+  ASSERT_EQ(dapple("scene cube -o in.glb").code, 0);
+  const std::string bake =
+      "bake in.glb -o out.gltf --to texture --size 1024 --passes ao,bent --png out.png --rays 8";
+  ASSERT_EQ(dapple(bake).code, 0);
+  const auto contents = [&] {
+    std::vector<std::size_t> hashes;
+    for (const char* name : {"out.gltf", "out.bin", "out_ao.png", "out_baked.exr", "out.png"})
+      hashes.push_back(std::hash<std::string>()(bytes_of(path(name))));
+    return hashes;
+  };
+  const std::vector<std::size_t> before = contents();
+  expect_failure(dapple(bake + " --seed 1", "trap '' XFSZ && ulimit -f 4200 &&"), 1,
+                 "out_baked.exr");
+  EXPECT_EQ(contents(), before);
+  EXPECT_EQ(files_in_folder(), 6u);
+  EXPECT_EQ(dapple(bake + " --seed 1").code, 0);
+  EXPECT_NE(contents(), before) << "another seed makes others";
 }
 
 // Buffer and texture of a .gltf have names that no option says.

@@ -65,7 +65,7 @@ std::size_t Editor::add_image(const std::string& png, const std::string& suffix)
   return push("images", {{"uri", percent_encode(fs::path(path).filename().string())}});
 }
 
-void Editor::write() {
+void Editor::write(PendingFiles& files) {
   if (is_glb_out()) drop_unused(content().json, json_, bytes_);
   if (bytes_.empty())
     remove_buffer();  // a buffer has at least one byte
@@ -75,15 +75,13 @@ void Editor::write() {
   if (is_glb_out()) {
     align(bytes_, 4);
     const std::string_view binary = bytes_;
-    write_glb_bytes(out_, text, {&binary, 1}, content().container.others);
+    write_glb_bytes(files.add(out_), text, {&binary, 1}, content().container.others);
     return;
   }
-  PendingFiles files;
   for (const auto& [path, bytes] : new_images_) files.add(path, bytes);
   if (!bytes_.empty()) files.add((fs::path(out_).parent_path() / side_name()).string(), bytes_);
+  copy_side_files(files);
   files.add(out_, text + "\n");
-  copy_side_files();
-  files.commit();
 }
 
 // It is the last one, and nothing refers to it.
@@ -179,12 +177,11 @@ void Editor::embed_images() {
 }
 
 // Files that the document names, to the output's folder.
-void Editor::copy_side_files() const {
+void Editor::copy_side_files(PendingFiles& files) const {
   for (const auto& [from, to] : side_copies()) {
     const Bytes bytes = read_file(from, from);
     if (!fs::path(to).parent_path().empty()) fs::create_directories(fs::path(to).parent_path());
-    write_whole_file(to,
-                     std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    files.add(to, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/output_file.hpp"
 #include "scene/gltf/source_content.hpp"
 
 namespace dapple::gltf {
@@ -27,9 +28,9 @@ class Editor {
   /// Adds an image: in the buffer of a .glb, in the file image_path(suffix) beside a .gltf.
   std::size_t add_image(const std::string& png, const std::string& suffix);
 
-  /// Writes `out`. Data of a .gltf go to a file beside it, and buffers and images that the file
-  /// names are copied there unless they are there already.
-  void write();
+  /// Adds `out` to `files`. Data of a .gltf go to a file beside it, and buffers and images that the
+  /// file names are copied there unless they are there already.
+  void write(PendingFiles& files);
 
   /// NAME`suffix`.png beside `out`, or with a number if the source has an image of that name.
   [[nodiscard]] std::string image_path(const std::string& suffix) const;
@@ -51,7 +52,7 @@ class Editor {
   void embed_buffers();
   void embed_images();
   void remove_buffer();
-  void copy_side_files() const;
+  void copy_side_files(PendingFiles& files) const;
 
   const SourceFile& source_;
   std::string out_;
