@@ -143,7 +143,7 @@ double expected_samples(const Scene& scene, const BakeOptions& options) {
   return options.light ? 2 * samples : samples;
 }
 
-/// Adds up the lights of each group.
+/// Adds up the lights of each group. `lights`: those that were traced.
 void add_up_groups(const std::vector<Light>& lights, BakeResult& result) {
   const std::vector<LightLayer> layers = light_layers(lights);
   for (const LightLayer& layer : layers) result.light_names.push_back(layer.name);
@@ -301,6 +301,7 @@ void validate(const BakeOptions& options) {
   check_range("--margin", options.margin, 0, 1024);
   check_range("--target-error", double{options.target_error}, 0, 1);
   check_ray_options(options);
+  check_range("--max-bias", double{options.max_bias}, 0, 1);
   if (options.light && options.placement == BakeInstances::alone)
     throw Error(ErrorKind::usage,
                 "--passes light needs --instances together or unique: a mesh alone is not lit");
@@ -350,7 +351,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
     result.interrupted = !bake_texture(scene, options, mesh_occluders, records, result);
   if (options.instances && !result.interrupted)
     result.interrupted = !bake_all_instances(scene, options, *together, records, result);
-  if (options.light && !result.interrupted) add_up_groups(lights, result);
+  if (options.light && !result.interrupted) add_up_groups(together->lights, result);
   if (!result.interrupted) progress.finish();
   if (options.max_bias > 0 && !has_bias(asked)) s.notes.emplace_back(kNothingToLimit);
   s.bias = bias.report();

@@ -21,7 +21,8 @@ struct OccluderScene {
   SceneBvh bvh;
   DeviceScene uploaded;
   std::unique_ptr<ClosedGeometry> closed;  ///< of the same scene
-  std::vector<Light> lights;               ///< as uploaded; empty unless options.light
+  std::vector<Light> lights;  ///< as uploaded, without those that emit nothing; empty unless
+                              ///< options.light
   double build_seconds = 0, upload_seconds = 0, kernel_seconds = 0;
   std::vector<std::string> notes;
 };

@@ -2,7 +2,9 @@
 #include "dapple/points.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -20,6 +22,7 @@
 #include "dapple/error.hpp"
 #include "files/output_file.hpp"
 #include "points/point_file.hpp"
+#include "points/point_sets.hpp"
 #include "points/point_sources.hpp"
 #include "render/stopwatch.hpp"
 
@@ -32,7 +35,7 @@ struct Arguments {
   std::vector<double> grid, periodic;
   double height = 0, sky_rotation = 0;
   float sky_irradiance = 1;
-  bool per_triangle = false, quiet = false;
+  bool per_triangle = false, quiet = false, footprint_given = false;
   std::vector<std::string> opacity;
   SceneOptions scene_options;
   PointOptions options;
@@ -89,12 +92,18 @@ void add_point_options(CLI::App& app, Arguments& a) {
   add_opacity_option(app, a.opacity);
   app.add_flag("--ground", o.ground, "Put an opaque plane under the scene, which occludes it");
   add_ao_range_options(app, o.distance, o.falloff);
-  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias);
+  add_prefiltering_options(app, a.estimator, o.footprint, a.report_bias)
+      ->each([&a](const std::string&) { a.footprint_given = true; });
   app.get_option("--report-bias")
       ->description(
           "0: do not report the bias. Some 1,000 values of each column are traced exactly in any "
           "case, to correct the others");
-  add_max_bias_option(app, o.max_bias);
+  app.add_option("--max-bias", o.max_bias,
+                 "Choose the largest footprint, from --footprint down to 0, whose bias is below "
+                 "this in each column before it is corrected; 0: take --footprint. Without it and "
+                 "--footprint: a smaller footprint if the correction leaves more in single values "
+                 "than their noise")
+      ->type_name("FLOAT");
   app.add_option("--seed", o.seed, "Seed of the random numbers: another seed gives other noise")
       ->capture_default_str();
   add_outside_option(app, a.scene_options.allow_outside);
@@ -154,6 +163,7 @@ PointOptions options_of(const Arguments& a) {
   PointOptions options = a.options;
   options.estimator = parse_estimator(a.estimator);
   options.report_bias = parse_share("--report-bias", a.report_bias);
+  if (a.footprint_given && !options.max_bias) options.max_bias = 0.0f;
   for (const std::string& text : a.opacity) options.opacity.push_back(parse_opacity(text));
   if (!a.periodic.empty()) {
     options.period_x = static_cast<float>(a.periodic[0]);
@@ -176,6 +186,63 @@ PointOptions options_of(const Arguments& a) {
   return options;
 }
 
+/// Notes that options may not do what was meant, for the scene without its ground and copies.
+void note_options(const PointOptions& options, const Scene& scene, const std::vector<V3f>& points,
+                  std::vector<std::string>& notes) {
+  if (options.rays % kPointSets != 0)
+    notes.push_back(fmt::format("--rays is {}; {} are traced, a multiple of {}", options.rays,
+                                options.rays / kPointSets * kPointSets, kPointSets));
+  if (!options.ground && !(options.period_x > 0)) return;
+  const Box3f bounds = scene_bounds(scene);
+  if (bounds.isEmpty()) return;
+  const auto below =
+      std::ranges::count_if(points, [&](const V3f& point) { return point.y < bounds.min.y; });
+  if (options.ground && below > 0)
+    notes.push_back(
+        fmt::format("{} of {} points lie below the ground at y = {:.4g}: they see "
+                    "nothing",
+                    below, points.size(), bounds.min.y));
+  constexpr float kOverlap = 1.25f;  // leaves reach over a little
+  const auto note_period = [&](char axis, float width, float period) {
+    if (period > 0 && width >= kOverlap * period)
+      notes.push_back(fmt::format(
+          "the scene is {:.4g} m wide along {}, and its period {:.4g} m: copies overlap", width,
+          axis, period));
+  };
+  note_period('X', bounds.size().x, options.period_x);
+  note_period('Z', bounds.size().z, options.period_z);
+}
+
+/// Notes which columns of the file of points write_points() leaves out.
+void note_replaced(const Arguments& a, const PointList& list, PointResult& result) {
+  std::vector<std::string> names;
+  for (const ExtraColumn& column : list.extra)
+    if (std::ranges::count(result.columns, column.name, &PointColumn::name) > 0)
+      names.push_back(column.name);
+  if (names.empty()) return;
+  const bool one = names.size() == 1;
+  result.notes.push_back(fmt::format("{}: its column{} {} {} replaced by the result{} of {} name{}",
+                                     a.at, one ? "" : "s", fmt::join(names, ", "),
+                                     one ? "is" : "are", one ? "" : "s", one ? "that" : "these",
+                                     one ? "" : "s"));
+}
+
+nlohmann::ordered_json statistics_of(const PointResult& result, std::size_t points,
+                                     double load_seconds, double write_seconds, double seconds) {
+  return {{"seconds",
+           {{"load", load_seconds},
+            {"prepare", result.prepare_seconds},
+            {"build", result.build_seconds},
+            {"trace", result.trace_seconds},
+            {"write", write_seconds},
+            {"total", seconds}}},
+          {"points", points},
+          {"footprint", result.footprint},
+          {"bias", bias_json(result.bias)},
+          {"device", result.device},
+          {"notes", result.notes}};
+}
+
 void run_points(const Arguments& a) {
   PointOptions options = options_of(a);
   std::vector<OutputPath> outputs{{"--output", a.output}};
@@ -192,7 +259,9 @@ void run_points(const Arguments& a) {
   set_lights(a, scene);
   check_outputs_spare(outputs, files_read(a, scene));  // and images of lights
   const PointList list = points_of(a, scene);
-  if (!a.suns.empty()) options.suns = read_suns(a.suns);
+  std::vector<std::string> notes = list.notes;
+  if (!a.suns.empty()) options.suns = read_suns(a.suns, &notes);
+  note_options(options, scene, list.points, notes);
   const double load_seconds = total.seconds();
   progress.announce("building", "the BVH");
   RenderControl control;
@@ -200,25 +269,14 @@ void run_points(const Arguments& a) {
   PointResult result =
       measure_points(std::move(scene), list.points, list.normals, options, control);
   progress.clear();
-  result.notes.insert(result.notes.begin(), list.notes.begin(), list.notes.end());
+  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  note_replaced(a, list, result);
   const Stopwatch writing;
   write_points(a.output, list, result.columns);
   const double write_seconds = writing.seconds(), seconds = total.seconds();
-  if (!a.stats_json.empty()) {
-    const nlohmann::ordered_json json = {{"seconds",
-                                          {{"load", load_seconds},
-                                           {"prepare", result.prepare_seconds},
-                                           {"build", result.build_seconds},
-                                           {"trace", result.trace_seconds},
-                                           {"write", write_seconds},
-                                           {"total", seconds}}},
-                                         {"points", list.points.size()},
-                                         {"footprint", result.footprint},
-                                         {"bias", bias_json(result.bias)},
-                                         {"device", result.device},
-                                         {"notes", result.notes}};
-    write_whole_file(a.stats_json, json_text(json));
-  }
+  if (!a.stats_json.empty())
+    write_whole_file(a.stats_json, json_text(statistics_of(result, list.points.size(), load_seconds,
+                                                           write_seconds, seconds)));
   if (a.quiet) return;
   for (const std::string& note : result.notes) tell("note: {}\n", note);
   if (!result.bias.empty()) fmt::print("means before their correction, RMSE after it:\n");

@@ -68,7 +68,7 @@ bool lock_new_file(int descriptor) {
 
 /// Removes the file if the process that made it has ended; returns whether it did. Files of other
 /// hosts must also be unchanged for a day.
-bool is_abandoned(const fs::path& path, bool own_host) {
+bool remove_if_abandoned(const fs::path& path, bool own_host) {
   const Descriptor file(open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status {};
   if (file.get() < 0 || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
@@ -106,7 +106,7 @@ std::size_t remove_abandoned_files(const std::string& folder) {
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
-    if (is_our_name(name) && is_abandoned(at->path(), name.starts_with(own))) ++removed;
+    if (is_our_name(name) && remove_if_abandoned(at->path(), name.starts_with(own))) ++removed;
   }
   return removed;
 }

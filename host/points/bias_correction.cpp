@@ -2,18 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 
 namespace dapple {
-namespace {
 
-/// How fast a transmittance falls when its optical depth grows by a factor.
 double fall_with_depth(double x) { return x > 0 && x < 1 ? -x * std::log(x) : 0; }
-
-}  // namespace
 
 BiasCorrection::BiasCorrection(std::span<const double> exact, std::span<const double> prefiltered) {
   assert(exact.size() == prefiltered.size());
@@ -32,17 +27,17 @@ BiasCorrection::BiasCorrection(std::span<const double> exact, std::span<const do
   const auto count = static_cast<double>(exact.size());
   mean_bias_ = -difference / count;
   mean_error_ = std::sqrt(residual / (count * (count - 1)));
-  error_ = mean_error_ * count / fall;
+  mean_fall_ = fall / count;
+  error_ = mean_error_ / mean_fall_;
   measured_ = true;
 }
 
-double BiasCorrection::corrected(double prefiltered) const {
-  if (!measured_) return prefiltered;
-  return std::clamp(prefiltered + change_ * fall_with_depth(prefiltered), 0.0, 1.0);
+double BiasCorrection::standard_error(double fall) const {
+  return std::hypot(error_, local_error_) * fall;
 }
 
-double BiasCorrection::standard_error(double prefiltered) const {
-  return error_ * fall_with_depth(prefiltered);
+void BiasCorrection::set_local_bias(double rmse) {
+  if (mean_fall_ > 0) local_error_ = rmse / mean_fall_;
 }
 
 std::string BiasCorrection::note(const std::string& quantity) const {

@@ -8,8 +8,13 @@
 
 namespace dapple {
 
-/// Prefiltered optical depths are taken to be wrong by one factor, 1 + e. A transmittance x is then
-/// wrong by e times -x log(x): nothing where nothing occludes.
+/// How fast a transmittance in [0,1] falls when its optical depth grows by a factor: -x log(x). 0
+/// for others.
+double fall_with_depth(double transmittance);
+
+/// Prefiltered optical depths are taken to be wrong by one factor, 1 + e. A transmittance is then
+/// wrong by e times its fall: nothing where nothing occludes. A mean of several values has the mean
+/// of their falls, which is less than the fall of the mean.
 class BiasCorrection {
  public:
   /// Changes nothing.
@@ -17,9 +22,13 @@ class BiasCorrection {
   /// Values in [0,1], of the same rays in the same order.
   BiasCorrection(std::span<const double> exact, std::span<const double> prefiltered);
 
-  /// The corrected value of a prefiltered one in [0,1].
-  [[nodiscard]] double corrected(double prefiltered) const;
-  [[nodiscard]] double standard_error(double prefiltered) const;
+  /// What must be added to a prefiltered value in [0,1] with this fall.
+  [[nodiscard]] double change(double fall) const { return change_ * fall; }
+  /// Of a corrected value with this fall: of the change, and of what it leaves of the bias.
+  [[nodiscard]] double standard_error(double fall) const;
+
+  /// `rmse`: of what the correction leaves of the bias of single values, beside their noise.
+  void set_local_bias(double rmse);
 
   [[nodiscard]] bool is_measured() const { return measured_; }
   /// Prefiltered less exact, before the correction, and its standard error.
@@ -30,7 +39,8 @@ class BiasCorrection {
   [[nodiscard]] std::string note(const std::string& quantity) const;
 
  private:
-  double change_ = 0, error_ = 0;
+  double change_ = 0, error_ = 0;           // by fall
+  double mean_fall_ = 0, local_error_ = 0;  // the latter by fall, too
   double mean_bias_ = 0, mean_error_ = 0;
   bool measured_ = false;
 };

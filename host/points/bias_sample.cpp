@@ -65,8 +65,7 @@ std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& 
   }
   std::vector<BiasCorrection> corrections;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    corrections.emplace_back(exact[k].values, prefiltered[k].values);
-    const BiasCorrection& correction = corrections.back();
+    BiasCorrection& correction = corrections.emplace_back(exact[k].values, prefiltered[k].values);
     const std::size_t values = exact[k].values.size();
     if (values == 0) continue;
     std::vector<BiasUnit> units(points_.size());
@@ -74,9 +73,11 @@ std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& 
     for (std::size_t v = 0; v < values; ++v) {
       BiasUnit& unit = units[exact[k].points[v]];
       unit.count += 1;
-      unit.difference += correction.corrected(prefiltered[k].values[v]) - exact[k].values[v];
+      const double value = prefiltered[k].values[v];
+      unit.difference += value + correction.change(fall_with_depth(value)) - exact[k].values[v];
     }
     Bias bias = estimate_bias(std::move(units), share_);
+    correction.set_local_bias(bias.tile_rmse);
     const double rays = static_cast<double>(values) * rays_of_set(options_, 0).rays;
     if (correction.is_measured()) {
       bias.mean = correction.mean_bias();
@@ -112,7 +113,7 @@ BiasCorrection BiasSample::of_sky_view_factor() {
 
 std::vector<BiasCorrection> BiasSample::of_lights(const std::vector<LightLayer>& layers) {
   std::vector<std::string> names;
-  for (const LightLayer& layer : layers) names.push_back(layer.name);
+  for (const LightLayer& layer : layers) names.push_back("light." + layer.name);
   return compare(names, [&](const OcclusionOptions& of) {
     const auto found = irradiance(on_.device, on_.uploaded, on_.scene.lights, points_, normals_,
                                   {of.rays, of.estimator, of.footprint, of.seed});

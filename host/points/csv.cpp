@@ -1,8 +1,10 @@
-// CSV: a line of names, if it does not begin with a number, then a line a row.
+// CSV: a line of names, if it does not begin with a number, then a line a row. Fields may be quoted
+// (RFC 4180) but end on their line.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
-#include <cstdint>
+#include <cmath>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -14,20 +16,56 @@
 namespace dapple {
 namespace {
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  const bool spaced = line.find_first_of(",;\t") == std::string_view::npos;
-  const char* separators = spaced ? " " : ",;\t";
-  while (true) {
-    const std::size_t end = line.find_first_of(separators);
-    std::string_view cell = line.substr(0, end);
-    while (!cell.empty() && (cell.front() == ' ' || cell.front() == '"')) cell.remove_prefix(1);
-    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '"' || cell.back() == '\r'))
-      cell.remove_suffix(1);
-    if (!cell.empty() || !spaced) cells.push_back(cell);
-    if (end == std::string_view::npos) return cells;
-    line.remove_prefix(end + 1);
+std::string_view trimmed(std::string_view cell) {
+  cell.remove_prefix(std::min(cell.find_first_not_of(' '), cell.size()));
+  return cell.substr(0, cell.find_last_not_of(" \r") + 1);
+}
+
+/// The line with '_' in place of what is between quotes, so that all its separators separate. A
+/// quote opens where a field begins; inside, two quotes are one character.
+std::string without_quoted(const std::string& path, std::size_t number, std::string_view line) {
+  std::string text(line);
+  bool inside = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '"')
+      text[i] = inside ? '_' : text[i];
+    else if (!inside)
+      inside = i == 0 || std::string_view(" ,;\t").find(text[i - 1]) != std::string_view::npos;
+    else if (i + 1 < text.size() && text[i + 1] == '"')
+      text[++i] = '_';
+    else
+      inside = false;
   }
+  if (inside)
+    throw Error(ErrorKind::input,
+                fmt::format("{}: line {} has a quote that is not closed; a field must end on its "
+                            "line, and quotes inside of it are doubled",
+                            path, number));
+  return text;
+}
+
+/// The fields of a line without the quotes around them. `unquoted` is its without_quoted().
+std::vector<std::string_view> cells_of(std::string_view line, std::string_view unquoted) {
+  std::vector<std::string_view> cells;
+  const bool spaced = unquoted.find_first_of(",;\t") == std::string_view::npos;
+  const char* separators = spaced ? " " : ",;\t";
+  for (std::size_t begin = 0, end = 0;; begin = end + 1) {
+    end = std::min(unquoted.find_first_of(separators, begin), line.size());
+    std::string_view cell = trimmed(line.substr(begin, end - begin));
+    const bool is_field = !spaced || !cell.empty();
+    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"')
+      cell = trimmed(cell.substr(1, cell.size() - 2));
+    if (is_field) cells.push_back(cell);
+    if (end == line.size()) return cells;
+  }
+}
+
+/// A field with one quote for each two.
+std::string text_of(std::string_view cell) {
+  std::string text(cell);
+  for (std::size_t at = 0; (at = text.find("\"\"", at)) != std::string::npos; ++at)
+    text.erase(at, 1);
+  return text;
 }
 
 /// Throws if columns are separated in two ways, as those of numbers with decimal commas may seem.
@@ -50,6 +88,18 @@ bool parse(std::string_view cell, double& value) {
   return error == std::errc() && end == cell.data() + cell.size();
 }
 
+/// The digits that a file of float32 or float64 had: whole numbers in full, others the shortest.
+std::string digits_of(double value) {
+  constexpr double kMostWhole = 9007199254740992.0;  // 2^53
+  if (std::trunc(value) == value && std::abs(value) <= kMostWhole)
+    return fmt::format("{:.0f}", value);
+  std::string digits = fmt::format("{}", value);
+  const auto single = static_cast<float>(value);
+  // A float64 with few digits was written so, and float32 may need fewer: 2097152.25.
+  constexpr std::size_t kFewDigits = 12;
+  return double{single} == value && digits.size() > kFewDigits ? fmt::format("{}", single) : digits;
+}
+
 }  // namespace
 
 NumberTable read_csv(const std::string& path) {
@@ -64,15 +114,16 @@ NumberTable read_csv(const std::string& path) {
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.find_first_not_of(" \t\r") == std::string_view::npos || line.front() == '#') continue;
-    check_separators(path, number, line);
-    const std::vector<std::string_view> cells = cells_of(line);
-    if (cells.empty())
+    const std::string unquoted = without_quoted(path, number, line);
+    check_separators(path, number, unquoted);
+    const std::vector<std::string_view> cells = cells_of(line, unquoted);
+    if (cells.size() == 1 && cells[0].empty())
       throw Error(ErrorKind::input, fmt::format("{}: line {} has no columns", path, number));
     double value = 0;
     if (table.columns == 0) {
       table.columns = cells.size();
       if (!parse(cells[0], value)) {
-        table.names.assign(cells.begin(), cells.end());
+        for (const std::string_view name : cells) table.names.push_back(text_of(name));
         continue;
       }
     }
@@ -82,9 +133,12 @@ NumberTable read_csv(const std::string& path) {
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const bool is_number = parse(cells[c], value);
       table.values.push_back(is_number ? value : std::numeric_limits<double>::quiet_NaN());
-      if (!is_number && !cells[c].empty())
-        table.text.try_emplace(c, TextCell{fmt::format("line {}", number), std::string(cells[c])});
+      if (cells[c].empty())
+        table.empty.try_emplace(c, table.lines.size());
+      else if (!is_number)
+        table.text.try_emplace(c, TextCell{fmt::format("line {}", number), text_of(cells[c])});
     }
+    table.lines.push_back(number);
   }
   if (table.columns == 0) throw Error(ErrorKind::input, path + ": there are no rows");
   return table;
@@ -94,11 +148,8 @@ std::string csv_bytes(const NumberTable& table) {
   std::string text;
   for (std::size_t c = 0; c < table.columns; ++c) text += (c > 0 ? "," : "") + table.names[c];
   text += '\n';
-  const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < table.values.size(); ++i) {
-    const double value = table.values[i];
-    const auto single = static_cast<float>(value);
-    double{single} == value ? fmt::format_to(out, "{}", single) : fmt::format_to(out, "{}", value);
+    text += digits_of(table.values[i]);
     text += (i + 1) % table.columns == 0 ? '\n' : ',';
   }
   return text;

@@ -12,6 +12,7 @@
 #include "dapple/points.hpp"
 #include "film/light_layers.hpp"
 #include "points/bias_sample.hpp"
+#include "points/local_footprint.hpp"
 #include "points/periodic.hpp"
 #include "points/ray_slices.hpp"
 #include "points/ring_rays.hpp"
@@ -111,12 +112,14 @@ class Measurement {
   }
 
   void choose_footprint() {
-    if (options_.max_bias > 0 && !is_corrected()) result_.notes.emplace_back(kNothingToLimit);
-    if (options_.max_bias > 0 && !sample_.is_empty()) {
+    const float most = options_.max_bias.value_or(0);
+    if (most > 0 && !is_corrected()) result_.notes.emplace_back(kNothingToLimit);
+    if ((most > 0 || !options_.max_bias) && !sample_.is_empty()) {
       const FootprintChoice choice =
-          dapple::choose_footprint(sample_, {options_.footprint, options_.max_bias, 0, true});
+          most > 0 ? dapple::choose_footprint(sample_, {options_.footprint, most, 0, true})
+                   : choose_local_footprint(sample_, options_.footprint, options_.rays);
       options_.footprint = choice.footprint;
-      result_.notes.push_back(choice.note);
+      if (!choice.note.empty()) result_.notes.push_back(choice.note);
     }
     sample_.use_footprint(options_.footprint);
     result_.footprint = options_.footprint;
@@ -196,12 +199,13 @@ class Measurement {
       for (std::size_t k = 0; k < sums.size(); ++k) {
         const LightLayer& layer = layers[k / 3];
         const auto c = static_cast<unsigned>(k % 3);
-        sums[k].add([&](std::size_t i) {
-          return sum_of(found, layer, &PointIrradiance::irradiance, i)[c];
-        });
-        all[k].add([&](std::size_t i) {
+        const auto whole = [&](std::size_t i) {
           return sum_of(found, layer, &PointIrradiance::unoccluded, i)[c];
-        });
+        };
+        sums[k].add(
+            [&](std::size_t i) { return sum_of(found, layer, &PointIrradiance::irradiance, i)[c]; },
+            whole);
+        all[k].add(whole);
       }
       if (!step()) return;
     }
@@ -231,7 +235,7 @@ class Measurement {
     for (const V3f& normal : normals_) unoccluded.push_back(suns.unoccluded(normal));
     const auto whole = [&](std::size_t i) { return unoccluded[i]; };
     for (const std::vector<double>& part : parts)
-      sums.add([&](std::size_t i) { return part[i] * whole(i); });
+      sums.add([&](std::size_t i) { return part[i] * whole(i); }, whole);
     BiasCorrection bias;
     if (is_corrected()) bias = noted("sun", sample_.of_suns());
     sums.store("sun", bias, whole, result_.columns);
@@ -297,6 +301,7 @@ void validate(const PointOptions& options) {
   check_range("--rays", options.rays, kPointSets, 1 << 20);
   check_range("--rings", options.rings, 0, 90);
   check_ray_options(options);
+  check_range("--max-bias", options.max_bias.value_or(0), 0, 1);
   check_range("--periodic", double{options.period_x}, 0, 1e30);
   check_range("--periodic", double{options.period_z}, 0, 1e30);
   if ((options.period_x > 0) != (options.period_z > 0))

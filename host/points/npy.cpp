@@ -12,6 +12,7 @@
 #include "dapple/error.hpp"
 #include "points/number_table.hpp"
 #include "scene/gltf/file.hpp"
+#include "scene/message.hpp"
 
 namespace dapple {
 namespace {
@@ -121,6 +122,19 @@ std::string text_at(const char* at, ColumnType type) {
   return text;
 }
 
+/// Throws about a type that cannot be read, such as ">f8". `name`: of the field; empty: no field.
+[[noreturn]] void fail_type(const std::string& path, const std::string& name,
+                            std::string_view text) {
+  std::string after = std::string(text.substr(std::min<std::size_t>(1, text.size())));
+  const bool is_swapped = text.starts_with('>') && type_of("<" + after).bytes > 0;
+  if (!is_swapped) after = after.starts_with('f') ? "f4" : "";
+  fail_npy(path,
+           fmt::format("{} '{}'; it must be little-endian float32, float64 or whole numbers{}",
+                       name.empty() ? "its type is" : fmt::format("its field \"{}\" is", name),
+                       excerpt(text),
+                       after.empty() ? "" : fmt::format(" (numpy: .astype('<{}'))", after)));
+}
+
 /// The type of each column, and names of the columns of a structured array.
 std::vector<ColumnType> read_types(const std::string& path, std::string_view descr,
                                    std::vector<std::string>& names) {
@@ -132,11 +146,10 @@ std::vector<ColumnType> read_types(const std::string& path, std::string_view des
       if (name.empty() && !types.empty()) return types;
       names.emplace_back(name);
     }
-    types.push_back(type_of(take_quoted(descr, ']')));
+    const std::string_view text = take_quoted(descr, ']');
+    types.push_back(type_of(text));
     if (types.back().bytes == 0 || (!structured && types.back().is_text()))
-      fail_npy(path,
-               "must hold little-endian float32 or float64 or whole numbers, plain or as named "
-               "fields");
+      fail_type(path, structured ? excerpt(names.back()) : "", text);
     if (structured &&
         !descr.substr(std::min(descr.find_first_not_of(' '), descr.size())).starts_with(')'))
       fail_npy(path, fmt::format("has several values in each \"{}\"; give each a field of its own",

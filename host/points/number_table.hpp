@@ -16,8 +16,10 @@ struct TextCell {
 struct NumberTable {
   std::vector<std::string> names;  ///< of the columns; empty: not said
   std::size_t columns = 0;
-  std::vector<double> values;              ///< row after row; NaN where a cell is empty or text
-  std::map<std::size_t, TextCell> text{};  ///< by column: the first cell that is text
+  std::vector<double> values;                  ///< row after row; NaN where a cell is empty or text
+  std::map<std::size_t, TextCell> text{};      ///< by column: the first cell that is text
+  std::map<std::size_t, std::size_t> empty{};  ///< by column: the row of the first empty cell
+  std::vector<std::size_t> lines{};            ///< of rows in a CSV file, from 1; others have none
 
   [[nodiscard]] std::size_t rows() const { return columns > 0 ? values.size() / columns : 0; }
   /// The index of a column; -1: none.

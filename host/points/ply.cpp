@@ -80,10 +80,24 @@ std::size_t vertex_count(const std::string& path, const std::string& text, std::
   return count;
 }
 
+/// Where the line end_header begins, which ends with a line feed or a carriage return and one;
+/// npos: nowhere.
+std::size_t end_of_header(const std::string& bytes) {
+  for (std::size_t at = 0; at != std::string::npos;) {
+    at = bytes.find("\nend_header", at);
+    if (at == std::string::npos) break;
+    const std::size_t after = at + 11;
+    const std::size_t line_end = after + (after < bytes.size() && bytes[after] == '\r' ? 1 : 0);
+    if (line_end < bytes.size() && bytes[line_end] == '\n') return at + 1;
+    at = after;
+  }
+  return std::string::npos;
+}
+
 Header read_header(const std::string& path, const std::string& bytes, NumberTable& table) {
-  const std::size_t end = bytes.find("end_header");
+  const std::size_t end = end_of_header(bytes);
   if (bytes.compare(0, 3, "ply") != 0 || end == std::string::npos)
-    fail_ply(path, "is not a PLY file");
+    fail_ply(path, "is not a PLY file: it must begin with a line ply, and have a line end_header");
   Header header;
   std::istringstream lines(bytes.substr(0, end));
   std::string line, element;
@@ -107,7 +121,7 @@ Header read_header(const std::string& path, const std::string& bytes, NumberTabl
       table.names.push_back(name);
     }
   }
-  header.end = std::min(bytes.size(), bytes.find('\n', end) + 1);
+  header.end = bytes.find('\n', end) + 1;
   table.columns = table.names.size();
   return header;
 }

@@ -28,15 +28,18 @@ struct PointList {
 ///   structured array with these names
 /// - .ply: element vertex, ascii or binary_little_endian
 /// Normals are scaled to length 1. Other columns of numbers are `extra`, under their names or as
-/// column_N, N from 1; of columns of text there is a note. Throws Error input, "PATH: ..." with the
-/// line or row.
+/// column_N, N from 1. Notes tell columns of text, files without points, and columns without names
+/// that are neither 3 nor 6. Throws Error input, "PATH: ..." with the line of a CSV file, from 1,
+/// or the row, from 0.
 PointList read_points(const std::string& path);
 
 /// Reads suns: x, y, z (towards the sun) or azimuth, elevation (degrees; azimuth from -Z, north,
-/// to +X, east), then irradiance in W/m^2. CSV as above, with a line of names. Throws Error input.
-std::vector<SunDirection> read_suns(const std::string& path);
+/// to +X, east), then irradiance in W/m^2. CSV as above, with a line of names. Adds a note to
+/// `notes`, if given, where angles may be radians. Throws Error input.
+std::vector<SunDirection> read_suns(const std::string& path,
+                                    std::vector<std::string>* notes = nullptr);
 
-/// Throws Error usage unless write_points() can write a file with this ending.
+/// Throws Error usage unless write_points() can write a file with this ending, in any case.
 void check_point_output(const std::string& path);
 
 /// Writes x, y, z, nx, ny, nz, the extra columns that have no result's name, and the results:

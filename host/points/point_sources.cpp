@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "dapple/error.hpp"
 
@@ -33,7 +35,9 @@ PointList grid_points(const std::array<double, 5>& corners, double height) {
 
 PointList triangle_points(const Scene& scene) {
   PointList list;
-  for (const Instance& instance : scene.instances) {
+  std::vector<double> instances, materials, sides, areas;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.has_strands()) continue;
     // A mirrored instance reverses the winding of its triangles. The front stays the front, as glTF
@@ -48,9 +52,17 @@ PointList triangle_points(const Scene& scene) {
       for (const float side : {front, -front}) {
         list.points.push_back((corner[0] + corner[1] + corner[2]) / 3.0f);
         list.normals.push_back(area.normalized() * side);
+        instances.push_back(static_cast<double>(i));
+        materials.push_back(static_cast<double>(mesh.materials[t]));
+        sides.push_back(side == front ? 1 : -1);
+        areas.push_back(0.5 * double{area.length()});
       }
     }
   }
+  list.extra = {{"instance", std::move(instances)},
+                {"material", std::move(materials)},
+                {"side", std::move(sides)},
+                {"area", std::move(areas)}};
   return list;
 }
 

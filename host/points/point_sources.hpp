@@ -12,7 +12,8 @@ namespace dapple {
 PointList grid_points(const std::array<double, 5>& corners, double height);
 
 /// For each instance and triangle its centre, first with the front side's normal, then the back's.
-/// Triangles without an area are ignored.
+/// Triangles without an area are ignored. Extra columns: `instance` and `material`, numbers from 0
+/// in the scene; `side`, 1 for the front and -1 for the back; `area` of the triangle, m^2.
 PointList triangle_points(const Scene& scene);
 
 }  // namespace dapple

@@ -16,21 +16,29 @@ namespace dapple {
 
 class SetSums {
  public:
-  explicit SetSums(std::size_t count) : sums_(count), squares_(count) {}
+  explicit SetSums(std::size_t count) : sums_(count), squares_(count), falls_(count) {}
 
-  template <class Value>
-  void add(const Value& value) {
+  /// Adds the values of a set, and how they fall with depth as parts of `whole(i)`.
+  template <class Value, class Whole>
+  void add(const Value& value, const Whole& whole) {
     for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const double x = value(i);
+      const double x = value(i), all = whole(i);
       sums_[i] += x;
       squares_[i] += x * x;
+      if (all > 0) falls_[i] += all * fall_with_depth(x / all);
     }
     ++sets_;
   }
 
+  /// Of values in [0,1].
+  template <class Value>
+  void add(const Value& value) {
+    add(value, [](std::size_t) { return 1.0; });
+  }
+
   [[nodiscard]] double mean(std::size_t i) const { return sums_[i] / sets_; }
 
-  /// Values are corrected as parts of `whole(i)`.
+  /// Corrected values are from 0 to `whole(i)`.
   template <class Whole>
   void store(const std::string& name, const BiasCorrection& bias, const Whole& whole,
              std::vector<PointColumn>& columns) const {
@@ -38,9 +46,9 @@ class SetSums {
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const double m = mean(i), all = whole(i);
       const double variance = std::max(0.0, squares_[i] / sets_ - m * m) / (sets_ - 1);
-      const double part = all > 0 ? std::min(1.0, m / all) : 1;
-      const double of_correction = all * bias.standard_error(part);
-      values.values.push_back(static_cast<float>(m + all * (bias.corrected(part) - part)));
+      const double fall = falls_[i] / sets_, of_correction = bias.standard_error(fall);
+      const double most = std::max(m, all);  // lights vary from set to set
+      values.values.push_back(static_cast<float>(std::clamp(m + bias.change(fall), 0.0, most)));
       errors.values.push_back(
           static_cast<float>(std::sqrt(variance + of_correction * of_correction)));
     }
@@ -56,7 +64,7 @@ class SetSums {
   }
 
  private:
-  std::vector<double> sums_, squares_;
+  std::vector<double> sums_, squares_, falls_;
   int sets_ = 0;
 };
 

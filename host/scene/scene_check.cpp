@@ -113,17 +113,21 @@ bool is_finite(const V3f& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+bool is_radiance(const V3f& v) { return is_finite(v) && std::min({v.x, v.y, v.z}) >= 0; }
+
 void check_light(const Scene& scene, std::size_t number) {
   const Light& light = scene.lights[number];
   const Check check(scene, "light", number, light.name);
-  const V3f& radiance = light.radiance;
-  check.that(is_finite(radiance) && std::min({radiance.x, radiance.y, radiance.z}) >= 0,
-             "has a radiance that is negative or not finite");
+  check.that(is_radiance(light.radiance), "has a radiance that is negative or not finite");
   const LightKind kind = light.kind;
-  if (const Environment* dome = light.environment.get())
-    check.that(dome->radiance.size() == std::size_t{dome->width} * dome->height,
-               "has a dome of {} values for {} x {} pixels", dome->radiance.size(), dome->width,
-               dome->height);
+  if (const Environment* dome = light.environment.get()) {
+    check.that(
+        !dome->radiance.empty() && dome->radiance.size() == std::size_t{dome->width} * dome->height,
+        "has a dome of {} values for {} x {} pixels; they must be as many, and one at least",
+        dome->radiance.size(), dome->width, dome->height);
+    check.that(std::all_of(dome->radiance.begin(), dome->radiance.end(), is_radiance),
+               "has a dome with pixels that are negative or not finite");
+  }
   if (kind == LightKind::mesh || kind == LightKind::dome) return;
   check.that(is_finite(light.position), "has a position that is not finite");
   const bool is_spot = light.cos_outer > -1;

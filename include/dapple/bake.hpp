@@ -165,7 +165,8 @@ struct BakeResult {
 /// position with normals of triangles within 45 degrees share one value. A bake that is
 /// resumed from a checkpoint of `control` must have the same arguments as the first one. Throws
 /// Error usage, input, device or failed; usage also for `occluders` with BakeInstances::alone,
-/// unless only instances are baked. The same arguments give the same bits.
+/// unless only instances are baked. The same arguments give the same bits, but for seconds and the
+/// reported bias: how many samples are compared depends on the time that comparing takes.
 BakeResult bake(const Scene& scene, const BakeOptions& options = {},
                 const RenderControl& control = {}, const std::vector<Scene>& occluders = {});
 

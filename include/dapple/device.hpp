@@ -75,10 +75,10 @@ struct UploadOptions {
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh,
                    const UploadOptions& options = {});
 
-/// Updates `bvh`, from which `on_device` was made, to `moved`, and uploads what changed. On devices
-/// that share the host's memory it uploads only lights and normals. Uploads everything anew if
-/// `options` changed. Throws as UpdatableBvh::update() and
-/// upload().
+/// Updates `bvh`, from which `on_device` was made, to `moved`, and uploads what changed: on devices
+/// that share the host's memory lights, normals, colours and where instances are. Uploads
+/// everything anew if `options` changed, or if `on_device` is empty, as an Error may leave it.
+/// Throws as UpdatableBvh::update() and upload().
 BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
                  const Scene& moved, const UploadOptions& options = {});
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,8 +37,9 @@ struct PointOptions {
   float footprint = 1.0f;                  ///< of the rays of one set
   float report_bias = kDefaultReportBias;  ///< 0: PointResult::bias stays empty
   /// The footprint is the largest of `footprint`, a half of it, a quarter and so on with which the
-  /// bias, before it is corrected, is at most this, [0,1]; 0: `footprint`.
-  float max_bias = 0;
+  /// bias, before it is corrected, is at most this, [0,1]; 0: `footprint`. None: with which the
+  /// correction leaves less in single values than their standard errors, if it clearly leaves more.
+  std::optional<float> max_bias;
   float distance = 0;  ///< of AO, as RenderOptions::ao_distance
   float falloff = 0;   ///< of AO, as RenderOptions::ao_falloff
   /// The scene repeats itself with these periods along X and Z, metres; 0: it does not. Its lights
@@ -63,11 +65,11 @@ struct PointResult {
   /// NAME_r, NAME_g and NAME_b of a light, and sun or sun_N, in W/m^2. With each an _error, its
   /// standard error; bent_ and sun_N have none, and that of sun is 0 if each sun had a ray.
   std::vector<PointColumn> columns;
-  /// The bias before it was corrected, by quantity: "ao", "sky_view_factor", lights by name, and
-  /// "sun", their sum where suns were chosen; lights and suns are relative to the unoccluded
+  /// The bias before it was corrected, by quantity: "ao", "sky_view_factor", "gap_N", "light.NAME",
+  /// and "sun", their sum where suns were chosen; lights and suns are relative to the unoccluded
   /// irradiance. The RMSE over tiles (of neighbouring points) is what the correction leaves.
   std::map<std::string, Bias> bias;
-  float footprint = 0;  ///< PointOptions::footprint, or what max_bias chose
+  float footprint = 0;  ///< PointOptions::footprint, or what was chosen (max_bias)
   std::vector<std::string> notes;
   /// Seconds of BVHs; of the rest before rays are traced: of the device, its kernels and the
   /// upload; and of tracing.

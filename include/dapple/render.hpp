@@ -109,8 +109,9 @@ struct RenderControl {
 class Renderer {
  public:
   Renderer();
-  /// Uses `device` and its kernels for pictures whose options name it as it was opened. No two
-  /// Renderers may use one device at once.
+  /// Uses `device` and its kernels for pictures whose options name it as it was opened. Nothing
+  /// else may use that device, or a copy of it, while render() runs, or between prepare() and the
+  /// end of the next render().
   explicit Renderer(const Device& device);
   ~Renderer();
   Renderer(Renderer&&) noexcept;

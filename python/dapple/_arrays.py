@@ -21,6 +21,8 @@ def shape_text(shape: tuple[int, ...]) -> str:
 
 
 def _numbers(name: str, values: npt.ArrayLike, kinds: str) -> npt.NDArray[Any]:
+    if np.ma.is_masked(values):
+        raise UsageError(f"{name} has masked values; leave them out, as with {name}.compressed()")
     try:
         array = np.asarray(values)
     except ValueError as error:

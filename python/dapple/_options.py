@@ -36,7 +36,7 @@ class MeasureOptions(QueryOptions, total=False):
     """Of measure(), as the program's `dapple points`."""
 
     report_bias: float
-    max_bias: float
+    max_bias: float | None
     ao: bool
     sky_view_factor: bool
     bent: bool

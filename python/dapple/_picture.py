@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, NoReturn, Sequence
 
 import numpy as np
 
@@ -42,6 +42,9 @@ class Picture(Mapping[str, FloatArray]):
     >>> "Z" in picture, picture.metadata["scene"]
     (True, 'scene:demo')
     """
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a dapple.Picture cannot be pickled: its channels can, or save() it")
 
     def __init__(self, native: _native.Picture) -> None:
         self._native = native
@@ -120,7 +123,7 @@ class Picture(Mapping[str, FloatArray]):
             raise UsageError(f"{text}: pictures are saved as .exr or .png")
 
     def save_deep(self, path: str | PathLike[str]) -> None:
-        """Writes a deep EXR: A and Z of what camera rays slip through, of render(deep=True).
+        """Writes a deep EXR: A and Z of what camera rays pass through, of render(deep=True).
 
         >>> dapple.load("scene:demo").render(width=32, height=18, deep=True).save_deep("deep.exr")
         """

@@ -17,6 +17,7 @@
 #include "nanobind/stl/optional.h"
 #include "nanobind/stl/string.h"
 #include "nanobind/stl/vector.h"
+#include "scene/numeric_range.hpp"
 #include "scene_on_device.hpp"
 
 namespace dapple::python {
@@ -70,6 +71,10 @@ SceneOnDevice from_arrays(const VectorsIn& vertices, const IndicesIn& triangles,
       throw Error(ErrorKind::usage, "there is no material " + std::to_string(index));
   scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({});
+  check_numeric_range(scene);
+  for (const std::string& text : scene.warnings)
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) != 0) throw nb::python_error();
+  scene.warnings.clear();  // each measurement notes them again
   return SceneOnDevice(std::move(scene));
 }
 
@@ -170,6 +175,17 @@ void bind_parts(nb::class_<SceneOnDevice>& bound) {
       });
 }
 
+/// Adds lights of a file. Their sequences of random numbers are those after the scene's.
+void add_lights(Scene& scene, std::vector<Light> lights) {
+  int next = 0;
+  for (const Light& light : scene.lights)
+    next = std::max(next, (light.sequence < 0 ? next : light.sequence) + 1);
+  for (Light& light : lights) {
+    light.sequence += next;
+    scene.lights.push_back(std::move(light));
+  }
+}
+
 }  // namespace
 
 void bind_scene(nb::module_& module) {
@@ -182,12 +198,13 @@ void bind_scene(nb::module_& module) {
             override_opacity(s.change(), material, value);
           },
           nb::arg("material"), nb::arg("value"))
+      .def("copy", [](const SceneOnDevice& s) { return s; })  // changes do not reach the other
       .def("add_ground", [](SceneOnDevice& s) { add_ground(s.change()); })
       .def("clear_lights", [](SceneOnDevice& s) { use_lights(s.change(), {}); })
       .def(
           "add_lights",
           [](SceneOnDevice& s, const std::string& path) {
-            for (Light& light : load_lights(path)) s.change().lights.push_back(std::move(light));
+            add_lights(s.change(), load_lights(path));
           },
           nb::arg("path"))
       .def(

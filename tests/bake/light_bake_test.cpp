@@ -213,6 +213,29 @@ TEST(BakeLight, AGroupIsTheSumOfItsLights) {
   expect_sums(together.instance_light, apart.instance_light);
 }
 
+// The lamp's mesh has no triangle with an area, so that nothing is uploaded of it.
+TEST(BakeLight, ALightThatEmitsNothingIsNotBakedAndOthersKeepTheirNames) {
+  Scene scene = scene_of(plane(4, 1));
+  Mesh lamp;
+  lamp.positions = {V3f(0, 1, 0), V3f(1, 1, 0), V3f(2, 1, 0)};
+  lamp.indices = {0, 1, 2};
+  lamp.materials = {0};
+  scene.meshes.push_back(lamp);
+  scene.instances.emplace_back();
+  scene.instances[1].mesh = 1;
+  scene.instances[1].light = 0;
+  Light emitting;
+  emitting.name = "lamp";
+  emitting.kind = LightKind::mesh;
+  scene.lights = {emitting, noon()};
+  BakeOptions options;
+  options.light = true;
+  const BakeResult result = bake(scene, options);
+  EXPECT_EQ(result.light_names, std::vector<std::string>{"noon"});
+  ASSERT_EQ(result.meshes.at(0).light.size(), 1u);
+  for (const V3f& light : result.meshes[0].light[0]) EXPECT_NEAR(light.x, kOpen, 0.01 * kOpen);
+}
+
 TEST(BakeLight, ASceneWithoutLightsIsAnErrorAsOnTheCommandLine) {
   Scene scene;
   scene.materials.resize(1);

@@ -76,7 +76,8 @@ TEST_F(BiasJson, OfABakeItHasAoAndAllLightsTogether) {
 TEST_F(BiasJson, OfPointsItHasTheQuantities) {
   const std::string points =
       "-o out.csv --grid=-2,-2,2,2,0.1 --lights sun.json --rings 2 --rays 256 ";
-  expect_bias(statistics("points", points), {"ao", "sky_view_factor", "gap_1", "gap_2", "noon"});
+  expect_bias(statistics("points", points),
+              {"ao", "sky_view_factor", "gap_1", "gap_2", "light.noon"});
   EXPECT_TRUE(statistics("points", points + "--report-bias 0").at("bias").empty());
   EXPECT_TRUE(statistics("points", points + "--estimator exact").at("bias").empty());
 }

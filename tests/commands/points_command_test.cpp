@@ -159,6 +159,50 @@ TEST_F(PointsCommand, SumsSunsWithAStandardErrorOrWritesEach) {
   EXPECT_FALSE(contains(first_line("each.csv"), "sun_90"));
 }
 
+TEST_F(PointsCommand, NotesOptionsThatMayNotDoWhatWasMeant) {
+  const std::string cube = "points 'scene:cube?divisions=1' --grid=-4,-4,4,4,4 -o a.CSV --rays ";
+  const std::string odd = dapple(cube + "20 --ground --height=-1 --periodic 0.5,100").err;
+  EXPECT_TRUE(contains(odd, "--rays is 20; 16 are traced, a multiple of 8")) << odd;
+  EXPECT_TRUE(contains(odd, "9 of 9 points lie below the ground at y = ")) << odd;
+  EXPECT_TRUE(contains(odd, " m wide along X, and its period 0.5 m: copies overlap")) << odd;
+  EXPECT_FALSE(contains(odd, "along Z")) << odd;
+  const program_test::Outcome even = dapple(cube + "16 --ground --height 2 --periodic 0.9,100");
+  EXPECT_EQ(even.code, 0) << even.err;
+  for (const char* note : {"--rays", "below the ground", "overlap"})
+    EXPECT_FALSE(contains(even.err, note)) << even.err;
+}
+
+TEST_F(PointsCommand, NamesTheColumnsThatResultsReplace) {
+  const std::string cube = "points 'scene:cube?divisions=1' --rays 8 -o a.csv --at ";
+  std::ofstream(path("one.csv")) << "x,y,z,id,ao\n0,9,0,7,0.5\n";
+  const program_test::Outcome one = dapple(cube + "one.csv");
+  EXPECT_TRUE(contains(one.err, "one.csv: its column ao is replaced by the result of that name"))
+      << one.err;
+  std::ofstream(path("two.csv")) << "x,y,z,ao,ao_error\n0,9,0,0.5,0\n";
+  const program_test::Outcome two = dapple(cube + "two.csv");
+  EXPECT_TRUE(contains(two.err, "its columns ao, ao_error are replaced by the results of these"))
+      << two.err;
+}
+
+TEST_F(PointsCommand, TellsSunsInRadiansAndFilesWithoutPoints) {
+  std::ofstream(path("suns.csv")) << "azimuth,elevation,irradiance\n3.1,1.2,800\n";
+  std::ofstream(path("at.csv")) << "x,y,z\n";
+  const program_test::Outcome run =
+      dapple("points 'scene:cube?divisions=1' --rays 8 -o a.csv --at at.csv --suns suns.csv");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "suns.csv: angles are taken as degrees; these look")) << run.err;
+  EXPECT_TRUE(contains(run.err, "at.csv: no points")) << run.err;
+}
+
+TEST_F(PointsCommand, SaysThatScenesOfOtherFormatsMustBecomeGltf) {
+  std::ofstream(path("a.OBJ")) << "o cube\nv 0 0 0\n";
+  std::ofstream(path("a.stl")) << "solid cube\n";
+  for (const std::string command : {"info a.OBJ", "points a.stl --per-triangle -o a.csv"})
+    expect_failure(dapple(command), 3, "is not glTF; scenes are glTF (.gltf, .glb) or HAIR files");
+  std::ofstream(path("a.glb")) << "solid cube\n";
+  expect_failure(dapple("info a.glb"), 3, "is not glTF: parse error");
+}
+
 // A wall close to the point hides the sky where x is above 0. What is left of the cosine-weighted
 // directions has the mean (-2, pi, 0), but for its length: tests/points/bent_and_suns_test.cpp.
 TEST_F(PointsCommand, WritesBentNormalsAndEachSunInColumnsOfTheirOwn) {

@@ -164,21 +164,25 @@ TEST_F(CompilingProcesses, EndWithTheProcessThatWaitsForThem) {
 TEST_F(CompilingProcessesCold, WhereNoneCanBeStartedThePictureIsTheSame) {
   if (!program_test::has_namespaces()) GTEST_SKIP() << "no namespaces to mount in";
   DAPPLE_SKIP_WITH_SANITIZER();  // the search for leaks needs /proc
-  const std::string picture =
-      "render scene:cube --width 16 --height 16 --spp 4 -q --passes ao,light,visits -o ";
-  ASSERT_EQ(with_cache(picture + "with.exr").code, 0);
-  const std::size_t kernels = machine_code().size();
-  fs::remove_all(path("cache"));
   // Compiler processes are started from /proc/self/exe, which is missing in this namespace.
   const std::string no_proc = program_test::in_namespace("mount -t tmpfs none /proc");
-  const Outcome run = with_cache(picture + "without.exr", no_proc);
-  ASSERT_EQ(run.code, 0) << run.err;
-  EXPECT_EQ(machine_code().size(), kernels);
-  // Compares pixels and not the whole files: they contain the CPU's name, which comes from /proc.
-  const Film with = read_exr(path("with.exr")), without = read_exr(path("without.exr"));
-  for (const char* layer : {"ao.R", "light.sun.R", "light.sky.R", "visits.nodes"}) {
-    ASSERT_NE(with.find(layer), nullptr) << layer;
-    EXPECT_EQ(with.find(layer)->pixels, without.find(layer)->pixels) << layer;
+  for (const std::string packets : {"auto", "scalar"}) {
+    const std::string picture =
+        "render scene:cube --width 16 --height 16 --spp 4 -q --passes ao,light,visits --packets " +
+        packets + " -o ";
+    fs::remove_all(path("cache"));
+    ASSERT_EQ(with_cache(picture + "with.exr").code, 0);
+    const std::size_t kernels = machine_code().size();
+    fs::remove_all(path("cache"));
+    const Outcome run = with_cache(picture + "without.exr", no_proc);
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(machine_code().size(), kernels) << packets << ": processes compile what is used";
+    // Compares pixels and not the whole files: they contain the CPU's name, which comes from /proc.
+    const Film with = read_exr(path("with.exr")), without = read_exr(path("without.exr"));
+    for (const char* layer : {"ao.R", "light.sun.R", "light.sky.R", "visits.nodes"}) {
+      ASSERT_NE(with.find(layer), nullptr) << layer;
+      EXPECT_EQ(with.find(layer)->pixels, without.find(layer)->pixels) << layer;
+    }
   }
 }
 

@@ -10,6 +10,10 @@
 namespace dapple {
 namespace {
 
+double corrected(const BiasCorrection& bias, double x) {
+  return x + bias.change(fall_with_depth(x));
+}
+
 TEST(BiasCorrection, DepthsThatAreWrongByOneFactorBecomeRight) {
   std::vector<double> exact, prefiltered;
   for (int i = 0; i <= 100; ++i) {
@@ -19,20 +23,29 @@ TEST(BiasCorrection, DepthsThatAreWrongByOneFactorBecomeRight) {
   }
   const BiasCorrection bias(exact, prefiltered);
   for (std::size_t i = 0; i < exact.size(); ++i)  // to the first order in the 4 %
-    EXPECT_NEAR(bias.corrected(prefiltered[i]), exact[i], 0.001) << i;
+    EXPECT_NEAR(corrected(bias, prefiltered[i]), exact[i], 0.001) << i;
   EXPECT_NE(bias.note("ao").find("too light"), std::string::npos);
 }
 
 TEST(BiasCorrection, WhereNothingOrEverythingOccludesNothingChanges) {
   const BiasCorrection bias(std::vector{0.4, 0.5}, std::vector{0.5, 0.6});
-  EXPECT_EQ(bias.corrected(1), 1);
-  EXPECT_EQ(bias.corrected(0), 0);
-  EXPECT_EQ(bias.standard_error(1), 0);
-  EXPECT_LT(bias.corrected(0.5), 0.45);
+  EXPECT_EQ(corrected(bias, 1), 1);
+  EXPECT_EQ(corrected(bias, 0), 0);
+  EXPECT_LT(corrected(bias, 0.5), 0.45);
   const BiasCorrection none;
-  EXPECT_EQ(none.corrected(0.3), 0.3);
+  EXPECT_EQ(corrected(none, 0.3), 0.3);
   EXPECT_EQ(none.note("ao"), "");
-  EXPECT_EQ(BiasCorrection(std::vector{1.0, 1.0}, std::vector{1.0, 1.0}).corrected(0.3), 0.3);
+  EXPECT_EQ(corrected(BiasCorrection(std::vector{1.0, 1.0}, std::vector{1.0, 1.0}), 0.3), 0.3);
+}
+
+TEST(BiasCorrection, WhatItLeavesOfSingleValuesIsPartOfTheirError) {
+  std::vector<double> exact(100, 0.5), prefiltered(100, 0.6);
+  BiasCorrection bias(exact, prefiltered);
+  const double fall = fall_with_depth(0.6);
+  EXPECT_NEAR(bias.standard_error(fall), 0, 1e-12);
+  bias.set_local_bias(0.03);
+  EXPECT_NEAR(bias.standard_error(fall), 0.03, 1e-12);
+  EXPECT_EQ(bias.standard_error(0), 0);
 }
 
 // Noise of 0.05 in 400 differences: the correction's own error must be what repetitions show.
@@ -49,10 +62,10 @@ TEST(BiasCorrection, ItsStandardErrorIsThatOfRepetitions) {
       exact.push_back(prefiltered.back() - 0.01 + noise(bits));
     }
     const BiasCorrection bias(exact, prefiltered);
-    const double x = bias.corrected(0.4);
+    const double x = corrected(bias, 0.4);
     sum += x;
     squares += x * x;
-    told += bias.standard_error(0.4) / kRepetitions;
+    told += bias.standard_error(fall_with_depth(0.4)) / kRepetitions;
   }
   const double mean = sum / kRepetitions;
   const double deviation = std::sqrt(squares / kRepetitions - mean * mean);

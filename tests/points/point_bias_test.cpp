@@ -51,6 +51,28 @@ TEST(PointBias, EveryCorrectedQuantityHasOneAndNoValueDependsOnIt) {
   EXPECT_TRUE(measured(options).bias.empty());
 }
 
+TEST(PointBias, ALightCalledSunIsNotTheSuns) {
+  const Given given = points_in_tree();
+  Scene scene = make_procedural("scene:tree?leaves=3000");
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::sun;
+  sun.angular_radius = 0.1f;
+  scene.lights = {sun};
+  PointOptions options;
+  options.rays = 64;
+  options.ao = options.sky_view_factor = false;
+  options.lights = true;
+  for (int i = 0; i < 100; ++i) {
+    const float angle = 0.05f * static_cast<float>(i);
+    options.suns.push_back({V3f(std::sin(angle), 1, std::cos(angle)).normalized(), 10});
+  }
+  const PointResult found = measure_points(scene, given.points, given.normals, options);
+  EXPECT_EQ(found.bias.size(), 2u);
+  EXPECT_EQ(found.bias.count("light.sun"), 1u);
+  EXPECT_EQ(found.bias.count("sun"), 1u);
+}
+
 TEST(PointBias, TheNoteAndTheReportAgree) {
   PointOptions options;
   options.rays = 64;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "dapple/error.hpp"
 #include "points/number_table.hpp"
@@ -34,24 +35,34 @@ class PointFile : public testing::Test {
     std::ofstream(path(name), std::ios::binary) << bytes;
     return path(name);
   }
-  void expect_error(const std::string& file, const std::string& part) const {
+  static void expect_says(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+  template <class Read>
+  static void expect_error(const std::string& file, const std::string& part, const Read& read) {
     try {
-      read_points(file);
+      read(file);
       FAIL() << file;
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+      expect_says(error.what(), part);
     }
+  }
+  static void expect_error(const std::string& file, const std::string& part) {
+    expect_error(file, part, read_points);
+  }
+  static void expect_suns_error(const std::string& file, const std::string& part) {
+    expect_error(file, part, [](const std::string& name) { return read_suns(name); });
   }
 
  private:
   std::filesystem::path folder_;
 };
 
-TEST_F(PointFile, WhatIsWrittenIsReadAgainInAllThreeFormats) {
+TEST_F(PointFile, WhatIsWrittenIsReadAgainWithEndingsInAnyCase) {
   PointList list;
   list.points = {{0.1f, -2.5f, 1e-20f}, {3e7f, 0, 1.0f / 3}};
   list.normals = {V3f(0, 1, 0), V3f(1, 2, 3).normalized()};
-  for (const char* name : {"a.csv", "a.npy", "a.ply"}) {
+  for (const char* name : {"a.csv", "a.npy", "a.ply", "b.CSV", "b.Npy", "b.PLY"}) {
     write_points(path(name), list, {{"ao", {0.25f, 0.5f}}});
     const PointList again = read_points(path(name));
     ASSERT_EQ(again.points.size(), 2u) << name;
@@ -109,16 +120,32 @@ TEST_F(PointFile, OtherColumnsOfNumbersAreWrittenAgainInAllThreeFormats) {
 
 TEST_F(PointFile, ColumnsOfTextAreLeftOutWithANote) {
   const PointList list = read_points(write("n.csv", "plot,x,y,z,id\nA1,1,2,3,4\n"));
-  ASSERT_EQ(list.extra.size(), 1u);
-  EXPECT_EQ(list.extra[0].name, "id");
-  ASSERT_EQ(list.notes.size(), 1u);
-  EXPECT_NE(list.notes[0].find("plot holds text (\"A1\" in line 2)"), std::string::npos)
-      << list.notes[0];
+  EXPECT_EQ(list.extra.at(0).name, "id");
+  expect_says(list.notes.at(0), "plot holds text (\"A1\" in line 2)");
   const std::vector<SunDirection> suns =
       read_suns(write("s.csv", "time,azimuth,elevation,irradiance\n2026-06-21 12:00,180,63,800\n"));
-  ASSERT_EQ(suns.size(), 1u);
-  EXPECT_EQ(suns[0].irradiance, 800);
-  EXPECT_THROW(read_suns(write("t.csv", "azimuth,elevation,irradiance\n180,63,high\n")), Error);
+  EXPECT_EQ(suns.at(0).irradiance, 800);
+}
+
+TEST_F(PointFile, CsvHasWholeNumbersInFullAndTheDigitsOfExtraColumns) {
+  const std::string names = "x,y,z,nx,ny,nz,id,most,east,share";
+  const std::string row = "1,2,3,0,1,0,123456792,-9007199254740992,-2097152.25,0.1";
+  write_points(path("out.csv"), read_points(write("in.csv", names + "\n" + row + "\n")),
+               {{"ao", {0.1f}}});
+  std::ifstream out(path("out.csv"));
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(out), {}), names + ",ao\n" + row + ",0.1\n");
+}
+
+TEST_F(PointFile, QuotedFieldsMayHoldSeparatorsAndQuotes) {
+  const PointList list = read_points(write("q.csv",
+                                           "\"plot, tree\",\"x\",y,z,\"h \"\"m\"\"\"\r\n"
+                                           "\"a, \"\"b\"\"; c\",\"1.5\", \"2\" ,3,\"4\"\r\n"));
+  EXPECT_EQ(list.points.at(0), V3f(1.5f, 2, 3));
+  EXPECT_EQ(list.extra.at(0).name, "h__m_");
+  EXPECT_EQ(list.extra.at(0).values, std::vector<double>{4});
+  expect_says(list.notes.at(0), "plot__tree holds text (\"a, \"b\"; c\" in line 2)");
+  EXPECT_EQ(read_points(write("s.csv", "x y z plot\n1 2 3 \"a, b\"\n")).points.at(0), V3f(1, 2, 3));
+  expect_error(write("o.csv", "x,y,z,plot\n1,2,3,\"a\n"), "line 2 has a quote that is not closed");
 }
 
 TEST_F(PointFile, NamesThatAreNotUtf8GetOtherLetters) {
@@ -138,10 +165,8 @@ TEST_F(PointFile, NormalsOfAnyLengthBecomeUnit) {
 TEST_F(PointFile, ErrorsOfInvalidFilesNameTheLineOrRow) {
   expect_error(write("a.csv", "1,2,3\n1,2\n"), "line 2");
   expect_error(write("b.csv", "1,2,3\n1,two,3\n"), "\"two\"");
-  expect_error(write("c.csv", "a,b\n1,2\n"), "x, y, z");
-  expect_error(write("d.csv", "1,2,nan\n"), "row 0");
   expect_error(write("e.csv", "1,2,3,0,0,0\n"), "normal");
-  expect_error(write("f.csv", "1,2,3\n1e300,2,3\n"), "row 1 is more than 1e+12 m");
+  expect_error(write("f.csv", "1,2,3\n1e300,2,3\n"), "line 2: x is 1e+300; it must be within 1e");
   expect_error(write("g.csv", "\"\"\n1,2,3\n"), "line 1 has no columns");
   expect_error(write("h.csv", "x,y,z,nx\n1,2,3,1\n"), "all of the columns nx, ny, nz");
   expect_error(write("a.npy", "no"), "not an NPY");
@@ -155,6 +180,13 @@ TEST_F(PointFile, ErrorsOfInvalidFilesNameTheLineOrRow) {
            "\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
   };
   expect_error(write("c.ply", of_count("three")), "'three'");
+  const std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\n"
+      "property uchar y\nproperty uchar z\ncomment no end_header\n";
+  expect_error(write("g.ply", binary + "abc"), "end_header");
+  expect_error(write("h.ply", binary + "end_header"), "end_header");
+  for (const char* end : {"end_header\nabc", "end_header\r\nabc"})
+    EXPECT_EQ(read_points(write("i.ply", binary + end)).points.at(0), V3f('a', 'b', 'c'));
   expect_error(write("d.ply", of_count("-1")), "'-1'");
   for (const char* count : {"2000000000000000000000", "6148914691236517206", "9000"})
     expect_error(write("e.ply", of_count(count)), std::string(count) + " vertices");
@@ -198,15 +230,38 @@ TEST_F(PointFile, TwoSeparatorsInALineAreAnError) {
 TEST_F(PointFile, FilesWithoutRowsAreErrors) {
   for (const char* bytes : {"", "\n", "# x,y,z\n"})
     expect_error(write("empty.csv", bytes), "empty.csv: there are no rows");
-  for (const char* bytes : {"", "azimuth,elevation,irradiance\n"}) {
-    try {
-      read_suns(write("suns.csv", bytes));
-      FAIL();
-    } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("suns.csv: there are no rows"), std::string::npos)
-          << error.what();
-    }
-  }
+  for (const char* bytes : {"", "azimuth,elevation,irradiance\n"})
+    expect_suns_error(write("suns.csv", bytes), "suns.csv: there are no rows");
+}
+
+TEST_F(PointFile, NamesAloneAndArraysWithoutRowsHaveANote) {
+  for (const std::string& file :
+       {write("names.csv", "x,y,z\n"), write("rows.npy", npy("'<f4'", "(0, 3)", ""))})
+    EXPECT_EQ(read_points(file).notes, std::vector<std::string>{file + ": no points"});
+}
+
+TEST_F(PointFile, ErrorsOfColumnsNameThoseThatAreThere) {
+  expect_error(write("a.csv", "X,Y,Z [m]\n1,2,3\n"),
+               "(and nx, ny, nz); it has X, Y, Z [m]; names are lower case, without units");
+  expect_error(write("b.csv", "1,2\n"),
+               "(x, y, z), or 6 (and nx, ny, nz), or names; it has 2 columns without names");
+  expect_suns_error(write("s.csv", "Azimuth,azimuth [deg],zenith,DNI\n1,2,3,4\n"),
+                    "it has Azimuth, azimuth [deg], zenith, DNI; names are lower case, without");
+  expect_says(read_points(write("c.csv", "7,1,2,3\n")).notes.at(0),
+              "has 4 columns without names; the first are read as x, y, z");
+}
+
+TEST_F(PointFile, ErrorsOfValuesNameThePlaceAndTheColumn) {
+  expect_error(write("a.csv", "x,y,z\n# no\n1,,3\n"), "line 3: y is empty; it must be a number");
+  expect_error(write("b.csv", "z,y,x\n1,2,nan\n"), "line 2: x is nan; it must be a finite number");
+  const std::string values = bytes_of_all(1.0f, 2.0f, INFINITY);
+  expect_error(write("d.npy", npy("'<f4'", "(1, 3)", values)), "row 0: z is inf");
+  const std::string names = "azimuth,elevation,irradiance\n";
+  expect_suns_error(write("s.csv", names + "1,2,3\n0,9,-5\n"), "line 3: irradiance is -5; it must");
+  expect_suns_error(write("s.csv", names + "0,9,\n"), "line 2: irradiance is empty");
+  expect_suns_error(write("s.csv", names + "0,9,high\n"), "line 2: irradiance is \"high\"");
+  expect_suns_error(write("s.csv", names + "0,91,1\n"), "line 2: elevation is 91; it must be from");
+  expect_suns_error(write("s.csv", "x,y,z,irradiance\n0,0,0,1\n"), "line 2: the direction");
 }
 
 TEST_F(PointFile, ArraysOfFloatsAndWholeNumbersAreRead) {
@@ -219,8 +274,10 @@ TEST_F(PointFile, ArraysOfFloatsAndWholeNumbersAreRead) {
   const std::string whole = bytes_of_all(std::int16_t{-1}, std::int16_t{2}, std::int16_t{300});
   EXPECT_EQ(read_points(write("i.npy", npy("'<i2'", "(1, 3)", whole))).points.at(0),
             V3f(-1, 2, 300));
-  expect_error(write("h.npy", npy("'<f2'", "(2, 3)", doubles)), "float32");
-  expect_error(write("b.npy", npy("'>f8'", "(2, 3)", doubles)), "little-endian");
+  expect_error(write("h.npy", npy("'<f2'", "(2, 3)", doubles)),
+               "its type is '<f2'; it must be little-endian float32, float64 or whole numbers "
+               "(numpy: .astype('<f4'))");
+  expect_error(write("b.npy", npy("'>f8'", "(2, 3)", doubles)), "(numpy: .astype('<f8'))");
   expect_error(write("u.npy", npy("'<U4'", "(1, 3)", doubles)), "whole numbers");
   expect_error(write("t.npy", npy("'<f8'", "(9, 3)", doubles)), "9 rows");
   expect_error(write("o.npy", npy("'<f8'", "(6,)", doubles)), "1 dimension;");
@@ -241,12 +298,12 @@ TEST_F(PointFile, FieldsOfStructuredArraysHaveTheirOwnTypes) {
   EXPECT_EQ(list.extra[1].values.at(0), 255);
   EXPECT_EQ(list.extra[2].values.at(0), 4e9);
   EXPECT_EQ(list.extra[3].values.at(0), 1);
-  ASSERT_EQ(list.notes.size(), 2u);
-  EXPECT_NE(list.notes[0].find("plot holds text (\"A1\" in row 0)"), std::string::npos)
-      << list.notes[0];
-  EXPECT_NE(list.notes[1].find("\"?x\""), std::string::npos) << list.notes[1];
+  expect_says(list.notes.at(0), "plot holds text (\"A1\" in row 0)");
+  expect_says(list.notes.at(1), "\"?x\"");
   expect_error(write("x.npy", npy("[('x', '<U2'), ('y', '<f4'), ('z', '<f4')]", "(1,)", row)),
-               "row 0: \"");
+               "row 0: x is \"");
+  expect_error(write("b.npy", npy("[('x', '<f4'), ('y', '>f4')]", "(1,)", row)),
+               "its field \"y\" is '>f4'; it must be little-endian");
   expect_error(write("a.npy", npy("[('x', '<f4'), ('rgb', '|u1', (3,))]", "(1,)", row)),
                "several values in each \"rgb\"");
 }
@@ -259,8 +316,14 @@ TEST_F(PointFile, SunsAreDirectionsOrAngles) {
   EXPECT_LT((suns[1].direction - V3f(1, 0, 0)).length(), 1e-6f) << "east";
   EXPECT_LT((suns[2].direction - V3f(0, 1, 0)).length(), 1e-6f);
   EXPECT_EQ(suns[2].irradiance, 3);
-  EXPECT_THROW(read_suns(write("w.csv", "1,2,3\n")), Error);
-  EXPECT_THROW(read_suns(write("e.csv", "azimuth,elevation,irradiance\n0,91,1\n")), Error);
+  expect_suns_error(write("w.csv", "1,2,3\n"), "it has 3 columns without names");
+}
+
+TEST_F(PointFile, SunsThatMayBeInRadiansHaveANote) {
+  std::vector<std::string> notes;
+  for (const char* suns : {"0,0,8\n", "7,1,8\n", "6,2,8\n", "6,1,8\n7,1,8\n", "6,1,8\n5,-1.5,8\n"})
+    read_suns(write("s.csv", std::string("azimuth,elevation,irradiance\n") + suns), &notes);
+  EXPECT_EQ(notes.size(), 1u) << "only the last";
 }
 
 TEST(PointSources, AGridHasItsLastRowAndColumnAndFacesUp) {
@@ -297,6 +360,27 @@ TEST(PointSources, ATriangleWithAnAreaHasItsCentreForItsFrontAndThenItsBack) {
   M44f moved;
   moved.setTranslation(V3f(0, 0, 5));
   expect_front_then_back(triangle_points(triangle_placed_by(moved)), V3f(1, 1, 5), V3f(0, 0, 1));
+}
+
+TEST(PointSources, ATriangleTellsItsInstanceMaterialSideAndArea) {
+  M44f larger;
+  larger.setScale(V3f(2, 2, 2));
+  Scene scene = triangle_placed_by(larger);
+  scene.materials.resize(2);
+  scene.meshes[0].materials[0] = 1;
+  scene.instances.insert(scene.instances.begin(), Instance());
+  const PointList list = triangle_points(scene);
+  ASSERT_EQ(list.points.size(), 4u);
+  const std::vector<std::pair<std::string, std::vector<double>>> expected = {
+      {"instance", {0, 0, 1, 1}},
+      {"material", {1, 1, 1, 1}},
+      {"side", {1, -1, 1, -1}},
+      {"area", {4.5, 4.5, 18, 18}}};
+  ASSERT_EQ(list.extra.size(), expected.size());
+  for (std::size_t c = 0; c < expected.size(); ++c) {
+    EXPECT_EQ(list.extra[c].name, expected[c].first);
+    EXPECT_EQ(list.extra[c].values, expected[c].second) << list.extra[c].name;
+  }
 }
 
 TEST(PointSources, TheFrontOfATriangleStaysTheFrontWhereItIsMirrored) {

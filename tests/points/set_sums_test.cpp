@@ -25,5 +25,18 @@ TEST(SetSums, TheStandardErrorIsThatOfTheMean) {
   EXPECT_EQ(columns[1].values.at(1), 0.0f);
 }
 
+// Rays that are hidden or not, whose values fall by nothing, tell of no bias; those of several do,
+// although their mean is the same.
+TEST(SetSums, TheCorrectionIsByTheFallsOfTheSetsNotOfTheirMean) {
+  const BiasCorrection bias(std::vector{0.4, 0.4}, std::vector{0.5, 0.5});
+  SetSums sums(2);
+  for (const double value : {0.0, 1.0})
+    sums.add([&](std::size_t i) { return i == 0 ? value : 0.5; });
+  std::vector<PointColumn> columns;
+  sums.store("ao", bias, columns);
+  EXPECT_FLOAT_EQ(columns.at(0).values.at(0), 0.5f);
+  EXPECT_FLOAT_EQ(columns[0].values.at(1), 0.4f);
+}
+
 }  // namespace
 }  // namespace dapple

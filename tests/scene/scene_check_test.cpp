@@ -57,6 +57,13 @@ TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
       {[&](Scene& s) { s.lights[0].radiance.y = nan; }, "light 0 \"sun\" has a radiance"},
       {[](Scene& s) { s.lights[0].radiance.x = -1; }, "light 0 \"sun\" has a radiance"},
       {[](Scene& s) { s.lights[0].direction = V3f(0); }, "light 0 \"sun\" has a direction"},
+      {[](Scene& s) { s.lights[1].environment = std::make_shared<Environment>(); },
+       "light 1 \"sky\" has a dome of 0 values for 0 x 0 pixels"},
+      {[&](Scene& s) {
+         s.lights[1].environment =
+             std::make_shared<Environment>(Environment{1, 2, {V3f(1), V3f(1, nan, 1)}});
+       },
+       "light 1 \"sky\" has a dome with pixels"},
       {[](Scene& s) { s.lights[0].angular_radius = 0; },
        "light 0 \"sun\" has the angular radius 0"},
   };

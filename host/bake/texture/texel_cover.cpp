@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+
+#include "dapple/error.hpp"
 
 namespace dapple {
 namespace {
@@ -120,14 +123,18 @@ TexelCover cover_texels(std::span<const V2f> corners, std::uint32_t size) {
   for (std::size_t i = 0; i < corners.size(); i += 3)
     visit_texels(&corners[i], size, [&](std::uint32_t x, std::uint32_t y) { ++counters.at(x, y); });
   TexelCover cover;
-  std::uint32_t sum = 0;
+  std::size_t sum = 0;
   counters.for_each([&](std::uint32_t texel, std::uint32_t& counter) {
     cover.texel.push_back(texel);
-    cover.first.push_back(sum);
+    cover.first.push_back(static_cast<std::uint32_t>(sum));
     sum += counter;
+    if (sum > std::numeric_limits<std::uint32_t>::max())
+      throw Error(ErrorKind::input,
+                  "the texture coordinates overlap too much: more than 4,294,967,295 pairs of a "
+                  "texel and a triangle");
     counter = cover.first.back();  // from here on where its next triangle goes
   });
-  cover.first.push_back(sum);
+  cover.first.push_back(static_cast<std::uint32_t>(sum));
   cover.triangles.resize(sum);
   for (std::size_t i = 0; i < corners.size(); i += 3)
     visit_texels(&corners[i], size, [&](std::uint32_t x, std::uint32_t y) {

@@ -132,6 +132,7 @@ void CompilerProcesses::start(const DeviceContext& context, const std::vector<Ke
   };
   add_option("--device", context.chosen_by());
   add_option("--kernel-dir", context.kernel_dir());
+  add_option("--packets", context.packets() == Packets::scalar ? "scalar" : "");
   const auto programs = by_program(context, {kernels.begin(), kernels.end()}, to);
   if (!programs.empty()) require_linker();
   for (const Batch& batch : distribute(programs, std::min(cpus, kMaxProcesses))) {

@@ -131,6 +131,11 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
 BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
                  const Scene& moved, const UploadOptions& options) {
   DeviceContext& context = device.context();
+  if (!on_device.buffers) {
+    BvhUpdate all = bvh.update(moved);
+    on_device = upload(device, moved, bvh.bvh(), options);
+    return all;
+  }
   DeviceBuffers& buffers = *on_device.buffers;
   BvhUpdate changes;
   {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cstring>
+#include <filesystem>
 
 #include "scene/message.hpp"
 
@@ -69,11 +71,28 @@ std::span<const std::uint8_t> checked_glb(std::span<const std::uint8_t> bytes,
   return bytes.first(length);
 }
 
+/// Throws if a file whose text is no JSON object has the name of another format.
+void check_format(std::string_view text, const std::string& file) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first != std::string_view::npos && text[first] == '{') return;
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char* other :
+       {".obj", ".ply", ".stl", ".fbx", ".usd", ".usda", ".usdc", ".abc", ".blend"})
+    if (ending == other)
+      fail(file,
+           "is not glTF; scenes are glTF (.gltf, .glb) or HAIR files (.hair): export or convert it "
+           "to glTF");
+}
+
 }  // namespace
 
 Container split_container(std::span<const std::uint8_t> bytes, const std::string& file) {
   if (bytes.empty()) fail(file, "is empty");
-  if (bytes.size() < 4 || u32_at(bytes, 0) != kMagic) return {as_text(bytes), {}, {}};
+  if (bytes.size() < 4 || u32_at(bytes, 0) != kMagic) {
+    check_format(as_text(bytes), file);
+    return {as_text(bytes), {}, {}};
+  }
   const auto glb = checked_glb(bytes, file);
   const Chunk json = chunk_at(glb, kHeaderBytes, file);
   if (json.type != kJsonChunk) fail(file, "GLB does not begin with a JSON chunk");

@@ -108,6 +108,15 @@ TEST(Refit, EveryExactRayIntersectsWhatItIntersectsInAFreshBvh) {
   }
 }
 
+// As an Error while a scene is uploaded anew leaves it.
+TEST(Refit, ASceneThatIsNotOnTheDeviceIsUploaded) {
+  const Scene still = tree(), moved = swayed(still, 1.2f, 1.5f);
+  UpdatableBvh updatable(still);
+  DeviceScene on_device;
+  update(scene_test::device(), on_device, updatable, moved);
+  expect_fresh_transmittances(scene_test::device(), on_device, moved, 5000);
+}
+
 // The device has its own memory, not shared with the host.
 TEST(Refit, OnlyWhatMovedIsUploaded) {
   opencl_test::pretend_own_memory(true);
