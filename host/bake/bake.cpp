@@ -65,6 +65,7 @@ struct ComparedOptions {
 BakeTracing tracing_against(const OccluderScene& occluders, const BakeOptions& options,
                             const ComparedOptions& compared, const BakeRecords& records) {
   const TracePoints trace = trace_against(occluders);
+  if (records.bias.compares()) occluders.closed->prepare();  // not in the time of comparing
   const auto recorded = [&](BiasTracing tracing) {
     tracing.exact = telling_inside(std::move(tracing.exact), *occluders.closed);
     return telling_inside(records.checkpoint.with(records.bias.with(std::move(tracing))),

@@ -41,7 +41,9 @@ std::vector<BiasUnit> differences(std::span<const SurfaceSample> samples,
 
 TraceSamples BakeBias::with(BiasTracing tracing) {
   if (!(share_ > 0)) return tracing.values;
-  return [this, tracing = std::move(tracing)](
+  std::deque<Compared>& meshes = quantities_[tracing.name].meshes;
+  meshes.emplace_back();
+  return [this, tracing = std::move(tracing), mesh = meshes.size() - 1](
              std::span<const SurfaceSample> samples, std::span<const std::uint32_t> placement,
              const Placements& placements, int rays, std::uint32_t hash) {
     const Stopwatch watch;
@@ -49,16 +51,16 @@ TraceSamples BakeBias::with(BiasTracing tracing) {
     seconds_ += watch.seconds();
     Quantity& quantity = quantities_[tracing.name];
     quantity.largest = std::max(quantity.largest, found.largest);
-    quantity.samples += static_cast<double>(samples.size());
+    quantity.meshes[mesh].samples += static_cast<double>(samples.size());
     samples_ += static_cast<double>(samples.size());
-    compare(tracing, samples, placement, placements, rays, hash);
+    compare(tracing, samples, placement, placements, rays, hash, quantity.meshes[mesh]);
     return found;
   };
 }
 
 void BakeBias::compare(const BiasTracing& tracing, std::span<const SurfaceSample> samples,
                        std::span<const std::uint32_t> placement, const Placements& placements,
-                       int rays, std::uint32_t hash) {
+                       int rays, std::uint32_t hash, Compared& mesh) {
   std::vector<SurfaceSample> chosen;
   std::vector<std::uint32_t> places;
   for (std::size_t begin = 0; begin < samples.size(); begin += kBlock) {
@@ -69,19 +71,16 @@ void BakeBias::compare(const BiasTracing& tracing, std::span<const SurfaceSample
   }
   if (chosen.empty()) return;
   const Stopwatch watch;
-  Quantity& quantity = quantities_[tracing.name];
-  std::vector<BiasUnit> units =
-      differences(chosen, tracing.prefiltered(chosen, places, placements, rays, hash),
-                  tracing.exact(chosen, places, placements, rays, hash));
-  for (const BiasUnit& unit : units) quantity.rays += rays * unit.count;
-  const std::uint32_t first = quantity.units.empty() ? 0 : (quantity.units.back().tile + 1);
-  for (BiasUnit& unit : units) {
+  const std::uint32_t first = mesh.units.empty() ? 0 : mesh.units.back().tile + 1;
+  for (BiasUnit unit :
+       differences(chosen, tracing.prefiltered(chosen, places, placements, rays, hash),
+                   tracing.exact(chosen, places, placements, rays, hash))) {
+    if (unit.count == 0) continue;
+    mesh.rays += rays * unit.count;
     unit.tile += first;
-    unit.count /= share_;
-    unit.difference /= share_;
+    mesh.units.push_back(unit);
   }
-  quantity.units.insert(quantity.units.end(), units.begin(), units.end());
-  quantity.compared += static_cast<double>(chosen.size());
+  mesh.compared += static_cast<double>(chosen.size());
   compared_samples_ += static_cast<double>(chosen.size());
   compared_seconds_ += watch.seconds();
   limit_time();
@@ -94,15 +93,37 @@ void BakeBias::limit_time() {
   share_ = std::min(most_, kMostOfTime / times);
 }
 
+// Of all meshes, each of which counts by its samples: of later ones less may have been compared.
+std::vector<BiasUnit> BakeBias::units_of(const Quantity& quantity) {
+  std::vector<BiasUnit> units;
+  const double largest = quantity.largest > 0 ? double{quantity.largest} : 1;
+  for (const Compared& mesh : quantity.meshes) {
+    const std::uint32_t first = units.empty() ? 0 : units.back().tile + 1;
+    for (BiasUnit unit : mesh.units) {
+      const double weight = mesh.samples / mesh.compared;
+      unit.tile += first;
+      unit.count *= weight;
+      unit.difference *= weight / largest;
+      units.push_back(unit);
+    }
+  }
+  return units;
+}
+
 std::map<std::string, Bias> BakeBias::report() const {
   std::map<std::string, Bias> bias;
   for (const auto& [name, quantity] : quantities_) {
-    if (quantity.units.size() < 2) continue;
-    std::vector<BiasUnit> units = quantity.units;
-    for (BiasUnit& unit : units) unit.difference /= quantity.largest > 0 ? quantity.largest : 1;
-    Bias found = estimate_bias(std::move(units), quantity.compared / quantity.samples);
+    std::vector<BiasUnit> units = units_of(quantity);
+    if (units.size() < 2) continue;
+    double samples = 0, compared = 0, rays = 0;
+    for (const Compared& mesh : quantity.meshes) {
+      samples += mesh.samples;
+      compared += mesh.compared;
+      rays += mesh.rays;
+    }
+    Bias found = estimate_bias(std::move(units), compared / samples);
     // A ray that was not compared might differ by all of its light.
-    found.error = std::hypot(found.error, 1 / std::max(1.0, quantity.rays));
+    found.error = std::hypot(found.error, 1 / std::max(1.0, rays));
     bias[name] = found;
   }
   return bias;

@@ -3,6 +3,7 @@
 // quantity.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <string>
 #include <vector>
@@ -34,22 +35,29 @@ class BakeBias {
   BakeBias(const BakeBias&) = delete;
   BakeBias& operator=(const BakeBias&) = delete;
 
-  /// tracing.values, which also compares. The object must outlive the function.
+  /// Whether samples may be compared.
+  [[nodiscard]] bool compares() const { return most_ > 0; }
+  /// tracing.values, which also compares, for one mesh. The object must outlive the function.
   TraceSamples with(BiasTracing tracing);
   /// By quantity; without those of which too little was compared to tell an error.
   [[nodiscard]] std::map<std::string, Bias> report() const;
 
  private:
-  struct Quantity {
-    std::vector<BiasUnit> units;  ///< each also stands for those that were not chosen
-    float largest = 0;  ///< without occlusion
+  /// Of a mesh.
+  struct Compared {
+    std::vector<BiasUnit> units;  ///< without empty ones
     double samples = 0, compared = 0;
     double rays = 0;  ///< that were compared
+  };
+  struct Quantity {
+    std::deque<Compared> meshes;  ///< references stay valid
+    float largest = 0;            ///< without occlusion
   };
 
   void compare(const BiasTracing& tracing, std::span<const SurfaceSample> samples,
                std::span<const std::uint32_t> placement, const Placements& placements, int rays,
-               std::uint32_t hash);
+               std::uint32_t hash, Compared& mesh);
+  [[nodiscard]] static std::vector<BiasUnit> units_of(const Quantity& quantity);
   void limit_time();
 
   double most_, share_;  ///< of the samples: at most, and of the next ones

@@ -140,15 +140,14 @@ std::vector<std::string> add_to_instances(gltf::Editor& editor, const gltf::Sour
   return notes;
 }
 
-void write_preview(const Scene& scene, const BakeResult& result, const std::string& path,
-                   PendingFiles& files) {
+void write_preview(const Scene& scene, const BakeResult& result, const std::string& path) {
   const Camera camera = scene.cameras.empty() ? frame_scene(scene, 1.0f) : scene.cameras.front();
-  files.add(path,
-            encode_png(draw_preview(scene, result, camera, kPreviewSize, kPreviewSize), path));
+  write_whole_file(
+      path, encode_png(draw_preview(scene, result, camera, kPreviewSize, kPreviewSize), path));
 }
 
-/// Writes the file with the baked values, the EXR of a texture and the preview: all of them, or
-/// none. Returns notes, some of them empty.
+/// Writes the file with the baked values and the EXR of a texture. Neither gets its name before
+/// both are written. Returns notes, some of them empty.
 std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& scene,
                                      const BakeArguments& a, const BakeOptions& options,
                                      const FileUvs& uvs, const BakeResult& result) {
@@ -168,7 +167,6 @@ std::vector<std::string> write_baked(const gltf::SourceFile& file, const Scene& 
   editor.write(files);
   if (needs_exr(options))
     write_baked_exr(result, scene.source, options, files.add(exr_path(a.output)));
-  if (!a.png.empty()) write_preview(scene, result, a.png, files);
   files.commit();
   return notes;
 }
@@ -274,6 +272,7 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
 
   const Stopwatch writing;
   const std::vector<std::string> notes = write_baked(file, scene, a, options, uvs, result);
+  if (!a.png.empty()) write_preview(scene, result, a.png);
   seconds.write = writing.seconds();
   seconds.total = total.seconds();
   for (const std::string& note : notes)

@@ -96,7 +96,7 @@ void add_point_options(CLI::App& app, Arguments& a) {
       ->each([&a](const std::string&) { a.footprint_given = true; });
   app.get_option("--report-bias")
       ->description(
-          "0: do not report the bias. Some 1,000 values of each column are traced exactly in any "
+          "0: do not report the bias. Some 2,000 values of each column are traced exactly in any "
           "case, to correct the others");
   app.add_option("--max-bias", o.max_bias,
                  "Choose the largest footprint, from --footprint down to 0, whose bias is below "
@@ -198,10 +198,8 @@ void note_options(const PointOptions& options, const Scene& scene, const std::ve
   const auto below =
       std::ranges::count_if(points, [&](const V3f& point) { return point.y < bounds.min.y; });
   if (options.ground && below > 0)
-    notes.push_back(
-        fmt::format("{} of {} points lie below the ground at y = {:.4g}: they see "
-                    "nothing",
-                    below, points.size(), bounds.min.y));
+    notes.push_back(fmt::format("{} of {} points lie below the ground, which is at y = {:.4g}",
+                                below, points.size(), bounds.min.y));
   constexpr float kOverlap = 1.25f;  // leaves reach over a little
   const auto note_period = [&](char axis, float width, float period) {
     if (period > 0 && width >= kOverlap * period)

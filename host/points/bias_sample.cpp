@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "points/sun_irradiance.hpp"
@@ -13,14 +14,26 @@ namespace {
 
 using Imath::V3d;
 
-/// Values of points, each from one set, that are also found exactly.
-constexpr std::size_t kBiasSamples = 1024;
+/// Values of points, each from one set, that are also found exactly; and of each point at least
+/// these, so that what differs at a point is told from noise.
+constexpr std::size_t kBiasSamples = 2048, kFewestSets = 2;
 
 /// Fewer points do not tell how they differ.
 constexpr std::size_t kLeastPoints = 8;
 
 /// Neighbouring points of the sample that are a tile.
 constexpr std::uint32_t kPointsOfTile = 16;
+
+/// Up to `most` of `count` numbers, ascending: multiples of the golden ratio, which no order of the
+/// points agrees with, as equal steps would with fronts and backs.
+std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> chosen(std::min(count, most));
+  for (std::uint32_t i = 0; i < chosen.size(); ++i)
+    chosen[i] = count > most ? std::uint64_t{(i + 1) * 2654435769u} * count >> 32 : i;
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  return chosen;
+}
 
 }  // namespace
 
@@ -37,8 +50,8 @@ BiasSample::BiasSample(const SceneOfPoints& on, std::span<const V3f> points,
                        std::span<const V3f> normals, const PointOptions& options)
     : on_(on), options_(options) {
   if (points.empty() || options.estimator == Estimator::exact || !(options.footprint > 0)) return;
-  const std::size_t step = (points.size() + kBiasSamples - 1) / kBiasSamples;
-  for (std::size_t i = 0; i < points.size(); i += step) {
+  constexpr std::size_t most = kBiasSamples / kFewestSets;
+  for (const std::size_t i : evenly_chosen(points.size(), most)) {
     points_.push_back(points[i]);
     normals_.push_back(normals[i]);
   }
@@ -50,9 +63,13 @@ BiasSample::BiasSample(const SceneOfPoints& on, std::span<const V3f> points,
 
 std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& names,
                                                 const Find& find) {
-  std::vector<Values> exact(names.size()), prefiltered(names.size());
+  std::vector<Values>& exact = exact_[names.front()];  // of any footprint
+  const bool is_known = !exact.empty();
+  exact.resize(names.size());
+  std::vector<Values> prefiltered(names.size());
   for (int set = 0; set < sets_; ++set) {
     for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered}) {
+      if (estimator == Estimator::exact && is_known) continue;
       OcclusionOptions options = rays_of_set(options_, set);
       options.estimator = estimator;
       const std::vector<Values> found = find(options);
@@ -68,16 +85,20 @@ std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& 
     BiasCorrection& correction = corrections.emplace_back(exact[k].values, prefiltered[k].values);
     const std::size_t values = exact[k].values.size();
     if (values == 0) continue;
-    std::vector<BiasUnit> units(points_.size());
+    // By tiles of points, and by points.
+    std::vector<BiasUnit> units(points_.size()), single(values);
     for (std::uint32_t i = 0; i < units.size(); ++i) units[i].tile = i / kPointsOfTile;
     for (std::size_t v = 0; v < values; ++v) {
-      BiasUnit& unit = units[exact[k].points[v]];
-      unit.count += 1;
+      const std::uint32_t point = exact[k].points[v];
       const double value = prefiltered[k].values[v];
-      unit.difference += value + correction.change(fall_with_depth(value)) - exact[k].values[v];
+      const double left = value + correction.change(fall_with_depth(value)) - exact[k].values[v];
+      units[point].count += 1;
+      units[point].difference += left;
+      single[v] = {point, 1, left};
     }
     Bias bias = estimate_bias(std::move(units), share_);
-    correction.set_local_bias(bias.tile_rmse);
+    of_points_.push_back(estimate_bias(std::move(single), share_));
+    correction.set_local_bias(std::max(bias.tile_rmse, of_points_.back().tile_rmse));
     const double rays = static_cast<double>(values) * rays_of_set(options_, 0).rays;
     if (correction.is_measured()) {
       bias.mean = correction.mean_bias();
@@ -167,6 +188,7 @@ std::vector<Bias> BiasSample::bias(float footprint) {
   const float used = options_.footprint;
   options_.footprint = footprint;
   bias_.clear();
+  of_points_.clear();
   if (options_.ao) of_ao();
   if (options_.sky_view_factor) of_sky_view_factor();
   if (options_.lights && !on_.scene.lights.empty()) of_lights(light_layers(on_.scene.lights));
@@ -174,6 +196,10 @@ std::vector<Bias> BiasSample::bias(float footprint) {
   if (is_sampled(options_)) of_suns();
   std::vector<Bias> layers;
   for (const auto& [name, bias] : bias_) layers.push_back(bias);
+  for (Bias& bias : of_points_) {
+    bias.mean = bias.error = 0;  // that is told above
+    layers.push_back(bias);
+  }
   bias_.clear();
   options_.footprint = used;
   return layers;

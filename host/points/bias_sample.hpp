@@ -35,7 +35,8 @@ class BiasSample : public BiasSource {
   /// The sample is what it is.
   void grow(std::size_t) override {}
   [[nodiscard]] bool is_complete() const override { return true; }
-  /// Layers are AO, the sky view factor, rings, lights and suns, as far as they are measured.
+  /// Layers are AO, the sky view factor, rings, lights and suns, as far as they are measured, first
+  /// with tiles of neighbouring points, then with points as tiles and without means.
   std::vector<Bias> bias(float footprint) override;
   /// For the measurements from now on.
   void use_footprint(float footprint) { options_.footprint = footprint; }
@@ -67,8 +68,10 @@ class BiasSample : public BiasSource {
   PointOptions options_;
   std::vector<V3f> points_, normals_;
   int sets_ = 0;
-  double share_ = 0;  ///< of all values
+  double share_ = 0;                                  ///< of all values
+  std::map<std::string, std::vector<Values>> exact_;  ///< by the first name of those compared
   std::map<std::string, Bias> bias_;
+  std::vector<Bias> of_points_;  ///< what corrections leave, with points as tiles
 };
 
 }  // namespace dapple

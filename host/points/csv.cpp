@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -25,12 +26,16 @@ std::string_view trimmed(std::string_view cell) {
 /// quote opens where a field begins; inside, two quotes are one character.
 std::string without_quoted(const std::string& path, std::size_t number, std::string_view line) {
   std::string text(line);
-  bool inside = false;
+  if (line.find('"') == std::string_view::npos) return text;
+  bool inside = false, begins = true, separated = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '"')
+    if (text[i] != '"') {
+      const bool separates = std::string_view(",;\t").find(text[i]) != std::string_view::npos;
+      separated = separated || (separates && !inside);
+      begins = !inside && (separates || (text[i] == ' ' && (begins || !separated)));
       text[i] = inside ? '_' : text[i];
-    else if (!inside)
-      inside = i == 0 || std::string_view(" ,;\t").find(text[i - 1]) != std::string_view::npos;
+    } else if (!inside)
+      inside = begins;
     else if (i + 1 < text.size() && text[i + 1] == '"')
       text[++i] = '_';
     else
@@ -88,16 +93,20 @@ bool parse(std::string_view cell, double& value) {
   return error == std::errc() && end == cell.data() + cell.size();
 }
 
-/// The digits that a file of float32 or float64 had: whole numbers in full, others the shortest.
-std::string digits_of(double value) {
+/// Appends the digits that a file of float32 or float64 had: whole numbers in full, others the
+/// shortest that give the float32, or else the float64.
+void append_digits(double value, std::string& text) {
   constexpr double kMostWhole = 9007199254740992.0;  // 2^53
-  if (std::trunc(value) == value && std::abs(value) <= kMostWhole)
-    return fmt::format("{:.0f}", value);
-  std::string digits = fmt::format("{}", value);
+  // Multiples of this have few digits, and float32 may need fewer than they had: 2097152.25.
+  constexpr double kParts = 1024;
   const auto single = static_cast<float>(value);
-  // A float64 with few digits was written so, and float32 may need fewer: 2097152.25.
-  constexpr std::size_t kFewDigits = 12;
-  return double{single} == value && digits.size() > kFewDigits ? fmt::format("{}", single) : digits;
+  const auto out = std::back_inserter(text);
+  if (std::trunc(value) == value && std::abs(value) <= kMostWhole)
+    fmt::format_to(out, "{:.0f}", value);
+  else if (double{single} == value && std::trunc(value * kParts) != value * kParts)
+    fmt::format_to(out, "{}", single);
+  else
+    fmt::format_to(out, "{}", value);
 }
 
 }  // namespace
@@ -149,7 +158,7 @@ std::string csv_bytes(const NumberTable& table) {
   for (std::size_t c = 0; c < table.columns; ++c) text += (c > 0 ? "," : "") + table.names[c];
   text += '\n';
   for (std::size_t i = 0; i < table.values.size(); ++i) {
-    text += digits_of(table.values[i]);
+    append_digits(table.values[i], text);
     text += (i + 1) % table.columns == 0 ? '\n' : ',';
   }
   return text;

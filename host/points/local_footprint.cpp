@@ -9,8 +9,7 @@
 namespace dapple {
 namespace {
 
-/// The standard error of a value, times the root of its number of rays: less than most have
-/// (0.13 to 0.19 in canopies).
+/// The standard error of a value, times the root of its number of rays: less than most have.
 constexpr double kErrorOfRay = 0.1;
 
 /// Smallest part of the footprint that is tried before exact rays.
@@ -42,7 +41,7 @@ FootprintChoice choose_local_footprint(BiasSource& source, float footprint, int 
   const float smallest = kSmallestPart * footprint;
   do {
     choice.footprint *= 0.5f;
-  } while (choice.footprint >= smallest && local_bias(source.bias(choice.footprint)).rmse > most);
+  } while (choice.footprint >= smallest && local_bias(source.bias(choice.footprint)).least > most);
   if (choice.footprint < smallest) choice.footprint = 0;
   choice.note = fmt::format(
       "{} in place of footprint {}, with which single values would be off by about {:.4f} beside "

@@ -7,9 +7,9 @@
 
 namespace dapple {
 
-/// `footprint` stays unless the RMSE over tiles of some quantity is clearly larger than the
-/// standard error of values of `rays` rays; else a half of it, a quarter, ... a sixteenth or 0
-/// (exact rays), the largest with which it is not.
+/// The largest of `footprint`, a half of it, a quarter, ... a sixteenth and 0 (exact rays) with
+/// which the RMSE over tiles of no quantity is clearly larger than the standard error of values of
+/// `rays` rays.
 FootprintChoice choose_local_footprint(BiasSource& source, float footprint, int rays);
 
 }  // namespace dapple

@@ -127,7 +127,8 @@ std::string text_at(const char* at, ColumnType type) {
                             std::string_view text) {
   std::string after = std::string(text.substr(std::min<std::size_t>(1, text.size())));
   const bool is_swapped = text.starts_with('>') && type_of("<" + after).bytes > 0;
-  if (!is_swapped) after = after.starts_with('f') ? "f4" : "";
+  if (!is_swapped) after = after == "f2" ? "f4" : "";
+  if (!name.empty()) after.clear();  // of a field alone NumPy changes no type
   fail_npy(path,
            fmt::format("{} '{}'; it must be little-endian float32, float64 or whole numbers{}",
                        name.empty() ? "its type is" : fmt::format("its field \"{}\" is", name),

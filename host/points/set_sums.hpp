@@ -16,16 +16,20 @@ namespace dapple {
 
 class SetSums {
  public:
-  explicit SetSums(std::size_t count) : sums_(count), squares_(count), falls_(count) {}
+  explicit SetSums(std::size_t count) : sums_(count) {}
 
   /// Adds the values of a set, and how they fall with depth as parts of `whole(i)`.
   template <class Value, class Whole>
   void add(const Value& value, const Whole& whole) {
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const double x = value(i), all = whole(i);
-      sums_[i] += x;
-      squares_[i] += x * x;
-      if (all > 0) falls_[i] += all * fall_with_depth(x / all);
+      const double fall = all > 0 ? all * fall_with_depth(x / all) : 0;
+      Sums& of = sums_[i];
+      of.value += x;
+      of.fall += fall;
+      of.squared_value += x * x;
+      of.squared_fall += fall * fall;
+      of.product += x * fall;
     }
     ++sets_;
   }
@@ -36,21 +40,23 @@ class SetSums {
     add(value, [](std::size_t) { return 1.0; });
   }
 
-  [[nodiscard]] double mean(std::size_t i) const { return sums_[i] / sets_; }
+  [[nodiscard]] double mean(std::size_t i) const { return sums_[i].value / sets_; }
 
   /// Corrected values are from 0 to `whole(i)`.
   template <class Whole>
   void store(const std::string& name, const BiasCorrection& bias, const Whole& whole,
              std::vector<PointColumn>& columns) const {
     PointColumn values{name, {}}, errors{name + "_error", {}};
+    const double change = bias.change(1);
     for (std::size_t i = 0; i < sums_.size(); ++i) {
-      const double m = mean(i), all = whole(i);
-      const double variance = std::max(0.0, squares_[i] / sets_ - m * m) / (sets_ - 1);
-      const double fall = falls_[i] / sets_, of_correction = bias.standard_error(fall);
-      const double most = std::max(m, all);  // lights vary from set to set
-      values.values.push_back(static_cast<float>(std::clamp(m + bias.change(fall), 0.0, most)));
+      const Sums& of = sums_[i];
+      const double fall = of.fall / sets_, corrected = mean(i) + change * fall;
+      const double square = of.squared_value + change * (2 * of.product + change * of.squared_fall);
+      const double variance = std::max(0.0, square / sets_ - corrected * corrected) / (sets_ - 1);
+      const double most = std::max(mean(i), whole(i));  // lights vary from set to set
+      values.values.push_back(static_cast<float>(std::clamp(corrected, 0.0, most)));
       errors.values.push_back(
-          static_cast<float>(std::sqrt(variance + of_correction * of_correction)));
+          static_cast<float>(std::hypot(std::sqrt(variance), bias.standard_error(fall))));
     }
     columns.push_back(std::move(values));
     columns.push_back(std::move(errors));
@@ -64,7 +70,11 @@ class SetSums {
   }
 
  private:
-  std::vector<double> sums_, squares_, falls_;
+  /// Over the sets of a point.
+  struct Sums {
+    double value = 0, fall = 0, squared_value = 0, squared_fall = 0, product = 0;
+  };
+  std::vector<Sums> sums_;
   int sets_ = 0;
 };
 

@@ -5,6 +5,7 @@ An array that has this layout is passed on as it is; others are copied.
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -21,8 +22,9 @@ def shape_text(shape: tuple[int, ...]) -> str:
 
 
 def _numbers(name: str, values: npt.ArrayLike, kinds: str) -> npt.NDArray[Any]:
-    if np.ma.is_masked(values):
-        raise UsageError(f"{name} has masked values; leave them out, as with {name}.compressed()")
+    rows = values if isinstance(values, (list, tuple)) else ()
+    if np.ma.is_masked(values) or any(np.ma.is_masked(row) for row in rows):
+        raise UsageError(f"{name} has masked values; leave them out, as np.ma.compress_rows() does")
     try:
         array = np.asarray(values)
     except ValueError as error:
@@ -46,6 +48,20 @@ def vectors(name: str, values: npt.ArrayLike, width: int = 3) -> FloatArray:
         bad = int(np.flatnonzero(~np.isfinite(result).all(axis=1))[0])
         raise UsageError(f"{name}[{bad}] is not finite")
     return result
+
+
+def warn_of_coarse_steps(name: str, positions: FloatArray) -> None:
+    """As dapple notes when it builds: steps of 1 mm are coarse in 100 m."""
+    if len(positions) == 0:
+        return
+    far = float(np.abs(positions).max())
+    step = far * float(np.finfo(np.float32).eps)
+    if step > 1e-5 * float(np.linalg.norm(np.ptp(positions, axis=0))):
+        warnings.warn(
+            f"{name} reaches {far:.3g} m from the origin, where coordinates have steps of {step:.2g} m: "
+            "move the scene to the origin, or smaller details and distances are lost",
+            stacklevel=3,
+        )
 
 
 def unit_vectors(name: str, values: npt.ArrayLike, count: int) -> FloatArray:

@@ -55,6 +55,7 @@ class Scene:
         array([0.72], dtype=float32)
         """
         positions = _arrays.vectors("vertices", vertices)
+        _arrays.warn_of_coarse_steps("vertices", positions)
         corners = _arrays.indices("triangles", triangles, len(positions))
         values, which = _arrays.opacities(opacity, len(corners))
         return cls(_native.from_arrays(positions, corners.reshape(-1), values, which))
@@ -318,7 +319,7 @@ class Scene:
         towards = _arrays.vectors("suns", suns)
         towards = _arrays.unit_vectors("suns", towards, len(towards))
         across = _arrays.irradiances("sun_irradiance", sun_irradiance, len(towards))
-        if len(towards) == 0 and (np.any(np.asarray(sun_irradiance) != 1.0) or options.get("per_sun")):
+        if isinstance(suns, tuple) and not suns and (np.any(np.asarray(sun_irradiance) != 1.0) or options.get("per_sun")):
             raise UsageError("sun_irradiance and per_sun need suns")
         arguments = ("suns", "sun_irradiance", "periodic", "progress")
         if "footprint" in options:

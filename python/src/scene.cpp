@@ -17,7 +17,6 @@
 #include "nanobind/stl/optional.h"
 #include "nanobind/stl/string.h"
 #include "nanobind/stl/vector.h"
-#include "scene/numeric_range.hpp"
 #include "scene_on_device.hpp"
 
 namespace dapple::python {
@@ -71,10 +70,6 @@ SceneOnDevice from_arrays(const VectorsIn& vertices, const IndicesIn& triangles,
       throw Error(ErrorKind::usage, "there is no material " + std::to_string(index));
   scene.meshes.push_back(std::move(mesh));
   scene.instances.push_back({});
-  check_numeric_range(scene);
-  for (const std::string& text : scene.warnings)
-    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) != 0) throw nb::python_error();
-  scene.warnings.clear();  // each measurement notes them again
   return SceneOnDevice(std::move(scene));
 }
 

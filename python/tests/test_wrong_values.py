@@ -28,6 +28,7 @@ WRONG: dict[str, Call] = {
     "points has the type bool": lambda s: s.measure([[True, False, True]]),
     "points has the shape ()": lambda s: s.measure(0.5),
     "points has masked values": lambda s: s.measure(np.ma.masked_less([[0.0, -1.0, 0.0]], 0)),
+    "points has masked values; leave": lambda s: s.measure([np.ma.masked_less([0.0, -9.0, 0.0], 0)]),
     "sun_irradiance and per_sun need suns": lambda s: s.measure(AT, sun_irradiance=900),
     "need suns": lambda s: s.measure(AT, per_sun=True),
     "suns has the type": lambda s: s.measure(AT, suns="noon"),

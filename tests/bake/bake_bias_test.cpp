@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -116,15 +117,15 @@ TraceSamples slow_tracer(const float& value, int milliseconds) {
   };
 }
 
-// Comparing takes twenty times the time of tracing, so that of what comes later less is compared. A
-// tenth of the samples has a bias of 0.1, the others have 0.3.
-TEST(BakeBias, WhatWasComparedMoreDoesNotCountMore) {
+// Comparing takes twenty times the time of tracing, so that of a second mesh less is compared. A
+// tenth of the samples, those of the first, has a bias of 0.1, the others have 0.3.
+TEST(BakeBias, MeshesOfWhichMoreWasComparedDoNotCountMore) {
   BakeBias bias(1);
   float value = 0.1f;
   const float none = 0;
-  const TraceSamples traced =
-      bias.with({"ao", slow_tracer(value, 2), slow_tracer(value, 20), slow_tracer(none, 20)});
   for (std::size_t blocks : {1000, 9000}) {
+    const TraceSamples traced =
+        bias.with({"ao", slow_tracer(value, 2), slow_tracer(value, 20), slow_tracer(none, 20)});
     const std::vector<SurfaceSample> all(64 * blocks);
     traced(all, std::vector<std::uint32_t>(all.size()), Placements{}, 8, 1);
     value = 0.3f;
@@ -132,6 +133,24 @@ TEST(BakeBias, WhatWasComparedMoreDoesNotCountMore) {
   const Bias found = bias.report().at("ao");
   EXPECT_LT(found.share, 0.2) << "most of the first and few of the others";
   EXPECT_NEAR(found.mean, 0.28, 0.01) << "0.11 to 0.13 if all of them counted the same";
+}
+
+// The second block of samples lies inside closed geometry.
+TEST(BakeBias, ABlockInsideClosedGeometryTellsNoError) {
+  BakeBias bias(1);
+  const float value = 0.5f, none = 0;
+  const TraceSamples exact = [trace = slow_tracer(none, 0)](auto samples, auto placement,
+                                                            const Placements& all, int rays,
+                                                            std::uint32_t hash) {
+    TracedSamples traced = trace(samples, placement, all, rays, hash);
+    traced.inside.assign(samples.size(), 0);
+    std::fill(traced.inside.begin() + 64, traced.inside.end(), 1);
+    return traced;
+  };
+  const std::vector<SurfaceSample> all(128);
+  bias.with({"ao", slow_tracer(value, 0), slow_tracer(value, 0), exact})(
+      all, std::vector<std::uint32_t>(128), Placements{}, 8, 1);
+  EXPECT_TRUE(bias.report().empty());
 }
 
 TEST(BakeBias, LightsHaveOne) {

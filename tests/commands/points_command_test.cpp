@@ -163,7 +163,7 @@ TEST_F(PointsCommand, NotesOptionsThatMayNotDoWhatWasMeant) {
   const std::string cube = "points 'scene:cube?divisions=1' --grid=-4,-4,4,4,4 -o a.CSV --rays ";
   const std::string odd = dapple(cube + "20 --ground --height=-1 --periodic 0.5,100").err;
   EXPECT_TRUE(contains(odd, "--rays is 20; 16 are traced, a multiple of 8")) << odd;
-  EXPECT_TRUE(contains(odd, "9 of 9 points lie below the ground at y = ")) << odd;
+  EXPECT_TRUE(contains(odd, "9 of 9 points lie below the ground, which is at y = ")) << odd;
   EXPECT_TRUE(contains(odd, " m wide along X, and its period 0.5 m: copies overlap")) << odd;
   EXPECT_FALSE(contains(odd, "along Z")) << odd;
   const program_test::Outcome even = dapple(cube + "16 --ground --height 2 --periodic 0.9,100");

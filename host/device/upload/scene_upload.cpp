@@ -128,14 +128,12 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   return result;
 }
 
-BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
-                 const Scene& moved, const UploadOptions& options) {
+namespace {
+
+/// As update(), for a scene that is on the device. After an Error its buffers may be of two times.
+BvhUpdate update_uploaded(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
+                          const Scene& moved, const UploadOptions& options) {
   DeviceContext& context = device.context();
-  if (!on_device.buffers) {
-    BvhUpdate all = bvh.update(moved);
-    on_device = upload(device, moved, bvh.bvh(), options);
-    return all;
-  }
   DeviceBuffers& buffers = *on_device.buffers;
   BvhUpdate changes;
   {
@@ -170,6 +168,23 @@ BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh
   context.finish();
   on_device.bytes = bytes_of_all(buffers);
   return changes;
+}
+
+}  // namespace
+
+BvhUpdate update(const Device& device, DeviceScene& on_device, UpdatableBvh& bvh,
+                 const Scene& moved, const UploadOptions& options) {
+  if (!on_device.buffers) {
+    BvhUpdate all = bvh.update(moved);
+    on_device = upload(device, moved, bvh.bvh(), options);
+    return all;
+  }
+  try {
+    return update_uploaded(device, on_device, bvh, moved, options);
+  } catch (...) {
+    on_device = {};
+    throw;
+  }
 }
 
 }  // namespace dapple

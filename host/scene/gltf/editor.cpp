@@ -80,7 +80,7 @@ void Editor::write(PendingFiles& files) {
   }
   for (const auto& [path, bytes] : new_images_) files.add(path, bytes);
   if (!bytes_.empty()) files.add((fs::path(out_).parent_path() / side_name()).string(), bytes_);
-  copy_side_files(files);
+  copy_side_files();
   files.add(out_, text + "\n");
 }
 
@@ -177,11 +177,12 @@ void Editor::embed_images() {
 }
 
 // Files that the document names, to the output's folder.
-void Editor::copy_side_files(PendingFiles& files) const {
+void Editor::copy_side_files() const {
   for (const auto& [from, to] : side_copies()) {
     const Bytes bytes = read_file(from, from);
     if (!fs::path(to).parent_path().empty()) fs::create_directories(fs::path(to).parent_path());
-    files.add(to, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    write_whole_file(to,
+                     std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }
 }
 

@@ -28,8 +28,8 @@ class Editor {
   /// Adds an image: in the buffer of a .glb, in the file image_path(suffix) beside a .gltf.
   std::size_t add_image(const std::string& png, const std::string& suffix);
 
-  /// Adds `out` to `files`. Data of a .gltf go to a file beside it, and buffers and images that the
-  /// file names are copied there unless they are there already.
+  /// Adds `out` to `files`. Data of a .gltf go to a file beside it. Buffers and images that the
+  /// file names are copied there at once, one after the other, unless they are there already.
   void write(PendingFiles& files);
 
   /// NAME`suffix`.png beside `out`, or with a number if the source has an image of that name.
@@ -52,7 +52,7 @@ class Editor {
   void embed_buffers();
   void embed_images();
   void remove_buffer();
-  void copy_side_files(PendingFiles& files) const;
+  void copy_side_files() const;
 
   const SourceFile& source_;
   std::string out_;
