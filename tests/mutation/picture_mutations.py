@@ -177,9 +177,21 @@ MUTATIONS = [
         r"^Back\."),
     Mutation(
         "bias-correction-of-the-wrong-sign", "host/points/bias_correction.cpp",
-        "std::clamp(prefiltered + change_ * fall_with_depth(prefiltered), 0.0, 1.0);",
-        "std::clamp(prefiltered - change_ * fall_with_depth(prefiltered), 0.0, 1.0);",
-        r"^(BiasCorrection|PointBias)\."),
+        "change_ = difference / fall;", "change_ = -difference / fall;",
+        r"^(BiasCorrection|PointBias|SetSums)\."),
+    Mutation(
+        "correction-by-the-fall-of-the-mean", "host/points/set_sums.hpp",
+        "const double fall = of.fall / sets_, corrected",
+        "const double fall = fall_with_depth(mean(i)), corrected",
+        r"^(SetSums|LocalFootprint)\."),
+    Mutation(
+        "bias-with-samples-inside", "host/bake/bake_bias.cpp",
+        "if (exact.is_inside(i)) continue;", "",
+        r"^(InsideSamples|BakeBias)\."),
+    Mutation(
+        "meshes-by-what-was-compared", "host/bake/bake_bias.cpp",
+        "const double weight = mesh.samples / mesh.compared;", "const double weight = 1;",
+        r"^BakeBias\."),
     Mutation(
         "sun-without-cosine", "host/points/measure_points.cpp",
         "double{suns[s].irradiance} *\n"
