@@ -12,9 +12,6 @@ namespace {
 /// The standard error of a value, times the root of its number of rays: less than most have.
 constexpr double kErrorOfRay = 0.1;
 
-/// Smallest part of the footprint that is tried before exact rays.
-constexpr float kSmallestPart = 1.0f / 16;
-
 /// The largest RMSE over tiles, and the least that it is within the noise.
 struct Local {
   double rmse = 0, least = 0;
@@ -46,9 +43,7 @@ FootprintChoice choose_local_footprint(BiasSource& source, float footprint, int 
   choice.note = fmt::format(
       "{} in place of footprint {}, with which single values would be off by about {:.4f} beside "
       "their noise; --max-bias 0 keeps that",
-      choice.footprint > 0 ? fmt::format("footprint {}", choice.footprint)
-                           : std::string("exact rays (footprint 0)"),
-      footprint, first.rmse);
+      footprint_text(choice.footprint), footprint, first.rmse);
   return choice;
 }
 

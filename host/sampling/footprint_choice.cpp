@@ -14,9 +14,6 @@ namespace {
 /// standard deviation of about 0.2.
 constexpr std::size_t kFirstRays = 1u << 15, kMostRays = 1u << 20;
 
-/// Smallest part of the scale that is tried before 0.
-constexpr float kSmallestPart = 1.0f / 16;
-
 /// Part of a squared target to which the squared bias must be known.
 constexpr double kKnownPart = 0.1;
 
@@ -100,9 +97,7 @@ FootprintChoice choose_if_clear(BiasSource& source, const FootprintDemand& deman
     choice.footprint = 0;
   choice.note = fmt::format(
       "{} in place of footprint {}, whose bias is about {:+.4f}; --max-bias 0 keeps that",
-      choice.footprint > 0 ? fmt::format("footprint {}", choice.footprint)
-                           : std::string("exact rays (footprint 0)"),
-      demand.footprint, of_demand);
+      footprint_text(choice.footprint), demand.footprint, of_demand);
   return choice;
 }
 
@@ -126,9 +121,7 @@ double rmse_of(BiasSource& source, float footprint, double target) {
 /// `last`: of the smallest footprint that was tried, above 0.
 std::string note_of(const FootprintDemand& demand, float footprint, const Judgement& last) {
   if (!(demand.max_bias > 0))
-    return fmt::format("for the target, {} in place of footprint {}",
-                       footprint > 0 ? fmt::format("footprint {}", footprint)
-                                     : std::string("exact rays (footprint 0)"),
+    return fmt::format("for the target, {} in place of footprint {}", footprint_text(footprint),
                        demand.footprint) +
            (footprint > 0 ? ", whose bias is too large" : ": even the smallest has too much bias");
   const std::string why = fmt::format("--max-bias {}: ", demand.max_bias);
@@ -148,6 +141,10 @@ std::string note_of(const FootprintDemand& demand, float footprint, const Judgem
 }
 
 }  // namespace
+
+std::string footprint_text(float footprint) {
+  return footprint > 0 ? fmt::format("footprint {}", footprint) : "exact rays (footprint 0)";
+}
 
 FootprintChoice choose_footprint(BiasSource& source, const FootprintDemand& demand) {
   if (demand.only_if_clear) return choose_if_clear(source, demand);

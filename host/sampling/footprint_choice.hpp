@@ -44,6 +44,12 @@ struct FootprintChoice {
   std::string note;      ///< for the user; may be empty
 };
 
+/// Smallest part of a demanded scale that is tried before 0.
+inline constexpr float kSmallestPart = 1.0f / 16;
+
+/// "footprint 0.5", or "exact rays (footprint 0)".
+std::string footprint_text(float footprint);
+
 /// The note where a limit is given and all rays are exact.
 inline constexpr const char* kNothingToLimit =
     "--max-bias has no effect: nothing is computed that has a bias";
