@@ -2,6 +2,7 @@
 // points. Out: speed and mean transmittance of each method of Embree and dapple.
 #pragma once
 
+#include "rivals/ray_rows.hpp"
 #include "rivals/rival_scene.hpp"
 
 namespace dapple::bench {
@@ -16,16 +17,6 @@ struct PreparedRays {
 };
 
 PreparedRays prepare_rays(std::span<const Surface> points, std::uint32_t seed);
-
-struct RayRow {
-  std::string name;
-  bool is_embree = false;
-  double rays_a_second = 0;       ///< median; for dapple by the device's clock, without copies
-  double fastest_seconds = 0;     ///< of all rounds
-  double spread = 0;              ///< (largest - smallest) / median of the seconds
-  double mean_transmittance = 0;  ///< over all rays
-  double visits = 0, tests = 0;   ///< per ray; only for dapple
-};
 
 /// Measures Embree's `methods` and, with `ours`, dapple's exact and prefiltered single rays and
 /// packets: `repeats` interleaved rounds.

@@ -40,13 +40,6 @@ std::size_t thread_count() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
-double best_embree_rate(const std::vector<RayRow>& rows) {
-  double best = 0;
-  for (const RayRow& row : rows)
-    if (row.is_embree) best = std::max(best, row.rays_a_second);
-  return best;
-}
-
 std::string time_text(const std::optional<TimeToError>& time) {
   return time ? fmt::format("{:.4g}{}", time->seconds, time->extrapolated ? "*" : "") : "-";
 }
@@ -67,24 +60,6 @@ std::string rungs_text(const std::vector<Standing>& standings, const std::string
     }
   }
   return table_text(cells);
-}
-
-/// Lines that name rows which should have the mean of dapple's exact rays, and have not: what they
-/// are fast at is something else. The standard error of stochastic rays is 0.002 at most.
-std::string disagreements(const std::vector<RayRow>& rows) {
-  constexpr double kTolerance = 0.006;
-  const auto exact =
-      std::find_if(rows.begin(), rows.end(), [](const RayRow& row) { return row.name == "exact"; });
-  std::string text;
-  for (const RayRow& row : rows) {
-    const bool should_agree = row.is_embree || row.name.starts_with("exact");
-    if (exact == rows.end() || !should_agree ||
-        std::fabs(row.mean_transmittance - exact->mean_transmittance) <= kTolerance)
-      continue;
-    text += fmt::format("warning: {} does not agree with exact: transmittance {:.4f}, not {:.4f}\n",
-                        row.name, row.mean_transmittance, exact->mean_transmittance);
-  }
-  return text;
 }
 
 }  // namespace

@@ -306,6 +306,13 @@ void validate(const BakeOptions& options) {
   if (options.light && options.placement == BakeInstances::alone)
     throw Error(ErrorKind::usage,
                 "--passes light needs --instances together or unique: a mesh alone is not lit");
+  if (options.ground && options.placement == BakeInstances::alone &&
+      (options.vertices || options.texture))
+    throw Error(ErrorKind::usage,
+                "--ground needs --instances together or unique: a mesh alone stands on none");
+  if (!options.vertices && !options.texture && !options.instances)
+    throw Error(ErrorKind::usage,
+                "nothing is baked: values of vertices, of a texture or of instances");
 }
 
 BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderControl& control,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sampling/random_choice.hpp"
+
 namespace dapple {
 namespace {
 
@@ -14,11 +16,6 @@ constexpr std::uint32_t kUnitsOfTile = 4;
 
 /// Comparing may take this part of the time of tracing; beyond it fewer samples are compared.
 constexpr double kMostOfTime = 0.04;
-
-/// An even share of all numbers: multiples of the golden ratio, modulo 2^32.
-bool is_chosen(std::uint32_t block, double share) {
-  return (block + 1) * 2654435769u < static_cast<std::uint64_t>(share * 4294967296.0);
-}
 
 }  // namespace
 
@@ -64,7 +61,7 @@ void BakeBias::compare(const BiasTracing& tracing, std::span<const SurfaceSample
   std::vector<SurfaceSample> chosen;
   std::vector<std::uint32_t> places;
   for (std::size_t begin = 0; begin < samples.size(); begin += kBlock) {
-    if (!is_chosen(next_block_++, share_)) continue;
+    if (!is_in_share(next_block_++, share_)) continue;
     const std::size_t end = std::min(begin + kBlock, samples.size());
     chosen.insert(chosen.end(), samples.begin() + begin, samples.begin() + end);
     places.insert(places.end(), placement.begin() + begin, placement.begin() + end);

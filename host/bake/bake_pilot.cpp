@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bake/vertex_bake.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {
@@ -31,13 +32,13 @@ BakePilot::BakePilot(const std::vector<PilotMesh>& meshes, std::vector<PilotQuan
   if (triangles_before_.back() > 0) most_ = kMostSamples;
 }
 
-// Triangles by multiples of the golden ratio, so that any number of them is evenly spread.
+// Triangles are chosen so that any number of them is evenly spread.
 BakePilot::Batch BakePilot::take(std::size_t count) {
   const std::uint64_t all = triangles_before_.back();
   std::vector<std::pair<std::uint64_t, std::uint32_t>> chosen;  // triangle, number of the sample
   for (; count > 0 && taken_ < most_; --count, ++taken_) {
     const auto number = static_cast<std::uint32_t>(taken_);
-    chosen.emplace_back(std::uint64_t{(number + 1) * 2654435769u} * all >> 32, number);
+    chosen.emplace_back(spread_choice(number, all), number);
   }
   std::sort(chosen.begin(), chosen.end());
   Batch batch;

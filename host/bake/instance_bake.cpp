@@ -5,6 +5,7 @@
 #include <map>
 
 #include "bake/vertex_bake.hpp"
+#include "sampling/random_choice.hpp"
 #include "scene/invertible.hpp"
 
 namespace dapple {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/point_irradiance.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {

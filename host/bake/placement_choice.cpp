@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "bake/surface_samples.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {

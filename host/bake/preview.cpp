@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/images/color.hpp"
+
 namespace dapple {
 namespace {
 
@@ -171,9 +173,8 @@ class Screen {
   static int last(float x, int size) {
     return static_cast<int>(std::clamp(x + 0.5f, -1.0f, static_cast<float>(size - 1)));
   }
-  static std::uint8_t srgb(float linear) {  // IEC 61966-2-1
-    const float x = std::clamp(linear, 0.0f, 1.0f);
-    const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+  static std::uint8_t srgb(float linear) {
+    const float encoded = srgb_from_linear(std::clamp(linear, 0.0f, 1.0f));
     return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
   }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bake/placement_choice.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sampling/random_choice.hpp"
+
 namespace dapple {
 namespace {
 

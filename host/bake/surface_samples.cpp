@@ -27,15 +27,6 @@ bool is_two_sided(const Material& material, BakeSides sides) {
   return sides != BakeSides::front;
 }
 
-std::uint32_t hash_of(std::uint32_t a, std::uint32_t b) {
-  std::uint32_t x = a * 0x9e3779b1u ^ (b + 0x7f4a7c15u) * 0x85ebca77u;
-  x ^= x >> 16;
-  x *= 0x21f0aaadu;  // Wellons, "Prospecting for Hash Functions", 2018
-  x ^= x >> 15;
-  x *= 0x735a2d97u;
-  return x ^ x >> 15;
-}
-
 // Each base-4 digit chooses a quarter of the triangle: the one in the middle, which is turned
 // round, or the one at a corner.
 std::array<float, 3> triangle_point(std::uint32_t index) {

@@ -80,7 +80,4 @@ std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of);
 void add_shading(const Mesh& mesh, std::size_t triangle, const std::array<float, 3>& barycentric,
                  SurfaceSample& sample);
 
-/// Random bits from two numbers.
-std::uint32_t hash_of(std::uint32_t a, std::uint32_t b);
-
 }  // namespace dapple

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bake/hidden_vertices.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {

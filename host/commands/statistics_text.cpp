@@ -81,6 +81,13 @@ std::string errors_line(const RenderStatistics& s) {
   return passes.empty() ? "" : fmt::format("  estimated RMSE: {}\n", passes);
 }
 
+std::string largest_irradiance_line(const RenderStatistics& s) {
+  std::string layers;
+  for (const auto& [layer, value] : s.largest_irradiance)
+    layers += fmt::format("{}{} {:.3g}", layers.empty() ? "" : ", ", layer, value);
+  return layers.empty() ? "" : fmt::format("  these are relative to, in W/m^2: {}\n", layers);
+}
+
 }  // namespace
 
 std::string bias_lines(const std::map<std::string, Bias>& layers) {
@@ -138,6 +145,7 @@ nlohmann::ordered_json statistics_json(const RenderStatistics& s) {
       {"camera", s.camera.tests}, {"ao", s.ao.tests}, {"light", s.light.tests}};
   if (!s.rmse.empty()) json["estimated_rmse"] = s.rmse;
   if (!s.rmse_with_bias.empty()) json["estimated_rmse_with_bias"] = s.rmse_with_bias;
+  if (!s.largest_irradiance.empty()) json["largest_irradiance"] = s.largest_irradiance;
   json["footprint"] = s.footprint;
   if (!s.bias.empty()) json["bias"] = bias_json(s.bias);
   json["triangles"] = s.triangles;
@@ -180,6 +188,7 @@ std::string statistics_text(const RenderStatistics& s) {
                     s.light.tests);
   text += errors_line(s);
   text += bias_lines(s.bias);
+  text += largest_irradiance_line(s);
   text += cache_line(s);
   text += refit_line(s);
   text += seconds_line(s);

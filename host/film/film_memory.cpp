@@ -25,11 +25,12 @@ double machine_bytes() {
 /// host's copy; channels are in the film and in the file that is being written.
 std::size_t film_bytes_per_pixel(std::size_t lights, const RenderOptions& options) {
   const std::size_t squares = 1 + lights;  // of two floats each
-  std::size_t sums = DAPPLE_SURFACE_PLANES + DAPPLE_AO_PLANES + kNormalPlanes + kAlbedoPlanes +
-                     DAPPLE_DOME_PLANES * lights + squares;  // as if all were domes
+  std::size_t sums = DAPPLE_SURFACE_PLANES + DAPPLE_AO_PLANES + DAPPLE_NORMAL_PLANES +
+                     DAPPLE_ALBEDO_PLANES + DAPPLE_DOME_PLANES * lights +
+                     squares;  // as if all were domes
   std::size_t channels = kSurfaceChannels + kLightChannels * lights;
   if (options.back) {
-    sums += 3 + 3 * lights;  // samples, hits and AO; lights as if all were domes
+    sums += DAPPLE_BACK_PLANES + 1 + DAPPLE_DOME_CHANNELS * lights;  // 1: AO
     channels += 3 * (1 + lights);
   }
   if (options.motion) {

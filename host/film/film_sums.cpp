@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "film/light_layers.hpp"
-#include "scene/images/dome_image.hpp"
+#include "scene/images/color.hpp"
 
 namespace dapple {
 namespace {
@@ -128,7 +128,7 @@ FilmLayout::FilmLayout(const PixelRect& crop, const RenderOptions& options,
   }
   if (options.back) {
     back_samples = plane_count;
-    plane_count += 2;
+    plane_count += DAPPLE_BACK_PLANES;
     if (options.ao) {
       back_ao = plane_count;
       plane_count += 1;
@@ -140,11 +140,11 @@ FilmLayout::FilmLayout(const PixelRect& crop, const RenderOptions& options,
   }
   if (has_normals) {
     normals = plane_count;
-    plane_count += kNormalPlanes;
+    plane_count += DAPPLE_NORMAL_PLANES;
   }
   if (options.albedo) {
     albedo = plane_count;
-    plane_count += kAlbedoPlanes;
+    plane_count += DAPPLE_ALBEDO_PLANES;
   }
   unit_scale = scale_for(1.0);
   position_scale = scales.position;

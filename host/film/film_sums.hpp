@@ -14,9 +14,6 @@
 
 namespace dapple {
 
-inline constexpr std::uint32_t kNormalPlanes = 3;
-inline constexpr std::uint32_t kAlbedoPlanes = 3;
-
 /// A light's planes: irradiance with occlusion, then without, each of 1 channel (3 for a dome);
 /// then node visits and triangle tests.
 struct LightPlaneRange {

@@ -305,7 +305,8 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
     if (options.back)
       planes.add3("ao.back", "RGB", [&](std::uint32_t p) {
         const std::uint32_t source = light.back_source(p);
-        return V3d(ao_of(layout.back_ao, source, sums.at(layout.back_samples + 1, source),
+        return V3d(ao_of(layout.back_ao, source,
+                         sums.at(layout.back_samples + DAPPLE_PLANE_BACK_HITS, source),
                          back_sample_count(sums, layout, source)));
       });
     planes.add3("bent", "XYZ", [&](std::uint32_t p) {

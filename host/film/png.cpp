@@ -23,6 +23,7 @@
 #include "film/heat_color.hpp"
 #include "film/pixel_elevation.hpp"
 #include "film/tone_map.hpp"
+#include "scene/images/color.hpp"
 
 namespace dapple {
 namespace {
@@ -86,15 +87,10 @@ Tone tone_of(const Film& film, const std::string& layer, const Planes& planes) {
   return {};
 }
 
-// IEC 61966-2-1, the encoding of linear light in [0,1].
-float encode_srgb(float linear) {
-  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
-
 std::uint8_t shown(float value, const Tone& tone) {
   const float toned = (value - tone.offset) * tone.scale;
   const float clamped = toned > 0 ? std::min(toned, 1.0f) : 0.0f;  // NaN becomes 0
-  const float encoded = tone.srgb ? encode_srgb(clamped) : clamped;
+  const float encoded = tone.srgb ? srgb_from_linear(clamped) : clamped;
   return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
 }
 
@@ -129,7 +125,7 @@ ByteImage main_picture(const Film& film, const PngOptions& options) {
     }
     for (int c = 0; c < 3; ++c)
       image.bytes[p * channels + static_cast<std::size_t>(c)] =
-          byte_of(encode_srgb(std::clamp(shown[c], 0.0f, 1.0f)));
+          byte_of(srgb_from_linear(std::clamp(shown[c], 0.0f, 1.0f)));
     if (with_alpha) image.bytes[p * channels + 3] = byte_of(alpha);
   }
   return image;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "scene/images/color.hpp"
+
 namespace dapple {
 namespace {
-
-float luminance(const V3f& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 /// What a pixel shows where it is covered, and how much of it is.
 struct Seen {
@@ -21,7 +21,8 @@ std::vector<Seen> seen_luminances(const Film& film) {
   for (std::size_t p = 0; p < r->pixels.size(); ++p) {
     const float alpha = a == nullptr ? 1.0f : std::min(a->pixels[p], 1.0f);
     if (!(alpha > 0)) continue;
-    const float value = luminance({r->pixels[p], g->pixels[p], b->pixels[p]}) / alpha;
+    const auto value = static_cast<float>(luminance(V3f(r->pixels[p], g->pixels[p], b->pixels[p])) /
+                                          double{alpha});
     if (std::isfinite(value)) seen.push_back({std::max(value, 0.0f), alpha});
   }
   return seen;
@@ -48,7 +49,7 @@ double mean_albedo(const Film& film) {
   double sum = 0, weight = 0;
   for (std::size_t p = 0; p < r->pixels.size(); ++p) {
     const double alpha = double{a->pixels[p]};
-    const double value = double{luminance({r->pixels[p], g->pixels[p], b->pixels[p]})};
+    const double value = luminance(V3f(r->pixels[p], g->pixels[p], b->pixels[p]));
     if (!(alpha > 0) || !std::isfinite(value)) continue;
     sum += alpha * value;
     weight += alpha;

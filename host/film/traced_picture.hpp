@@ -27,10 +27,11 @@ struct TracedPicture {
   /// Standard errors by pass and pixel: AO, then the lights, relative to their largest unoccluded
   /// irradiance. Empty without a target, or if interrupted before they are known.
   std::vector<std::vector<float>> errors;
-  MatteSums mattes;                            ///< of no pixels unless requested
-  MotionSums motion;                           ///< of no pixels unless requested
-  DeepSums deep;                               ///< of no pixels unless requested
-  PictureBias bias;                            ///< empty unless requested
+  std::vector<double> largest;  ///< FilmMoments::largest_values(); empty without errors and bias
+  MatteSums mattes;             ///< of no pixels unless requested
+  MotionSums motion;            ///< of no pixels unless requested
+  DeepSums deep;                ///< of no pixels unless requested
+  PictureBias bias;             ///< empty unless requested
   std::map<std::string, double> pass_seconds;  ///< device seconds by label, of all runs
   std::size_t queue_bytes = 0;
   bool interrupted = false;

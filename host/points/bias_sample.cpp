@@ -8,6 +8,7 @@
 #include "points/sun_irradiance.hpp"
 #include "render/point_occlusion.hpp"
 #include "sampling/bias_estimate.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {
@@ -24,12 +25,11 @@ constexpr std::size_t kLeastPoints = 8;
 /// Neighbouring points of the sample that are a tile.
 constexpr std::uint32_t kPointsOfTile = 16;
 
-/// Up to `most` of `count` numbers, ascending: multiples of the golden ratio, which no order of the
-/// points agrees with, as equal steps would with fronts and backs.
+/// Up to `most` of `count` numbers, ascending and evenly spread.
 std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t most) {
   std::vector<std::size_t> chosen(std::min(count, most));
   for (std::uint32_t i = 0; i < chosen.size(); ++i)
-    chosen[i] = count > most ? std::uint64_t{(i + 1) * 2654435769u} * count >> 32 : i;
+    chosen[i] = count > most ? spread_choice(i, count) : i;
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   return chosen;

@@ -12,7 +12,7 @@
 
 #include "dapple/error.hpp"
 #include "points/number_table.hpp"
-#include "scene/gltf/file.hpp"
+#include "scene/regular_file.hpp"
 
 namespace dapple {
 namespace {
@@ -112,7 +112,7 @@ void append_digits(double value, std::string& text) {
 }  // namespace
 
 NumberTable read_csv(const std::string& path) {
-  const auto bytes = gltf::read_file(path, path);
+  const auto bytes = read_regular_file(path, path);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark
   // Files of old Macs end lines with carriage returns alone.

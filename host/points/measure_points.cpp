@@ -22,6 +22,7 @@
 #include "render/point_checks.hpp"
 #include "render/point_occlusion.hpp"
 #include "render/stopwatch.hpp"
+#include "sampling/random_choice.hpp"
 #include "scene/scene_check.hpp"
 
 namespace dapple {
@@ -219,10 +220,10 @@ class Measurement {
   }
 
   void measure_suns() {
-    if (is_sampled(options_))
-      sample_suns();
-    else
+    if (options_.per_sun)
       trace_each_sun();
+    else
+      sample_suns();
   }
 
   void sample_suns() {
@@ -243,31 +244,26 @@ class Measurement {
 
   void trace_each_sun() {
     const std::vector<SunDirection>& suns = options_.suns;
-    std::vector<PointColumn> columns(options_.per_sun ? suns.size() : 2);
+    std::vector<PointColumn> columns(suns.size());
     for (std::size_t s = 0; s < columns.size(); ++s) {
       columns[s].name = fmt::format("sun_{}", s);
       columns[s].values.resize(points_.size());
     }
-    std::vector<double> sums(options_.per_sun ? 0 : points_.size());
     const auto make = [&](std::size_t i, std::span<Ray> rays) {
-      for (std::size_t s = 0; s < suns.size(); ++s)
-        rays[s] = point_ray(points_[i], normals_[i], suns[s].direction, kSunSolidAngle);
+      const std::uint32_t of_point = hash_of(options_.seed, static_cast<std::uint32_t>(i));
+      for (std::size_t s = 0; s < suns.size(); ++s) {
+        const std::uint32_t bits = hash_of(of_point, static_cast<std::uint32_t>(s));
+        const V3f direction = direction_to_disk(suns[s].direction, (bits & 0xffffu) / 65536.0,
+                                                (bits >> 16) / 65536.0);
+        rays[s] = point_ray(points_[i], normals_[i], direction, kSunSolidAngle);
+      }
     };
     const auto add = [&](std::size_t i, std::size_t s, double transmittance) {
       const double value = transmittance * double{suns[s].irradiance} *
                            std::max(0.0, double{normals_[i].dot(suns[s].direction)});
-      if (options_.per_sun)
-        columns[s].values[i] = static_cast<float>(value);
-      else
-        sums[i] += value;
+      columns[s].values[i] = static_cast<float>(value);
     };
     if (!trace_rays(suns.size(), 1, make, add)) return;
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      columns[0].values[i] = static_cast<float>(sums[i]);
-    if (!options_.per_sun) {
-      columns[0].name = "sun";
-      columns[1].name = "sun_error";  // 0: no sun was left out
-    }
     for (PointColumn& column : columns) result_.columns.push_back(std::move(column));
   }
 

@@ -11,8 +11,8 @@
 
 #include "dapple/error.hpp"
 #include "points/number_table.hpp"
-#include "scene/gltf/file.hpp"
 #include "scene/message.hpp"
+#include "scene/regular_file.hpp"
 
 namespace dapple {
 namespace {
@@ -193,7 +193,7 @@ void read_rows(const std::string& path, std::string_view bytes, std::size_t rows
 }  // namespace
 
 NumberTable read_npy(const std::string& path) {
-  const auto raw = gltf::read_file(path, path);
+  const auto raw = read_regular_file(path, path);
   const std::string bytes(reinterpret_cast<const char*>(raw.data()), raw.size());
   const Header header = read_header(path, bytes);
   NumberTable table;

@@ -9,7 +9,7 @@
 
 #include "dapple/error.hpp"
 #include "points/number_table.hpp"
-#include "scene/gltf/file.hpp"
+#include "scene/regular_file.hpp"
 
 namespace dapple {
 namespace {
@@ -129,7 +129,7 @@ Header read_header(const std::string& path, const std::string& bytes, NumberTabl
 }  // namespace
 
 NumberTable read_ply(const std::string& path) {
-  const auto raw = gltf::read_file(path, path);
+  const auto raw = read_regular_file(path, path);
   const std::string bytes(reinterpret_cast<const char*>(raw.data()), raw.size());
   NumberTable table;
   const Header header = read_header(path, bytes, table);

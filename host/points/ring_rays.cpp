@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/surface_samples.hpp"
 #include "points/ray_slices.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {

@@ -1,8 +1,8 @@
 #include "points/sun_irradiance.hpp"
 
-#include "bake/surface_samples.hpp"
 #include "points/point_sets.hpp"
 #include "points/ray_slices.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 

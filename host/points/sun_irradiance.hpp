@@ -13,9 +13,9 @@
 
 namespace dapple {
 
-/// More suns, for a sum, than a point has rays: each ray stands for some of them.
+/// Whether the rays of a point are shared among all suns, for their sum.
 inline bool is_sampled(const PointOptions& options) {
-  return !options.per_sun && options.suns.size() > static_cast<std::size_t>(options.rays);
+  return !options.per_sun && !options.suns.empty();
 }
 
 /// Irradiance over that without occlusion, [set][point], 1 where no sun shines. A set has

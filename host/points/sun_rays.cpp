@@ -1,11 +1,12 @@
 #include "points/sun_rays.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "bake/surface_samples.hpp"
 #include "points/ring_rays.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {
@@ -43,7 +44,28 @@ std::uint32_t along_curve(const V3f& direction) {
   return along_curve(step(direction.x), step(direction.z));
 }
 
+/// Two random numbers in [0,1) that are evenly spread for any consecutive indices: the additive
+/// sequence R2 (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018), shifted.
+std::array<double, 2> spread_pair(std::size_t index, std::uint32_t shift) {
+  constexpr double kPlastic = 1.32471795724474602596;
+  const auto i = static_cast<double>(index);
+  const double u = (shift & 0xffffu) / 65536.0 + i / kPlastic;
+  const double v = (shift >> 16) / 65536.0 + i / (kPlastic * kPlastic);
+  return {u - std::floor(u), v - std::floor(v)};
+}
+
 }  // namespace
+
+V3f direction_to_disk(const V3f& direction, double u, double v) {
+  using Imath::V3d;
+  const double down = u * double{kSunSolidAngle} / (2 * std::numbers::pi);  // 1 - cosine
+  const double radius = std::sqrt(down * (2 - down)), angle = 2 * std::numbers::pi * v;
+  const V3d middle = V3d(direction).normalized();
+  const V3d side =
+      middle.cross(std::fabs(middle.x) < 0.5 ? V3d(1, 0, 0) : V3d(0, 1, 0)).normalized();
+  return V3f(middle * (1 - down) + side * (radius * std::cos(angle)) +
+             middle.cross(side) * (radius * std::sin(angle)));
+}
 
 SunRays::SunRays(std::span<const SunDirection> suns)
     : suns_(suns.begin(), suns.end()), irradiance_before_{0}, vectors_before_{Imath::V3d(0, 0, 0)} {
@@ -99,7 +121,8 @@ void SunRays::sample(const V3f& point, const V3f& normal, std::size_t sets, std:
       const double at = step * (static_cast<double>(first_ray + part) + bits / 4294967296.0);
       while (sun + 1 < suns_.size() && sums[sun + 1] <= at) ++sun;
       Ray& ray = rays[first_ray + (part + turn) % sets];
-      ray = point_ray(point, normal, suns_[sun].direction, 0);
+      const auto [u, v] = spread_pair(first_ray + part, random);
+      ray = point_ray(point, normal, direction_to_disk(suns_[sun].direction, u, v), 0);
       ray.key = hash_of(bits, turn);
     }
     const double end = step * static_cast<double>(first_ray + sets);

@@ -1,6 +1,6 @@
-// Makes rays from points towards many suns. Each ray represents several suns that are near each
-// other. In: suns, a point with its normal. Out: rays, all of which bring the same irradiance if
-// nothing occludes them.
+// Makes rays from points towards the disks of suns. Of many suns each ray represents several that
+// are near each other. In: suns, a point with its normal. Out: rays, all of which bring the same
+// irradiance if nothing occludes them.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,12 @@
 
 namespace dapple {
 
-/// Solid angle of the sun, 0.53 degrees wide.
-inline constexpr float kSunSolidAngle = 6.8e-5f;
+/// Solid angle of the sun, 0.533 degrees wide.
+inline constexpr float kSunSolidAngle = 6.797e-5f;
+
+/// A direction towards the disk of a sun whose middle is at `direction`, evenly by solid angle.
+/// u, v: [0,1).
+V3f direction_to_disk(const V3f& direction, double u, double v);
 
 /// Stratified samples of suns, which are ordered so that neighbours have similar directions; the
 /// probability of each is in proportion to what it brings (Cochran, "Sampling Techniques", 1977,

@@ -11,6 +11,7 @@
 #include "film/light_layers.hpp"
 #include "render/unit_grid.hpp"
 #include "sampling/bias_estimate.hpp"
+#include "scene/images/color.hpp"
 
 namespace dapple {
 
@@ -156,6 +157,19 @@ SideSamples samples_of_bias(const BiasSums& sums, const HostView& film,
       taken.backs[pixel] -= std::min(taken.backs[pixel], earlier >> group_bits);
   }
   return taken;
+}
+
+void add_largest_irradiances(RenderStatistics& statistics, const std::vector<double>& largest,
+                             const FilmLayout& layout, const std::vector<Light>& lights) {
+  if (largest.empty()) return;
+  const std::size_t of_ao = layout.ao ? 1 : 0;
+  std::size_t group = of_ao + lights.size();  // at their radiances
+  for (const LightLayer& layer : light_layers(lights)) {
+    const std::size_t light = layer.lights[0];
+    statistics.largest_irradiance["light." + layer.name] =
+        layer.lights.size() > 1 ? largest[group++]
+                                : largest[of_ao + light] * luminance(lights[light].radiance);
+  }
 }
 
 void add_bias(RenderResult& result, const TracedPicture& picture, const FilmLayout& layout,

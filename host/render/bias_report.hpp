@@ -30,6 +30,10 @@ PictureBias picture_bias(const BiasSums& sums, const HostView& film, const SideS
                          const FilmLayout& layout, const View& view,
                          const std::vector<double>& divisors);
 
+/// Stores what errors and biases of lights are relative to. `largest`: TracedPicture::largest.
+void add_largest_irradiances(RenderStatistics& statistics, const std::vector<double>& largest,
+                             const FilmLayout& layout, const std::vector<Light>& lights);
+
 /// Stores the bias of each layer in the statistics and the metadata of the result, which has its
 /// film. A note says it if there is none although something is seen.
 void add_bias(RenderResult& result, const TracedPicture& picture, const FilmLayout& layout,

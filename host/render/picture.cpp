@@ -91,7 +91,8 @@ class PictureTracer {
     if (plan.is_adaptive() && all_have_variances(picture.samples))
       picture.errors = standard_errors(picture.samples);
     picture.sums = context_.view(film_.sums);
-    if (bias_) picture.bias = bias_of(picture.sums, picture.samples, view);
+    if (bias_ || !picture.errors.empty()) picture.largest = largest_values(picture);
+    if (bias_) picture.bias = bias_of(picture, view);
     picture.mattes = std::move(hit_sums_.mattes);
     picture.motion = std::move(hit_sums_.motion);
     picture.deep = std::move(hit_sums_.deep);
@@ -138,17 +139,19 @@ class PictureTracer {
     state_.bias.earlier = traced_samples(state_.round, state_.slice_samples, state_.samples);
   }
 
-  PictureBias bias_of(const HostView& sums, const std::vector<std::uint32_t>& samples,
-                      const View& view) {
-    bias_->finish();
-    // Without a target states have no squares, and those of earlier runs and moments are missing:
-    // then the largest irradiance counts less of its noise.
+  // Without a target states have no squares, and those of earlier runs and moments are missing:
+  // then the largest irradiance counts less of its noise.
+  std::vector<double> largest_values(const TracedPicture& picture) {
     const HostView squares = context_.view(film_.squares);
-    const std::vector<double> divisors =
-        FilmMoments(sums, squares, layout_, options_, samples, width_).largest_values();
-    const SideSamples taken = samples_of_bias(bias_->sums(), sums, samples, layout_,
+    return FilmMoments(picture.sums, squares, layout_, options_, picture.samples, width_)
+        .largest_values();
+  }
+
+  PictureBias bias_of(const TracedPicture& picture, const View& view) {
+    bias_->finish();
+    const SideSamples taken = samples_of_bias(bias_->sums(), picture.sums, picture.samples, layout_,
                                               backs_ ? backs_->choice().group_bits : 0);
-    return picture_bias(bias_->sums(), sums, taken, layout_, view, divisors);
+    return picture_bias(bias_->sums(), picture.sums, taken, layout_, view, picture.largest);
   }
 
   void read_state(const SamplePlan& plan) {

@@ -8,15 +8,12 @@
 #include <cmath>
 
 #include "dapple/error.hpp"
+#include "scene/finite.hpp"
 
 namespace dapple {
 namespace {
 
 constexpr float kUnitTolerance = 1e-3f;
-
-bool is_finite(const V3f& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 bool is_unit(const V3f& v) { return std::fabs(v.length() - 1) < kUnitTolerance; }
 

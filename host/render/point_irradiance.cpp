@@ -16,7 +16,7 @@
 #include "passes/point_order.hpp"
 #include "render/option_check.hpp"
 #include "render/point_checks.hpp"
-#include "scene/images/dome_image.hpp"
+#include "scene/images/color.hpp"
 
 namespace dapple {
 namespace {

@@ -278,6 +278,7 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
                  view.crop,  develop(picture, layout, options, lights, statistics),
                  metadata,   options.deep ? picture.deep.alpha(picture.samples) : DeepAlpha{}};
   set_ambient(result.film.metadata, statistics.ambient);
+  add_largest_irradiances(statistics, picture.largest, layout, lights);
   if (has_bias(options) && options.report_bias > 0) add_bias(result, picture, layout, lights);
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
   statistics.notes.insert(statistics.notes.end(), scene.warnings.begin(), scene.warnings.end());

@@ -10,7 +10,7 @@
 #include "device/context.hpp"
 #include "film/film_sums.hpp"
 #include "sampling/batch_variance.hpp"
-#include "scene/images/dome_image.hpp"
+#include "scene/images/color.hpp"
 
 namespace dapple {
 

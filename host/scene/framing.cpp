@@ -8,6 +8,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/scene.hpp"
+#include "scene/finite.hpp"
 
 namespace dapple {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 constexpr float kFrameMargin = 1.1f;      // width of the frame over width of the scene
 constexpr float kFrameElevation = 0.21f;  // tangent of the camera's elevation, 12 degrees
 constexpr float kElongation = 2;          // depth over width of a scene that is seen from its side
-
-bool is_finite(V3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 V3f row(const M44f& m, int i) { return {m[i][0], m[i][1], m[i][2]}; }
 

@@ -10,7 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "dapple/error.hpp"
+#include "scene/finite.hpp"
 #include "scene/glb_primitives.hpp"
+#include "scene/gltf/extension_names.hpp"
 
 namespace dapple {
 namespace {
@@ -52,7 +54,7 @@ Json material_json(const Material& material) {
   if (brightest > 0)
     json["emissiveFactor"] = vector_json(material.emission / std::max(brightest, 1.0f));
   if (brightest > 1) {
-    json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = brightest;
+    json["extensions"][gltf::extension::kEmissiveStrength]["emissiveStrength"] = brightest;
   }
   return json;
 }
@@ -82,7 +84,7 @@ Json camera_json(const Camera& camera) {
 Box3f finite_bounds(std::span<const V3f> positions, const std::string& mesh) {
   Box3f bounds;
   for (const V3f& p : positions) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+    if (!is_finite(p)) {
       throw Error(ErrorKind::failed,
                   fmt::format("mesh \"{}\" has a vertex that is not finite", mesh));
     }
@@ -251,7 +253,7 @@ class Describer {
     if (layout_.byte_count > 0) json_["buffers"] = {{{"byteLength", layout_.byte_count}}};
     for (const Material& material : scene_.materials) {
       if (std::max({material.emission.x, material.emission.y, material.emission.z}) <= 1) continue;
-      json_["extensionsUsed"] = {"KHR_materials_emissive_strength"};
+      json_["extensionsUsed"] = {gltf::extension::kEmissiveStrength};
     }
     // Names may hold bytes that are not UTF-8: dump() replaces them instead of throwing.
     layout_.json = json_.dump(-1, ' ', false, Json::error_handler_t::replace);

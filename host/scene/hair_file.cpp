@@ -8,14 +8,15 @@
 #include <limits>
 #include <new>
 
+#include "scene/finite.hpp"
 #include "scene/message.hpp"
 #include "scene/numeric_range.hpp"
-#include "scene/side_file.hpp"
+#include "scene/regular_file.hpp"
 
 namespace dapple {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 32;
+constexpr FileKind kHairFile{"HAIR file"};
 constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 28;
 constexpr std::uint64_t kHeaderBytes = 128;
 
@@ -153,8 +154,6 @@ V3f color_of(V3f color) {
     color[channel] = color[channel] > 0 ? std::min(color[channel], 1.0f) : 0.0f;
   return color;
 }
-
-bool is_finite(V3f p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Whether two points differ only by the rounding of their coordinates.
 bool coincide(V3f a, V3f b) {
@@ -318,7 +317,7 @@ void add_time_warning(const std::string& path, std::optional<double> seconds, Sc
 
 Scene load_hair(const std::string& path) {
   try {
-    return decode_hair(read_side_file(path, "HAIR file", kMaxFileBytes), path);
+    return decode_hair(read_regular_file(path, path, kHairFile), path);
   } catch (const std::bad_alloc&) {
     throw Error(ErrorKind::failed, path + ": there is not enough memory to read it");
   }

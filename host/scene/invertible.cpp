@@ -1,20 +1,8 @@
 #include "scene/invertible.hpp"
 
-#include <cmath>
+#include "scene/finite.hpp"
 
 namespace dapple {
-namespace {
-
-bool is_finite(const M44f& matrix) {
-  for (int i = 0; i < 4; ++i) {
-    for (int k = 0; k < 4; ++k) {
-      if (!std::isfinite(matrix[i][k])) return false;
-    }
-  }
-  return true;
-}
-
-}  // namespace
 
 // Uses Imath's inverse(), which also transforms the rays later. It returns the identity for a
 // matrix without an inverse.

@@ -15,14 +15,14 @@
 #include "scene/light_fields.hpp"
 #include "scene/numeric_range.hpp"
 #include "scene/rect_axes.hpp"
-#include "scene/side_file.hpp"
+#include "scene/regular_file.hpp"
 
 namespace dapple {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::uintmax_t kMaxFileBytes = 16u << 20;
+constexpr FileKind kLightsFile{"lights file", 16u << 20};
 constexpr std::size_t kMaxDepth = 16;  // the format needs 4
 constexpr std::size_t kMaxLights = 4096;
 constexpr double kSunDegrees = 0.533;  // angular diameter of the real sun
@@ -31,7 +31,7 @@ constexpr double kOuterDegrees = 45;        // of a spot's cone, as in KHR_light
 constexpr double kLeastOuterDegrees = 0.2;  // cosines of less are too coarse as floats
 
 std::string read_text(const std::string& path) {
-  const auto bytes = read_side_file(path, "lights file", kMaxFileBytes);
+  const auto bytes = read_regular_file(path, path, kLightsFile);
   return {bytes.begin(), bytes.end()};
 }
 

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "dapple/error.hpp"
+#include "scene/finite.hpp"
 
 namespace dapple {
 namespace {
@@ -107,10 +108,6 @@ void check_images(const Scene& scene) {
     check_image(scene, "colour texture", i, image, image.rgb.size(), 3);
     if (!image.alpha.empty()) check_image(scene, "colour texture", i, image, image.alpha.size(), 1);
   }
-}
-
-bool is_finite(const V3f& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 bool is_radiance(const V3f& v) { return is_finite(v) && std::min({v.x, v.y, v.z}) >= 0; }

@@ -14,9 +14,9 @@
 
 namespace dapple {
 
-/// A direction of direct light that is the same everywhere.
+/// Direct light that is the same everywhere, from a disk as wide as the sun's, 0.533 degrees.
 struct SunDirection {
-  V3f direction{0, 1, 0};  ///< unit, towards the sun
+  V3f direction{0, 1, 0};  ///< unit, towards its middle
   float irradiance = 1;    ///< W/m^2 on a plane across it
 };
 
@@ -29,9 +29,10 @@ struct PointOptions {
   int rings = 0;
   bool lights = true;  ///< irradiance of each of the scene's lights
   std::vector<SunDirection> suns;
-  bool per_sun = false;  ///< a column for each sun; else one for the sum
-  /// For each point and quantity, in eight sets, [8, 2^20]. If there are more suns than rays, each
-  /// ray stands for some of them, in their sum.
+  /// A column for each sun, of one ray to a random place of its disk; else one for the sum.
+  bool per_sun = false;
+  /// For each point and quantity, in eight sets, [8, 2^20]; of all suns together. If there are more
+  /// suns than rays, each ray stands for some of them.
   int rays = 256;
   Estimator estimator = Estimator::prefiltered;
   float footprint = 1.0f;                  ///< of the rays of one set

@@ -41,6 +41,9 @@ struct RenderStatistics {
   std::map<std::string, Bias> bias;
   /// `rmse` together with the bias, where both are known: the estimated distance from the truth.
   std::map<std::string, double> rmse_with_bias;
+  /// What errors and biases of lights are relative to: the largest irradiance without occlusion, in
+  /// W/m^2 (luminance), by layer of the film. Empty if neither errors nor biases are known.
+  std::map<std::string, double> largest_irradiance;
   float footprint = 0;  ///< RenderOptions::footprint, or a smaller one that was chosen
   std::size_t triangles = 0, segments = 0, nodes = 0;
   /// The BVH cache. Small objects are always built and count in neither number.

@@ -107,8 +107,17 @@ def irradiances(name: str, values: float | npt.ArrayLike, count: int) -> FloatAr
     return result
 
 
-def opacities(values: float | npt.ArrayLike, count: int) -> tuple[list[float], IndexArray]:
-    """Distinct opacities, and for each of `count` triangles which of them it has."""
+def _distinct(values: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[np.int64]]:
+    """The different values in the order of their first appearance, and which one each is."""
+    sorted_values, first, which = np.unique(values, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    place = np.empty(len(order), np.int64)
+    place[order] = np.arange(len(order))
+    return sorted_values[order], place[which.reshape(len(values))]
+
+
+def _opacities(values: float | npt.ArrayLike, count: int) -> npt.NDArray[np.float32]:
+    """One for each of `count` triangles."""
     array = _numbers("opacity", values, "fiu").astype(np.float32)
     if array.ndim == 0:
         array = np.broadcast_to(array, (count,))
@@ -119,7 +128,36 @@ def opacities(values: float | npt.ArrayLike, count: int) -> tuple[list[float], I
         )
     if not ((array >= 0) & (array <= 1)).all():
         raise UsageError("opacity has a value outside of [0, 1]")
-    distinct, which = np.unique(array, return_inverse=True)
-    if distinct.size == 0:
-        distinct = np.ones(1, np.float32)
-    return [float(x) for x in distinct], np.ascontiguousarray(which.reshape(count), np.uint32)
+    return array
+
+
+def materials(
+    opacity: float | npt.ArrayLike, names: Sequence[str] | npt.ArrayLike | None, count: int
+) -> tuple[list[tuple[str, float]], IndexArray]:
+    """Materials as names and opacities, and for each of `count` triangles which of them it has.
+
+    names: of each triangle's material; None: one for each opacity, "0", "1" and so on.
+    """
+    values = _opacities(opacity, count)
+    if count == 0:
+        return [("0", 1.0)], np.zeros(0, np.uint32)
+    if names is None:
+        distinct, which = _distinct(values)
+        labels = [str(i) for i in range(len(distinct))]
+    else:
+        array = np.asarray(names)
+        if array.shape != (count,) or array.dtype.kind not in "Uiu":
+            raise UsageError(
+                f"materials has the shape {shape_text(array.shape)} and the type {array.dtype}; it "
+                f"must be a name or whole number for each of {count} triangles"
+            )
+        found, which = _distinct(array)
+        labels = [str(label) for label in found]
+        distinct = np.zeros(len(labels), np.float32)
+        distinct[which] = values
+        differing = np.flatnonzero(distinct[which] != values)
+        if differing.size:
+            of = labels[which[differing[0]]]
+            raise UsageError(f"opacity differs between triangles of the material {of!r}")
+    pairs = [(label, float(value)) for label, value in zip(labels, distinct)]
+    return pairs, np.ascontiguousarray(which, np.uint32)

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import difflib
 import numbers
+import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Sequence, Tuple, TypedDict, TypeVar
+
+import numpy as np
 
 from ._arguments import non_negative
 from ._errors import UsageError
@@ -140,11 +143,48 @@ _EXPECTED = {
 }
 
 
+#: Options that change nothing without one of others, by call, and what to say of these.
+_NEEDS: dict[str, dict[str, tuple[tuple[str, ...], str]]] = {
+    "render": {
+        "back_every": (("back",), "back=True"),
+        "ao_rays": (("ao",), "ao=True"),
+        "ao_distance": (("ao",), "ao=True"),
+        "light_rays": (("light",), "light=True"),
+        "max_spp": (("target_rmse", "target_error"), "target_rmse or target_error"),
+    },
+    "bake": {
+        "texture_size": (("texture",), "texture=True"),
+        "margin": (("texture",), "texture=True"),
+        "light_rays": (("light",), "light=True"),
+    },
+}
+
+
+def _check_needs(call: str, options: object, changed: Sequence[str]) -> None:
+    for name in changed:
+        others, text = _NEEDS.get(call, {}).get(name, ((), ""))
+        if others and not any(getattr(options, other) for other in others):
+            raise UsageError(f"{call}(): {name} needs {text}")
+
+
+def _plain(name: str, value: object) -> object:
+    """Values as the engine takes them: NumPy's flags, paths, mappings."""
+    if isinstance(value, np.bool_):
+        return bool(value)
+    if name in ("cache", "kernel_dir") and isinstance(value, os.PathLike):
+        return os.fsdecode(value)
+    if name == "opacity" and isinstance(value, Mapping):
+        return list(value.items())
+    return value
+
+
 def _wanted(name: str, current: object, value: object) -> str:
     """What a value of the wrong type, or beyond the range of the engine's integers, must be."""
     if type(current) is int and isinstance(value, numbers.Integral) and not isinstance(value, bool):
         low, high = (0, 2**32 - 1) if name in ("seed", "texture_size") else (-(2**31), 2**31 - 1)
         return f"from {low} to {high}"
+    if type(current) is float:
+        return "a number"
     return _EXPECTED.get(name) or type(current).__name__
 
 
@@ -157,6 +197,7 @@ def apply(
     """
     fields = [name.removeprefix("set_") for name in dir(options) if not name.startswith("_")]
     known = [name for name in fields if name not in _OF_PERIODIC]
+    changed: list[str] = []
     for name, value in values.items():
         if name not in known:
             all_names = sorted([*known, *arguments])
@@ -165,14 +206,18 @@ def apply(
             raise UsageError(f"{call}() has no argument {name}{hint}")
         if name in _NON_NEGATIVE and isinstance(value, (int, float)):
             non_negative(f"{call}(): {name}", value)
-        if name == "opacity" and isinstance(value, Mapping):
-            value = list(value.items())
+        if name == "fov_degrees" and value == 0:  # to the engine it means the camera's own
+            raise UsageError(f"{call}(): fov_degrees is 0; it must be from 0.01 to 179")
+        plain = _plain(name, value)
         try:
             if name in ("look", "crop"):
                 getattr(options, "set_" + name)(*value)
             else:
-                setattr(options, name, value)
+                before = getattr(options, name)
+                setattr(options, name, plain)
+                changed += [name] if getattr(options, name) != before else []
         except TypeError:
             wanted = _wanted(name, getattr(options, name, None), value)
             raise UsageError(f"{call}(): {name} is {value!r}; it must be {wanted}") from None
+    _check_needs(call, options, changed)
     return options

@@ -10,6 +10,7 @@ import numpy as np
 from . import _arguments, _native
 from ._arrays import FloatArray
 from ._errors import UsageError
+from ._results import Bias, biases
 
 if TYPE_CHECKING:
     from typing import Literal
@@ -56,6 +57,13 @@ class Picture(Mapping[str, FloatArray]):
         self.notes: list[str] = list(native.notes)
         #: With a target: estimated root mean square of the pixels' errors, by layer.
         self.rmse: dict[str, float] = dict(native.rmse)
+        #: By layer, such as "ao"; empty for exact rays and report_bias=0.
+        self.bias: dict[str, Bias] = biases(native.bias)
+        #: What rmse and bias of lights are relative to, by layer: the largest irradiance without
+        #: occlusion, W/m^2, luminance. Empty where neither is known.
+        self.largest_irradiance: dict[str, float] = dict(native.largest_irradiance)
+        #: As given, or a smaller one that was chosen; 0: exact rays.
+        self.footprint: float = native.footprint
         self._layers: dict[str, list[str]] = {}
         for channel in self.channels:
             if "." in channel:
@@ -116,7 +124,12 @@ class Picture(Mapping[str, FloatArray]):
             name = _arguments.text("layer", layer)
             self._native.write_png(text, name, stops, color is None and background == "sky", color)
         elif text.lower().endswith(".exr"):
+            if layer:
+                raise UsageError("layer is for .png; an EXR has all layers")
             layers = _arguments.texts("half", half)
+            for name in layers:
+                if name != "all" and not any(f"{of}.".startswith(f"{name}.") for of in self):
+                    raise UsageError(f"half: there is no layer {name}")
             name = _arguments.text("compression", compression)
             self._native.write_exr(text, layers, name, bool(multipart))
         else:

@@ -10,9 +10,12 @@ import numpy as np
 from ._arrays import FloatArray, IndexArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """A mesh of a scene. The arrays are read-only views of the scene's memory.
+
+    positions: (n, 3) float32, metres, in the mesh's own space. triangles: (m, 3) uint32; (m, 2) for
+    the segments of strands. instances: (k, 4, 4) float32, world = matrix @ (x, y, z, 1).
 
     >>> mesh = dapple.load("scene:tree?leaves=100").meshes[0]
     >>> mesh.positions.dtype, mesh.triangles.dtype, mesh.instances.shape
@@ -20,17 +23,16 @@ class Mesh:
     """
 
     name: str
-    #: (n, 3) float32, metres, in the mesh's own space.
     positions: FloatArray
-    #: (m, 3) uint32; (m, 2) for the segments of strands.
     triangles: IndexArray
-    #: (k, 4, 4) float32: matrices that place the mesh, world = matrix @ (x, y, z, 1).
     instances: FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Irradiance:
     """Irradiance of one light at points, W/m^2, linear RGB, (n, 3) float32 each.
+
+    irradiance: with occlusion. unoccluded: without; zero where the light is below the horizon.
 
     >>> demo = dapple.load("scene:demo")
     >>> sky = demo.irradiance([[0, 0.01, 0.5]], [0, 1, 0])["sky"]
@@ -38,9 +40,7 @@ class Irradiance:
     True
     """
 
-    #: With occlusion.
     irradiance: FloatArray
-    #: Without; zero where the light is below a point's horizon.
     unoccluded: FloatArray
 
 
@@ -67,6 +67,10 @@ class Bias:
     share: float
 
 
+def biases(native: Mapping[str, tuple[float, float, float, float, float]]) -> dict[str, Bias]:
+    return {layer: Bias(*fields) for layer, fields in native.items()}
+
+
 class Columns(dict[str, FloatArray]):
     """What measure() returns: a dict of columns, (n,) float32 each, and what is known of them.
 
@@ -90,8 +94,11 @@ class Columns(dict[str, FloatArray]):
         #: Lines for the user, such as how large a bias was corrected.
         self.notes: list[str] = list(notes)
 
+    def copy(self) -> Columns:
+        return Columns(self.items(), self.bias, self.footprint, self.notes)
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class BakedTexture:
     """A texture that all meshes share. Row 0 is the top, v = 0, as in glTF.
 
@@ -112,20 +119,21 @@ class BakedTexture:
     overlap: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Bake:
     """Values at vertices, of instances, and in a texture.
+
+    meshes: for each mesh "ao" (n,) in [0, 1], "bent" (n, 3) and "light.NAME" (n, 3), W/m^2, if
+    baked. instance_ao: the mean of each instance in the file's order, (k,); instance_light: by
+    light, W/m^2, (k, 3) each; empty if not baked.
 
     >>> baked = dapple.load("scene:forest?trees=3&leaves=100").bake(rays=16, instances=True)
     >>> list(baked.meshes[0]), baked.instance_ao.shape
     (['ao'], (4,))
     """
 
-    #: For each mesh "ao" (n,), "bent" (n, 3) and "light.NAME" (n, 3), W/m^2, if baked.
     meshes: list[dict[str, FloatArray]] = field(default_factory=list)
-    #: Mean ambient occlusion of each instance in the file's order, (k,); empty if not baked.
     instance_ao: FloatArray = field(default_factory=lambda: np.zeros(0, np.float32))
-    #: Mean irradiance of each instance by light, W/m^2, (k, 3) each, if baked.
     instance_light: dict[str, FloatArray] = field(default_factory=dict)
     #: Lines for the user, such as the footprint that max_bias chose.
     notes: list[str] = field(default_factory=list)

@@ -13,7 +13,7 @@ from ._arguments import Progress
 from ._arrays import FloatArray, IndexArray
 from ._errors import UsageError
 from ._picture import Picture
-from ._results import Bake, BakedTexture, Bias, Columns, Irradiance, Mesh
+from ._results import Bake, BakedTexture, Columns, Irradiance, Mesh, biases
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -41,13 +41,17 @@ class Scene:
         vertices: npt.ArrayLike,
         triangles: npt.ArrayLike,
         opacity: float | npt.ArrayLike = 1.0,
+        materials: Sequence[str] | npt.ArrayLike | None = None,
     ) -> Scene:
         """A scene of one mesh.
 
         vertices: (n, 3), metres. triangles: (m, 3) indices of vertices. opacity: of all triangles
-        or (m,), in [0, 1]. Raises UsageError for other shapes, indices or values. Vertices become
-        float32; a UserWarning says where these are too coarse, so far from the origin (map
-        coordinates) that details are lost: take a point of the plot off all coordinates first.
+        or (m,), in [0, 1]. materials: (m,) names or whole numbers, such as those of organs, for
+        set_opacity(); the opacity of each must be one. None: a material for each opacity, called
+        "0", "1" and so on in the order of the triangles. Raises UsageError for other shapes,
+        indices or values. Vertices become float32; a UserWarning says where these are too coarse,
+        so far from the origin (map coordinates) that details are lost: take a point of the plot
+        off all coordinates first.
 
         >>> corners = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]
         >>> square = dapple.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], opacity=[0.2, 0.8])
@@ -57,8 +61,8 @@ class Scene:
         positions = _arrays.vectors("vertices", vertices)
         _arrays.warn_of_coarse_steps("vertices", positions)
         corners = _arrays.indices("triangles", triangles, len(positions))
-        values, which = _arrays.opacities(opacity, len(corners))
-        return cls(_native.from_arrays(positions, corners.reshape(-1), values, which))
+        known, which = _arrays.materials(opacity, materials, len(corners))
+        return cls(_native.from_arrays(positions, corners.reshape(-1), known, which))
 
     def copy(self) -> Scene:
         """A copy that can be changed without changing this scene. It takes no memory before that.
@@ -109,7 +113,7 @@ class Scene:
 
     @property
     def lights(self) -> list[str]:
-        """Names of the lights, as the results have them.
+        """Names of the lights. Those of a group share a layer of the group's name in results.
 
         >>> dapple.load("scene:demo").lights
         ['sun', 'sky']
@@ -218,13 +222,16 @@ class Scene:
         self._native.add_sky(_arguments.path("kind", kind), strength)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes meshes, instances, materials without textures, and cameras as one GLB file.
+        """Writes meshes, instances, materials without textures, and cameras as one .glb file.
 
         >>> dapple.load("scene:tree?leaves=100").save("tree.glb")
         >>> dapple.load("tree.glb").materials
         ['leaf', 'bark']
         """
-        self._native.write_glb(_arguments.path("path", path))
+        text = _arguments.path("path", path)
+        if not text.lower().endswith(".glb"):
+            raise UsageError(f"{text}: scenes are saved as .glb")
+        self._native.write_glb(text)
 
     def occlusion(
         self,
@@ -302,11 +309,15 @@ class Scene:
 
         ao, sky_view_factor, gap_N (rings), bent_x and so on, NAME_r and so on of lights in W/m^2,
         and sun or sun_N; with "_error" their standard errors. suns: (s, 3) directions towards
-        suns; sun_irradiance: W/m^2 across them, one or (s,). periodic: the scene repeats itself
-        with these periods along X and Z, metres. The result is a dict with .bias (by quantity),
-        .footprint and .notes. Options: ao, sky_view_factor, bent, rings, lights,
-        per_sun, rays (256), estimator, footprint, max_bias, distance, falloff, opacity by material,
-        ground, seed, device, cache.
+        suns, disks of 0.533 degrees; sun_irradiance: W/m^2 across them, one or (s,). periodic: the
+        scene repeats itself with these periods along X and Z, metres. The result is a dict with
+        .bias (by quantity), .footprint and .notes. Raises UsageError, and InputError where nothing
+        is opaque.
+
+        Options: ao, sky_view_factor (True), bent (False), rings (0; 1 to 90), lights (True: those
+        of the scene), per_sun (False), rays (256; 8 to 2**20) a point and quantity, estimator,
+        footprint (0 or more), max_bias and report_bias in [0, 1], distance (metres; 0: no limit),
+        falloff (0 or more), opacity by material in [0, 1], ground (False), seed, device, cache.
 
         >>> tree = dapple.load("scene:tree?leaves=1000")
         >>> columns = tree.measure([[0, 0.01, 0.5]], rings=2)
@@ -331,15 +342,18 @@ class Scene:
         columns, bias, footprint, notes = _native.measure(
             self._native, at, facing, chosen, towards, across, progress
         )
-        return Columns(columns, _biases(bias), footprint, notes)
+        return Columns(columns, biases(bias), footprint, notes)
 
     def render(self, *, progress: Progress = None, **options: Unpack[_options.RenderOptions]) -> Picture:
         """Renders a picture, float32 arrays (height, width). Options are those of `dapple render`.
 
-        width (960), height (540), spp (16), target_rmse, target_error, ao, light, ao_distance,
-        estimator, footprint, camera by name, look=(from, at, up) with fov_degrees,
-        crop=(x0, y0, x1, y1) inclusive, opacity={"leaf": 0.85}, ambient (radiance of a uniform sky
-        in RGBA; None: chosen), ground, seed and others. Lengths are in metres, width, height and crop in pixels.
+        Size and samples: width (960), height (540), crop=(x0, y0, x1, y1) inclusive, pixels; spp (16),
+        target_rmse, target_error in [0, 1] with max_spp; camera_splitting, ao_rays, light_rays.
+        View: camera by name, or look=(from, at, up) in metres with fov_degrees; aperture, focus_distance,
+        metres. Layers: ao, light, albedo (True), back with back_every, deep, visits, crypto_object,
+        crypto_material (False). Rays: estimator, footprint (4), roulette, max_bias, report_bias,
+        normals, packets, seed; ao_distance (metres), ao_falloff. Scene: opacity={"leaf": 0.85},
+        ground, ambient (radiance of a uniform sky in RGBA, W/(sr m^2); None: chosen); device, cache.
 
         >>> picture = dapple.load("scene:demo").render(width=32, height=18, spp=4)
         >>> picture["ao"].shape, picture["Z"].shape
@@ -384,22 +398,20 @@ class Scene:
         if not isinstance(texture_uvs, Iterable):
             raise UsageError(f"texture_uvs is {texture_uvs!r}; it must be a list of arrays")
         uvs = [_arrays.vectors(f"texture_uvs[{i}]", of, 2) for i, of in enumerate(texture_uvs)]
+        if uvs and not chosen.texture:
+            raise UsageError("bake(): texture_uvs needs texture=True")
         progress = _arguments.progress_function(progress)
         meshes, instance_ao, lights, texture, notes, bias, footprint = _native.bake(
             self._native, chosen, uvs, others, progress
         )
         baked = None if texture is None else BakedTexture(dict(texture[0]), *texture[1:])
         arrays = [dict(of) for of in meshes]
-        return Bake(arrays, instance_ao, dict(lights), notes, baked, _biases(bias), footprint)
+        return Bake(arrays, instance_ao, dict(lights), notes, baked, biases(bias), footprint)
 
 
 def _points(points: npt.ArrayLike, normals: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     at = _arrays.vectors("points", points)
     return at, _arrays.unit_vectors("normals", normals, len(at))
-
-
-def _biases(native: Mapping[str, tuple[float, float, float, float, float]]) -> dict[str, Bias]:
-    return {layer: Bias(*fields) for layer, fields in native.items()}
 
 
 def _natives(name: str, scenes: Iterable[Scene]) -> list[_native.Scene]:

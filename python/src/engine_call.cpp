@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <thread>
 
@@ -11,7 +12,7 @@
 namespace dapple::python {
 namespace {
 
-std::mutex engine;
+std::timed_mutex engine;
 std::atomic<std::thread::id> holder;
 std::atomic<pid_t> user = 0;  ///< the process that used the engine first
 
@@ -27,7 +28,10 @@ EngineLock::EngineLock() {
                 "dapple was used before this process was forked, and its threads do not survive "
                 "that; use multiprocessing.get_context(\"spawn\") or call dapple only in the "
                 "children");
-  engine.lock();
+  while (!engine.try_lock_for(std::chrono::milliseconds(100))) {
+    const nb::gil_scoped_acquire acquired;
+    if (PyErr_CheckSignals() != 0) nb::raise_python_error();
+  }
   holder = std::this_thread::get_id();
 }
 

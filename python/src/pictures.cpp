@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "bias.hpp"
 #include "bindings.hpp"
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
@@ -17,6 +18,7 @@
 #include "nanobind/stl/optional.h"
 #include "nanobind/stl/pair.h"
 #include "nanobind/stl/string.h"
+#include "nanobind/stl/tuple.h"
 #include "nanobind/stl/vector.h"
 #include "scene_on_device.hpp"
 
@@ -101,6 +103,10 @@ void bind_pictures(nb::module_& module) {
       .def_prop_ro("metadata", metadata)
       .def_prop_ro("notes", [](const RenderResult& r) { return r.statistics.notes; })
       .def_prop_ro("rmse", [](const RenderResult& r) { return r.statistics.rmse; })
+      .def_prop_ro("bias", [](const RenderResult& r) { return bias_fields(r.statistics.bias); })
+      .def_prop_ro("footprint", [](const RenderResult& r) { return r.statistics.footprint; })
+      .def_prop_ro("largest_irradiance",
+                   [](const RenderResult& r) { return r.statistics.largest_irradiance; })
       .def_prop_ro("seconds", [](const RenderResult& r) { return r.statistics.seconds.total; })
       .def("write_exr", write_picture, nb::arg("path"), nb::arg("half"), nb::arg("compression"),
            nb::arg("multipart"))

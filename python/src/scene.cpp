@@ -15,6 +15,7 @@
 #include "film/layers.hpp"
 #include "nanobind/stl/array.h"
 #include "nanobind/stl/optional.h"
+#include "nanobind/stl/pair.h"
 #include "nanobind/stl/string.h"
 #include "nanobind/stl/vector.h"
 #include "scene_on_device.hpp"
@@ -38,15 +39,16 @@ SceneOnDevice load(const std::string& path, std::optional<double> time,
   return SceneOnDevice(load_scene(path, options));
 }
 
-/// One mesh with one instance. `opacities` are those of materials "0", "1" and so on, `materials`
-/// says which one a triangle has.
+/// One mesh with one instance. `known`: names and opacities of materials; `materials` says which one
+/// a triangle has.
 SceneOnDevice from_arrays(const VectorsIn& vertices, const IndicesIn& triangles,
-                          const std::vector<float>& opacities, const IndicesIn& materials) {
+                          const std::vector<std::pair<std::string, float>>& known,
+                          const IndicesIn& materials) {
   Scene scene;
   scene.source = "arrays";
-  for (const float opacity : opacities) {
+  for (const auto& [name, opacity] : known) {
     Material material;
-    material.name = std::to_string(scene.materials.size());
+    material.name = name;
     material.alpha_mode = opacity < 1 ? AlphaMode::blend : AlphaMode::opaque;
     material.alpha = opacity;
     material.double_sided = true;
@@ -226,7 +228,7 @@ void bind_scene(nb::module_& module) {
   module.def("load", load, nb::arg("path"), nb::arg("time").none(), nb::arg("animation"),
              nb::arg("allow_outside"));
   module.def("from_arrays", from_arrays, nb::arg("vertices"), nb::arg("triangles"),
-             nb::arg("opacities"), nb::arg("materials"));
+             nb::arg("known"), nb::arg("materials"));
 }
 
 }  // namespace dapple::python

@@ -27,6 +27,30 @@ def test_bakes_have_the_bias_of_the_program(program: str, tree: dapple.Scene, tm
     assert baked.footprint == figures["footprint"] == 1.5
 
 
+def test_pictures_have_the_bias_of_the_program(program: str, tree: dapple.Scene, tmp_path: Path) -> None:
+    model = tmp_path / "tree.glb"
+    tree.save(model)
+    arguments = [program, "render", model, "-o", tmp_path / "out.exr", "-q", "--width", "64", "--height", "48"]
+    options = ["--target-rmse", "0.05", "--report-bias", "100%"]
+    subprocess.run([*arguments, *options, "--stats-json", tmp_path / "s.json"], check=True)
+    figures = json.loads((tmp_path / "s.json").read_text())
+    picture = dapple.load(model).render(width=64, height=48, spp=1, target_rmse=0.05, report_bias=1)
+    assert list(picture.bias) == list(figures["bias"])
+    assert len(picture.bias) > 1
+    for layer, bias in picture.bias.items():
+        assert bias.mean == pytest.approx(figures["bias"][layer]["mean"])
+        assert bias.share == pytest.approx(figures["bias"][layer]["share_of_rays"])
+    assert picture.largest_irradiance == pytest.approx(figures["largest_irradiance"])
+    assert set(picture.largest_irradiance) == {l for l in picture.bias if l.startswith("light.")}
+    assert min(picture.largest_irradiance.values()) > 0
+    assert picture.footprint == pytest.approx(figures["footprint"])
+
+
+def test_pictures_of_exact_rays_have_none(tree: dapple.Scene) -> None:
+    picture = tree.render(width=16, height=16, spp=1, estimator="exact")
+    assert picture.bias == {} and picture.largest_irradiance == {} and picture.footprint == 0
+
+
 def test_bakes_of_exact_rays_have_none(tree: dapple.Scene) -> None:
     assert tree.bake(rays=8, estimator="exact").bias == {}
     limited = tree.bake(rays=8, max_bias=1e-7)

@@ -46,3 +46,29 @@ def test_lights_of_two_files_have_random_numbers_of_their_own(tmp_path: Path) ->
     lit = list(scene.irradiance([[0.3, 0, 0.4]], [0, 1, 0]).values())
     assert len(lit) == 2
     assert lit[0].unoccluded[0, 0] != lit[1].unoccluded[0, 0]
+
+
+def test_materials_of_arrays_are_called_as_asked_or_in_order_of_the_triangles() -> None:
+    corners = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]
+    faces = [[0, 1, 2], [0, 2, 3]]
+    assert dapple.Scene.from_arrays(corners, faces, [0.8, 0.2]).materials == ["0", "1"]
+    organs = dapple.Scene.from_arrays(corners, faces, 1, ["stem", "leaf"])
+    assert organs.materials == ["stem", "leaf"]
+    numbered = dapple.Scene.from_arrays(corners, faces, 1, np.array([7, 3]))
+    assert numbered.materials == ["7", "3"]
+    # Without the first triangle half of the sky above the square is open.
+    first_gone = dapple.Scene.from_arrays(corners, faces, [0.8, 0.2])
+    for scene, name in ((organs, "stem"), (numbered, "7"), (first_gone, "0")):
+        scene.set_opacity(name, 0)
+        of_first = scene.occlusion([[0.3, 0.99, -0.3]], [0, 1, 0], rays=64)[0]
+        of_second = scene.occlusion([[-0.3, 0.99, 0.3]], [0, 1, 0], rays=64)[0]
+        assert of_first > 0.9 > of_second
+
+
+def test_flags_and_paths_of_other_libraries_are_taken(tmp_path: Path) -> None:
+    tree = dapple.load("scene:tree?leaves=100")
+    picture = tree.render(width=8, height=8, spp=1, albedo=np.bool_(False), cache=tmp_path)  # type: ignore[typeddict-item]
+    assert "albedo" not in picture
+    columns = tree.measure([[0, 0.01, 0.5]], rays=8)
+    assert columns.copy().bias == columns.bias and list(columns.copy()) == list(columns)
+    assert tree.meshes[0] != tree.meshes[0]  # arrays do not compare

@@ -114,6 +114,24 @@ WRONG: dict[str, Call] = {
     "colours are from 0 to 1": lambda s: s.render(**SMALL).save("/tmp/a.png", background=(2, 0, 0)),
     "background is 'x'": lambda s: s.render(**SMALL).save("/tmp/a.png", background="x"),  # type: ignore[arg-type]
     "render it with deep=True": lambda s: s.render(**SMALL).save_deep("/tmp/a.exr"),
+    "half: there is no layer zzz": lambda s: s.render(**SMALL).save("/tmp/a.exr", half=["ao", "zzz"]),
+    "layer is for .png": lambda s: s.render(**SMALL).save("/tmp/a.exr", layer="ao"),
+    "scenes are saved as .glb": lambda s: s.save("/tmp/a.gltf"),
+    "back_every needs back=True": lambda s: s.render(back_every=2, **SMALL),
+    "max_spp needs target_rmse or target_error": lambda s: s.render(max_spp=2, **SMALL),
+    "fov_degrees is 0; it must be from 0.01 to 179": lambda s: s.render(fov_degrees=0, **SMALL),
+    "texture_size needs texture=True": lambda s: s.bake(texture_size=64),
+    "margin needs texture=True": lambda s: s.bake(margin=1),
+    "texture_uvs needs texture=True": lambda s: s.bake(texture_uvs=[np.zeros((4, 2))]),
+    "light_rays needs light=True": lambda s: s.bake(light_rays=2),
+    "--ground needs --instances together": lambda s: s.bake(placement="alone", ground=True),
+    "nothing is baked": lambda s: s.bake(vertices=False),
+    "bake(): max_bias is None; it must be a number": lambda s: s.bake(max_bias=None),  # type: ignore[typeddict-item]
+    "materials has the shape (1,)": lambda s: from_arrays(CORNERS, [[0, 1, 2]] * 2, 1, ["leaf"]),
+    "materials has the shape (1,) and the type float": lambda s: from_arrays(CORNERS, TRIANGLES, 1, [0.5]),
+    "opacity differs between triangles of the material 'leaf'": lambda s: from_arrays(
+        CORNERS, [[0, 1, 2]] * 2, [0.5, 1], ["leaf", "leaf"]
+    ),
     "saved as .exr or .png": lambda s: s.render(**SMALL).save("/tmp/a.jpg"),
 }
 

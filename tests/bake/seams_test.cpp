@@ -8,6 +8,7 @@
 
 #include "bake/surface_samples.hpp"
 #include "bake/texture/texture_layout.hpp"
+#include "sampling/random_choice.hpp"
 #include "support/scene_on_device.hpp"
 
 namespace dapple {

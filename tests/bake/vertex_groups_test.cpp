@@ -12,6 +12,7 @@
 
 #include "bake/placement_choice.hpp"
 #include "bake/surface_samples.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "dapple/error.hpp"
 #include "dapple/film.hpp"
+#include "scene/images/color.hpp"
 #include "scene/images/dome_image.hpp"
 #include "scene/images/dome_rows.hpp"
 #include "scene/images/radiance_hdr.hpp"

@@ -11,6 +11,7 @@
 
 #include "bvh/build/coincident_triangles.hpp"
 #include "bvh/opacity/opacity_mip_levels.hpp"
+#include "dapple/shared/opacity.h"
 #include "support/scene_on_device.hpp"
 
 namespace dapple {
@@ -58,9 +59,6 @@ Scene card(AlphaMode mode, Texture texture = noise()) {
 /// A ray's key for which footprint_spread() returns 1.
 constexpr std::uint32_t kNoSpread = 0x6a09e667u;
 
-/// As DAPPLE_TEXTURE_FOOTPRINT of kernels/opacity/footprint.clh.
-constexpr float kShare = 0.25f;
-
 /// Rays along -z to texels of the card. The part of their footprint over which textures are
 /// averaged is twice the area of a square of 2^level texels a side, half the area of the next
 /// larger square. `scale`: the card's side in the world.
@@ -71,7 +69,8 @@ std::vector<Ray> rays_at_texels(int level, float scale = 1) {
     const float x = std::floor(points.unit() * kTexels) + 0.5f;
     const float y = std::floor(points.unit() * kTexels) + 0.25f;
     Ray ray = make_ray(V3f(x / kTexels, y / kTexels, 1) * scale, {0, 0, -1});
-    ray.first_area = 2 / kShare * std::ldexp(scale * scale / (kTexels * kTexels), 2 * level);
+    ray.first_area =
+        2 / DAPPLE_TEXTURE_FOOTPRINT * std::ldexp(scale * scale / (kTexels * kTexels), 2 * level);
     ray.key = kNoSpread;
     rays.push_back(ray);
   }

@@ -230,7 +230,7 @@ TEST(HairFile, OnlyRegularFilesAreRead) {
   const auto refusal_of = [](const std::string& path) {
     return input_error([&] { load_scene(path); });
   };
-  expect_says(refusal_of(folder.path("none.hair")), "none.hair: there is no such HAIR file");
+  expect_says(refusal_of(folder.path("none.hair")), "none.hair: no such HAIR file");
   const std::string fifo = folder.path("pipe.hair");
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   expect_says(refusal_of(fifo), "pipe.hair: is not a regular file");

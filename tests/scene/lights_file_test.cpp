@@ -255,9 +255,9 @@ TEST(LightsFile, AParseErrorSaysItsLineAndColumn) {
 TEST(LightsFile, AFileThatIsNoLightsFileIsRefused) {
   EXPECT_EQ(complaint("[]"), "must be an object with an array \"lights\"");
   EXPECT_EQ(complaint("{\"lights\": {}}"), "must be an object with an array \"lights\"");
-  EXPECT_EQ(complaint_about_path("/nonexistent/lights.json"), "there is no such lights file");
+  EXPECT_EQ(complaint_about_path("/nonexistent/lights.json"), "no such lights file");
   EXPECT_EQ(complaint_about_path(std::filesystem::temp_directory_path().string()),
-            "is not a regular file");
+            "is a folder, not a file");
 }
 
 TEST(LightsFile, APipeIsRefusedWithoutWaitingForIt) {
@@ -274,7 +274,7 @@ TEST(LightsFile, DeepNestingAndHugeFilesAreRefused) {
   const LightsFile file("{");
   std::filesystem::resize_file(file.path(), (16u << 20) + 1);  // a sparse file
   EXPECT_EQ(complaint_about_path(file.path()),
-            "has 16777217 bytes; a lights file may have 16777216");
+            "is too large (16,777,217 bytes; a lights file may have 16,777,216)");
 }
 
 TEST(LightsFile, TheExampleInScenesLoads) {

@@ -35,18 +35,11 @@ class ReferenceTraversal {
                       scale * ray.first_area,
                       scale * ray.solid_angle};
     visit(walk, world, bvh_.root, bvh_.has_top);
-    if (walk.result.transmittance < kOpaqueEnough) walk.result.transmittance = 0;
+    if (walk.result.transmittance < DAPPLE_OPAQUE_ENOUGH) walk.result.transmittance = 0;
     return walk.result;
   }
 
  private:
-  /// As DAPPLE_OPAQUE_ENOUGH in kernels/occlusion/traverse.clh: below this transmittance a ray
-  /// stops, so the counts of visits depend on it.
-  static constexpr float kOpaqueEnough = 5e-5f;
-
-  /// As DAPPLE_LEAF_COVERING in kernels/opacity/footprint.clh.
-  static constexpr float kLeafCovering = 4;
-
   struct Walk {
     const Ray& ray;
     Result result;
@@ -97,9 +90,7 @@ class ReferenceTraversal {
   }
 
   static bool is_covered(const Crossing& c, float needed, const Space& space, float t_max) {
-    const float middle = 0.5f * (c.enter + c.leave);
-    const float footprint = space.first_area + space.solid_angle * middle * middle;
-    return needed < footprint && c.enter > 0 && c.leave < t_max * 0.999999f;
+    return footprint_covers(needed, space.first_area, space.solid_angle, c.enter, c.leave, t_max);
   }
 
   /// Optical depth of a child, as box_depth(), chord_depth() and centre_weight() of opacity.h give
@@ -155,7 +146,7 @@ class ReferenceTraversal {
 
   /// True when the transmittance is so small that the ray ends here.
   static bool is_opaque(Walk& walk) {
-    walk.finished |= walk.result.transmittance < kOpaqueEnough;
+    walk.finished |= walk.result.transmittance < DAPPLE_OPAQUE_ENOUGH;
     return walk.finished;
   }
 
@@ -171,7 +162,7 @@ class ReferenceTraversal {
       const V3f facing = facing_areas(crossing.size, space.direction);
       if (bvh_is_wall(node.depth, slot)) continue;
       const bool leaf = !in_top && !(node.inner_mask >> slot & 1);
-      const float needed = (leaf ? kLeafCovering : 1) * (facing.x + facing.y + facing.z);
+      const float needed = (leaf ? DAPPLE_LEAF_COVERING : 1) * (facing.x + facing.y + facing.z);
       if (!is_covered(crossing, needed, space, t_max)) continue;
       open[slot] = false;
       walk.result.transmittance *= std::exp(-depth(node, slot, crossing, facing, space.direction));

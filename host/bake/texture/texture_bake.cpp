@@ -8,6 +8,7 @@
 #include "bake/texture/texel_cover.hpp"
 #include "bake/texture/uv_overlap.hpp"
 #include "bake/vertex_bake.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {

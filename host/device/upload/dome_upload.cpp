@@ -1,5 +1,6 @@
 #include "device/upload/dome_upload.hpp"
 
+#include "scene/images/color.hpp"
 #include "scene/images/dome_image.hpp"
 
 namespace dapple {

@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/extension_use.hpp"
 #include "scene/message.hpp"
 
@@ -80,9 +81,9 @@ void add_attributes(Editor& editor, const SourceFile& source,
     if (is_new) at->second = add_accessor(editor, attribute, true);
     Json& primitive = editor.json()["meshes"][attribute.mesh]["primitives"][attribute.primitive];
     primitive["attributes"][attribute.name] = at->second;
-    removed |= remove_extension(primitive, kDraco);  // it has the old values
+    removed |= remove_extension(primitive, extension::kDraco);  // it has the old values
   }
-  if (removed) unlist_unused_extension(editor.json(), kDraco);
+  if (removed) unlist_unused_extension(editor.json(), extension::kDraco);
 }
 
 std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes) {
@@ -90,14 +91,13 @@ std::string add_node_values(Editor& editor, const std::vector<NodeValues>& nodes
   std::string first;
   for (const NodeValues& values : nodes) {
     Json& node = editor.json()["nodes"][values.node];
-    if (has_extension(node, kInstancing)) {
+    if (has_extension(node, extension::kInstancing)) {
       NewAttribute attribute;
       attribute.values = values.values;
       attribute.components = values.components;
       const std::size_t accessor = add_accessor(editor, attribute, false);
-      editor
-          .json()["nodes"][values.node]["extensions"][kInstancing]["attributes"][values.attribute] =
-          accessor;
+      editor.json()["nodes"][values.node]["extensions"][extension::kInstancing]["attributes"]
+                   [values.attribute] = accessor;
     } else {
       if (keep_other_extras(node) && kept++ == 0)
         first = element("node", values.node, node.value("name", ""));

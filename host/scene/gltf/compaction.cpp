@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/extension_use.hpp"
 
 namespace dapple::gltf {
@@ -47,8 +48,8 @@ void for_each_accessor(Json& document, const Visit& visit) {
   visit_all(document, "skins",
             [&](Json& skin) { visit_member(skin, "inverseBindMatrices", visit); });
   visit_all(document, "nodes", [&](Json& node) {
-    if (has_extension(node, kInstancing))
-      visit_all(node["extensions"][kInstancing], "attributes", visit);
+    if (has_extension(node, extension::kInstancing))
+      visit_all(node["extensions"][extension::kInstancing], "attributes", visit);
   });
 }
 
@@ -62,8 +63,8 @@ void for_each_view(Json& document, const Visit& visit) {
   });
   visit_all(document, "images", [&](Json& image) { visit_member(image, "bufferView", visit); });
   for_each_primitive(document, [&](Json& primitive) {
-    if (has_extension(primitive, kDraco))
-      visit_member(primitive["extensions"][kDraco], "bufferView", visit);
+    if (has_extension(primitive, extension::kDraco))
+      visit_member(primitive["extensions"][extension::kDraco], "bufferView", visit);
   });
 }
 
@@ -122,15 +123,10 @@ void for_each_extension(const Json& element, const std::function<void(const std:
 
 /// Whether all references in the document are among those that are visited here.
 bool is_known_whole(const Json& document) {
-  static const std::set<std::string, std::less<>> kKnown = {kDraco,
-                                                            kInstancing,
-                                                            "EXT_texture_webp",
-                                                            "KHR_animation_pointer",
-                                                            "KHR_lights_punctual",
-                                                            "KHR_mesh_quantization",
-                                                            "KHR_texture_basisu",
-                                                            "KHR_texture_transform",
-                                                            "KHR_xmp_json_ld"};
+  static const std::set<std::string, std::less<>> kKnown = {
+      extension::kDraco,       extension::kInstancing,       "EXT_texture_webp",
+      "KHR_animation_pointer", extension::kLights,           extension::kQuantization,
+      "KHR_texture_basisu",    extension::kTextureTransform, "KHR_xmp_json_ld"};
   bool are_known = true;
   for_each_extension(document, [&](const std::string& name) {
     are_known = are_known && (kKnown.contains(name) || name.starts_with("KHR_materials_"));

@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::json;
 
 /// The limit of all files of a scene together: a few bytes of JSON can name many of them.
-constexpr std::uint64_t kMaxSceneBytes = kMaxFileBytes;
+constexpr std::uint64_t kMaxSceneBytes = FileKind{}.max_bytes;
 
 /// Returns {2, 0} for "2.0"; none for text of another form.
 std::optional<std::pair<int, int>> parse_version(const std::string& text) {
@@ -76,7 +76,7 @@ class BufferReader {
            grouped(kMaxSceneBytes));
     }
     document_.files.push_back(path);
-    return read_[path] = keep(read_file(path, who, length));
+    return read_[path] = keep(read_regular_file(path, who, {}, length));
   }
 
  private:
@@ -217,7 +217,7 @@ Document load_document(const std::string& path, bool allow_outside) {
   document.file = path;
   document.base = {std::filesystem::path(path).parent_path(), allow_outside};
   document.files.push_back(path);
-  document.storage.push_back(read_file(path, path));
+  document.storage.push_back(read_regular_file(path, path));
   document.bytes = document.storage.front().size();
   const Container container = split_container(document.storage.front(), path);
   if (container.json.starts_with("\xef\xbb\xbf"))

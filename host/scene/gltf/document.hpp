@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "scene/gltf/file.hpp"
 #include "scene/gltf/motion.hpp"
 #include "scene/gltf/tinygltf.hpp"
 #include "scene/gltf/uri.hpp"
+#include "scene/regular_file.hpp"
 
 namespace dapple::gltf {
 

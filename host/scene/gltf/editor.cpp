@@ -169,7 +169,7 @@ void Editor::embed_images() {
     if (is_data_uri(uri)) continue;
     const fs::path path = resolve_uri(content().document.base, uri, "image " + uri);
     if (!fs::exists(path)) continue;  // dapple may not need it: the reference stays as it is
-    const Bytes file = read_file(path, "image " + uri);
+    const Bytes file = read_regular_file(path, "image " + uri);
     image.erase("uri");
     if (!image.contains("mimeType")) image["mimeType"] = image_media_type(file, path.string());
     image["bufferView"] = add_view({file.begin(), file.end()});
@@ -179,7 +179,7 @@ void Editor::embed_images() {
 // Files that the document names, to the output's folder.
 void Editor::copy_side_files() const {
   for (const auto& [from, to] : side_copies()) {
-    const Bytes bytes = read_file(from, from);
+    const Bytes bytes = read_regular_file(from, from);
     if (!fs::path(to).parent_path().empty()) fs::create_directories(fs::path(to).parent_path());
     write_whole_file(to,
                      std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));

@@ -6,10 +6,6 @@
 
 namespace dapple::gltf {
 
-inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
-inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
-inline constexpr const char* kTextureTransform = "KHR_texture_transform";
-
 /// Whether a primitive, a node or another element has the extension.
 bool has_extension(const Json& element, const char* name);
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "scene/gltf/document.hpp"
+#include "scene/gltf/extension_names.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -12,9 +13,8 @@ namespace {
 
 /// Extensions that dapple reads, as far as they affect occlusion and light.
 constexpr std::array<std::string_view, 6> kRead = {
-    "EXT_mesh_gpu_instancing",         "KHR_lights_punctual",
-    "KHR_materials_emissive_strength", "KHR_materials_pbrSpecularGlossiness",
-    "KHR_mesh_quantization",           "KHR_texture_transform",
+    extension::kInstancing,         extension::kLights,       extension::kEmissiveStrength,
+    extension::kSpecularGlossiness, extension::kQuantization, extension::kTextureTransform,
 };
 
 /// Extensions that dapple ignores: they change colour, gloss or metadata, but not opacity.
@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 15> kIgnored = {
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
-    "KHR_materials_variants",
+    extension::kVariants,
     "KHR_materials_volume",
     "KHR_xmp",
     "KHR_xmp_json_ld",

@@ -7,6 +7,7 @@
 
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/deformation.hpp"
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/mesh.hpp"
 #include "scene/message.hpp"
 
@@ -78,7 +79,7 @@ M44d instance_matrix(const InstanceAttributes& instances, std::uint64_t i) {
 std::vector<M44d> node_matrices(const Document& document, const PlacedNode& placed,
                                 std::uint64_t so_far) {
   const auto& node = document.model.nodes[static_cast<std::size_t>(placed.node)];
-  const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
+  const auto instancing = node.extensions.find(extension::kInstancing);
   if (instancing == node.extensions.end() || !instancing->second.Has("attributes")) {
     return {placed.to_world};
   }

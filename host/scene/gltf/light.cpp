@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/gltf/extension_names.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -111,7 +112,7 @@ void add_punctual_lights(const Document& document, const std::vector<PlacedNode>
   }
   for (const PlacedNode& at : placed) {
     const auto& node = document.model.nodes[static_cast<std::size_t>(at.node)];
-    const auto light = node.extensions.find("KHR_lights_punctual");
+    const auto light = node.extensions.find(extension::kLights);
     if (light == node.extensions.end()) continue;
     add_light(document, at, light->second.Get("light").GetNumberAsInt(), options, scene);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/texture.hpp"
 #include "scene/gltf/topology.hpp"
 #include "scene/message.hpp"
@@ -46,20 +47,20 @@ V2f vec2_or(const Value* value, V2f otherwise) {
 }
 
 TextureUse metallic_roughness_texture(const tinygltf::TextureInfo& info) {
-  return {info.index, info.texCoord, find(info.extensions, "KHR_texture_transform")};
+  return {info.index, info.texCoord, find(info.extensions, extension::kTextureTransform)};
 }
 
 TextureUse diffuse_texture(const Value* info) {
   if (info == nullptr) return {};
   const Value* texcoord = find(info, "texCoord");
   return {info->Get("index").GetNumberAsInt(), texcoord != nullptr ? texcoord->GetNumberAsInt() : 0,
-          find(find(info, "extensions"), "KHR_texture_transform")};
+          find(find(info, "extensions"), extension::kTextureTransform)};
 }
 
 /// KHR_materials_pbrSpecularGlossiness, if present, replaces all of pbrMetallicRoughness.
 BaseColor base_color(const tinygltf::Material& material) {
   BaseColor base;
-  const Value* gloss = find(material.extensions, "KHR_materials_pbrSpecularGlossiness");
+  const Value* gloss = find(material.extensions, extension::kSpecularGlossiness);
   if (gloss == nullptr) {
     const auto& pbr = material.pbrMetallicRoughness;
     base.factor = pbr.baseColorFactor;
@@ -102,7 +103,7 @@ AlphaMode alpha_mode(const tinygltf::Material& material) {
 
 V3f emission_factor(const tinygltf::Material& material) {
   const double strength = number_or(
-      find(find(material.extensions, "KHR_materials_emissive_strength"), "emissiveStrength"), 1.0);
+      find(find(material.extensions, extension::kEmissiveStrength), "emissiveStrength"), 1.0);
   V3f emission;
   for (int channel = 0; channel < 3; ++channel) {
     const double value = material.emissiveFactor[static_cast<std::size_t>(channel)] * strength;

@@ -1,5 +1,7 @@
 #include "scene/gltf/material_use.hpp"
 
+#include "scene/gltf/extension_names.hpp"
+
 namespace dapple::gltf {
 namespace {
 
@@ -11,9 +13,8 @@ bool names_set(const Json& object, std::uint32_t set) {
 /// KHR_texture_transform may name another set, for viewers that know it.
 bool uses_set(const Json& texture_info, std::uint32_t set) {
   if (names_set(texture_info, set) || (set == 0 && !texture_info.contains("texCoord"))) return true;
-  constexpr const char* kTransform = "KHR_texture_transform";
-  return has_extension(texture_info, kTransform) &&
-         names_set(texture_info["extensions"][kTransform], set);
+  return has_extension(texture_info, extension::kTextureTransform) &&
+         names_set(texture_info["extensions"][extension::kTextureTransform], set);
 }
 
 }  // namespace

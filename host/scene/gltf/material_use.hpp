@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/extension_use.hpp"
 
 namespace dapple::gltf {
@@ -17,9 +18,8 @@ inline int material_of(const Json& primitive) { return primitive.value("material
 /// Calls visit(mapping) for each mapping of KHR_materials_variants to one of `count` materials.
 template <class PrimitiveJson, class Visit>
 void for_each_variant(PrimitiveJson& primitive, std::size_t count, Visit visit) {
-  constexpr const char* kVariants = "KHR_materials_variants";
-  if (!has_extension(primitive, kVariants)) return;
-  auto& variants = primitive["extensions"][kVariants];
+  if (!has_extension(primitive, extension::kVariants)) return;
+  auto& variants = primitive["extensions"][extension::kVariants];
   if (!variants.is_object() || !variants.contains("mappings")) return;
   for (auto& mapping : variants["mappings"]) {
     if (!mapping.is_object() || !mapping.contains("material")) continue;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/topology.hpp"
 #include "scene/gltf/vertices.hpp"
 #include "scene/message.hpp"
@@ -28,7 +29,7 @@ std::uint64_t max_sparse_values(const Document& document) {
 /// dapple then reads those.
 void refuse_compressed(const Document& document, const tinygltf::Primitive& primitive,
                        const std::string& who) {
-  if (!primitive.extensions.contains("KHR_draco_mesh_compression")) return;
+  if (!primitive.extensions.contains(extension::kDraco)) return;
   const auto& position =
       document.model.accessors[static_cast<std::size_t>(attribute(primitive, "POSITION"))];
   if (position.bufferView >= 0 || position.sparse.isSparse) return;

@@ -3,6 +3,8 @@
 // are not listed.
 #include "scene/gltf/schema_rules.hpp"
 
+#include "scene/gltf/extension_names.hpp"
+
 namespace dapple::gltf {
 namespace {
 
@@ -104,7 +106,7 @@ constexpr Rule kTextureTransform[] = {numbers("offset", 2),
                                       {"rotation", Kind::number},
                                       numbers("scale", 2),
                                       {"texCoord", Kind::index}};
-constexpr Rule kTextureInfoExtensions[] = {object("KHR_texture_transform", kTextureTransform)};
+constexpr Rule kTextureInfoExtensions[] = {object(extension::kTextureTransform, kTextureTransform)};
 constexpr Rule kTextureInfo[] = {required({"index", Kind::index}),
                                  {"texCoord", Kind::index},
                                  {"scale", Kind::number},     // of normalTexture
@@ -120,9 +122,8 @@ constexpr Rule kMetallicRoughness[] = {color("baseColorFactor", 4),
 constexpr Rule kSpecularGlossiness[] = {color("diffuseFactor", 4),
                                         object("diffuseTexture", kTextureInfo)};
 constexpr Rule kEmissiveStrength[] = {number("emissiveStrength", 0)};
-constexpr Rule kMaterialExtensions[] = {
-    object("KHR_materials_pbrSpecularGlossiness", kSpecularGlossiness),
-    object("KHR_materials_emissive_strength", kEmissiveStrength)};
+constexpr Rule kMaterialExtensions[] = {object(extension::kSpecularGlossiness, kSpecularGlossiness),
+                                        object(extension::kEmissiveStrength, kEmissiveStrength)};
 constexpr Rule kMaterial[] = {
     word("alphaMode", kAlphaModes),           number("alphaCutoff", 0),
     {"doubleSided", Kind::boolean},           numbers("emissiveFactor", 3, -kRounding),
@@ -156,8 +157,8 @@ constexpr Rule kAnimation[] = {required(objects("channels", kChannel, "channel",
 
 constexpr Rule kNodeLight[] = {required({"light", Kind::index})};
 constexpr Rule kGpuInstancing[] = {required({"attributes", Kind::index_map})};
-constexpr Rule kNodeExtensions[] = {object("KHR_lights_punctual", kNodeLight),
-                                    object("EXT_mesh_gpu_instancing", kGpuInstancing)};
+constexpr Rule kNodeExtensions[] = {object(extension::kLights, kNodeLight),
+                                    object(extension::kInstancing, kGpuInstancing)};
 constexpr Rule kNode[] = {{"mesh", Kind::index},      {"camera", Kind::index},
                           {"skin", Kind::index},      {"children", Kind::indices},
                           numbers("matrix", 16),      numbers("translation", 3),
@@ -186,7 +187,7 @@ constexpr Rule kLight[] = {required(word("type", kLightTypes)),
                            {"range", Kind::positive},
                            object("spot", kSpot)};
 constexpr Rule kLights[] = {required(objects("lights", kLight, "light", kFew))};
-constexpr Rule kExtensions[] = {object("KHR_lights_punctual", kLights)};
+constexpr Rule kExtensions[] = {object(extension::kLights, kLights)};
 
 constexpr Rule kRoot[] = {required(object("asset", kAsset)),
                           {"extensionsUsed", Kind::texts},

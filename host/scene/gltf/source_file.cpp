@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/gltf/accessor.hpp"
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/instance.hpp"
 #include "scene/gltf/material_use.hpp"
 #include "scene/gltf/source_content.hpp"
@@ -50,7 +51,8 @@ bool has_finite_place(const Json& node) {
 }  // namespace
 
 SourceFile::SourceFile(const std::string& path, bool allow_outside)
-    : content(new Content{read_file(path, path), {}, load_document(path, allow_outside), {}, 0}) {
+    : content(new Content{
+          read_regular_file(path, path), {}, load_document(path, allow_outside), {}, 0}) {
   content->container = split_container(content->bytes, path);
   content->json = Json::parse(content->container.json);
   content->meshes_of_file = static_cast<std::uint32_t>(content->document.model.meshes.size());
@@ -82,13 +84,13 @@ std::uint32_t SourceFile::copy_mesh(std::uint32_t node, std::uint32_t mesh) {
 }
 
 bool SourceFile::has_gpu_instances(std::uint32_t node) const {
-  return has_extension(content->json["nodes"][node], kInstancing);
+  return has_extension(content->json["nodes"][node], extension::kInstancing);
 }
 
 std::vector<int> SourceFile::split_gpu_instances(std::uint32_t node) {
   Json& nodes = content->json["nodes"];
   const Json attributes =
-      nodes[node]["extensions"][kInstancing].value("attributes", Json::object());
+      nodes[node]["extensions"][extension::kInstancing].value("attributes", Json::object());
   // All have one length; without any there is one instance.
   std::size_t count = 1;
   Readers readers;
@@ -108,8 +110,8 @@ std::vector<int> SourceFile::split_gpu_instances(std::uint32_t node) {
     nodes.push_back(std::move(child));
   }
   for (const char* key : {"mesh", "skin", "weights"}) nodes[node].erase(key);
-  remove_extension(nodes[node], kInstancing);
-  unlist_unused_extension(content->json, kInstancing);
+  remove_extension(nodes[node], extension::kInstancing);
+  unlist_unused_extension(content->json, extension::kInstancing);
   return made;
 }
 

@@ -57,7 +57,7 @@ ImageBytes read_image(const Document& document, int image, const std::string& wh
   }
   result.owned = is_data_uri(source.uri)
                      ? decode_data_uri(source.uri, what)
-                     : read_file(resolve_uri(document.base, source.uri, what), what);
+                     : read_regular_file(resolve_uri(document.base, source.uri, what), what);
   result.bytes = result.owned;
   return result;
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scene/gltf/accessor.hpp"
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/material_use.hpp"
 
 namespace dapple::gltf {
@@ -85,7 +86,7 @@ bool replace_vertices(Editor& editor, const TexturedPrimitive& textured) {
       add_uvs(editor, textured.uvs);
   primitive["indices"] = add_indices(editor, textured.indices, textured.source.size());
   primitive.erase("mode");  // triangles
-  const bool was_compressed = remove_extension(primitive, kDraco);
+  const bool was_compressed = remove_extension(primitive, extension::kDraco);
   editor.json()["meshes"][textured.mesh]["primitives"][textured.primitive] = std::move(primitive);
   return was_compressed;
 }
@@ -160,7 +161,7 @@ class OcclusionMaterials {
     const auto replaced = before.find("occlusionTexture");
     if (replaced == before.end()) return occlusion;
     replaced_.insert(material);
-    had_transform_ |= has_extension(*replaced, kTextureTransform);
+    had_transform_ |= has_extension(*replaced, extension::kTextureTransform);
     for (const char* key : {"strength", "extras"})
       if (replaced->contains(key)) occlusion[key] = (*replaced)[key];
     return occlusion;
@@ -189,8 +190,9 @@ std::size_t add_occlusion_texture(Editor& editor, const std::vector<TexturedPrim
     if (!textured.source.empty()) removed |= replace_vertices(editor, textured);
     materials.add_texture(textured);
   }
-  if (removed) unlist_unused_extension(editor.json(), kDraco);
-  if (materials.had_transform()) unlist_unused_extension(editor.json(), kTextureTransform);
+  if (removed) unlist_unused_extension(editor.json(), extension::kDraco);
+  if (materials.had_transform())
+    unlist_unused_extension(editor.json(), extension::kTextureTransform);
   return materials.replaced();
 }
 

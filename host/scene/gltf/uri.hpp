@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/gltf/file.hpp"
+#include "scene/regular_file.hpp"
 
 namespace dapple::gltf {
 

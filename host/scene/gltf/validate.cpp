@@ -5,6 +5,7 @@
 
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/element_check.hpp"
+#include "scene/gltf/extension_names.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -143,7 +144,7 @@ class Validator {
                               material.emissiveTexture.index}) {
       check_.index(who, "texture", texture, model_.textures.size());
     }
-    const auto gloss = material.extensions.find("KHR_materials_pbrSpecularGlossiness");
+    const auto gloss = material.extensions.find(extension::kSpecularGlossiness);
     if (gloss == material.extensions.end() || !gloss->second.Has("diffuseTexture")) return;
     check_.index(who, "texture", gloss->second.Get("diffuseTexture").Get("index").GetNumberAsInt(),
                  model_.textures.size());

@@ -5,6 +5,7 @@
 
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/element_check.hpp"
+#include "scene/gltf/extension_names.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -16,7 +17,7 @@ using Attributes = std::map<std::string, int>;
 /// in the file, and its values would not be positions.
 bool is_quantized(const tinygltf::Model& model) {
   const auto has = [](const std::vector<std::string>& names) {
-    return std::find(names.begin(), names.end(), "KHR_mesh_quantization") != names.end();
+    return std::find(names.begin(), names.end(), extension::kQuantization) != names.end();
   };
   return has(model.extensionsUsed) || has(model.extensionsRequired);
 }

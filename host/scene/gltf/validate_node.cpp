@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf/element_check.hpp"
+#include "scene/gltf/extension_names.hpp"
 #include "scene/message.hpp"
 
 namespace dapple::gltf {
@@ -27,12 +28,12 @@ void check_rotation(const std::string& file, const std::string& who, const Json&
 
 void check_extensions_of(const Document& document, const std::string& who,
                          const tinygltf::Node& node, const ElementCheck& check) {
-  const auto light = node.extensions.find("KHR_lights_punctual");
+  const auto light = node.extensions.find(extension::kLights);
   if (light != node.extensions.end()) {
     check.index(who, "light", light->second.Get("light").GetNumberAsInt(),
                 document.model.lights.size());
   }
-  const auto instancing = node.extensions.find("EXT_mesh_gpu_instancing");
+  const auto instancing = node.extensions.find(extension::kInstancing);
   if (instancing == node.extensions.end()) return;
   const auto& attributes = instancing->second.Get("attributes");
   for (const std::string& name : attributes.Keys()) {

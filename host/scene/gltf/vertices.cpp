@@ -83,10 +83,18 @@ Attributes read_attributes(const Document& document, const tinygltf::Primitive& 
 
 std::optional<std::vector<std::uint32_t>> compact(std::vector<std::uint32_t>& corners,
                                                   std::uint64_t vertices) {
-  if (corners.size() >= vertices) return {};
-  std::vector<std::uint32_t> used = corners;
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<std::uint32_t> used;
+  if (corners.size() < vertices) {  // memory of what is used, not of what is shared
+    used = corners;
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+  } else {
+    std::vector<bool> is_used(vertices);
+    for (const std::uint32_t corner : corners) is_used[corner] = true;
+    if (std::find(is_used.begin(), is_used.end(), false) == is_used.end()) return {};
+    for (std::uint32_t v = 0; v < vertices; ++v)
+      if (is_used[v]) used.push_back(v);
+  }
   for (std::uint32_t& corner : corners) {
     corner = static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), corner) -
                                         used.begin());

@@ -43,8 +43,8 @@ Attributes read_attributes(const Document& document, const tinygltf::Primitive& 
 
 /// Renumbers `corners` to 0, 1, 2... and returns the vertices that they used, in increasing order.
 /// Primitives often share one long vertex buffer; copying all of it for each of them would take
-/// memory of the square of the file's size. Does nothing and returns none when there are at least
-/// as many corners as vertices.
+/// memory of the square of the file's size, and bakes would give vertices values of primitives that
+/// do not use them. Does nothing and returns none when the corners use all vertices.
 std::optional<std::vector<std::uint32_t>> compact(std::vector<std::uint32_t>& corners,
                                                   std::uint64_t vertices);
 

@@ -12,15 +12,15 @@
 
 #include "dapple/error.hpp"
 #include "files/exr_reader.hpp"
+#include "scene/images/color.hpp"
 #include "scene/images/dome_rows.hpp"
 #include "scene/images/radiance_hdr.hpp"
-#include "scene/side_file.hpp"
+#include "scene/regular_file.hpp"
 
 namespace dapple {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 31;
-constexpr const char* kKind = "dome image";
+constexpr FileKind kDomeImage{"dome image", std::uint64_t{1} << 31};
 
 /// Rows of a strip: ZIP's blocks have 16, and OpenEXR decodes blocks of a strip side by side.
 constexpr std::uint32_t kExrBlockRows = 16, kRadianceRows = 16;
@@ -69,7 +69,7 @@ Environment read_exr_dome(const std::string& path) {
 }
 
 Environment read_radiance_dome(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_side_file(path, kKind, kMaxFileBytes);
+  const std::vector<std::uint8_t> bytes = read_regular_file(path, path, kDomeImage);
   if (!is_radiance_hdr(bytes)) refuse(path, "is neither an OpenEXR nor a Radiance HDR image");
   const RadianceImage image(bytes, path);
   DomeRows dome(image.width(), image.height());
@@ -123,7 +123,8 @@ void finalize_dome(Light& light) {
 }  // namespace
 
 std::shared_ptr<const Environment> load_environment(const std::string& path) {
-  Environment environment = is_exr(read_side_file_start(path, kKind, kMaxFileBytes))
+  constexpr std::uint64_t kStart = 16;
+  Environment environment = is_exr(read_regular_file(path, path, kDomeImage, kStart))
                                 ? read_exr_dome(path)
                                 : read_radiance_dome(path);
   environment.file = path;

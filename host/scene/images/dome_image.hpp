@@ -1,4 +1,4 @@
-// Arithmetic of latitude-longitude images: texels, luminance, solid angles. In: an Environment
+// Arithmetic of latitude-longitude images: texels, solid angles. In: an Environment
 // (dapple/scene.hpp) and texel numbers; out: numbers.
 #pragma once
 
@@ -13,10 +13,6 @@ namespace dapple {
 inline const V3f& texel(const Environment& environment, std::uint32_t x, std::uint32_t y) {
   return environment.radiance[std::size_t{y} * environment.width + x];
 }
-
-/// The luminance of linear RGB with the primaries of ITU-R BT.709.
-inline double luminance(const V3d& rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z; }
-inline double luminance(const V3f& rgb) { return luminance(V3d(rgb)); }
 
 /// The solid angle of one texel of row `y`, in steradians.
 inline double texel_solid_angle(std::uint32_t width, std::uint32_t height, std::uint32_t y) {

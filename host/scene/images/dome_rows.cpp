@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dapple/error.hpp"
+#include "scene/finite.hpp"
 #include "scene/images/dome_image.hpp"
 
 namespace dapple {
@@ -17,8 +18,7 @@ constexpr std::uint32_t kMaxWidth = 2048, kMaxHeight = 1024;
 constexpr std::size_t kBlock = 1u << 14;  ///< pixels that a task checks
 
 bool is_allowed(const V3f& radiance) {
-  return std::max({radiance.x, radiance.y, radiance.z}) <= kMaxRadiance &&
-         std::isfinite(radiance.x) && std::isfinite(radiance.y) && std::isfinite(radiance.z);
+  return std::max({radiance.x, radiance.y, radiance.z}) <= kMaxRadiance && is_finite(radiance);
 }
 
 bool is_negative(const V3f& radiance) { return std::min({radiance.x, radiance.y, radiance.z}) < 0; }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dapple/error.hpp"
+#include "scene/images/color.hpp"
 #include "scene/images/image_structure.hpp"
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -148,11 +149,6 @@ Pixels decode(std::span<const std::uint8_t> bytes, int channels, const std::stri
   pixels.width = static_cast<std::size_t>(width);
   pixels.height = static_cast<std::size_t>(height);
   return pixels;
-}
-
-/// The sRGB transfer function of IEC 61966-2-1, for values in [0, 1].
-double linear_from_srgb(double value) {
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
 }  // namespace

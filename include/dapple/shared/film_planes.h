@@ -1,6 +1,6 @@
 /* The order of planes in the film's sums, which the kernels of kernels/film and kernels/lights write and
    host/film reads: planes of the surface, which every picture has at its beginning, and those of a pass,
-   from its first one on. */
+   from its first one on. FilmLayout (host/film/film_sums.hpp) knows where each pass begins. */
 #ifndef DAPPLE_SHARED_FILM_PLANES_H
 #define DAPPLE_SHARED_FILM_PLANES_H
 
@@ -24,5 +24,13 @@
 #define DAPPLE_LIGHT_PLANES 4u
 #define DAPPLE_DOME_PLANES 8u
 #define DAPPLE_DOME_CHANNELS 3u
+
+/* Of backs, before those of their passes: samples that began at a back, and those that hit something. Of
+   shading normals and of albedo, which not every picture has. */
+#define DAPPLE_PLANE_BACK_CHOSEN 0u
+#define DAPPLE_PLANE_BACK_HITS 1u
+#define DAPPLE_BACK_PLANES 2u
+#define DAPPLE_NORMAL_PLANES 3u
+#define DAPPLE_ALBEDO_PLANES 3u
 
 #endif

@@ -32,6 +32,22 @@ using std::sqrt;
 #define DAPPLE_SPARSE_DEPTH 1.0f
 #define DAPPLE_FILLED_DEPTH 3.0f
 
+/* How many times the area of a leaf a footprint must have to cover it: to open a leaf costs one block
+   only (experiments 234, 241 and 245). */
+#define DAPPLE_LEAF_COVERING 4.0f
+
+/* Share of a ray's footprint over which textures of occluders are averaged (experiments 235, 242 and
+   246). */
+#define DAPPLE_TEXTURE_FOOTPRINT 0.25f
+
+/* Transmittances below this are reported as 0, and their rays end. It is below 1e-4, the tolerance for
+   exact rays. */
+#define DAPPLE_OPAQUE_ENOUGH 5e-5f
+
+/* A ray that leaves a box before this part of t_max does not end inside of it: t_max less two
+   roundings. */
+#define DAPPLE_BEFORE_END 0.999999f
+
 /* Code c, 0 to 255, means (c / 255)^2 of the largest depth, so that small depths do not round to
    0. */
 DAPPLE_FUNCTION float depth_decode(uchar code) {
@@ -52,6 +68,18 @@ DAPPLE_FUNCTION float depth_decode(uchar code) {
 
 DAPPLE_FUNCTION float correlation_decode(schar code) {
   return (float)(code & DAPPLE_CORRELATION_MASK) * DAPPLE_CORRELATION_STEP;
+}
+
+/* Whether the footprint of a ray covers a box that the ray enters and leaves at these distances, and
+   the box's depth is used in place of its contents. needed: projected area of the box times its
+   covering ratio (kernels/opacity/footprint.clh). A box that holds either end of the ray is never
+   covered. This is the rule where traversal stops; for eight boxes at once it is covered_children()
+   of footprint.clh and covered_for() of kernels/occlusion/packet_node.clh. */
+DAPPLE_FUNCTION bool footprint_covers(float needed, float first_area, float solid_angle, float enter,
+                                      float leave, float t_max) {
+  const float middle = 0.5f * (enter + leave);
+  return needed < first_area + solid_angle * middle * middle && enter > 0.0f &&
+         leave < t_max * DAPPLE_BEFORE_END;
 }
 
 /* Mean optical depth of a box along a direction. facing_k = (projected area along axis k) *
