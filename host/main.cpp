@@ -72,7 +72,7 @@ int run(int argc, char** argv) {
                "With --version: how dapple was built, and the device libraries");
   app.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 bad input, 4 no usable device, 5 images differ,\n"
-      "130 interrupted by SIGINT, 143 by SIGTERM, 152 by SIGXCPU.\n"
+      "129 interrupted by SIGHUP, 130 by SIGINT, 143 by SIGTERM, 152 by SIGXCPU.\n"
       "dapple COMMAND --help lists the options of each.");
   CLI::App& render = *app.add_subcommand("render", "Render AO and light passes to an OpenEXR file");
   CLI::App& merge = *app.add_subcommand("merge", "Add up parts of an image that several runs made");

@@ -125,7 +125,7 @@ void leave_time_to_save() {
   rlimit limit{};
   if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_max == RLIM_INFINITY) return;
   const rlim_t saving_seconds = kSecondsOfSlice + std::thread::hardware_concurrency();
-  const rlim_t left = std::min(saving_seconds, limit.rlim_max / 2);
+  const rlim_t left = std::min(saving_seconds, limit.rlim_max / 2);  // 0 of a single second
   if (limit.rlim_cur + left <= limit.rlim_max) return;
   limit.rlim_cur = limit.rlim_max - left;
   setrlimit(RLIMIT_CPU, &limit);
@@ -136,7 +136,7 @@ void leave_time_to_save() {
 void catch_interruptions() {
   leave_time_to_save();
   std::signal(SIGALRM, on_alarm);
-  for (const int signal : {SIGINT, SIGTERM, SIGXCPU}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGXCPU, SIGHUP}) {
     struct sigaction action {};
     if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
       action = {};
@@ -185,7 +185,7 @@ void remove_when_interrupted(const std::string& path) {
 
 bool is_late() {
   is_saved = received;
-  if (received != SIGTERM && received != SIGXCPU) return false;
+  if (received == SIGINT) return false;
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   skips_picture = seconds_between(received_at, now) > kLateSeconds ? 1 : 0;

@@ -100,10 +100,12 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
 
 void add_scene_options(CLI::App& app, RenderArguments& a) {
   RenderOptions& o = a.options;
-  app.add_option("--camera", o.camera,
-                 "Camera by name; default: the scene's first, or one that shows all of it");
+  CLI::Option& camera =
+      *app.add_option("--camera", o.camera,
+                      "Camera by name; default: the scene's first, or one that shows all of it");
   CLI::Option& look_from =
       *app.add_option("--look-from", a.look_from, "Camera position X,Y,Z, metres (with --look-at)");
+  look_from.excludes(&camera);
   app.add_option("--look-at", a.look_at, "Point that this camera looks at: X,Y,Z");
   app.add_option("--up", a.up,
                  "Up direction of this camera: X,Y,Z; default 0,1,0, or 0,0,-1 for one that looks "

@@ -65,10 +65,16 @@ std::string refusal(const std::string& target) {
   return {};
 }
 
-// An overwritten file keeps its permissions. If that fails, it gets the default ones of the umask.
+// An overwritten file keeps its owner and group, where this process may give files away, and its
+// permissions. If that fails, it gets the default ones of the umask. Changing the owner clears the
+// setgid bit, so that permissions come last.
 void copy_permissions(const std::string& from, int to) {
   struct stat existing {};
-  if (stat(from.c_str(), &existing) == 0 && fchmod(to, existing.st_mode & 0777) != 0) errno = 0;
+  if (stat(from.c_str(), &existing) != 0) return;
+  const bool is_owned = fchown(to, existing.st_uid, existing.st_gid) == 0 ||
+                        fchown(to, static_cast<uid_t>(-1), existing.st_gid) == 0;
+  const mode_t kept = is_owned ? 0777 | S_ISGID : 0777;
+  if (fchmod(to, existing.st_mode & kept) != 0) errno = 0;
 }
 
 }  // namespace
@@ -80,6 +86,11 @@ void check_output_path(const std::string& path) {
 
 void remove_abandoned_beside(const std::string& path) {
   remove_abandoned_files(folder_of(follow_links(path)));
+}
+
+void remove_link(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_symlink(fs::symlink_status(path, ignored))) fs::remove(path, ignored);
 }
 
 PendingFile::PendingFile(const std::string& target) : name_(target), target_(follow_links(target)) {

@@ -71,6 +71,10 @@ class PendingFile {
   int lock_ = -1;  // duplicate that keeps the file locked after close()
 };
 
+/// Removes a symbolic link, so that what is written to the path does not go where it leads: names
+/// in a cache are chosen by dapple, and others may write there.
+void remove_link(const std::string& path);
+
 /// Files that belong together. None gets its name before all are written, so that a full disk
 /// leaves neither some of them nor new ones beside old ones.
 class PendingFiles {

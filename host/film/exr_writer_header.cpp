@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace dapple {
 namespace {
@@ -34,10 +35,21 @@ std::string exr_attribute(const std::string& name) {
 
 Box2i exr_window(const PixelRect& rect) { return {V2i(rect.x0, rect.y0), V2i(rect.x1, rect.y1)}; }
 
+namespace {
+
+/// Width of the whole image at the distance 1 from the camera, as OpenEXR has it, or in metres if
+/// it is orthographic: x is scaled by its inverse, between the camera's space and [0,1].
+float screen_window_width(const FilmMetadata& metadata) {
+  const float scale = (metadata.world_to_camera.inverse() * metadata.world_to_ndc)[0][0];
+  return std::isfinite(1 / scale) ? std::fabs(1 / scale) : 1.0f;
+}
+
+}  // namespace
+
 Imf::Header exr_header(const Film& film, Imf::Compression compression) {
   Imf::Header header(Box2i(V2i(0, 0), V2i(film.width - 1, film.height - 1)),
-                     exr_window(film.data_window), 1.0f, Imath::V2f(0, 0), 1.0f, Imf::INCREASING_Y,
-                     compression);
+                     exr_window(film.data_window), 1.0f, Imath::V2f(0, 0),
+                     screen_window_width(film.metadata), Imf::INCREASING_Y, compression);
   if (compression == Imf::ZIP_COMPRESSION || compression == Imf::ZIPS_COMPRESSION)
     header.zipCompressionLevel() = 1;  // not 4: experiment 804
   return header;

@@ -11,7 +11,7 @@ namespace {
 
 /// What a pixel shows where it is covered, and how much of it is.
 struct Seen {
-  float luminance, weight;
+  float luminance, peak, weight;  ///< peak: of the brightest channel
 };
 
 std::vector<Seen> seen_luminances(const Film& film) {
@@ -23,19 +23,20 @@ std::vector<Seen> seen_luminances(const Film& film) {
     if (!(alpha > 0)) continue;
     const auto value = static_cast<float>(luminance(V3f(r->pixels[p], g->pixels[p], b->pixels[p])) /
                                           double{alpha});
-    if (std::isfinite(value)) seen.push_back({std::max(value, 0.0f), alpha});
+    const float peak = std::max({r->pixels[p], g->pixels[p], b->pixels[p]}) / alpha;
+    if (std::isfinite(value) && std::isfinite(peak))
+      seen.push_back({std::max(value, 0.0f), std::max(peak, 0.0f), alpha});
   }
   return seen;
 }
 
-/// The luminance that a hundredth of what is seen exceeds.
-double bright_luminance(std::vector<Seen> seen, double weight) {
-  std::sort(seen.begin(), seen.end(),
-            [](const Seen& a, const Seen& b) { return a.luminance > b.luminance; });
+/// What a hundredth of what is seen exceeds in one channel.
+double bright_peak(std::vector<Seen> seen, double weight) {
+  std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.peak > b.peak; });
   double brighter = 0;
   for (const Seen& pixel : seen) {
     brighter += double{pixel.weight};
-    if (brighter > 0.01 * weight) return double{pixel.luminance};
+    if (brighter > 0.01 * weight) return double{pixel.peak};
   }
   return 0;
 }
@@ -70,7 +71,7 @@ float automatic_exposure(const Film& film) {
   if (!(sum > 0)) return 1;
   const double mean = sum / weight;
   const double shown = kMiddle * std::sqrt(mean_albedo(film) / kMiddleGrey);
-  const double scale = std::min(shown / mean, 1.0 / std::max(bright_luminance(seen, weight), mean));
+  const double scale = std::min(shown / mean, 1.0 / std::max(bright_peak(seen, weight), mean));
   return std::isfinite(static_cast<float>(scale)) ? static_cast<float>(scale) : 1;
 }
 

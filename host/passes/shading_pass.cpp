@@ -16,9 +16,11 @@ constexpr std::size_t kScalarItems = 16;
 
 /// `resolves`: add colours and normals of the points to the film.
 void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-           const FilmBuffers& film, bool resolves, const ResolveParams& params, int spp) {
+           const FilmBuffers& film, bool resolves, const ResolveParams& params,
+           const Viewpoint& from, int spp) {
   ShadingParams shading{};
   shading.resolve = params;
+  shading.viewpoint = from;
   shading.normals = scene.corner_normals.empty() ? 0u : 1u;
   shading.albedo = scene.uploaded.colors && resolves ? 1u : 0u;
   shading.resolves = resolves ? 1u : 0u;
@@ -40,18 +42,19 @@ KernelName shading_kernel(const DeviceContext& context) {
 }
 
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                  const FilmBuffers& film, const ResolveParams& params, int spp) {
-  shade(context, scene, queues, film, true, params, spp);
+                  const FilmBuffers& film, const ResolveParams& params, const Viewpoint& from,
+                  int spp) {
+  shade(context, scene, queues, film, true, params, from, spp);
 }
 
 void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                      std::size_t samples) {
+                      const Viewpoint& from, std::size_t samples) {
   // A work-item for each record, as if it were a pixel.
   ResolveParams params{};
   params.slice.pixel_count = static_cast<uint>(hit_records(samples));
   params.slice.sample_count = DAPPLE_HIT_BITS;
   const FilmBuffers none{context.allocate(0), context.allocate(0)};
-  shade(context, scene, queues, none, false, params, 1);
+  shade(context, scene, queues, none, false, params, from, 1);
 }
 
 }  // namespace dapple

@@ -11,13 +11,14 @@ namespace dapple {
 KernelName shading_kernel(const DeviceContext& context);
 
 /// Comes after resolve_surface_pass(), because it moves points to where their rays start. `spp`:
-/// samples a pixel that footprints are computed for.
+/// samples a pixel that footprints are computed for. `from`: where the points were seen from.
 void shading_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                  const FilmBuffers& film, const ResolveParams& params, int spp);
+                  const FilmBuffers& film, const ResolveParams& params, const Viewpoint& from,
+                  int spp);
 
 /// As shading_pass() for the first `samples` points, but adds nothing to a film. For scenes with
 /// normals.
 void move_points_pass(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
-                      std::size_t samples);
+                      const Viewpoint& from, std::size_t samples);
 
 }  // namespace dapple

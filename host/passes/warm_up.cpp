@@ -63,7 +63,7 @@ void warm_up_points(EmptyStage& s, const Variant& variant) {
 }
 
 void warm_up_shading(EmptyStage& s, const Variant&) {
-  shading_pass(s.context, s.scene, s.queues, s.film, {}, 1);
+  shading_pass(s.context, s.scene, s.queues, s.film, {}, {}, 1);
 }
 
 using Pass = std::function<void(EmptyStage&, const Variant&)>;

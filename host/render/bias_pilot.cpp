@@ -125,7 +125,8 @@ void BiasPilot::take_units(std::size_t count) {
   context_.write(queues_.work, work.data(), work.size() * sizeof(PixelWork));
   camera_.slice = {0, static_cast<uint>(work.size()), 0, splitting};
   camera_pass(context_, scene_, queues_, camera_);
-  if (layout_.normals) move_points_pass(context_, scene_, queues_, work.size() * splitting);
+  if (layout_.normals)
+    move_points_pass(context_, scene_, queues_, picture_rays_.viewpoint(), work.size() * splitting);
   const std::uint32_t hits = compact_pass(context_, queues_, work.size() * splitting);
   tried_ += static_cast<double>(work.size());
   if (hits == 0) return;

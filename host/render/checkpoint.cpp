@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "camera/camera_splitting.hpp"
@@ -153,6 +154,9 @@ Checkpoint read_as(const std::string& what, const std::string& path, Read parts,
   } catch (const Error& error) {
     const std::string text = error.what();
     const std::string name = path + ": ";
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored))
+      throw Error(ErrorKind::input, what + ": there is no such file");
     refuse(what, (text.starts_with(name) ? text.substr(name.size()) : text) + next);
   } catch (const json::exception& error) {
     refuse(what, fmt::format("damaged: {}", error.what()));

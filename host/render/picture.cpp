@@ -281,7 +281,8 @@ class PictureTracer {
     if (backs_) backs_->add(slice, work_of_round());
     if (layout_.shading()) {
       resolve_.plane = layout_.shading();
-      shading_pass(context_, scene_, queues_, film_, resolve_, footprint_samples(options_));
+      shading_pass(context_, scene_, queues_, film_, resolve_, rays_.viewpoint(),
+                   footprint_samples(options_));
     }
     const std::uint32_t hits = compact_pass(context_, queues_, samples_of(slice));
     if (hits == 0) return;
@@ -298,7 +299,7 @@ class PictureTracer {
     resolve_.slice = packed_slice(backs_->choice());
     backs_->clear();
     const std::size_t samples = samples_of(resolve_.slice);
-    if (layout_.normals) move_points_pass(context_, scene_, queues, samples);
+    if (layout_.normals) move_points_pass(context_, scene_, queues, rays_.viewpoint(), samples);
     const std::uint32_t hits = compact_pass(context_, queues, samples);
     if (hits == 0) return;
     if (bias_) bias_->keep_hits(queues);

@@ -26,13 +26,16 @@ class PictureRays {
         options_(options),
         ao_rays_(std::min(options.ao_rays, most)),
         light_rays_(std::min(options.light_rays, most)),
-        viewpoint_(viewpoint(view)),
+        viewpoint_(dapple::viewpoint(view)),
         shaded_(layout.normals ? 1u : 0u) {}
 
   /// AO rays of `hits` points.
   OcclusionParams make_ao(const Queues& queues, std::uint32_t hits) const;
   /// Rays to one light.
   OcclusionParams make_light(const Queues& queues, std::uint32_t light, std::uint32_t hits) const;
+
+  /// Where the points are seen from.
+  [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
 
  private:
   [[nodiscard]] OcclusionParams occlusion_params(std::uint32_t points, int rays) const;

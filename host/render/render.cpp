@@ -27,6 +27,7 @@
 #include "render/shutter.hpp"
 #include "render/slice_params.hpp"
 #include "render/stopwatch.hpp"
+#include "render/unseen_lights.hpp"
 #include "sampling/bias_estimate.hpp"
 #include "sampling/shard.hpp"
 #include "scene/corner_normals.hpp"
@@ -281,6 +282,8 @@ void finish(RenderResult& result, const PictureContent& content, const TracedPic
   add_largest_irradiances(statistics, picture.largest, layout, lights);
   if (has_bias(options) && options.report_bias > 0) add_bias(result, picture, layout, lights);
   add_cryptomattes(result.film, picture.mattes, picture.samples, names, options.cryptomattes);
+  for (std::string& note : notes_of_unseen_lights(result.film, lights))
+    statistics.notes.push_back(std::move(note));
   statistics.notes.insert(statistics.notes.end(), scene.warnings.begin(), scene.warnings.end());
   if (!result.interrupted) return;
   result.film.metadata.settings.emplace_back("interrupted", "yes");

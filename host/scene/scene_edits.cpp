@@ -1,5 +1,5 @@
-// Changes of a scene after it was loaded: the opacity of a material, other lights, and a ground under
-// the scene. In and out: a scene.
+// Changes of a scene after it was loaded: the opacity of a material, other lights, and a ground
+// under the scene. In and out: a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,12 +61,14 @@ void add_ground(Scene& scene, const Box3f& bounds) {
   float width = std::max(size.x, size.z);
   if (width <= 0) width = std::max(size.y, 1.0f);
 
+  // Below a floor of the scene's own, which would be in the same plane.
+  const float drop = 1e-5f * std::max({size.x, size.y, size.z});
   Mesh ground;
   ground.name = "ground";
   append_square(ground, 20 * width, 0, static_cast<std::uint32_t>(scene.materials.size()));
   Instance instance;
   instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
-  instance.to_world.setTranslation(V3f(bounds.center().x, bounds.min.y, bounds.center().z));
+  instance.to_world.setTranslation(V3f(bounds.center().x, bounds.min.y - drop, bounds.center().z));
 
   Material material;
   material.name = "ground";

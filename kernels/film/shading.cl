@@ -76,7 +76,8 @@ inline void shade_group(Scene scene, const Shading* shading, uint lanes,
                    &triangles.u, &triangles.v, albedo);
   }
   if (group.smooth)
-    shade_points16(scene, &group.hits, &triangles, &group.words, group.smooth, points);
+    shade_points16(scene, &group.hits, &triangles, &group.words, group.smooth, shading->viewpoint,
+                   points);
 }
 
 /* Planes: shading normal (3), if there are any; albedo (3), if it is requested. */
@@ -95,7 +96,7 @@ __kernel void shade_points(__global const BvhNode* nodes, __global const Triangl
   const Shading shading = {normals,
                            {color_words, color_materials, color_texels, params.segment_words,
                             params.color_share},
-                           params.normals != 0u, params.albedo != 0u};
+                           params.normals != 0u, params.albedo != 0u, params.viewpoint};
   const uint begin = local_pixel * slice.sample_count, end = begin + slice.sample_count;
   long8 sums = (long8)(0);
   bool any = false;

@@ -28,7 +28,7 @@ DAPPLE_INLINE float3 shade_hit(Scene scene, const Shading* shading, __global Sur
   if (in_medium) triangle.at = random_barycentrics(hash_pair(point->sample, point->pixel));
   if (shading->has_normals && is_triangle && !in_medium) {
     const CornerNormals normals = normals_of(shading->normals, primitive);
-    if (normals.words[0]) shade_point(scene, smooth_point(&triangle, normals), instance, point);
+    if (normals.words[0]) shade_point(scene, smooth_point(&triangle, normals), instance, shading->viewpoint, point);
   }
   if (!shading->has_colors) return (float3)(0.0f);
   return surface_color(scene, shading->colors, primitive, instance, triangle.at, point->area);
@@ -60,7 +60,7 @@ void shade_points_scalar(__global const BvhNode* nodes, __global const TriangleB
   const Scene scene = {nodes, blocks, 0, textured, 0, 0, instances};
   const Shading shading = {normals,
                            {color_words, color_materials, color_texels, params.segment_words, params.color_share},
-                           params.normals != 0u, params.albedo != 0u};
+                           params.normals != 0u, params.albedo != 0u, params.viewpoint};
   const uint own_pixel = first + in_group / DAPPLE_SHADING_ITEMS;
   PlaneSums own;
   own.v = (long8)(0);

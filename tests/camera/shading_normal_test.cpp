@@ -127,7 +127,8 @@ TEST(ShadingNormal, ATiltedHemisphereIsHiddenBelowThePlane) {
     // From above the surface by its leaning normal, from below, and from across.
     scene.lights = {small_sun({0, 1, 0.05f}), small_sun({0, 1, -0.05f}), small_sun({0, 0, 1})};
     RenderOptions options = options_of(Normals::shading);
-    options.look = LookAt{V3f(0, 0, 3), V3f(0, 0, 0), V3f(0, 1, 0)};
+    options.look = LookAt{V3f(0, 0, 100), V3f(0, 0, 0), V3f(0, 1, 0)};
+    options.fov_degrees = 1;  // so that no normal faces away from the viewer
     options.crop = PixelRect{30, 20, 49, 39};
     options.spp = 256;
     const Film film = render(scene, options).film;
@@ -142,6 +143,34 @@ TEST(ShadingNormal, ATiltedHemisphereIsHiddenBelowThePlane) {
     EXPECT_NEAR(mean("light.sun.R"), (std::sin(theta) + 0.05 * std::cos(theta)) / length, 0.002);
     EXPECT_EQ(mean("light.sun_2.R"), 0) << "below the surface";
     EXPECT_NEAR(mean("light.sun_3.R"), std::cos(theta), 0.002);
+  }
+}
+
+// Normals of foliage are often those of a sphere around it. Of a card whose back is seen they are
+// turned inwards; they turn across the card until they face the viewer as much.
+TEST(ShadingNormal, NoNormalThatIsSeenFacesAway) {
+  for (const double degrees : {40.0, 70.0, 88.0}) {
+    const double lean = degrees * kPi / 180;
+    const Scene scene = scene_of(
+        square(V3f(0, static_cast<float>(std::sin(lean)), static_cast<float>(std::cos(lean)))));
+    RenderOptions options = options_of(Normals::shading);
+    options.look = LookAt{V3f(0, -3, 1), V3f(0, 0, 0), V3f(0, 0, 1)};
+    options.fov_degrees = 2;
+    const Film film = render(scene, options).film;
+    const auto mean = [&](const std::string& channel) {
+      const auto& pixels = film.find(channel)->pixels;
+      return std::accumulate(pixels.begin(), pixels.end(), 0.0) /
+             static_cast<double>(pixels.size());
+    };
+    ASSERT_EQ(mean("A"), 1) << "the square fills the picture";
+    const V3d view = V3d(0, -3, 1).normalized();
+    const V3d given(0, std::sin(lean), std::cos(lean));
+    const V3d leaning(0, std::sin(lean), 0);
+    const double turn = std::max(0.0, 2 * given.dot(view) / leaning.dot(view));
+    const V3d expected = (given - leaning * turn).normalized();
+    const V3d found(mean("N.X"), mean("N.Y"), mean("N.Z"));
+    EXPECT_LT((found - expected).length(), 0.01) << degrees << " degrees";
+    EXPECT_GE(found.dot(view), -0.01) << degrees << " degrees";
   }
 }
 

@@ -97,7 +97,7 @@ class BakeInterruption : public BakeCommand {
 };
 
 TEST_F(BakeInterruption, ASignalKeepsTheOutputAndLeavesACheckpointThatGoesOnToTheSameBits) {
-  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, {SIGTERM, 143}, {SIGHUP, 129}}) {
     SCOPED_TRACE(code);
     ASSERT_EQ(interrupt_bake_of_meshes(signal), code) << bytes_of(log());
     EXPECT_TRUE(contains(bytes_of(log()), "note: interrupted, " + path("out.glb") +

@@ -107,7 +107,7 @@ TEST_F(MergeCommand, PartsAreRefusedWhereTheyCannotBe) {
   expect_failure(dapple(kTree + "--frames 1-2 --shard 1/2 -o a.#.dapple"), 2, "needs --ambient");
   expect_failure(dapple(kTree + "--frame 1 --shutter=0,0.5 -o a.dapple"), 2,
                  "--shutter does not go with --shard");
-  expect_failure(dapple("merge no.dapple -o a.exr"), 1, "no.dapple: ");
+  expect_failure(dapple("merge no.dapple -o a.exr"), 3, "no.dapple: ");
   EXPECT_EQ(files_in_folder(), 0u);
 }
 

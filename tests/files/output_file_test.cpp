@@ -32,6 +32,21 @@ TEST_F(OutputFile, OverwritingLeavesOneFileWithTheOldPermissions) {
   EXPECT_EQ(fs::status(path("a.exr")).permissions(), static_cast<fs::perms>(0640));
 }
 
+TEST_F(OutputFile, OverwritingKeepsTheGroupAndItsBit) {
+  write_bytes(path("a.exr"), "old");
+  ASSERT_EQ(chmod(path("a.exr").c_str(), 02660), 0);
+  const gid_t other = 54321;
+  const bool may_give_away = chown(path("a.exr").c_str(), static_cast<uid_t>(-1), other) == 0;
+  ASSERT_EQ(chmod(path("a.exr").c_str(), 02660), 0);
+  write_exr(ramp_film(2, 2), path("a.exr"));
+  struct stat kept {};
+  ASSERT_EQ(stat(path("a.exr").c_str(), &kept), 0);
+  EXPECT_EQ(kept.st_mode & 07777, 02660u);
+  if (may_give_away) {
+    EXPECT_EQ(kept.st_gid, other);
+  }
+}
+
 TEST_F(OutputFile, WritingThroughALinkKeepsTheLink) {
   write_bytes(path("real.exr"), "old");
   fs::create_symlink("real.exr", path("link.exr"));

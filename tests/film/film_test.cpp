@@ -75,6 +75,21 @@ TEST_F(FilmExr, HasTheFirstRowAtTheTopAndFloatChannels) {
   EXPECT_EQ(top, (std::vector<float>{0, 1, 2, 3}));
 }
 
+TEST_F(FilmExr, TheScreenWindowIsAsWideAsTheImageAtADistanceOfOne) {
+  Film film = ramp_film(4, 2);
+  film.metadata = some_metadata();
+  film.metadata.world_to_camera = M44f().setTranslation(V3f(1, 2, 3));
+  M44f projection;  // a field of view of 90 degrees: x from -z to z becomes 0 to 1
+  projection[0][0] = 0.5f;
+  projection[2][0] = 0.5f;
+  projection[2][3] = 1;
+  projection[3][3] = 0;
+  film.metadata.world_to_ndc = film.metadata.world_to_camera * projection;
+  write_exr(film, path("a.exr"));
+  Imf::InputFile file(path("a.exr").c_str());
+  EXPECT_FLOAT_EQ(file.header().screenWindowWidth(), 2);
+}
+
 TEST_F(FilmExr, ReturnsItsMetadata) {
   Film film = ramp_film(2, 2);
   film.metadata = some_metadata();

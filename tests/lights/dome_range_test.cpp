@@ -75,5 +75,22 @@ TEST_F(DomeRange, NegativeRadianceCountsAsZeroAndIsNamed) {
       contains(scene.warnings[0], "a.exr: pixels with negative radiance: 1; it counts as 0"));
 }
 
+TEST_F(DomeRange, ImagesThatAreNotTwiceAsWideAsHighAreNamed) {
+  for (const bool is_square : {false, true}) {
+    Scene scene;
+    Light light;
+    light.kind = LightKind::dome;
+    Environment image{4, is_square ? 4u : 2u, std::vector<V3f>(is_square ? 16 : 8, V3f(1)),
+                      "a.exr"};
+    light.environment = std::make_shared<const Environment>(image);
+    scene.lights = {light};
+    finalize_domes(scene);
+    ASSERT_EQ(scene.warnings.size(), is_square ? 1u : 0u);
+    if (is_square) {
+      EXPECT_TRUE(contains(scene.warnings[0], "a.exr: it is not twice as wide as high"));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dapple

@@ -25,8 +25,9 @@ std::uint64_t mix(std::uint64_t z) {
 }
 
 /// The hit with the triangle's shading normal. At convex points rays start from the mean of the
-/// point's projections to the planes of the corners' normals.
-Hit shaded(const Triangle& triangle, const Weights& weights, Hit hit) {
+/// point's projections to the planes of the corners' normals. `along`: the direction of the ray that
+/// sees it; a normal that faces away turns across the facet until it faces the viewer as much.
+Hit shaded(const Triangle& triangle, const Weights& weights, const V3d& along, Hit hit) {
   V3d sum(0.0), projected(0.0);
   for (int k = 0; k < 3; ++k) {
     const V3d& normal = triangle.normal[k];
@@ -38,6 +39,11 @@ Hit shaded(const Triangle& triangle, const Weights& weights, Hit hit) {
   const V3d total = triangle.normal[0] + triangle.normal[1] + triangle.normal[2];
   const bool other_side = total.dot(hit.facet) < 0;
   hit.normal = sum.normalized() * (other_side ? -1 : 1);
+  const double away = hit.normal.dot(along);
+  if (away > 0) {
+    const V3d leaning = hit.normal - hit.facet * hit.normal.dot(hit.facet);
+    hit.normal = (hit.normal - leaning * (2 * away / leaning.dot(along))).normalized();
+  }
   hit.hides = !((projected - hit.position).dot(hit.facet) > 0);
   if (!hit.hides) hit.start = projected;
   return hit;
@@ -225,7 +231,7 @@ std::optional<Hit> EmbreeOracle::first_hit(const Segment& segment, std::uint64_t
   const V3d position = interpolate(weights, corner);
   V3d facet = normal_of(triangle).normalized();
   if (facet.dot(direction) > 0) facet = -facet;
-  return shaded(triangle, weights, {position, facet, facet, position});
+  return shaded(triangle, weights, direction, {position, facet, facet, position});
 }
 
 }  // namespace dapple::oracle

@@ -134,6 +134,18 @@ TEST(OraclePicture, TheSaplingWithSmoothNormalsHasEmbreesOcclusionAndLight) {
   expect_equal_pictures("smooth sapling", sapling);
 }
 
+// As foliage often has them; backs of leaves have normals that face away from the viewer.
+TEST(OraclePicture, LeavesWithTheNormalsOfASphereHaveEmbreesOcclusionAndLight) {
+  Scene cloud = load_scene("scene:cloud?leaves=300");
+  for (Mesh& mesh : cloud.meshes) {
+    const V3f middle = scene_bounds(cloud).center();
+    mesh.normals.clear();
+    for (const V3f& position : mesh.positions)
+      mesh.normals.push_back((position - middle).normalized());
+  }
+  expect_equal_pictures("cloud", cloud);
+}
+
 TEST(OraclePicture, TheTexturedPineHasEmbreesOcclusionAndLight) {
   DAPPLE_SKIP_WITHOUT(shared_scene("smallpine"));
   expect_equal_pictures("pine", load_pine());

@@ -13,6 +13,7 @@
 #include "bvh/storage/object_validation.hpp"
 #include "dapple/bvh.hpp"
 #include "dapple/error.hpp"
+#include "files/output_file.hpp"
 #include "files/sealed_file.hpp"
 #include "files/temporary_file.hpp"
 
@@ -168,11 +169,13 @@ std::optional<CachedObject> read_cached_object(const std::string& folder, const 
 // built again.
 void write_cached_object(const std::string& folder, const Checksum& key,
                          const CachedObject& cached) {
+  const std::string path = file_of(folder, key);
+  remove_link(path);
   const ObjectRecord record = record_of(cached, key);
   const std::string_view builder = builder_version();
   const FinishedObject& object = cached.object;
   write_sealed_file(
-      file_of(folder, key), kKind,
+      path, kKind,
       {as_section(std::span(&record, 1)), as_section(builder), as_section(object.nodes),
        as_section(object.blocks), as_section(object.textured), as_section(object.segments),
        as_section(object.primitives)},

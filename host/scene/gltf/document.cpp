@@ -9,6 +9,7 @@
 
 #include "scene/gltf/container.hpp"
 #include "scene/gltf/element_check.hpp"
+#include "scene/gltf/extension_names.hpp"
 #include "scene/gltf/json_text.hpp"
 #include "scene/gltf/schema.hpp"
 #include "scene/gltf/uri.hpp"
@@ -191,9 +192,24 @@ void keep_extras_of_cameras(const Json& root, Document& document) {
   }
 }
 
+/// tinygltf's message about it names no light.
+void check_spots(const Json& root, const std::string& file) {
+  const auto pointer =
+      Json::json_pointer(std::string("/extensions/") + extension::kLights + "/lights");
+  if (!root.contains(pointer)) return;
+  std::size_t index = 0;
+  for (const Json& light : root.at(pointer)) {
+    if (light.value("type", "") == "spot" && !light.contains("spot"))
+      fail(file, "{} is a spot without \"spot\": {{}}, its cone",
+           element("light", index, light.value("name", "")));
+    ++index;
+  }
+}
+
 void parse_model(Document& document, Json& root) {
   for (const char* unused : {"animations", "skins", "extras"}) root.erase(unused);
   const std::vector<int> indices = take_primitive_indices(root);
+  check_spots(root, document.file);
   const std::string text = root.dump();
   std::string error;
   std::string warning;

@@ -101,6 +101,22 @@ void add_light(const Document& document, const PlacedNode& placed, int index,
   scene.lights.push_back(std::move(light));
 }
 
+/// Shadows of spheres that are large for their scene are soft, or none.
+void warn_of_large_spheres(const std::string& file, Scene& scene) {
+  constexpr float kLarge = 0.1f;  // of the scene's diagonal
+  const auto found = std::find_if(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+    return light.kind == LightKind::sphere;
+  });
+  if (found == scene.lights.end()) return;
+  const Box3f bounds = scene_bounds(scene);
+  const float diagonal = bounds.isEmpty() ? 0.0f : bounds.size().length();
+  if (!(diagonal > 0) || found->radius <= kLarge * diagonal) return;
+  scene.warnings.push_back(one_line(
+      fmt::format("{}: light \"{}\" is a sphere of {:g} m in a scene {:.2g} m across: its shadows "
+                  "are soft; --light-radius sets another",
+                  file, found->name, found->radius, diagonal)));
+}
+
 }  // namespace
 
 void add_punctual_lights(const Document& document, const std::vector<PlacedNode>& placed,
@@ -116,6 +132,7 @@ void add_punctual_lights(const Document& document, const std::vector<PlacedNode>
     if (light == node.extensions.end()) continue;
     add_light(document, at, light->second.Get("light").GetNumberAsInt(), options, scene);
   }
+  warn_of_large_spheres(document.file, scene);
 }
 
 }  // namespace dapple::gltf

@@ -142,6 +142,12 @@ Light dome_light(const std::string& name, const std::string& path) {
 void finalize_domes(Scene& scene) {
   for (Light& light : scene.lights) {
     if (light.kind != LightKind::dome || !light.environment) continue;
+    const Environment& image = *light.environment;
+    if (!image.file.empty() &&
+        (image.width < 1.8 * image.height || image.width > 2.2 * image.height))
+      scene.warnings.push_back(
+          fmt::format("{}: it is not twice as wide as high; it is taken as longitude and latitude",
+                      image.file));
     if (light.environment->negative_pixels > 0)
       scene.warnings.push_back(fmt::format("{}: pixels with negative radiance: {}; it counts as 0",
                                            light.environment->file,

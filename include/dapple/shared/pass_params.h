@@ -150,6 +150,7 @@ typedef struct ShadingParams {
   uint resolves;      /* 0: nothing is added to the film */
   uint segment_words; /* where the words of segments begin, surface_color.h */
   float color_share;  /* part of a pixel that a colour averages, in shares of a sample */
+  Viewpoint viewpoint;
 } ShadingParams;
 
 #ifndef __OPENCL_VERSION__

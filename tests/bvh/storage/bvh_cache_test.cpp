@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <random>
@@ -248,6 +249,19 @@ TEST_F(BvhCache, AFlippedBitIsBuiltAnewIntoTheSameTree) {
     ASSERT_FALSE(HasFailure()) << i;
   }
   EXPECT_EQ(build_bvh(single_object(), cache_).statistics.cache.objects_read, 1u);
+}
+
+// Others may write in the folder, and know the names of its files.
+TEST_F(BvhCache, ALinkInPlaceOfAFileIsReplacedAndNotFollowed) {
+  const SceneBvh expected = build_bvh(single_object());
+  const std::string file = fill_with_one();
+  const std::string victim = cache_ + "/victim.txt";
+  std::ofstream(victim) << "precious";
+  fs::remove(file);
+  fs::create_symlink(victim, file);
+  expect_rebuilt(file, expected);
+  EXPECT_FALSE(fs::is_symlink(file));
+  EXPECT_EQ(fs::file_size(victim), 8u);
 }
 
 TEST_F(BvhCache, AFileCutShortAnywhereIsNotRead) {

@@ -178,7 +178,7 @@ TEST(GltfCamera, ExtrasOfItsNodeComeFirst) {
       << notes[0];
 }
 
-Light load_light(const json& light, const SceneOptions& options = {}) {
+Scene load_with_light(const json& light, const SceneOptions& options = {}) {
   GltfBuilder builder;
   builder.add_triangle();
   // Not = {light}, which is an array for g++ but a copy of the light for clang 14.
@@ -190,7 +190,11 @@ Light load_light(const json& light, const SceneOptions& options = {}) {
                         {"rotation", {kHalfRoot, 0, 0, kHalfRoot}},
                         {"scale", {3, 3, 3}},
                         {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-  return builder.load(options).lights.at(0);
+  return builder.load(options);
+}
+
+Light load_light(const json& light, const SceneOptions& options = {}) {
+  return load_with_light(light, options).lights.at(0);
 }
 
 TEST(GltfLight, ADirectionalLightIsASunOfTheSameIrradiance) {
@@ -219,6 +223,21 @@ TEST(GltfLight, APointLightIsASphereOfTheSameIntensityWhateverItsNodesScale) {
   EXPECT_EQ(point.cos_outer, -1.0f);
 }
 
+// The triangle is 1.4 m across.
+TEST(GltfLight, OnlyASphereThatIsLargeForTheSceneHasANote) {
+  for (const float radius : {0.1f, 0.2f}) {
+    SceneOptions options;
+    options.light_radius = radius;
+    const std::vector<std::string> notes = load_with_light({{"type", "point"}}, options).warnings;
+    ASSERT_EQ(notes.size(), radius > 0.15f ? 1u : 0u);
+    if (!notes.empty()) {
+      EXPECT_NE(notes[0].find("light \"lamp\" is a sphere of 0.2 m in a scene 1.4 m across"),
+                std::string::npos)
+          << notes[0];
+    }
+  }
+}
+
 TEST(GltfLight, ASpotIsASphereWithACone) {
   const Light spot =
       load_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}});
@@ -226,6 +245,14 @@ TEST(GltfLight, ASpotIsASphereWithACone) {
   expect_near(spot.direction, V3f(0, 1, 0), kRounding);
   EXPECT_FLOAT_EQ(spot.cos_inner, std::cos(0.25f));
   EXPECT_FLOAT_EQ(spot.cos_outer, std::cos(0.5f));
+  try {
+    (void)load_light({{"type", "spot"}, {"name", "lamp"}});
+    ADD_FAILURE() << "a spot without its cone is taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("light 0 (\"lamp\") is a spot without \"spot\""),
+              std::string::npos)
+        << error.what();
+  }
   const Light standard = load_light({{"type", "spot"}, {"spot", json::object()}});
   EXPECT_FLOAT_EQ(standard.cos_inner, 1.0f);
   EXPECT_FLOAT_EQ(standard.cos_outer, std::cos(std::numbers::pi_v<float> / 4));
