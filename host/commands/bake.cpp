@@ -217,10 +217,14 @@ RenderControl to_control(const BakeArguments& a, ProgressBar& progress) {
   return control;
 }
 
-void report_interruption(const BakeResult& result, const BakeArguments& a) {
+void report_interruption(BakeResult& result, const BakeSeconds& seconds, const BakeArguments& a) {
+  const std::string note =
+      fmt::format("interrupted, {} is not written; --resume {} goes on", a.output, a.checkpoint);
+  result.statistics.notes.push_back(note);
+  if (!a.stats_json.empty()) write_statistics(result, seconds, a.stats_json);
   if (!result.checkpoint_failure.empty())
     throw Error(ErrorKind::failed, result.checkpoint_failure + "; the bake was interrupted");
-  tell("note: interrupted, {} is not written; --resume {} goes on\n", a.output, a.checkpoint);
+  tell("note: {}\n", note);
 }
 
 /// Throws Error usage for a channel that the file or a light needs for other values.
@@ -268,7 +272,8 @@ void run_bake(const CLI::App& app, const BakeArguments& a) {
   BakeResult result = bake(scene, options, control, occluders);
   slices_are_traced();
   progress.clear();
-  if (result.interrupted) return report_interruption(result, a);
+  seconds.total = total.seconds();
+  if (result.interrupted) return report_interruption(result, seconds, a);
 
   const Stopwatch writing;
   const std::vector<std::string> notes = write_baked(file, scene, a, options, uvs, result);

@@ -51,8 +51,9 @@ void on_crash(int signal) {
   say(task.data());
   say(": ");
   say(name_of(signal));
-  say(". What it said itself is above; often memory (ulimit -v) or disk space has run out. "
-      "--device chooses another device\n");
+  say(". What it said itself is above; often memory (ulimit -v) or disk space has run out, "
+      "or a variable of the driver's is wrong (POCL_MAX_PTHREAD_COUNT, POCL_DEVICES). --device "
+      "chooses another device\n");
   _exit(static_cast<int>(ErrorKind::device));
 }
 

@@ -49,8 +49,9 @@ class BakeInterruption : public BakeCommand {
       write_meshes(count);
       std::filesystem::remove(path("a.ckpt"));
       write_bytes(path("out.glb"), "old");
-      RunningProgram program(
-          bake_meshes({"--checkpoint", path("a.ckpt"), "--checkpoint-every", "0.001"}), log());
+      RunningProgram program(bake_meshes({"--checkpoint", path("a.ckpt"), "--checkpoint-every",
+                                          "0.001", "--stats-json", path("a.json")}),
+                             log());
       std::set<std::uintmax_t> sizes;
       EXPECT_TRUE(wait_until(
           [&] {
@@ -105,7 +106,10 @@ TEST_F(BakeInterruption, ASignalKeepsTheOutputAndLeavesACheckpointThatGoesOnToTh
                                               " goes on\n"))
         << bytes_of(log());
     EXPECT_EQ(bytes_of(path("out.glb")), "old");
-    EXPECT_EQ(files_in_folder(), 3u) << "in.glb, out.glb, a.ckpt";
+    EXPECT_EQ(files_in_folder(), 4u) << "in.glb, out.glb, a.ckpt, a.json";
+    const json told = json::parse(bytes_of(path("a.json")));
+    EXPECT_TRUE(contains(told["notes"].back(), "interrupted, " + path("out.glb"))) << told["notes"];
+    EXPECT_GT(told["rays"], 0);
 
     RunningProgram resumed(bake_meshes({"--resume", path("a.ckpt")}), log());
     ASSERT_EQ(resumed.wait(), 0) << bytes_of(log());
@@ -117,7 +121,7 @@ TEST_F(BakeInterruption, ASignalKeepsTheOutputAndLeavesACheckpointThatGoesOnToTh
     const std::string whole = bytes_of(path("out.glb"));
     ASSERT_EQ(RunningProgram(bake_meshes({}), log()).wait(), 0) << bytes_of(log());
     EXPECT_TRUE(bytes_of(path("out.glb")) == whole);
-    EXPECT_EQ(files_in_folder(), 3u);
+    EXPECT_EQ(files_in_folder(), 4u);
   }
 }
 

@@ -179,7 +179,7 @@ TEST_F(CommandLine, UsageErrorsNameTheirFlagAndLeaveNothingBehind) {
       {"--half Z", "--half Z: this layer stays 32-bit"},
       {"--half ao,", "--half ao,"},
       {"--look-from 0,1,2", "--look-at"},
-      {"--look-from 0,1,2 --look-at 0,1,0 --camera top", "--look-from does not go with --camera"},
+      {"--look-from 0,1,2 --look-at 0,1,0 --camera top", "--camera does not go with --look-from"},
       {"--look-from 0,1,2 --look-at 0,1", "--look-at"},
       {"--look-from 0,1,2 --look-at 0,1,2", "from and at are the same point"},
       {"--fov 180", "--fov"},

@@ -109,6 +109,7 @@
   MEMBER(ShadingParams, resolve) MEMBER(ShadingParams, normals)                              \
   MEMBER(ShadingParams, albedo) MEMBER(ShadingParams, resolves)                              \
   MEMBER(ShadingParams, segment_words) MEMBER(ShadingParams, color_share)                    \
+  MEMBER(ShadingParams, viewpoint)                                                           \
   STRUCT(ColorMaterial)                                                                      \
   MEMBER(ColorMaterial, color) MEMBER(ColorMaterial, mips) MEMBER(ColorMaterial, width)      \
   MEMBER(ColorMaterial, height) MEMBER(ColorMaterial, flags) MEMBER(ColorMaterial, spare)    \

@@ -14,6 +14,11 @@ MUTATIONS = [
         "const bool flip = in_order && !rays->backward[axis];",
         r"^(Packet|ClosedForm)\."),
     Mutation(
+        "normals-face-away-from-the-viewer", "kernels/camera/smooth_point.clh",
+        "if (!(towards * straight < 0.0f)) return normal;",
+        "if (straight > 0.0f) return normal;",
+        r"^ShadingNormal\."),
+    Mutation(
         "mass-poles-decoded-on-the-other-side", "kernels/opacity/footprint.clh",
         "off_pole_along(node, 1, y,",
         "off_pole_along(node, 1, -y,",

@@ -197,7 +197,12 @@ MUTATIONS = [
         "double{suns[s].irradiance} *\n"
         "                           std::max(0.0, double{normals_[i].dot(suns[s].direction)});",
         "double{suns[s].irradiance};",
-        r"^(Points|PointTheory)\."),
+        r"^Suns\."),
+    Mutation(
+        "suns-without-disks", "host/points/sun_rays.cpp",
+        "const double down = u * double{kSunSolidAngle}",
+        "const double down = 0 * u * double{kSunSolidAngle}",
+        r"^(Suns|SunRays)\."),
     Mutation(
         "chosen-suns-without-cosine", "host/points/sun_rays.cpp",
         "double{sun.irradiance} * std::max(0.0, double{normal.dot(sun.direction)});",
@@ -243,6 +248,11 @@ MUTATIONS = [
         "    if (!is_sampled(i)) {  // without",
         "    if (of_place_[i].front.weight <= 0) {  // without",
         r"^(Bake|ValueSums)\."),
+    Mutation(
+        "vertices-of-other-primitives", "host/scene/gltf/vertices.cpp",
+        "if (std::find(is_used.begin(), is_used.end(), false) == is_used.end()) return {};",
+        "return {};",
+        r"^BakeCommand\."),
     Mutation(
         "bake-ignores-areas", "host/bake/surface_samples.cpp",
         "sample.weight[k] = twice_area * barycentric[k];",

@@ -30,9 +30,9 @@ std::string small_checkpoint(const std::string& path) {
   return bytes_of(path);
 }
 
-void expect_refused(const std::string& path) {
+void expect_refused(const std::string& path, ErrorKind kind = ErrorKind::failed) {
   const Error error = error_of([&] { read_checkpoint(path); });
-  EXPECT_EQ(error.kind(), ErrorKind::failed);
+  EXPECT_EQ(error.kind(), kind);
   EXPECT_TRUE(contains(error.what(), "--resume " + path + ": ")) << error.what();
 }
 
@@ -64,7 +64,7 @@ TEST_F(CheckpointFile, AFlippedBitAndAnotherLengthIsRefusedByName) {
   }
   write_bytes(path("b.ckpt"), whole + "x");
   expect_refused(path("b.ckpt"));
-  expect_refused(path("nosuch.ckpt"));
+  expect_refused(path("nosuch.ckpt"), ErrorKind::input);
   expect_refused(folder_.string());
 }
 

@@ -321,7 +321,7 @@ TEST_F(MergeParts, DamagedFilesAreRefusedByName) {
   }
   write_bytes(bad, bytes.substr(0, bytes.size() / 2));
   expect_refused({good, bad}, bad + ": ", ErrorKind::failed);
-  expect_refused({good, path("nosuch.dapple")}, "nosuch.dapple: ", ErrorKind::failed);
+  expect_refused({good, path("nosuch.dapple")}, "nosuch.dapple: ", ErrorKind::input);
 }
 
 /// Files with a right checksum whose contents contradict each other.
