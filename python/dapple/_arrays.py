@@ -6,7 +6,7 @@ An array that has this layout is passed on as it is; others are copied.
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import Any, Sequence
 
 import numpy as np
 import numpy.typing as npt

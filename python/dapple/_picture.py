@@ -62,7 +62,7 @@ class Picture(Mapping[str, FloatArray]):
         #: What rmse and bias of lights are relative to, by layer: the largest irradiance without
         #: occlusion, W/m^2, luminance. Empty where neither is known.
         self.largest_irradiance: dict[str, float] = dict(native.largest_irradiance)
-        #: As given, or a smaller one that was chosen; 0: exact rays.
+        #: As given, or a smaller one that was chosen; without effect on exact rays.
         self.footprint: float = native.footprint
         self._layers: dict[str, list[str]] = {}
         for channel in self.channels:
