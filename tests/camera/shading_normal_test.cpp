@@ -118,6 +118,11 @@ TEST(PackNormals, NormalsOfTheFaceTakeNoMemoryAndOthersAreOnItsSide) {
   EXPECT_LE((decoded.normalized() - V3f(0, 0, 1)).length(), 0.002f) << "that of the face";
 }
 
+double mean_of(const Film& film, const char* channel) {
+  const std::vector<float>& pixels = film.find(channel)->pixels;
+  return std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
+}
+
 // A hemisphere that leans by theta against a plane sees (1 + cos theta) / 2 above it.
 TEST(ShadingNormal, ATiltedHemisphereIsHiddenBelowThePlane) {
   for (const double degrees : {0.0, 30.0, 60.0, 85.0}) {
@@ -132,11 +137,7 @@ TEST(ShadingNormal, ATiltedHemisphereIsHiddenBelowThePlane) {
     options.crop = PixelRect{30, 20, 49, 39};
     options.spp = 256;
     const Film film = render(scene, options).film;
-    const auto mean = [&](const std::string& channel) {
-      const auto& pixels = film.find(channel)->pixels;
-      return std::accumulate(pixels.begin(), pixels.end(), 0.0) /
-             static_cast<double>(pixels.size());
-    };
+    const auto mean = [&](const char* channel) { return mean_of(film, channel); };
     ASSERT_EQ(mean("A"), 1) << "the square fills the picture";
     EXPECT_NEAR(mean("ao.R"), (1 + std::cos(theta)) / 2, 0.002) << degrees << " degrees";
     const double length = std::sqrt(1 + 0.05 * 0.05);
@@ -157,11 +158,7 @@ TEST(ShadingNormal, NoNormalThatIsSeenFacesAway) {
     options.look = LookAt{V3f(0, -3, 1), V3f(0, 0, 0), V3f(0, 0, 1)};
     options.fov_degrees = 2;
     const Film film = render(scene, options).film;
-    const auto mean = [&](const std::string& channel) {
-      const auto& pixels = film.find(channel)->pixels;
-      return std::accumulate(pixels.begin(), pixels.end(), 0.0) /
-             static_cast<double>(pixels.size());
-    };
+    const auto mean = [&](const char* channel) { return mean_of(film, channel); };
     ASSERT_EQ(mean("A"), 1) << "the square fills the picture";
     const V3d view = V3d(0, -3, 1).normalized();
     const V3d given(0, std::sin(lean), std::cos(lean));
@@ -240,11 +237,6 @@ double worst_normal(const Film& a, const Film& b) {
   }
   EXPECT_GT(counted, 200);
   return worst;
-}
-
-double mean_of(const Film& film, const std::string& channel) {
-  const auto& pixels = film.find(channel)->pixels;
-  return std::accumulate(pixels.begin(), pixels.end(), 0.0) / static_cast<double>(pixels.size());
 }
 
 /// A mirrored, stretched and turned sphere. Its second placement keeps the mesh an instance; more
