@@ -75,7 +75,7 @@ WorldPoints::WorldPoints(std::span<const SurfaceSample> samples,
     if (!(at.geometric.length2() > 0)) return;
     const V3f geometric = unit_normal(at.geometric, to_object);
     geometric_[k] = back ? -geometric : geometric;
-    to_world.multDirMatrix(at.shift, shifts_[k]);
+    to_world.multDirMatrix(back ? at.back_shift : at.shift, shifts_[k]);
   });
 }
 

@@ -86,16 +86,19 @@ void add_shading(const Mesh& mesh, std::size_t triangle, const std::array<float,
                  SurfaceSample& sample) {
   const auto normals = corner_normals(mesh, triangle);
   if (!normals) return;
-  V3f normal(0, 0, 0), shift(0, 0, 0);
+  V3f normal(0, 0, 0), front(0, 0, 0), back(0, 0, 0);
+  for (std::size_t k = 0; k < 3; ++k) normal += (*normals)[k] * barycentric[k];
   for (std::size_t k = 0; k < 3; ++k) {
     const V3f away = sample.position - mesh.positions[mesh.indices[3 * triangle + k]];
-    normal += (*normals)[k] * barycentric[k];
-    shift -= (*normals)[k] * (barycentric[k] * away.dot((*normals)[k]));
+    const float height = barycentric[k] * away.dot(normal - (*normals)[k]);
+    front += (*normals)[k] * std::max(0.0f, height);
+    back += (*normals)[k] * std::min(0.0f, height);
   }
   if (!(normal.length2() > 0)) return;
   sample.geometric = sample.normal;
   sample.normal = normal.normalized();
-  sample.shift = shift;
+  sample.shift = front;
+  sample.back_shift = back;
 }
 
 std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {

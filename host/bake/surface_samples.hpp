@@ -22,6 +22,7 @@ struct SurfaceSample {
   V3f normal{0, 0, 0};                   ///< unit length, on the front side; shading or geometric
   V3f geometric{0, 0, 0};                ///< of smooth surfaces, as QueryPoints has it; or zero
   V3f shift{0, 0, 0};                    ///< the same
+  V3f back_shift{0, 0, 0};               ///< the same, of the back
   V3f reach{0, 0, 0};                    ///< largest coordinates of its triangle, not negative
   bool is_on_plane = true;               ///< `normal`, or `geometric`, is that of a triangle
   bool front = true, back = false;       ///< sides that are traced

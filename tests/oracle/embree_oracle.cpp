@@ -24,20 +24,23 @@ std::uint64_t mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// The hit with the triangle's shading normal. At convex points rays start from the mean of the
-/// point's projections to the planes of the corners' normals. `along`: the direction of the ray that
-/// sees it; a normal that faces away turns across the facet until it faces the viewer as much.
+/// The hit with the triangle's shading normal. Where the surface is convex, in one direction at
+/// least, rays start from the mean of the point's projections to planes of the corners, which lean
+/// as these differ from the interpolated normal, as far as they lie above. `along`: the direction
+/// of the ray that sees it; a normal that faces away turns across the facet until it faces the
+/// viewer as much.
 Hit shaded(const Triangle& triangle, const Weights& weights, const V3d& along, Hit hit) {
-  V3d sum(0.0), projected(0.0);
-  for (int k = 0; k < 3; ++k) {
-    const V3d& normal = triangle.normal[k];
-    const V3d from_corner = hit.position - V3d(triangle.corner[k]);
-    sum += normal * weights.of[k];
-    projected += (hit.position - normal * from_corner.dot(normal)) * weights.of[k];
-  }
+  V3d sum(0.0), projected = hit.position;
+  for (int k = 0; k < 3; ++k) sum += triangle.normal[k] * weights.of[k];
   if (!(sum.length2() > 0)) return hit;
   const V3d total = triangle.normal[0] + triangle.normal[1] + triangle.normal[2];
   const bool other_side = total.dot(hit.facet) < 0;
+  for (int k = 0; k < 3; ++k) {
+    const V3d& normal = triangle.normal[k];
+    const double height = (hit.position - V3d(triangle.corner[k])).dot(sum - normal);
+    const double on_side = other_side ? std::min(0.0, height) : std::max(0.0, height);
+    projected += normal * (weights.of[k] * on_side);
+  }
   hit.normal = sum.normalized() * (other_side ? -1 : 1);
   const double away = hit.normal.dot(along);
   if (away > 0) {
