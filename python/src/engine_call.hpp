@@ -15,8 +15,8 @@ namespace dapple::python {
 namespace nb = nanobind;
 
 /// Holds the engine for this thread. Throws Error usage if the thread holds it already (a progress
-/// function calls dapple), KeyboardInterrupt while it waits for another thread, or if the engine was used before this process was forked: the threads of
-/// OpenCL and TBB do not survive a fork.
+/// function calls dapple), KeyboardInterrupt while it waits for another thread, or if the engine
+/// was used before this process was forked: the threads of OpenCL and TBB do not survive a fork.
 class EngineLock {
  public:
   EngineLock();
