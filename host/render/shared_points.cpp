@@ -35,7 +35,7 @@ SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& pl
 }
 
 /// Moves the point of a smooth surface to where its rays start: shade_point() of
-/// shading_normal.clh.
+/// smooth_point.clh, but for normals that face away: points have no viewer.
 void smooth(const V3f& geometric, const V3f& shift, SurfacePoint& point) {
   const bool outward = geometric.dot(shift) > point.offset;  // by more than rounding errors
   for (int axis = 0; axis < 3; ++axis)
