@@ -173,10 +173,10 @@ MUTATIONS = [
         r"^(ShadingNormal|GltfNormals)\."),
     Mutation(
         "shading-normal-of-the-wrong-corner", "kernels/camera/shading_normal.clh",
-        "add_corner(first >> 21 | (last & 1023u) << 11, u, away1, smoothed);\n"
-        "  add_corner(last >> 10 & 0x1fffffu, v, away2, smoothed);",
-        "add_corner(last >> 10 & 0x1fffffu, u, away1, smoothed);\n"
-        "  add_corner(first >> 21 | (last & 1023u) << 11, v, away2, smoothed);",
+        "corner_normals(first >> 21 | (last & 1023u) << 11, normal1);\n"
+        "  corner_normals(last >> 10 & 0x1fffffu, normal2);",
+        "corner_normals(last >> 10 & 0x1fffffu, normal1);\n"
+        "  corner_normals(first >> 21 | (last & 1023u) << 11, normal2);",
         r"^ShadingNormal\."),
     Mutation(
         "batches-begin-a-sample-late", "kernels/film/film.clh",
