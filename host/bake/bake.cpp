@@ -33,10 +33,10 @@ constexpr double kExpectedSamples = 4;
 constexpr double kExpectedCoverage = 0.5;
 
 /// The share of the surface without area in given texture coordinates from which on a note says so.
-constexpr double kToldShare = 0.0005;
+constexpr double kNotedShare = 0.0005;
 
 /// The share of values above the target error from which on a note says so.
-constexpr double kToldAbove = 0.005;
+constexpr double kNotedAbove = 0.005;
 
 TracePoints trace_against(const OccluderScene& occluders) {
   return [&occluders](const QueryPoints& points, const OcclusionOptions& options, bool bent) {
@@ -185,16 +185,16 @@ void add_preparation(const OccluderScene& occluders, double seconds, BakeStatist
 class MeshOccluders {
  public:
   /// `options`: those that are traced with. With meshes alone each one's bias is measured anew.
-  MeshOccluders(const Scene& scene, BakeOptions& options, const OccluderScene* together)
+  MeshOccluders(const Scene& scene, const BakeOptions& options, const OccluderScene* together)
       : scene_(scene), asked_(options), options_(options), together_(together) {}
 
   /// Valid until the next call.
   BakeTracing tracing(std::uint32_t mesh, const BakeRecords& records) {
     if (!together_) {
       const Stopwatch preparing;
+      options_ = asked_;
       alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
       add_preparation(*alone_, preparing.seconds(), records.statistics);
-      options_ = asked_;
       measure_bias(
           *alone_,
           {PilotMesh(scene_, mesh, options_, placements_of(scene_, mesh, BakeInstances::alone))},
@@ -204,10 +204,13 @@ class MeshOccluders {
     return tracing_against(together_ ? *together_ : *alone_, options_, *compared_, records);
   }
 
+  /// Of the last mesh.
+  [[nodiscard]] float footprint() const { return options_.footprint; }
+
  private:
   const Scene& scene_;
   const BakeOptions asked_;
-  BakeOptions& options_;
+  BakeOptions options_;
   std::optional<ComparedOptions> compared_;
   const OccluderScene* together_;
   std::optional<OccluderScene> alone_;
@@ -225,8 +228,9 @@ bool for_each_mesh(const Scene& scene, const BakeOptions& options, BakeOne bake_
   return true;
 }
 
-/// Those that for_each_mesh() visits.
-std::vector<PilotMesh> pilot_meshes(const Scene& scene, const BakeOptions& options) {
+/// Those that for_each_mesh() visits, in their surroundings.
+std::vector<PilotMesh> pilot_meshes(const Scene& scene, BakeOptions options) {
+  if (options.placement == BakeInstances::alone) options.placement = BakeInstances::together;
   std::vector<PilotMesh> meshes;
   for_each_mesh(scene, options, [&](std::uint32_t m, const Placements& placements) {
     meshes.emplace_back(scene, m, options, placements);
@@ -255,7 +259,7 @@ bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders&
                       uvs.empty() ? make_layout(scene, options) : given_layout(scene, options));
   const double lost =
       uvs.empty() ? 0.0 : share_without_texels(scene, uvs, options.texture_size, options.placement);
-  if (lost >= kToldShare)
+  if (lost >= kNotedShare)
     records.statistics.notes.push_back(fmt::format(
         "{:.1f} % of the surface has no area in the texture, and no values there", 100 * lost));
   const bool done =
@@ -283,7 +287,7 @@ bool bake_all_instances(const Scene& scene, const BakeOptions& options,
 void add_target_notes(const BakeOptions& asked, BakeStatistics& s) {
   const auto add = [&](const TargetStatistics& counts, const char* of) {
     const auto all = static_cast<double>(counts.values);
-    if (counts.above == 0 || static_cast<double>(counts.above) < kToldAbove * all) return;
+    if (counts.above == 0 || static_cast<double>(counts.above) < kNotedAbove * all) return;
     s.notes.push_back(fmt::format(
         "{:.1f} % of the values{} have an error above --target-error {}: the limit "
         "is --rays {}",
@@ -349,10 +353,11 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (together) settings.emplace_back("device", s.device);
   BakeCheckpoint checkpoint(control, std::move(settings));
   s.seconds.prepare += total.seconds() - prepared_seconds(s);
-  if (together && !alone) measure_bias(*together, pilot_meshes(scene, options), options, s);
+  const BakeOptions of_mesh = options;
+  if (together) measure_bias(*together, pilot_meshes(scene, options), options, s);
   BakeBias bias(has_bias(options) ? double{options.report_bias} : 0.0);
   const BakeRecords records{progress, checkpoint, bias, s};
-  MeshOccluders mesh_occluders(scene, options, alone ? nullptr : &*together);
+  MeshOccluders mesh_occluders(scene, alone ? of_mesh : options, alone ? nullptr : &*together);
   if (options.vertices)
     result.interrupted = !bake_vertices(scene, options, mesh_occluders, records, result);
   if (options.texture && !result.interrupted)
@@ -363,7 +368,7 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (!result.interrupted) progress.finish();
   if (options.max_bias > 0 && !has_bias(asked)) s.notes.emplace_back(kNothingToLimit);
   s.bias = bias.report();
-  s.footprint = options.footprint;
+  s.footprint = together ? options.footprint : mesh_occluders.footprint();
   add_target_notes(asked, s);
   checkpoint.save(true);
   result.checkpoint_failure = checkpoint.failure();

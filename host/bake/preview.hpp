@@ -9,7 +9,7 @@ namespace dapple {
 
 /// Draws the scene's triangles with the AO of their vertices, texels or instances, whichever
 /// `result` has, as sRGB grey on a dark background. Cut-outs are tested at half opacity; triangles
-/// that reach behind the camera are not drawn.
+/// that reach behind the camera are clipped.
 ByteImage draw_preview(const Scene& scene, const BakeResult& result, const Camera& camera,
                        int width, int height);
 

@@ -26,7 +26,9 @@ std::vector<SideValue> trace_side(const TracePoints& trace, const BakeOptions& b
   for (std::size_t k = 0; k < points.sample.size(); ++k) {
     const std::uint32_t i = points.sample[k];
     values[i].scalar = traced.ao[k];
-    if (bake.bent) placements.to_object[placement[i]].multDirMatrix(traced.bent[k], values[i].bent);
+    if (!bake.bent) continue;
+    placements.to_object[placement[i]].multDirMatrix(traced.bent[k], values[i].bent);
+    values[i].bent = values[i].bent.normalized() * traced.bent[k].length();  // scales do not count
   }
   return values;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "render/shared_points.hpp"
 #include "scene/corner_normals.hpp"
 
 namespace dapple {
@@ -101,6 +102,27 @@ void add_shading(const Mesh& mesh, std::size_t triangle, const std::array<float,
   sample.back_shift = back;
 }
 
+namespace {
+
+/// For each group the smallest cosine between the normal of its sample and those of its triangles,
+/// at least kSteepest.
+std::vector<float> smallest_cosines(const SampledTriangles& of,
+                                    const std::vector<SurfaceSample>& of_group) {
+  constexpr float kSteepest = 0.02f;
+  std::vector<float> cosines(of_group.size(), 1);
+  for (std::size_t t = 0; t < of.mesh.primitive_count(); ++t) {
+    const V3f facet = area_vector(of.mesh, t).normalized();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t group = of.groups.of_vertex[of.mesh.indices[3 * t + k]];
+      const float cosine = std::fabs(of_group[group].normal.normalized().dot(facet));
+      cosines[group] = std::min(cosines[group], std::max(cosine, kSteepest));
+    }
+  }
+  return cosines;
+}
+
+}  // namespace
+
 std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
   std::vector<SurfaceSample> of_group(of.groups.count);
   std::vector<V3f> shading(of.groups.count, V3f(0, 0, 0));
@@ -112,10 +134,11 @@ std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
       const std::uint32_t vertex = of.mesh.indices[3 * t + k];
       const std::uint32_t group = of.groups.of_vertex[vertex];
       SurfaceSample& sample = of_group[group];
-      // The two sides of a folded sheet would cancel.
-      const float along = sample.normal.dot(area);
-      const bool first = sample.normal == V3f(0, 0, 0);
-      const float side = along < 0 || (first && of.groups.turned[vertex]) ? -1.0f : 1.0f;
+      // The two sides of a folded sheet would cancel, if its normals do not say which is which.
+      const bool first = sample.normal == V3f(0, 0, 0), is_sheet = of.two_sided[t] && !normals;
+      const bool is_turned =
+          is_sheet && !first ? sample.normal.dot(area) < 0 : of.groups.turned[vertex];
+      const float side = is_turned ? -1.0f : 1.0f;
       sample.normal += area * side;
       shading[group] += (normals ? (*normals)[k] * area.length() : area) * side;
       is_smooth[group] = is_smooth[group] || normals;
@@ -127,11 +150,17 @@ std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
       sample.place[0] = group;
     }
   }
+  const std::vector<float> slopes = smallest_cosines(of, of_group);
   for (std::size_t group = 0; group < of_group.size(); ++group) {
     SurfaceSample& sample = of_group[group];
     const float length = sample.normal.length();
     if (!(length > 0) || !std::isfinite(length)) continue;
     sample.normal /= length;
+    if (slopes[group] < 1)  // rays start as far above each triangle, however steep
+      for (int axis = 0; axis < 3; ++axis)
+        sample.reach[axis] =
+            std::max(sample.reach[axis], std::fabs(sample.position[axis]) / kTermsOfReach) /
+            slopes[group];
     sample.weight[0] = 1;
     sample.is_on_plane = false;
     if (!is_smooth[group] || !(shading[group].length2() > 0)) continue;

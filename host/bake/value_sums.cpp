@@ -12,11 +12,11 @@
 namespace dapple {
 namespace {
 
-/// Up to this AO a place sees nothing: it lies inside closed geometry. Single samples are not
-/// judged: all of a few rays may be blocked by chance.
-constexpr float kHidden = 1e-3f;
+/// Up to this AO a place sees nothing.
+constexpr float kDark = 1e-3f;
 
-/// Samples after which a place is known to see nothing.
+/// Samples after which a place with samples inside closed geometry is known to see nothing: all of
+/// a few rays may be blocked by chance.
 constexpr float kSamplesOfHidden = 8;
 
 /// A side is surely the brighter one if the difference is so many standard errors.
@@ -74,8 +74,12 @@ double variance_of_rays(int rays) {
 class ValueSums::PooledVariance {
  public:
   /// Values are from 0 to `scale`.
-  PooledVariance(float scale, int rays, bool several_placements)
-      : scale_(scale), of_rays_(variance_of_rays(rays)), several_placements_(several_placements) {}
+  /// `least`: an earlier one, or nullptr.
+  PooledVariance(float scale, int rays, bool several_placements, const PooledVariance* least)
+      : scale_(scale),
+        of_rays_(variance_of_rays(rays)),
+        several_placements_(several_placements),
+        least_(least) {}
 
   void add(const Side& side) {
     const float freedom = side.count() - 1;
@@ -94,8 +98,9 @@ class ValueSums::PooledVariance {
 
   /// Of the samples of `side`, its own deviations included.
   [[nodiscard]] float of(const Side& side) const {
-    const float own = std::max(0.0f, side.count() - 1);
-    return (kPooledFreedom * pooled(side.mean()) + side.squared_deviations()) /
+    const float own = std::max(0.0f, side.count() - 1), mean = side.mean();
+    const float least = least_ ? least_->pooled(mean) : 0.0f;
+    return (kPooledFreedom * std::max(pooled(mean), least) + side.squared_deviations()) /
            (kPooledFreedom + own);
   }
 
@@ -113,6 +118,20 @@ class ValueSums::PooledVariance {
         std::clamp(static_cast<int>(value / scale_ * kIntervals), 0, kIntervals - 1));
   }
 
+  /// Of an interval and, with smaller weights, of those next to it: some values are only possible
+  /// where a place's few samples are equal.
+  [[nodiscard]] Pool around(std::size_t interval) const {
+    constexpr std::array<double, 3> kWeights{1, 0.5, 0.25};
+    Pool sum;
+    for (std::size_t i = 0; i < of_interval_.size(); ++i) {
+      const std::size_t distance = i > interval ? i - interval : interval - i;
+      if (distance >= kWeights.size()) continue;
+      sum.squares += kWeights[distance] * of_interval_[i].squares;
+      sum.freedom += kWeights[distance] * of_interval_[i].freedom;
+    }
+    return sum;
+  }
+
   [[nodiscard]] float pooled(float value) const {
     // A few samples may be equal by chance. So the variance of rays that each find everything or
     // nothing counts as much as some samples. The value is as uncertain: hence the clamp.
@@ -121,7 +140,7 @@ class ValueSums::PooledVariance {
     const double all =
         (all_.squares + double{kRayFreedom} * of_rays) / (all_.freedom + double{kRayFreedom});
     if (several_placements_) return static_cast<float>(all);
-    const Pool& pool = of_interval_[interval(value)];
+    const Pool pool = around(interval(value));
     return static_cast<float>((pool.squares + double{kPooledFreedom} * all) /
                               (pool.freedom + double{kPooledFreedom}));
   }
@@ -129,6 +148,7 @@ class ValueSums::PooledVariance {
   float scale_;
   double of_rays_;
   bool several_placements_;
+  const PooledVariance* least_;
   std::array<Pool, kIntervals> of_interval_;
   Pool all_;
 };
@@ -194,8 +214,12 @@ ValueSums::PooledVariance ValueSums::pooled_variance() const {
   };
   return tbb::parallel_deterministic_reduce(
       tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce),
-      PooledVariance(scale(), rays_, several_placements_), add_range,
+      PooledVariance(scale(), rays_, several_placements_, first_variance_.get()), add_range,
       [](PooledVariance a, const PooledVariance& b) { return a += b; });
+}
+
+void ValueSums::keep_variance() {
+  first_variance_ = std::make_shared<const PooledVariance>(pooled_variance());
 }
 
 // The probability that the back is the brighter side, if the errors of both means are normal.
@@ -259,34 +283,37 @@ std::vector<float> ValueSums::missing_samples(float target) const {
   std::vector<float> factors = squared_errors();
   tbb::parallel_for(std::size_t{0}, factors.size(), [&](std::size_t i) {
     const BothSides& place = of_place_[i];
-    const float counted = place.front.count() + place.back.count();
-    const bool is_dark = lights_ == 0 && std::max(place.front.mean(), place.back.mean()) <= kHidden;
-    const bool may_be_hidden = counted > 0 ? is_dark : has_inside(static_cast<std::uint32_t>(i));
-    const float samples = counted + place.inside_count();
+    const auto index = static_cast<std::uint32_t>(i);
+    const bool may_be_hidden = has_inside(index) && (!is_sampled(index) || is_dark(index));
+    const float samples = place.front.count() + place.back.count() + place.inside_count();
     factors[i] = std::max(
         {1.0f, factors[i] / (target * target), may_be_hidden ? kSamplesOfHidden / samples : 1.0f});
   });
   return factors;
 }
 
+bool ValueSums::is_dark(std::uint32_t place) const {
+  const BothSides& sides = of_place_[place];
+  return lights_ == 0 && std::max(sides.front.mean(), sides.back.mean()) <= kDark;
+}
+
 std::vector<PlaceValue> ValueSums::values() const {
   std::vector<PlaceValue> values(of_place_.size());
   for (std::uint32_t i = 0; i < values.size(); ++i) {
     const BothSides& place = of_place_[i];
-    values[i].inside = has_inside(i);
     if (is_inside(i)) continue;
     if (!is_sampled(i)) {  // without a triangle there is nothing to occlude
       values[i] = {1, V3f(0, 0, 0), true};
       continue;
     }
-    if (std::max(place.front.mean(), place.back.mean()) <= kHidden) continue;
+    if (is_dark(i) && has_inside(i)) continue;
     const float share = sampled_share_of_back(i);
     const float ao = place.front.mean() + share * (place.back.mean() - place.front.mean());
     // Bent normals of two sides cancel each other: that of the more likely side counts.
     const V3f bent = sides_ == BakeSides::mean ? place.front.bent + place.back.bent
                      : share > 0.5f            ? place.back.bent
                                                : place.front.bent;
-    values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true, values[i].inside};
+    values[i] = {std::clamp(ao, 0.0f, 1.0f), bent.normalized(), true, is_dark(i)};
   }
   return values;
 }

@@ -3,6 +3,7 @@
 // more samples it needs.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,9 +22,9 @@ struct SmallParts {
 /// The value of a place.
 struct PlaceValue {
   float ao = 0;
-  V3f bent{0, 0, 0};    ///< unit length, or zero
-  bool known = false;   ///< false: inside closed geometry, from where nothing is seen
-  bool inside = false;  ///< some of its samples are surely inside closed geometry
+  V3f bent{0, 0, 0};   ///< unit length, or zero
+  bool known = false;  ///< false: inside closed geometry, from where nothing is seen
+  bool dark = false;   ///< known, and nothing is seen from there, as in a closed room
 };
 
 class ValueSums {
@@ -73,6 +74,11 @@ class ValueSums {
   /// of places of similar value; relative to the largest unoccluded value so far (of AO: 1).
   [[nodiscard]] std::vector<float> squared_errors() const;
 
+  /// Keeps the variance of samples as a function of AO, to be called once all places have a few:
+  /// from then on it is the least one. Places whose first samples are equal by chance get no more,
+  /// and would be all that is left at their value.
+  void keep_variance();
+
   /// For each place, by what factor the number of its samples must grow for a standard error of
   /// `target`; 1: enough. Places that may be hidden need more than others.
   [[nodiscard]] std::vector<float> missing_samples(float target) const;
@@ -113,6 +119,7 @@ class ValueSums {
   void add(const SurfaceSample& sample, const TracedSamples& found, std::size_t index);
   void add_inside(const SurfaceSample& sample);
   [[nodiscard]] float scale() const { return largest_ > 0 ? largest_ : 1; }
+  [[nodiscard]] bool is_dark(std::uint32_t place) const;
   [[nodiscard]] PooledVariance pooled_variance() const;
   /// share_of_back_ of a place, whose sides may lack samples.
   [[nodiscard]] float sampled_share_of_back(std::uint32_t place) const;
@@ -124,7 +131,8 @@ class ValueSums {
   std::vector<float> factors_;        ///< by place, of the variance of means; empty: 1
   int rays_ = kRaysPerSample;         ///< of a sample
   bool several_placements_ = false;
-  float largest_ = 0;  ///< the largest TracedSamples::largest
+  float largest_ = 0;                                     ///< the largest TracedSamples::largest
+  std::shared_ptr<const PooledVariance> first_variance_;  ///< keep_variance()
   std::size_t lights_;
   std::vector<V3f> front_light_, back_light_;  ///< weighted sums, the lights of a place together
 };

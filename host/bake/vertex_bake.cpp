@@ -179,11 +179,8 @@ std::optional<BakedMesh> bake_mesh(const Mesh& mesh, const std::vector<bool>& tw
     filled[hidden.group] = true;
   }
   for (const std::uint32_t group : groups.of_vertex) {
-    if (known[group]) continue;
-    if (filled[group])
-      ++statistics.hidden_vertices;
-    else if (!of_group[group].inside)  // else its part is wholly inside another, and never seen
-      ++statistics.dark_vertices;
+    if (filled[group]) ++statistics.hidden_vertices;
+    if (of_group[group].dark) ++statistics.dark_vertices;
   }
   statistics.vertices += mesh.positions.size();
   statistics.triangles += mesh.primitive_count();

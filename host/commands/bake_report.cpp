@@ -15,6 +15,9 @@ namespace {
 /// Smaller shares of texels that overlap are told as less than this.
 constexpr double kLeastTold = 1e-4;
 
+/// The share of values that see nothing above which the summary says so.
+constexpr double kNotedDark = 0.01;
+
 /// Root mean square of the standard errors of all values that have samples. `squares`: their sum.
 double standard_error(const BakeStatistics& s, double squares) {
   return s.sampled_values > 0 ? std::sqrt(squares / static_cast<double>(s.sampled_values)) : 0.0;
@@ -119,11 +122,11 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
   if (s.hidden_texels > 0)
     fmt::print("{} texels lie inside closed geometry and have the nearest value\n",
                s.hidden_texels);
-  if (s.dark_vertices + s.dark_texels > 0)
+  const std::size_t dark = s.dark_vertices + s.dark_texels, values = s.vertices + s.texels;
+  if (static_cast<double>(dark) > kNotedDark * static_cast<double>(values))
     fmt::print(
-        "{} {} see nothing, nor does what is around them: AO 0. In closed rooms --ao-distance "
-        "limits what occludes\n",
-        s.dark_vertices + s.dark_texels, s.dark_texels > 0 ? "texels" : "vertices");
+        "{} of {} {} see nothing: AO 0. In closed rooms --ao-distance limits what occludes\n", dark,
+        values, s.texels > 0 ? "texels" : "vertices");
   fmt::print("wrote {}\n", output);
 }
 

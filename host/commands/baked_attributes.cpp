@@ -49,7 +49,8 @@ Imath::M33f metric_of(const Scene& scene, std::size_t mesh) {
 
 /// Bent normals as NORMAL has them, which viewers transform with the inverse transpose of matrices,
 /// not as directions. Those of what is brighter from behind are mirrored, in the world, to the
-/// front of their triangles: NORMAL is turned round where the back is seen.
+/// front of their triangles: NORMAL is turned round where the back is seen. Vertices that see
+/// nothing keep their normals.
 BakedMesh as_normals(const Mesh& mesh, BakedMesh baked, const Imath::M33f& metric) {
   if (baked.bent.empty()) return baked;
   std::vector<V3f> normals(mesh.positions.size(), V3f(0, 0, 0));
@@ -58,6 +59,10 @@ BakedMesh as_normals(const Mesh& mesh, BakedMesh baked, const Imath::M33f& metri
   const Imath::M33f inverse = metric.inverse();
   for (std::size_t v = 0; v < baked.bent.size(); ++v) {
     const V3f front = normals[v].normalized(), bent = baked.bent[v];
+    if (!(bent.length2() > 0)) {  // nothing is seen from there
+      baked.bent[v] = mesh.normals.empty() ? front : mesh.normals[v];
+      continue;
+    }
     const float along = bent.dot(front);
     baked.bent[v] = bent * metric;
     if (along < 0) baked.bent[v] -= front * (2 * along / (front * inverse).dot(front));

@@ -26,6 +26,18 @@ constexpr std::uint32_t kLastCommonSet = 1;
 /// Of a larger share of the surface without area in the texture, the values would be lost.
 constexpr double kMaxWithoutTexels = 0.01;
 
+/// Coordinates that fill a smaller part of the texture's width and height leave next to no texels:
+/// quantized ones do before their KHR_texture_transform, which bakes do not apply.
+constexpr float kLeastExtent = 1.0f / 8;
+
+/// The part of the texture's width or height, the larger one, that the coordinates fill.
+float extent_of(const std::vector<std::vector<V2f>>& uvs) {
+  Imath::Box2f box;
+  for (const std::vector<V2f>& of_mesh : uvs)
+    for (const V2f& uv : of_mesh) box.extendBy(uv);
+  return box.isEmpty() ? 0.0f : std::max(box.size().x, box.size().y);
+}
+
 /// What overlaps in the texture coordinates `name`: triangles of one mesh, or meshes, or both.
 std::string overlap_text(const std::string& name, const UvOverlap& overlap) {
   const std::string among = fmt::format("{:.1f} %", 100 * overlap.among);
@@ -49,6 +61,12 @@ std::string fault_of(const std::string& name, const Scene& scene,
   if (without > kMaxWithoutTexels)
     return fmt::format("{} has no area in the texture for {:.1f} % of the surface", name,
                        100 * without);
+  const float extent = extent_of(uvs);
+  if (extent < kLeastExtent)
+    return fmt::format(
+        "{} fills {:.1f} % of the texture's width and height at most (are they "
+        "scaled by KHR_texture_transform?)",
+        name, 100 * extent);
   return {};
 }
 

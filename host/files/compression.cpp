@@ -16,7 +16,7 @@ namespace {
 /// Bytes compressed into one frame: few enough that all processors get frames, and enough that the
 /// number of frames hardly affects the compressed size.
 constexpr std::size_t kFrame = std::size_t{1} << 20;
-constexpr int kLevel = 1, kHastyLevel = -20;
+constexpr int kLevel = 1, kFastestLevel = -20;
 
 /// A frame never decompresses to more than this times its size: zstd stores a block of 128 KiB
 /// zeros in 4 bytes.
@@ -33,11 +33,12 @@ struct FrameCompressor {
   std::unique_ptr<std::byte[]> frame = std::make_unique_for_overwrite<std::byte[]>(capacity);
 };
 
-std::vector<std::byte> compress_frame(FrameCompressor& compressor, Section bytes, Haste haste) {
+std::vector<std::byte> compress_frame(FrameCompressor& compressor, Section bytes,
+                                      CompressionLevel level) {
   std::byte* frame = compressor.frame.get();
   const std::size_t size =
       ZSTD_compressCCtx(compressor.context.get(), frame, compressor.capacity, bytes.data(),
-                        bytes.size(), haste == Haste::yes ? kHastyLevel : kLevel);
+                        bytes.size(), level == CompressionLevel::fastest ? kFastestLevel : kLevel);
   if (ZSTD_isError(size)) {
     throw Error(ErrorKind::failed, std::string("cannot compress: ") + ZSTD_getErrorName(size));
   }
@@ -46,13 +47,13 @@ std::vector<std::byte> compress_frame(FrameCompressor& compressor, Section bytes
 
 }  // namespace
 
-std::vector<std::byte> compress(Section bytes, Haste haste) {
+std::vector<std::byte> compress(Section bytes, CompressionLevel level) {
   std::vector<std::vector<std::byte>> frames((bytes.size() + kFrame - 1) / kFrame);
   tbb::enumerable_thread_specific<FrameCompressor> compressors(std::min(kFrame, bytes.size()));
   tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
     const std::size_t first = i * kFrame;
     frames[i] = compress_frame(compressors.local(),
-                               bytes.subspan(first, std::min(kFrame, bytes.size() - first)), haste);
+                               bytes.subspan(first, std::min(kFrame, bytes.size() - first)), level);
   });
   std::vector<std::byte> all;
   all.reserve(

@@ -10,11 +10,11 @@
 
 namespace dapple {
 
-/// yes: a third of the time for 1.7 times the size (experiment 820).
-enum class Haste : bool { no, yes };
+/// fastest: a third of the time for 1.7 times the size (experiment 820).
+enum class CompressionLevel { standard, fastest };
 
 /// Compresses `bytes` to zstd frames, one after the other. Throws Error failed.
-std::vector<std::byte> compress(Section bytes, Haste haste = Haste::no);
+std::vector<std::byte> compress(Section bytes, CompressionLevel level = CompressionLevel::standard);
 
 /// Number of bytes that `frames` decompress to; 0 unless they are whole frames that state their
 /// size.

@@ -1,7 +1,8 @@
 // The layers of an EXR file: their names, channels and values. To add or rename one, change
-// develop() and docs/layers.md; for its preview layer_tone() in png.cpp; for its memory the counts
-// in film_memory.cpp. Groups of lights are named in light_layers.cpp, Cryptomattes in
-// cryptomatte.cpp. In: sums and sample counts. Out: named planes and statistics.
+// develop() and docs/layers.md; for its preview tone_of() in png.cpp; whether it is a colour and
+// may be half, exr_parts.cpp; for its memory the counts in film_memory.cpp. Groups of lights are
+// named in light_layers.cpp, Cryptomattes in cryptomatte.cpp. In: sums and sample counts. Out:
+// named planes and statistics.
 #pragma once
 
 #include <vector>

@@ -2,15 +2,55 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace dapple {
+namespace {
+
+/// Residuals of one point.
+struct PointResiduals {
+  double count = 0, sum = 0, squares = 0;
+
+  /// Variance of `sum`, if the point's bias is known.
+  [[nodiscard]] double variance() const {
+    if (count < 2) return squares;
+    return std::max(0.0, squares - sum * sum / count) * count / (count - 1);
+  }
+};
+
+/// Of the sum of all residuals: points are a sample of all, `share` of them, and values one of each
+/// point's (two-stage sampling: Cochran, "Sampling Techniques", 1977, chapter 10).
+double variance_of_sum(std::span<const double> residuals, std::span<const std::uint32_t> points,
+                       double share) {
+  std::vector<PointResiduals> of_points(
+      points.empty() ? residuals.size() : *std::max_element(points.begin(), points.end()) + 1);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    PointResiduals& of_point = of_points[points.empty() ? i : points[i]];
+    of_point.count += 1;
+    of_point.sum += residuals[i];
+    of_point.squares += residuals[i] * residuals[i];
+  }
+  double count = 0, between = 0, within = 0;
+  for (const PointResiduals& of_point : of_points) {
+    if (of_point.count > 0) count += 1;
+    between += of_point.sum * of_point.sum;
+    within += of_point.variance();
+  }
+  if (count > 1) between *= count / (count - 1);
+  return (1 - share) * between + share * within;
+}
+
+}  // namespace
 
 double fall_with_depth(double x) { return x > 0 && x < 1 ? -x * std::log(x) : 0; }
 
-BiasCorrection::BiasCorrection(std::span<const double> exact, std::span<const double> prefiltered) {
+BiasCorrection::BiasCorrection(std::span<const double> exact, std::span<const double> prefiltered,
+                               std::span<const std::uint32_t> points, double share) {
+  assert(points.empty() || points.size() == exact.size());
   assert(exact.size() == prefiltered.size());
   double difference = 0, fall = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -19,14 +59,12 @@ BiasCorrection::BiasCorrection(std::span<const double> exact, std::span<const do
   }
   if (exact.size() < 2 || !(fall > 0)) return;
   change_ = difference / fall;
-  double residual = 0;
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    const double r = exact[i] - prefiltered[i] - change_ * fall_with_depth(prefiltered[i]);
-    residual += r * r;
-  }
+  std::vector<double> residuals(exact.size());
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    residuals[i] = exact[i] - prefiltered[i] - change_ * fall_with_depth(prefiltered[i]);
   const auto count = static_cast<double>(exact.size());
   mean_bias_ = -difference / count;
-  mean_error_ = std::sqrt(residual / (count * (count - 1)));
+  mean_error_ = std::sqrt(variance_of_sum(residuals, points, share)) / count;
   mean_fall_ = fall / count;
   error_ = mean_error_ / mean_fall_;
   measured_ = true;

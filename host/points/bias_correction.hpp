@@ -3,6 +3,7 @@
 // correction. A ratio estimator: Cochran, "Sampling Techniques", 1977, chapter 6.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -19,8 +20,11 @@ class BiasCorrection {
  public:
   /// Changes nothing.
   BiasCorrection() = default;
-  /// Values in [0,1], of the same rays in the same order.
-  BiasCorrection(std::span<const double> exact, std::span<const double> prefiltered);
+  /// Values in [0,1], of the same rays in the same order. `points`: which point each value is of;
+  /// those of one point have a bias in common. Empty: each is of another point. `share`: of all
+  /// points, how many these are, [0,1].
+  BiasCorrection(std::span<const double> exact, std::span<const double> prefiltered,
+                 std::span<const std::uint32_t> points = {}, double share = 0);
 
   /// What must be added to a prefiltered value in [0,1] with this fall.
   [[nodiscard]] double change(double fall) const { return change_ * fall; }

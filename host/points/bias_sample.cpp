@@ -57,8 +57,8 @@ BiasSample::BiasSample(const SceneOfPoints& on, std::span<const V3f> points,
   }
   const std::size_t sets = (kBiasSamples + points_.size() - 1) / points_.size();
   sets_ = static_cast<int>(std::min<std::size_t>(kPointSets, sets));
-  share_ = static_cast<double>(points_.size()) * sets_ /
-           (static_cast<double>(points.size()) * kPointSets);
+  share_of_points_ = static_cast<double>(points_.size()) / static_cast<double>(points.size());
+  share_ = share_of_points_ * sets_ / kPointSets;
 }
 
 std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& names,
@@ -82,7 +82,8 @@ std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& 
   }
   std::vector<BiasCorrection> corrections;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    BiasCorrection& correction = corrections.emplace_back(exact[k].values, prefiltered[k].values);
+    BiasCorrection& correction = corrections.emplace_back(exact[k].values, prefiltered[k].values,
+                                                          exact[k].points, share_of_points_);
     const std::size_t values = exact[k].values.size();
     if (values == 0) continue;
     // By tiles of points, and by points.

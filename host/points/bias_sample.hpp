@@ -32,7 +32,7 @@ class BiasSample : public BiasSource {
              const PointOptions& options);
 
   [[nodiscard]] bool is_empty() const { return points_.empty(); }
-  /// The sample is what it is.
+  /// The sample has a fixed size.
   void grow(std::size_t) override {}
   [[nodiscard]] bool is_complete() const override { return true; }
   /// Layers are AO, the sky view factor, rings, lights and suns, as far as they are measured, first
@@ -69,6 +69,7 @@ class BiasSample : public BiasSource {
   std::vector<V3f> points_, normals_;
   int sets_ = 0;
   double share_ = 0;                                  ///< of all values
+  double share_of_points_ = 0;                        ///< of all points
   std::map<std::string, std::vector<Values>> exact_;  ///< by the first name of those compared
   std::map<std::string, Bias> bias_;
   std::vector<Bias> of_points_;  ///< what corrections leave, with points as tiles

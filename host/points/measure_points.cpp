@@ -255,7 +255,8 @@ class Measurement {
         const std::uint32_t bits = hash_of(of_point, static_cast<std::uint32_t>(s));
         const V3f direction = direction_to_disk(suns[s].direction, (bits & 0xffffu) / 65536.0,
                                                 (bits >> 16) / 65536.0);
-        rays[s] = point_ray(points_[i], normals_[i], direction, kSunSolidAngle);
+        rays[s] =
+            point_ray(points_[i], normals_[i], direction, kSunSolidAngle, hash_of(bits, of_point));
       }
     };
     const auto add = [&](std::size_t i, std::size_t s, double transmittance) {

@@ -35,12 +35,25 @@ std::string ending(const std::string& path) {
   return lower_case(std::filesystem::path(path).extension().string());
 }
 
-NumberTable read_table(const std::string& path) {
-  if (ending(path) == ".csv") return read_csv(path);
-  if (ending(path) == ".npy") return read_npy(path);
-  if (ending(path) == ".ply") return read_ply(path);
-  throw Error(ErrorKind::usage, path + ": points are read from .csv, .npy and .ply");
+/// How tables of numbers are read and written.
+struct TableFormat {
+  std::string_view ending;
+  NumberTable (*read)(const std::string& path);
+  std::string (*bytes)(const NumberTable& table);
+};
+
+constexpr TableFormat kFormats[] = {
+    {".csv", read_csv, csv_bytes}, {".npy", read_npy, npy_bytes}, {".ply", read_ply, ply_bytes}};
+
+/// By the ending of `path`. Throws Error usage: points are `done` other files.
+const TableFormat& format_of(const std::string& path, const char* done) {
+  const auto* found = std::ranges::find(kFormats, ending(path), &TableFormat::ending);
+  if (found == std::end(kFormats))
+    throw Error(ErrorKind::usage, fmt::format("{}: points are {} .csv, .npy or .ply", path, done));
+  return *found;
 }
+
+NumberTable read_table(const std::string& path) { return format_of(path, "read from").read(path); }
 
 /// Cells that must be numbers. Errors name the file, the line or row, and the column.
 class NumberCells {
@@ -323,11 +336,7 @@ std::vector<SunDirection> read_suns(const std::string& path, std::vector<std::st
   return suns;
 }
 
-void check_point_output(const std::string& path) {
-  for (const char* type : {".csv", ".npy", ".ply"})
-    if (ending(path) == type) return;
-  throw Error(ErrorKind::usage, path + ": points are written as .csv, .npy or .ply");
-}
+void check_point_output(const std::string& path) { format_of(path, "written as"); }
 
 void write_points(const std::string& path, const PointList& list,
                   const std::vector<PointColumn>& results) {
@@ -348,11 +357,7 @@ void write_points(const std::string& path, const PointList& list,
     for (const ExtraColumn* column : extra) table.values.push_back(column->values[i]);
     for (const PointColumn& column : results) table.values.push_back(double{column.values[i]});
   }
-  check_point_output(path);
-  const std::string type = ending(path);
-  write_whole_file(path, type == ".csv"   ? csv_bytes(table)
-                         : type == ".npy" ? npy_bytes(table)
-                                          : ply_bytes(table));
+  write_whole_file(path, format_of(path, "written as").bytes(table));
 }
 
 }  // namespace dapple

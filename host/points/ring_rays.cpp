@@ -29,7 +29,8 @@ std::vector<ZenithRing> zenith_rings(int count) {
   return rings;
 }
 
-Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float solid_angle) {
+Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float solid_angle,
+              std::uint32_t key) {
   Ray ray{};
   const float largest =
       std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) * 4e-6f;
@@ -39,6 +40,7 @@ Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float s
   }
   ray.t_max = std::numeric_limits<float>::infinity();
   ray.solid_angle = solid_angle;
+  ray.key = key;
   return ray;
 }
 
@@ -56,8 +58,7 @@ void fill_ring_rays(const V3f& point, const ZenithRing& ring, std::uint32_t rand
     rays[i] = point_ray(point, V3f(0, 1, 0),
                         V3f(static_cast<float>(radius * std::cos(angle)), static_cast<float>(y),
                             static_cast<float>(radius * std::sin(angle))),
-                        static_cast<float>(solid_angle));
-    rays[i].key = hash_of(random, i);
+                        static_cast<float>(solid_angle), hash_of(random, i));
   }
 }
 

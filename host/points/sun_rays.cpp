@@ -106,7 +106,7 @@ void SunRays::sample(const V3f& point, const V3f& normal, std::size_t sets, std:
                      std::span<Ray> rays) const {
   const std::vector<double> sums = sums_of_irradiance(normal);
   if (!(sums.back() > 0)) {
-    std::fill(rays.begin(), rays.end(), point_ray(point, normal, normal, kSunSolidAngle));
+    std::fill(rays.begin(), rays.end(), point_ray(point, normal, normal, kSunSolidAngle, 0));
     for (Ray& ray : rays) ray.t_max = 0;
     return;
   }
@@ -122,8 +122,8 @@ void SunRays::sample(const V3f& point, const V3f& normal, std::size_t sets, std:
       while (sun + 1 < suns_.size() && sums[sun + 1] <= at) ++sun;
       Ray& ray = rays[first_ray + (part + turn) % sets];
       const auto [u, v] = spread_pair(first_ray + part, random);
-      ray = point_ray(point, normal, direction_to_disk(suns_[sun].direction, u, v), 0);
-      ray.key = hash_of(bits, turn);
+      ray = point_ray(point, normal, direction_to_disk(suns_[sun].direction, u, v), 0,
+                      hash_of(bits, turn));
     }
     const double end = step * static_cast<double>(first_ray + sets);
     while (sun + 1 < suns_.size() && sums[sun + 1] < end) ++sun;

@@ -183,7 +183,7 @@ bool fits(const Round& round, std::uint32_t slice_samples, std::size_t pixels) {
 }  // namespace
 
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
-                      const TraceState& state, Durable durable, Haste haste) {
+                      const TraceState& state, Durable durable, CompressionLevel level) {
   // The work of a round that is done is of no use any more.
   const Round none;
   const Round& round = state.round.is_done() ? none : state.round;
@@ -191,7 +191,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
   const std::string about =
       header(checkpoint, state, round).dump(-1, ' ', false, json::error_handler_t::replace);
   std::vector<std::vector<std::byte>> packed;
-  const auto add = [&](Section section) { packed.push_back(compress(section, haste)); };
+  const auto add = [&](Section section) { packed.push_back(compress(section, level)); };
   add(as_section(state.sum_values()));
   add(as_section(state.square_values()));
   add(as_section(state.samples));

@@ -29,7 +29,7 @@ struct Checkpoint {
 /// The content of the file. The state is separate so that it need not be copied.
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
                       const TraceState& state, Durable durable = Durable::no,
-                      Haste haste = Haste::no);
+                      CompressionLevel level = CompressionLevel::standard);
 
 /// Reads and verifies the file. Throws Error failed, "--resume PATH: ...", if it is damaged.
 /// Whether the state fits a picture is checked by check_state().

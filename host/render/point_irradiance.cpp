@@ -36,7 +36,7 @@ class DomeColor {
     const float x = direction[0] * cosine_ - direction[2] * sine_;
     const float z = direction[0] * sine_ + direction[2] * cosine_;
     const float u = 0.5f - std::atan2(x, z) * (0.5f / pi_v<float>);
-    const float v = std::acos(std::clamp(direction[1], -1.0f, 1.0f)) / pi_v<float>;
+    const float v = std::atan2(std::hypot(x, z), direction[1]) / pi_v<float>;
     const uint width = light_.environment_width, height = light_.environment_height;
     const uint column = std::min(static_cast<uint>(u * static_cast<float>(width)), width - 1);
     const uint row = std::min(static_cast<uint>(v * static_cast<float>(height)), height - 1);

@@ -102,7 +102,7 @@ void write_checkpoints(TraceControl& tracing, const RenderControl& control, Chec
     result.checkpoint_failure.clear();
     try {
       write_checkpoint(control.checkpoint, about, state, Durable::no,
-                       *stopped ? Haste::yes : Haste::no);
+                       *stopped ? CompressionLevel::fastest : CompressionLevel::standard);
     } catch (const Error& error) {
       result.checkpoint_failure = error.what();
     }

@@ -16,7 +16,7 @@ namespace {
 /// rounded theirs, or by 8 of the terms that these are the sums of, which may be larger; and by 16
 /// of the largest coordinate, as above camera hits (surface_point.clh), where the plane is not
 /// known or matrices carry rays into instances.
-constexpr float kAlongNormal = 3.8e-6f, kInAllDirections = 9.5e-7f, kTerms = 1.0f / 8;
+constexpr float kAlongNormal = 3.8e-6f, kInAllDirections = 9.5e-7f;
 
 SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& plane,
                            const V3f& reach, std::size_t index, bool is_bounded) {
@@ -25,7 +25,7 @@ SurfacePoint surface_point(const V3f& position, const V3f& normal, const V3f& pl
   for (int axis = 0; axis < 3; ++axis) {
     point.position[axis] = position[axis];
     point.normal[axis] = normal[axis];
-    const float term = std::max(std::fabs(position[axis]), kTerms * reach[axis]);
+    const float term = std::max(std::fabs(position[axis]), kTermsOfReach * reach[axis]);
     along += term * std::fabs(plane[axis]);
     largest = std::max(largest, term);
   }

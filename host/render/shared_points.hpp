@@ -13,6 +13,9 @@
 
 namespace dapple {
 
+/// A rounding of a term of QueryPoints::reaches counts as this part of one of a coordinate.
+inline constexpr float kTermsOfReach = 1.0f / 8;
+
 /// Points from which rays start, in world space.
 struct QueryPoints {
   std::span<const V3f> positions;

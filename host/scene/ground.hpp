@@ -6,7 +6,7 @@
 
 namespace dapple {
 
-/// Adds an opaque square under `bounds`, 20 times as wide, lower by 1e-5 of their longest side.
+/// Adds an opaque square under `bounds`, 200 times as wide, lower by 1e-5 of their longest side.
 /// Throws Error input when they are empty.
 void add_ground(Scene& scene, const Box3f& bounds);
 

@@ -13,6 +13,9 @@
 namespace dapple {
 namespace {
 
+/// So that the horizon looks level, and little of the sky below it shows.
+constexpr float kGroundWidth = 200;
+
 std::string list_materials(const Scene& scene) {
   std::string names;
   for (const Material& material : scene.materials) {
@@ -65,7 +68,8 @@ void add_ground(Scene& scene, const Box3f& bounds) {
   const float drop = 1e-5f * std::max({size.x, size.y, size.z});
   Mesh ground;
   ground.name = "ground";
-  append_square(ground, 20 * width, 0, static_cast<std::uint32_t>(scene.materials.size()));
+  append_square(ground, kGroundWidth * width, 0,
+                static_cast<std::uint32_t>(scene.materials.size()));
   Instance instance;
   instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
   instance.to_world.setTranslation(V3f(bounds.center().x, bounds.min.y - drop, bounds.center().z));

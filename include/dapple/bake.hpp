@@ -133,14 +133,15 @@ struct BakeStatistics {
   /// Of the prefiltered samples: the bias of "ao", and of "light", all lights together, relative to
   /// the largest unoccluded one. Empty if it is not reported.
   std::map<std::string, Bias> bias;
-  float footprint = 0;              ///< BakeOptions::footprint, or what max_bias chose
+  /// BakeOptions::footprint, or what max_bias chose. With meshes alone that of the instances, if
+  /// they are baked, else of the last mesh.
+  float footprint = 0;
   std::size_t inside_samples = 0;   ///< inside closed geometry; they count for no value
   std::size_t hidden_vertices = 0;  ///< inside closed geometry; they get their neighbours' value
   std::size_t hidden_texels = 0;    ///< the same in the texture
-  /// See nothing, nor do those that triangles join them to: AO 0. Without those of parts that lie
-  /// inside closed geometry as a whole.
+  /// See nothing, as in a closed room: AO below 0.001. Those inside closed geometry are no part.
   std::size_t dark_vertices = 0;
-  std::size_t dark_texels = 0;  ///< the same, of a texture in which no texel sees anything
+  std::size_t dark_texels = 0;  ///< the same in the texture
   std::string device;
   std::vector<std::string> notes;
 };

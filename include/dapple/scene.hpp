@@ -238,7 +238,7 @@ void override_opacity(Scene& scene, const std::string& name, float value);
 /// does not.
 void use_lights(Scene& scene, const std::vector<Light>& lights);
 
-/// Adds an opaque square under the scene's lowest point, 20 times as wide as the scene.
+/// Adds an opaque square under the scene's lowest point, 200 times as wide as the scene.
 void add_ground(Scene& scene);
 
 /// A perspective camera, 12 degrees above the horizon, as close as it can be with all of the scene

@@ -1,6 +1,6 @@
 /* The camera pass: intersects the camera rays of a slice with the scene, one packet per work-item. In: the
    scene, the camera and the slice's pixels. Out: for each sample whether it hits, and its surface point.
-   DAPPLE_SHARED_ORIGIN 1: perspective cameras; 0: orthographic ones. */
+   DAPPLE_SHARED_ORIGIN 1: perspective cameras without a lens; 0: other ones. */
 #include "camera/surface_points16.clh"
 #include "camera/camera.clh"
 #include "camera/closest_search.clh"

@@ -36,7 +36,7 @@ __kernel void light_rays(__global const SurfacePoint* points, __global const uin
   sample_unit_squares(DAPPLE_PAIR_LIGHT + light->sequence, params.seed, &rays);
   sample_light(light, emitters, environments, &rays, &samples);
   aim_light_rays(&rays, &samples, params.inverse_count, &directions);
-  keep_clear_of_view(&rays, params.viewpoint, &directions);
+  limit_near_view_ray(&rays, params.viewpoint, &directions);
   if (params.shaded) hide_below(&rays, &directions);
   store_rays(&rays, &directions, light->id, queue + first);
 }

@@ -150,7 +150,7 @@ class Scene:
         )
 
     def add_ground(self) -> None:
-        """Adds an opaque square under the lowest point, 20 times as wide as the scene.
+        """Adds an opaque square under the lowest point, 200 times as wide as the scene.
 
         >>> tree = dapple.load("scene:tree?leaves=100")
         >>> tree.add_ground()

@@ -186,8 +186,8 @@ TEST(InsideSamples, WithATargetTooAndOnBothSides) {
   for (const float ao : on.meshes.at(0).ao) EXPECT_LT(ao, 0.85f);
 }
 
-// Half of the samples are on a grid of 3,200 triangles inside of a box, where nothing has a bias. All
-// are in one mesh, so that they are traced, and compared, at once.
+// Half of the samples are on a grid of 3,200 triangles inside of a box, where nothing has a bias.
+// All are in one mesh, so that they are traced, and compared, at once.
 TEST(InsideSamples, TheReportedBiasDoesNotCountThem) {
   BakeOptions options = few_rays();
   options.rays = 64;
@@ -218,6 +218,49 @@ TEST(InsideSamples, AnOpenSheetStillDarkensWhatLiesBelow) {
   double sum = 0;
   for (const float ao : result.meshes.at(0).ao) sum += double{ao} / 4;
   EXPECT_LT(sum, 0.6) << "9/16 of the floor see nothing";
+}
+
+// Nothing is closed here, so that no value may come from the floor's border.
+TEST(InsideSamples, UnderAPlateWhatSeesNextToNothingStaysDark) {
+  Scene floor = scene_of(square_mesh(1, 0, 4, 0)), plate = scene_of(square_mesh(1, 0.01f, 1, 0));
+  const Mesh& mesh = floor.meshes[0];
+  BakeOptions options = few_rays();
+  options.sides = BakeSides::front;
+  options.at_vertices = options.texture = true;
+  options.texture_size = 64;
+  const BakeResult result = bake(floor, options, {}, {plate});
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const V3f& at = mesh.positions[v];
+    if (std::max(std::fabs(at.x), std::fabs(at.z)) > 0.4f) continue;  // at the border
+    EXPECT_LT(result.meshes.at(0).ao[v], 0.01f) << at;
+  }
+  EXPECT_EQ(result.statistics.hidden_vertices + result.statistics.hidden_texels, 0u);
+  EXPECT_GT(result.statistics.dark_vertices, 0u);
+}
+
+TEST(InsideSamples, TexelsOfAClosedRoomStayDarkBesideACourtyard) {
+  Mesh room = box_mesh({-2, -2, -2}, {2, 2, 2});
+  turn(room);
+  Scene scene = scene_of(room);
+  const Mesh courtyard = square_mesh(8, 5, 1, 0);
+  scene.meshes.push_back(courtyard);
+  scene.instances.push_back({1, M44f(), -1});
+  BakeOptions options = few_rays();
+  options.vertices = false;
+  options.texture = true;
+  options.texture_size = 128;
+  options.sides = BakeSides::front;
+  options.estimator = Estimator::exact;
+  const BakeResult result = bake(scene, options);
+  const std::vector<V2f>& corners = result.texture.layout.corners.at(0);
+  for (std::size_t corner = 0; corner < corners.size(); corner += 3) {
+    const V2f middle =
+        (corners[corner] + corners[corner + 1] + corners[corner + 2]) / 3.0f * 128.0f;
+    EXPECT_EQ(result.texture.ao.at(static_cast<std::size_t>(middle.y) * 128 +
+                                   static_cast<std::size_t>(middle.x)),
+              0.0f)
+        << corner;
+  }
 }
 
 TEST(InsideSamples, TexelsHaveTheValueOfTheirVisiblePart) {

@@ -102,8 +102,8 @@ TEST(BakeInstances, ValuesAreMeansOverTheSurface) {
         << i;
 }
 
-// A plate of 2 m by 2 m through the middle of a cube, which hides a quarter of it, and a smaller one
-// inside of the cube. Its other samples see at least half of the sky.
+// A plate of 2 m by 2 m through the middle of a cube, which hides a quarter of it, and a smaller
+// one inside of the cube. Its other samples see at least half of the sky.
 TEST(BakeInstances, SamplesInsideClosedGeometryDoNotCount) {
   Scene scene = make_procedural("scene:cube?divisions=4");
   scene.lights.clear();
@@ -147,6 +147,23 @@ TEST(BakeInstances, ErrorsAreWithinTheTargetAndReported) {
     EXPECT_GT(found.statistics.rays, 2 * rays);
     rays = found.statistics.rays;
   }
+}
+
+// The meshes, too, choose a footprint, each by its own bias.
+TEST(BakeInstances, OfMeshesAloneHaveTheFootprintOfTheirSurroundings) {
+  const Scene scene = grove();
+  BakeOptions options = of_instances(0);
+  options.estimator = Estimator::prefiltered;
+  options.placement = BakeInstances::alone;
+  options.footprint = 16;
+  options.rays = 512;
+  options.max_bias = 0.003f;
+  const BakeResult instances = bake(scene, options);
+  EXPECT_LT(instances.statistics.footprint, options.footprint);
+  options.vertices = true;
+  const BakeResult both = bake(scene, options);
+  EXPECT_EQ(both.statistics.footprint, instances.statistics.footprint);
+  EXPECT_EQ(both.instance_ao, instances.instance_ao);
 }
 
 TEST(BakeInstances, TheBrighterSideIsNotBrightenedByNoise) {

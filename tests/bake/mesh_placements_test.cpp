@@ -62,6 +62,26 @@ TEST(MeshPlacements, ThoseThatAreScaledToZeroDoNotCountForTexelsAndTheirSize) {
     ASSERT_NEAR(after.ao[i], before.ao[i], 0.03) << i;
 }
 
+// A plane beside a wall on its left, and a tenth as large beside one on its right.
+TEST(MeshPlacements, BentNormalsOfLargeAndSmallOnesCountTheSame) {
+  Scene scene;
+  scene.materials.resize(1);
+  place(scene, square_mesh(0.02f, 0, 1, 0));
+  Mesh wall;
+  append_grid(wall, {-0.05f, 0, -5}, {0, 5, 0}, {0, 0, 10}, 1, 0);
+  place(scene, wall);
+  for (std::uint32_t mesh : {0u, 1u}) {
+    Instance mirrored;
+    mirrored.mesh = mesh;
+    mirrored.to_world.setScale(mesh == 0 ? V3f(0.1f) : V3f(-0.1f, 0.1f, 0.1f));
+    mirrored.to_world[3][0] = 100;
+    scene.instances.push_back(mirrored);
+  }
+  BakeOptions options = exact();
+  options.bent = true;
+  for (const V3f& bent : bake(scene, options).meshes.at(0).bent) EXPECT_NEAR(bent.x, 0, 0.03);
+}
+
 TEST(MeshPlacements, MeshesThatAreAlwaysScaledToZeroAreNotBakedAndTold) {
   Scene scene = plane_under_disk(0);
   const std::size_t mesh = scene.meshes.size() - 1;

@@ -112,6 +112,25 @@ TEST(SmoothBake, VerticesOfASphereOf504TrianglesAreUnoccludedAndAsBrightAsTheirC
   }
 }
 
+// The sides of a steep pyramid face away from each other: their normals at the apex are up.
+TEST(SmoothBake, TheApexOfASteepPyramidSeesAllAboveIt) {
+  Mesh mesh;
+  mesh.positions = {{1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, {-1, 0, 1}, {0, 5, 0}};
+  for (const V3f& corner : mesh.positions) mesh.normals.push_back(corner.normalized());
+  for (std::uint32_t side = 0; side < 4; ++side) {
+    mesh.indices.insert(mesh.indices.end(), {side, (side + 1) % 4, 4});
+    mesh.materials.push_back(0);
+  }
+  for (const bool has_normals : {true, false}) {
+    if (!has_normals) mesh.normals.clear();
+    BakeOptions options = exactly(1024);
+    options.at_vertices = options.bent = true;
+    const BakedMesh baked = bake(scene_of(mesh), options).meshes.at(0);
+    EXPECT_GT(baked.bent.at(4).y, 0.95f) << has_normals;
+    EXPECT_GT(baked.ao.at(4), 0.95f) << has_normals;
+  }
+}
+
 // As in ShadingNormal.ATiltedHemisphereIsHiddenBelowThePlane, on both sides.
 TEST(SmoothBake, ATiltedCardIsHiddenBelowItsPlane) {
   Mesh mesh;

@@ -31,6 +31,35 @@ TEST(BakeTarget, MissingValuesAreFewerWithMoreRaysAndNoneWithEnough) {
   EXPECT_EQ(enough.above, 0u);
 }
 
+// Two samples that agree by chance say nothing of the error. Below the plate AO is 0.6 to 0.8.
+TEST(BakeTarget, TexelsWhoseFirstSamplesAgreeByChanceGetMore) {
+  Scene floor, plate;
+  for (Scene* scene : {&floor, &plate}) scene->materials.resize(1);
+  place(floor, square_mesh(1, 0, 1, 0));
+  place(plate, square_mesh(1, 0.7f, 1, 0));
+  BakeOptions options;
+  options.vertices = false;
+  options.texture = true;
+  options.texture_size = 64;
+  options.sides = BakeSides::front;
+  options.estimator = Estimator::exact;
+  options.rays = 2048;
+  options.target_error = 0;
+  const BakedTexture truth = bake(floor, options, {}, {plate}).texture;
+  constexpr float kTarget = 0.02f;
+  options.rays = 16384;
+  options.target_error = kTarget;
+  const BakedTexture found = bake(floor, options, {}, {plate}).texture;
+  std::size_t covered = 0, far = 0;
+  for (std::size_t i = 0; i < truth.ao.size(); ++i) {
+    if (truth.ao[i] > 0.95f) continue;  // outside of the chart
+    ++covered;
+    if (std::abs(found.ao[i] - truth.ao[i]) > 4 * kTarget) ++far;
+  }
+  EXPECT_GT(covered, 2000u);
+  EXPECT_LT(far, covered / 500) << "of " << covered;
+}
+
 TEST(BakeTarget, MissingValuesDoNotDependOnThreads) {
   const Scene tree = make_procedural("scene:tree?leaves=2000");
   BakeOptions options;

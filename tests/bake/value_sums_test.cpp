@@ -44,7 +44,7 @@ TEST(ValueSums, APlaceWithSamplesOfOneSideHasTheirMean) {
     sums.choose_sides();
     const std::vector<PlaceValue> values = sums.values();
     EXPECT_TRUE(values[0].known);
-    EXPECT_TRUE(values[0].inside);
+    EXPECT_TRUE(sums.has_inside(0));
     EXPECT_NEAR(values[0].ao, 0.25f, 1e-6f);
     EXPECT_NEAR(values[1].ao, 0.9f, 1e-6f);
   }

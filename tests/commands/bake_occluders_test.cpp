@@ -105,7 +105,7 @@ TEST_F(BakeOccluders, OfOtherFilesDarkenWhatIsNearThem) {
 }
 
 // The lower half of the sky before a wall is ground, which has half of its cosines. The ground is
-// 20 times as wide as the wall, and the wall a hundredth as high as wide.
+// 200 times as wide as the wall, and the wall a hundredth as high as wide.
 TEST_F(BakeOccluders, TheGroundTakesTheLowerHalfOfTheSkyFromAWall) {
   GltfBuilder wall;
   const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 0, 0.01f, 0};
@@ -114,6 +114,28 @@ TEST_F(BakeOccluders, TheGroundTakesTheLowerHalfOfTheSkyFromAWall) {
   expect_ao("wall.glb", 1);
   expect_ao("wall.glb --ground", 0.5);
   EXPECT_EQ(document("out.glb")["meshes"].size(), 1u);
+}
+
+TEST_F(BakeOccluders, VerticesThatSeeNothingKeepTheirNormals) {
+  GltfBuilder floor;
+  const std::vector<float> corners = {0, 0, 0, 0, 0, 0.01f, 0.01f, 0, 0};
+  const std::vector<float> normals = {0.6f, 0.8f, 0, 0.6f, 0.8f, 0, 0.6f, 0.8f, 0};
+  floor.add_mesh({{"attributes",
+                   {{"POSITION", floor.add_positions(corners)},
+                    {"NORMAL", floor.add_accessor(normals, test::kFloat, "VEC3")}}}});
+  write("hidden.glb", floor.glb());
+  GltfBuilder near;
+  add_square(near, {0, 0.001f, 0}, kLarge, "near");
+  write("near.glb", near.glb());
+  const std::string options =
+      "bake hidden.glb --occluders near.glb --sides front --estimator exact --rays 256 "
+      "--passes ao,bent --bent-channel NORMAL -o out.glb";
+  const Outcome run = dapple(options);
+  ASSERT_EQ(run.code, 0) << run.err;
+  const test::GltfData file(path("out.glb"));
+  const std::vector<float> found =
+      file.floats(file.doc["meshes"][0]["primitives"][0]["attributes"]["NORMAL"]);
+  for (std::size_t i = 0; i < normals.size(); ++i) EXPECT_NEAR(found[i], normals[i], 1e-4f) << i;
 }
 
 TEST_F(BakeOccluders, SeveralFilesMayFollowOneOptionAndASceneAmongThemIsMissed) {

@@ -82,6 +82,7 @@ TEST_F(BakeUvSets, TheSecondIsPreferredToTheFirst) {
 
 TEST_F(BakeUvSets, TheFirstIsUsedWhereTheSecondCannotBe) {
   const Rect upper = {0, 0, 1, 0.25f}, lower = {0, 0.5f, 1, 0.75f}, outside = {0, 0, 1.5f, 1};
+  const Rect left = {0, 0, 0.03125f, 0.0625f}, right = {0.03125f, 0, 0.0625f, 0.0625f};
   struct Case {
     Square first, second;
     std::string reason;
@@ -90,6 +91,7 @@ TEST_F(BakeUvSets, TheFirstIsUsedWhereTheSecondCannotBe) {
        {Case{{upper, kFull}, {lower, kFull}, "meshes overlap each other in TEXCOORD_1 in 100.0 %"},
         Case{{upper, upper}, {lower, outside}, "TEXCOORD_1 leaves the texture"},
         Case{{upper, upper}, {lower, kPoint}, "TEXCOORD_1 has no area in the texture for 50.0 %"},
+        Case{{upper, left}, {lower, right}, "TEXCOORD_1 fills 6.2 % of the texture's width"},
         Case{{upper, upper}, {lower}, "primitive 0 of mesh 1 has no TEXCOORD_1"}}) {
     write_squares({{c.first}, {c.second}});
     const std::string notes = notes_of();

@@ -119,7 +119,7 @@ __kernel void shares(__global const float* ascending, __global const float* numb
   vstore2((float2)((float)step, within), item, places);
 }
 
-/* Solid angles of rays from `origin`, 1 steradian before, after keep_clear_of_view(). Each item uses the
+/* Solid angles of rays from `origin`, 1 steradian before, after limit_near_view_ray(). Each item uses the
    next of sixteen lanes. */
 __kernel void clear_of_view(__global const float* directions, __global const float* origin,
                             Viewpoint from, __global float* solid_angles, uint count) {
@@ -134,6 +134,6 @@ __kernel void clear_of_view(__global const float* directions, __global const flo
     aimed.direction[axis].f[lane] = directions[3u * item + axis];
   }
   aimed.solid_angle.v = (float16)(1.0f);
-  keep_clear_of_view(&rays, from, &aimed);
+  limit_near_view_ray(&rays, from, &aimed);
   solid_angles[item] = aimed.solid_angle.f[lane];
 }

@@ -5,8 +5,8 @@ from mutation import Mutation
 MUTATIONS = [
     Mutation(
         "rays-start-above-the-largest-axis", "kernels/camera/surface_points16.clh",
-        "lift += fabs(normal[axis]) * terms[axis] +",
-        "lift += sqrt(dot_16(normal, normal)) * terms[axis] +",
+        "normal_error += fabs(normal[axis]) * terms[axis] +",
+        "normal_error += sqrt(dot_16(normal, normal)) * terms[axis] +",
         r"^RayOrigin\."),
     Mutation(
         "slab-sign", "kernels/occlusion/packet_node.clh",
@@ -111,8 +111,8 @@ MUTATIONS = [
         r"^(OpacityLookup|TexturedTriangle|GltfMaterial)\."),
     Mutation(
         "wrap-mode-mirror", "kernels/opacity/texel_addresses.clh",
-        "min(there_and_back, 2.0f - there_and_back)",
-        "min(there_and_back, 1.0f)",
+        "min(mirrored, 2.0f - mirrored)",
+        "min(mirrored, 1.0f)",
         r"^(OpacityLookup|MipFootprint)\."),
     Mutation(
         "wrap-mode-repeat-at-the-edge", "kernels/opacity/texel_addresses.clh",
@@ -195,8 +195,8 @@ MUTATIONS = [
         r"^CameraPoints\."),
     Mutation(
         "last-surface-instead-of-first", "kernels/camera/k_buffer.clh",
-        "hit & (so_far > threshold) & (at->so_far.v <= threshold)",
-        "hit & (at->so_far.v <= threshold)",
+        "hit & (cumulative > threshold) & (at->cumulative.v <= threshold)",
+        "hit & (at->cumulative.v <= threshold)",
         r"^(KBufferOnDevice|CameraSplitting|DeepAlpha)"),
     Mutation(
         "vertex-colour-without-decoding", "kernels/camera/color_entry.clh",
@@ -208,6 +208,11 @@ MUTATIONS = [
         "weight[0] = 1.0f - at.right - weight[2];",
         "weight[0] = 1.0f - at.right - at.down;",
         r"^Albedo\."),
+    Mutation(
+        "caps-only-where-the-cone-is-hit", "kernels/intersect/segments.clh",
+        "const int16 capped = of_caps & ~hits.hit;",
+        "const int16 capped = of_caps & of_cone & ~hits.hit;",
+        r"^Strands\."),
     Mutation(
         "wrong-caps-of-strands", "kernels/intersect/segments.clh",
         "segments.end_cap = lanes_of_bits(block->end_caps);",
@@ -240,7 +245,7 @@ MUTATIONS = [
         r"^ScalarKernels\."),
     Mutation(
         "scalar-rays-forget-what-they-passed", "kernels/scalar/closest_hits.clh",
-        "  hits->before = so_far;\n",
+        "  hits->passed = cumulative;\n",
         "",
         r"^ScalarKernels\."),
     Mutation(

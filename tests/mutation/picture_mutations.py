@@ -269,14 +269,34 @@ MUTATIONS = [
         "square(source, u, v) > square(nearest[to], u, v)",
         r"^Dilation\."),
     Mutation(
+        "first-variance-of-bakes-forgotten", "host/bake/sample_rounds.cpp",
+        "  sums_.keep_variance();\n",
+        "",
+        r"^BakeTarget\."),
+    Mutation(
+        "bent-normals-count-by-scale", "host/bake/sample_tracer.cpp",
+        "values[i].bent.normalized() * traced.bent[k].length();",
+        "values[i].bent;",
+        r"^MeshPlacements\."),
+    Mutation(
+        "dark-values-taken-for-hidden", "host/bake/value_sums.cpp",
+        "if (is_dark(i) && has_inside(i)) continue;",
+        "if (is_dark(i)) continue;",
+        r"^InsideSamples\."),
+    Mutation(
+        "values-of-a-point-independent", "host/points/bias_correction.cpp",
+        "between += of_point.sum * of_point.sum;",
+        "between += of_point.squares;",
+        r"^BiasCorrection\."),
+    Mutation(
         "hidden-texels-stay-black", "host/bake/texture/texture_bake.cpp",
-        "  fill_hidden_texels();\n",
+        "  fill_hidden_texels(statistics);\n",
         "",
         r"^BakeTexture\."),
     Mutation(
         "rays-of-bakes-forget-the-terms-of-sums", "host/render/shared_points.cpp",
-        "kTerms = 1.0f / 8;",
-        "kTerms = 0.0f;",
+        "kTermsOfReach * reach[axis]",
+        "0.0f * reach[axis]",
         r"^BakeSampleOrigin\."),
     Mutation(
         "seams-do-not-turn-edges", "host/bake/texture/seams.cpp",

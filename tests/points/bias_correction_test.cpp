@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -70,6 +72,41 @@ TEST(BiasCorrection, ItsStandardErrorIsThatOfRepetitions) {
   const double mean = sum / kRepetitions;
   const double deviation = std::sqrt(squares / kRepetitions - mean * mean);
   EXPECT_NEAR(told / deviation, 1, 0.15);  // 400 repetitions: 4 % at one sigma
+}
+
+/// The standard error that is told, over the deviation of repetitions: 100 of `all` points, each
+/// with a bias of its own and two values.
+double told_over_deviation(std::size_t all) {
+  std::mt19937 bits(1);
+  std::normal_distribution<double> noise(0, 0.02), own(0.01, 0.05);
+  constexpr std::size_t kPoints = 100;
+  std::vector<double> biases;
+  for (std::size_t p = 0; p < all; ++p) biases.push_back(own(bits));
+  double sum = 0, squares = 0, told = 0;
+  constexpr int kRepetitions = 400;
+  for (int r = 0; r < kRepetitions; ++r) {
+    std::shuffle(biases.begin(), biases.end(), bits);
+    std::vector<double> exact, prefiltered;
+    std::vector<std::uint32_t> points;
+    for (std::uint32_t v = 0; v < 2 * kPoints; ++v) {
+      points.push_back(v / 2);
+      prefiltered.push_back(0.5);
+      exact.push_back(0.5 - biases[v / 2] + noise(bits));
+    }
+    const BiasCorrection bias(exact, prefiltered, points,
+                              static_cast<double>(kPoints) / static_cast<double>(all));
+    sum += bias.mean_bias();
+    squares += bias.mean_bias() * bias.mean_bias();
+    told += bias.mean_error() / kRepetitions;
+  }
+  const double mean = sum / kRepetitions;
+  return told / std::sqrt(squares / kRepetitions - mean * mean);
+}
+
+TEST(BiasCorrection, ValuesOfOnePointHaveItsBiasInCommon) {
+  EXPECT_NEAR(told_over_deviation(10'000), 1, 0.15) << "of few points: without points 0.73";
+  EXPECT_NEAR(told_over_deviation(200), 1, 0.15) << "of half of the points";
+  EXPECT_NEAR(told_over_deviation(100), 1, 0.15) << "of all points only the noise is left";
 }
 
 }  // namespace

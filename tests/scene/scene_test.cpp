@@ -154,14 +154,14 @@ TEST(OverrideOpacity, AnUnknownMaterialIsRefusedWithTheKnownOnes) {
             "opacity of material \"leaf\" is nan, outside [0, 1]");
 }
 
-TEST(AddGround, IsOpaqueTwentyTimesAsWideAndJustBelowTheLowestPoint) {
+TEST(AddGround, IsOpaqueTwoHundredTimesAsWideAndJustBelowTheLowestPoint) {
   Scene scene = scene_of({triangle_mesh("a", {1, 2, 3}, {3, 5, 3}, {1, 4, 4})}, {placed(0)});
   add_ground(scene);
   const Box3f bounds = scene_bounds(scene);
   EXPECT_FLOAT_EQ(bounds.min.y, 2 - 3e-5f);
   EXPECT_EQ(bounds.max.y, 5);
-  EXPECT_FLOAT_EQ(bounds.size().x, 40);
-  EXPECT_FLOAT_EQ(bounds.size().z, 40);
+  EXPECT_FLOAT_EQ(bounds.size().x, 400);
+  EXPECT_FLOAT_EQ(bounds.size().z, 400);
   EXPECT_FLOAT_EQ(bounds.center().x, 2);
   EXPECT_FLOAT_EQ(bounds.center().z, 3.5f);
   EXPECT_EQ(scene.materials.back().name, "ground");

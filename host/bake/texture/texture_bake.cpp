@@ -13,10 +13,6 @@
 namespace dapple {
 namespace {
 
-/// In closed rooms up to this share of the texels see something: prefiltered rays pass a little
-/// through walls near by.
-constexpr double kFewSee = 0.02;
-
 /// Barycentric coordinates of `p` in a triangle of the texture.
 std::array<float, 3> barycentric(const V2f* uv, const V2f& p) {
   const V2f a = uv[1] - uv[0], b = uv[2] - uv[0], c = p - uv[0];
@@ -135,7 +131,6 @@ TextureBake::TextureBake(const Scene& scene, const BakeOptions& options, Texture
   if (options.bent) texture_.bent.resize(texels, V3f(0));
   known_.resize(texels);
   covered_.resize(texels);
-  dark_.resize(texels);
   weight_.resize(texels);
 }
 
@@ -187,10 +182,10 @@ void TextureBake::add_values(const SampledTexels& texels, const std::vector<Plac
     const std::uint32_t texel = texels.texel(i);
     covered_[texel] = true;
     if (!values[i].known) {
-      dark_[texel] = !values[i].inside;
       ++statistics.hidden_texels;
       continue;
     }
+    if (values[i].dark) ++statistics.dark_texels;
     float part = 0;
     for (const std::uint32_t t : texels.triangles(i)) part += texels.polygon(i, t).area();
     texture_.ao[texel] += part * values[i].ao;
@@ -231,28 +226,14 @@ void TextureBake::take_nearest(const std::vector<std::uint32_t>& nearest, bool o
   }
 }
 
-void TextureBake::fill_hidden_texels() {
+void TextureBake::fill_hidden_texels(BakeStatistics& statistics) {
   const int all = static_cast<int>(texture_.size);
   if (known_ == covered_) return;
   take_nearest(nearest_valid(known_, texture_.size, all, covered_), true);
-  if (known_ != covered_) take_nearest(nearest_valid(known_, texture_.size, all), true);
-}
-
-void TextureBake::keep_dark_texels(BakeStatistics& statistics) {
-  const auto covered = static_cast<double>(std::count(covered_.begin(), covered_.end(), true));
-  const auto known = static_cast<double>(std::count(known_.begin(), known_.end(), true));
-  if (known > kFewSee * covered) return;
-  std::size_t dark = 0;
-  for (std::size_t i = 0; i < known_.size(); ++i) {
-    if (known_[i] || !dark_[i]) continue;
-    known_[i] = known > 0;
-    ++dark;
-  }
-  // Texels that several meshes cover were counted for each of them. Without a known texel none of
-  // those inside closed geometry gets a value.
-  dark = std::min(dark, statistics.hidden_texels);
-  statistics.hidden_texels = known > 0 ? statistics.hidden_texels - dark : 0;
-  statistics.dark_texels += dark;
+  // Texels that several meshes cover were counted for each of them.
+  const auto left = std::count(covered_.begin(), covered_.end(), true) -
+                    std::count(known_.begin(), known_.end(), true);
+  statistics.hidden_texels -= std::min(statistics.hidden_texels, static_cast<std::size_t>(left));
 }
 
 BakedTexture TextureBake::finish(BakeStatistics& statistics) {
@@ -262,8 +243,7 @@ BakedTexture TextureBake::finish(BakeStatistics& statistics) {
     if (options_.bent) texture_.bent[i].normalize();
     for (std::vector<V3f>& light : texture_.light) light[i] /= weight_[i];
   }
-  keep_dark_texels(statistics);
-  fill_hidden_texels();
+  fill_hidden_texels(statistics);
   take_nearest(nearest_valid(known_, texture_.size, options_.margin), false);
   for (std::size_t i = 0; i < known_.size(); ++i)
     if (!known_[i] && !covered_[i]) texture_.ao[i] = 1;

@@ -17,20 +17,17 @@ class TextureBake {
   /// The values of mesh number `index`, if the texture has it. False: stopped.
   bool add(std::uint32_t index, const Placements& placements, BakeTracing& tracing);
 
-  /// The texture, with its margin. Counts hidden texels as dark ones if next to none sees anything.
+  /// The texture, with its margin.
   BakedTexture finish(BakeStatistics& statistics);
 
  private:
   /// Texels without a value take that of the one that `nearest` names; `only_covered`: if triangles
   /// cover them.
   void take_nearest(const std::vector<std::uint32_t>& nearest, bool only_covered);
-  /// Texels from which nothing is seen, in closed parts, take the nearest value of their charts, or
-  /// of the texture where a chart has none.
-  void fill_hidden_texels();
+  /// Texels inside closed geometry take the nearest value of their charts. Charts that lie inside
+  /// as a whole are never seen, and stay black.
+  void fill_hidden_texels(BakeStatistics& statistics);
   void join_all_seams();
-  /// Where next to no texel sees anything, those that do not are dark, unless samples of them are
-  /// inside closed geometry.
-  void keep_dark_texels(BakeStatistics& statistics);
   void add_values(const SampledTexels& texels, const std::vector<PlaceValue>& values,
                   const std::vector<std::vector<V3f>>& light, BakeStatistics& statistics);
 
@@ -38,7 +35,6 @@ class TextureBake {
   const BakeOptions& options_;
   BakedTexture texture_;
   std::vector<bool> known_, covered_;  ///< by texel
-  std::vector<bool> dark_;             ///< sees nothing, and no sample of it is inside
   std::vector<float> weight_;          ///< part of each texel that triangles cover
 };
 

@@ -95,7 +95,7 @@ std::vector<ObjectOffsets> lay_out(const std::vector<FinishedObject>& objects,
     constexpr std::uint32_t kMaxBlocks = DAPPLE_MAX_BLOCKS;
     static_assert(kMaxBlocks <= DAPPLE_SEGMENTS / 8);
     if (nodes >= DAPPLE_SEGMENTS || blocks > kMaxBlocks || segments > kMaxBlocks ||
-        textured >= 1u << 24) {
+        textured >= DAPPLE_MAX_TEXTURED_TRIANGLES) {
       throw Error(ErrorKind::failed,
                   fmt::format("{}: too many triangles for the BVH's indices", source));
     }

@@ -70,6 +70,7 @@ std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, Obje
     if (opacities[t] >= 0.0f) continue;
     opacities[t] = -1.0f - static_cast<float>(textured.size());
     textured.push_back(t);
+    check_textured_count(scene, textured.size());
   }
   // Coincident triangles are not averaged: both sides of a card have the same transmittance at each
   // point, so the product of their means would be too small.

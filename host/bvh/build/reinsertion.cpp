@@ -61,11 +61,11 @@ struct Search {
   Insertion best;
 
   /// True if no node to which the subtree could be added with this gain is better than the best.
-  [[nodiscard]] bool is_hopeless(float gain) const { return gain - moved.area <= best.gain; }
+  [[nodiscard]] bool is_pruned(float gain) const { return gain - moved.area <= best.gain; }
 
   /// Takes `node` as the best if it is, and returns the gain with which its children can be
   /// visited.
-  [[gnu::always_inline]] float look_at(std::uint32_t node, float gain) {
+  [[gnu::always_inline]] float evaluate(std::uint32_t node, float gain) {
     Box8 both = nodes[node].box;
     both.add(moved.box);
     const float area = both.half_area();
@@ -75,25 +75,25 @@ struct Search {
 
   /// True if the nodes below `node` need a visit.
   [[nodiscard]] bool goes_below(std::uint32_t node, float gain) const {
-    return nodes[node].child[0] != 0 && !is_hopeless(gain);
+    return nodes[node].child[0] != 0 && !is_pruned(gain);
   }
 
   /// Looks at `top` and the nodes below it, within the remaining effort: at both children of a node
   /// together, then below the one with the larger gain.
-  [[gnu::always_inline]] void look_below(std::uint32_t top, float gain, Effort& effort) {
-    if (is_hopeless(gain)) return;
-    const float below = look_at(top, gain);
+  [[gnu::always_inline]] void search_below(std::uint32_t top, float gain, Effort& effort) {
+    if (is_pruned(gain)) return;
+    const float below = evaluate(top, gain);
     if (!goes_below(top, below)) return;
     std::vector<Candidate>& pending = effort.pending;
     pending.assign(1, {top, below});
     while (!pending.empty() && effort.looks > 1) {
       const Candidate at = pending.back();
       pending.pop_back();
-      if (is_hopeless(at.gain)) continue;
+      if (is_pruned(at.gain)) continue;
       effort.looks -= 2;
       Candidate first{nodes[at.node].child[0], 0}, second{nodes[at.node].child[1], 0};
-      first.gain = look_at(first.node, at.gain);
-      second.gain = look_at(second.node, at.gain);
+      first.gain = evaluate(first.node, at.gain);
+      second.gain = evaluate(second.node, at.gain);
       if (first.gain < second.gain) std::swap(first, second);
       if (goes_below(second.node, second.gain)) pending.push_back(second);
       if (goes_below(first.node, first.gain)) pending.push_back(first);
@@ -110,11 +110,11 @@ Insertion find_insertion(const LinkedNode* nodes, std::uint32_t moved, Effort& e
   float gain = nodes[below].area;
   std::uint32_t sibling = nodes[below].other_than(moved);
   Box8 rest = nodes[sibling].box;  // box of the current ancestor without the moved subtree
-  search.look_below(sibling, gain, effort);
+  search.search_below(sibling, gain, effort);
   while (below != 0) {
     const std::uint32_t ancestor = nodes[below].parent;
     sibling = nodes[ancestor].other_than(below);
-    search.look_below(sibling, gain, effort);
+    search.search_below(sibling, gain, effort);
     rest.add(nodes[sibling].box);
     gain += nodes[ancestor].area - rest.half_area();
     below = ancestor;

@@ -79,11 +79,11 @@ Part Splitter::all() const {
     part.box.add(block.box);
     part.centres2.add(block.centres2);
   }
-  judge(part);
+  evaluate_leaf(part);
   return part;
 }
 
-void Splitter::judge(Part& part) const {
+void Splitter::evaluate_leaf(Part& part) const {
   part.area = part.box.half_area();
   part.leaf = part.count == 1;
   if (part.count == 1 || part.count > kFew) return;
@@ -116,8 +116,8 @@ void Splitter::split(Part& part, Part& right) const {
     right.centres2 = centres2[1];
     join_bins(bins, split, binning.used, part.box, right.box);
   }
-  judge(part);
-  judge(right);
+  evaluate_leaf(part);
+  evaluate_leaf(right);
 }
 
 void Splitter::split_few(Part& part, Part& right) const {
@@ -143,7 +143,7 @@ void Splitter::halve(Part& part, Part& right) const {
     side->box.clear();
     side->centres2.clear();
     measure(at(*side), side->count, side->box, side->centres2);
-    judge(*side);
+    evaluate_leaf(*side);
   }
 }
 

@@ -46,7 +46,7 @@ class Splitter {
   void split_in_parallel(Part& part, Part& right) const;
   void halve(Part& part, Part& right) const;
   /// Sets area, leaf and left_set.
-  void judge(Part& part) const;
+  void evaluate_leaf(Part& part) const;
   [[nodiscard]] PrimitiveBox* at(const Part& part) const {
     return (part.in_scratch ? scratch_ : result_) + part.first;
   }

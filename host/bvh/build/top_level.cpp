@@ -115,7 +115,7 @@ PlacedInstance place(const Instance& instance, const ObjectSummary& object, std:
 }
 
 /// What a top-level node covers, as its parent needs it.
-struct Covered {
+struct NodeSummary {
   CoverageMap map;
   NormalMoments normals;
 };
@@ -130,9 +130,9 @@ class TopPrefilter {
       : tree_(tree), order_(order), placed_(placed), nodes_(nodes) {}
 
   /// The children of the first levels are computed in parallel.
-  Covered node(std::uint32_t index, int level = 0) {
+  NodeSummary node(std::uint32_t index, int level = 0) {
     const auto children = tree_.children_of(tree_.nodes[index]);
-    std::array<std::optional<Covered>, DAPPLE_BVH_WIDTH> below;  // none of instances
+    std::array<std::optional<NodeSummary>, DAPPLE_BVH_WIDTH> below;  // none of instances
     const auto cover = [&](std::size_t slot) {
       if (!children[slot].count) below[slot].emplace(node(children[slot].first, level + 1));
     };
@@ -156,7 +156,7 @@ class TopPrefilter {
 
   /// Adds an instance or, if there is one, what is `below`. Returns its opacity.
   NodeOpacity add(NodeCoverage& coverage, const WideChild& child,
-                  const std::optional<Covered>& below) const {
+                  const std::optional<NodeSummary>& below) const {
     if (below) {
       coverage.add(below->map, child.box);
       return map_opacity(below->map, below->normals, child.box);

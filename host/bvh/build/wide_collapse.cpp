@@ -8,21 +8,22 @@
 namespace dapple {
 
 CheapestNodes::CheapestNodes(std::span<const BinaryNode> tree, std::uint32_t leaf_size)
-    : tree_(tree), leaf_size_(leaf_size), ways_(tree.size()) {
+    : tree_(tree), leaf_size_(leaf_size), costs_(tree.size()) {
   for (std::size_t n = tree.size(); n-- > 0;) {
     const BinaryNode& node = tree[n];
     if (node.right == 0) {
-      ways_[n].cost.fill(leaf_cost(node.area, node.count));
-      ways_[n].leaf = true;
+      costs_[n].cost.fill(leaf_cost(node.area, node.count));
+      costs_[n].leaf = true;
     } else {
-      ways_[n] = ways_of(node, ways_[n + 1], ways_[node.right]);
+      costs_[n] = costs_of(node, costs_[n + 1], costs_[node.right]);
     }
   }
 }
 
-CheapestNodes::Ways CheapestNodes::ways_of(const BinaryNode& node, const Ways& left,
-                                           const Ways& right) const {
-  Ways ways;
+CheapestNodes::CollapseCosts CheapestNodes::costs_of(const BinaryNode& node,
+                                                     const CollapseCosts& left,
+                                                     const CollapseCosts& right) const {
+  CollapseCosts ways;
   ways.cost.fill(std::numeric_limits<float>::infinity());
   ways.left_children.fill(1);  // also valid if areas are infinite
   const unsigned max_children = std::min<unsigned>(node.count, DAPPLE_BVH_WIDTH);
@@ -57,7 +58,7 @@ CheapestNodes::Children CheapestNodes::children_of(std::uint32_t node) const {
 
 void CheapestNodes::add_children(std::uint32_t node, unsigned max_children,
                                  Children& children) const {
-  const auto& cost = ways_[node].cost;
+  const auto& cost = costs_[node].cost;
   while (max_children > 1 && cost[max_children - 1] == cost[max_children - 2]) --max_children;
   if (max_children > 1)
     divide(node, max_children, children);
@@ -66,7 +67,7 @@ void CheapestNodes::add_children(std::uint32_t node, unsigned max_children,
 }
 
 void CheapestNodes::divide(std::uint32_t node, unsigned max_children, Children& children) const {
-  const unsigned on_left = ways_[node].left_children[max_children - 1];
+  const unsigned on_left = costs_[node].left_children[max_children - 1];
   add_children(node + 1, on_left, children);
   add_children(tree_[node].right, max_children - on_left, children);
 }

@@ -17,7 +17,7 @@ class CheapestNodes {
   /// `tree` must outlive the object. Leaves have at most `leaf_size` primitives.
   CheapestNodes(std::span<const BinaryNode> tree, std::uint32_t leaf_size);
 
-  [[nodiscard]] bool is_leaf(std::uint32_t node) const { return ways_[node].leaf; }
+  [[nodiscard]] bool is_leaf(std::uint32_t node) const { return costs_[node].leaf; }
 
   /// Indices of binary nodes, from left to right.
   struct Children {
@@ -30,20 +30,21 @@ class CheapestNodes {
 
  private:
   /// The cheapest ways to turn a subtree into 1 to 8 children of a node.
-  struct Ways {
+  struct CollapseCosts {
     /// cost[n - 1]: with at most n children. The entry for 8 is for a node, with at least 2.
     std::array<float, DAPPLE_BVH_WIDTH> cost;
     std::array<std::uint8_t, DAPPLE_BVH_WIDTH> left_children;  ///< how many are in the left subtree
     bool leaf = false;  ///< whether the subtree as one child is a leaf
   };
 
-  [[nodiscard]] Ways ways_of(const BinaryNode& node, const Ways& left, const Ways& right) const;
+  [[nodiscard]] CollapseCosts costs_of(const BinaryNode& node, const CollapseCosts& left,
+                                       const CollapseCosts& right) const;
   void add_children(std::uint32_t node, unsigned max_children, Children& children) const;
   void divide(std::uint32_t node, unsigned max_children, Children& children) const;
 
   std::span<const BinaryNode> tree_;
   std::uint32_t leaf_size_;
-  std::vector<Ways> ways_;
+  std::vector<CollapseCosts> costs_;
 };
 
 }  // namespace dapple

@@ -9,7 +9,7 @@ namespace dapple {
 namespace {
 
 /// Maximum length of the sum of a closed surface's area vectors, relative to its area.
-constexpr float kOpenShare = 0.1f;
+constexpr double kOpenShare = 0.1;
 
 }  // namespace
 
@@ -18,12 +18,12 @@ std::vector<bool> closed_triangles(const OpaqueTriangles& opaque) {
       opaque.positions().size(), opaque.count(), [](std::size_t) { return true; },
       [&](std::size_t t, int k) { return opaque.vertex(t, k); });
   struct Sums {
-    V3f vector{0, 0, 0};
-    float area = 0;
+    Imath::V3d vector{0, 0, 0};
+    double area = 0;
   };
   std::vector<Sums> sums(opaque.positions().size());
   for (std::size_t t = 0; t < opaque.count(); ++t) {
-    const V3f vector = opaque.area_vector(t);
+    const Imath::V3d vector(opaque.area_vector(t));
     Sums& component = sums[components.root(opaque.vertex(t, 0))];
     component.vector += vector;
     component.area += vector.length();

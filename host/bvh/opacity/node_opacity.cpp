@@ -139,11 +139,11 @@ unsigned variance_class(const NodeOpacity& opacity) {
     max_opacity = std::max(max_opacity, opacity.axes[axis]);
   }
   const float square = std::max(opacity.clumping * greatest / 3, std::pow(max_opacity, 4.0f));
-  unsigned of_seven = 0;
-  for (float limit = DAPPLE_MIN_VARIANCE; of_seven < DAPPLE_NOT_UNIFORM && !(square <= limit);
+  unsigned result_class = 0;
+  for (float limit = DAPPLE_MIN_VARIANCE; result_class < DAPPLE_NOT_UNIFORM && !(square <= limit);
        limit *= 2)
-    ++of_seven;
-  return of_seven;
+    ++result_class;
+  return result_class;
 }
 
 float depth_of(float opacity) {
@@ -295,10 +295,10 @@ float clumping_factor(const NodeOpacity& opacity, const V3f& size) {
   const Four wanted =
       of_axes * (axes.opacity - axes.model) + of_diagonals * (diagonals.opacity - diagonals.model);
   const Four changed = of_axes * axes.slope + of_diagonals * diagonals.slope;
-  const float wanting = wanted[0] + wanted[1] + wanted[2] + wanted[3];
+  const float residual = wanted[0] + wanted[1] + wanted[2] + wanted[3];
   const float slope = changed[0] + changed[1] + changed[2] + changed[3];
   if (!(slope > 0.0f)) return 1.0f;
-  return std::clamp(1.0f + wanting / slope, 0.6f, 1.6f);
+  return std::clamp(1.0f + residual / slope, 0.6f, 1.6f);
 }
 
 }  // namespace dapple

@@ -35,9 +35,9 @@ struct ObjectArrays {
 
 /// Provides the results of subtrees that are prefiltered elsewhere. In the tree these are nodes
 /// without children.
-class Stumps {
+class SubtreeSummaries {
  public:
-  virtual ~Stumps() = default;
+  virtual ~SubtreeSummaries() = default;
   [[nodiscard]] virtual Summary summary(std::uint32_t node) const = 0;
   /// Returns the opacity of the subtree if it was just prefiltered again; nullptr: the opacity
   /// follows from the refit record.
@@ -49,7 +49,7 @@ struct PrefilterTask {
   const WideTree& tree;
   std::span<const std::uint32_t> node_of;  ///< object's index of each tree node; empty: the same
   RefitRecord* record = nullptr;           ///< stores the opacities for refitting; may be null
-  const Stumps* stumps = nullptr;
+  const SubtreeSummaries* stumps = nullptr;
 };
 
 /// Sets the opacities of all nodes below the root of the tree. Returns the summary of the root.

@@ -33,6 +33,15 @@ void check_material(const Scene& scene, std::uint32_t material) {
 
 }  // namespace
 
+void check_textured_count(const Scene& scene, std::size_t count) {
+  if (count < DAPPLE_MAX_TEXTURED_TRIANGLES) return;
+  throw Error(
+      ErrorKind::failed,
+      fmt::format("{}: the opacity of {} or more triangles varies over them (alpha textures, "
+                  "vertex alpha); dapple has room for fewer",
+                  scene.source, DAPPLE_MAX_TEXTURED_TRIANGLES));
+}
+
 bool has_texture(const Material& material, const Mesh& mesh) {
   return material.alpha_texture >= 0 && !mesh.uvs.empty();
 }

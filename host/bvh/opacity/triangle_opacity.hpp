@@ -20,6 +20,9 @@ std::optional<float> uniform_opacity(const Scene& scene, const Mesh& mesh, std::
 /// The opacity of a segment, [0,1]: the mean alpha of its ends, by the material, without textures.
 float segment_opacity(const Scene& scene, const Mesh& mesh, std::uint32_t segment);
 
+/// Throws Error failed if so many triangles of a mesh cannot have an opacity that varies.
+void check_textured_count(const Scene& scene, std::size_t count);
+
 /// Whether the alpha of the mesh's triangles is looked up in the texture of the material.
 bool has_texture(const Material& material, const Mesh& mesh);
 

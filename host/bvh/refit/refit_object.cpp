@@ -32,7 +32,7 @@ void set_boxes(BvhNode& node, const WideTree& tree, const WideNode& wide) {
     set_child_box(node, slot, tree.children_of(wide)[slot].box);
 }
 
-class ObjectRefit : public Stumps {
+class ObjectRefit : public SubtreeSummaries {
  public:
   ObjectRefit(const Scene& scene, const Mesh& mesh, const ObjectArrays& object, RefitRecord& record)
       : scene_(scene),
@@ -53,10 +53,10 @@ class ObjectRefit : public Stumps {
     for (const WideChild& child : upper.children_of(upper.nodes[0]))
       summary.parts.push_back(child.box);
     summary.sah_cost = expected_visits(half_areas, summary.box);
-    const bool needs_textures = find_strays() || has_textured_leaves();
+    const bool needs_textures = find_deformed() || has_textured_leaves();
     const TextureIntegrals integrals(
         scene_, needs_textures ? object_.textured : std::span<const TexturedTriangle>{});
-    measure_strays(integrals);
+    measure_deformed(integrals);
     const Summary all = prefilter({object_, upper, record_.upper_nodes, &record_, this}, integrals);
     const bool wall = summary.opacity.wall;
     summary.opacity = map_opacity(all.map, all.normals, summary.box);
@@ -126,14 +126,14 @@ class ObjectRefit : public Stumps {
   }
 
   /// Marks the subtrees that did not move rigidly. Returns whether there are any.
-  bool find_strays() {
+  bool find_deformed() {
     bool any = false;
-    strays_.assign(moved_.size(), 0);
+    deformed_.assign(moved_.size(), 0);
     for (std::size_t s = 0; s < moved_.size(); ++s) {
       const V3f now = layers_in(moved_[s].areas, moved_[s].box), then = record_.subtrees[s].layers;
       for (int axis = 0; axis < 3; ++axis)
-        if (!is_alike(now[axis], then[axis])) strays_[s] = 1;
-      any |= strays_[s] != 0;
+        if (!is_alike(now[axis], then[axis])) deformed_[s] = 1;
+      any |= deformed_[s] != 0;
     }
     return any;
   }
@@ -150,9 +150,9 @@ class ObjectRefit : public Stumps {
     return false;
   }
 
-  void measure_strays(const TextureIntegrals& integrals) {
+  void measure_deformed(const TextureIntegrals& integrals) {
     for_each_subtree([&](std::size_t s) {
-      if (!strays_[s]) return;
+      if (!deformed_[s]) return;
       KeptSubtree& kept = record_.subtrees[s];
       std::vector<std::uint32_t> node_of;
       const WideTree tree = wide_subtree(mesh_, object_, record_, kept.node, node_of);
@@ -169,7 +169,7 @@ class ObjectRefit : public Stumps {
   RefitRecord& record_;
   SubtreeRefit subtree_;
   std::vector<MovedPart> moved_;
-  std::vector<std::uint8_t> strays_;
+  std::vector<std::uint8_t> deformed_;
   std::vector<std::optional<NodeOpacity>> measured_;
 };
 

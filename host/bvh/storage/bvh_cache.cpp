@@ -122,7 +122,7 @@ CachedObject read_object(const std::string& path, const Checksum& key, const Sce
   cached.object.textured = {file.values<TexturedTriangle>(kTextured), file.keeper()};
   cached.object.primitives = {file.values<std::uint32_t>(kPrimitives), file.keeper()};
   if (records[0].part_count > DAPPLE_BVH_WIDTH || !is_sound(cached.object, scene)) {
-    throw Error(ErrorKind::input, path + ": no tree that rays could walk");
+    throw Error(ErrorKind::input, path + ": not a valid BVH");
   }
   return cached;
 }

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "bvh/storage/textured_triangle.hpp"
+#include "scene/finite.hpp"
 
 namespace dapple {
 namespace {
@@ -88,11 +90,33 @@ bool primitives_are_sound(const FinishedObject& object) {
   return object.primitives.size() == 8 * (object.blocks.size() + object.segments.size());
 }
 
+bool is_share(float value) { return value >= 0.0f && value <= 1.0f; }
+
+bool box_is_sound(const Box3f& box) {
+  return box.isEmpty() || (is_finite(box.min) && is_finite(box.max));
+}
+
+/// What instances are placed with.
+bool summary_is_sound(const ObjectSummary& object) {
+  const NodeOpacity& opacity = object.opacity;
+  const auto& moments = opacity.normals.sum;
+  const V3f& pole = opacity.mass.pole;
+  return !object.box.isEmpty() && box_is_sound(object.box) &&
+         std::all_of(object.parts.begin(), object.parts.end(), box_is_sound) &&
+         std::any_of(object.parts.begin(), object.parts.end(),
+                     [](const Box3f& box) { return !box.isEmpty(); }) &&
+         is_share(opacity.axes.x) && is_share(opacity.axes.y) && is_share(opacity.axes.z) &&
+         is_share(opacity.clumping) && is_share(opacity.mass.concentration) &&
+         std::all_of(moments.begin(), moments.end(), [](float m) { return std::isfinite(m); }) &&
+         is_share(std::fabs(pole.x)) && is_share(std::fabs(pole.y)) && is_share(std::fabs(pole.z));
+}
+
 }  // namespace
 
 bool is_sound(const FinishedObject& object, const Scene& scene) {
-  return nodes_are_sound(object) && blocks_are_sound(object) && segments_are_sound(object) &&
-         textured_are_sound(object, scene) && primitives_are_sound(object);
+  return summary_is_sound(object) && nodes_are_sound(object) && blocks_are_sound(object) &&
+         segments_are_sound(object) && textured_are_sound(object, scene) &&
+         primitives_are_sound(object);
 }
 
 }  // namespace dapple

@@ -6,8 +6,9 @@
 
 namespace dapple {
 
-/// Whether every index is inside its array, children come after their parents, and the object's
-/// `stack` is what a traversal needs. Takes linear time; triangle blocks are checked in parallel.
+/// Whether every index is inside its array, children come after their parents, the object's `stack`
+/// is what a traversal needs, and its boxes and opacity can be placed. Takes linear time; triangle
+/// blocks are checked in parallel.
 bool is_sound(const FinishedObject& object, const Scene& scene);
 
 }  // namespace dapple

@@ -15,10 +15,6 @@ struct SurfaceColors {
   std::vector<uint> words;               ///< of surfaces
   std::vector<ColorMaterial> materials;  ///< as many as in the scene
   std::vector<uint> texels;              ///< textures and their mip levels
-
-  [[nodiscard]] std::size_t bytes() const {
-    return (words.size() + texels.size()) * sizeof(uint) + materials.size() * sizeof(ColorMaterial);
-  }
 };
 
 /// A checksum of all that colours depend on besides the BVH.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dapple/error.hpp"
 #include "scene/rect_axes.hpp"
 
 namespace dapple {
@@ -74,13 +75,24 @@ void store_disk(const Light& light, LightRecord& record) {
   record.area = std::numbers::pi_v<float> * light.radius * light.radius;
 }
 
-// LightRecord::kind of a light is its LightKind, but for parallelograms.
-static_assert(static_cast<uint>(LightKind::rect) == DAPPLE_LIGHT_RECT);
-static_assert(static_cast<uint>(LightKind::sphere) == DAPPLE_LIGHT_SPHERE);
-static_assert(static_cast<uint>(LightKind::sun) == DAPPLE_LIGHT_SUN);
-static_assert(static_cast<uint>(LightKind::mesh) == DAPPLE_LIGHT_MESH);
-static_assert(static_cast<uint>(LightKind::dome) == DAPPLE_LIGHT_DOME);
-static_assert(static_cast<uint>(LightKind::disk) == DAPPLE_LIGHT_DISK);
+/// LightRecord::kind, but for parallelograms: store_rect() finds these.
+uint kind_of(LightKind kind) {
+  switch (kind) {
+    case LightKind::rect:
+      return DAPPLE_LIGHT_RECT;
+    case LightKind::sphere:
+      return DAPPLE_LIGHT_SPHERE;
+    case LightKind::sun:
+      return DAPPLE_LIGHT_SUN;
+    case LightKind::mesh:
+      return DAPPLE_LIGHT_MESH;
+    case LightKind::dome:
+      return DAPPLE_LIGHT_DOME;
+    case LightKind::disk:
+      return DAPPLE_LIGHT_DISK;
+  }
+  throw Error(ErrorKind::failed, "a light of a kind that kernels do not know");
+}
 
 }  // namespace
 
@@ -90,7 +102,7 @@ void pack_lights(const Scene& scene, std::vector<LightRecord>& records,
   for (std::size_t index = 0; index < scene.lights.size(); ++index) {
     const Light& light = scene.lights[index];
     LightRecord record{};
-    record.kind = static_cast<uint>(light.kind);
+    record.kind = kind_of(light.kind);
     const int sequence = light.sequence >= 0 ? light.sequence : next_sequence;
     next_sequence = std::max(next_sequence, sequence + 1);
     record.sequence = static_cast<uint>(sequence);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
+#include <numeric>
 
 #include "device/upload/dome_upload.hpp"
 #include "device/upload/light_upload.hpp"
@@ -22,6 +24,11 @@ Buffer share(DeviceContext& context, const Array& data) {
 template <class Array>
 std::size_t bytes_of(const Array& data) {
   return data.size() * sizeof(data[0]);
+}
+
+/// Of buffers with these bytes.
+MemoryNeed need_of(std::initializer_list<std::size_t> buffers) {
+  return {std::accumulate(buffers.begin(), buffers.end(), std::size_t{0}), std::max(buffers)};
 }
 
 std::size_t bytes_of_all(const DeviceBuffers& b) {
@@ -94,16 +101,15 @@ DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh
   }
   DeviceContext& context = device.context();
   DeviceScene result;
-  result.bytes = bytes_of(bvh.nodes) + bytes_of(bvh.blocks) + bytes_of(bvh.segments) +
-                 bytes_of(bvh.textured) + bytes_of(bvh.instances) +
-                 bytes_of(buffers->material_records) + bytes_of(buffers->texel_data) +
-                 bytes_of(buffers->light_records) + bytes_of(buffers->emitter_triangles) +
-                 bytes_of(buffers->environment_data) + bytes_of(buffers->corner_normals) +
-                 buffers->colors.bytes();
-  check_memory(
-      device.info(),
-      {result.bytes, std::max({bytes_of(bvh.nodes), bytes_of(bvh.blocks), bytes_of(bvh.segments)})},
-      "needs");
+  const SurfaceColors& colors = buffers->colors;
+  const MemoryNeed need = need_of(
+      {bytes_of(bvh.nodes), bytes_of(bvh.blocks), bytes_of(bvh.segments), bytes_of(bvh.textured),
+       bytes_of(bvh.instances), bytes_of(buffers->material_records), bytes_of(buffers->texel_data),
+       bytes_of(buffers->light_records), bytes_of(buffers->emitter_triangles),
+       bytes_of(buffers->environment_data), bytes_of(buffers->corner_normals),
+       bytes_of(colors.words), bytes_of(colors.materials), bytes_of(colors.texels)});
+  check_memory(device.info(), need, "needs");
+  result.bytes = need.total;
   buffers->node_values = bvh.nodes;
   buffers->block_values = bvh.blocks;
   buffers->segment_values = bvh.segments;

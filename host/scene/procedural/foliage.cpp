@@ -178,7 +178,7 @@ Scene make_demo_scene(const ProceduralParameters&) {
   scene.cameras.push_back(look_at({1.5f, 2.6f, 14}, {0.6f, 3.85f, 0}, {0, 1, 0}, 0.62f));
   scene.cameras.back().name = "demo";
   scene.lights = daylight(scene.cameras.back());
-  add_ground_square(scene, 120);
+  add_ground_square(scene, 1200);
   return scene;
 }
 

@@ -11,8 +11,8 @@ namespace dapple {
 using std::sqrt;
 #endif
 
-/* The least transmittance of a node: larger opacities are stored as 1 - this. The largest stored
-   depth is -log(1e-4). */
+/* The least transmittance of a node: larger opacities count as 1 - this. Depths are stored as parts
+   of -log(1e-4). */
 #define DAPPLE_MIN_TRANSMITTANCE 1e-4f
 #define DAPPLE_MAX_DEPTH 9.2103404f
 
@@ -48,8 +48,8 @@ using std::sqrt;
    roundings. */
 #define DAPPLE_BEFORE_END 0.999999f
 
-/* Code c, 0 to 255, means (c / 255)^2 of the largest depth, so that small depths do not round to
-   0. */
+/* Code c, 0 to 254, means (c / 255)^2 of DAPPLE_MAX_DEPTH, so that small depths do not round to 0. Of
+   the codes of a child along x, 255 says that it is a wall: kernels/opacity/footprint.clh. */
 DAPPLE_FUNCTION float depth_decode(uchar code) {
   const float root = (float)code * (1.0f / 255.0f);
   return root * root * DAPPLE_MAX_DEPTH;

@@ -31,6 +31,8 @@ typedef struct TexturedTriangle {
 /* The code of vertex alpha 1. Alphas of 8-bit colours are multiples of 16. */
 #define DAPPLE_ALPHA_ONE 4080
 
+/* Indices of textured triangles are stored as floats. */
+#define DAPPLE_MAX_TEXTURED_TRIANGLES 0x1000000u
 #define DAPPLE_MAX_TEXTURED_MATERIALS 0x8000u
 
 /* A texel is 2^(code - bias) wide, in the object's units; code 0: the size is unknown. */

@@ -80,8 +80,8 @@ Box3f walk(const ObjectBvh& object, std::uint32_t index, std::size_t& count) {
     if (node.lower[0][slot] > node.upper[0][slot]) continue;
     Box3f child;
     if (node.inner_mask >> slot & 1) child = walk(object, node.child_base + inner++, count);
-    for (std::uint32_t i = bvh_leaf_begin(&node, slot);
-         i < bvh_leaf_end(node.leaf_end, slot); ++i, ++count) {
+    for (std::uint32_t i = bvh_leaf_begin(&node, slot); i < bvh_leaf_end(node.leaf_end, slot);
+         ++i, ++count) {
       const SegmentBlock& block = object.segments[bvh_block_index(bvh_block(node.prim_base, i))];
       child.extendBy(bounds(unpack_segment(block, i % 8)));
     }
@@ -123,6 +123,20 @@ TEST(Strands, OccludeWhatACapsuleOccludes) {
   const double disk = kPi * kRadius * kRadius, area = 9e-4;
   const double left = mean_transmittance(upright.trace(rays_down(0.03f, 200), Estimator::exact));
   EXPECT_NEAR((1 - left) * area, 0.3 * disk, 0.3 * disk * 5e-3);
+}
+
+// Rays within the angle of a tapering strand's tip: they see the half sphere at its thick end and
+// the disk behind that, pi r^2 (1 + cos) / 2. Many of them miss the cone.
+TEST(Strands, AreSeenFromTheirThickEndAsTheHalfSphereThere) {
+  constexpr float kThick = 0.1f, kSlant = 0.2f, kSide = 0.8f;
+  Mesh cone = strand({{0, 0, 0.1f}, {0, 0, -0.1f}});
+  cone.radii = {kThick, 0};
+  const SceneOnDevice scene(strand_scene(cone, 0.3f));
+  const double cosine = 1 / std::hypot(1.0, double{kSlant});
+  const double seen = kPi * kThick * kThick * (1 + cosine) / 2;
+  const double mean =
+      mean_transmittance(scene.trace(rays_down(kSide, 400, V3f(kSlant, 0, 0)), Estimator::exact));
+  EXPECT_NEAR((1 - mean) * kSide * kSide * cosine, 0.3 * seen, 0.3 * seen * 5e-3);
 }
 
 TEST(Strands, ASegmentHasTheMeanOpacityOfItsEnds) {
