@@ -13,6 +13,9 @@ namespace {
 /// Of a triangle in few placements, when the number of rays is given.
 constexpr int kMaxSamples = 64;
 
+/// How far single vertices of flat surroundings move towards the centres of their triangles.
+constexpr float kFromCorner = 1e-4f;
+
 }  // namespace
 
 SampleCounts sample_counts(int rays, std::size_t placements, bool at_vertex) {
@@ -104,21 +107,34 @@ void add_shading(const Mesh& mesh, std::size_t triangle, const std::array<float,
 
 namespace {
 
-/// For each group the smallest cosine between the normal of its sample and those of its triangles,
-/// at least kSteepest.
-std::vector<float> smallest_cosines(const SampledTriangles& of,
-                                    const std::vector<SurfaceSample>& of_group) {
+/// The triangles around a vertex group.
+struct Surroundings {
+  float cosine = 1;     ///< the smallest one between the normals of its sample and of a triangle
+  V3f inward{0, 0, 0};  ///< sum of the ways to the triangles' centres
+  float triangles = 0;
+  [[nodiscard]] bool are_flat() const { return cosine > 0.9999f; }
+};
+
+std::vector<Surroundings> surroundings_of(const SampledTriangles& of,
+                                          const std::vector<SurfaceSample>& of_group) {
   constexpr float kSteepest = 0.02f;
-  std::vector<float> cosines(of_group.size(), 1);
+  std::vector<Surroundings> all(of_group.size());
   for (std::size_t t = 0; t < of.mesh.primitive_count(); ++t) {
+    if (!has_area(of.mesh, t)) continue;
     const V3f facet = area_vector(of.mesh, t).normalized();
+    const std::uint32_t* corner = &of.mesh.indices[3 * t];
+    const std::vector<V3f>& positions = of.mesh.positions;
+    const V3f centre = (positions[corner[0]] + positions[corner[1]] + positions[corner[2]]) / 3.0f;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t group = of.groups.of_vertex[of.mesh.indices[3 * t + k]];
+      const std::uint32_t group = of.groups.of_vertex[corner[k]];
+      Surroundings& around = all[group];
       const float cosine = std::fabs(of_group[group].normal.normalized().dot(facet));
-      cosines[group] = std::min(cosines[group], std::max(cosine, kSteepest));
+      around.cosine = std::min(around.cosine, std::max(cosine, kSteepest));
+      around.inward += centre - positions[corner[k]];
+      around.triangles += 1;
     }
   }
-  return cosines;
+  return all;
 }
 
 }  // namespace
@@ -150,17 +166,21 @@ std::vector<SurfaceSample> sample_vertices(const SampledTriangles& of) {
       sample.place[0] = group;
     }
   }
-  const std::vector<float> slopes = smallest_cosines(of, of_group);
+  const std::vector<Surroundings> surroundings = surroundings_of(of, of_group);
   for (std::size_t group = 0; group < of_group.size(); ++group) {
     SurfaceSample& sample = of_group[group];
     const float length = sample.normal.length();
     if (!(length > 0) || !std::isfinite(length)) continue;
     sample.normal /= length;
-    if (slopes[group] < 1)  // rays start as far above each triangle, however steep
+    const Surroundings& around = surroundings[group];
+    // A corner may lie in another surface, such as a floor: its value is the limit from within.
+    if (around.are_flat() && around.triangles > 0)
+      sample.position += around.inward * (kFromCorner / around.triangles);
+    if (around.cosine < 1)  // rays start as far above each triangle, however steep
       for (int axis = 0; axis < 3; ++axis)
         sample.reach[axis] =
             std::max(sample.reach[axis], std::fabs(sample.position[axis]) / kTermsOfReach) /
-            slopes[group];
+            around.cosine;
     sample.weight[0] = 1;
     sample.is_on_plane = false;
     if (!is_smooth[group] || !(shading[group].length2() > 0)) continue;

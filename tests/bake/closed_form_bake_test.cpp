@@ -191,6 +191,31 @@ TEST(BakeClosedForm, AClosedBoxIsOpenOutsideAndDarkInside) {
   }
 }
 
+// The lower corners of its sides lie in the floor, which takes the lower half of their sky.
+TEST(BakeClosedForm, CornersInAFloorHaveTheLimitFromAbove) {
+  Mesh box;
+  append_grid(box, {-1, 0, 1}, {2, 0, 0}, {0, 2, 0}, 1, 0);
+  append_grid(box, {1, 0, -1}, {-2, 0, 0}, {0, 2, 0}, 1, 0);
+  append_grid(box, {1, 0, 1}, {0, 0, -2}, {0, 2, 0}, 1, 0);
+  append_grid(box, {-1, 0, -1}, {0, 0, 2}, {0, 2, 0}, 1, 0);
+  append_grid(box, {-1, 2, 1}, {2, 0, 0}, {0, 0, -2}, 1, 0);
+  Scene scene, floor;
+  for (Scene* one : {&scene, &floor}) one->materials.resize(1);
+  place(scene, box);
+  place(floor, square_mesh(2000, 0, 1, 0));
+  BakeOptions options;
+  options.at_vertices = true;
+  options.sides = BakeSides::front;
+  options.estimator = Estimator::exact;
+  options.rays = 4096;
+  options.target_error = 0;
+  const BakedMesh baked = bake(scene, options, {}, {floor}).meshes.at(0);
+  for (std::size_t v = 0; v < box.positions.size(); ++v) {
+    if (box.positions[v].y > 0) continue;
+    EXPECT_NEAR(baked.ao[v], 0.5, 0.02) << box.positions[v];
+  }
+}
+
 TEST(BakeClosedForm, TexelsUnderADiskHaveTheFormFactorOnItsAxis) {
   const Scene disk = make_procedural("scene:disk?radius=2&height=1&opacity=0.85");
   const Scene floor = scene_of(plane(0.02f, 1));

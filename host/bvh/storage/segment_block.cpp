@@ -44,8 +44,10 @@ void set_plane(schar (&codes)[3][8], unsigned lane, const V3f& normal) {
   }
 }
 
+/// Of a value that is positive at least 1: it must not vanish beside a much greater one.
 uchar code_of(float value, float greatest) {
-  return static_cast<uchar>(greatest > 0.0f ? std::lround(value / greatest * 255.0f) : 0);
+  if (!(value > 0.0f && greatest > 0.0f)) return 0;
+  return static_cast<uchar>(std::max(1l, std::lround(255.0f * std::sqrt(value / greatest))));
 }
 
 void set_lane(SegmentBlock& block, unsigned lane, const StrandSegment& segment) {
@@ -94,10 +96,10 @@ StrandSegment unpack_segment(const SegmentBlock& block, unsigned lane) {
   segment.point = {point(block.begin), point(block.end)};
   segment.plane = {plane(block.begin_plane), plane(block.end_plane)};
   const float radius = segment_radius_step(&block);
-  segment.radius = {static_cast<float>(block.begin_radius[lane]) * radius,
-                    static_cast<float>(block.end_radius[lane]) * radius};
+  segment.radius = {segment_radius(block.begin_radius[lane], radius),
+                    segment_radius(block.end_radius[lane], radius)};
   segment.cap = {(block.begin_caps >> lane & 1) != 0, (block.end_caps >> lane & 1) != 0};
-  segment.opacity = static_cast<float>(block.opacity_code[lane]) * segment_opacity_step(&block);
+  segment.opacity = segment_opacity_of(&block, lane);
   return segment;
 }
 

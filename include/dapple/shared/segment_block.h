@@ -23,8 +23,8 @@ typedef struct DAPPLE_CACHE_ALIGNED SegmentBlock {
   uchar begin_caps; /* bit l: segment l is the first of its strand */
   uchar end_caps;   /* bit l: segment l is the last of its strand */
   uchar spare;
-  float radius;       /* of code 255, metres in object space */
-  float opacity;      /* of code 255, [0,1] */
+  float radius;       /* of code 255, metres in object space; of code c (c / 255)^2 of it */
+  float opacity;      /* the same, [0,1] */
   ushort begin[3][8]; /* steps from the origin */
   ushort end[3][8];
   schar begin_plane[3][8]; /* normals of any length, towards the end of the strand */
@@ -41,12 +41,23 @@ DAPPLE_FUNCTION float segment_step(DAPPLE_GLOBAL const SegmentBlock* block) {
   return dapple_bits_to_float((uint)block->exponent << 23);
 }
 
-/* Factors that decode radii and opacities. */
+/* Factors of the squares of the codes of radii and opacities: squares, so that a thin segment beside
+   a thick one has a radius. */
 DAPPLE_FUNCTION float segment_radius_step(DAPPLE_GLOBAL const SegmentBlock* block) {
-  return block->radius * (1.0f / 255.0f);
+  return block->radius * (1.0f / (255.0f * 255.0f));
 }
 DAPPLE_FUNCTION float segment_opacity_step(DAPPLE_GLOBAL const SegmentBlock* block) {
-  return block->opacity * (1.0f / 255.0f);
+  return block->opacity * (1.0f / (255.0f * 255.0f));
+}
+
+DAPPLE_FUNCTION float segment_radius(uchar code, float radius_step) {
+  return (float)code * (float)code * radius_step;
+}
+/* At most 1, in spite of rounding. */
+DAPPLE_FUNCTION float segment_opacity_of(DAPPLE_GLOBAL const SegmentBlock* block, uint lane) {
+  const float code = (float)block->opacity_code[lane];
+  const float opacity = code * code * segment_opacity_step(block);
+  return opacity < 1.0f ? opacity : 1.0f;
 }
 
 #ifndef __OPENCL_VERSION__

@@ -59,7 +59,9 @@ TEST(SegmentBlock, DecodedSegmentsAreThoseOfTheMeshToASmallPartOfTheirRadius) {
         // At most half a step. A step is at most 2 / 65535 of the block's size, which is less than
         // a strand's length.
         EXPECT_LT((decoded.point[end] - segments[lane].point[end]).length(), 2e-5f);
-        EXPECT_NEAR(decoded.radius[end], segments[lane].radius[end], 0.002f / 509);
+        // Half a step of the square root of the greatest one's share.
+        const float radius = segments[lane].radius[end];
+        EXPECT_NEAR(decoded.radius[end], radius, std::sqrt(1.01f * radius * 0.002f) / 255);
         EXPECT_GT(decoded.plane[end].normalized().dot(segments[lane].plane[end].normalized()),
                   0.9999f);
         EXPECT_EQ(decoded.cap[end], segments[lane].cap[end]);
@@ -139,6 +141,25 @@ TEST(Strands, AreSeenFromTheirThickEndAsTheHalfSphereThere) {
   EXPECT_NEAR((1 - mean) * kSide * kSide * cosine, 0.3 * seen, 0.3 * seen * 5e-3);
 }
 
+// All are in one block, whose codes of radii and opacities are those of the greatest.
+TEST(Strands, ThinAndFaintOnesDoNotVanishBesideThickAndOpaqueOnes) {
+  constexpr float kThin = 3e-4f, kFaint = 0.01f;
+  Mesh mesh = strand({{-0.2f, 0.3f, 0}, {0.2f, 0.3f, 0}}, 0.1f);
+  mesh.positions.insert(mesh.positions.end(), {{-0.2f, 0, 0}, {0.2f, 0, 0}});
+  mesh.radii.insert(mesh.radii.end(), {kThin, kThin});
+  mesh.indices.insert(mesh.indices.end(), {2, 3});
+  mesh.materials.push_back(0);
+  mesh.vertex_alpha = {1, 1, kFaint, kFaint};
+  Scene scene = strand_scene(mesh, 1);
+  scene.materials[0].uses_vertex_alpha = true;
+  const SceneOnDevice on_device(std::move(scene));
+  const std::vector<Ray> rays{make_ray({0, 0.9f * kThin, 1}, {0, 0, -1}),
+                              make_ray({0, 1.1f * kThin, 1}, {0, 0, -1})};
+  const auto found = on_device.trace(rays, Estimator::exact);
+  EXPECT_NEAR(found[0].transmittance, 1 - kFaint, 0.05f * kFaint);
+  EXPECT_EQ(found[1].transmittance, 1);
+}
+
 TEST(Strands, ASegmentHasTheMeanOpacityOfItsEnds) {
   Scene scene = strand_scene(strand({{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}}), 0.5f);
   scene.materials[0].uses_vertex_alpha = true;
@@ -146,9 +167,9 @@ TEST(Strands, ASegmentHasTheMeanOpacityOfItsEnds) {
   const SceneOnDevice on_device(std::move(scene));
   const auto found = on_device.trace(
       {make_ray({-0.5f, 0, 1}, {0, 0, -1}), make_ray({0.5f, 0, 1}, {0, 0, -1})}, Estimator::exact);
-  // Opacities of a block are 255ths of the largest one.
-  EXPECT_NEAR(found[0].transmittance, 1 - 0.5 * 0.4, 0.5 / 255);
-  EXPECT_NEAR(found[1].transmittance, 1 - 0.5 * 0.8, 0.5 / 255);
+  // Square roots of opacities are 255ths of that of the largest one in their block.
+  EXPECT_NEAR(found[0].transmittance, 1 - 0.5 * 0.4, std::sqrt(0.5 * 0.4 * 0.5 * 0.8) / 255);
+  EXPECT_NEAR(found[1].transmittance, 1 - 0.5 * 0.8, 1e-5);
 }
 
 TEST(Strands, AreCountedOnceWhereSegmentsJoin) {
