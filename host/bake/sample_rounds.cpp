@@ -87,7 +87,6 @@ bool SampleRounds::take(std::uint32_t samples, int rays) {
 // samples.
 bool SampleRounds::refine(float target, std::uint32_t max_samples) {
   std::vector<std::uint32_t> wanted(taken_.size());
-  sums_.keep_variance();
   for (;;) {
     sums_.choose_sides();
     set_variance_factors();

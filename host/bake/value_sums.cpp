@@ -74,12 +74,8 @@ double variance_of_rays(int rays) {
 class ValueSums::PooledVariance {
  public:
   /// Values are from 0 to `scale`.
-  /// `least`: an earlier one, or nullptr.
-  PooledVariance(float scale, int rays, bool several_placements, const PooledVariance* least)
-      : scale_(scale),
-        of_rays_(variance_of_rays(rays)),
-        several_placements_(several_placements),
-        least_(least) {}
+  PooledVariance(float scale, int rays, bool several_placements)
+      : scale_(scale), of_rays_(variance_of_rays(rays)), several_placements_(several_placements) {}
 
   void add(const Side& side) {
     const float freedom = side.count() - 1;
@@ -98,9 +94,8 @@ class ValueSums::PooledVariance {
 
   /// Of the samples of `side`, its own deviations included.
   [[nodiscard]] float of(const Side& side) const {
-    const float own = std::max(0.0f, side.count() - 1), mean = side.mean();
-    const float least = least_ ? least_->pooled(mean) : 0.0f;
-    return (kPooledFreedom * std::max(pooled(mean), least) + side.squared_deviations()) /
+    const float own = std::max(0.0f, side.count() - 1);
+    return (kPooledFreedom * pooled(side.mean()) + side.squared_deviations()) /
            (kPooledFreedom + own);
   }
 
@@ -148,7 +143,6 @@ class ValueSums::PooledVariance {
   float scale_;
   double of_rays_;
   bool several_placements_;
-  const PooledVariance* least_;
   std::array<Pool, kIntervals> of_interval_;
   Pool all_;
 };
@@ -214,12 +208,8 @@ ValueSums::PooledVariance ValueSums::pooled_variance() const {
   };
   return tbb::parallel_deterministic_reduce(
       tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce),
-      PooledVariance(scale(), rays_, several_placements_, first_variance_.get()), add_range,
+      PooledVariance(scale(), rays_, several_placements_), add_range,
       [](PooledVariance a, const PooledVariance& b) { return a += b; });
-}
-
-void ValueSums::keep_variance() {
-  first_variance_ = std::make_shared<const PooledVariance>(pooled_variance());
 }
 
 // The probability that the back is the brighter side, if the errors of both means are normal.

@@ -3,7 +3,6 @@
 // more samples it needs.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -74,11 +73,6 @@ class ValueSums {
   /// of places of similar value; relative to the largest unoccluded value so far (of AO: 1).
   [[nodiscard]] std::vector<float> squared_errors() const;
 
-  /// Keeps the variance of samples as a function of AO, to be called once all places have a few:
-  /// from then on it is the least one. Places whose first samples are equal by chance get no more,
-  /// and would be all that is left at their value.
-  void keep_variance();
-
   /// For each place, by what factor the number of its samples must grow for a standard error of
   /// `target`; 1: enough. Places that may be hidden need more than others.
   [[nodiscard]] std::vector<float> missing_samples(float target) const;
@@ -131,8 +125,7 @@ class ValueSums {
   std::vector<float> factors_;        ///< by place, of the variance of means; empty: 1
   int rays_ = kRaysPerSample;         ///< of a sample
   bool several_placements_ = false;
-  float largest_ = 0;                                     ///< the largest TracedSamples::largest
-  std::shared_ptr<const PooledVariance> first_variance_;  ///< keep_variance()
+  float largest_ = 0;  ///< the largest TracedSamples::largest
   std::size_t lights_;
   std::vector<V3f> front_light_, back_light_;  ///< weighted sums, the lights of a place together
 };

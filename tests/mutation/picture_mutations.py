@@ -269,9 +269,9 @@ MUTATIONS = [
         "square(source, u, v) > square(nearest[to], u, v)",
         r"^Dilation\."),
     Mutation(
-        "first-variance-of-bakes-forgotten", "host/bake/sample_rounds.cpp",
-        "  sums_.keep_variance();\n",
-        "",
+        "variance-of-bakes-by-one-interval", "host/bake/value_sums.cpp",
+        "kWeights{1, 0.5, 0.25}",
+        "kWeights{1, 0, 0}",
         r"^BakeTarget\."),
     Mutation(
         "bent-normals-count-by-scale", "host/bake/sample_tracer.cpp",
@@ -290,8 +290,8 @@ MUTATIONS = [
         r"^BiasCorrection\."),
     Mutation(
         "hidden-texels-stay-black", "host/bake/texture/texture_bake.cpp",
-        "  fill_hidden_texels(statistics);\n",
-        "",
+        "nearest_valid(known_, texture_.size, all, covered_)",
+        "nearest_valid(known_, texture_.size, 0 * all, covered_)",
         r"^BakeTexture\."),
     Mutation(
         "rays-of-bakes-forget-the-terms-of-sums", "host/render/shared_points.cpp",
