@@ -17,8 +17,10 @@
 #include "bake/occluder_scene.hpp"
 #include "bake/texture/texture_bake.hpp"
 #include "bake/texture/texture_layout.hpp"
+#include "bake/texture/texture_memory.hpp"
 #include "bake/vertex_bake.hpp"
 #include "dapple/error.hpp"
+#include "film/film_memory.hpp"
 #include "film/light_layers.hpp"
 #include "render/option_check.hpp"
 #include "render/stopwatch.hpp"
@@ -255,8 +257,10 @@ bool bake_vertices(const Scene& scene, const BakeOptions& options, MeshOccluders
 bool bake_texture(const Scene& scene, const BakeOptions& options, MeshOccluders& occluders,
                   const BakeRecords& records, BakeResult& result) {
   const std::vector<std::vector<V2f>>& uvs = options.texture_uvs;
-  TextureBake texture(scene, options,
-                      uvs.empty() ? make_layout(scene, options) : given_layout(scene, options));
+  TextureLayout layout = uvs.empty() ? make_layout(scene, options) : given_layout(scene, options);
+  const std::size_t lights = (options.lights ? *options.lights : scene.lights).size();
+  check_texture_memory(layout, options, lights, machine_bytes());
+  TextureBake texture(scene, options, std::move(layout));
   const double lost =
       uvs.empty() ? 0.0 : share_without_texels(scene, uvs, options.texture_size, options.placement);
   if (lost >= kNotedShare)

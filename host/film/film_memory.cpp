@@ -15,11 +15,11 @@ constexpr std::size_t kMatteChannels = 12;    // of crypto_object or crypto_mate
 constexpr std::size_t kMatteSlotBytes = 80;   // MatteSums, two slots
 constexpr std::size_t kDeepBytes = 200;       // DeepSums and DeepAlpha, eight depths
 
+}  // namespace
+
 double machine_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
-
-}  // namespace
 
 /// All values count twice. Sums are on the device and, unless it shares the host's memory, in the
 /// host's copy; channels are in the film and in the file that is being written.
@@ -53,10 +53,10 @@ void check_film_memory(const View& view, std::size_t light_count, const RenderOp
   throw Error(
       ErrorKind::usage,
       fmt::format("--width {} --height {}: the image takes {:.1f} GB with {} light{}, and this "
-                  "machine has {:.1f} GB; make it smaller, render parts with --crop, or fewer "
-                  "lights with --lights or --passes ao",
+                  "machine has {:.1f} GB; make it smaller, or render parts with --crop{}",
                   view.width, view.height, needs / kGigabyte, light_count,
-                  light_count == 1 ? "" : "s", has / kGigabyte));
+                  light_count == 1 ? "" : "s", has / kGigabyte,
+                  light_count == 0 ? "" : ", or fewer lights with --lights or --passes ao"));
 }
 
 void check_film_buffer(const DeviceInfo& device, const View& view, const std::vector<Light>& lights,

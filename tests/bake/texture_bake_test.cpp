@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "bake/texture/texture_memory.hpp"
 #include "dapple/bake.hpp"
+#include "dapple/error.hpp"
 #include "support/scene_on_device.hpp"
 
 namespace dapple {
@@ -67,6 +69,26 @@ TEST(BakeTexture, AClosedRoomIsDarkThoughPrefilteredRaysSeeALittle) {
   const BakeResult result = bake(room, options);
   EXPECT_GT(result.statistics.dark_texels, 0u);
   EXPECT_EQ(result.statistics.hidden_texels, 0u);
+}
+
+TEST(BakeTexture, MoreTexelsThanTheMachineHasMemoryForAreRefusedInBytes) {
+  TextureLayout layout;
+  layout.corners = {{V2f(0, 0), V2f(1, 0), V2f(0, 1)}, {V2f(0, 0), V2f(1, 0), V2f(1, 1)}};
+  BakeOptions options = into_texture(16384);
+  const double bytes = texture_bake_bytes(layout, options, 0);
+  EXPECT_NEAR(bytes / (16384.0 * 16384), 0.5 * 130 + 24, 1) << "half covered by each mesh";
+  EXPECT_NO_THROW(check_texture_memory(layout, options, 0, bytes));
+  EXPECT_NO_THROW(check_texture_memory(layout, options, 0, 0)) << "not known";
+  try {
+    check_texture_memory(layout, options, 0, 8e9);
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "--size 16384: the texture takes 24 GB while it is baked, and this machine has 8 GB; "
+              "make it smaller");
+  }
+  options.light = true;
+  EXPECT_GT(texture_bake_bytes(layout, options, 2), bytes);
 }
 
 TEST(BakeTexture, OfSeveralPosesTheFirstOneIsBaked) {
