@@ -164,6 +164,25 @@ float view_depth(const Camera& camera, const V3f& at) {
   return (at - camera.to_world.translation()).dot(forward);
 }
 
+/// Refuses numbers that no camera has. Files have none of these.
+void check_camera(const Camera& camera) {
+  const auto that = [&](bool holds, const char* what, float value) {
+    if (!holds)
+      throw Error(ErrorKind::input,
+                  fmt::format("camera \"{:.100}\" has the {} {}", camera.name, what, value));
+  };
+  if (camera.kind == Camera::Kind::perspective)
+    that(camera.fov_y > 0 && camera.fov_y < std::numbers::pi_v<float>, "field of view",
+         camera.fov_y);
+  else
+    that(std::isfinite(camera.half_height) && camera.half_height != 0, "half height",
+         camera.half_height);
+  that(camera.lens_radius >= 0 && std::isfinite(camera.lens_radius), "lens radius",
+       camera.lens_radius);
+  that(camera.focus_distance >= 0 && std::isfinite(camera.focus_distance), "focus distance",
+       camera.focus_distance);
+}
+
 /// Applies --aperture and --focus-distance. Without a focus distance the camera focuses on what it
 /// looks at, or on the middle of the scene.
 void set_lens(const Scene& scene, const RenderOptions& options, Camera& camera) {
@@ -188,6 +207,7 @@ View choose_view(const Scene& scene, const RenderOptions& options,
   if (options.fov_degrees > 0 && view.camera.kind == Camera::Kind::perspective) {
     view.camera.fov_y = radians(options.fov_degrees);
   }
+  check_camera(view.camera);
   set_lens(scene, options, view.camera);
   return view;
 }

@@ -129,6 +129,7 @@ std::vector<PointIrradiance> point_irradiance(const Device& device, const Device
                                               const QueryPoints& points,
                                               const IrradianceOptions& options,
                                               const RenderControl& control) {
+  check_uploaded(scene);
   const std::size_t count = points.positions.size();
   check(count, points.normals.size(), lights.size(), scene.buffers->light_records.size(),
         options.rays);

@@ -113,6 +113,7 @@ void check(const OcclusionOptions& options) {
 PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
                                const QueryPoints& points, const OcclusionOptions& options,
                                bool bent, const RenderControl& control) {
+  check_uploaded(scene);
   const std::size_t count = points.positions.size();
   if (count != points.normals.size()) {
     throw Error(ErrorKind::usage,

@@ -47,6 +47,7 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
                              std::span<const Ray> rays, Estimator estimator, float footprint,
                              std::size_t rays_per_point) {
   check_points(rays, rays_per_point);
+  check_uploaded(scene);
   DeviceContext& context = device.context();
   // Rays of a point packet share a light; with several lights each ray is traced singly.
   const bool one_light = std::all_of(rays.begin(), rays.end(),
@@ -74,6 +75,7 @@ std::vector<Occlusion> trace(const Device& device, const DeviceScene& scene,
 
 std::vector<SurfacePoint> closest_hits(const Device& device, const DeviceScene& scene,
                                        std::span<const Ray> rays) {
+  check_uploaded(scene);
   DeviceContext& context = device.context();
   const Queues queues = make_queues(context, std::min(kQueryRays, rays.size()), 1);
   std::vector<SurfacePoint> points(rays.size());

@@ -2,6 +2,7 @@
 // meshes with names. Out: numbers of names.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "dapple/scene.hpp"
@@ -22,6 +23,9 @@ std::string object_name(const Scene& scene, const Instance& instance) {
 }  // namespace
 
 void name_objects(Scene& scene) {
+  const bool is_merged = std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                                     [](const Mesh& mesh) { return !mesh.objects.empty(); });
+  if (is_merged) return;  // by merge_single_instances(), after they had names
   scene.objects.clear();
   std::map<std::string, int> numbers;
   for (Instance& instance : scene.instances) {

@@ -76,7 +76,11 @@ void check_mesh(const Scene& scene, std::size_t number) {
   check.length("colors", mesh.colors, vertices);
   check.length("vertex_alpha", mesh.vertex_alpha, vertices);
   check.length("objects", mesh.objects, mesh.materials.size());
+  check_indices(check, "object", mesh.objects, scene.objects.size());
 }
+
+/// Of radiances and colours.
+bool is_radiance(const V3f& v) { return is_finite(v) && std::min({v.x, v.y, v.z}) >= 0; }
 
 /// -1 is none.
 bool is_index(int index, std::size_t count) {
@@ -90,14 +94,18 @@ void check_material(const Scene& scene, std::size_t number) {
              material.alpha_texture);
   check.that(is_index(material.color_texture, scene.color_textures.size()),
              "has no colour texture {}", material.color_texture);
+  check.that(std::isfinite(material.alpha) && std::isfinite(material.alpha_cutoff),
+             "has the alpha {} and the cutoff {}", material.alpha, material.alpha_cutoff);
+  check.that(is_radiance(material.color), "has a colour that is negative or not finite");
 }
 
 template <class Image>
 void check_image(const Scene& scene, const char* what, std::size_t number, const Image& image,
                  std::size_t values, std::size_t channels) {
   const Check check(scene, what, number, image.name);
-  check.that(values == channels * image.width * image.height, "has {} values for {} x {} texels",
-             values, image.width, image.height);
+  const std::size_t texels = std::size_t{image.width} * image.height;
+  check.that(texels > 0 && values == channels * texels, "has {} values for {} x {} texels", values,
+             image.width, image.height);
 }
 
 void check_images(const Scene& scene) {
@@ -110,13 +118,15 @@ void check_images(const Scene& scene) {
   }
 }
 
-bool is_radiance(const V3f& v) { return is_finite(v) && std::min({v.x, v.y, v.z}) >= 0; }
-
 void check_light(const Scene& scene, std::size_t number) {
   const Light& light = scene.lights[number];
   const Check check(scene, "light", number, light.name);
   check.that(is_radiance(light.radiance), "has a radiance that is negative or not finite");
   const LightKind kind = light.kind;
+  check.that(std::isfinite(light.rotation), "has the rotation {}", light.rotation);
+  check.that(light.cos_outer >= -1 && light.cos_outer <= light.cos_inner && light.cos_inner <= 1,
+             "has a cone of the cosines {} inside and {} outside", light.cos_inner,
+             light.cos_outer);
   if (const Environment* dome = light.environment.get()) {
     check.that(
         !dome->radiance.empty() && dome->radiance.size() == std::size_t{dome->width} * dome->height,
@@ -144,9 +154,13 @@ void check_light(const Scene& scene, std::size_t number) {
 }  // namespace
 
 void check_scene(const Scene& scene) {
+  check_geometry(scene);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) check_light(scene, i);
+}
+
+void check_geometry(const Scene& scene) {
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) check_mesh(scene, i);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) check_material(scene, i);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) check_light(scene, i);
   check_images(scene);
   static const std::string no_name;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -154,6 +168,8 @@ void check_scene(const Scene& scene) {
     const Check check(scene, "instance", i, no_name);
     check.that(instance.mesh < scene.meshes.size(), "has no mesh {}", instance.mesh);
     check.that(is_index(instance.light, scene.lights.size()), "has no light {}", instance.light);
+    check.that(instance.object < 0 || is_index(instance.object, scene.objects.size()),
+               "has no object {}", instance.object);
   }
 }
 

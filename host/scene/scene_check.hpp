@@ -17,4 +17,7 @@ inline std::string source_name(const Scene& scene) {
 /// a mesh or an image have wrong lengths, or a light has numbers that no light has.
 void check_scene(const Scene& scene);
 
+/// The same without lights, which a BVH does not depend on.
+void check_geometry(const Scene& scene);
+
 }  // namespace dapple

@@ -29,7 +29,7 @@ enum class BakeSides : std::uint8_t {
 enum class BakeInstances : std::uint8_t {
   together,  ///< the mean over all placements, each in its surroundings
   /// The mesh without the rest of the scene and without occluders, as it is in object space:
-  /// `distance` is in the mesh's own units there, and `ground` is below the mesh.
+  /// `distance` is in the mesh's own units there; vertices and texels have no ground.
   alone,
 };
 

@@ -54,6 +54,19 @@ TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
          s.textures.push_back({"leaf", 2, 2, {1, 2, 3}});
        },
        "texture 0 \"leaf\" has 3 values for 2 x 2 texels"},
+      {[](Scene& s) {
+         s.textures.push_back({"empty", 0, 5, {}});
+       },
+       "texture 0 \"empty\" has 0 values for 0 x 5 texels"},
+      {[](Scene& s) {
+         s.meshes[0].objects = {0, 9};
+       },
+       "mesh 0 has the object 9, but there are 0"},
+      {[](Scene& s) { s.instances[0].object = 3; }, "instance 0 has no object 3"},
+      {[&](Scene& s) { s.materials[0].alpha = nan; },
+       "material 0 \"material_1.000000\" has the alpha nan"},
+      {[](Scene& s) { s.materials[0].color.x = -5; },
+       "material 0 \"material_1.000000\" has a colour"},
       {[&](Scene& s) { s.lights[0].radiance.y = nan; }, "light 0 \"sun\" has a radiance"},
       {[](Scene& s) { s.lights[0].radiance.x = -1; }, "light 0 \"sun\" has a radiance"},
       {[](Scene& s) { s.lights[0].direction = V3f(0); }, "light 0 \"sun\" has a direction"},
@@ -79,6 +92,49 @@ TEST(SceneCheck, WhatDoesNotFitTogetherIsNamed) {
           message_of([&] { (void)bake(scene, {}); }), message_of([&] { (void)build_bvh(scene); })})
       EXPECT_TRUE(message.starts_with(expected)) << message << " in place of " << expected;
   }
+}
+
+TEST(SceneCheck, UpdatesAreCheckedAsBuildsAre) {
+  Scene bad = lit_square();
+  bad.meshes[0].indices[4] = 7;
+  const std::string expected = "mesh 0 has the index 7, but there are 4";
+  EXPECT_EQ(message_of([&] { UpdatableBvh built(bad); }), expected);
+  UpdatableBvh bvh(lit_square());
+  EXPECT_EQ(message_of([&] { bvh.update(bad); }), expected);
+  bvh.update(lit_square());
+  EXPECT_EQ(bvh.bvh().statistics.triangles, 2u);
+}
+
+TEST(SceneCheck, CamerasThatSeeNothingAreRefused) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::pair<std::function<void(Camera&)>, std::string> cases[] = {
+      {[&](Camera& c) { c.fov_y = nan; }, "camera \"\" has the field of view nan"},
+      {[](Camera& c) { c.fov_y = 4; }, "camera \"\" has the field of view 4"},
+      {[](Camera& c) {
+         c.kind = Camera::Kind::orthographic;
+         c.half_height = 0;
+       },
+       "camera \"\" has the half height 0"},
+      {[](Camera& c) { c.lens_radius = -1; }, "camera \"\" has the lens radius -1"},
+      {[&](Camera& c) { c.focus_distance = nan; }, "camera \"\" has the focus distance nan"},
+  };
+  for (const auto& [change, expected] : cases) {
+    Scene scene = lit_square();
+    scene.cameras.resize(1);
+    change(scene.cameras[0]);
+    EXPECT_EQ(message_of([&] { (void)render(scene, {}); }), expected);
+  }
+}
+
+TEST(SceneCheck, ObjectsThatWereNamedBeforeMergingKeepTheirNames) {
+  Scene scene = lit_square();
+  place(scene, square_mesh(1, 1, 1, 0));
+  scene.meshes[0].name = "lower";
+  scene.meshes[1].name = "upper";
+  name_objects(scene);
+  merge_single_instances(scene);
+  name_objects(scene);
+  EXPECT_EQ(scene.objects, (std::vector<std::string>{"lower", "upper"}));
 }
 
 }  // namespace

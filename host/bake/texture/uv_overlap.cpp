@@ -1,5 +1,7 @@
 #include "bake/texture/uv_overlap.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -7,6 +9,9 @@
 
 #include "bake/texture/texel_cover.hpp"
 #include "bake/texture/texture_layout.hpp"
+#include "dapple/error.hpp"
+#include "render/option_check.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -137,6 +142,15 @@ UvOverlap find_overlap(const std::vector<std::vector<V2f>>& corners, std::uint32
 
 double uv_overlap(const Scene& scene, const std::vector<std::vector<V2f>>& uvs, std::uint32_t size,
                   BakeInstances placement) {
+  check_geometry(scene);
+  check_range("uv_overlap: size", double{1.0 * size}, 1, 16384);
+  const std::vector<bool> textured = textured_meshes(scene, placement);
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+    if (textured[m] && (m >= uvs.size() || uvs[m].size() != scene.meshes[m].positions.size()))
+      throw Error(
+          ErrorKind::usage,
+          fmt::format("uv_overlap: mesh {} has {} vertices and {} texture coordinates", m,
+                      scene.meshes[m].positions.size(), m < uvs.size() ? uvs[m].size() : 0));
   return find_overlap(scene, uvs, size, placement).share;
 }
 

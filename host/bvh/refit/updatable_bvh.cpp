@@ -13,6 +13,7 @@
 #include "bvh/refit/texel_sizes.hpp"
 #include "bvh/storage/object_key.hpp"
 #include "dapple/bvh.hpp"
+#include "scene/scene_check.hpp"
 
 namespace dapple {
 namespace {
@@ -72,6 +73,7 @@ struct UpdatableBvh::State {
 
 void UpdatableBvh::State::build(const Scene& scene, Motion motion,
                                 const std::string& cache_folder) {
+  check_geometry(scene);
   const std::size_t meshes = scene.meshes.size();
   bvh = {};
   arrays = {};
@@ -219,6 +221,7 @@ const SceneBvh& UpdatableBvh::bvh() const { return state_->bvh; }
 BvhUpdate UpdatableBvh::update(const Scene& moved) {
   const auto start = std::chrono::steady_clock::now();
   BvhUpdate update;
+  check_geometry(moved);
   std::vector<MeshKey> keys = keys_of(moved);
   try {
     if (keys.size() == state_->keys.size()) {

@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <numeric>
 
+#include "dapple/error.hpp"
 #include "device/upload/dome_upload.hpp"
 #include "device/upload/light_upload.hpp"
 #include "device/upload/memory_need.hpp"
@@ -85,6 +86,10 @@ void write_ranges(DeviceContext& context, const Buffer& buffer, const Array& dat
 }
 
 }  // namespace
+
+void check_uploaded(const DeviceScene& scene) {
+  if (!scene.buffers) throw Error(ErrorKind::usage, "there is no scene on the device: upload one");
+}
 
 DeviceScene upload(const Device& device, const Scene& scene, const SceneBvh& bvh,
                    const UploadOptions& options) {

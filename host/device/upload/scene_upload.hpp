@@ -41,4 +41,7 @@ struct DeviceBuffers {
   std::vector<float> environment_data;
 };
 
+/// Throws Error usage if no scene was uploaded, or if an Error of update() left none.
+void check_uploaded(const DeviceScene& scene);
+
 }  // namespace dapple

@@ -62,8 +62,9 @@ void DomeRows::check(std::size_t first_pixel, std::span<const V3f> pixels) {
   negative_ += negative;
 }
 
-/// A row of means over boxes of across_ x down_ pixels, weighted by solid angle. Columns and rows
-/// that do not fill a box belong to the last box. `pixels`: from the first row of the boxes on.
+/// A row of means over boxes of equal width and of down_ rows, weighted by solid angle. Rows that
+/// do not fill a box belong to the last one, at the nadir. `pixels`: from the first row of the
+/// boxes on.
 void DomeRows::average(std::uint32_t row, const V3f* pixels) {
   std::vector<V3d> sums(result_.width, V3d(0.0));
   std::vector<double> weights(result_.width, 0.0);
@@ -71,11 +72,19 @@ void DomeRows::average(std::uint32_t row, const V3f* pixels) {
   const std::uint32_t end = row + 1 == result_.height ? height_ : first + down_;
   for (std::uint32_t y = first; y < end; ++y) {
     const double weight = texel_solid_angle(width_, height_, y);
+    const V3f* pixel = pixels + std::size_t{y - first} * width_;
     for (std::uint32_t at = 0; at < result_.width; ++at) {
-      const std::uint32_t x_end = at + 1 == result_.width ? width_ : (at + 1) * across_;
-      for (std::uint32_t x = at * across_; x < x_end; ++x) {
-        sums[at] += V3d(not_negative(pixels[std::size_t{y - first} * width_ + x])) * weight;
-        weights[at] += weight;
+      // Coordinates in parts of a pixel, of which there are as many as texels in a row.
+      const std::uint64_t parts = result_.width, begin = std::uint64_t{at} * width_;
+      const std::uint64_t box_end = begin + width_;
+      for (std::uint64_t x = begin / parts; x * parts < box_end; ++x) {
+        const std::uint64_t inside =
+            std::min(box_end, (x + 1) * parts) - std::max(begin, x * parts);
+        const double part = inside == parts
+                                ? weight
+                                : weight * static_cast<double>(inside) / static_cast<double>(parts);
+        sums[at] += V3d(not_negative(pixel[x])) * part;
+        weights[at] += part;
       }
     }
   }

@@ -56,6 +56,20 @@ TEST(DomeRows, RowsOfTheResultAreMeansWeightedBySolidAngle) {
   }
 }
 
+// 5,000 columns become 1,666: a sun of one pixel is as bright wherever it stands.
+TEST(DomeRows, ABrightPixelKeepsItsEnergyInEveryColumn) {
+  constexpr std::uint32_t kColumns = 5000, kRows = 3;
+  for (const std::uint32_t column : {0u, 1u, 2u, 3u, 2500u, 4997u, 4998u, 4999u}) {
+    std::vector<V3f> pixels(std::size_t{kColumns} * kRows, V3f(0, 0, 0));
+    pixels[kColumns + column] = V3f(1000, 0, 0);
+    const Environment image = added(pixels, kColumns, kRows, 1);
+    double sum = 0;
+    for (std::uint32_t x = 0; x < image.width; ++x)
+      sum += double{texel(image, x, 1).x} / image.width;
+    EXPECT_NEAR(sum, 1000.0 / kColumns, 1e-5) << column;
+  }
+}
+
 TEST(DomeRows, TheResultDoesNotDependOnTheStrips) {
   for (const auto& [width, height] : {std::pair{3u, 2051u}, {5000u, 7u}, {4u, 2u}, {3u, 2049u}}) {
     const std::vector<V3f> pixels = random_image(width, height);
