@@ -105,6 +105,18 @@ TEST(SceneCheck, UpdatesAreCheckedAsBuildsAre) {
   EXPECT_EQ(bvh.bvh().statistics.triangles, 2u);
 }
 
+TEST(SceneCheck, PlacesThatAreNotFiniteAreRefusedWhereNothingDropsThem) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  Scene scene = lit_square();
+  scene.instances[0].to_world[3][1] = infinity;
+  EXPECT_EQ(message_of([&] { (void)build_bvh(scene); }),
+            "the scene: instance 0 has a place that is not finite");
+  scene = lit_square();
+  scene.meshes[0].positions[2].x = infinity;
+  EXPECT_EQ(message_of([&] { (void)build_bvh(scene); }),
+            "mesh \"\" has vertices that are not finite");
+}
+
 TEST(SceneCheck, CamerasThatSeeNothingAreRefused) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::pair<std::function<void(Camera&)>, std::string> cases[] = {

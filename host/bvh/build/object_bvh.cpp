@@ -1,5 +1,6 @@
 #include "bvh/build/object_bvh.hpp"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -16,6 +17,8 @@
 #include "bvh/opacity/closed_surface.hpp"
 #include "bvh/opacity/wall.hpp"
 #include "bvh/storage/packed_strands.hpp"
+#include "dapple/error.hpp"
+#include "scene/finite.hpp"
 
 namespace dapple {
 namespace {
@@ -218,11 +221,15 @@ LargeVector<BvhNode> pack_nodes(const WideTree& tree) {
 
 namespace {
 
-/// Fills the summary and the nodes of an object whose tree is built.
-void summarize(BuiltObject& built) {
+/// Fills the summary and the nodes of an object whose tree is built. Readers and
+/// merge_single_instances() drop triangles whose vertices are not finite; other callers may not.
+void summarize(BuiltObject& built, const Mesh& mesh) {
   ObjectBvh& object = built.object;
   const WideTree& tree = built.tree;
   object.box = tree.nodes[0].box;
+  if (!is_finite(object.box.min) || !is_finite(object.box.max))
+    throw Error(ErrorKind::input,
+                fmt::format("mesh \"{:.100}\" has vertices that are not finite", mesh.name));
   for (const WideChild& child : tree.children_of(tree.nodes[0])) object.parts.push_back(child.box);
   tbb::parallel_invoke([&] { object.nodes = pack_nodes(tree); },
                        [&] { object.stack = stack_needed(tree); },
@@ -246,7 +253,7 @@ void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
         layout = lay_out_blocks(built.tree);
         built.object.blocks.resize(layout.blocks);
       },
-      [&] { summarize(built); });
+      [&] { summarize(built, mesh); });
   pack_triangles(built, layout, boxes, mesh, opacities);
   built.closed = lanes_with(closed, built.object.primitives);
   built.interior = by_lane(interior, built.object.primitives);
@@ -260,7 +267,7 @@ void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
   PackedStrands packed = pack_strands(built.tree, boxes, mesh, joints, opacities);
   built.object.segments = std::move(packed.blocks);
   built.object.primitives = std::move(packed.primitives);
-  summarize(built);
+  summarize(built, mesh);
   for (std::size_t n = 0; n < built.object.nodes.size(); ++n) {
     built.object.nodes[n].prim_base = DAPPLE_SEGMENTS | packed.first_block[n];
   }

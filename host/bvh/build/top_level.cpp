@@ -11,6 +11,7 @@
 
 #include "bvh/opacity/quantize_opacity.hpp"
 #include "dapple/error.hpp"
+#include "scene/finite.hpp"
 #include "scene/scene_check.hpp"
 
 namespace dapple {
@@ -249,7 +250,13 @@ LargeVector<BvhNode> place_instances(SceneBvh& bvh, const Scene& scene,
     const Instance& instance = scene.instances[sources[i]];
     placed[i] = place(instance, objects[instance.mesh], offsets[instance.mesh].node, sources[i]);
   });
-  for (const PlacedInstance& instance : placed) bvh.bounds.extendBy(instance.box);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const Box3f& box = placed[i].box;
+    if (!is_finite(box.min) || !is_finite(box.max))
+      throw Error(ErrorKind::input, fmt::format("{}: instance {} has a place that is not finite",
+                                                source, sources[i]));
+    bvh.bounds.extendBy(box);
+  }
   statistics.instances = placed.size();
   const Instance& first = scene.instances.front();
   bvh.has_top = scene.instances.size() > 1 || first.to_world != M44f() || first.light >= 0;
