@@ -114,7 +114,7 @@ TEST(SceneCheck, PlacesThatAreNotFiniteAreRefusedWhereNothingDropsThem) {
   scene = lit_square();
   scene.meshes[0].positions[2].x = infinity;
   EXPECT_EQ(message_of([&] { (void)build_bvh(scene); }),
-            "mesh \"\" has vertices that are not finite");
+            "mesh \"\" has vertices at infinity");
 }
 
 TEST(SceneCheck, CamerasThatSeeNothingAreRefused) {

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -18,7 +20,6 @@
 #include "bvh/opacity/wall.hpp"
 #include "bvh/storage/packed_strands.hpp"
 #include "dapple/error.hpp"
-#include "scene/finite.hpp"
 
 namespace dapple {
 namespace {
@@ -83,10 +84,19 @@ std::vector<float> triangle_opacities(const Scene& scene, const Mesh& mesh, Obje
   return opacities;
 }
 
+bool is_infinite(const Box3f& box) {
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::fabs(box.min[axis]), std::fabs(box.max[axis])});
+  return largest > std::numeric_limits<float>::max();
+}
+
 /// Lists the primitives that are not fully transparent, in order, and sets `boxes`, one for each.
+/// Readers and merge_single_instances() drop those whose vertices are not finite; of other callers
+/// infinite ones are refused.
 template <class BoxOf>
-void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> boxes,
-                const BoxOf& box_of) {
+void fill_boxes(const Mesh& mesh, const std::vector<float>& opacities,
+                std::span<PrimitiveBox> boxes, const BoxOf& box_of) {
   std::vector<std::size_t> next((opacities.size() + kGrain - 1) / kGrain + 1, 0);
   for_each_block(opacities.size(), [&](std::size_t block, std::size_t begin, std::size_t end) {
     const auto transparent = std::count(&opacities[begin], opacities.data() + end, 0.0f);
@@ -98,7 +108,11 @@ void fill_boxes(const std::vector<float>& opacities, std::span<PrimitiveBox> box
     for (std::size_t t = begin; t < end; ++t) {
       if (opacities[t] == 0.0f) continue;
       const auto index = static_cast<std::uint32_t>(t);
-      boxes[to++] = primitive_box(box_of(index), index);
+      const Box3f box = box_of(index);
+      if (is_infinite(box))
+        throw Error(ErrorKind::input,
+                    fmt::format("mesh \"{:.100}\" has vertices at infinity", mesh.name));
+      boxes[to++] = primitive_box(box, index);
     }
   });
 }
@@ -221,15 +235,11 @@ LargeVector<BvhNode> pack_nodes(const WideTree& tree) {
 
 namespace {
 
-/// Fills the summary and the nodes of an object whose tree is built. Readers and
-/// merge_single_instances() drop triangles whose vertices are not finite; other callers may not.
-void summarize(BuiltObject& built, const Mesh& mesh) {
+/// Fills the summary and the nodes of an object whose tree is built.
+void summarize(BuiltObject& built) {
   ObjectBvh& object = built.object;
   const WideTree& tree = built.tree;
   object.box = tree.nodes[0].box;
-  if (!is_finite(object.box.min) || !is_finite(object.box.max))
-    throw Error(ErrorKind::input,
-                fmt::format("mesh \"{:.100}\" has vertices that are not finite", mesh.name));
   for (const WideChild& child : tree.children_of(tree.nodes[0])) object.parts.push_back(child.box);
   tbb::parallel_invoke([&] { object.nodes = pack_nodes(tree); },
                        [&] { object.stack = stack_needed(tree); },
@@ -238,7 +248,7 @@ void summarize(BuiltObject& built, const Mesh& mesh) {
 
 void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
                      std::span<PrimitiveBox> boxes, BuiltObject& built) {
-  fill_boxes(opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
+  fill_boxes(mesh, opacities, boxes, [&](std::uint32_t t) { return triangle_box(mesh, t); });
   std::vector<bool> closed;
   std::vector<float> interior;
   tbb::parallel_invoke([&] { built.tree = build_wide_tree(boxes, kLeafSize); },
@@ -253,7 +263,7 @@ void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
         layout = lay_out_blocks(built.tree);
         built.object.blocks.resize(layout.blocks);
       },
-      [&] { summarize(built, mesh); });
+      [&] { summarize(built); });
   pack_triangles(built, layout, boxes, mesh, opacities);
   built.closed = lanes_with(closed, built.object.primitives);
   built.interior = by_lane(interior, built.object.primitives);
@@ -262,12 +272,13 @@ void build_triangles(const Mesh& mesh, const std::vector<float>& opacities,
 void build_strands(const Mesh& mesh, const std::vector<float>& opacities,
                    std::span<PrimitiveBox> boxes, BuiltObject& built) {
   const StrandJoints joints(mesh);
-  fill_boxes(opacities, boxes, [&](std::uint32_t s) { return bounds(joints.segment(mesh, s)); });
+  fill_boxes(mesh, opacities, boxes,
+             [&](std::uint32_t s) { return bounds(joints.segment(mesh, s)); });
   built.tree = build_wide_tree(boxes, kLeafSize);
   PackedStrands packed = pack_strands(built.tree, boxes, mesh, joints, opacities);
   built.object.segments = std::move(packed.blocks);
   built.object.primitives = std::move(packed.primitives);
-  summarize(built, mesh);
+  summarize(built);
   for (std::size_t n = 0; n < built.object.nodes.size(); ++n) {
     built.object.nodes[n].prim_base = DAPPLE_SEGMENTS | packed.first_block[n];
   }
