@@ -21,10 +21,10 @@ struct SunDirection {
 };
 
 struct PointOptions {
-  bool ao = true;               ///< ambient occlusion about the normal
+  bool ao = true;  ///< ambient occlusion about the normal
   /// The same about +Y, whatever the normal, without `distance` and `falloff`.
   bool sky_view_factor = true;
-  bool bent = false;            ///< mean unoccluded direction
+  bool bent = false;  ///< mean unoccluded direction
   /// Zenith rings whose gap fraction is measured, [0, 90]; 5: those of the LAI-2200 (0-13, 16-28,
   /// 32-43, 47-58 and 61-74 degrees), others: of equal width from 0 to 90 degrees.
   int rings = 0;

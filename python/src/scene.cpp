@@ -39,8 +39,8 @@ SceneOnDevice load(const std::string& path, std::optional<double> time,
   return SceneOnDevice(load_scene(path, options));
 }
 
-/// One mesh with one instance. `known`: names and opacities of materials; `materials` says which one
-/// a triangle has.
+/// One mesh with one instance. `known`: names and opacities of materials; `materials` says which
+/// one a triangle has.
 SceneOnDevice from_arrays(const VectorsIn& vertices, const IndicesIn& triangles,
                           const std::vector<std::pair<std::string, float>>& known,
                           const IndicesIn& materials) {

@@ -113,8 +113,7 @@ TEST(SceneCheck, PlacesThatAreNotFiniteAreRefusedWhereNothingDropsThem) {
             "the scene: instance 0 has a place that is not finite");
   scene = lit_square();
   scene.meshes[0].positions[2].x = infinity;
-  EXPECT_EQ(message_of([&] { (void)build_bvh(scene); }),
-            "mesh \"\" has vertices at infinity");
+  EXPECT_EQ(message_of([&] { (void)build_bvh(scene); }), "mesh \"\" has vertices at infinity");
 }
 
 TEST(SceneCheck, CamerasThatSeeNothingAreRefused) {
