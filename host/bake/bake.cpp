@@ -357,11 +357,10 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (together) settings.emplace_back("device", s.device);
   BakeCheckpoint checkpoint(control, std::move(settings));
   s.seconds.prepare += total.seconds() - prepared_seconds(s);
-  const BakeOptions of_mesh = options;
   if (together) measure_bias(*together, pilot_meshes(scene, options), options, s);
   BakeBias bias(has_bias(options) ? double{options.report_bias} : 0.0);
   const BakeRecords records{progress, checkpoint, bias, s};
-  MeshOccluders mesh_occluders(scene, alone ? of_mesh : options, alone ? nullptr : &*together);
+  MeshOccluders mesh_occluders(scene, alone ? asked : options, alone ? nullptr : &*together);
   if (options.vertices)
     result.interrupted = !bake_vertices(scene, options, mesh_occluders, records, result);
   if (options.texture && !result.interrupted)

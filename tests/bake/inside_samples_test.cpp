@@ -301,6 +301,26 @@ TEST(InsideSamples, AMeshThatIsInsideAsAWholeStaysDark) {
   for (const float ao : result.meshes.at(0).ao) EXPECT_EQ(ao, 0);
 }
 
+TEST(InsideSamples, ChartsThatAreInsideAsAWholeStayBlackBesideOthers) {
+  Scene scene = scene_of(box_mesh({-0.1f, -0.5f, -0.1f}, {0.1f, -0.3f, 0.1f}));
+  place(scene, square_mesh(0.2f, 5, 1, 0));
+  BakeOptions options = few_rays();
+  options.vertices = false;
+  options.texture = true;
+  options.texture_size = 64;
+  options.margin = 64;
+  const BakeResult result = bake(scene, options, {}, {flat_box(-1)});
+  const std::vector<V2f>& corners = result.texture.layout.corners.at(0);
+  for (std::size_t corner = 0; corner < corners.size(); corner += 3) {
+    const V2f middle = (corners[corner] + corners[corner + 1] + corners[corner + 2]) * (64.0f / 3);
+    EXPECT_EQ(result.texture.ao.at(static_cast<std::size_t>(middle.y) * 64 +
+                                   static_cast<std::size_t>(middle.x)),
+              0.0f)
+        << corner;
+  }
+  EXPECT_EQ(result.statistics.hidden_texels, 0u) << "none has another's value";
+}
+
 TEST(InsideSamples, InAClosedRoomAreNone) {
   Mesh room = box_mesh({-2, -2, -2}, {2, 2, 2});
   turn(room);

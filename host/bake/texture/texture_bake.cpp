@@ -216,9 +216,9 @@ void TextureBake::join_all_seams() {
   for (V3f& bent : texture_.bent) bent.normalize();
 }
 
-void TextureBake::take_nearest(const std::vector<std::uint32_t>& nearest, bool only_covered) {
+void TextureBake::take_nearest(const std::vector<std::uint32_t>& nearest, bool covered) {
   for (std::size_t i = 0; i < known_.size(); ++i) {
-    if (known_[i] || nearest[i] == kNoTexel || (only_covered && !covered_[i])) continue;
+    if (known_[i] || nearest[i] == kNoTexel || covered_[i] != covered) continue;
     texture_.ao[i] = texture_.ao[nearest[i]];
     if (options_.bent) texture_.bent[i] = texture_.bent[nearest[i]];
     for (std::vector<V3f>& light : texture_.light) light[i] = light[nearest[i]];

@@ -21,9 +21,9 @@ class TextureBake {
   BakedTexture finish(BakeStatistics& statistics);
 
  private:
-  /// Texels without a value take that of the one that `nearest` names; `only_covered`: if triangles
-  /// cover them.
-  void take_nearest(const std::vector<std::uint32_t>& nearest, bool only_covered);
+  /// Texels without a value take that of the one that `nearest` names: those that triangles cover,
+  /// or the others.
+  void take_nearest(const std::vector<std::uint32_t>& nearest, bool covered);
   /// Texels inside closed geometry take the nearest value of their charts. Charts that lie inside
   /// as a whole are never seen, and stay black.
   void fill_hidden_texels(BakeStatistics& statistics);

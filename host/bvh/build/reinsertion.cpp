@@ -20,7 +20,7 @@ constexpr unsigned kDeepest = 64;
 /// Maximum number of nodes that the searches of a round may look at below the siblings of
 /// ancestors, divided by the number of nodes. Where boxes overlap, a subtree fits nearly
 /// everywhere, and a search visits many nodes. In plants a search visits fewer than fifty.
-constexpr std::size_t kLooksPerNode = 64;
+constexpr std::size_t kEvaluationsPerNode = 64;
 
 /// A binary node with a link to its parent, in one cache line. Node 0 is the root; as a child, 0
 /// means none.
@@ -50,7 +50,7 @@ struct Candidate {
 
 /// The remaining effort of the searches, and their working memory.
 struct Effort {
-  std::size_t looks = 0;
+  std::size_t evaluations = 0;
   std::vector<Candidate> pending;
 };
 
@@ -86,11 +86,11 @@ struct Search {
     if (!goes_below(top, below)) return;
     std::vector<Candidate>& pending = effort.pending;
     pending.assign(1, {top, below});
-    while (!pending.empty() && effort.looks > 1) {
+    while (!pending.empty() && effort.evaluations > 1) {
       const Candidate at = pending.back();
       pending.pop_back();
       if (is_pruned(at.gain)) continue;
-      effort.looks -= 2;
+      effort.evaluations -= 2;
       Candidate first{nodes[at.node].child[0], 0}, second{nodes[at.node].child[1], 0};
       first.gain = evaluate(first.node, at.gain);
       second.gain = evaluate(second.node, at.gain);
@@ -146,9 +146,9 @@ class Reinsertion {
   }
 
   void round() {
-    effort_.looks = kLooksPerNode * nodes_.size();
+    effort_.evaluations = kEvaluationsPerNode * nodes_.size();
     for (const std::uint32_t node : by_area()) {
-      if (too_deep_ || effort_.looks <= 1) return;
+      if (too_deep_ || effort_.evaluations <= 1) return;
       if (nodes_[node].parent == 0) continue;
       const Insertion insertion = find_insertion(nodes_.data(), node, effort_);
       if (insertion.node != 0) move(node, insertion.node);

@@ -23,28 +23,28 @@ CheapestNodes::CheapestNodes(std::span<const BinaryNode> tree, std::uint32_t lea
 CheapestNodes::CollapseCosts CheapestNodes::costs_of(const BinaryNode& node,
                                                      const CollapseCosts& left,
                                                      const CollapseCosts& right) const {
-  CollapseCosts ways;
-  ways.cost.fill(std::numeric_limits<float>::infinity());
-  ways.left_children.fill(1);  // also valid if areas are infinite
+  CollapseCosts found;
+  found.cost.fill(std::numeric_limits<float>::infinity());
+  found.left_children.fill(1);  // also valid if areas are infinite
   const unsigned max_children = std::min<unsigned>(node.count, DAPPLE_BVH_WIDTH);
   for (unsigned children = 2; children <= max_children; ++children) {
     for (unsigned on_left = 1; on_left < children; ++on_left) {
       const float cost = left.cost[on_left - 1] + right.cost[children - on_left - 1];
-      if (cost >= ways.cost[children - 1]) continue;
-      ways.cost[children - 1] = cost;
-      ways.left_children[children - 1] = static_cast<std::uint8_t>(on_left);
+      if (cost >= found.cost[children - 1]) continue;
+      found.cost[children - 1] = cost;
+      found.left_children[children - 1] = static_cast<std::uint8_t>(on_left);
     }
   }
   // A subtree may have fewer children than the maximum, but a node has at least two.
-  const float divided = ways.cost[max_children - 1];
-  ways.left_children[DAPPLE_BVH_WIDTH - 1] = ways.left_children[max_children - 1];
+  const float divided = found.cost[max_children - 1];
+  found.left_children[DAPPLE_BVH_WIDTH - 1] = found.left_children[max_children - 1];
   const float as_leaf = node.count <= leaf_size_ ? leaf_cost(node.area, node.count)
                                                  : std::numeric_limits<float>::infinity();
-  ways.cost[0] = std::min(as_leaf, divided + node.area);
-  ways.leaf = node.count <= leaf_size_ && as_leaf <= divided + node.area;
+  found.cost[0] = std::min(as_leaf, divided + node.area);
+  found.leaf = node.count <= leaf_size_ && as_leaf <= divided + node.area;
   for (unsigned children = 2; children < DAPPLE_BVH_WIDTH; ++children)
-    ways.cost[children - 1] = std::min(ways.cost[children - 1], ways.cost[children - 2]);
-  return ways;
+    found.cost[children - 1] = std::min(found.cost[children - 1], found.cost[children - 2]);
+  return found;
 }
 
 CheapestNodes::Children CheapestNodes::children_of(std::uint32_t node) const {

@@ -117,7 +117,7 @@ class Prefilter {
 
   Summary node(std::uint32_t index) {
     const WideNode& wide = tree_.nodes[index];
-    if (wide.child_count == 0) return task_.stumps->summary(index);
+    if (wide.child_count == 0) return task_.summaries->summary(index);
     const std::uint32_t own = task_.node_of.empty() ? index : task_.node_of[index];
     const auto children = tree_.children_of(wide);
     NodeCoverage coverage(wide.box);
@@ -157,7 +157,7 @@ class Prefilter {
     const WideNode& wide = tree_.nodes[child.first];
     const NodeOpacity* measured = nullptr;
     if (wide.child_count == 0) {
-      measured = task_.stumps->measured(child.first);
+      measured = task_.summaries->measured(child.first);
       if (!measured) {
         set_kept_opacity(object_.nodes[own], slot, task_.record->nodes[own], below.areas,
                          below.normals, child.box);

@@ -49,7 +49,7 @@ struct PrefilterTask {
   const WideTree& tree;
   std::span<const std::uint32_t> node_of;  ///< object's index of each tree node; empty: the same
   RefitRecord* record = nullptr;           ///< stores the opacities for refitting; may be null
-  const SubtreeSummaries* stumps = nullptr;
+  const SubtreeSummaries* summaries = nullptr;
 };
 
 /// Sets the opacities of all nodes below the root of the tree. Returns the summary of the root.

@@ -44,7 +44,8 @@ void set_plane(schar (&codes)[3][8], unsigned lane, const V3f& normal) {
   }
 }
 
-/// Of a value that is positive at least 1: it must not vanish beside a much greater one.
+/// The 8-bit code of a radius or an opacity. That of a positive value is at least 1: it must not
+/// vanish beside a much greater one.
 uchar code_of(float value, float greatest) {
   if (!(value > 0.0f && greatest > 0.0f)) return 0;
   return static_cast<uchar>(std::max(1l, std::lround(255.0f * std::sqrt(value / greatest))));
