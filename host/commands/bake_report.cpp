@@ -125,8 +125,9 @@ void print_summary(const BakeStatistics& s, const BakeSeconds& seconds, const st
   const std::size_t dark = s.dark_vertices + s.dark_texels, values = s.vertices + s.texels;
   if (static_cast<double>(dark) > kNotedDark * static_cast<double>(values))
     fmt::print(
-        "{} of {} {} see nothing: AO 0. In closed rooms --ao-distance limits what occludes\n", dark,
-        values, s.texels > 0 ? "texels" : "vertices");
+        "{} of {} {} see nothing: AO below 0.001. In closed rooms --ao-distance limits what "
+        "occludes\n",
+        dark, values, s.texels > 0 ? "texels" : "vertices");
   fmt::print("wrote {}\n", output);
 }
 
