@@ -3,6 +3,7 @@
    of their own (lights/dome.cl), as few scenes need them. */
 #include "occlusion/ao.cl"
 #include "occlusion/gather.cl"
+#include "occlusion/ray_sums.cl"
 #include "film/backs.cl"
 #include "film/compact.cl"
 #include "film/film.cl"

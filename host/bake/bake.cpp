@@ -183,6 +183,12 @@ void add_preparation(const OccluderScene& occluders, double seconds, BakeStatist
   s.device = occluders.device.info().name;
 }
 
+/// To be called once, when all is traced.
+void add_pass_seconds(const OccluderScene& occluders, BakeStatistics& s) {
+  for (const auto& [label, seconds] : occluders.device.context().pass_seconds())
+    s.pass_seconds[label] += seconds;
+}
+
 /// Traces against the whole scene, or against each mesh alone.
 class MeshOccluders {
  public:
@@ -195,6 +201,7 @@ class MeshOccluders {
     if (!together_) {
       const Stopwatch preparing;
       options_ = asked_;
+      add_alone(records.statistics);
       alone_.emplace(scene_of_mesh(scene_, mesh), options_, std::vector<Scene>{});
       add_preparation(*alone_, preparing.seconds(), records.statistics);
       measure_bias(
@@ -204,6 +211,11 @@ class MeshOccluders {
     }
     compared_.emplace(options_);
     return tracing_against(together_ ? *together_ : *alone_, options_, *compared_, records);
+  }
+
+  /// Adds the passes of the last mesh, if it was traced alone.
+  void add_alone(BakeStatistics& statistics) const {
+    if (alone_) add_pass_seconds(*alone_, statistics);
   }
 
   /// Of the last mesh.
@@ -378,6 +390,8 @@ BakeResult bake(const Scene& scene, const BakeOptions& asked, const RenderContro
   if (checkpoint.points_read() > 0)
     s.notes.push_back(fmt::format("went on from {}: {} of {} points", control.resume,
                                   checkpoint.points_read(), s.points));
+  if (together) add_pass_seconds(*together, s);
+  mesh_occluders.add_alone(s);
   s.seconds.total = total.seconds();
   s.seconds.trace = s.seconds.total - prepared_seconds(s);
   return result;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace dapple {
 namespace {
@@ -39,6 +40,16 @@ constexpr float kPooledFreedom = 4;
 constexpr float kRayFreedom = 8;
 
 }  // namespace
+
+PlacesOfParts::PlacesOfParts(const SmallParts& parts) : begin_(parts.count + 1) {
+  for (const std::uint32_t part : parts.of_place)
+    if (part != SmallParts::kLarge) ++begin_[part + 1];
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  places_.resize(begin_.back());
+  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::uint32_t place = 0; place < parts.of_place.size(); ++place)
+    if (parts.of_place[place] != SmallParts::kLarge) places_[next[parts.of_place[place]]++] = place;
+}
 
 void ValueSums::Side::add(float w, const SideValue& value) {
   weight += w;
@@ -92,6 +103,11 @@ class ValueSums::PooledVariance {
     return *this;
   }
 
+  /// To be called when all have been added, before of().
+  void pool() {
+    for (std::size_t i = 0; i < of_interval_.size(); ++i) around_[i] = around(i);
+  }
+
   /// Of the samples of `side`, its own deviations included.
   [[nodiscard]] float of(const Side& side) const {
     const float own = std::max(0.0f, side.count() - 1);
@@ -135,7 +151,7 @@ class ValueSums::PooledVariance {
     const double all =
         (all_.squares + double{kRayFreedom} * of_rays) / (all_.freedom + double{kRayFreedom});
     if (several_placements_) return static_cast<float>(all);
-    const Pool pool = around(interval(value));
+    const Pool& pool = around_[interval(value)];
     return static_cast<float>((pool.squares + double{kPooledFreedom} * all) /
                               (pool.freedom + double{kPooledFreedom}));
   }
@@ -144,12 +160,14 @@ class ValueSums::PooledVariance {
   double of_rays_;
   bool several_placements_;
   std::array<Pool, kIntervals> of_interval_;
+  std::array<Pool, kIntervals> around_;  ///< of each interval, its neighbours included
   Pool all_;
 };
 
 ValueSums::ValueSums(SmallParts parts, BakeSides sides, std::size_t lights)
     : sides_(sides),
       parts_(std::move(parts)),
+      places_of_part_(parts_),
       of_place_(parts_.of_place.size()),
       share_of_back_(of_place_.size(), 0.5f),
       lights_(lights),
@@ -206,10 +224,12 @@ ValueSums::PooledVariance ValueSums::pooled_variance() const {
     }
     return sum;
   };
-  return tbb::parallel_deterministic_reduce(
+  PooledVariance pooled = tbb::parallel_deterministic_reduce(
       tbb::blocked_range<std::size_t>(0, of_place_.size(), kPlacesAtOnce),
       PooledVariance(scale(), rays_, several_placements_), add_range,
       [](PooledVariance a, const PooledVariance& b) { return a += b; });
+  pooled.pool();
+  return pooled;
 }
 
 // The probability that the back is the brighter side, if the errors of both means are normal.
@@ -233,17 +253,18 @@ void ValueSums::BackMinusFront::add(const BothSides& values, const PooledVarianc
 void ValueSums::choose_sides() {
   if (sides_ == BakeSides::mean) return;
   const PooledVariance variance = pooled_variance();
-  std::vector<BackMinusFront> of_part(parts_.count);
-  for (std::size_t i = 0; i < of_place_.size(); ++i)
-    if (parts_.of_place[i] != SmallParts::kLarge)
-      of_part[parts_.of_place[i]].add(of_place_[i], variance);
-  for (BackMinusFront& part : of_part) part.square_error *= kSharedSamples;
+  tbb::parallel_for(std::size_t{0}, parts_.count, [&](std::size_t part) {
+    BackMinusFront of_part;
+    for (const std::uint32_t place : places_of_part_[part]) of_part.add(of_place_[place], variance);
+    of_part.square_error *= kSharedSamples;
+    const float share = of_part.share_of_back();
+    for (const std::uint32_t place : places_of_part_[part]) share_of_back_[place] = share;
+  });
   tbb::parallel_for(std::size_t{0}, share_of_back_.size(), [&](std::size_t i) {
+    if (parts_.of_place[i] != SmallParts::kLarge) return;
     BackMinusFront of_place;
-    if (parts_.of_place[i] == SmallParts::kLarge) of_place.add(of_place_[i], variance);
-    share_of_back_[i] = parts_.of_place[i] == SmallParts::kLarge
-                            ? of_place.share_of_back()
-                            : of_part[parts_.of_place[i]].share_of_back();
+    of_place.add(of_place_[i], variance);
+    share_of_back_[i] = of_place.share_of_back();
   });
 }
 

@@ -18,6 +18,18 @@ struct SmallParts {
   std::size_t count = 0;
 };
 
+/// The places of each small part, in ascending order.
+class PlacesOfParts {
+ public:
+  explicit PlacesOfParts(const SmallParts& parts);
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t part) const {
+    return std::span(places_).subspan(begin_[part], begin_[part + 1] - begin_[part]);
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_, places_;
+};
+
 /// The value of a place.
 struct PlaceValue {
   float ao = 0;
@@ -120,6 +132,7 @@ class ValueSums {
 
   BakeSides sides_;
   SmallParts parts_;
+  PlacesOfParts places_of_part_;
   std::vector<BothSides> of_place_;
   std::vector<float> share_of_back_;  ///< by place, [0,1]: the weight of its back
   std::vector<float> factors_;        ///< by place, of the variance of means; empty: 1

@@ -166,21 +166,22 @@ float view_depth(const Camera& camera, const V3f& at) {
 
 /// Refuses numbers that no camera has. Files have none of these.
 void check_camera(const Camera& camera) {
-  const auto that = [&](bool holds, const char* what, float value) {
+  const auto that = [&](bool holds, const char* what, float value, const char* range) {
     if (!holds)
-      throw Error(ErrorKind::input,
-                  fmt::format("camera \"{:.100}\" has the {} {}", camera.name, what, value));
+      throw Error(ErrorKind::input, fmt::format("camera \"{:.100}\" has the {} {}; it must be {}",
+                                                camera.name, what, value, range));
   };
+  const char *finite = "finite and not 0", *positive = "finite, 0 or more";
   if (camera.kind == Camera::Kind::perspective)
     that(camera.fov_y > 0 && camera.fov_y < std::numbers::pi_v<float>, "field of view",
-         camera.fov_y);
+         camera.fov_y, "above 0 and below pi radians");
   else
     that(std::isfinite(camera.half_height) && camera.half_height != 0, "half height",
-         camera.half_height);
+         camera.half_height, finite);
   that(camera.lens_radius >= 0 && std::isfinite(camera.lens_radius), "lens radius",
-       camera.lens_radius);
+       camera.lens_radius, positive);
   that(camera.focus_distance >= 0 && std::isfinite(camera.focus_distance), "focus distance",
-       camera.focus_distance);
+       camera.focus_distance, positive);
 }
 
 /// Applies --aperture and --focus-distance. Without a focus distance the camera focuses on what it

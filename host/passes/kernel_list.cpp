@@ -12,11 +12,17 @@ namespace dapple {
 
 std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   std::vector<KernelShape> kernels{
-      {kClosestHit, kRayGroup},     {kCompactHits, kScanItems},
-      {kResolveDome, kRayGroup},    {kResolveAo, kRayGroup},
-      {kResolveLight, kRayGroup},   {kFlipPoints, kRayGroup},
-      {kResolveSurface, kRayGroup}, {kGatherRays, kRayGroup},
-      {kCountBacks, kRayGroup},     {shading_kernel(context), kRayGroup},
+      {kClosestHit, kRayGroup},
+      {kCompactHits, kScanItems},
+      {kResolveDome, kRayGroup},
+      {kResolveAo, kRayGroup},
+      {kResolveLight, kRayGroup},
+      {kFlipPoints, kRayGroup},
+      {kResolveSurface, kRayGroup},
+      {kGatherRays, kRayGroup},
+      {kSumRays, kRayGroup},
+      {kCountBacks, kRayGroup},
+      {shading_kernel(context), kRayGroup},
   };
   const bool scalar = traces_scalar(context);
   const std::size_t generators = scalar ? kRayGroup : kRayGeneratorGroup;
@@ -78,11 +84,12 @@ std::vector<KernelName> point_kernels(const DeviceContext& context, const PointQ
     if (by_points) kernels.push_back(point_ao_kernel(by));
     if ((query.ao && !by_points) || query.bent || query.light || query.given_rays)
       kernels.push_back(occlusion_kernel(by, choose_packets(by, rays, RayOrder::any, context)));
-    if ((query.ao && !by_points) || query.bent) kernels.push_back(ao_ray_kernel(context));
+    if ((query.ao && !by_points) || query.bent)
+      kernels.insert(kernels.end(), {ao_ray_kernel(context), kSumRays});
   };
   add(query.estimator);
   if (query.measures_bias && query.estimator != Estimator::exact) add(Estimator::exact);
-  if (query.light) kernels.push_back(light_ray_kernel(context));
+  if (query.light) kernels.insert(kernels.end(), {light_ray_kernel(context), kSumRays});
   if (traces_scalar(context)) kernels.push_back(kOrderRays);
   return kernels;
 }

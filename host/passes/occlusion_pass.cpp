@@ -57,6 +57,18 @@ void gather_pass(DeviceContext& context, const Queues& queues, const Buffer& slo
                  kRayGroup);
 }
 
+std::size_t sums_per_point(std::size_t rays_per_point) {
+  return ceil_div<std::size_t>(rays_per_point, DAPPLE_SUMMED_RAYS);
+}
+
+void sum_rays_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+                   std::size_t points, std::size_t rays_per_point) {
+  context.launch(kSumRays, "sum rays", points * sums_per_point(rays_per_point),
+                 {queues.rays, queues.occlusions, sums, static_cast<uint>(points),
+                  static_cast<uint>(rays_per_point)},
+                 kRayGroup);
+}
+
 void occlusion_pass(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                     const std::string& label, Estimator estimator, const OcclusionParams& params,
                     RayOrder order) {

@@ -23,6 +23,7 @@ KernelName point_ao_kernel(Estimator estimator);
 /// The kernel that generates AO rays on this device.
 KernelName ao_ray_kernel(const DeviceContext& context);
 inline const KernelName kGatherRays{"gather_rays", "queue_kernels", {}};
+inline const KernelName kSumRays{"sum_rays", "queue_kernels", {}};
 inline const KernelName kOrderRays{"order_rays", "scalar/order_rays", {}};
 /// Work-items of a work-group of kOrderRays; DAPPLE_ORDER_GROUP.
 inline constexpr std::size_t kOrderGroup = 256;
@@ -42,6 +43,13 @@ void ao_ray_pass(DeviceContext& context, const Queues& queues, const AoParams& p
 /// rays of them, to those of `gathered`, from ray `first` on.
 void gather_pass(DeviceContext& context, const Queues& queues, const Buffer& slots,
                  const Queues& gathered, uint ray_count, uint rays_per_point, uint first);
+
+/// RaySums of each point whose rays are summed.
+std::size_t sums_per_point(std::size_t rays_per_point);
+
+/// Adds up `rays` and `occlusions` of points: sums_per_point() RaySums of each to `sums`.
+void sum_rays_pass(DeviceContext& context, const Queues& queues, const Buffer& sums,
+                   std::size_t points, std::size_t rays_per_point);
 
 /// Writes the transmittance of each ray in `rays` to `occlusions`. CPUs trace point packets if
 /// `params.rays_per_point` is large enough, else pixel packets; other devices trace single rays. A

@@ -45,9 +45,14 @@ std::vector<CodedPoint> code_points(std::span<const V3f> points) {
   return coded;
 }
 
-/// A stable radix sort; sorting by comparisons is slower (experiment 602).
+/// A stable radix sort; sorting by comparisons is slower (experiment 602) but for a few points.
 void sort_by_code(std::vector<CodedPoint>& points) {
   constexpr std::uint32_t kDigits = 1u << kDigitBits;
+  if (points.size() < kDigits / 4) {
+    std::stable_sort(points.begin(), points.end(),
+                     [](const CodedPoint& a, const CodedPoint& b) { return a.code < b.code; });
+    return;
+  }
   std::vector<CodedPoint> sorted(points.size());
   for (int shift = 0; shift < 3 * kAxisBits; shift += kDigitBits) {
     const auto digit = [shift](const CodedPoint& p) { return p.code >> shift & (kDigits - 1); };

@@ -1,10 +1,18 @@
 #include "passes/queues.hpp"
 
+#include <algorithm>
+
 #include "dapple/shared/pass_params.h"
 #include "dapple/shared/ray.h"
 #include "passes/ray_packets.hpp"
 
 namespace dapple {
+
+std::size_t query_points(const DeviceContext& context, std::size_t rays_per_point,
+                         std::size_t count) {
+  const std::size_t rays = traces_scalar(context) ? 4 * kQueryRays : kQueryRays;
+  return std::min(std::max<std::size_t>(1, rays / rays_per_point), count);
+}
 
 std::size_t hit_records(std::size_t samples) {
   return ceil_div<std::size_t>(samples, DAPPLE_HIT_BITS);

@@ -11,6 +11,11 @@ namespace dapple {
 /// Rays of one launch of queries at most, so that no launch trips a driver's watchdog.
 inline constexpr std::size_t kQueryRays = 1u << 18;
 
+/// Points of one launch: as kQueryRays allows, or four times as many where fewer rays do not fill
+/// the device; `count` at most.
+std::size_t query_points(const DeviceContext& context, std::size_t rays_per_point,
+                         std::size_t count);
+
 /// Work-items of a work-group of kernels that run one ray, pixel or hit record in each.
 inline constexpr std::size_t kRayGroup = 64;
 

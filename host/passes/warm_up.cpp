@@ -97,6 +97,8 @@ const std::map<std::string, Pass>& passes() {
        [](EmptyStage& s, const Variant&) {
          gather_pass(s.context, s.queues, s.slots, s.gathered, 0, 1, 0);
        }},
+      {"sum_rays",
+       [](EmptyStage& s, const Variant&) { sum_rays_pass(s.context, s.queues, s.slots, 0, 1); }},
       {"point_ao", warm_up_points},
       {"resolve_surface",
        [](EmptyStage& s, const Variant&) {

@@ -55,34 +55,27 @@ class DomeColor {
 /// Traces rays to one light from the points in the queue.
 class LightTracer {
  public:
-  LightTracer(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
-              const IrradianceOptions& options, bool shaded)
-      : context_(context), queues_(queues), scene_(scene), options_(options), shaded_(shaded) {}
+  /// `sums` has room for sums of the rays.
+  LightTracer(DeviceContext& context, const Queues& queues, const Buffer& sums,
+              const DeviceBuffers& scene, const IrradianceOptions& options, bool shaded)
+      : context_(context),
+        queues_(queues),
+        sums_(sums),
+        scene_(scene),
+        options_(options),
+        shaded_(shaded) {}
 
-  /// Adds to the values of the points `chosen`, which are in the queue in this order.
+  /// Sets the values of the points `chosen`, which are in the queue in this order.
   void trace(uint light, const Light& given, std::span<const std::uint32_t> chosen,
              PointIrradiance& result) {
-    const auto rays = static_cast<std::size_t>(options_.rays);
     run_passes(light, static_cast<uint>(chosen.size()));
-    std::vector<Occlusion> found(chosen.size() * rays);
-    context_.read(queues_.occlusions, found.data(), found.size() * sizeof(Occlusion));
-    const HostView view = context_.view(queues_.rays);
-    const std::span<const Ray> traced = view.values<Ray>();
+    const V3d scale = V3d(given.radiance) / static_cast<double>(options_.rays);
     const LightRecord& record = scene_.light_records[light];
-    const bool dome = record.kind == DAPPLE_LIGHT_DOME;
-    const DomeColor color(scene_, record);
+    const std::vector<Irradiance> found =
+        record.kind == DAPPLE_LIGHT_DOME ? of_dome(record, chosen.size()) : of_sums(chosen.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-      V3d seen(0, 0, 0), all(0, 0, 0);
-      for (std::size_t r = i * rays; r < (i + 1) * rays; ++r) {
-        if (!(traced[r].weight > 0)) continue;
-        const V3d value = V3d(dome ? color.towards(traced[r].direction) : V3f(1, 1, 1)) *
-                          double{traced[r].weight};
-        all += value;
-        seen += value * double{found[r].transmittance};
-      }
-      const V3d scale = V3d(given.radiance) / static_cast<double>(rays);
-      result.irradiance[chosen[i]] = V3f(seen * scale);
-      result.unoccluded[chosen[i]] = V3f(all * scale);
+      result.irradiance[chosen[i]] = V3f(found[i].seen * scale);
+      result.unoccluded[chosen[i]] = V3f(found[i].all * scale);
     }
   }
 
@@ -104,8 +97,46 @@ class LightTracer {
     occlusion_pass(context_, queues_, scene_, "light occlusion", options_.estimator, occlusion);
   }
 
+  /// Sums over the rays of a point, with occlusion and without.
+  struct Irradiance {
+    V3d seen{0, 0, 0}, all{0, 0, 0};
+  };
+
+  /// From the rays, which see different colours.
+  [[nodiscard]] std::vector<Irradiance> of_dome(const LightRecord& record, std::size_t points) {
+    const auto rays = static_cast<std::size_t>(options_.rays);
+    std::vector<Occlusion> found(points * rays);
+    context_.read(queues_.occlusions, found.data(), found.size() * sizeof(Occlusion));
+    const HostView view = context_.view(queues_.rays);
+    const std::span<const Ray> traced = view.values<Ray>();
+    const DomeColor color(scene_, record);
+    std::vector<Irradiance> sums(points);
+    for (std::size_t r = 0; r < found.size(); ++r) {
+      if (!(traced[r].weight > 0)) continue;
+      const V3d value = V3d(color.towards(traced[r].direction)) * double{traced[r].weight};
+      sums[r / rays].all += value;
+      sums[r / rays].seen += value * double{found[r].transmittance};
+    }
+    return sums;
+  }
+
+  [[nodiscard]] std::vector<Irradiance> of_sums(std::size_t points) {
+    const auto rays = static_cast<std::size_t>(options_.rays);
+    sum_rays_pass(context_, queues_, sums_, points, rays);
+    const HostView view = context_.view(sums_);
+    const std::span<const RaySums> found = view.values<RaySums>();
+    const std::size_t per_point = sums_per_point(rays);
+    std::vector<Irradiance> sums(points);
+    for (std::size_t k = 0; k < points * per_point; ++k) {
+      sums[k / per_point].all += V3d(double{found[k].weight});
+      sums[k / per_point].seen += V3d(double{found[k].seen});
+    }
+    return sums;
+  }
+
   DeviceContext& context_;
   const Queues& queues_;
+  const Buffer& sums_;
   const DeviceBuffers& scene_;
   const IrradianceOptions& options_;
   bool shaded_;  ///< some points lie on smooth surfaces
@@ -138,8 +169,9 @@ std::vector<PointIrradiance> point_irradiance(const Device& device, const Device
   if (count == 0 || lights.empty()) return result;
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
-  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), count);
+  const std::size_t slice = query_points(context, rays, count);
   Queues queues = make_queues(context, slice, rays);
+  const Buffer sums = context.allocate(slice * sums_per_point(rays) * sizeof(RaySums));
   std::vector<uint> active(slice);
   std::iota(active.begin(), active.end(), 0u);
   context.write(queues.active, active.data(), active.size() * sizeof(uint));
@@ -149,7 +181,7 @@ std::vector<PointIrradiance> point_irradiance(const Device& device, const Device
     const auto chosen = std::span(order).subspan(begin, std::min(slice, count - begin));
     const SharedPoints batch(context, points, chosen, scene.buffers->params);
     queues.points = batch.buffer();
-    LightTracer tracer(context, queues, *scene.buffers, options, !points.geometric.empty());
+    LightTracer tracer(context, queues, sums, *scene.buffers, options, !points.geometric.empty());
     for (uint l = 0; l < lights.size(); ++l) tracer.trace(l, lights[l], chosen, result[l]);
     queues.points = {};  // `batch` is destroyed here, and the buffer refers to its memory
   }

@@ -55,6 +55,18 @@ struct Results {
   bool shaded;          ///< some points lie on smooth surfaces
 };
 
+/// Of all rays of a point.
+struct PointSums {
+  double seen = 0;
+  V3d direction{0, 0, 0};
+  explicit PointSums(std::span<const RaySums> sums) {
+    for (const RaySums& sum : sums) {
+      seen += double{sum.seen};
+      direction += V3d(sum.direction[0], sum.direction[1], sum.direction[2]);
+    }
+  }
+};
+
 /// AO of the points in the queue by point_ao_pass(); rays stay on the device.
 void occlusion_at_once(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
                        const OcclusionOptions& options, const Results& results) {
@@ -65,37 +77,22 @@ void occlusion_at_once(DeviceContext& context, const Queues& queues, const Devic
   context.read(queues.occlusions, results.ao.data(), results.ao.size_bytes());
 }
 
-/// AO and bent normals of the points by rays in queues.
+/// AO and bent normals of the points by rays in queues; `sums` has room for their sums.
 void occlusion_in_passes(DeviceContext& context, const Queues& queues, const DeviceBuffers& scene,
-                         const OcclusionOptions& options, const Results& results) {
-  const std::span<float> ao = results.ao;
-  std::vector<uint> active(ao.size());
-  std::iota(active.begin(), active.end(), 0u);
-  context.write(queues.active, active.data(), active.size() * sizeof(uint));
-  ao_ray_pass(context, queues, ao_params(options, ao.size(), results.shaded));
+                         const OcclusionOptions& options, const Buffer& sums,
+                         const Results& results) {
+  const std::size_t points = results.ao.size(), rays = static_cast<std::size_t>(options.rays);
+  ao_ray_pass(context, queues, ao_params(options, points, results.shaded));
   occlusion_pass(context, queues, scene, "occlusion", options.estimator,
-                 occlusion_params(options, scene, ao.size()));
-  const auto rays = static_cast<std::size_t>(options.rays);
-  std::vector<Occlusion> found(ao.size() * rays);
-  context.read(queues.occlusions, found.data(), found.size() * sizeof(Occlusion));
-  HostView view;
-  if (!results.bent.empty() || results.shaded) view = context.view(queues.rays);
-  const std::span<const Ray> traced = view.values<Ray>();
-  for (std::size_t i = 0; i < found.size() && results.shaded; ++i)
-    found[i].transmittance *= traced[i].weight;
-  for (std::size_t i = 0; i < ao.size(); ++i) {
-    double sum = 0;
-    for (std::size_t r = 0; r < rays; ++r) sum += found[i * rays + r].transmittance;
-    ao[i] = static_cast<float>(sum / static_cast<double>(rays));
-  }
-  if (results.bent.empty()) return;
-  for (std::size_t i = 0; i < ao.size(); ++i) {
-    V3d sum(0, 0, 0);
-    for (std::size_t r = i * rays; r < (i + 1) * rays; ++r) {
-      const float* d = traced[r].direction;
-      sum += V3d(d[0], d[1], d[2]) * double{found[r].transmittance};
-    }
-    results.bent[i] = V3f(sum / static_cast<double>(rays));
+                 occlusion_params(options, scene, points));
+  sum_rays_pass(context, queues, sums, points, rays);
+  const HostView view = context.view(sums);
+  const std::span<const RaySums> found = view.values<RaySums>();
+  const std::size_t per_point = sums_per_point(rays);
+  for (std::size_t i = 0; i < points; ++i) {
+    const PointSums sum(found.subspan(i * per_point, per_point));
+    results.ao[i] = static_cast<float>(sum.seen / static_cast<double>(rays));
+    if (!results.bent.empty()) results.bent[i] = V3f(sum.direction / static_cast<double>(rays));
   }
 }
 
@@ -121,10 +118,17 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
   }
   DeviceContext& context = device.context();
   const auto rays = static_cast<std::size_t>(options.rays);
-  const std::size_t slice = std::min(std::max<std::size_t>(1, kQueryRays / rays), count);
+  const std::size_t slice = query_points(context, rays, count);
   const bool together = !bent && has_point_ao_pass(context, options.estimator, rays);
   Queues queues =
       together ? make_point_queues(context, slice, rays) : make_queues(context, slice, rays);
+  Buffer sums;
+  if (!together) {
+    sums = context.allocate(slice * sums_per_point(rays) * sizeof(RaySums));
+    std::vector<uint> active(slice);
+    std::iota(active.begin(), active.end(), 0u);
+    context.write(queues.active, active.data(), active.size() * sizeof(uint));
+  }
   const std::vector<std::uint32_t> order = order_along_curve(points.positions);
   PointOcclusion result{std::vector<float>(count), std::vector<V3f>(bent ? count : 0)};
   PointOcclusion found;
@@ -139,7 +143,7 @@ PointOcclusion point_occlusion(const Device& device, const DeviceScene& scene,
     if (together)
       occlusion_at_once(context, queues, *scene.buffers, options, results);
     else
-      occlusion_in_passes(context, queues, *scene.buffers, options, results);
+      occlusion_in_passes(context, queues, *scene.buffers, options, sums, results);
     for (std::size_t i = 0; i < chosen.size(); ++i) result.ao[chosen[i]] = found.ao[i];
     for (std::size_t i = 0; i < found.bent.size(); ++i) result.bent[chosen[i]] = found.bent[i];
     queues.points = {};  // `batch` is destroyed here, and the buffer refers to its memory

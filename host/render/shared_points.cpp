@@ -1,6 +1,7 @@
 #include "render/shared_points.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
@@ -49,15 +50,16 @@ void smooth(const V3f& geometric, const V3f& shift, SurfacePoint& point) {
 SharedPoints::SharedPoints(DeviceContext& context, const QueryPoints& points,
                            std::span<const std::uint32_t> chosen, const SceneParams& scene)
     : context_(context) {
-  points_.reserve(chosen.size());
-  for (const std::uint32_t i : chosen) {
+  points_.resize(chosen.size());
+  tbb::parallel_for(std::size_t{0}, chosen.size(), [&](std::size_t k) {
+    const std::uint32_t i = chosen[k];
     const bool is_smooth = !points.geometric.empty() && points.geometric[i].length2() > 0;
-    points_.push_back(surface_point(points.positions[i], points.normals[i],
-                                    is_smooth ? points.geometric[i] : points.normals[i],
-                                    points.reaches.empty() ? V3f(0, 0, 0) : points.reaches[i], i,
-                                    points.has_planes && scene.has_top == 0));
-    if (is_smooth) smooth(points.geometric[i], points.shifts[i], points_.back());
-  }
+    points_[k] = surface_point(points.positions[i], points.normals[i],
+                               is_smooth ? points.geometric[i] : points.normals[i],
+                               points.reaches.empty() ? V3f(0, 0, 0) : points.reaches[i], i,
+                               points.has_planes && scene.has_top == 0);
+    if (is_smooth) smooth(points.geometric[i], points.shifts[i], points_[k]);
+  });
 }
 
 void report_slice(const RenderControl& control, const char* name, std::size_t done,

@@ -121,6 +121,9 @@ struct BakeStatistics {
   struct {
     double prepare = 0, build = 0, upload = 0, kernel_build = 0, trace = 0, total = 0;
   } seconds;
+  /// Of the rays' passes, from the device's own clock, by name as in RenderStatistics; the host's
+  /// work is most of the rest of seconds.trace.
+  std::map<std::string, double> pass_seconds;
   std::size_t triangles = 0, vertices = 0, texels = 0, instances = 0, points = 0;
   std::uint64_t rays = 0;
   /// Values that have samples: not those of vertices that no triangle uses, nor of texels and

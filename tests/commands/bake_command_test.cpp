@@ -255,6 +255,11 @@ TEST_F(BakeCommand, AProceduralSceneIsBakedAndItsStatisticsAreWritten) {
   const json statistics = document("s.json");
   EXPECT_GT(statistics["rays"].get<double>(), 0);
   EXPECT_GT(statistics["vertices"].get<double>(), 0);
+  double passes = 0;
+  for (const auto& [pass, seconds] : statistics["pass_seconds"].items())
+    passes += seconds.get<double>();
+  EXPECT_GT(statistics["pass_seconds"]["occlusion"], 0);
+  EXPECT_LE(passes, statistics["seconds"]["trace"]);
   EXPECT_EQ(files_in_folder(), 2u) << "nothing else is left";
 }
 

@@ -38,6 +38,8 @@
   MEMBER(Ray, first_area) MEMBER(Ray, light) MEMBER(Ray, weight) MEMBER(Ray, key)            \
   STRUCT(Occlusion)                                                                          \
   MEMBER(Occlusion, transmittance) MEMBER(Occlusion, visits)                                 \
+  STRUCT(RaySums)                                                                            \
+  MEMBER(RaySums, weight) MEMBER(RaySums, seen) MEMBER(RaySums, direction)                   \
   STRUCT(SampleHits)                                                                         \
   MEMBER(SampleHits, hits) MEMBER(SampleHits, first_slot)                                    \
   MEMBER(SampleHits, visits) MEMBER(SampleHits, tests)                                       \

@@ -224,6 +224,11 @@ MUTATIONS = [
         "depth_decode(node->depth[1][slot]), depth_decode(node->depth[0][slot]),",
         r"^ScalarKernels\."),
     Mutation(
+        "sums-of-other-points-rays", "kernels/occlusion/ray_sums.cl",
+        "const uint end = min(first + DAPPLE_SUMMED_RAYS, (point + 1u) * rays_per_point);",
+        "const uint end = first + DAPPLE_SUMMED_RAYS;",
+        r"^RaySums\."),
+    Mutation(
         "scalar-falloff-ignored", "kernels/scalar/primitive_transmittance.clh",
         "  return opacity * powr(fmax(1.0f - t * params.inverse_distance, 0.0f), params.falloff);\n",
         "  return opacity;\n",

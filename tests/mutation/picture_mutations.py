@@ -189,6 +189,10 @@ MUTATIONS = [
         "if (exact.is_inside(i)) continue;", "",
         r"^(InsideSamples|BakeBias)\."),
     Mutation(
+        "inside-by-one-ray", "host/bake/inside/closed_geometry.cpp",
+        "std::all_of(rays->begin(), rays->end(), winds);", "true;",
+        r"^(ClosedGeometry|InsideSamples)\."),
+    Mutation(
         "meshes-by-what-was-compared", "host/bake/bake_bias.cpp",
         "const double weight = mesh.samples / mesh.compared;", "const double weight = 1;",
         r"^BakeBias\."),

@@ -119,15 +119,19 @@ TEST(SceneCheck, PlacesThatAreNotFiniteAreRefusedWhereNothingDropsThem) {
 TEST(SceneCheck, CamerasThatSeeNothingAreRefused) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::pair<std::function<void(Camera&)>, std::string> cases[] = {
-      {[&](Camera& c) { c.fov_y = nan; }, "camera \"\" has the field of view nan"},
-      {[](Camera& c) { c.fov_y = 4; }, "camera \"\" has the field of view 4"},
+      {[&](Camera& c) { c.fov_y = nan; },
+       "camera \"\" has the field of view nan; it must be above 0 and below pi radians"},
+      {[](Camera& c) { c.fov_y = 4; },
+       "camera \"\" has the field of view 4; it must be above 0 and below pi radians"},
       {[](Camera& c) {
          c.kind = Camera::Kind::orthographic;
          c.half_height = 0;
        },
-       "camera \"\" has the half height 0"},
-      {[](Camera& c) { c.lens_radius = -1; }, "camera \"\" has the lens radius -1"},
-      {[&](Camera& c) { c.focus_distance = nan; }, "camera \"\" has the focus distance nan"},
+       "camera \"\" has the half height 0; it must be finite and not 0"},
+      {[](Camera& c) { c.lens_radius = -1; },
+       "camera \"\" has the lens radius -1; it must be finite, 0 or more"},
+      {[&](Camera& c) { c.focus_distance = nan; },
+       "camera \"\" has the focus distance nan; it must be finite, 0 or more"},
   };
   for (const auto& [change, expected] : cases) {
     Scene scene = lit_square();

@@ -4,7 +4,7 @@
 
 namespace dapple {
 
-BoxTree::BoxTree(const std::vector<Box3f>& boxes) {
+BoxTree::BoxTree(std::span<const Box3f> boxes) {
   if (boxes.empty()) return;
   std::vector<V3f> centers;
   centers.reserve(boxes.size());

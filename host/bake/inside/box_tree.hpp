@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dapple/scene.hpp"
@@ -16,7 +17,7 @@ class BoxTree {
  public:
   BoxTree() = default;
   /// Boxes must not be empty. Linear.
-  explicit BoxTree(const std::vector<Box3f>& boxes);
+  explicit BoxTree(std::span<const Box3f> boxes);
 
   /// Calls visit(index) for each box for which overlaps(box) is true. `overlaps` must be true for a
   /// box that contains one for which it is.

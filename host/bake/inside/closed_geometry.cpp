@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "bake/inside/closed_parts.hpp"
@@ -15,25 +17,61 @@ namespace dapple {
 namespace {
 
 /// Rays from a point that lies inside; the first few decide for most others.
-constexpr int kRays = 16;
+constexpr std::size_t kRays = 16;
 
 /// Boxes are larger by so many of their coordinates, for those of triangles in a plane.
 constexpr float kMargin = 1e-6f;
 
 /// A ray from a point, in object space.
 struct RayFrom {
-  V3d origin, direction;
+  RayFrom() = default;
+  RayFrom(const V3d& o, const V3d& d)
+      : origin(o), direction(d), inverse(1 / d.x, 1 / d.y, 1 / d.z) {}
+  V3d origin, direction, inverse;
 };
 
-/// Direction `index` of kRays, on the side of `normal`: a Kronecker sequence on the sphere.
-V3f direction_towards(const V3f& normal, int index) {
+/// The ray's parameters within a box; it misses the box if enter > leave.
+struct Chord {
+  double enter = 0, leave = std::numeric_limits<double>::infinity();
+};
+
+/// By slabs.
+inline Chord chord(const RayFrom& ray, const Box3f& box) {
+  Chord chord;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = (double{box.min[axis]} - ray.origin[axis]) * ray.inverse[axis];
+    const double b = (double{box.max[axis]} - ray.origin[axis]) * ray.inverse[axis];
+    chord.enter = std::max(chord.enter, std::min(a, b));
+    chord.leave = std::min(chord.leave, std::max(a, b));
+  }
+  return chord;
+}
+
+bool overlaps(const RayFrom& ray, const Box3f& box) {
+  const Chord inside = chord(ray, box);
+  return inside.enter <= inside.leave;
+}
+
+/// Directions of rays: a Kronecker sequence on the sphere.
+std::array<V3f, kRays> spread_directions() {
   constexpr double kA = 0.7548776662466927, kB = 0.5698402909980532;  // as in texture_bake.cpp
   const auto fraction = [](double x) { return x - std::floor(x); };
-  const double z = 2 * fraction(0.3 + index * kA) - 1;
-  const double angle = 2 * std::numbers::pi * fraction(0.7 + index * kB);
-  const double r = std::sqrt(std::max(0.0, 1 - z * z));
-  const V3f direction(static_cast<float>(r * std::cos(angle)),
-                      static_cast<float>(r * std::sin(angle)), static_cast<float>(z));
+  std::array<V3f, kRays> directions;
+  for (std::size_t r = 0; r < kRays; ++r) {
+    const auto index = static_cast<double>(r);
+    const double z = 2 * fraction(0.3 + index * kA) - 1;
+    const double angle = 2 * std::numbers::pi * fraction(0.7 + index * kB);
+    const double radius = std::sqrt(std::max(0.0, 1 - z * z));
+    directions[r] = V3f(static_cast<float>(radius * std::cos(angle)),
+                        static_cast<float>(radius * std::sin(angle)), static_cast<float>(z));
+  }
+  return directions;
+}
+
+/// Direction `index` of kRays, on the side of `normal`.
+V3f direction_towards(const V3f& normal, std::size_t index) {
+  static const std::array<V3f, kRays> directions = spread_directions();
+  const V3f& direction = directions[index];
   return direction.dot(normal) < 0 ? -direction : direction;
 }
 
@@ -47,17 +85,30 @@ Box3f with_margin(Box3f box) {
   return box;
 }
 
-/// Whether the ray overlaps the box, by slabs.
-bool overlaps(const RayFrom& ray, const Box3f& box) {
-  double enter = 0, leave = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double d = ray.direction[axis];
-    const double a = (double{box.min[axis]} - ray.origin[axis]) / d;
-    const double b = (double{box.max[axis]} - ray.origin[axis]) / d;
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
+using Rays = std::array<RayFrom, kRays>;
+
+/// The rays from `origin`, in object space, on the side of `normal`.
+Rays rays_from(const V3f& origin, const V3f& normal, const M44f& to_object) {
+  Rays rays;
+  for (std::size_t r = 0; r < kRays; ++r) {
+    V3f direction;
+    to_object.multDirMatrix(direction_towards(normal, r), direction);
+    rays[r] = RayFrom(V3d(origin), V3d(direction));
   }
-  return enter <= leave;
+  return rays;
+}
+
+/// The ray that leaves the box first.
+std::size_t shortest_in(const Rays& rays, const Box3f& box) {
+  std::size_t shortest = 0;
+  double length = std::numeric_limits<double>::infinity();
+  for (std::size_t r = 0; r < kRays; ++r) {
+    const double leave = chord(rays[r], box).leave;
+    if (leave >= length) continue;
+    length = leave;
+    shortest = r;
+  }
+  return shortest;
 }
 
 /// 1: the ray leaves through the triangle, from its back to its front; -1: it enters; 0: it misses.
@@ -74,16 +125,12 @@ int crossing(const RayFrom& ray, const std::array<V3f, 3>& corners) {
   return distance < 0 ? -1 : 0;
 }
 
-/// How often a ray leaves parts, less how often it enters them.
-using Windings = std::vector<std::pair<std::uint32_t, int>>;
-
-void add(Windings& windings, std::uint32_t part, int crossing) {
-  const auto found = std::find_if(windings.begin(), windings.end(),
-                                  [part](const auto& entry) { return entry.first == part; });
-  if (found == windings.end())
-    windings.emplace_back(part, crossing);
-  else
-    found->second += crossing;
+/// How often the ray leaves the part that has these triangles, less how often it enters it.
+int winding(const BoxTree& tree, const std::array<V3f, 3>* triangles, const RayFrom& ray) {
+  int winding = 0;
+  tree.visit([&](const Box3f& box) { return overlaps(ray, box); },
+             [&](std::uint32_t triangle) { winding += crossing(ray, triangles[triangle]); });
+  return winding;
 }
 
 }  // namespace
@@ -104,22 +151,32 @@ ClosedGeometry::ClosedGeometry(Scene scene) {
 ClosedGeometry::Solids ClosedGeometry::solids_of(const Scene& scene, const Mesh& mesh) {
   const ClosedParts parts = closed_parts(mesh, opaque_triangles(scene, mesh));
   Solids solids;
-  solids.bounds.resize(parts.count);
-  std::vector<Box3f> boxes;
+  solids.parts.resize(parts.count);
+  for (const std::uint32_t part : parts.of_triangle)
+    if (part != ClosedParts::kOpen) ++solids.parts[part].end;
+  std::uint32_t end = 0;
+  for (Part& part : solids.parts) {
+    part.begin = end;
+    end += std::exchange(part.end, end);
+  }
+  solids.triangles.resize(end);
+  std::vector<Box3f> boxes(end);
   for (std::size_t t = 0; t < parts.of_triangle.size(); ++t) {
     if (parts.of_triangle[t] == ClosedParts::kOpen) continue;
-    std::array<V3f, 3>& corners = solids.triangles.emplace_back();
-    Box3f box;
+    Part& part = solids.parts[parts.of_triangle[t]];
     for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = mesh.positions[mesh.indices[3 * t + k]];
-      box.extendBy(corners[k]);
+      solids.triangles[part.end][k] = mesh.positions[mesh.indices[3 * t + k]];
+      boxes[part.end].extendBy(solids.triangles[part.end][k]);
     }
-    solids.parts.push_back(parts.of_triangle[t]);
-    boxes.push_back(with_margin(box));
-    solids.bounds[parts.of_triangle[t]].extendBy(boxes.back());
+    boxes[part.end] = with_margin(boxes[part.end]);
+    part.bounds.extendBy(boxes[part.end++]);
   }
-  solids.tree = BoxTree(boxes);
-  solids.tree_of_parts = BoxTree(solids.bounds);
+  std::vector<Box3f> bounds;
+  for (Part& part : solids.parts) {
+    bounds.push_back(part.bounds);
+    part.tree = BoxTree(std::span(boxes).subspan(part.begin, part.end - part.begin));
+  }
+  solids.tree_of_parts = BoxTree(bounds);
   return solids;
 }
 
@@ -143,43 +200,32 @@ void ClosedGeometry::prepare() {
   scene_ = {};
 }
 
-bool ClosedGeometry::surrounds(const Solids& solids, const M44f& to_object, const V3f& point,
-                               const V3f& normal) {
+// Most points lie outside, and one ray tells. The shortest meets the fewest triangles.
+bool ClosedGeometry::Solids::surrounds(const M44f& to_object, const V3f& point,
+                                       const V3f& normal) const {
   V3f origin;
   to_object.multVecMatrix(point, origin);
-  // Only parts around the point matter, and only as far as they reach.
-  std::vector<std::uint32_t> around;  // parts that wind around it on all rays so far
-  Box3f reach;
-  solids.tree_of_parts.visit([&](const Box3f& box) { return box.intersects(origin); },
-                             [&](std::uint32_t part) {
-                               around.push_back(part);
-                               reach.extendBy(solids.bounds[part]);
-                             });
-  for (int r = 0; r < kRays && !around.empty(); ++r) {
-    V3f direction;
-    to_object.multDirMatrix(direction_towards(normal, r), direction);
-    const RayFrom ray{V3d(origin), V3d(direction)};
-    Windings windings;
-    solids.tree.visit([&](const Box3f& box) { return reach.intersects(box) && overlaps(ray, box); },
-                      [&](std::uint32_t triangle) {
-                        const int side = crossing(ray, solids.triangles[triangle]);
-                        if (side != 0) add(windings, solids.parts[triangle], side);
+  std::optional<Rays> rays;
+  bool found = false;
+  tree_of_parts.visit([&](const Box3f& box) { return !found && box.intersects(origin); },
+                      [&](std::uint32_t i) {
+                        if (!rays) rays = rays_from(origin, normal, to_object);
+                        const Part& part = parts[i];
+                        const auto winds = [&](const RayFrom& ray) {
+                          return winding(part.tree, &triangles[part.begin], ray) > 0;
+                        };
+                        found = winds((*rays)[shortest_in(*rays, part.bounds)]) &&
+                                std::all_of(rays->begin(), rays->end(), winds);
                       });
-    std::vector<std::uint32_t> surrounding;
-    for (const auto& [part, winding] : windings)
-      if (winding > 0 && std::find(around.begin(), around.end(), part) != around.end())
-        surrounding.push_back(part);
-    around = std::move(surrounding);
-  }
-  return !around.empty();
+  return found;
 }
 
 bool ClosedGeometry::surrounds(const V3f& point, const V3f& normal) const {
   bool found = false;
   boxes_.visit([&](const Box3f& box) { return !found && box.intersects(point); },
                [&](std::uint32_t i) {
-                 found = found || surrounds(of_mesh_[placements_[i].mesh], placements_[i].to_object,
-                                            point, normal);
+                 found = of_mesh_[placements_[i].mesh].surrounds(placements_[i].to_object, point,
+                                                                 normal);
                });
   return found;
 }

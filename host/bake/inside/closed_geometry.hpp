@@ -26,13 +26,17 @@ class ClosedGeometry {
   [[nodiscard]] bool surrounds(const V3f& point, const V3f& normal) const;
 
  private:
+  struct Part {
+    std::uint32_t begin = 0, end = 0;  ///< in Solids::triangles
+    Box3f bounds;
+    BoxTree tree;  ///< of the triangles
+  };
   /// The closed parts of a mesh.
   struct Solids {
     std::vector<std::array<V3f, 3>> triangles;
-    std::vector<std::uint32_t> parts;  ///< of each triangle
-    BoxTree tree;                      ///< of the triangles
-    std::vector<Box3f> bounds;         ///< of each part
+    std::vector<Part> parts;
     BoxTree tree_of_parts;
+    [[nodiscard]] bool surrounds(const M44f& to_object, const V3f& point, const V3f& normal) const;
   };
   struct Placement {
     M44f to_object;
@@ -40,8 +44,6 @@ class ClosedGeometry {
   };
 
   static Solids solids_of(const Scene& scene, const Mesh& mesh);
-  static bool surrounds(const Solids& solids, const M44f& to_object, const V3f& point,
-                        const V3f& normal);
 
   Scene scene_;  ///< until prepare()
   bool is_prepared_ = false;

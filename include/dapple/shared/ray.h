@@ -34,6 +34,16 @@ typedef struct Occlusion {
   uint visits;         /* nodes visited | triangles tested << 16, each clamped to 65535 */
 } Occlusion;
 
+/* Rays of a point that one RaySums is of, at most. */
+#define DAPPLE_SUMMED_RAYS 64u
+
+/* Sums over rays of a point. */
+typedef struct RaySums {
+  float weight;       /* of Ray::weight */
+  float seen;         /* of Ray::weight times the transmittance */
+  float direction[3]; /* of directions times the same */
+} RaySums;
+
 /* Camera rays that one work-item of the camera pass traces as a packet. */
 #define DAPPLE_ITEM_RAYS 64u
 
@@ -75,6 +85,7 @@ typedef struct SurfacePoint {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(Ray) == 48);
 static_assert(sizeof(Occlusion) == 8);
+static_assert(sizeof(RaySums) == 20);
 static_assert(sizeof(SampleHits) == 16);
 static_assert(sizeof(SurfacePoint) == 48);
 }  // namespace dapple
