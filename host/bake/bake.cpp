@@ -1,4 +1,5 @@
-// bake(): scene and options in, values at vertices and instances out. Read it from bottom to top.
+// bake(): scene and options in, values at vertices, of a texture and of instances out. Read it from
+// bottom to top.
 #include "dapple/bake.hpp"
 
 #include <fmt/format.h>

@@ -119,8 +119,7 @@ std::map<std::string, Bias> BakeBias::report() const {
       rays += mesh.rays;
     }
     Bias found = estimate_bias(std::move(units), compared / samples);
-    // A ray that was not compared might differ by all of its light.
-    found.error = std::hypot(found.error, 1 / std::max(1.0, rays));
+    found.error = bias_error(found.error, compared, std::max(1.0, rays));
     bias[name] = found;
   }
   return bias;

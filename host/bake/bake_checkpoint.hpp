@@ -16,8 +16,8 @@ namespace dapple {
 class BakeCheckpoint {
  public:
   /// Files as `control` names them; neither: nothing is kept. Reads the file `control.resume`.
-  /// Throws Error failed if it is damaged, usage if `settings` or `device` are not those that it
-  /// was made with.
+  /// Throws Error failed if it is damaged, usage if `settings` are not those that it was
+  /// made with.
   BakeCheckpoint(const RenderControl& control, Settings settings);
   BakeCheckpoint(const BakeCheckpoint&) = delete;
   BakeCheckpoint& operator=(const BakeCheckpoint&) = delete;

@@ -8,7 +8,7 @@
 namespace dapple {
 namespace {
 
-/// Samples at most, but for a mesh of few triangles these.
+/// The most samples that are compared.
 constexpr std::size_t kMostSamples = 1u << 17;
 
 }  // namespace

@@ -54,7 +54,7 @@ class BakePilot : public BiasSource {
   Placements placements_;                        ///< of all meshes, one after the other
   std::vector<std::uint32_t> first_placement_;   ///< by mesh
   std::vector<std::uint64_t> triangles_before_;  ///< by mesh, and of all
-  std::size_t taken_ = 0, most_ = 0;             ///< triangles
+  std::size_t taken_ = 0, most_ = 0;             ///< samples
   std::vector<Batch> batches_;
 };
 

@@ -8,6 +8,24 @@
 namespace dapple {
 namespace {
 
+std::string name_of(BakeSides sides) {
+  switch (sides) {
+    case BakeSides::automatic:
+      return "auto";
+    case BakeSides::front:
+      return "front";
+    case BakeSides::max:
+      return "max";
+    case BakeSides::mean:
+      return "mean";
+  }
+  return "";
+}
+
+std::string name_of(BakeInstances instances) {
+  return instances == BakeInstances::alone ? "alone" : "together or unique";
+}
+
 void add_vector(ChecksumStream& stream, const V3f& v) {
   for (const float value : {v.x, v.y, v.z}) stream.add_value(value);
 }
@@ -102,8 +120,8 @@ Settings bake_settings(const Scene& scene, const BakeOptions& o,
       {"--ao-distance", number(o.distance)},
       {"--ao-falloff", number(o.falloff)},
       {"--at", o.at_vertices ? "vertices" : "triangles"},
-      {"--sides", number(static_cast<int>(o.sides))},
-      {"--instances", number(static_cast<int>(o.placement))},
+      {"--sides", name_of(o.sides)},
+      {"--instances", name_of(o.placement)},
       {"--size", number(o.texture_size)},
       {"--margin", number(o.margin)},
       {"--normals", name_of(o.normals)},

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/point_irradiance.hpp"
+#include "render/queries/point_irradiance.hpp"
 #include "sampling/random_choice.hpp"
 
 namespace dapple {

@@ -10,7 +10,10 @@
 #include "scene/scene_check.hpp"
 
 namespace dapple {
+namespace {
 
+/// Appends the meshes, materials, textures and instances of `other` to `scene`; not its lights and
+/// cameras.
 void append_scene(Scene& scene, const Scene& other) {
   const auto textures = static_cast<int>(scene.textures.size());
   const auto materials = static_cast<std::uint32_t>(scene.materials.size());
@@ -30,8 +33,6 @@ void append_scene(Scene& scene, const Scene& other) {
     scene.instances.push_back(instance);
   }
 }
-
-namespace {
 
 /// Those of vertices and textures; instances' kernels are compiled when they are launched.
 std::vector<KernelName> kernels_of(const DeviceContext& context, const BakeOptions& options) {

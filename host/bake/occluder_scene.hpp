@@ -27,8 +27,4 @@ struct OccluderScene {
   std::vector<std::string> notes;
 };
 
-/// Appends the meshes, materials, textures and instances of `other` to `scene`; not its lights and
-/// cameras.
-void append_scene(Scene& scene, const Scene& other);
-
 }  // namespace dapple

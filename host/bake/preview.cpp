@@ -231,6 +231,9 @@ class ShadedMesh {
           mesh_.uvs[corner[0]] * w[0] + mesh_.uvs[corner[1]] * w[1] + mesh_.uvs[corner[2]] * w[2];
       alpha *= alpha_at(scene_.textures[static_cast<std::size_t>(material.alpha_texture)], uv);
     }
+    if (material.uses_vertex_alpha && !mesh_.vertex_alpha.empty())
+      alpha *= mesh_.vertex_alpha[corner[0]] * w[0] + mesh_.vertex_alpha[corner[1]] * w[1] +
+               mesh_.vertex_alpha[corner[2]] * w[2];
     if (material.alpha_mode == AlphaMode::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
     return alpha;
   }

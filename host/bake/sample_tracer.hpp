@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/surface_samples.hpp"
-#include "render/point_occlusion.hpp"
+#include "render/queries/point_occlusion.hpp"
 
 namespace dapple {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "render/shared_points.hpp"
+#include "render/queries/shared_points.hpp"
 #include "scene/corner_normals.hpp"
 
 namespace dapple {

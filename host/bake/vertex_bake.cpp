@@ -11,6 +11,9 @@ namespace {
 /// Random bits of the first sample's place in a triangle, two for each halving of the sides.
 constexpr std::uint32_t kMaxShift = 0xffff;
 
+/// Rays to a light from one side of a sample, at most.
+constexpr std::int64_t kMostLightRays = 1 << 16;
+
 /// Triangles, or vertex groups, of a mesh, each with a sequence of samples.
 class SampledMesh : public SampledSurface {
  public:
@@ -134,12 +137,18 @@ RoundOptions round_options(const BakeOptions& options, std::uint32_t first,
   rounds.limit = static_cast<std::uint32_t>(options.rays / kRaysPerSample);
   rounds.fixed = sample_counts(options.rays, placements.to_world.size());
   if (lights) {
-    rounds.rays = rounds.fixed.rays = options.light_rays;
-    // As AO has, up to 64 or a few more: as many in each placement.
+    // As AO has, up to 64 or a few more: as many in each placement. What is left of options.rays
+    // makes more rays of each.
     constexpr int kMaxLightSamples = 64;
     const int each = std::max(1, static_cast<int>(placements.to_world.size()));
     rounds.fixed.samples =
         std::min(rounds.fixed.samples, (kMaxLightSamples + each - 1) / each * each);
+    const int samples = std::max(1, options.rays / kRaysPerSample);
+    const std::int64_t light_rays =
+        std::int64_t{options.light_rays} * samples / rounds.fixed.samples;
+    rounds.rays = options.light_rays;
+    rounds.fixed.rays =
+        static_cast<int>(std::clamp<std::int64_t>(light_rays, options.light_rays, kMostLightRays));
   }
   return rounds;
 }

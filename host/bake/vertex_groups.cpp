@@ -10,6 +10,8 @@
 #include <compare>
 #include <numeric>
 
+#include "bvh/opacity/connected_vertices.hpp"
+
 namespace dapple {
 namespace {
 
@@ -58,12 +60,6 @@ std::vector<PlacedVertex> order_by_position(const std::vector<V3f>& positions) {
   });
   tbb::parallel_sort(order.begin(), order.end());
   return order;
-}
-
-/// Root of a union-find forest, with path halving.
-std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t node) {
-  while (parents[node] != node) node = parents[node] = parents[parents[node]];
-  return node;
 }
 
 }  // namespace
@@ -130,19 +126,14 @@ VertexGroups one_group(std::size_t vertices) {
 }
 
 std::vector<std::uint32_t> connected_parts(const Mesh& mesh, const VertexGroups& groups) {
-  std::vector<std::uint32_t> parents(groups.count);
-  std::iota(parents.begin(), parents.end(), 0u);
-  for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
-    const std::uint32_t* corner = &mesh.indices[3 * t];
-    for (int i = 1; i < 3; ++i) {
-      const std::uint32_t a = root_of(parents, groups.of_vertex[corner[0]]);
-      const std::uint32_t b = root_of(parents, groups.of_vertex[corner[i]]);
-      parents[std::max(a, b)] = std::min(a, b);
-    }
-  }
-  for (std::uint32_t group = 0; group < parents.size(); ++group)
-    parents[group] = root_of(parents, group);
-  return parents;
+  ConnectedVertices joined = connect_triangles(
+      groups.count, mesh.primitive_count(), [](std::size_t) { return true; },
+      [&](std::size_t t, int k) {
+        return groups.of_vertex[mesh.indices[3 * t + static_cast<std::size_t>(k)]];
+      });
+  std::vector<std::uint32_t> parts(groups.count);
+  for (std::uint32_t group = 0; group < parts.size(); ++group) parts[group] = joined.root(group);
+  return parts;
 }
 
 }  // namespace dapple

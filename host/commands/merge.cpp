@@ -1,6 +1,6 @@
 // dapple merge: adds up parts of an image that dapple render --shard or --crop made, and writes the
 // image, or their sum as a part.
-#include "render/merge.hpp"
+#include "render/partial/merge.hpp"
 
 #include <fmt/format.h>
 

@@ -68,6 +68,7 @@ Shot::Defaults Shot::choose_defaults(const Scene& first) const {
   const Camera camera = choose_view(first, options_, chosen.notes).camera;
   if (!options_.look && first.cameras.empty()) chosen.camera = camera;
   if (!options_.look) chosen.camera_name = camera.name;
+  chosen.focus_distance = camera.focus_distance;
   if (options_.light && first.lights.empty()) chosen.lights = daylight(camera);
   if (options_.ground) chosen.ground_under = scene_bounds(first);
   return chosen;
@@ -89,6 +90,8 @@ void Shot::keep_camera(Scene& scene) const {
                             "--look-at choose another",
                             arguments_.scene, defaults_->camera_name));
   std::iter_swap(scene.cameras.begin(), kept);
+  Camera& camera = scene.cameras.front();
+  if (camera.focus_distance == 0) camera.focus_distance = defaults_->focus_distance;
 }
 
 void Shot::add_defaults(Scene& scene) const {

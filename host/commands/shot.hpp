@@ -30,6 +30,7 @@ class Shot {
   struct Defaults {
     std::optional<Camera> camera;  ///< where the scene has none
     std::string camera_name;       ///< of the scene's camera that the first frame shows
+    float focus_distance = 0;      ///< of the first frame, for cameras without one of their own
     std::vector<Light> lights;
     std::optional<Box3f> ground_under;
     std::vector<std::string> notes;

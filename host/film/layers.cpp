@@ -247,12 +247,14 @@ double ambient_of(const RenderOptions& options, const std::vector<Light>& lights
 
 std::vector<std::string> light_names(const std::vector<Light>& lights) {
   std::vector<std::string> names;
-  std::set<std::string> taken;
-  for (const Light& light : lights) {
-    const std::string base = layer_name(light.name);
-    std::string name = base;
-    for (int n = 2; !taken.insert(name).second; ++n) name = base + "_" + std::to_string(n);
-    names.push_back(name);
+  for (const Light& light : lights) names.push_back(layer_name(light.name));
+  std::set<std::string> first(names.begin(), names.end());  // keep their names
+  std::set<std::string> taken = first;
+  for (std::string& name : names) {
+    if (first.erase(name) > 0) continue;
+    const std::string base = name;
+    name += "_2";
+    for (int n = 3; !taken.insert(name).second; ++n) name = base + "_" + std::to_string(n);
   }
   return names;
 }

@@ -46,16 +46,18 @@ void closest_hit_pass(DeviceContext& context, const DeviceBuffers& scene, const 
 std::uint32_t compact_pass(DeviceContext& context, const Queues& queues, std::size_t samples) {
   const std::size_t records = hit_records(samples);
   const bool parallel = traces_scalar(context);
-  const std::size_t groups = parallel ? std::max<std::size_t>(ceil_div(records, kScanItems), 1) : 1;
+  const std::size_t groups =
+      parallel ? std::max<std::size_t>(ceil_div<std::size_t>(records, DAPPLE_SCAN_ITEMS), 1) : 1;
   const auto record_count = static_cast<uint>(records);
-  const auto of_group = parallel ? static_cast<uint>(kScanItems) : record_count;
+  const auto of_group = parallel ? DAPPLE_SCAN_ITEMS : record_count;
   if (parallel)
-    context.launch(kCountHits, "compact", groups * kScanItems,
-                   {queues.sample_hits, queues.group_hits, record_count, of_group}, kScanItems);
-  context.launch(kCompactHits, "compact", groups * kScanItems,
+    context.launch(kCountHits, "compact", groups * DAPPLE_SCAN_ITEMS,
+                   {queues.sample_hits, queues.group_hits, record_count, of_group},
+                   DAPPLE_SCAN_ITEMS);
+  context.launch(kCompactHits, "compact", groups * DAPPLE_SCAN_ITEMS,
                  {queues.sample_hits, queues.active, queues.active_count, queues.group_hits,
                   record_count, of_group},
-                 kScanItems);
+                 DAPPLE_SCAN_ITEMS);
   std::uint32_t count = 0;
   context.read(queues.active_count, &count, sizeof count);
   return count;

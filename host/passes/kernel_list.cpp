@@ -13,7 +13,7 @@ namespace dapple {
 std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   std::vector<KernelShape> kernels{
       {kClosestHit, kRayGroup},
-      {kCompactHits, kScanItems},
+      {kCompactHits, DAPPLE_SCAN_ITEMS},
       {kResolveDome, kRayGroup},
       {kResolveAo, kRayGroup},
       {kResolveLight, kRayGroup},
@@ -29,8 +29,8 @@ std::vector<KernelShape> every_kernel(const DeviceContext& context) {
   kernels.push_back({ao_ray_kernel(context), generators});
   kernels.push_back({light_ray_kernel(context), generators});
   if (scalar) {
-    kernels.push_back({kCountHits, kScanItems});
-    kernels.push_back({kOrderRays, kOrderGroup});
+    kernels.push_back({kCountHits, DAPPLE_SCAN_ITEMS});
+    kernels.push_back({kOrderRays, DAPPLE_ORDER_GROUP});
     kernels.push_back({camera_kernel(context, true), kRayGroup});
     for (const Estimator estimator : {Estimator::exact, Estimator::prefiltered})
       kernels.push_back({occlusion_kernel(estimator, Packets::scalar), kRayGroup});

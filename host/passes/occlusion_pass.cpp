@@ -39,7 +39,8 @@ void generate_rays(DeviceContext& context, const KernelName& kernel, const std::
   if (traces_scalar(context)) {
     context.launch(kernel, label, rays, arguments, kRayGroup);
   } else {
-    context.launch(kernel, label, ceil_div(rays, kRayLanes), arguments, kRayGeneratorGroup);
+    context.launch(kernel, label, ceil_div<std::size_t>(rays, DAPPLE_RAY_LANES), arguments,
+                   kRayGeneratorGroup);
   }
 }
 
@@ -83,8 +84,8 @@ void trace_scalar(DeviceContext& context, const Queues& queues, const DeviceBuff
                   const std::string& label, Estimator estimator, const OcclusionParams& params) {
   if (queues.order.memory())
     context.launch(kOrderRays, "order",
-                   ceil_div<std::size_t>(params.ray_count, kOrderBatch) * kOrderGroup,
-                   {queues.rays, queues.order, params.ray_count}, kOrderGroup);
+                   ceil_div<std::size_t>(params.ray_count, DAPPLE_ORDER_BATCH) * DAPPLE_ORDER_GROUP,
+                   {queues.rays, queues.order, params.ray_count}, DAPPLE_ORDER_GROUP);
   context.launch(
       occlusion_kernel(estimator, Packets::scalar), label, params.ray_count,
       {scene.nodes, scene.blocks, scene.segments, scene.textured, scene.materials, scene.texels,

@@ -12,9 +12,6 @@ namespace dapple {
 
 /// Work-items of a work-group of the kernels that generate rays; scalar ones have kRayGroup.
 inline constexpr std::size_t kRayGeneratorGroup = 16;
-/// Rays that one work-item of these generates; DAPPLE_RAY_LANES in
-/// kernels/occlusion/point_rays.clh.
-inline constexpr std::size_t kRayLanes = 16;
 /// Work-items of a work-group of point_ao.
 inline constexpr std::size_t kPointGroup = 1;
 
@@ -25,10 +22,6 @@ KernelName ao_ray_kernel(const DeviceContext& context);
 inline const KernelName kGatherRays{"gather_rays", "queue_kernels", {}};
 inline const KernelName kSumRays{"sum_rays", "queue_kernels", {}};
 inline const KernelName kOrderRays{"order_rays", "scalar/order_rays", {}};
-/// Work-items of a work-group of kOrderRays; DAPPLE_ORDER_GROUP.
-inline constexpr std::size_t kOrderGroup = 256;
-/// Rays that one of them orders; DAPPLE_ORDER_BATCH.
-inline constexpr std::size_t kOrderBatch = 4096;
 /// Work-items of a work-group of occlusion_kernel() with packets.
 std::size_t packet_group(const DeviceContext& context, Packets with);
 

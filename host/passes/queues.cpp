@@ -30,7 +30,8 @@ Queues make_queues(DeviceContext& context, std::size_t samples, std::size_t rays
   queues.sample_hits = context.allocate(hit_records(samples) * sizeof(SampleHits));
   queues.active = context.allocate(samples * sizeof(uint));
   queues.active_count = context.allocate(sizeof(uint));
-  queues.group_hits = context.allocate(ceil_div(hit_records(samples), kScanItems) * sizeof(uint));
+  queues.group_hits = context.allocate(
+      ceil_div<std::size_t>(hit_records(samples), DAPPLE_SCAN_ITEMS) * sizeof(uint));
   queues.occlusions = context.allocate(samples * rays_per_sample * sizeof(Occlusion));
   if (traces_scalar(context))
     queues.order = context.allocate(samples * rays_per_sample * sizeof(uint));

@@ -19,9 +19,6 @@ std::size_t query_points(const DeviceContext& context, std::size_t rays_per_poin
 /// Work-items of a work-group of kernels that run one ray, pixel or hit record in each.
 inline constexpr std::size_t kRayGroup = 64;
 
-/// Work-items of a work-group that compacts; DAPPLE_SCAN_ITEMS in kernels/film/compact.cl.
-inline constexpr std::size_t kScanItems = 256;
-
 /// Queues for one slice; allocated once, used by every slice.
 struct Queues {
   Buffer work;          ///< PixelWork; the caller of camera_pass() allocates it

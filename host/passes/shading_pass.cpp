@@ -11,9 +11,6 @@ namespace {
 /// A colour averages the shares of so many samples, at most the pixel: as opacities do with taps.
 constexpr int kColorSamples = 6;
 
-/// Work-items of each pixel; DAPPLE_SHADING_ITEMS in kernels/film/shading_scalar.cl.
-constexpr std::size_t kScalarItems = 16;
-
 /// `resolves`: add colours and normals of the points to the film.
 void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& queues,
            const FilmBuffers& film, bool resolves, const ResolveParams& params,
@@ -26,7 +23,7 @@ void shade(DeviceContext& context, const DeviceBuffers& scene, const Queues& que
   shading.resolves = resolves ? 1u : 0u;
   shading.color_share = static_cast<float>(std::min(kColorSamples, std::max(spp, 1)));
   shading.segment_words = static_cast<uint>(scene.block_values.size());
-  const std::size_t items_of_pixel = traces_scalar(context) ? kScalarItems : 1;
+  const std::size_t items_of_pixel = traces_scalar(context) ? DAPPLE_SHADING_ITEMS : 1;
   context.launch(shading_kernel(context), "shading", params.slice.pixel_count * items_of_pixel,
                  {scene.nodes, scene.blocks, scene.textured, scene.instances, scene.normals,
                   scene.color_words, scene.color_materials, scene.color_texels, queues.work,

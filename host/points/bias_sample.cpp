@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "points/sun_irradiance.hpp"
-#include "render/point_occlusion.hpp"
+#include "render/queries/point_occlusion.hpp"
 #include "sampling/bias_estimate.hpp"
 #include "sampling/random_choice.hpp"
 
@@ -18,9 +18,6 @@ using Imath::V3d;
 /// Values of points, each from one set, that are also found exactly; and of each point at least
 /// these, so that what differs at a point is told from noise.
 constexpr std::size_t kBiasSamples = 2048, kFewestSets = 2;
-
-/// Fewer points do not tell how they differ.
-constexpr std::size_t kLeastPoints = 8;
 
 /// Neighbouring points of the sample that are a tile.
 constexpr std::uint32_t kPointsOfTile = 16;
@@ -104,11 +101,9 @@ std::vector<BiasCorrection> BiasSample::compare(const std::vector<std::string>& 
     if (correction.is_measured()) {
       bias.mean = correction.mean_bias();
       bias.error = correction.mean_error();
-    } else if (points_.size() < kLeastPoints) {
-      bias.error = 1 / std::sqrt(rays);
     }
-    // One ray more could have differed by all of its light.
-    bias.error = std::hypot(bias.error, 1 / rays);
+    const std::size_t count = correction.is_measured() ? values : points_.size();
+    bias.error = bias_error(bias.error, static_cast<double>(count), rays);
     bias_[names[k]] = bias;
   }
   return corrections;

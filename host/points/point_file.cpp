@@ -48,8 +48,12 @@ constexpr TableFormat kFormats[] = {
 /// By the ending of `path`. Throws Error usage: points are `done` other files.
 const TableFormat& format_of(const std::string& path, const char* done) {
   const auto* found = std::ranges::find(kFormats, ending(path), &TableFormat::ending);
-  if (found == std::end(kFormats))
-    throw Error(ErrorKind::usage, fmt::format("{}: points are {} .csv, .npy or .ply", path, done));
+  if (found == std::end(kFormats)) {
+    std::vector<std::string_view> endings;
+    for (const TableFormat& format : kFormats) endings.emplace_back(format.ending);
+    throw Error(ErrorKind::usage, fmt::format("{}: points are {} files of these: {}", path, done,
+                                              fmt::join(endings, ", ")));
+  }
   return *found;
 }
 

@@ -44,16 +44,6 @@ std::uint32_t along_curve(const V3f& direction) {
   return along_curve(step(direction.x), step(direction.z));
 }
 
-/// Two random numbers in [0,1) that are evenly spread for any consecutive indices: the additive
-/// sequence R2 (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018), shifted.
-std::array<double, 2> spread_pair(std::size_t index, std::uint32_t shift) {
-  constexpr double kPlastic = 1.32471795724474602596;
-  const auto i = static_cast<double>(index);
-  const double u = (shift & 0xffffu) / 65536.0 + i / kPlastic;
-  const double v = (shift >> 16) / 65536.0 + i / (kPlastic * kPlastic);
-  return {u - std::floor(u), v - std::floor(v)};
-}
-
 }  // namespace
 
 V3f direction_to_disk(const V3f& direction, double u, double v) {

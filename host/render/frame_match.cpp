@@ -17,37 +17,48 @@ std::string object_name(const Scene& scene, std::int64_t object) {
 /// Parts of a scene with the names of their objects.
 struct NamedPart {
   MatchedPart part;
-  std::string object;
-  bool merged = false;  ///< in a mesh of several objects, in world space
+  std::string object;  ///< empty: a mesh that is placed as a whole, or primitives without one
 };
 
 void add_runs(const Scene& scene, std::uint32_t m, std::vector<NamedPart>& parts) {
   const std::vector<std::uint32_t>& objects = scene.meshes[m].objects;
   for (std::uint32_t first = 0, end = 0; first < objects.size(); first = end) {
     while (end < objects.size() && objects[end] == objects[first]) ++end;
-    parts.push_back({{m, first, end - first}, object_name(scene, objects[first]), true});
+    parts.push_back({{m, first, end - first}, object_name(scene, objects[first])});
   }
   const auto named = static_cast<std::uint32_t>(objects.size());
   const auto all = static_cast<std::uint32_t>(scene.meshes[m].primitive_count());
-  if (named < all) parts.push_back({{m, named, all - named}, "", true});
+  if (named < all) parts.push_back({{m, named, all - named}, ""});
 }
 
-/// A mesh that is placed as a whole has the name of its first placement.
+/// All primitives of a mesh that is placed as a whole.
+MatchedPart whole_mesh(const Scene& scene, std::uint32_t m) {
+  return {m, 0, static_cast<std::uint32_t>(scene.meshes[m].primitive_count())};
+}
+
 std::vector<NamedPart> parts_of(const Scene& scene) {
-  std::vector<int> placed(scene.meshes.size(), -1);
-  for (const Instance& instance : scene.instances)
-    if (placed[instance.mesh] < 0) placed[instance.mesh] = instance.object;
   std::vector<NamedPart> parts;
   for (std::uint32_t m = 0; m < scene.meshes.size(); ++m) {
-    const Mesh& mesh = scene.meshes[m];
-    if (mesh.objects.empty()) {
-      const auto count = static_cast<std::uint32_t>(mesh.primitive_count());
-      parts.push_back({{m, 0, count}, object_name(scene, placed[m]), false});
-    } else {
+    if (scene.meshes[m].objects.empty())
+      parts.push_back({whole_mesh(scene, m), ""});
+    else
       add_runs(scene, m, parts);
-    }
   }
   return parts;
+}
+
+/// For each mesh of `now` that is placed as a whole, that of `next` which the first placement that
+/// both frames have is of, else -1. `instances`: as FrameMatch::instances.
+std::vector<std::int64_t> meshes_of_placements(const Scene& now, const Scene& next,
+                                               const std::vector<int>& instances) {
+  std::vector<std::int64_t> meshes(now.meshes.size(), -1);
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (instances[i] < 0) continue;
+    const std::uint32_t mesh = next.instances[static_cast<std::size_t>(instances[i])].mesh;
+    std::int64_t& found = meshes[now.instances[i].mesh];
+    if (found < 0 && next.meshes[mesh].objects.empty()) found = mesh;
+  }
+  return meshes;
 }
 
 /// Pairs the elements of both ranges that have the same key, in order, where they are as many.
@@ -84,19 +95,30 @@ void match(const Scene& now, const Scene& next, const MatchedPart& to, MatchedPa
 }  // namespace
 
 FrameMatch::FrameMatch(const Scene& now, const Scene& next) : instances(now.instances.size(), -1) {
-  std::vector<NamedPart> of_now = parts_of(now);
-  const std::vector<NamedPart> of_next = parts_of(next);
-  const auto part_key = [](const NamedPart& part) { return std::pair(part.object, part.merged); };
-  pair_by_key(
-      of_now.size(), of_next.size(), [&](std::size_t i) { return part_key(of_now[i]); },
-      [&](std::size_t i) { return part_key(of_next[i]); },
-      [&](std::size_t i, std::size_t k) { match(now, next, of_next[k].part, of_now[i].part); });
-  for (const NamedPart& named : of_now) parts.push_back(named.part);
   pair_by_key(
       now.instances.size(), next.instances.size(),
       [&](std::size_t i) { return object_name(now, now.instances[i].object); },
       [&](std::size_t i) { return object_name(next, next.instances[i].object); },
       [&](std::size_t i, std::size_t k) { instances[i] = static_cast<int>(k); });
+  std::vector<NamedPart> of_now = parts_of(now);
+  const std::vector<NamedPart> of_next = parts_of(next);
+  const auto key = [](const Scene& scene, const NamedPart& part) {
+    return std::pair(part.object, scene.meshes[part.part.mesh].objects.empty());
+  };
+  pair_by_key(
+      of_now.size(), of_next.size(), [&](std::size_t i) { return key(now, of_now[i]); },
+      [&](std::size_t i) { return key(next, of_next[i]); },
+      [&](std::size_t i, std::size_t k) {
+        if (!now.meshes[of_now[i].part.mesh].objects.empty())
+          match(now, next, of_next[k].part, of_now[i].part);
+      });
+  const std::vector<std::int64_t> meshes = meshes_of_placements(now, next, instances);
+  for (NamedPart& named : of_now) {
+    const std::uint32_t mesh = named.part.mesh;
+    if (now.meshes[mesh].objects.empty() && meshes[mesh] >= 0)
+      match(now, next, whole_mesh(next, static_cast<std::uint32_t>(meshes[mesh])), named.part);
+    parts.push_back(named.part);
+  }
 }
 
 }  // namespace dapple

@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "dapple/shared/bvh_node.h"
+#include "dapple/shared/ray.h"
 
 namespace dapple {
 namespace {
 
 constexpr std::uint32_t kOfInstance = 0xffffffffu;
-constexpr std::uint32_t kNoInstance = 0xffffffffu;  ///< DAPPLE_WORLD of the kernels
 
 std::uint32_t object_number(int object) { return static_cast<std::uint32_t>(std::max(object, 0)); }
 
@@ -36,7 +36,7 @@ MatteLookup::Ids MatteLookup::at(std::uint32_t instance, std::uint32_t primitive
   const bool is_segment = (primitive & DAPPLE_SEGMENTS) != 0;
   Ids ids = is_segment ? segments_[primitive & ~DAPPLE_SEGMENTS] : triangles_[primitive];
   if (ids.object == kOfInstance)
-    ids.object = instance_objects_[instance == kNoInstance ? 0 : instance];
+    ids.object = instance_objects_[instance == DAPPLE_WORLD ? 0 : instance];
   return {wanted_.objects ? ids.object : 0, wanted_.materials ? ids.material : 0};
 }
 

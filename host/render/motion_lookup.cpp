@@ -4,11 +4,10 @@
 #include <array>
 
 #include "dapple/shared/bvh_node.h"
+#include "dapple/shared/ray.h"
 
 namespace dapple {
 namespace {
-
-constexpr std::uint32_t kNoInstance = 0xffffffffu;  ///< DAPPLE_WORLD of the kernels
 
 /// Barycentric weights of the point of the triangle's plane that is closest to `p`.
 std::array<double, 3> weights_on_triangle(const V3d& a, const V3d& b, const V3d& c, const V3d& p) {
@@ -94,7 +93,7 @@ Imath::V2d MotionLookup::at(std::uint32_t instance, std::uint32_t primitive,
   const PartPrimitive& of =
       is_segment ? segments_[primitive & ~DAPPLE_SEGMENTS] : triangles_[primitive];
   const MatchedPart& part = match_.parts[of.part];
-  const Movement& movement = movements_[instance == kNoInstance ? 0 : instance];
+  const Movement& movement = movements_[instance == DAPPLE_WORLD ? 0 : instance];
   const V3d from(position);
   V3d to = from;
   const bool moves = part.is_there && movement.is_there && (!movement.still || part.deforms);

@@ -11,17 +11,17 @@
 
 #include "dapple/error.hpp"
 #include "render/option_check.hpp"
+#include "scene/numeric_range.hpp"
 
 namespace dapple {
 namespace {
 
 void check_point(const char* flag, const V3f& v) {
-  constexpr float kLargest = 1e12f;  // metres, as of scenes
   for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(v[axis]) <= kLargest) continue;  // false for NaN
+    if (std::abs(double{v[axis]}) <= kLargestCoordinate) continue;  // false for NaN
     throw Error(ErrorKind::usage,
                 fmt::format("{} has the coordinate {:g}; it must be from {:g} to {:g}", flag,
-                            v[axis], -kLargest, kLargest));
+                            v[axis], -kLargestCoordinate, kLargestCoordinate));
   }
 }
 
@@ -186,7 +186,8 @@ void validate(const RenderOptions& options) {
   }
   if (options.fov_degrees != 0) check_range("--fov", options.fov_degrees, 0.01f, 179);
   if (options.aperture) check_range("--aperture", *options.aperture, 0, 1e6);
-  if (options.focus_distance) check_range("--focus-distance", *options.focus_distance, 1e-6f, 1e12);
+  if (options.focus_distance)
+    check_range("--focus-distance", *options.focus_distance, 1e-6f, kLargestCoordinate);
   if (options.look) {
     check_point("--look-from", options.look->from);
     check_point("--look-at", options.look->at);

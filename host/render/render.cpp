@@ -19,11 +19,11 @@
 #include "film/film_memory.hpp"
 #include "film/layers.hpp"
 #include "passes/kernel_list.hpp"
-#include "render/bias_report.hpp"
-#include "render/footprint_pilot.hpp"
+#include "render/bias/bias_report.hpp"
+#include "render/bias/footprint_pilot.hpp"
 #include "render/kept_scene.hpp"
+#include "render/partial/resume.hpp"
 #include "render/picture.hpp"
-#include "render/resume.hpp"
 #include "render/shutter.hpp"
 #include "render/slice_params.hpp"
 #include "render/stopwatch.hpp"
@@ -105,11 +105,17 @@ bool may_be_shaded(const Scene& scene, const RenderOptions& options) {
                      [](const Mesh& mesh) { return !mesh.normals.empty(); });
 }
 
-/// All moments of a shutter have normals, or none has: the film's planes are those of the first.
-UploadOptions uploading_of(const RenderOptions& options, const ShutterScenes& moments) {
+/// All moments of a shutter have normals, or none has: the film's planes are those of the first. So
+/// have all frames of a scene that moves, if its file brings normals.
+UploadOptions uploading_of(const Scene& scene, const RenderOptions& options,
+                           const ShutterScenes& moments) {
   const bool shading = options.normals == Normals::shading;
-  return {shading && (moments.count == 1 || moments.smooth), options.albedo,
-          shading && moments.smooth};
+  const bool always = moments.smooth ||
+                      (!scene.animations.empty() &&
+                       std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& mesh) {
+                         return !mesh.normals.empty() && !mesh.has_strands();
+                       }));
+  return {shading && (moments.count == 1 || always), options.albedo, shading && always};
 }
 
 void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
@@ -231,7 +237,7 @@ void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
   kept.loader->stop();
   processes.start(device.context(), kernels, CompileTo::machine_code);
   kept.loader->start(kernels);
-  kept.update_scene(scene, uploading_of(options, moments), options.cache, statistics);
+  kept.update_scene(scene, uploading_of(scene, options, moments), options.cache, statistics);
   kept.compile(kernels, processes, statistics);
 }
 

@@ -100,6 +100,11 @@ double error_of_mean_square(const Bias& bias) {
   return std::max(of_mean, of_tiles);
 }
 
+double bias_error(double spread, double count, double rays) {
+  constexpr double kFewestValues = 8;
+  return std::hypot(count < kFewestValues ? 1 / std::sqrt(rays) : spread, 1 / rays);
+}
+
 std::string bias_text(const Bias& bias) {
   return fmt::format("{:+.4f} +- {:.4f}, RMSE over tiles {:.4f}", bias.mean, bias.error,
                      bias.tile_rmse);

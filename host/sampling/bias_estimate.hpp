@@ -21,6 +21,11 @@ struct BiasUnit {
 /// The bias of all values. `share` is copied.
 Bias estimate_bias(std::vector<BiasUnit> units, double share);
 
+/// The standard error of the mean bias of `count` values, if by their differences it is `spread`:
+/// few values do not tell how they differ, and one ray more than the `rays` that were traced could
+/// have differed by all of its light.
+double bias_error(double spread, double count, double rays);
+
 /// "-0.0021 +- 0.0004, RMSE over tiles 0.0035"
 std::string bias_text(const Bias& bias);
 

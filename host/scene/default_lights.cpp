@@ -28,7 +28,11 @@ const V3f kZenith(0.1f, 0.18f, 0.36f), kHorizon(0.32f, 0.38f, 0.45f), kBelow(0.1
 /// above the ground when the camera looks down or up.
 V3f above_left_in_front(const Camera& camera) {
   const M44f& axes = camera.to_world;
-  const V3f right(axes[0][0], axes[0][1], axes[0][2]), back(axes[2][0], 0, axes[2][2]);
+  const V3f right(axes[0][0], axes[0][1], axes[0][2]);
+  V3f back(axes[2][0], 0, axes[2][2]);
+  // One that looks straight down or up has its upper side in front of it or behind it.
+  constexpr float kVertical = 1e-3f;
+  if (back.length() < kVertical) back = V3f(axes[1][0], 0, axes[1][2]) * (axes[2][1] > 0 ? -1 : 1);
   return (V3f(0, 0.8f, 0) - right * 0.6f + back.normalized() * 0.6f).normalized();
 }
 

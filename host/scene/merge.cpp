@@ -48,16 +48,20 @@ float uniform_scale(const M44f& matrix) {
 struct Uses {
   std::size_t as_geometry = 0;
   std::size_t as_light = 0;
-  bool fixed = false;  // must not be merged: an instance scales its strands non-uniformly
+  bool fixed = false;  // must not be merged: an instance may scale its strands non-uniformly
 };
 
+// Strands of scenes that move are not merged either: their scale may be uniform in some frames
+// only.
 std::vector<Uses> count_uses(const Scene& scene) {
+  const bool moves = !scene.animations.empty();
   std::vector<Uses> uses(scene.meshes.size());
   for (const Instance& instance : scene.instances) {
     Uses& of_mesh = uses[instance.mesh];
     ++(instance.light < 0 ? of_mesh.as_geometry : of_mesh.as_light);
-    of_mesh.fixed |= scene.meshes[instance.mesh].has_strands() &&
-                     is_invertible(instance.to_world) && uniform_scale(instance.to_world) == 0;
+    of_mesh.fixed |=
+        scene.meshes[instance.mesh].has_strands() &&
+        (moves || (is_invertible(instance.to_world) && uniform_scale(instance.to_world) == 0));
   }
   return uses;
 }

@@ -50,14 +50,14 @@ struct BakeOptions {
   /// `light_rays`.
   int rays = 1024;
   Estimator estimator = Estimator::prefiltered;
-  /// As RenderOptions::footprint, for the rays of one point.
+  /// As RenderOptions::footprint, [0, 1e6], for the rays of one point.
   float footprint = 1.5f;
   float report_bias = kDefaultReportBias;  ///< as RenderOptions::report_bias
   /// The footprint is the largest of `footprint`, a half of it, a quarter and so on with which the
   /// bias is at most this, [0,1]; exact rays if none is; 0: `footprint`.
   float max_bias = 0;
   /// Metres, or with BakeInstances::alone the mesh's own units; surfaces farther away do not
-  /// occlude; 0: no limit.
+  /// occlude; [0, 1e30], 0: no limit.
   float distance = 0;
   float falloff = 0;  ///< as RenderOptions::ao_falloff
   Normals normals = Normals::shading;
@@ -65,7 +65,7 @@ struct BakeOptions {
   BakeSides sides = BakeSides::automatic;
   BakeInstances placement = BakeInstances::together;
   std::uint32_t texture_size = 1024;  ///< texels along each side, [1, 16384]
-  int margin = 16;                    ///< texels by which values extend over the border of charts
+  int margin = 16;  ///< texels by which values extend over the border of charts, [0, 1024]
   /// Texture coordinates to use, for each mesh and vertex, in [0,1] up to rounding errors of 1e-5;
   /// empty: a layout of our own.
   std::vector<std::vector<V2f>> texture_uvs;

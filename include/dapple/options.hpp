@@ -83,15 +83,15 @@ struct RenderOptions {
   /// Sample until the estimated root mean square of the pixels' errors is below this in every pass,
   /// [0, 1]; 0: no target. Not together with target_error.
   float target_rmse = 0;
-  /// Samples a pixel that footprints are computed for, [1, 2^20]; 0: footprint_samples() chooses. A
-  /// resumed render keeps the number of the first run, so that more samples estimate the same
-  /// picture.
+  /// Camera rays a pixel that footprints are computed for, [1, 2^20]; 0: footprint_samples()
+  /// chooses. A resumed render keeps the number of the first run, so that more samples estimate the
+  /// same picture.
   int footprint_spp = 0;
   int footprint_ao_rays = 0;  ///< AO rays a camera ray, in the same way, [1, 4096]; 0: ao_rays
   /// The samples that are traced. `spp` is that of all shards together, for which footprints are
   /// computed. Not together with a target.
   Shard shard;
-  int max_spp = 4096;  ///< with a target, the maximum of samples a pixel, [spp, 2^20]
+  int max_spp = 4096;  ///< with a target, the maximum of camera rays a pixel, [spp, 2^20]
   /// Samples that share a camera ray, 1, 2 or 4. Each sample chooses its own surface among those
   /// that the ray intersects. Larger values suit thin leaves and hair; 0: chosen from the scene's
   /// opacities. `spp` and `max_spp` count camera rays.
@@ -133,7 +133,7 @@ struct RenderOptions {
   bool motion = false;
   Cryptomattes cryptomattes;
   bool deep = false;         ///< make Film::deep
-  float ao_distance = 0.0f;  ///< metres; 0 is no limit
+  float ao_distance = 0.0f;  ///< metres, [0, 1e30]; 0 is no limit
   float ao_falloff = 0.0f;   ///< p of (1 - t/D)^p, [0, 100]; 0 is a hard limit
   /// Radiance of a uniform sky that is multiplied by AO in RGBA, [0, 1e30]; none: 1 without lights,
   /// 0 with a dome, otherwise a tenth of what the lights make of bright white surfaces: of the 90th
@@ -141,7 +141,7 @@ struct RenderOptions {
   std::optional<float> ambient;
   std::string camera;  ///< by name; empty: the first, or one that shows it all
   std::optional<LookAt> look;
-  float fov_degrees = 0.0f;       ///< vertical; 0: the camera's own, or 40 with `look`
+  float fov_degrees = 0.0f;       ///< vertical, [0.01, 179]; 0: the camera's own, or 40 with `look`
   std::optional<float> aperture;  ///< radius of the lens, metres, [0, 1e6]; none: the camera's own
   /// Metres along the view direction, (0, 1e12]; none: the camera's own, the point that `look`
   /// looks at, or the middle of the scene. Needs a lens.

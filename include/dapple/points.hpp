@@ -36,7 +36,7 @@ struct PointOptions {
   /// suns than rays, each ray stands for some of them.
   int rays = 256;
   Estimator estimator = Estimator::prefiltered;
-  float footprint = 1.0f;                  ///< of the rays of one set
+  float footprint = 1.0f;                  ///< of the rays of one set, [0, 1e6]
   float report_bias = kDefaultReportBias;  ///< 0: PointResult::bias stays empty
   /// The footprint is the largest of `footprint`, a half of it, a quarter and so on with which the
   /// bias, before it is corrected, is at most this, [0,1]; 0: `footprint`. None: with which the

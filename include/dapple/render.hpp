@@ -1,5 +1,5 @@
-// The library's two main functions: render() makes a film of a scene, and occlusion() returns AO at
-// points, for baking. trace() and closest_hits() take rays of the caller, for tests and benches.
+// The engine: render() and Renderer make films of scenes; occlusion() and irradiance() return
+// values at points of the caller; trace() and closest_hits() take its rays, for tests and benches.
 #pragma once
 
 #include <functional>
@@ -177,7 +177,7 @@ std::vector<float> occlusion(const Device& device, const DeviceScene& scene,
 struct IrradianceOptions {
   int rays = 16;  ///< for each point and light, [1, 2^20]
   Estimator estimator = Estimator::prefiltered;
-  float footprint = kDefaultFootprint;
+  float footprint = kDefaultFootprint;  ///< [0, 10^6]
   std::uint32_t seed = 0;
 };
 

@@ -62,10 +62,11 @@ struct Material {
   float alpha_cutoff = 0.5f;  ///< mask only
   int alpha_texture = -1;     ///< index into Scene::textures, -1 for none
   bool uses_vertex_alpha = true;
-  V3f color{1, 1, 1};         ///< base colour: the albedo's factor, linear RGB, [0,1]
-  int color_texture = -1;     ///< index into Scene::color_textures, -1 for none
-  V3f emission{0, 0, 0};      ///< emitted radiance, W/(sr m^2), linear RGB
-  bool double_sided = false;  ///< only for emission: every surface occludes from both sides
+  V3f color{1, 1, 1};      ///< base colour: the albedo's factor, linear RGB, [0,1]
+  int color_texture = -1;  ///< index into Scene::color_textures, -1 for none
+  V3f emission{0, 0, 0};   ///< emitted radiance, W/(sr m^2), linear RGB
+  /// Whether both sides emit, and which sides bakes count; every surface occludes from both.
+  bool double_sided = false;
 };
 
 /// Consecutive vertices of a Mesh that were read from one primitive of a glTF file.
@@ -98,7 +99,7 @@ struct Mesh {
 /// One placement of a mesh. Imath's convention: p_world = p_object * to_world.
 struct Instance {
   std::uint32_t mesh = 0;
-  M44f to_world;    ///< affine and invertible
+  M44f to_world;    ///< affine; if it cannot be inverted, nothing is placed
   int light = -1;   ///< index of the mesh light that this placement emits, else -1
   int node = -1;    ///< the glTF node that places it; -1: none
   int object = -1;  ///< index into Scene::objects; -1 until name_objects()

@@ -39,7 +39,7 @@ __kernel void closest_hit(__global const BvhNode* nodes, __global const Triangle
     }
   } while (advance_k_buffer(&closest.k_buffer).s0);
   __global SurfacePoint* point = points + item;
-  point->visits = min(closest.visits, 65535u) | min(closest.tests, 65535u) << 16;
+  point->visits = pack_costs(closest.visits, closest.tests);
   const float t = closest.t.f[0];
   if (t < ray.t_max) {
     store_point(scene, hit_of_ray(&closest, 0u), span.origin, span.direction,

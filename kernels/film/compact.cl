@@ -4,8 +4,7 @@
    all, since a slice is small. */
 #include "vectors/lanes.clh"
 #include "film/sample_hits.clh"
-
-#define DAPPLE_SCAN_ITEMS 256u
+#include "dapple/shared/pass_params.h"
 
 /* Records [begin, end) of a work-group or of one of its items. */
 typedef struct RecordRange {

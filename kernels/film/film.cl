@@ -73,9 +73,9 @@ __kernel void resolve_ao(__global const PixelWork* work, __global const SampleHi
       const float seen = found.transmittance * rays[ray].weight;
       value += (1.0f - seen) * inverse_rays;
       __global const float* direction = rays[ray].direction;
-      sums += fixed_points((float8)(seen, seen * direction[0], seen * direction[1],
-                                    seen * direction[2], nodes_of(found), tests_of(found), 0.0f,
-                                    0.0f) *
+      const float visits = visits_of(found.visits), tests = tests_of(found.visits);
+      sums += fixed_points((float8)(seen, seen * direction[0], seen * direction[1], seen * direction[2], visits, tests,
+                                    0.0f, 0.0f) *
                            scale);
     }
     add_to_batch(&batches, s, value);
@@ -106,8 +106,8 @@ __kernel void resolve_light(__global const PixelWork* work, __global const Sampl
       const float weight = rays[ray].weight;
       value += weight * found.transmittance * inverse_rays;
       const float open = fmin(weight * params.scale, DAPPLE_MOST_VALUE);
-      sums += fixed_points((float8)(open * found.transmittance, open, nodes_of(found), tests_of(found), 0.0f, 0.0f,
-                                    0.0f, 0.0f));
+      const float visits = visits_of(found.visits), tests = tests_of(found.visits);
+      sums += fixed_points((float8)(open * found.transmittance, open, visits, tests, 0.0f, 0.0f, 0.0f, 0.0f));
       if (open > DAPPLE_SMALL_VALUE) sums = stop_at_most(sums);
     }
     add_to_batch(&batches, s, value);

@@ -121,8 +121,8 @@ __kernel void shade_points(__global const BvhNode* nodes, __global const Triangl
   const uint pixel = pixel_of(work, params.resolve, local_pixel);
   uint plane = 0u;
   if (shading.has_normals) {
-    add_to_planes(film, params.resolve, 3u, pixel, sums);
-    plane = 3u;
+    add_to_planes(film, params.resolve, DAPPLE_NORMAL_PLANES, pixel, sums);
+    plane = DAPPLE_NORMAL_PLANES;
   }
   if (!shading.has_colors) return;
   add_to_plane(film, params.resolve, plane, pixel, sums.s3);

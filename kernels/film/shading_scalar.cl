@@ -6,10 +6,9 @@
 #include "scalar/smooth_triangle.clh"
 #include "scalar/surface_color.clh"
 
-#define DAPPLE_SHADING_ITEMS 16u /* of each pixel */
 #define DAPPLE_SHADING_PIXELS 4u /* of a work-group */
 #define DAPPLE_SHADING_GROUP (DAPPLE_SHADING_ITEMS * DAPPLE_SHADING_PIXELS)
-#define DAPPLE_SHADED_PLANES 6u  /* normal and albedo */
+#define DAPPLE_SHADED_PLANES (DAPPLE_NORMAL_PLANES + DAPPLE_ALBEDO_PLANES)
 
 /* Gives a point that the camera pass stored its shading normal and origin of rays. Out: its albedo. */
 DAPPLE_INLINE float3 shade_hit(Scene scene, const Shading* shading, __global SurfacePoint* point) {
@@ -72,12 +71,12 @@ void shade_points_scalar(__global const BvhNode* nodes, __global const TriangleB
   const uint pixel = first + in_group / DAPPLE_SHADED_PLANES, plane = in_group % DAPPLE_SHADED_PLANES;
   if (!params.resolves || in_group >= DAPPLE_SHADING_PIXELS * DAPPLE_SHADED_PLANES) return;
   if (pixel >= params.resolve.slice.pixel_count) return;
-  const bool of_color = plane >= 3u;
+  const bool of_color = plane >= DAPPLE_NORMAL_PLANES;
   if (of_color ? !shading.has_colors : !shading.has_normals) return;
   long sum = 0;
   const uint items = in_group / DAPPLE_SHADED_PLANES * DAPPLE_SHADING_ITEMS;
   for (uint i = 0; i < DAPPLE_SHADING_ITEMS; ++i) sum += sums[(items + i) * DAPPLE_SHADED_PLANES + plane];
   if (sum)
-    add_to_plane(film, params.resolve, of_color && !shading.has_normals ? plane - 3u : plane,
+    add_to_plane(film, params.resolve, of_color && !shading.has_normals ? plane - DAPPLE_NORMAL_PLANES : plane,
                  pixel_of(work, params.resolve, pixel), sum);
 }

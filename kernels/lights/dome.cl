@@ -24,8 +24,8 @@ inline void find_texels(const Dome* dome, __global const Ray* rays, uint first, 
 inline long8 dome_sums(const Dome* dome, uint texel, float weight, Occlusion found, float scale) {
   const float3 light = fmin(weight * texel_colour(dome, texel) * scale, DAPPLE_MOST_VALUE);
   const float3 seen = light * found.transmittance;
-  return fixed_points((float8)(seen.x, seen.y, seen.z, light.x, light.y, light.z,
-                               nodes_of(found), tests_of(found)));
+  const float visits = visits_of(found.visits), tests = tests_of(found.visits);
+  return fixed_points((float8)(seen.x, seen.y, seen.z, light.x, light.y, light.z, visits, tests));
 }
 
 /* Planes: irradiance (3) at radiance 1, the same unoccluded (3), visits, tests. Squares: of its

@@ -6,6 +6,12 @@
 #include "lights/light_samples.clh"
 #include "occlusion/point_rays.clh"
 
+/* Where a ray to a point at `distance` ends. */
+inline float16 ends_of_rays(const PointRays* rays, float16 distance) {
+  const float16 largest = fmax(fabs(rays->origin[0].v), fmax(fabs(rays->origin[1].v), fabs(rays->origin[2].v)));
+  return at_least_0(distance * (1.0f - DAPPLE_LIGHT_GAP) - largest * DAPPLE_LIGHT_ROUNDINGS);
+}
+
 /* A ray without a contribution gets t_max < 0 and is not traced. */
 inline void aim_light_rays(const PointRays* rays, const LightSamples* samples, float inverse_count,
                            RayDirections* directions) {
@@ -16,7 +22,7 @@ inline void aim_light_rays(const PointRays* rays, const LightSamples* samples, f
   }
   const float16 solid_angle = samples->solid_angle.v;
   directions->weight.v = solid_angle * at_least_0(cosine) * samples->radiance.v;
-  directions->t_max.v = directions->weight.v > 0.0f ? samples->distance.v : (float16)(-1.0f);
+  directions->t_max.v = directions->weight.v > 0.0f ? ends_of_rays(rays, samples->distance.v) : (float16)(-1.0f);
   directions->solid_angle.v = min(solid_angle * inverse_count, 2.0f * M_PI_F);
 }
 

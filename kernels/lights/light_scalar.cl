@@ -1,12 +1,18 @@
 /* The light pass for GPUs: each work-item makes one shadow ray. In and out: as lights/light.cl. */
 #include "lights/light_sample.clh"
 
+/* ends_of_rays() for one ray. */
+DAPPLE_INLINE float end_of_ray(const PointRay* ray, float distance) {
+  const float largest = fmax(fabs(ray->origin.x), fmax(fabs(ray->origin.y), fabs(ray->origin.z)));
+  return fmax(distance * (1.0f - DAPPLE_LIGHT_GAP) - largest * DAPPLE_LIGHT_ROUNDINGS, 0.0f);
+}
+
 /* aim_light_rays() for one ray. */
 DAPPLE_INLINE RayDirection aim_light_ray(const PointRay* ray, LightSample sample, float radiance, float inverse_count) {
   RayDirection aimed;
   aimed.direction = sample.direction;
   aimed.weight = sample.solid_angle * fmax(dot(ray->normal, sample.direction), 0.0f) * radiance;
-  aimed.t_max = aimed.weight > 0.0f ? sample.distance : -1.0f;
+  aimed.t_max = aimed.weight > 0.0f ? end_of_ray(ray, sample.distance) : -1.0f;
   aimed.solid_angle = fmin(sample.solid_angle * inverse_count, 2.0f * M_PI_F);
   return aimed;
 }

@@ -14,5 +14,5 @@ __kernel void occlusion(__global const BvhNode* nodes, __global const TriangleBl
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   const Transmittance found = traverse(scene, params, rays[item]);
   results[item].transmittance = found.value;
-  results[item].visits = min(found.visits, 65535u) | min(found.tests, 65535u) << 16;
+  results[item].visits = pack_costs(found.visits, found.tests);
 }

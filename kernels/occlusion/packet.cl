@@ -17,12 +17,12 @@ inline Shares make_shares(uint total, uint count) {
   return shares;
 }
 
-/* The share of the next ray, clamped to 65535. */
+/* The share of the next ray. */
 inline uint next_share(Shares* shares) {
   shares->over += shares->more;
   const uint one = shares->over >= shares->count;
   shares->over -= one ? shares->count : 0u;
-  return min(shares->each + one, 65535u);
+  return shares->each + one;
 }
 
 /* Traces rays queue[order[0]] to queue[order[count - 1]] as one packet. Node visits and triangle tests
@@ -39,7 +39,7 @@ inline void trace_packet(Scene scene, OcclusionParams params, __global const Ray
     for (uint lane = 0; lane < min(8u, count - i); ++lane) {
       __global Occlusion* result = results + order[i + lane];
       result->transmittance = transmittance.f[lane];
-      result->visits = next_share(&visits) | next_share(&tests) << 16;
+      result->visits = pack_costs(next_share(&visits), next_share(&tests));
     }
   }
 }

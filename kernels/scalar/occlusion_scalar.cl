@@ -13,5 +13,5 @@ __kernel void occlusion_scalar(__global const BvhNode* nodes, __global const Tri
   const Scene scene = {nodes, blocks, segments, textured, materials, texels, instances};
   const Transmittance found = traverse_scalar(scene, params, rays[ray]);
   results[ray].transmittance = found.value;
-  results[ray].visits = min(found.visits, 65535u) | min(found.tests, 65535u) << 16;
+  results[ray].visits = pack_costs(found.visits, found.tests);
 }

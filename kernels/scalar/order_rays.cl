@@ -5,9 +5,7 @@
 #include "dapple/shared/corner_normals.h"
 #include "dapple/shared/pass_params.h"
 
-#define DAPPLE_ORDER_GROUP 256u   /* items of a work-group */
-#define DAPPLE_ORDER_BATCH 4096u  /* its rays (experiment 755) */
-#define DAPPLE_ORDER_SIDE 8u      /* cells along a side of the octahedral square */
+#define DAPPLE_ORDER_SIDE 8u  /* cells along a side of the octahedral square */
 #define DAPPLE_ORDER_CELLS (DAPPLE_ORDER_SIDE * DAPPLE_ORDER_SIDE + 1u)
 
 /* The cell of a ray's direction; the last one is for hidden rays. */

@@ -80,7 +80,7 @@ TEST(ClosedParts, AreBoxesAndTubesAndNotSheets) {
 }
 
 TEST(ClosedParts, AreOpaque) {
-  const Mesh box = box_mesh({0, 0, 0}, {1, 1, 1});
+  Mesh box = box_mesh({0, 0, 0}, {1, 1, 1});
   Scene scene = scene_of(box);
   const auto count = [&] { return closed_parts(box, opaque_triangles(scene, box)).count; };
   EXPECT_EQ(count(), 1u);
@@ -91,6 +91,13 @@ TEST(ClosedParts, AreOpaque) {
   scene.materials[0].alpha_mode = AlphaMode::mask;
   EXPECT_EQ(count(), 1u);
   scene.materials[0].alpha_texture = 0;
+  EXPECT_EQ(count(), 1u) << "without texture coordinates";
+  box.uvs.resize(box.positions.size());
+  EXPECT_EQ(count(), 0u);
+  scene.materials[0].alpha_texture = -1;
+  box.vertex_alpha.assign(box.positions.size(), 1);
+  EXPECT_EQ(count(), 1u) << "COLOR_0 is opaque";
+  box.vertex_alpha[0] = 0;
   EXPECT_EQ(count(), 0u);
 }
 

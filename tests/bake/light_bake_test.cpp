@@ -178,6 +178,31 @@ TEST(BakeLight, ASmallerTargetErrorTakesMoreRaysAndASmallerErrorIsLeft) {
 }
 
 // At vertices, in textures and of instances: the layers of a group and of a light outside of it.
+// More than 64 points of a triangle add little, so that each has more rays.
+TEST(BakeLight, MoreRaysAreLessNoiseHoweverManyThereAre) {
+  const Scene floor = scene_of(plane(2, 6));
+  Light lamp;
+  lamp.name = "lamp";
+  lamp.kind = LightKind::sphere;
+  lamp.position = V3f(0, 0.8f, 0);
+  lamp.radius = 0.5f;
+  const auto noise = [&](int rays) {
+    std::vector<V3f> of_seed[2];
+    for (std::uint32_t seed = 0; seed < 2; ++seed) {
+      BakeOptions options = lit_by({lamp});
+      options.target_error = 0;
+      options.rays = rays;
+      options.seed = seed;
+      of_seed[seed] = bake(floor, options).meshes.at(0).light.at(0);
+    }
+    double squares = 0;
+    for (std::size_t v = 0; v < of_seed[0].size(); ++v)
+      squares += double{(of_seed[0][v] - of_seed[1][v]).length2()};
+    return std::sqrt(squares);
+  };
+  EXPECT_LT(noise(4096), 0.5 * noise(512));
+}
+
 TEST(BakeLight, AGroupIsTheSumOfItsLights) {
   Scene floor = scene_of(plane(8, 4));
   std::vector<Light> lights = {noon(), noon(), noon()};

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "dapple/render.hpp"
+#include "support/scene_on_device.hpp"
 #include "support/shading_pictures.hpp"
 #include "support/smooth_shapes.hpp"
 
@@ -157,6 +158,18 @@ TEST(ShadingNormal, ASphereInTheSunIsAsBrightAsItsCosine) {
     const Distances of_facets = distances_from(cosine, faceted, "light.sun.R");
     EXPECT_GT(of_facets.worst, 10 * 0.01) << "facets have to show";
     EXPECT_GT(of_facets.rmse, 20 * 0.0012) << "facets have to show";
+  }
+}
+
+// They may not be flat in other frames, whose files have the same layers.
+TEST(ShadingNormal, HasALayerWhereASceneThatMovesIsFlatJustNow) {
+  for (const bool moves : {false, true}) {
+    Mesh flat = scene_test::square_mesh(1, 0, 1, 0);
+    flat.normals.assign(flat.positions.size(), V3f(0, 1, 0));
+    Scene scene = scene_of(std::move(flat));
+    if (moves) scene.animations.emplace_back();
+    EXPECT_EQ(render(scene, options_of(Normals::shading)).film.find("Ng.X") != nullptr, moves);
+    EXPECT_EQ(render(scene, options_of(Normals::geometric)).film.find("Ng.X"), nullptr);
   }
 }
 

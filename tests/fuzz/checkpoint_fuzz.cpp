@@ -12,7 +12,7 @@
 #include "dapple/shared/ray.h"
 #include "files/compression.hpp"
 #include "files/sealed_file.hpp"
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 
 namespace {
 

@@ -13,8 +13,8 @@
 #include "dapple/shared/ray.h"
 #include "files/compression.hpp"
 #include "files/sealed_file.hpp"
-#include "render/checkpoint.hpp"
-#include "render/merge.hpp"
+#include "render/partial/checkpoint.hpp"
+#include "render/partial/merge.hpp"
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "film/layers.hpp"
 #include "support/point_on_ground.hpp"
 
 namespace dapple {
@@ -34,6 +35,26 @@ double parallel_disk(double radius, double height, double beside) {
   const double h = height / radius, r = beside / radius;
   const double z = 1 + h * h + r * r;
   return kPi * 0.5 * (1 - (z - 2) / std::sqrt(z * z - 4 * r * r));
+}
+
+// Sampled by area, as disks are that are far away, a hundredth of the points sees nearly all the
+// light: the error of 4096 rays was 20 %.
+TEST(DiskLight, HasLittleNoiseCloseToItsRim) {
+  Scene scene = point_on_ground();
+  std::vector<double> expected;
+  for (const float height : {0.01f, 0.1f, 0.5f})
+    for (const float beyond : {0.01f, 0.1f}) {
+      scene.lights.push_back(disk("rim", {1 + beyond, height, 0}, {0, -1, 0}, 1));
+      expected.push_back(parallel_disk(1, double{height}, 1.0 + double{beyond}));
+    }
+  for (const Packets packets : {Packets::automatic, Packets::scalar}) {
+    RenderOptions options = lights_only();
+    options.packets = packets;
+    const Film film = render(scene, options).film;
+    const std::vector<std::string> layers = light_names(scene.lights);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(value(film, "light." + layers[i] + ".R"), expected[i], 0.01 * expected[i]) << i;
+  }
 }
 
 TEST(DiskLight, IrradianceOfADiskAboveAPointIsItsClosedForm) {

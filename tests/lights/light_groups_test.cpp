@@ -40,6 +40,9 @@ TEST(LightLayers, HaveNamesThatDiffer) {
             (Names{"a", "a_3", "a_2"}));
   EXPECT_EQ(names_of({light_of("x", "back light"), light_of("y", "back_light")}),
             (Names{"back_light", "back_light_2"}));
+  EXPECT_EQ(names_of({light_of("a", ""), light_of("a", ""), light_of("a_2", "")}),
+            (Names{"a", "a_3", "a_2"}))
+      << "a name that only one light has stays";
 }
 
 TEST(LightLayers, OfAGroupAreTheSumOfItsLightsWithinFloatRounding) {

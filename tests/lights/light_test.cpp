@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
+#include "film/layers.hpp"
 #include "support/point_on_ground.hpp"
 
 namespace dapple {
@@ -202,6 +204,40 @@ Light mesh_light(bool double_sided = false) {
   return light;
 }
 
+// As lamps are built into ceilings: rays end at points that lie in the ceiling but for roundings.
+TEST(Light, IsNotHiddenByASurfaceInWhosePlaneItLies) {
+  for (const float tilt : {0.0f, 0.3f}) {
+    Scene open = point_on_ground();
+    M44f turn;
+    turn.rotate(V3f(tilt, 0, 0));
+    const V3f x(1, 0, 0), z = V3f(0, 0, 1) * turn, down = V3f(0, -1, 0) * turn;
+    for (int i = 0; i < 6; ++i) {
+      const V3f at = V3f(0, 2.7f, 0) + x * (0.37f * static_cast<float>(i) - 1) + z * 0.21f;
+      Light disk = rect("disk", at, x, z, down);
+      disk.kind = LightKind::disk;
+      disk.radius = 0.4f;
+      open.lights.insert(open.lights.end(), {rect("rect", at, x, z, down), disk});
+    }
+    Scene closed = open;
+    Mesh ceiling;
+    append_grid(ceiling, V3f(0, 2.7f, 0) - x * 3 - z * 3, x * 6, z * 6, 5, 0);
+    place(closed, std::move(ceiling));
+    RenderOptions options = one_pixel();
+    options.ao = false;
+    for (const Packets packets : {Packets::automatic, Packets::scalar}) {
+      options.packets = packets;
+      const Film under_sky = render(open, options).film;
+      const Film under_ceiling = render(closed, options).film;
+      for (const std::string& layer : light_names(open.lights)) {
+        const float expected = value(under_sky, "light." + layer + ".R");
+        EXPECT_GT(expected, 0);
+        EXPECT_NEAR(value(under_ceiling, "light." + layer + ".R"), expected, 1e-5f * expected)
+            << layer << ", tilt " << tilt;
+      }
+    }
+  }
+}
+
 TEST(EmissiveMesh, NeverOccludesItsOwnSamplesAndDoesOccludeAo) {
   for (const V3f& centre : {V3f(0, 1.7f, 0), V3f(1.5f, 2, -0.8f)}) {
     Scene scene = point_on_ground();
@@ -240,6 +276,37 @@ TEST(EmissiveMesh, ItsFrontPartDoesNotShadeThePartBehind) {
     const Film film = render(scene, one_pixel(Estimator::prefiltered, footprint)).film;
     EXPECT_NEAR(value(film, "light.glow.R"), expected, 0.01 * expected) << footprint;
   }
+}
+
+TEST(EmissiveMesh, ShinesInProportionToItsOpacity) {
+  const auto glow = [](const std::function<void(Scene&, Mesh&)>& change) {
+    Scene scene = point_on_ground();
+    scene.lights.push_back(mesh_light());
+    scene.materials.push_back(scene.materials[0]);
+    scene.materials[1].alpha_mode = AlphaMode::blend;
+    Mesh square;
+    append_grid(square, {-0.1f, 2, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, 1, 1);
+    change(scene, square);
+    place(scene, std::move(square), {}, 0);
+    RenderOptions options = one_pixel();
+    options.ao = false;
+    return value(render(scene, options).film, "light.glow.R");
+  };
+  const float all = glow([](Scene&, Mesh&) {});
+  EXPECT_GT(all, 0);
+  EXPECT_NEAR(glow([](Scene& scene, Mesh&) { scene.materials[1].alpha = 0.5f; }), all / 2,
+              0.01f * all);
+  const auto a_quarter = [](Scene& scene, Mesh& mesh) {
+    Texture texture;  // a quarter in a corner
+    texture.width = texture.height = 64;
+    for (std::uint32_t i = 0; i < 64 * 64; ++i)
+      texture.alpha.push_back(i % 64 < 32 && i / 64 < 32 ? 255 : 0);
+    scene.textures = {texture};
+    scene.materials[1].alpha_mode = AlphaMode::mask;
+    scene.materials[1].alpha_texture = 0;
+    for (const V3f& p : mesh.positions) mesh.uvs.emplace_back(5 * p.x + 0.5f, 5 * p.z + 0.5f);
+  };
+  EXPECT_NEAR(glow(a_quarter), all / 4, 0.02f * all);
 }
 
 TEST(EmissiveMesh, EmitsFromItsFrontUnlessDoubleSidedAlsoWhenPlacedMirrored) {

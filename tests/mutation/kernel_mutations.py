@@ -224,6 +224,16 @@ MUTATIONS = [
         "depth_decode(node->depth[1][slot]), depth_decode(node->depth[0][slot]),",
         r"^ScalarKernels\."),
     Mutation(
+        "rays-to-lights-reach-them", "kernels/lights/light.cl",
+        "return at_least_0(distance * (1.0f - DAPPLE_LIGHT_GAP) - largest * DAPPLE_LIGHT_ROUNDINGS);",
+        "return distance + 0.0f * largest;",
+        r"^Light\."),
+    Mutation(
+        "disks-are-near-by-their-centre", "kernels/lights/flat_samples.clh",
+        "return height * height + beyond * beyond;",
+        "return square + 0.0f * beyond;",
+        r"^DiskLight\."),
+    Mutation(
         "sums-of-other-points-rays", "kernels/occlusion/ray_sums.cl",
         "const uint end = min(first + DAPPLE_SUMMED_RAYS, (point + 1u) * rays_per_point);",
         "const uint end = first + DAPPLE_SUMMED_RAYS;",

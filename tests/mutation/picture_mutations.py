@@ -4,7 +4,7 @@ from mutation import Mutation
 
 MUTATIONS = [
     Mutation(
-        "checkpoint-without-the-back-layers", "host/render/picture_record.cpp",
+        "checkpoint-without-the-back-layers", "host/render/partial/picture_record.cpp",
         "  o.back = about.at(\"back\").get<bool>();\n",
         "",
         r"^(CheckpointFile|MergeParts|Resume|MergeCommand)\."),
@@ -91,17 +91,17 @@ MUTATIONS = [
         "tone_mapped(linear * scale)",
         r"^Png\."),
     Mutation(
-        "merged-samples-of-the-last-part", "host/render/merged_sums.cpp",
+        "merged-samples-of-the-last-part", "host/render/partial/merged_sums.cpp",
         "state_.samples[at(p)] += state.samples[p];",
         "state_.samples[at(p)] = state.samples[p];",
         r"^(MergeParts|MergeCommand)\."),
     Mutation(
-        "parts-merge-in-spite-of-footprints", "host/render/merge.cpp",
+        "parts-merge-in-spite-of-footprints", "host/render/partial/merge.cpp",
         "  settings.emplace_back(\"--spp (footprints)\", fmt::format(\"{}\", about.footprint_spp));\n",
         "",
         r"^(MergeParts|MergeCommand)\."),
     Mutation(
-        "parts-that-touch-overlap", "host/render/pieces.cpp",
+        "parts-that-touch-overlap", "host/render/partial/pieces.cpp",
         "a.rays.first < b.rays.end && b.rays.first < a.rays.end;",
         "a.rays.first <= b.rays.end && b.rays.first <= a.rays.end;",
         r"^(Pieces|MergeParts)\."),
@@ -136,22 +136,22 @@ MUTATIONS = [
         "std::fabs(bias.mean) + kClear * bias.error > most;",
         r"^FootprintChoice\."),
     Mutation(
-        "pilot-keeps-what-another-footprint-found", "host/render/bias_pilot.cpp",
+        "pilot-keeps-what-another-footprint-found", "host/render/bias/bias_pilot.cpp",
         "  if (layer.footprint != footprint) layer.prefiltered.clear();\n",
         "",
         r"^(FootprintPilot|BiasPilot|MaxBias)\."),
     Mutation(
-        "pilot-of-the-crop", "host/render/footprint_pilot.cpp",
+        "pilot-of-the-crop", "host/render/bias/footprint_pilot.cpp",
         "  if (unasked) view.crop = {0, 0, view.width - 1, view.height - 1};\n",
         "",
         r"^FootprintPilot\."),
     Mutation(
-        "bias-of-a-group-from-other-passes", "host/render/bias_report.cpp",
+        "bias-of-a-group-from-other-passes", "host/render/bias/bias_report.cpp",
         "differences[group.lights[i] + (layout.ao ? 1 : 0)][pixel]",
         "differences[group.lights[i]][pixel]",
         r"^BiasReport\."),
     Mutation(
-        "bias-of-resumed-samples", "host/render/bias_report.cpp",
+        "bias-of-resumed-samples", "host/render/bias/bias_report.cpp",
         "    taken.fronts[pixel] -= earlier;\n",
         "",
         r"^(BiasReport|Resume)\."),
@@ -298,7 +298,7 @@ MUTATIONS = [
         "nearest_valid(known_, texture_.size, 0 * all, covered_)",
         r"^BakeTexture\."),
     Mutation(
-        "rays-of-bakes-forget-the-terms-of-sums", "host/render/shared_points.cpp",
+        "rays-of-bakes-forget-the-terms-of-sums", "host/render/queries/shared_points.cpp",
         "kTermsOfReach * reach[axis]",
         "0.0f * reach[axis]",
         r"^BakeSampleOrigin\."),

@@ -4,6 +4,21 @@ from mutation import Mutation
 
 MUTATIONS = [
     Mutation(
+        "emission-of-what-is-cut-out", "host/device/upload/light_upload.cpp",
+        "const double area = 0.5 * cross.length() * double{opacities[t]};",
+        "const double area = 0.5 * cross.length() * (opacities[t] > 0 ? 1 : 0);",
+        r"^EmissiveMesh\."),
+    Mutation(
+        "placements-move-by-the-first-one", "host/render/frame_match.cpp",
+        "if (instances[i] < 0) continue;\n    const std::uint32_t mesh",
+        "if (instances[i] < 0) break;\n    const std::uint32_t mesh",
+        r"^Motion\."),
+    Mutation(
+        "bakes-keep-their-rays-to-lights", "host/bake/vertex_bake.cpp",
+        "std::clamp<std::int64_t>(light_rays, options.light_rays, kMostLightRays)",
+        "options.light_rays",
+        r"^(BakeLight|SampleCounts)\."),
+    Mutation(
         "quantization-rounds-inwards", "host/bvh/build/quantize_boxes.cpp",
         "std::floor((box.min[axis] - origin) / step - margin(box.min[axis], step));",
         "std::ceil((box.min[axis] - origin) / step - margin(box.min[axis], step));",

@@ -72,43 +72,45 @@ TEST(HardScenes, AClosedTunnelIsBlackToTheLastBit) {
 /// All that such a scene holds are walls, which are opened: what differs is rounding.
 constexpr Limits kSame{1e-5, 1e-5, 1e-5};
 
-TEST(HardScenes, AnOpenTunnel) {
+TEST(HardScenes, AnOpenTunnelIsExact) {
   const HardScene hard = open_tunnel();
   expect_close(hard, "ao", kSame, kSame);
   expect_close(hard, "light.lamp", kSame, kSame, std::acos(-1.0));
 }
 
-TEST(HardScenes, ARoomWithOneWindow) { expect_close(room_with_one_window(), "ao", kSame, kSame); }
+TEST(HardScenes, ARoomWithOneWindowIsExact) {
+  expect_close(room_with_one_window(), "ao", kSame, kSame);
+}
 
 // Slats are regular, so what one of them lets through the next one stops or not for all rays alike:
 // with the default footprint the opacities of nodes, which are independent, are 0.005 too dark. The
 // pilot takes a smaller one.
-TEST(HardScenes, Blinds) {
+TEST(HardScenes, BlindsAreNearExact) {
   expect_close(blinds(), "ao", {0.003, 0.006, 0.009}, {0.006, 0.012, 0.02});
 }
 
-TEST(HardScenes, AHedgeOfAlignedBlades) {
+TEST(HardScenes, AHedgeOfAlignedBladesIsNearExact) {
   expect_close(hedge(), "ao", {0.004, 0.007, 0.012}, {0.0035, 0.0065, 0.0105});
 }
 
-TEST(HardScenes, WallsOfLeavesWithALampBetween) {
+TEST(HardScenes, WallsOfLeavesWithALampBetweenAreNearExact) {
   const HardScene hard = walls_of_leaves();
   expect_close(hard, "ao", {0.003, 0.012, 0.016}, {0.0015, 0.0105, 0.0135});
   expect_close(hard, "light.lamp", {0.001, 0.004, 0.01}, {0.0002, 0.0005, 0.0008}, std::acos(-1.0));
 }
 
-TEST(HardScenes, APlateOfTenThousandHoles) {
+TEST(HardScenes, APlateOfTenThousandHolesIsNearExact) {
   expect_close(plate_of_ten_thousand_holes(), "ao", {0.002, 0.005, 0.005},
                {0.0004, 0.0014, 0.0026});
 }
 
-TEST(HardScenes, GrassAtAGrazingAngle) {
+TEST(HardScenes, GrassAtAGrazingAngleIsNearExact) {
   expect_close(grass_at_a_grazing_angle(), "ao", {0.002, 0.005, 0.005}, {0.001, 0.002, 0.003});
 }
 
 // The camera sees their tips, and boxes around tips are denser below: the mean was -0.0156 before
 // footprints kept clear of the line of sight.
-TEST(HardScenes, TipsOfGrassInFewSamples) {
+TEST(HardScenes, TipsOfGrassAreNearExactInFewSamples) {
   RenderOptions options = picture_of("ao");
   options.width = options.height = 128;
   options.spp = 16;

@@ -9,7 +9,7 @@
 #include <memory>
 #include <random>
 
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 #include "support/film_files.hpp"
 #include "support/hanging_program.hpp"
 #include "support/processor_time.hpp"

@@ -209,6 +209,26 @@ TEST(Motion, WhatStaysMovesThoughOthersComeOrGo) {
   }
 }
 
+// The placement that goes or comes is the first, which names objects that are placed once.
+TEST(Motion, PlacementsMoveThoughOthersOfTheirMeshComeOrGo) {
+  const auto scene_with = [](const V3f& at, bool with_others) {
+    Scene scene = scene_of({.square = at});
+    scene.node_names = {"square", "first", "last"};
+    const Instance square = scene.instances[0];
+    Instance other = scene.instances[1];
+    scene.instances.clear();
+    for (const int node : {1, 0, 2}) {
+      scene.instances.push_back(node == 0 ? square : other);
+      scene.instances.back().node = node;
+      if (node == 1 && !with_others) scene.instances.pop_back();
+    }
+    return scene;
+  };
+  for (const bool now : {false, true})
+    expect_motion(picture_of(scene_with({0, 0, 0}, now), scene_with({0.3f, -0.2f, 0}, !now)),
+                  [](double, double) { return Imath::V2d(0.3, -0.2) * kPixels; });
+}
+
 TEST(Motion, AnObjectWithOtherTrianglesStandsStill) {
   Scene next = two_objects({0.3f, 0, 0}, 1, false);
   std::swap(next.meshes[0].indices[0], next.meshes[0].indices[1]);

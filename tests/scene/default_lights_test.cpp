@@ -46,6 +46,16 @@ TEST(Daylight, TheSunStandsUpLeftInFrontAtAnyTiltOfTheCamera) {
   }
 }
 
+TEST(Daylight, TheSunDoesNotJumpWhereTheCameraLooksStraightDownOrUp) {
+  for (const float height : {10.0f, -10.0f}) {
+    const auto sun = [&](float aside) {
+      const V3f up(0, 0, height > 0 ? -1.0f : 1.0f);  // as if it had been level before
+      return daylight(look_at({0, height, aside}, {0, 0, 0}, up, 0.7f))[0].direction;
+    };
+    EXPECT_GT(sun(0).dot(sun(0.02f)), 0.9999f) << height;
+  }
+}
+
 TEST(Daylight, TheNoteOffersAGroundOnlyWhereThereIsNone) {
   const std::string note = default_light_note(true);
   EXPECT_NE(note.find("--lights F"), std::string::npos) << note;

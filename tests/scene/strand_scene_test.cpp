@@ -106,6 +106,17 @@ TEST(StrandScene, StrandsDoNotEmitAndAWarningSaysSo) {
   EXPECT_TRUE(warns(scene, "1 instance of strands should emit light"));
 }
 
+// Whether they can be merged depends on their scale, which may differ from frame to frame.
+TEST(StrandScene, StrandsOfScenesThatMoveStayPlaced) {
+  for (const bool moves : {false, true}) {
+    Scene scene = strand_scene(curly_strands({.strands = 3}), 0.3f);
+    place(scene, curly_strands({.strands = 4}));
+    if (moves) scene.animations.emplace_back();
+    merge_single_instances(scene);
+    EXPECT_EQ(scene.instances.size(), moves ? 2u : 1u);
+  }
+}
+
 TEST(StrandScene, StatisticsCountSegmentsApartFromTriangles) {
   Scene scene = strand_scene(curly_strands({.strands = 10}), 0.3f);
   place(scene, square_mesh(1, 0, 1, 0));

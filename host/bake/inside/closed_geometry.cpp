@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bake/inside/closed_parts.hpp"
+#include "sampling/random_choice.hpp"
 #include "scene/invertible.hpp"
 
 namespace dapple {
@@ -52,15 +53,12 @@ bool overlaps(const RayFrom& ray, const Box3f& box) {
   return inside.enter <= inside.leave;
 }
 
-/// Directions of rays: a Kronecker sequence on the sphere.
+/// Directions of rays, evenly spread over the sphere.
 std::array<V3f, kRays> spread_directions() {
-  constexpr double kA = 0.7548776662466927, kB = 0.5698402909980532;  // as in texture_bake.cpp
-  const auto fraction = [](double x) { return x - std::floor(x); };
   std::array<V3f, kRays> directions;
   for (std::size_t r = 0; r < kRays; ++r) {
-    const auto index = static_cast<double>(r);
-    const double z = 2 * fraction(0.3 + index * kA) - 1;
-    const double angle = 2 * std::numbers::pi * fraction(0.7 + index * kB);
+    const auto [u, v] = spread_pair(r, 0.3, 0.7);
+    const double z = 2 * u - 1, angle = 2 * std::numbers::pi * v;
     const double radius = std::sqrt(std::max(0.0, 1 - z * z));
     directions[r] = V3f(static_cast<float>(radius * std::cos(angle)),
                         static_cast<float>(radius * std::sin(angle)), static_cast<float>(z));
@@ -136,20 +134,20 @@ int winding(const BoxTree& tree, const std::array<V3f, 3>* triangles, const RayF
 }  // namespace
 
 ClosedGeometry::ClosedGeometry(Scene scene) {
-  scene_.materials = std::move(scene.materials);
-  scene_.instances = std::move(scene.instances);
   for (Mesh& mesh : scene.meshes) {
-    Mesh& kept = scene_.meshes.emplace_back();
+    Surface& kept = surfaces_.emplace_back();
     if (mesh.has_strands()) continue;
-    kept.positions = std::move(mesh.positions);
-    kept.indices = std::move(mesh.indices);
-    kept.materials = std::move(mesh.materials);
-    kept.vertex_alpha = std::move(mesh.vertex_alpha);
+    kept.opaque = opaque_triangles(scene, mesh);
+    kept.mesh.positions = std::move(mesh.positions);
+    kept.mesh.indices = std::move(mesh.indices);
+    kept.mesh.materials = std::move(mesh.materials);
   }
+  instances_ = std::move(scene.instances);
 }
 
-ClosedGeometry::Solids ClosedGeometry::solids_of(const Scene& scene, const Mesh& mesh) {
-  const ClosedParts parts = closed_parts(mesh, opaque_triangles(scene, mesh));
+ClosedGeometry::Solids ClosedGeometry::solids_of(const Surface& surface) {
+  const Mesh& mesh = surface.mesh;
+  const ClosedParts parts = closed_parts(mesh, surface.opaque);
   Solids solids;
   solids.parts.resize(parts.count);
   for (const std::uint32_t part : parts.of_triangle)
@@ -184,20 +182,21 @@ void ClosedGeometry::prepare() {
   if (is_prepared_) return;
   is_prepared_ = true;
   std::vector<Box3f> bounds, boxes;
-  for (Mesh& mesh : scene_.meshes) {
-    of_mesh_.push_back(solids_of(scene_, mesh));
-    mesh = {};
+  for (Surface& surface : surfaces_) {
+    of_mesh_.push_back(solids_of(surface));
+    surface = {};
     Box3f& box = bounds.emplace_back();
     for (const std::array<V3f, 3>& corners : of_mesh_.back().triangles)
       for (const V3f& corner : corners) box.extendBy(corner);
   }
-  for (const Instance& instance : scene_.instances) {
+  for (const Instance& instance : instances_) {
     if (bounds[instance.mesh].isEmpty() || !is_invertible(instance.to_world)) continue;
     placements_.push_back({instance.to_world.inverse(), instance.mesh});
     boxes.push_back(with_margin(Imath::transform(bounds[instance.mesh], instance.to_world)));
   }
   boxes_ = BoxTree(boxes);
-  scene_ = {};
+  surfaces_.clear();
+  instances_.clear();
 }
 
 // Most points lie outside, and one ray tells. The shortest meets the fewest triangles.

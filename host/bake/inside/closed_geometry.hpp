@@ -13,7 +13,7 @@ namespace dapple {
 
 class ClosedGeometry {
  public:
-  /// Keeps what it needs of the triangles. Takes time only in prepare().
+  /// Keeps what it needs of the triangles. Most of the time is taken in prepare().
   explicit ClosedGeometry(Scene scene);
 
   /// Finds the closed parts, the first time that it is called. Linear but for parallel sorts.
@@ -43,9 +43,16 @@ class ClosedGeometry {
     std::uint32_t mesh;
   };
 
-  static Solids solids_of(const Scene& scene, const Mesh& mesh);
+  /// The triangles of a mesh.
+  struct Surface {
+    Mesh mesh;
+    std::vector<bool> opaque;  ///< of each triangle
+  };
 
-  Scene scene_;  ///< until prepare()
+  static Solids solids_of(const Surface& surface);
+
+  std::vector<Surface> surfaces_;    ///< of each mesh, until prepare()
+  std::vector<Instance> instances_;  ///< until prepare()
   bool is_prepared_ = false;
   std::vector<Solids> of_mesh_;
   std::vector<Placement> placements_;  ///< of meshes with closed parts

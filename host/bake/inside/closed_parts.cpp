@@ -10,6 +10,7 @@
 #include "bake/surface_samples.hpp"
 #include "bake/vertex_groups.hpp"
 #include "bvh/opacity/connected_vertices.hpp"
+#include "bvh/opacity/triangle_opacity.hpp"
 
 namespace dapple {
 namespace {
@@ -81,13 +82,8 @@ std::vector<std::uint32_t> joined_triangles(const std::vector<Edge>& edges, std:
 
 std::vector<bool> opaque_triangles(const Scene& scene, const Mesh& mesh) {
   std::vector<bool> opaque(mesh.primitive_count());
-  for (std::size_t t = 0; t < opaque.size(); ++t) {
-    const Material& material = scene.materials[mesh.materials[t]];
-    const bool is_uniform =
-        material.alpha_texture < 0 && (mesh.vertex_alpha.empty() || !material.uses_vertex_alpha);
-    const float least = material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 1.0f;
-    opaque[t] = material.alpha_mode == AlphaMode::opaque || (is_uniform && material.alpha >= least);
-  }
+  for (std::uint32_t t = 0; t < opaque.size(); ++t)
+    opaque[t] = uniform_opacity(scene, mesh, t) == 1.0f;
   return opaque;
 }
 

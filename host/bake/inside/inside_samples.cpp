@@ -14,16 +14,16 @@ namespace {
 
 /// A sample that sees more, relative to the largest unoccluded value, is not tested. Prefiltered
 /// rays pass through parts of twigs near by: with 0.02, a baked tree was 0.004 darker than exact.
-constexpr float kDark = 0.3f;
+constexpr float kTestedBelow = 0.3f;
 
 /// Points are tested above their triangles by so many of their coordinates: 80 roundings.
 constexpr float kOffset = 1e-5f;
 
-bool is_dark(const SurfaceSample& sample, const TracedSamples& found, std::size_t i) {
+bool is_tested(const SurfaceSample& sample, const TracedSamples& found, std::size_t i) {
   const float front = sample.front ? found.front[i].scalar : 0;
   const float back = sample.back ? found.back[i].scalar : 0;
   return sample.may_be_inside && (sample.front || sample.back) &&
-         std::max(front, back) <= kDark * found.largest;
+         std::max(front, back) <= kTestedBelow * found.largest;
 }
 
 /// Clears those of `inside` of which one side, that of `points`, is not inside.
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> find_inside_samples(std::span<const SurfaceSample> sam
   std::vector<std::uint32_t> index, of_placement;
   std::vector<SurfaceSample> dark;
   for (std::uint32_t i = 0; i < samples.size(); ++i) {
-    if (!is_dark(samples[i], found, i)) continue;
+    if (!is_tested(samples[i], found, i)) continue;
     index.push_back(i);
     dark.push_back(samples[i]);
     of_placement.push_back(placement[i]);

@@ -51,14 +51,9 @@ class SampledTexels : public SampledSurface {
     return clip_to_texel(&corners_[3 * triangle], size_, texel(i) % size_, texel(i) / size_);
   }
 
-  // A point that is uniform over the parts of all triangles in the texel: an additive recurrence
-  // (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018) with a random shift.
+  // A point that is uniform over the parts of all triangles in the texel.
   [[nodiscard]] SurfaceSample sample(std::size_t i, std::uint32_t index) const override {
-    constexpr double kA = 0.7548776662466927, kB = 0.5698402909980532;
-    const std::uint32_t shift = hash_of(hash_, texel(i));
-    const auto fraction = [](double x) { return x - std::floor(x); };
-    const double u = fraction((shift & 0xffffu) / 65536.0 + index * kA);
-    const double v = fraction((shift >> 16) / 65536.0 + index * kB);
+    const auto [u, v] = spread_pair(index, hash_of(hash_, texel(i)));
     double area = 0;
     for (const std::uint32_t t : triangles(i)) area += double{polygon(i, t).area()};
     double left = u * area;

@@ -11,6 +11,7 @@
 
 #include "bvh/storage/textured_triangle.hpp"
 #include "dapple/error.hpp"
+#include "device/upload/texture_upload.hpp"
 
 namespace dapple {
 namespace {
@@ -149,8 +150,7 @@ void pack_materials(const Scene& scene, SurfaceColors& colors) {
       record.mips = static_cast<uint>(offsets.size()) - 1;
       record.width = texture.width;
       record.height = texture.height;
-      record.flags = static_cast<uint>(texture.wrap_s) | static_cast<uint>(texture.wrap_t) << 2 |
-                     (texture.nearest ? 16u : 0u);
+      record.flags = texture_flags(texture.wrap_s, texture.wrap_t, texture.nearest);
       std::copy(offsets.begin(), offsets.end(), record.offset);
     }
     colors.materials.push_back(record);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "bvh/opacity/triangle_opacity.hpp"
 #include "dapple/error.hpp"
 #include "scene/rect_axes.hpp"
 
@@ -14,7 +16,48 @@ void store(const V3f& from, float (&to)[3]) {
   for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
 }
 
-/// Appends the triangles of every instance that emits for `light`. Returns their area in m^2.
+/// Parts of equal size that a textured triangle's opacity is looked up in: squares of these
+/// numbers.
+constexpr std::size_t kMostDivisions = 16, kMostLookups = 1u << 22;
+
+/// Mean opacity of a triangle, by the middles of its parts.
+float mean_opacity(const TextureIntegrals& integrals, const TexturedTriangle& triangle,
+                   std::size_t divisions) {
+  const auto n = static_cast<float>(divisions);
+  const float share = 1 / (n * n);
+  double sum = 0;
+  for (std::size_t i = 0; i < divisions; ++i)
+    for (std::size_t j = 0; i + j < divisions; ++j)
+      for (const float third : {1.0f / 3, 2.0f / 3}) {
+        if (third > 0.5f && i + j + 1 == divisions) continue;  // beyond the third side
+        sum += double{integrals.mean(triangle, (static_cast<float>(i) + third) / n,
+                                     (static_cast<float>(j) + third) / n, share)};
+      }
+  return static_cast<float>(sum * double{share});
+}
+
+/// The mean opacity of each triangle: what is cut out or transparent does not shine.
+std::vector<float> mean_opacities(const Scene& scene, const Mesh& mesh) {
+  std::vector<float> opacities;
+  std::vector<TexturedTriangle> textured;
+  for (std::uint32_t t = 0; t < mesh.primitive_count(); ++t) {
+    const std::optional<float> uniform = uniform_opacity(scene, mesh, t);
+    if (!uniform) textured.push_back(textured_triangle(scene, mesh, t, true));
+    opacities.push_back(uniform.value_or(-1));
+  }
+  if (textured.empty()) return opacities;
+  const TextureIntegrals integrals(scene, textured);
+  const auto affordable = static_cast<std::size_t>(
+      std::sqrt(static_cast<double>(kMostLookups) / static_cast<double>(textured.size())));
+  const std::size_t divisions = std::clamp<std::size_t>(affordable, 1, kMostDivisions);
+  auto next = textured.begin();
+  for (float& opacity : opacities)
+    if (opacity < 0) opacity = mean_opacity(integrals, *next++, divisions);
+  return opacities;
+}
+
+/// Appends the triangles of every instance that emits for `light`. Returns the area in m^2 that
+/// shines, by which they are chosen.
 double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangle>& emitters) {
   const std::size_t first = emitters.size();
   std::vector<double> areas;
@@ -23,6 +66,7 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
     if (instance.light != light) continue;
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (mesh.has_strands()) continue;
+    const std::vector<float> opacities = mean_opacities(scene, mesh);
     for (std::size_t t = 0; t < mesh.primitive_count(); ++t) {
       const auto corner = [&](int c) {
         return mesh.positions[mesh.indices[3 * t + c]] * instance.to_world;
@@ -30,7 +74,7 @@ double append_emitters(const Scene& scene, int light, std::vector<EmitterTriangl
       const V3f vertex = corner(0);
       const V3f edge1 = corner(1) - vertex, edge2 = corner(2) - vertex;
       const V3f cross = edge1.cross(edge2);
-      const double area = 0.5 * cross.length();
+      const double area = 0.5 * cross.length() * double{opacities[t]};
       if (!(area > 0)) continue;
       EmitterTriangle triangle{};
       store(vertex, triangle.vertex);

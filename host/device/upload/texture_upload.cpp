@@ -14,6 +14,10 @@ namespace {
 /// Textures and their mip levels begin at multiples of this many bytes; offsets count such units.
 constexpr std::size_t kOffsetUnit = 16;
 
+static_assert(static_cast<uint>(Wrap::repeat) == DAPPLE_WRAP_REPEAT);
+static_assert(static_cast<uint>(Wrap::clamp) == DAPPLE_WRAP_CLAMP);
+static_assert(static_cast<uint>(Wrap::mirror) == DAPPLE_WRAP_MIRROR);
+
 uint next_offset(std::vector<uchar>& texels) {
   texels.resize((texels.size() + kOffsetUnit - 1) / kOffsetUnit * kOffsetUnit);
   return static_cast<uint>(texels.size() / kOffsetUnit);
@@ -24,8 +28,7 @@ TextureRecord pack_texture(const Texture& texture, std::vector<uchar>& texels) {
   record.offset = next_offset(texels);
   record.width = texture.width;
   record.height = texture.height;
-  record.flags = static_cast<uint>(texture.wrap_s) | static_cast<uint>(texture.wrap_t) << 2 |
-                 (texture.nearest ? 16u : 0u);
+  record.flags = texture_flags(texture.wrap_s, texture.wrap_t, texture.nearest);
   texels.insert(texels.end(), texture.alpha.begin(), texture.alpha.end());
   return record;
 }
@@ -46,6 +49,11 @@ std::vector<uint> pack_mips(const Texture& texture, float factor, float cutoff,
 }
 
 }  // namespace
+
+uint texture_flags(Wrap s, Wrap t, bool nearest) {
+  return DAPPLE_TEXTURE_FLAGS(static_cast<uint>(s), static_cast<uint>(t)) |
+         (nearest ? DAPPLE_NEAREST : 0u);
+}
 
 void pack_materials(const Scene& scene, std::vector<MaterialRecord>& records,
                     std::vector<uchar>& texels) {

@@ -10,6 +10,9 @@
 
 namespace dapple {
 
+/// Flags of records of textures.
+uint texture_flags(Wrap s, Wrap t, bool nearest);
+
 /// Appends one record for each material, in the scene's order, and the texels that the records
 /// refer to: each texture once, and its coarser mip levels once for each alpha factor and cutoff
 /// that the materials average them with.

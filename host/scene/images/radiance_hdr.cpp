@@ -113,7 +113,9 @@ RadianceImage::RadianceImage(std::span<const std::uint8_t> bytes, const std::str
   if (stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
                             &channels) == 0 ||
       width < 1 || height < 1)
-    refuse(what, "is corrupt (its Radiance header)");
+    refuse(what,
+           "has a Radiance header that is corrupt or not supported: 32-bit_rle_rgbe and "
+           "-Y HEIGHT +X WIDTH are");
   const std::int64_t pixels = std::int64_t{width} * height;
   if (pixels > kMaxPixels) {
     refuse(what, "is too large (" + std::to_string(width) + " x " + std::to_string(height) +

@@ -23,12 +23,19 @@ typedef struct DAPPLE_CACHE_ALIGNED TriangleBlock {
 #define DAPPLE_WRAP_CLAMP 1u
 #define DAPPLE_WRAP_MIRROR 2u
 
+/* Flags of a texture: DAPPLE_TEXTURE_FLAGS() of how it is wrapped along u and v, and DAPPLE_NEAREST if it is looked
+   up without interpolation. */
+#define DAPPLE_NEAREST 16u
+#define DAPPLE_TEXTURE_FLAGS(wrap_s, wrap_t) ((wrap_s) | (wrap_t) << 2)
+#define DAPPLE_WRAP_S(flags) ((flags) & 3u)
+#define DAPPLE_WRAP_T(flags) ((flags) >> 2 & 3u)
+
 /* An 8-bit alpha image inside the texel buffer. */
 typedef struct TextureRecord {
   uint offset; /* of its first texel, in 16-byte units, so that 64 GB can be addressed */
   uint width;
   uint height;
-  uint flags; /* wrap_s | wrap_t << 2 | nearest << 4 */
+  uint flags; /* DAPPLE_TEXTURE_FLAGS(), DAPPLE_NEAREST */
 } TextureRecord;
 
 /* The largest number of coarser levels of a texture. With 65,536 texels along an axis, the last

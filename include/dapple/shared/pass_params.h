@@ -23,6 +23,19 @@ typedef struct SceneParams {
 #define DAPPLE_PIXEL_RAY_BATCH 1024u
 #define DAPPLE_SMALL_RAY_BATCH 256u
 
+/* Rays that a work-item of the vector kernels generates. */
+#define DAPPLE_RAY_LANES 16u
+
+/* Work-items of a work-group of order_rays, and the rays that it orders (experiment 755). */
+#define DAPPLE_ORDER_GROUP 256u
+#define DAPPLE_ORDER_BATCH 4096u
+
+/* Work-items of a work-group that compacts hits. */
+#define DAPPLE_SCAN_ITEMS 256u
+
+/* Work-items of each pixel that shade its points on GPUs. */
+#define DAPPLE_SHADING_ITEMS 16u
+
 typedef struct OcclusionParams {
   SceneParams scene;
   uint ray_count;

@@ -31,7 +31,7 @@ DAPPLE_FUNCTION float footprint_spread(uint key) {
 /* Result of an occlusion ray. */
 typedef struct Occlusion {
   float transmittance; /* [0,1] */
-  uint visits;         /* nodes visited | triangles tested << 16, each clamped to 65535 */
+  uint visits;         /* pack_costs() of the ray */
 } Occlusion;
 
 /* Rays of a point that one RaySums is of, at most. */
@@ -43,6 +43,13 @@ typedef struct RaySums {
   float seen;         /* of Ray::weight times the transmittance */
   float direction[3]; /* of directions times the same */
 } RaySums;
+
+/* Occlusion::visits and SurfacePoint::visits: nodes visited | primitives tested << 16, each clamped to 65535. */
+DAPPLE_FUNCTION uint pack_costs(uint visits, uint tests) {
+  return (visits < 65535u ? visits : 65535u) | (tests < 65535u ? tests : 65535u) << 16;
+}
+DAPPLE_FUNCTION uint visits_of(uint costs) { return costs & 65535u; }
+DAPPLE_FUNCTION uint tests_of(uint costs) { return costs >> 16; }
 
 /* Camera rays that one work-item of the camera pass traces as a packet. */
 #define DAPPLE_ITEM_RAYS 64u
@@ -67,6 +74,9 @@ typedef struct SampleHits {
      ray with a triangle or segment. */
   uint visits, tests;
 } SampleHits;
+
+/* In place of an instance's index: the scene has no instances, and rays are in world space. */
+#define DAPPLE_WORLD 0xffffffffu
 
 /* Where a camera ray hit a surface; t < 0: it hit none. Where a shading pass follows the camera
    pass, `t` holds bits of whole numbers: until then of the instance that was hit, whose primitive

@@ -322,7 +322,7 @@ void expect_flat_memory(const Frame& frame) {
   EXPECT_LT(after, 1.01 * before);
 }
 
-TEST(FlatMemory, AThousandFramesOfOneRenderer) {
+TEST(FlatMemory, AThousandFramesTakeNoMoreMemory) {
   const Scene still = tree(300);
   const RenderOptions options = small_picture(Estimator::prefiltered, 8, 1);
   Renderer renderer;
@@ -332,7 +332,7 @@ TEST(FlatMemory, AThousandFramesOfOneRenderer) {
 }
 
 // Each scene differs from the previous one, so that the renderer builds a new BVH each time.
-TEST(FlatMemory, AThousandScenesOfOneRenderer) {
+TEST(FlatMemory, AThousandScenesTakeNoMoreMemory) {
   const Scene scenes[] = {tree(300), make_procedural("scene:cloud?leaves=300"), tree(200)};
   const RenderOptions options = small_picture(Estimator::prefiltered, 8, 1);
   Renderer renderer;

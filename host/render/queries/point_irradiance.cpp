@@ -1,5 +1,5 @@
 // irradiance(): points and lights in, irradiance out, by the passes of the renderer.
-#include "render/point_irradiance.hpp"
+#include "render/queries/point_irradiance.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "passes/occlusion_pass.hpp"
 #include "passes/point_order.hpp"
 #include "render/option_check.hpp"
-#include "render/point_checks.hpp"
+#include "render/queries/point_checks.hpp"
 #include "scene/images/color.hpp"
 
 namespace dapple {

@@ -1,4 +1,4 @@
-#include "render/picture_record.hpp"
+#include "render/partial/picture_record.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Pieces of a picture: which overlap, what is missing, and that joining them loses nothing.
-#include "render/pieces.hpp"
+#include "render/partial/pieces.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "render/merged_sums.hpp"
+#include "render/partial/merged_sums.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -1,7 +1,7 @@
 // Parts of a picture add up to the bits of one render: shards of any sizes and crops, in any order,
 // at once or in steps, with every layer. What is missing is said; parts of other pictures, damaged
 // ones, unfinished ones and those that overlap are refused by name.
-#include "render/merge.hpp"
+#include "render/partial/merge.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numeric>
 #include <random>
 
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 #include "support/film_files.hpp"
 #include "support/scene_on_device.hpp"
 #include "support/swaying_tree.hpp"
@@ -295,9 +295,9 @@ TEST_F(MergeParts, PartsWithOtherLightsAreRefused) {
 
 TEST_F(MergeParts, PartsOfSeveralDevicesAreNotedWithEachDeviceOnce) {
   const std::vector<std::string> parts{part(1, 3), part(2, 3), part(3, 3)};
-  const std::string own = read_part(parts[0], Read::description).device;
+  const std::string own = read_part(parts[0], PartContents::description).device;
   for (const std::string& moved : {parts[1], parts[2]}) {
-    Checkpoint checkpoint = read_part(moved, Read::all);
+    Checkpoint checkpoint = read_part(moved, PartContents::all);
     checkpoint.device = "GPU of a farm";
     write_checkpoint(moved, checkpoint, checkpoint.state);
   }
@@ -327,7 +327,7 @@ TEST_F(MergeParts, DamagedFilesAreRefusedByName) {
 /// Files with a right checksum whose contents contradict each other.
 TEST_F(MergeParts, FilesThatContradictThemselvesAreDamaged) {
   const std::string good = part(1, 2), bad = path("bad.dapple");
-  const Checkpoint whole = read_part(good, Read::all);
+  const Checkpoint whole = read_part(good, PartContents::all);
   const std::function<void(Checkpoint&)> changes[] = {
       [](Checkpoint& c) { c.state.samples[7] += 2; },
       [](Checkpoint& c) { c.state.samples.pop_back(); },

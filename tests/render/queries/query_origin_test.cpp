@@ -2,7 +2,7 @@
 // also far from the origin.
 #include <gtest/gtest.h>
 
-#include "render/point_occlusion.hpp"
+#include "render/queries/point_occlusion.hpp"
 #include "support/scene_on_device.hpp"
 
 namespace dapple {

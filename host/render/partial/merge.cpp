@@ -1,4 +1,4 @@
-#include "render/merge.hpp"
+#include "render/partial/merge.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include "dapple/error.hpp"
 #include "film/film_memory.hpp"
 #include "film/layers.hpp"
-#include "render/checkpoint.hpp"
-#include "render/merged_sums.hpp"
+#include "render/partial/checkpoint.hpp"
+#include "render/partial/merged_sums.hpp"
 #include "render/stopwatch.hpp"
 
 namespace dapple {
@@ -32,7 +32,7 @@ struct Part {
 
 /// The file without its state.
 Checkpoint describe(const std::string& path) {
-  Checkpoint about = read_part(path, Read::description);
+  Checkpoint about = read_part(path, PartContents::description);
   for (const auto& [name, value] : about.options)
     if (name == "--target-error or --target-rmse" && value != "none")
       refuse(path +
@@ -95,8 +95,8 @@ struct Parts {
 };
 
 /// Reads a part once more. Throws Error usage if the file is no longer what was described.
-Checkpoint read_again(const Part& part, const Settings& common, Read what) {
-  Checkpoint about = read_part(part.path, what);
+Checkpoint read_again(const Part& part, const Settings& common, PartContents contents) {
+  Checkpoint about = read_part(part.path, contents);
   if (about.pieces != part.pieces || about.picture.options.visits != part.visits ||
       common_settings(about) != common)
     refuse(part.path + ": changed while it was merged");
@@ -177,7 +177,7 @@ void add_devices(std::string of_part, std::string& of_sum) {
 
 /// The description of the sum. Options are those of a render without --shard, if it is whole.
 Checkpoint describe_sum(const std::vector<Part>& parts, const Settings& common) {
-  Checkpoint sum = read_again(parts.front(), common, Read::description);
+  Checkpoint sum = read_again(parts.front(), common, PartContents::description);
   sum.pieces.clear();
   for (const Part& part : parts) {
     sum.pieces.insert(sum.pieces.end(), part.pieces.begin(), part.pieces.end());
@@ -239,7 +239,7 @@ Merge merge_parts(const std::vector<std::string>& paths, const std::string& outp
   check_film_memory({{}, picture.width, picture.height, picture.crop}, picture.lights.size(),
                     picture.options);
   MergedSums sums(picture);
-  for (const Part& part : parts) sums.add(part.path, read_again(part, common, Read::all));
+  for (const Part& part : parts) sums.add(part.path, read_again(part, common, PartContents::all));
   Merge merge;
   merge.spp = static_cast<std::uint32_t>(picture.metadata.samples);
   merge.missing = missing_text(sum.pieces, merge.spp);

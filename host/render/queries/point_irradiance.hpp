@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "dapple/render.hpp"
-#include "render/shared_points.hpp"
+#include "render/queries/shared_points.hpp"
 
 namespace dapple {
 

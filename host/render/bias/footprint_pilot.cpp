@@ -1,9 +1,9 @@
-#include "render/footprint_pilot.hpp"
+#include "render/bias/footprint_pilot.hpp"
 
 #include <algorithm>
 
 #include "camera/camera_splitting.hpp"
-#include "render/bias_pilot.hpp"
+#include "render/bias/bias_pilot.hpp"
 
 namespace dapple {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/point_checks.hpp"
+#include "render/queries/point_checks.hpp"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>

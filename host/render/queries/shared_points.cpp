@@ -1,4 +1,4 @@
-#include "render/shared_points.hpp"
+#include "render/queries/shared_points.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

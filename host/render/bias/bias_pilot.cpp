@@ -1,4 +1,4 @@
-#include "render/bias_pilot.hpp"
+#include "render/bias/bias_pilot.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -9,6 +9,7 @@
 #include "passes/camera_pass.hpp"
 #include "passes/occlusion_pass.hpp"
 #include "passes/shading_pass.hpp"
+#include "sampling/random_choice.hpp"
 
 namespace dapple {
 namespace {
@@ -29,16 +30,13 @@ constexpr std::size_t kMostRaysKept = 1u << 24;
 constexpr std::size_t kFewestUnits = 16;
 constexpr double kSpareUnits = 1.1;
 
-/// Fewer units do not tell how they differ.
-constexpr std::ptrdiff_t kLeastUnits = 8;
-
 /// Units in an order whose beginnings are evenly spread: by the height of a lattice of two
 /// dimensions above each (Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences",
 /// 2018).
 std::vector<std::uint32_t> spread_units(const UnitGrid& grid) {
-  constexpr std::uint32_t kColumn = 3242174889u, kRow = 2447445414u;
+  const auto step = [](double part) { return static_cast<std::uint32_t>(part * 0x1p32 + 0.5); };
   const auto height = [&](std::uint32_t unit) {
-    return grid.column(unit) * kColumn + grid.row(unit) * kRow;
+    return grid.column(unit) * step(kPairSteps[0]) + grid.row(unit) * step(kPairSteps[1]);
   };
   std::vector<std::uint32_t> order(grid.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -211,10 +209,8 @@ Bias BiasPilot::bias_of(Layer& layer, bool is_light, float footprint) {
   const auto seen = std::count_if(units.begin(), units.end(),
                                   [](const BiasUnit& unit) { return unit.count > 0; });
   Bias bias = estimate_bias(std::move(units), 1);
-  // As in picture_bias().
-  const auto ray_count = static_cast<double>(layer.rays.size());
   bias.error =
-      seen < kLeastUnits ? 1 / std::sqrt(ray_count) : std::hypot(bias.error, 1 / ray_count);
+      bias_error(bias.error, static_cast<double>(seen), static_cast<double>(layer.rays.size()));
   return bias;
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "film/traced_picture.hpp"
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 
 namespace dapple {
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 #include "render/picture.hpp"
 #include "support/film_files.hpp"
 #include "support/scene_on_device.hpp"

@@ -1,6 +1,6 @@
 // Checkpoint files: reading returns what was written; damaged files, and states that do not fit the
 // picture, are refused with the file's name.
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 

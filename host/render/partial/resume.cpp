@@ -1,4 +1,4 @@
-#include "render/resume.hpp"
+#include "render/partial/resume.hpp"
 
 #include <fmt/format.h>
 
@@ -116,9 +116,10 @@ std::string interruption_note(const TracedPicture& picture, const RenderOptions&
                          static_cast<double>(picture.samples.size() * splitting_factor(options));
   const std::string part =
       control.part.empty() ? "" : control.part + " is not written, it would lack samples; ";
-  const std::string next = control.checkpoint.empty()
-                               ? "with --checkpoint F it could go on"
-                               : "--resume " + control.checkpoint + " goes on";
+  const std::string next =
+      control.checkpoint.empty()
+          ? "with --checkpoint F an image without --frames, --shutter and --deep goes on"
+          : "--resume " + control.checkpoint + " goes on";
   return fmt::format("interrupted after {:.3g} samples a pixel on average; {}{}", samples, part,
                      next);
 }

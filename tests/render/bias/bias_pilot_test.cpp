@@ -1,6 +1,6 @@
 // How many rays a pilot takes to measure a bias: it keeps all of them in memory. It writes each to
 // the device once to trace it exactly, and little else, so bytes that are written count rays.
-#include "render/bias_pilot.hpp"
+#include "render/bias/bias_pilot.hpp"
 
 #include <gtest/gtest.h>
 

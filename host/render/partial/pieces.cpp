@@ -1,4 +1,4 @@
-#include "render/pieces.hpp"
+#include "render/partial/pieces.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 // Sections of the file: a JSON description, then compressed sums, squares, samples, the work of
 // each group of the round, for Cryptomattes what the samples hit, and sums of motion vectors.
 // Values have this machine's byte order, which the seal checks.
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 
 #include <fmt/format.h>
 
@@ -125,7 +125,7 @@ void read_state(const SealedFile& file, const json& about, TraceState& state) {
     state.motion = MotionSums(vector_of<MotionSums::Sum>(file, section));
 }
 
-Checkpoint checkpoint_of(const SealedFile& file, Read what) {
+Checkpoint checkpoint_of(const SealedFile& file, PartContents contents) {
   const std::span<const char> text = file.values<char>(0);
   const json about = json::parse(text.begin(), text.end());
   Checkpoint checkpoint;
@@ -142,24 +142,24 @@ Checkpoint checkpoint_of(const SealedFile& file, Read what) {
   state.first_sample = about.at("first_sample").get<std::uint32_t>();
   state.pass_seconds = about.at("pass_seconds").get<std::map<std::string, double>>();
   state.slice_samples = about.at("slice_samples").get<std::uint32_t>();
-  if (what == Read::all) read_state(file, about, state);
+  if (contents == PartContents::all) read_state(file, about, state);
   return checkpoint;
 }
 
-/// `what`: of the user, "--resume F" or a path. `next`: what to do about a damaged file.
-Checkpoint read_as(const std::string& what, const std::string& path, Read parts,
+/// `name`: for messages, "--resume F" or a path. `next`: what to do about a damaged file.
+Checkpoint read_as(const std::string& name, const std::string& path, PartContents contents,
                    const std::string& next) {
   try {
-    return checkpoint_of(open_sealed_file(path, kKind), parts);
+    return checkpoint_of(open_sealed_file(path, kKind), contents);
   } catch (const Error& error) {
     const std::string text = error.what();
-    const std::string name = path + ": ";
+    const std::string prefix = path + ": ";
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
-      throw Error(ErrorKind::input, what + ": there is no such file");
-    refuse(what, (text.starts_with(name) ? text.substr(name.size()) : text) + next);
+      throw Error(ErrorKind::input, name + ": there is no such file");
+    refuse(name, (text.starts_with(prefix) ? text.substr(prefix.size()) : text) + next);
   } catch (const json::exception& error) {
-    refuse(what, fmt::format("damaged: {}", error.what()));
+    refuse(name, fmt::format("damaged: {}", error.what()));
   }
 }
 
@@ -206,10 +206,13 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
 }
 
 Checkpoint read_checkpoint(const std::string& path) {
-  return read_as("--resume " + path, path, Read::all, "; without --resume the render begins anew");
+  return read_as("--resume " + path, path, PartContents::all,
+                 "; without --resume the render begins anew");
 }
 
-Checkpoint read_part(const std::string& path, Read what) { return read_as(path, path, what, ""); }
+Checkpoint read_part(const std::string& path, PartContents contents) {
+  return read_as(path, path, contents, "");
+}
 
 StateShape shape_of(const FilmLayout& layout, const RenderOptions& options,
                     const MatteNames& names) {

@@ -7,8 +7,8 @@
 
 #include "files/compression.hpp"
 #include "files/output_file.hpp"
-#include "render/picture_record.hpp"
-#include "render/pieces.hpp"
+#include "render/partial/picture_record.hpp"
+#include "render/partial/pieces.hpp"
 #include "render/render_settings.hpp"
 #include "render/trace_state.hpp"
 
@@ -35,9 +35,11 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
 /// Whether the state fits a picture is checked by check_state().
 Checkpoint read_checkpoint(const std::string& path);
 
-/// The same for a file to merge, without its state or with it. Errors are "PATH: ...".
-enum class Read : bool { description, all };
-Checkpoint read_part(const std::string& path, Read what);
+/// What is read of a file to merge: all but its state, or all.
+enum class PartContents : bool { description, all };
+
+/// The same for such a file. Errors are "PATH: ...".
+Checkpoint read_part(const std::string& path, PartContents contents);
 
 /// The size that a state must have: pixels and planes of the picture; for Cryptomattes the numbers
 /// of objects and materials, else 0.

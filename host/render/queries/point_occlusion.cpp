@@ -1,5 +1,5 @@
 // AO and bent normals at given points. In: points and normals. Out: one value for each point.
-#include "render/point_occlusion.hpp"
+#include "render/queries/point_occlusion.hpp"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@
 #include "passes/point_order.hpp"
 #include "passes/queues.hpp"
 #include "render/option_check.hpp"
-#include "render/point_checks.hpp"
-#include "render/shared_points.hpp"
+#include "render/queries/point_checks.hpp"
+#include "render/queries/shared_points.hpp"
 
 namespace dapple {
 namespace {

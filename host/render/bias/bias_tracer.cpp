@@ -1,4 +1,4 @@
-#include "render/bias_tracer.hpp"
+#include "render/bias/bias_tracer.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -27,7 +27,7 @@ constexpr std::uint32_t kEntriesOfThread = 2048;
 constexpr double kMaxCost = 2.5;
 
 double cost_of(const Occlusion& found) {
-  return static_cast<double>(found.visits & 65535u) + static_cast<double>(found.visits >> 16);
+  return 1.0 * visits_of(found.visits) + tests_of(found.visits);
 }
 
 /// Index of the sample among the slice's hits; below 0: it missed.

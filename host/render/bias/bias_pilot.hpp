@@ -6,8 +6,8 @@
 
 #include "dapple/bias.hpp"
 #include "passes/queues.hpp"
+#include "render/bias/unit_grid.hpp"
 #include "render/picture_rays.hpp"
-#include "render/unit_grid.hpp"
 #include "sampling/footprint_choice.hpp"
 
 namespace dapple {
@@ -57,10 +57,12 @@ class BiasPilot : public BiasSource {
   PictureRays picture_rays_;
   CameraParams camera_;
   UnitGrid grid_;
-  std::vector<std::uint32_t> order_;  ///< units, those that were not chosen yet as spread as others
+  std::vector<std::uint32_t>
+      order_;  ///< units; however many of the first are taken, they are spread
   std::size_t units_at_once_;
-  std::size_t next_ = 0;         ///< of order_, which is taken many times
-  std::size_t most_units_;       ///< as often as there are camera rays of a pixel, or less
+  std::size_t next_ = 0;  ///< in order_, which is gone through again and again
+  std::size_t
+      most_units_;  ///< taken at most; each unit at most once for each camera ray of a pixel
   std::vector<BiasUnit> units_;  ///< with counts of pixels that show geometry
   double seen_ = 0, tried_ = 0;
   std::vector<Layer> layers_;

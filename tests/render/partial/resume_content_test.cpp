@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "camera/view.hpp"
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 #include "support/film_files.hpp"
 
 namespace dapple {

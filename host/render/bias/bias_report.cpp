@@ -1,4 +1,4 @@
-#include "render/bias_report.hpp"
+#include "render/bias/bias_report.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -9,7 +9,7 @@
 
 #include "film/layers.hpp"
 #include "film/light_layers.hpp"
-#include "render/unit_grid.hpp"
+#include "render/bias/unit_grid.hpp"
 #include "sampling/bias_estimate.hpp"
 #include "scene/images/color.hpp"
 
@@ -20,39 +20,35 @@ namespace {
 /// Fewer rays say nothing about a bias: most differences are 0.
 constexpr double kLeastRays = 32;
 
-/// Fewer pixels do not tell how they differ.
-constexpr double kLeastPixels = 8;
-
 /// The standard error of the mean over pixels. Rays of different pixels are independent, and there
 /// are many more pixels than units, so that few rays tell it. What pixels of a unit have in common
 /// is that they are chosen together: that adds what independent choices of its samples would.
 class PixelError {
  public:
   void add(double difference, double samples) {
+    count_ += 1;
     squares_ += difference * difference;
     samples_ += samples;
   }
   void add(const PixelError& other) {
+    count_ += other.count_;
     squares_ += other.squares_;
     samples_ += other.samples_;
   }
-  /// `rays`: that were traced exactly. Two values of a ray differ by 1 at most.
-  [[nodiscard]] double value(const std::vector<BiasUnit>& units, double mean, double share,
-                             double rays) const {
-    double count = 0, squared_counts = 0;
-    for (const BiasUnit& unit : units) {
-      count += unit.count;
-      squared_counts += unit.count * unit.count;
-    }
-    if (count < kLeastPixels) return 1 / std::sqrt(rays);
-    const double of_rays = std::max(0.0, squares_ - count * mean * mean) * count / (count - 1);
+  /// Number of pixels.
+  [[nodiscard]] double count() const { return count_; }
+  /// Of two pixels or more.
+  [[nodiscard]] double value(const std::vector<BiasUnit>& units, double mean, double share) const {
+    double squared_counts = 0;
+    for (const BiasUnit& unit : units) squared_counts += unit.count * unit.count;
+    const double of_rays = std::max(0.0, squares_ - count_ * mean * mean) * count_ / (count_ - 1);
     const double of_choice =
-        std::max(0.0, 1 / share - 1) * count / samples_ * squared_counts * mean * mean;
-    return std::sqrt(of_rays + of_choice) / count;
+        std::max(0.0, 1 / share - 1) * count_ / samples_ * squared_counts * mean * mean;
+    return std::sqrt(of_rays + of_choice) / count_;
   }
 
  private:
-  double squares_ = 0, samples_ = 0;
+  double count_ = 0, squares_ = 0, samples_ = 0;
 };
 
 double total(const std::vector<std::uint32_t>& samples) {
@@ -89,8 +85,8 @@ class BiasEstimate {
     for (const PixelError& of_row : errors) error.add(of_row);
     Bias bias = estimate_bias(units, share_);
     const double rays = per_sample_ * total(samples);
-    // One ray more could have differed by all of its light: rare differences may not be seen.
-    bias.error = rays > 0 ? std::hypot(error.value(units, bias.mean, share_, rays), 1 / rays) : 1;
+    bias.error =
+        rays > 0 ? bias_error(error.value(units, bias.mean, share_), error.count(), rays) : 1;
     return bias;
   }
 

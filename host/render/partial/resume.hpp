@@ -3,7 +3,7 @@
 #pragma once
 
 #include "film/cryptomatte.hpp"
-#include "render/checkpoint.hpp"
+#include "render/partial/checkpoint.hpp"
 #include "render/picture.hpp"
 
 namespace dapple {

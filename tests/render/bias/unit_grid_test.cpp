@@ -1,6 +1,6 @@
 // Units of a picture's bias: each pixel of a crop is in one row of units, the rows follow each
 // other, and a row has the pixels of its units.
-#include "render/unit_grid.hpp"
+#include "render/bias/unit_grid.hpp"
 
 #include <gtest/gtest.h>
 
