@@ -126,6 +126,13 @@ TEST(ClosedGeometry, SurroundsWhatIsInABoxWhateverElseIsThere) {
   EXPECT_EQ(surrounding_directions(scene, {3, 0, 0}), 0) << "in the room";
 }
 
+// Most rays from a point near the mouth of a tube meet its side, and one that is open is decisive.
+TEST(ClosedGeometry, TubesDoNotSurroundTheirMouths) {
+  const Scene scene = scene_of(tube_mesh(24));
+  EXPECT_GT(surrounding_directions(scene, {0, 4, 0}), 90);
+  EXPECT_LT(surrounding_directions(scene, {0, 1.1f, 0}), 50);
+}
+
 TEST(ClosedGeometry, SurroundsWhatIsInAnInstanceMirroredOrNot) {
   Scene scene = scene_of(box_mesh({-1, -1, -1}, {1, 1, 1}));
   M44f mirrored;

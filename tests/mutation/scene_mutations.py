@@ -16,7 +16,7 @@ MUTATIONS = [
     Mutation(
         "bakes-keep-their-rays-to-lights", "host/bake/vertex_bake.cpp",
         "std::clamp<std::int64_t>(light_rays, options.light_rays, kMostLightRays)",
-        "options.light_rays",
+        "std::min<std::int64_t>(light_rays, options.light_rays)",
         r"^(BakeLight|SampleCounts)\."),
     Mutation(
         "quantization-rounds-inwards", "host/bvh/build/quantize_boxes.cpp",
