@@ -105,17 +105,21 @@ bool may_be_shaded(const Scene& scene, const RenderOptions& options) {
                      [](const Mesh& mesh) { return !mesh.normals.empty(); });
 }
 
-/// All moments of a shutter have normals, or none has: the film's planes are those of the first. So
-/// have all frames of a scene that moves, if its file brings normals.
+/// Whether normals are kept though all triangles may be flat just now: all moments of a shutter and
+/// all frames of a scene that moves have the same planes and layers.
+bool keeps_normals(const Scene& scene, const ShutterScenes& moments) {
+  return moments.smooth ||
+         (!scene.animations.empty() &&
+          std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& mesh) {
+            return !mesh.normals.empty() && !mesh.has_strands();
+          }));
+}
+
 UploadOptions uploading_of(const Scene& scene, const RenderOptions& options,
                            const ShutterScenes& moments) {
   const bool shading = options.normals == Normals::shading;
-  const bool always = moments.smooth ||
-                      (!scene.animations.empty() &&
-                       std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& mesh) {
-                         return !mesh.normals.empty() && !mesh.has_strands();
-                       }));
-  return {shading && (moments.count == 1 || always), options.albedo, shading && always};
+  const bool kept = keeps_normals(scene, moments);
+  return {shading && (moments.count == 1 || kept), options.albedo, shading && kept};
 }
 
 void add_trace_statistics(RenderStatistics& s, const TracedPicture& picture,
@@ -229,8 +233,9 @@ void put_on_device(KeptScene& kept, const Scene& scene, const View& view,
   kept.open(options, statistics);
   const Device& device = *kept.device;
   check_memory(device.info(), min_need(scene), "needs at least");
-  check_film_buffer(device.info(), view, options.light ? scene.lights : std::vector<Light>{},
-                    options, [&] { return moments.count > 1 ? moments.smooth : is_smooth(scene); });
+  check_film_buffer(
+      device.info(), view, options.light ? scene.lights : std::vector<Light>{}, options,
+      [&] { return keeps_normals(scene, moments) || (moments.count == 1 && is_smooth(scene)); });
   const auto kernels = picture_kernels(device.context(), options, view.camera, scene.lights,
                                        may_be_shaded(scene, options));
   CompilerProcesses processes;
