@@ -34,6 +34,14 @@ std::string why_refused(const V3f& radiance) {
   return fmt::format("{:.3g}, above {:g}", largest, kMaxRadiance);
 }
 
+/// The part of pixel `i` that lies in box `box`, where `boxes` of equal width cover `pixels`.
+double part_in_box(std::uint64_t i, std::uint64_t box, std::uint64_t boxes, std::uint64_t pixels) {
+  // Coordinates in parts of a pixel, of which there are as many as boxes.
+  const std::uint64_t begin = std::max(box * pixels, i * boxes);
+  const std::uint64_t end = std::min((box + 1) * pixels, (i + 1) * boxes);
+  return end - begin == boxes ? 1 : static_cast<double>(end - begin) / static_cast<double>(boxes);
+}
+
 }  // namespace
 
 DomeRows::DomeRows(std::uint32_t width, std::uint32_t height)
@@ -62,27 +70,29 @@ void DomeRows::check(std::size_t first_pixel, std::span<const V3f> pixels) {
   negative_ += negative;
 }
 
-/// A row of means over boxes of equal width and of down_ rows, weighted by solid angle. Rows that
-/// do not fill a box belong to the last one, at the nadir. `pixels`: from the first row of the
-/// boxes on.
+std::uint32_t DomeRows::first_row(std::uint32_t row) const {
+  return static_cast<std::uint32_t>(std::uint64_t{row} * height_ / result_.height);
+}
+
+std::uint32_t DomeRows::end_row(std::uint32_t row) const {
+  return static_cast<std::uint32_t>((std::uint64_t{row} * height_ + result_.height - 1) /
+                                    result_.height);
+}
+
+/// A row of means over boxes of equal width and height, weighted by solid angle. `pixels`: from
+/// first_row() on.
 void DomeRows::average(std::uint32_t row, const V3f* pixels) {
   std::vector<V3d> sums(result_.width, V3d(0.0));
   std::vector<double> weights(result_.width, 0.0);
-  const std::uint32_t first = row * down_;
-  const std::uint32_t end = row + 1 == result_.height ? height_ : first + down_;
-  for (std::uint32_t y = first; y < end; ++y) {
-    const double weight = texel_solid_angle(width_, height_, y);
+  const std::uint32_t first = first_row(row);
+  for (std::uint32_t y = first; y < end_row(row + 1); ++y) {
+    const double weight =
+        texel_solid_angle(width_, height_, y) * part_in_box(y, row, result_.height, height_);
     const V3f* pixel = pixels + std::size_t{y - first} * width_;
     for (std::uint32_t at = 0; at < result_.width; ++at) {
-      // Coordinates in parts of a pixel, of which there are as many as texels in a row.
-      const std::uint64_t parts = result_.width, begin = std::uint64_t{at} * width_;
-      const std::uint64_t box_end = begin + width_;
-      for (std::uint64_t x = begin / parts; x * parts < box_end; ++x) {
-        const std::uint64_t inside =
-            std::min(box_end, (x + 1) * parts) - std::max(begin, x * parts);
-        const double part = inside == parts
-                                ? weight
-                                : weight * static_cast<double>(inside) / static_cast<double>(parts);
+      const std::uint64_t begin = std::uint64_t{at} * width_, end = begin + width_;
+      for (std::uint64_t x = begin / result_.width; x * result_.width < end; ++x) {
+        const double part = weight * part_in_box(x, at, result_.width, width_);
         sums[at] += V3d(not_negative(pixel[x])) * part;
         weights[at] += part;
       }
@@ -93,18 +103,19 @@ void DomeRows::average(std::uint32_t row, const V3f* pixels) {
 }
 
 std::vector<DomeRows::Strip> DomeRows::strips(std::uint32_t rows) const {
-  const std::uint32_t step = down_ * std::max(1u, rows / down_);
+  const std::uint32_t step = std::max(1u, rows / down_);
   std::vector<Strip> all;
-  for (std::uint32_t first = 0; first + step <= height_; first += step)
-    all.push_back({first, step});
-  if (all.empty()) all.push_back({0, 0});
-  all.back().count = height_ - all.back().first;
+  for (std::uint32_t row = 0; row < result_.height; row += step) {
+    const std::uint32_t end = std::min(row + step, result_.height), first = first_row(row);
+    all.push_back({first, end_row(end) - first, row, end - row});
+  }
   return all;
 }
 
 void DomeRows::add(const Strip& strip, std::span<const V3f> pixels) {
   const std::size_t first_pixel = std::size_t{strip.first} * width_;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kBlock),
+  const std::size_t shared = std::size_t{end_row(strip.row) - strip.first} * width_;  // checked
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(shared, pixels.size(), kBlock),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       check(first_pixel + range.begin(),
                             pixels.subspan(range.begin(), range.size()));
@@ -115,11 +126,8 @@ void DomeRows::add(const Strip& strip, std::span<const V3f> pixels) {
                    not_negative);
     return;
   }
-  const std::uint32_t begin = strip.first / down_;
-  const std::uint32_t end =
-      strip.first + strip.count == height_ ? result_.height : begin + strip.count / down_;
-  tbb::parallel_for(begin, end, [&](std::uint32_t row) {
-    average(row, pixels.data() + std::size_t{row - begin} * down_ * width_);
+  tbb::parallel_for(strip.row, strip.row + strip.rows, [&](std::uint32_t row) {
+    average(row, pixels.data() + std::size_t{first_row(row) - strip.first} * width_);
   });
 }
 

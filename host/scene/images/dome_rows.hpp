@@ -27,13 +27,15 @@ class DomeRows {
   [[nodiscard]] bool is_scaled() const { return across_ > 1 || down_ > 1; }
 
   struct Strip {
-    std::uint32_t first = 0, count = 0;  ///< rows
+    std::uint32_t first = 0, count = 0;  ///< rows of the image
+    std::uint32_t row = 0, rows = 0;     ///< of the result, which they make
   };
 
-  /// Strips of about `rows` rows. Each makes whole rows of the result.
+  /// Strips of about `rows` rows. Neighbours share a row of the image whose parts belong to a row
+  /// of the result of each.
   [[nodiscard]] std::vector<Strip> strips(std::uint32_t rows) const;
 
-  /// Rows of the image that one row of the result averages. The last has the remainder as well.
+  /// Rows of the image that one row of the result averages, rounded down.
   [[nodiscard]] std::uint32_t rows_of_texel() const { return down_; }
 
   /// Adds the pixels of one of strips(). Several threads may add strips at once. Negative values
@@ -46,6 +48,11 @@ class DomeRows {
 
  private:
   void check(std::size_t first_pixel, std::span<const V3f> pixels);
+  /// The first row of the image that has a part in a row of the result; of the row after the last:
+  /// the height.
+  [[nodiscard]] std::uint32_t first_row(std::uint32_t row) const;
+  /// The first row of the image that has no part in the rows before a row of the result.
+  [[nodiscard]] std::uint32_t end_row(std::uint32_t row) const;
   void average(std::uint32_t row, const V3f* pixels);
 
   std::uint32_t width_, height_;  // of the image

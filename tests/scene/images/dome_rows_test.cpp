@@ -15,7 +15,7 @@
 namespace dapple {
 namespace {
 
-/// Three columns; 2,051 rows are averaged by threes, and two remain.
+/// Three columns; 2,051 rows become 683: each is the mean of a little more than three.
 constexpr std::uint32_t kWidth = 3, kHeight = 2051, kDown = 3;
 
 std::vector<V3f> random_image(std::uint32_t width, std::uint32_t height) {
@@ -44,11 +44,13 @@ TEST(DomeRows, RowsOfTheResultAreMeansWeightedBySolidAngle) {
   ASSERT_EQ(image.width, kWidth);
   ASSERT_EQ(image.height, kHeight / kDown);
   for (const std::uint32_t row : {0u, 400u, image.height - 1}) {
-    const std::uint32_t end = row + 1 == image.height ? kHeight : (row + 1) * kDown;
+    const double size = double{kHeight} / image.height, begin = row * size, end = begin + size;
     V3d sum(0.0);
     double weights = 0;
-    for (std::uint32_t y = row * kDown; y < end; ++y) {
-      const double weight = texel_solid_angle(kWidth, kHeight, y);
+    for (std::uint32_t y = 0; y < kHeight; ++y) {
+      const double part = std::min(end, y + 1.0) - std::max(begin, 1.0 * y);
+      if (part <= 0) continue;
+      const double weight = part * texel_solid_angle(kWidth, kHeight, y);
       sum += V3d(pixels[y * kWidth + 1]) * weight;
       weights += weight;
     }
@@ -68,6 +70,21 @@ TEST(DomeRows, ABrightPixelKeepsItsEnergyInEveryColumn) {
       sum += double{texel(image, x, 1).x} / image.width;
     EXPECT_NEAR(sum, 1000.0 / kColumns, 1e-5) << column;
   }
+}
+
+// The last rows once had what was left after whole boxes: light from the nadir lost more than half.
+TEST(DomeRows, ABrightPixelKeepsItsEnergyInEveryRow) {
+  for (const std::uint32_t rows : {1025u, 1501u, kHeight, 3071u})
+    for (const std::uint32_t row : {0u, 1u, 2u, rows / 2, rows - 3, rows - 2, rows - 1}) {
+      std::vector<V3f> pixels(rows, V3f(0, 0, 0));
+      pixels[row] = V3f(1000, 0, 0);
+      const Environment image = added(pixels, 1, rows, 64);
+      double sum = 0;
+      for (std::uint32_t y = 0; y < image.height; ++y)
+        sum += double{texel(image, 0, y).x} * texel_solid_angle(1, image.height, y);
+      EXPECT_NEAR(sum / (1000 * texel_solid_angle(1, rows, row)), 1, 0.005)
+          << row << " of " << rows;
+    }
 }
 
 TEST(DomeRows, TheResultDoesNotDependOnTheStrips) {
