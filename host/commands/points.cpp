@@ -41,7 +41,8 @@ struct Arguments {
   PointOptions options;
 };
 
-void add_point_options(CLI::App& app, Arguments& a) {
+/// The scene, the output and where the points are.
+void add_place_options(CLI::App& app, Arguments& a) {
   app.add_option("SCENE", a.scene,
                  "glTF file (.gltf, .glb), hair (.hair) or a procedural scene, "
                  "\"scene:tree?leaves=50000\"")
@@ -58,6 +59,10 @@ void add_point_options(CLI::App& app, Arguments& a) {
   app.add_option("--height", a.height, "Height of the grid, metres")->capture_default_str();
   app.add_flag("--per-triangle", a.per_triangle,
                "Two points at the centre of each triangle of the scene: its front, then its back");
+}
+
+/// What is written of each point.
+void add_quantity_options(CLI::App& app, Arguments& a) {
   PointOptions& o = a.options;
   app.add_option(
          "--rays", o.rays,
@@ -84,6 +89,12 @@ void add_point_options(CLI::App& app, Arguments& a) {
   add_rotation_option(app, "--sky-rotation", a.sky_rotation);
   app.add_option("--lights", a.lights, "JSON file of lights, in place of the scene's");
   add_light_radius_option(app, a.scene_options.light_radius);
+}
+
+void add_point_options(CLI::App& app, Arguments& a) {
+  add_place_options(app, a);
+  add_quantity_options(app, a);
+  PointOptions& o = a.options;
   app.add_option("--periodic", a.periodic,
                  "X,Z: the scene repeats itself with these periods, metres")
       ->delimiter(',')

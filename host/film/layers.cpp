@@ -243,6 +243,118 @@ double ambient_of(const RenderOptions& options, const std::vector<Light>& lights
   return dome ? 0 : kShare * light.unoccluded_percentile(kPercentile) / std::numbers::pi;
 }
 
+/// Makes the layers of a picture from its sums.
+class Layers {
+ public:
+  Layers(const Sums& sums, const TracedPicture& picture, const FilmLayout& layout,
+         const RenderOptions& options, const LightPlanes& light)
+      : sums_(sums),
+        picture_(picture),
+        layout_(layout),
+        options_(options),
+        light_(light),
+        planes_(layout.pixels) {}
+
+  /// RGB is premultiplied by A: camera rays that miss the scene count as 0.
+  void add_beauty(double ambient) {
+    planes_.add3("", "RGB", [&](std::uint32_t p) {
+      const double covered = ao(p) - (1.0 - hits(p) / spp(p));
+      return albedo(p) * (V3d(ambient) * covered + light_.shadowed(p) / std::numbers::pi);
+    });
+    planes_.add("A", [&](std::uint32_t p) { return hits(p) / spp(p); });
+  }
+
+  void add_ao() {
+    planes_.add3("ao", "RGB", [&](std::uint32_t p) { return V3d(ao(p)); });
+    if (options_.back)
+      planes_.add3("ao.back", "RGB", [&](std::uint32_t p) {
+        const std::uint32_t source = light_.back_source(p);
+        return V3d(ao_of(layout_.back_ao, source,
+                         sums_.at(layout_.back_samples + DAPPLE_PLANE_BACK_HITS, source),
+                         back_sample_count(sums_, layout_, source)));
+      });
+    planes_.add3("bent", "XYZ", [&](std::uint32_t p) {
+      const V3d bent = three(layout_.ao + DAPPLE_PLANE_AO_BENT, p);
+      return bent.length2() > 0 ? bent.normalized() : V3d(0.0);
+    });
+  }
+
+  void add_lights(const std::vector<LightLayer>& layers) {
+    for (const LightLayer& layer : layers) {
+      planes_.add3("light." + layer.name, "RGB",
+                   [&](std::uint32_t p) { return light_.sum(layer.lights, p); });
+      if (options_.back)
+        planes_.add3("light." + layer.name + ".back", "RGB",
+                     [&](std::uint32_t p) { return light_.back(layer.lights, p); });
+    }
+  }
+
+  /// What is seen. Geometric normals are a layer of their own where the shading pass made others.
+  void add_surface() {
+    if (layout_.albedo) planes_.add3("albedo", "RGB", [&](std::uint32_t p) { return albedo(p); });
+    add_mean("N", layout_.normals ? layout_.normals : DAPPLE_PLANE_NORMAL, layout_.unit_scale);
+    if (layout_.normals) add_mean("Ng", DAPPLE_PLANE_NORMAL, layout_.unit_scale);
+    add_mean("P", DAPPLE_PLANE_POSITION, layout_.position_scale);
+    planes_.add("Z", [&](std::uint32_t p) {
+      return hits(p) > 0 ? sums_.at(DAPPLE_PLANE_DEPTH, p) / (double{layout_.depth_scale} * hits(p))
+                         : std::numeric_limits<double>::infinity();
+    });
+    for (std::size_t axis = 0; axis < 2 && !picture_.motion.empty(); ++axis)
+      planes_.add(axis == 0 ? "motion.X" : "motion.Y", [&](std::uint32_t p) {
+        return hits(p) > 0 ? picture_.motion.mean(p, axis, hits(p)) : 0.0;
+      });
+  }
+
+  /// Samples, costs and estimated errors. `lights`: their names.
+  void add_sampling(const std::vector<std::string>& lights, RenderStatistics& statistics) {
+    planes_.add("samples",
+                [&](std::uint32_t p) { return picture_.samples[p] / splitting_factor(options_); });
+    if (options_.visits) add_visits(planes_, sums_, picture_, layout_, options_);
+    for (std::size_t pass = 0; pass < picture_.errors.size(); ++pass) {
+      const bool is_ao = options_.ao && pass == 0;
+      const std::string layer = is_ao ? "ao" : "light." + lights[pass - (options_.ao ? 1 : 0)];
+      const std::vector<float>& errors = picture_.errors[pass];
+      planes_.add("error." + layer, [&](std::uint32_t p) { return errors[p]; });
+      statistics.rmse[layer] = root_mean_square(errors);
+    }
+  }
+
+  std::vector<Plane> take() { return planes_.take(); }
+
+ private:
+  [[nodiscard]] double spp(std::uint32_t p) const { return sample_count(picture_, p); }
+  [[nodiscard]] double hits(std::uint32_t p) const { return sums_.at(DAPPLE_PLANE_HITS, p); }
+  [[nodiscard]] V3d three(std::uint32_t plane, std::uint32_t p) const {
+    return {sums_.at(plane, p), sums_.at(plane + 1, p), sums_.at(plane + 2, p)};
+  }
+  /// Of the samples that hit.
+  [[nodiscard]] V3d mean3(std::uint32_t plane, double scale, std::uint32_t p) const {
+    return hits(p) == 0 ? V3d(0.0) : three(plane, p) / (scale * hits(p));
+  }
+  void add_mean(const char* layer, std::uint32_t plane, double scale) {
+    planes_.add3(layer, "XYZ", [&](std::uint32_t p) { return mean3(plane, scale, p); });
+  }
+  [[nodiscard]] V3d albedo(std::uint32_t p) const {
+    return layout_.albedo ? mean3(layout_.albedo, layout_.unit_scale, p) : V3d(1.0);
+  }
+  /// AO of a plane's sum over `samples`, of which `hit` hit: the others see everything.
+  [[nodiscard]] double ao_of(std::uint32_t plane, std::uint32_t p, double hit,
+                             double samples) const {
+    return sums_.at(plane, p) / (double{layout_.unit_scale} * options_.ao_rays * samples) + 1.0 -
+           hit / samples;
+  }
+  [[nodiscard]] double ao(std::uint32_t p) const {
+    return options_.ao ? ao_of(layout_.ao, p, hits(p), spp(p)) : 1.0;
+  }
+
+  const Sums& sums_;
+  const TracedPicture& picture_;
+  const FilmLayout& layout_;
+  const RenderOptions& options_;
+  const LightPlanes& light_;
+  Planes planes_;
+};
+
 }  // namespace
 
 std::vector<std::string> light_names(const std::vector<Light>& lights) {
@@ -272,87 +384,16 @@ std::vector<Plane> develop(const TracedPicture& picture, const FilmLayout& layou
                            const RenderOptions& options, const std::vector<Light>& lights,
                            RenderStatistics& statistics) {
   const Sums sums(picture.sums.values<std::int64_t>(), layout.pixels);
-  const auto spp = [&](std::uint32_t p) { return sample_count(picture, p); };
-  const auto hits = [&](std::uint32_t p) { return sums.at(DAPPLE_PLANE_HITS, p); };
-  const auto ao_of = [&](std::uint32_t plane, std::uint32_t p, double hit, double samples) {
-    return sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * samples) + 1.0 -
-           hit / samples;
-  };
-  const auto ao = [&](std::uint32_t p) {
-    return options.ao ? ao_of(layout.ao, p, hits(p), spp(p)) : 1.0;
-  };
   const LightPlanes light(sums, picture, layout, options, lights);
   statistics.ambient = ambient_of(options, lights, light);
-  const V3d ambient(statistics.ambient);
-
-  Planes planes(layout.pixels);
-  const auto mean3 = [&](std::uint32_t plane, double scale) {
-    return [&, plane, scale](std::uint32_t p) {
-      if (hits(p) == 0) return V3d(0.0);
-      return V3d(sums.at(plane, p), sums.at(plane + 1, p), sums.at(plane + 2, p)) /
-             (scale * hits(p));
-    };
-  };
-  const auto albedo = [&](std::uint32_t p) {
-    return layout.albedo ? mean3(layout.albedo, layout.unit_scale)(p) : V3d(1.0);
-  };
-  // RGB is premultiplied by A: camera rays that miss the scene count as 0.
-  planes.add3("", "RGB", [&](std::uint32_t p) {
-    const double covered = ao(p) - (1.0 - hits(p) / spp(p));
-    return albedo(p) * (ambient * covered + light.shadowed(p) / std::numbers::pi);
-  });
-  planes.add("A", [&](std::uint32_t p) { return hits(p) / spp(p); });
-  if (options.ao) {
-    planes.add3("ao", "RGB", [&](std::uint32_t p) { return V3d(ao(p)); });
-    if (options.back)
-      planes.add3("ao.back", "RGB", [&](std::uint32_t p) {
-        const std::uint32_t source = light.back_source(p);
-        return V3d(ao_of(layout.back_ao, source,
-                         sums.at(layout.back_samples + DAPPLE_PLANE_BACK_HITS, source),
-                         back_sample_count(sums, layout, source)));
-      });
-    planes.add3("bent", "XYZ", [&](std::uint32_t p) {
-      const std::uint32_t plane = layout.ao + DAPPLE_PLANE_AO_BENT;
-      V3d bent(sums.at(plane, p), sums.at(plane + 1, p), sums.at(plane + 2, p));
-      return bent.length2() > 0 ? bent.normalized() : V3d(0.0);
-    });
-  }
-  const std::vector<std::string> names = light_names(lights);
-  for (const LightLayer& layer : light_layers(lights)) {
-    planes.add3("light." + layer.name, "RGB",
-                [&](std::uint32_t p) { return light.sum(layer.lights, p); });
-    if (options.back) {
-      planes.add3("light." + layer.name + ".back", "RGB",
-                  [&](std::uint32_t p) { return light.back(layer.lights, p); });
-    }
-  }
-  if (layout.albedo) planes.add3("albedo", "RGB", albedo);
-  // Geometric normals are a layer of their own where the shading pass made others.
-  planes.add3("N", "XYZ",
-              mean3(layout.normals ? layout.normals : DAPPLE_PLANE_NORMAL, layout.unit_scale));
-  if (layout.normals) planes.add3("Ng", "XYZ", mean3(DAPPLE_PLANE_NORMAL, layout.unit_scale));
-  planes.add3("P", "XYZ", mean3(DAPPLE_PLANE_POSITION, layout.position_scale));
-  planes.add("Z", [&](std::uint32_t p) {
-    return hits(p) > 0 ? sums.at(DAPPLE_PLANE_DEPTH, p) / (double{layout.depth_scale} * hits(p))
-                       : std::numeric_limits<double>::infinity();
-  });
-  for (std::size_t axis = 0; axis < 2 && !picture.motion.empty(); ++axis) {
-    planes.add(axis == 0 ? "motion.X" : "motion.Y", [&](std::uint32_t p) {
-      return hits(p) > 0 ? picture.motion.mean(p, axis, hits(p)) : 0.0;
-    });
-  }
-  planes.add("samples",
-             [&](std::uint32_t p) { return picture.samples[p] / splitting_factor(options); });
-  if (options.visits) add_visits(planes, sums, picture, layout, options);
-  for (std::size_t pass = 0; pass < picture.errors.size(); ++pass) {
-    const bool is_ao = options.ao && pass == 0;
-    const std::string layer = is_ao ? "ao" : "light." + names[pass - (options.ao ? 1 : 0)];
-    const std::vector<float>& errors = picture.errors[pass];
-    planes.add("error." + layer, [&](std::uint32_t p) { return errors[p]; });
-    statistics.rmse[layer] = root_mean_square(errors);
-  }
+  Layers layers(sums, picture, layout, options, light);
+  layers.add_beauty(statistics.ambient);
+  if (options.ao) layers.add_ao();
+  layers.add_lights(light_layers(lights));
+  layers.add_surface();
+  layers.add_sampling(light_names(lights), statistics);
   count_visits(sums, picture, layout, options, lights, statistics);
-  return planes.take();
+  return layers.take();
 }
 
 }  // namespace dapple
