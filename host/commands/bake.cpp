@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "bake/preview.hpp"
@@ -108,6 +109,19 @@ std::string component_note(const BakeChannel& channel) {
   return {};
 }
 
+/// Names lights that an earlier bake wrote and this one does not; empty: there are none.
+std::string earlier_lights_note(const gltf::SourceFile& file, const Scene& scene,
+                                const BakeResult& result) {
+  std::set<std::string> left;
+  for (const Mesh& mesh : scene.meshes)
+    for (const VertexSource& source : mesh.sources)
+      for (const std::string& name : file.attributes(source.mesh, source.primitive))
+        if (name.starts_with("_LIGHT_")) left.insert(name);
+  for (const std::string& light : result.light_names) left.erase("_LIGHT_" + light);
+  if (left.empty() || result.light_names.empty()) return {};
+  return fmt::format("the file keeps {} of an earlier bake", fmt::join(left, ", "));
+}
+
 /// Adds values at vertices. Returns notes.
 std::vector<std::string> add_to_vertices(gltf::Editor& editor, const gltf::SourceFile& file,
                                          const Scene& scene, const BakeArguments& a,
@@ -120,6 +134,7 @@ std::vector<std::string> add_to_vertices(gltf::Editor& editor, const gltf::Sourc
         "COLOR_0 of the file is multiplied by AO; if it holds baked AO already, use --blend "
         "replace");
   notes.push_back(component_note(targets.channel));
+  notes.push_back(earlier_lights_note(file, scene, result));
   return notes;
 }
 

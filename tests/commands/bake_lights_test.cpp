@@ -29,6 +29,11 @@ TEST_F(BakeCommand, LightsAreAttributesWithTheirNames) {
   for (std::size_t i = 0; i < rgb.size(); ++i)
     EXPECT_NEAR(rgb[i], std::pow(0.5, i % 3), 1e-3)
         << "vertex " << i / 3 << ", component " << i % 3;
+  EXPECT_EQ(run.err.find("earlier bake"), std::string::npos) << run.err;
+  std::ofstream(path("dusk.json")) << R"({"lights": [{"type": "sun", "name": "dusk",
+      "direction": [0, 0, -1], "irradiance": 1}]})";
+  const Outcome again = dapple("bake out.glb -o b.glb --passes ao,light --lights dusk.json");
+  EXPECT_NE(again.err.find("keeps _LIGHT_noon of an earlier bake"), std::string::npos) << again.err;
   expect_failure(dapple("bake in.glb -o no.glb --passes ao,light"), 2, "--lights");
   expect_failure(dapple("bake in.glb -o no.glb --lights lights.json"), 2, "--passes");
   expect_failure(dapple("bake in.glb -o no.glb --passes light,shine"), 2, "--passes");

@@ -157,6 +157,13 @@ std::string SourceFile::texture_with_uvs(std::uint32_t mesh, std::uint32_t primi
   return {};
 }
 
+std::vector<std::string> SourceFile::attributes(std::uint32_t mesh, std::uint32_t primitive) const {
+  std::vector<std::string> names;
+  for (const auto& [name, accessor] : content->primitive(mesh, primitive).attributes)
+    names.push_back(name);
+  return names;
+}
+
 std::uint32_t SourceFile::uv_sets(std::uint32_t mesh, std::uint32_t primitive) const {
   std::uint32_t sets = 0;
   while (attribute(content->primitive(mesh, primitive), "TEXCOORD_" + std::to_string(sets)) >= 0)

@@ -41,6 +41,9 @@ struct SourceFile {
   /// TEXCOORD_`set`: `baseColorTexture of material 2 ("bark")`. Empty if none does.
   [[nodiscard]] std::string texture_with_uvs(std::uint32_t mesh, std::uint32_t primitive,
                                              std::uint32_t set) const;
+  /// The names of a primitive's attributes, sorted.
+  [[nodiscard]] std::vector<std::string> attributes(std::uint32_t mesh,
+                                                    std::uint32_t primitive) const;
   /// The number of a primitive's TEXCOORD_n attributes.
   [[nodiscard]] std::uint32_t uv_sets(std::uint32_t mesh, std::uint32_t primitive) const;
 
