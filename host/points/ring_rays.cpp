@@ -29,13 +29,17 @@ std::vector<ZenithRing> zenith_rings(int count) {
   return rings;
 }
 
+/// Rays start above a point by this part of its largest coordinate: 64 roundings, as those of
+/// shared_points.cpp do.
+constexpr float kStart = 3.8e-6f;
+
 Ray point_ray(const V3f& point, const V3f& normal, const V3f& direction, float solid_angle,
               std::uint32_t key) {
   Ray ray{};
-  const float largest =
-      std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) * 4e-6f;
+  const float start =
+      std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)}) * kStart;
   for (int axis = 0; axis < 3; ++axis) {
-    ray.origin[axis] = point[axis] + normal[axis] * largest;
+    ray.origin[axis] = point[axis] + normal[axis] * start;
     ray.direction[axis] = direction[axis];
   }
   ray.t_max = std::numeric_limits<float>::infinity();
