@@ -41,19 +41,19 @@ MUTATIONS = [
         r"^(MergeParts|BackSources)\."),
     Mutation(
         "misses-count-as-occluded", "host/film/layers.cpp",
-        "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * samples) + 1.0 -\n"
+        "sums_.at(plane, p) / (double{layout_.unit_scale} * options_.ao_rays * samples) + 1.0 -\n"
         "           hit / samples;",
-        "sums.at(plane, p) / (double{layout.unit_scale} * options.ao_rays * samples);",
+        "sums_.at(plane, p) / (double{layout_.unit_scale} * options_.ao_rays * samples) + 0 * hit;",
         r"^(Beauty|Film|PictureChannels|ClosedForm)\."),
     Mutation(
         "means-over-samples-instead-of-hits", "host/film/layers.cpp",
-        "             (scale * hits(p));",
-        "             (scale * spp(p));",
+        "three(plane, p) / (scale * hits(p));",
+        "three(plane, p) / (scale * spp(p));",
         r"^(PictureChannels|Albedo|ShadingNormal)\."),
     Mutation(
         "bent-normal-begins-a-plane-early", "host/film/layers.cpp",
-        "const std::uint32_t plane = layout.ao + DAPPLE_PLANE_AO_BENT;",
-        "const std::uint32_t plane = layout.ao;",
+        "const V3d bent = three(layout_.ao + DAPPLE_PLANE_AO_BENT, p);",
+        "const V3d bent = three(layout_.ao, p);",
         r"^PictureChannels\."),
     Mutation(
         "cryptomatte-ranks-ascend", "host/film/cryptomatte.cpp",
