@@ -1,9 +1,6 @@
 // The options --frame and --frames of dapple render: one file for each frame, named by its number;
 // what stays the same in all frames; what is said of scenes that do not move; and arguments that
 // are refused before anything is rendered.
-#include <ImfHeader.h>
-#include <ImfInputFile.h>
-#include <ImfStringAttribute.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -62,28 +59,6 @@ class FramesCommand : public ProgramRun {
     std::ofstream(path("blink.glb"), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
-  }
-  /// Writes rise.glb: the triangle rises towards a camera that looks down on it.
-  void write_rise() const {
-    test::GltfBuilder b = test::one_triangle();
-    const int times = b.add_accessor(std::vector<float>{0, 1}, test::kFloat, "SCALAR");
-    const int values = b.add_positions({0, 0, 0, 0, 1, 0});
-    b.add("animations",
-          {{"samplers", {{{"input", times}, {"output", values}}}},
-           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
-    b.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}});
-    b.add("nodes", {{"translation", {0.3, 4, 0}},
-                    {"rotation", {-0.70710678, 0, 0, 0.70710678}},
-                    {"camera", 0}});
-    const auto bytes = b.glb();
-    std::ofstream(path("rise.glb"), std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-  }
-  [[nodiscard]] float focus_distance(const char* name) const {
-    const Imf::InputFile file(path(name).c_str());
-    const auto& header = file.header();
-    return std::stof(header.typedAttribute<Imf::StringAttribute>("dapple:focus_distance").value());
   }
   static std::string text_of(const test::Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
   static int count(const std::string& text, const std::string& part) {
@@ -150,15 +125,6 @@ TEST_F(FramesCommand, AFrameOfASequenceShowsWhatThatFrameAloneShows) {
   ASSERT_EQ(climb("--frame 0.75" + options + "still.exr").code, 0);
   EXPECT_NEAR(height("all.3.exr"), height("one.3.exr"), 1e-5);
   EXPECT_NEAR(height("all.3.exr"), height("still.exr"), 1e-5);
-}
-
-TEST_F(FramesCommand, ASequenceKeepsTheFocusOfItsFirstFrame) {
-  write_rise();
-  ASSERT_EQ(
-      small_render("rise.glb", "--frames 0-1 --fps 1 --aperture 0.1 --passes ao -o a.#.exr").code,
-      0);
-  EXPECT_GT(focus_distance("a.0.exr"), 1);
-  EXPECT_EQ(focus_distance("a.0.exr"), focus_distance("a.1.exr"));
 }
 
 TEST_F(FramesCommand, CameraLightAndGroundOfASequenceStandStill) {

@@ -57,12 +57,10 @@ class BiasPilot : public BiasSource {
   PictureRays picture_rays_;
   CameraParams camera_;
   UnitGrid grid_;
-  std::vector<std::uint32_t>
-      order_;  ///< units; however many of the first are taken, they are spread
+  std::vector<std::uint32_t> order_;  ///< units; any number of the first are evenly spread
   std::size_t units_at_once_;
-  std::size_t next_ = 0;  ///< in order_, which is gone through again and again
-  std::size_t
-      most_units_;  ///< taken at most; each unit at most once for each camera ray of a pixel
+  std::size_t next_ = 0;         ///< in order_, which is gone through again and again
+  std::size_t most_units_;       ///< a unit may be taken once for each camera ray of a pixel
   std::vector<BiasUnit> units_;  ///< with counts of pixels that show geometry
   double seen_ = 0, tried_ = 0;
   std::vector<Layer> layers_;
